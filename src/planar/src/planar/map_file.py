@@ -1,0 +1,153 @@
+"""Map files: the YAML and image pair of map_server (contract of ROS 1 navigation 1.17)."""
+
+import math
+import os
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import yaml
+from PIL import Image, UnidentifiedImageError
+
+from planar.errors import PlanarError
+from planar.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
+from planar.pose import Pose2
+
+MODES = ("trinary", "scale", "raw")
+
+
+class MapFileError(PlanarError):
+    """A map file cannot be read or written; the text names the file and the key."""
+
+
+def load_map(path) -> OccupancyGrid:
+    """The grid described by a map_server YAML file. Raises MapFileError."""
+    path = Path(path)
+    fields = _read_fields(path)
+    resolution = _number(path, fields, "resolution")
+    if resolution <= 0.0:
+        raise MapFileError(f"{path}: resolution must be positive, got {resolution}")
+    mode = fields.get("mode", "trinary")
+    if mode not in MODES:
+        raise MapFileError(f"{path}: mode must be one of {', '.join(MODES)}, got {mode!r}")
+    negate = fields.get("negate")
+    if isinstance(negate, bool) or negate not in (0, 1):
+        raise MapFileError(f"{path}: negate must be 0 or 1, got {negate!r}")
+    image_path = path.parent / str(_required(path, fields, "image"))
+    cells = cells_from_image(
+        image_path,
+        negate=bool(negate),
+        occupied_thresh=_number(path, fields, "occupied_thresh"),
+        free_thresh=_number(path, fields, "free_thresh"),
+        mode=mode,
+    )
+    return OccupancyGrid(cells, resolution, _origin(path, fields))
+
+
+def cells_from_image(
+    image_path, negate=False, occupied_thresh=0.65, free_thresh=0.196, mode="trinary"
+) -> np.ndarray:
+    """Cells int8 (rows, cols), row 0 lowest, of an image read as map_server reads it."""
+    try:
+        with Image.open(image_path) as image:
+            pixels = np.asarray(image.convert("RGBA" if "A" in image.getbands() else "RGB"), dtype=np.float64)
+    except FileNotFoundError:
+        raise MapFileError(f"{image_path}: no such map image") from None
+    except (OSError, UnidentifiedImageError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
+        raise MapFileError(f"{image_path}: not a readable image ({error})") from None
+    channels = pixels if mode == "trinary" else pixels[:, :, :3]
+    shade = np.flipud(channels.mean(axis=2))
+    if negate:
+        shade = 255.0 - shade
+    if mode == "raw":
+        return np.rint(shade).astype(np.uint8).astype(np.int8)
+    occupancy = (255.0 - shade) / 255.0
+    cells = np.full(occupancy.shape, UNKNOWN, dtype=np.int8)
+    if mode == "scale":
+        between = 1.0 + 98.0 * (occupancy - free_thresh) / (occupied_thresh - free_thresh)
+        opaque = np.flipud(pixels[:, :, 3]) >= 255.0 if pixels.shape[2] == 4 else np.True_
+        cells = np.where(opaque, between, UNKNOWN).astype(np.int8)
+    cells[occupancy > occupied_thresh] = OCCUPIED
+    cells[occupancy < free_thresh] = FREE
+    return cells
+
+
+def save_map(grid: OccupancyGrid, stem, occupied_at: int = 65, free_at: int = 25) -> Path:
+    """Writes ``stem``.pgm and ``stem``.yaml as map_saver does, each whole or not at all; returns the YAML.
+
+    Cells of 0..free_at become free, occupied_at..100 occupied, all others unknown. The YAML names the image
+    without a folder, so that the pair can be moved together.
+    """
+    stem = Path(stem)
+    image = np.full(grid.cells.shape, 205, dtype=np.uint8)
+    image[(grid.cells >= 0) & (grid.cells <= free_at)] = 254
+    image[grid.cells >= occupied_at] = 0
+    header = f"P5\n# {grid.resolution:.3f} m/pix\n{grid.cols} {grid.rows}\n255\n"
+    pgm_path, yaml_path = stem.with_name(stem.name + ".pgm"), stem.with_name(stem.name + ".yaml")
+    description = (
+        f"image: {pgm_path.name}\n"
+        f"resolution: {grid.resolution:f}\n"
+        f"origin: [{grid.origin.x:f}, {grid.origin.y:f}, {grid.origin.yaw:f}]\n"
+        "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n\n"
+    )
+    write_atomically(pgm_path, header.encode("ascii") + np.flipud(image).tobytes())
+    write_atomically(yaml_path, description.encode("ascii"))
+    return yaml_path
+
+
+def write_atomically(path, data: bytes) -> None:
+    """Writes beside ``path``, then renames, so that no reader sees half a file. Raises MapFileError."""
+    path = Path(path)
+    try:
+        descriptor, beside = tempfile.mkstemp(dir=str(path.parent), prefix=path.name + ".")
+        try:
+            with os.fdopen(descriptor, "wb") as file:
+                file.write(data)
+            Path(beside).chmod(0o644)
+            Path(beside).replace(path)
+        except BaseException:
+            Path(beside).unlink()
+            raise
+    except OSError as error:
+        raise MapFileError(f"{path}: cannot be written ({error.strerror})") from None
+
+
+def _read_fields(path: Path) -> dict:
+    try:
+        fields = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise MapFileError(f"{path}: no such map file") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise MapFileError(f"{path}: cannot be read ({error})") from None
+    except yaml.YAMLError as error:
+        raise MapFileError(f"{path}: not valid YAML ({' '.join(str(error).split())})") from None
+    if not isinstance(fields, dict):
+        raise MapFileError(f"{path}: not a map description (expected keys image, resolution, origin, ...)")
+    return fields
+
+
+def _required(path: Path, fields: dict, key: str):
+    if fields.get(key) is None:
+        raise MapFileError(f"{path}: {key} is missing")
+    return fields[key]
+
+
+def _number(path: Path, fields: dict, key: str) -> float:
+    return _as_number(path, key, _required(path, fields, key))
+
+
+def _as_number(path: Path, key: str, value) -> float:
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        number = math.nan
+    if isinstance(value, bool) or not math.isfinite(number):
+        raise MapFileError(f"{path}: {key} must be a number, got {value!r}")
+    return number
+
+
+def _origin(path: Path, fields: dict) -> Pose2:
+    origin = _required(path, fields, "origin")
+    if not isinstance(origin, list) or len(origin) != 3:
+        raise MapFileError(f"{path}: origin must be [x, y, yaw], got {origin!r}")
+    return Pose2(*(_as_number(path, "origin", value) for value in origin))

@@ -1,0 +1,73 @@
+"""Settings: a flat table of named values made into a frozen dataclass, checked by name and type."""
+
+import dataclasses
+import difflib
+import math
+import typing
+from typing import Any, Dict, List, Mapping, Tuple, Type, TypeVar
+
+from planar.errors import SettingsError
+
+T = TypeVar("T")
+
+
+def settings_from(
+    kind: Type[T], values: Mapping[str, Any], names: Mapping[str, str] = {}, where: str = ""
+) -> Tuple[T, List[str]]:
+    """The dataclass ``kind`` filled from ``values``; what ``values`` leaves out keeps its default.
+
+    ``names`` maps a name in ``values`` to a field of ``kind`` (a field's own name needs no entry).
+    ``where`` is put before each name in error texts, e.g. ``/amcl/``.
+    Returns the settings and the names that ``kind`` does not know. Raises SettingsError for a value of a
+    wrong type; ``kind.__post_init__`` may raise it for a senseless one.
+    """
+    types = typing.get_type_hints(kind)
+    fields = {field.name for field in dataclasses.fields(kind) if field.init}  # type: ignore[arg-type]
+    renamed = set(names.values())
+    table = {**{name: name for name in fields if name not in renamed}, **names}
+    known: Dict[str, Any] = {}
+    unknown = []
+    for name, value in values.items():
+        if name in table:
+            known[table[name]] = _converted(types[table[name]], value, where + name)
+        else:
+            unknown.append(name)
+    try:
+        return kind(**known), unknown
+    except SettingsError as error:
+        official = {field: name for name, field in table.items()}
+        text = str(error)
+        first = text.split(" ", 1)[0]
+        raise SettingsError(where + text.replace(first, official.get(first, first), 1)) from None
+
+
+def nearest_name(name: str, known: typing.Iterable[str]) -> str:
+    """The known name most like ``name``, or an empty string if none is alike."""
+    matches = difflib.get_close_matches(name, list(known), n=1)
+    return matches[0] if matches else ""
+
+
+def check(condition: bool, name: str, requirement: str, value: Any) -> None:
+    """Raises SettingsError "<name> must be <requirement>, got <value>" unless ``condition`` holds."""
+    if not condition:
+        raise SettingsError(f"{name} must be {requirement}, got {value!r}")
+
+
+def _converted(kind: Any, value: Any, name: str) -> Any:
+    if kind is float and isinstance(value, (int, float)) and not isinstance(value, bool):
+        if math.isnan(value):
+            raise SettingsError(f"{name} must be a number, got {value!r}")
+        return float(value)
+    if kind is int and isinstance(value, float) and value.is_integer():
+        return int(value)
+    if kind in (int, str, bool):
+        if isinstance(value, kind) and not (kind is int and isinstance(value, bool)):
+            return value
+        if kind is bool and value in (0, 1):
+            return bool(value)
+    elif kind is not float:
+        return value
+    raise SettingsError(f"{name} must be {_KIND_NAMES[kind]}, got {value!r}")
+
+
+_KIND_NAMES = {float: "a number", int: "a whole number", str: "a text", bool: "true or false"}

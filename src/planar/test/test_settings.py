@@ -1,0 +1,45 @@
+from dataclasses import dataclass
+
+import pytest
+
+from planar import SettingsError
+from planar.settings import check, nearest_name, settings_from
+
+
+@dataclass(frozen=True)
+class Engine:
+    cylinders: int = 4
+    power: float = 50.0
+    fuel: str = "petrol"
+    turbo: bool = False
+
+    def __post_init__(self):
+        check(self.power > 0, "power", "positive", self.power)
+
+
+NAMES = {"engine_power": "power"}
+
+
+def test_official_names_fill_readable_fields_and_the_rest_keeps_its_default():
+    engine, unknown = settings_from(Engine, {"engine_power": 70, "cylinders": 6.0}, NAMES)
+    assert engine == Engine(cylinders=6, power=70.0)
+    assert unknown == []
+
+
+def test_names_that_nobody_knows_are_handed_back():
+    assert settings_from(Engine, {"cilinders": 3}, NAMES)[1] == ["cilinders"]
+    assert nearest_name("cilinders", ["cylinders", "power"]) == "cylinders"
+
+
+@pytest.mark.parametrize(
+    "values, complaint",
+    [
+        ({"cylinders": "four"}, "/car/cylinders must be a whole number, got 'four'"),
+        ({"turbo": "yes"}, "/car/turbo must be true or false"),
+        ({"engine_power": float("nan")}, "/car/engine_power must be a number"),
+        ({"engine_power": -1.0}, "/car/engine_power must be positive, got -1.0"),
+    ],
+)
+def test_a_wrong_value_is_refused_under_its_official_name(values, complaint):
+    with pytest.raises(SettingsError, match=complaint):
+        settings_from(Engine, values, NAMES, where="/car/")
