@@ -1,0 +1,1 @@
+"""Between ROS and the pure packages: messages to planar types, parameters to settings, transforms, node manners."""

@@ -1,0 +1,85 @@
+"""ROS messages to planar types and back."""
+
+import math
+
+import numpy as np
+import rospy
+from geometry_msgs.msg import Point, Pose, Quaternion, TransformStamped
+from nav_msgs.msg import OccupancyGrid as OccupancyGridMsg
+from planar import OccupancyGrid, Pose2, Scan
+from rospy.numpy_msg import numpy_msg
+from sensor_msgs.msg import LaserScan
+
+# Subscribed to with these types, `ranges` and `data` arrive as numpy arrays instead of tuples.
+LaserScanArrays = numpy_msg(LaserScan)
+OccupancyGridArrays = numpy_msg(OccupancyGridMsg)
+
+
+def yaw_of(quaternion) -> float:
+    """Yaw, radians, of a geometry_msgs/Quaternion of any length but zero."""
+    x, y, z, w = quaternion.x, quaternion.y, quaternion.z, quaternion.w
+    return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)
+
+
+def quaternion_of(yaw: float) -> Quaternion:
+    return Quaternion(0.0, 0.0, math.sin(yaw / 2.0), math.cos(yaw / 2.0))
+
+
+def pose2_from_msg(pose) -> Pose2:
+    return Pose2(pose.position.x, pose.position.y, yaw_of(pose.orientation))
+
+
+def pose2_to_msg(pose: Pose2) -> Pose:
+    return Pose(Point(pose.x, pose.y, 0.0), quaternion_of(pose.yaw))
+
+
+def frame_name(frame_id: str) -> str:
+    """A frame's name as tf2 knows it: without the leading slash of older code."""
+    return frame_id[1:] if frame_id.startswith("/") else frame_id
+
+
+def transform_msg(child_in_parent: Pose2, parent: str, child: str, stamp) -> TransformStamped:
+    message = TransformStamped()
+    message.header.stamp = stamp
+    message.header.frame_id = parent
+    message.child_frame_id = child
+    message.transform.translation.x = child_in_parent.x
+    message.transform.translation.y = child_in_parent.y
+    message.transform.rotation = quaternion_of(child_in_parent.yaw)
+    return message
+
+
+def grid_from_msg(message) -> OccupancyGrid:
+    info = message.info
+    cells = np.asarray(message.data, dtype=np.int8).reshape(info.height, info.width)
+    return OccupancyGrid(cells, info.resolution, pose2_from_msg(info.origin))
+
+
+def grid_to_msg(grid: OccupancyGrid, stamp, frame_id: str) -> OccupancyGridMsg:
+    """A message whose data is a flat numpy array; publish it with OccupancyGridArrays for speed."""
+    message = OccupancyGridArrays()
+    message.header.stamp = stamp
+    message.header.frame_id = frame_id
+    message.info.resolution = grid.resolution
+    message.info.height, message.info.width = grid.cells.shape
+    message.info.origin = pose2_to_msg(grid.origin)
+    message.data = np.ascontiguousarray(grid.cells, dtype=np.int8).ravel()
+    return message
+
+
+def scan_from_msg(message, laser_in_base: Pose2, upside_down: bool = False) -> Scan:
+    return Scan(
+        stamp=message.header.stamp.to_sec(),
+        angle_min=message.angle_min,
+        angle_increment=message.angle_increment,
+        ranges=np.asarray(message.ranges, dtype=np.float32),
+        range_min=message.range_min,
+        range_max=message.range_max,
+        laser_in_base=laser_in_base,
+        upside_down=upside_down,
+    )
+
+
+def time_of(stamp: float) -> rospy.Time:
+    """Seconds as rospy.Time, to the nearest nanosecond."""
+    return rospy.Time(0, round(stamp * 1e9))

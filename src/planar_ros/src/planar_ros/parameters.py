@@ -1,0 +1,41 @@
+"""Parameters of the parameter server made into settings."""
+
+from typing import Any, Dict, Iterable, Mapping, Type, TypeVar
+
+import rospy
+from planar import SettingsError
+from planar.settings import nearest_name, settings_from
+
+T = TypeVar("T")
+
+
+def read_settings(
+    kind: Type[T], names: Mapping[str, str] = {}, namespace: str = "~", ignore: Iterable[str] = ()
+) -> T:
+    """The dataclass ``kind`` filled from the parameters below ``namespace`` (see planar.settings).
+
+    Names that neither ``kind`` nor ``ignore`` knows are warned of, with the nearest known one; with
+    ``~strict_params`` they are an error. Nested namespaces are other components' matter and left alone.
+    Raises SettingsError with the full name of the parameter.
+    """
+    where = rospy.resolve_name(namespace).rstrip("/") + "/"
+    values = {name: value for name, value in parameters_below(where).items() if not isinstance(value, dict)}
+    settings, unknown = settings_from(kind, values, names, where)
+    known = {*names, *kind.__dataclass_fields__, *ignore, "strict_params"}  # type: ignore[attr-defined]
+    for name in unknown:
+        if name not in known:
+            _report_unknown(where + name, nearest_name(name, known))
+    return settings
+
+
+def parameters_below(namespace: str) -> Dict[str, Any]:
+    """All parameters below a namespace as a (nested) dictionary; empty if there are none."""
+    values = rospy.get_param(rospy.resolve_name(namespace).rstrip("/"), {})
+    return values if isinstance(values, dict) else {}
+
+
+def _report_unknown(name: str, nearest: str) -> None:
+    text = f"unknown parameter {name}" + (f", did you mean {nearest}?" if nearest else "")
+    if rospy.get_param("~strict_params", False):
+        raise SettingsError(text)
+    rospy.logwarn("%s", text)

@@ -1,0 +1,57 @@
+"""Transforms between frames, as plane poses."""
+
+from typing import Optional, Tuple
+
+import rospy
+import tf2_ros
+from planar import Pose2
+from planar_ros.messages import frame_name, transform_msg, yaw_of
+
+
+class Transforms:
+    """A listener to and sender of tf, in the plane."""
+
+    def __init__(self, cache_seconds: float = 10.0):
+        self.buffer = tf2_ros.Buffer(rospy.Duration(cache_seconds), debug=False)
+        self._listener = tf2_ros.TransformListener(self.buffer, queue_size=100, tcp_nodelay=True)
+        self._broadcaster = tf2_ros.TransformBroadcaster()
+
+    def lookup(
+        self, target: str, source: str, stamp: Optional[rospy.Time] = None, timeout: float = 0.0
+    ) -> Optional[Pose2]:
+        """Where ``source`` lies in ``target`` at ``stamp`` (default: the latest known); None if not known."""
+        transform = self._lookup(target, source, stamp, timeout)
+        if transform is None:
+            return None
+        return Pose2(transform.translation.x, transform.translation.y, yaw_of(transform.rotation))
+
+    def mounting(self, base_frame: str, sensor_frame: str) -> Optional[Tuple[Pose2, bool]]:
+        """How a sensor is mounted on its base: its pose in the plane, and whether it hangs upside down."""
+        transform = self._lookup(base_frame, sensor_frame, None, 0.0)
+        if transform is None:
+            return None
+        q = transform.rotation
+        upside_down = 1.0 - 2.0 * (q.x * q.x + q.y * q.y) < 0.0
+        return Pose2(transform.translation.x, transform.translation.y, yaw_of(q)), upside_down
+
+    def latest_stamp(self, target: str, source: str) -> Optional[rospy.Time]:
+        """The newest time at which the transform is known; None if it is not."""
+        try:
+            return self.buffer.get_latest_common_time(frame_name(target), frame_name(source))
+        except tf2_ros.TransformException:
+            return None
+
+    def send(self, child_in_parent: Pose2, parent: str, child: str, stamp: rospy.Time) -> None:
+        self._broadcaster.sendTransform(transform_msg(child_in_parent, parent, child, stamp))
+
+    def clear(self) -> None:
+        """Forgets everything, as after time has jumped back."""
+        self.buffer.clear()
+
+    def _lookup(self, target, source, stamp, timeout):
+        try:
+            return self.buffer.lookup_transform(
+                frame_name(target), frame_name(source), stamp or rospy.Time(0), rospy.Duration(timeout)
+            ).transform
+        except tf2_ros.TransformException:
+            return None

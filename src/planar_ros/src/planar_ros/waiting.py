@@ -1,0 +1,47 @@
+"""Says what a node waits for."""
+
+import threading
+import time
+from typing import Callable, Mapping
+
+import rosgraph
+import rospy
+
+PATIENCE_SECONDS = 2.0
+POLL_SECONDS = 0.2
+
+
+class Waiting:
+    """Watches the conditions a node needs before it can work, and names once each that stays unmet.
+
+    ``conditions`` maps what is waited for ("a scan on /scan") to a function that says whether it is there.
+    Counted in wall time, since simulated time may be what is missing.
+    """
+
+    def __init__(self, conditions: Mapping[str, Callable[[], bool]]):
+        self._conditions = conditions
+        threading.Thread(target=self._watch, daemon=True).start()
+
+    def _watch(self):
+        start = time.monotonic()
+        told = False
+        while not rospy.is_shutdown():
+            missing = [name for name, is_met in self._conditions.items() if not is_met()]
+            if not missing:
+                if told:
+                    rospy.loginfo("nothing to wait for any more")
+                return
+            if not told and time.monotonic() - start > PATIENCE_SECONDS:
+                told = True
+                for name in missing:
+                    rospy.logwarn("waiting for %s", name)
+                _check_clock()
+            time.sleep(POLL_SECONDS)
+
+
+def _check_clock():
+    if not rospy.get_param("/use_sim_time", False):
+        return
+    published = {topic for topic, _ in rosgraph.Master(rospy.get_name()).getPublishedTopics("")}
+    if "/clock" not in published:
+        rospy.logwarn("use_sim_time is true, but nobody publishes /clock")
