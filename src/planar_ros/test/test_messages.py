@@ -5,6 +5,7 @@ import pytest
 rospy = pytest.importorskip("rospy")
 
 from geometry_msgs.msg import Quaternion  # noqa: E402
+
 from planar import Pose2, grid_from_picture  # noqa: E402
 from planar_ros import messages  # noqa: E402
 

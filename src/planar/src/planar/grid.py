@@ -38,9 +38,9 @@ class OccupancyGrid:
     def cols(self) -> int:
         return self.cells.shape[1]
 
-    def cells_of(self, points_xy: np.ndarray) -> np.ndarray:
+    def cells_of(self, points_xy) -> np.ndarray:
         """Cells (N, 2) int64 as (row, col) in which map points (N, 2) lie; they may be outside the grid."""
-        local_xy = self.origin.inverse().transform_points(np.atleast_2d(points_xy))
+        local_xy = self.origin.inverse().transform_points(np.atleast_2d(np.asarray(points_xy, dtype=float)))
         return np.floor(local_xy[:, ::-1] / self.resolution).astype(np.int64)
 
     def points_of(self, row_col: np.ndarray) -> np.ndarray:

@@ -6,9 +6,10 @@ import numpy as np
 import rospy
 from geometry_msgs.msg import Point, Pose, Quaternion, TransformStamped
 from nav_msgs.msg import OccupancyGrid as OccupancyGridMsg
-from planar import OccupancyGrid, Pose2, Scan
 from rospy.numpy_msg import numpy_msg
 from sensor_msgs.msg import LaserScan
+
+from planar import OccupancyGrid, Pose2, Scan
 
 # Subscribed to with these types, `ranges` and `data` arrive as numpy arrays instead of tuples.
 LaserScanArrays = numpy_msg(LaserScan)

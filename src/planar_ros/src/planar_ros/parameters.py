@@ -3,6 +3,7 @@
 from typing import Any, Dict, Iterable, Mapping, Type, TypeVar
 
 import rospy
+
 from planar import SettingsError
 from planar.settings import nearest_name, settings_from
 

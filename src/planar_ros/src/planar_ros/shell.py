@@ -4,6 +4,7 @@ import sys
 from typing import Callable
 
 import rospy
+
 from planar import PlanarError
 
 

@@ -4,6 +4,7 @@ from typing import Optional, Tuple
 
 import rospy
 import tf2_ros
+
 from planar import Pose2
 from planar_ros.messages import frame_name, transform_msg, yaw_of
 

@@ -1,0 +1,56 @@
+import pytest
+
+from planar import Pose2, SettingsError, grid_from_picture
+from planar.places import Place, load_places, place_named, why_unreachable
+
+
+def write(folder, text):
+    path = folder / "places.yaml"
+    path.write_text(text)
+    return path
+
+
+def test_places_are_read_with_defaults(tmp_path):
+    places = load_places(write(tmp_path, "a: {x: 1, y: 2.5}\nb: {x: 0, y: 0, yaw: 1.5, radius: 0.2}"))
+    assert places == {"a": Place("a", Pose2(1.0, 2.5)), "b": Place("b", Pose2(0.0, 0.0, 1.5), 0.2)}
+
+
+@pytest.mark.parametrize(
+    "text, complaint",
+    [
+        ("a: {x: 1}", "place a: y is missing"),
+        ("a: {x: 1, y: north}", "place a: y must be a number"),
+        ("a: {x: 1, y: .nan}", "place a: y must be a number"),
+        ("a: {x: 1, y: 2, z: 3}", "place a has an unknown key z"),
+        ("a: {x: 1, y: 2, radius: 0}", "radius must be positive"),
+        ("a: 3", "place a must have keys"),
+        ("- 1", "expected named places"),
+        ("a: {", "not valid YAML"),
+    ],
+)
+def test_a_malformed_file_is_refused_naming_file_place_and_key(tmp_path, text, complaint):
+    path = write(tmp_path, text)
+    with pytest.raises(SettingsError, match=complaint) as caught:
+        load_places(path)
+    assert str(path) in str(caught.value)
+
+
+def test_a_missing_file_or_place_is_named(tmp_path):
+    with pytest.raises(SettingsError, match="none.yaml: no such file"):
+        load_places(tmp_path / "none.yaml")
+    with pytest.raises(SettingsError, match="f.yaml: place pickup is missing"):
+        place_named({}, "pickup", "f.yaml")
+
+
+@pytest.mark.parametrize(
+    "x, reason", [(0.5, "obstacle"), (1.5, None), (2.5, "knows nothing"), (7.0, "outside the map")]
+)
+def test_places_that_no_robot_can_reach_are_told_from_free_ones(x, reason):
+    answer = why_unreachable(Place("shelf", Pose2(x, 0.5)), grid_from_picture("#.?"))
+    assert answer is None if reason is None else ("place shelf" in answer and reason in answer)
+
+
+def test_a_robot_within_the_radius_is_there():
+    place = Place("a", Pose2(1.0, 1.0), 0.5)
+    assert place.holds(Pose2(1.3, 1.3, 2.0))
+    assert not place.holds(Pose2(1.4, 1.4, 0.0))
