@@ -1,7 +1,7 @@
 import pytest
 
 from planar import Pose2, SettingsError, grid_from_picture
-from planar.places import Place, load_places, place_named, why_unreachable
+from planar.places import Place, load_places, places_of_errand, why_unreachable
 
 
 def write(folder, text):
@@ -38,8 +38,8 @@ def test_a_malformed_file_is_refused_naming_file_place_and_key(tmp_path, text, c
 def test_a_missing_file_or_place_is_named(tmp_path):
     with pytest.raises(SettingsError, match="none.yaml: no such file"):
         load_places(tmp_path / "none.yaml")
-    with pytest.raises(SettingsError, match="f.yaml: place pickup is missing"):
-        place_named({}, "pickup", "f.yaml")
+    with pytest.raises(SettingsError, match="places.yaml: place dropoff is missing"):
+        places_of_errand(write(tmp_path, "pickup: {x: 1, y: 2}"))
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, Optional
+from typing import Any, Dict, Optional, Tuple
 
 import yaml
 
@@ -45,11 +45,13 @@ def load_places(path) -> Dict[str, Place]:
     return {str(name): _place(path, str(name), fields) for name, fields in content.items()}
 
 
-def place_named(places: Dict[str, Place], name: str, path) -> Place:
-    """The place of that name. Raises SettingsError naming the file it should stand in."""
-    if name not in places:
-        raise SettingsError(f"{path}: place {name} is missing")
-    return places[name]
+def places_of_errand(path) -> Tuple[Place, Place]:
+    """The places ``pickup`` and ``dropoff`` of a YAML file. Raises SettingsError."""
+    places = load_places(path)
+    for name in ("pickup", "dropoff"):
+        if name not in places:
+            raise SettingsError(f"{path}: place {name} is missing")
+    return places["pickup"], places["dropoff"]
 
 
 def why_unreachable(place: Place, grid: OccupancyGrid) -> Optional[str]:

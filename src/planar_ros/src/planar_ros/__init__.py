@@ -1,1 +1,1 @@
-"""Between ROS and the pure packages: messages to planar types, parameters to settings, transforms, node manners."""
+"""Between ROS and the pure packages: messages to types, parameters to settings, transforms, manners."""
