@@ -27,10 +27,7 @@ class AddMarkers:
 
     def __init__(self):
         self._settings = settings = read_settings(MarkerSettings)
-        places = load_places(settings.zones_file)
-        self._places = {
-            name: place_named(places, name, settings.zones_file) for name in ("pickup", "dropoff")
-        }
+        self._pickup, self._dropoff = places = places_of_errand(settings.zones_file)
         self._robot = None
         self._shown_at = NOWHERE_YET
         self._publisher = rospy.Publisher("visualization_marker", Marker, queue_size=10, latch=True)

@@ -34,10 +34,7 @@ class PickObjects:
         node_fields = NodeSettings.__dataclass_fields__
         self._settings = read_settings(NodeSettings, ignore=ErrandSettings.__dataclass_fields__)
         errand_settings = read_settings(ErrandSettings, ignore=node_fields)
-        places = load_places(self._settings.zones_file)
-        self._places = [
-            place_named(places, name, self._settings.zones_file) for name in ("pickup", "dropoff")
-        ]
+        self._places = places_of_errand(self._settings.zones_file)
         self._errand = Errand(*self._places, errand_settings)
         self._state = rospy.Publisher("~state", String, queue_size=10, latch=True)
         self._map = None
