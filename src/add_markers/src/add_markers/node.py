@@ -10,6 +10,7 @@ from visualization_msgs.msg import Marker
 
 from add_markers.config import MarkerSettings
 from add_markers.parcel import CarriedParcel, TimedParcel
+from planar.places import places_of_errand
 from planar_ros.messages import pose2_from_msg, pose2_to_msg
 from planar_ros.parameters import read_settings
 from planar_ros.shell import run

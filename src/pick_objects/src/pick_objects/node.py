@@ -11,7 +11,7 @@ from std_msgs.msg import String
 
 from pick_objects.config import ErrandSettings, NodeSettings
 from pick_objects.errand import Errand, ErrandState, Finish, GoalReached, GoalRefused, GoTo
-from planar.places import why_unreachable
+from planar.places import places_of_errand, why_unreachable
 from planar_ros.messages import OccupancyGridArrays, grid_from_msg, pose2_to_msg
 from planar_ros.parameters import read_settings
 from planar_ros.shell import fail, run
