@@ -52,11 +52,9 @@ class PickObjects:
     def work(self) -> Finish:
         """Carries the errand out and says how it ended."""
         self._tell_state()
-        unreachable = self._why_a_place_is_unreachable()
-        if unreachable:
-            return Finish(False, unreachable)
-        if not self._wait_for_server():
-            return Finish(False, f"no {rospy.resolve_name('move_base')} action server")
+        obstacle = self._why_not_to_start()
+        if obstacle:
+            return Finish(False, obstacle)
         state, event = self._errand.state, None
         while not rospy.is_shutdown():
             order = self._errand.advance(rospy.get_time(), event)
@@ -71,23 +69,26 @@ class PickObjects:
             event = self._next_event()
         return Finish(False, "interrupted")
 
-    def _why_a_place_is_unreachable(self):
-        deadline = time.monotonic() + self._settings.map_timeout
-        while self._map is None and time.monotonic() < deadline and not rospy.is_shutdown():
-            time.sleep(POLL_SECONDS)
+    def _why_not_to_start(self):
+        self._wait_for(lambda: self._map is not None, self._settings.map_timeout)
         if self._map is None:
             rospy.logwarn("no map within %g s: the zones are not checked", self._settings.map_timeout)
-            return None
-        return next(filter(None, (why_unreachable(place, self._map) for place in self._places)), None)
+        else:
+            for place in self._places:
+                problem = why_unreachable(place, self._map)
+                if problem:
+                    return problem
+        self._wait_for(self._client.action_client.action_server_is_ready, self._settings.server_timeout)
+        if not self._client.action_client.action_server_is_ready():
+            return f"no action {rospy.resolve_name('move_base')} within {self._settings.server_timeout:g} s"
+        self._server_is_there = True
+        return None
 
-    def _wait_for_server(self) -> bool:
-        deadline = time.monotonic() + self._settings.server_timeout
-        while time.monotonic() < deadline and not rospy.is_shutdown():
-            if self._client.action_client.action_server_is_ready():
-                self._server_is_there = True
-                return True
+    @staticmethod
+    def _wait_for(is_there, seconds):
+        deadline = time.monotonic() + seconds
+        while not is_there() and time.monotonic() < deadline and not rospy.is_shutdown():
             time.sleep(POLL_SECONDS)
-        return False
 
     def _send(self, order: GoTo):
         goal = MoveBaseGoal()

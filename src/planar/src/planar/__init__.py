@@ -8,7 +8,7 @@ Pure: numpy, scipy and numba only. Lengths are metres, angles radians (REP 103);
 
 from planar.errors import PlanarError, SettingsError
 from planar.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, grid_from_picture
-from planar.map_file import MapFileError, load_map, save_map
+from planar.map_file import MapFileError, load_map, save_map, write_atomically
 from planar.pose import Pose2, Twist2, wrap
 from planar.scan import Scan
 
@@ -27,4 +27,5 @@ __all__ = [
     "load_map",
     "save_map",
     "wrap",
+    "write_atomically",
 ]

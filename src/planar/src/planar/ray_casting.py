@@ -54,3 +54,25 @@ def _cast_one(cells, x, y, dx, dy, max_cells, occupied):
         else:
             travelled, next_row, row = next_row, next_row + row_delta, row + row_step
     return max_cells
+
+
+def cast_rays_from_many(
+    grid: OccupancyGrid, lasers_in_map: np.ndarray, angles: np.ndarray, max_range: float
+) -> np.ndarray:
+    """Ranges (N, M), metres, from each of the poses (N, 3) along each of the angles (M,) in its frame."""
+    in_grid = np.empty((len(lasers_in_map), 3))
+    in_grid[:, :2] = grid.origin.inverse().transform_points(lasers_in_map[:, :2]) / grid.resolution
+    in_grid[:, 2] = lasers_in_map[:, 2] - grid.origin.yaw
+    angles = np.asarray(angles, dtype=np.float64)
+    return (
+        _cast_from_many(grid.cells, in_grid, angles, max_range / grid.resolution, OCCUPIED) * grid.resolution
+    )
+
+
+@numba.njit(cache=True)
+def _cast_from_many(cells, poses, angles, max_cells, occupied):
+    ranges = np.empty((poses.shape[0], angles.size))
+    for i in range(poses.shape[0]):
+        x, y, yaw = poses[i]
+        ranges[i] = _cast(cells, x, y, yaw + angles, max_cells, occupied)
+    return ranges

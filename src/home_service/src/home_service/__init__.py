@@ -1,0 +1,1 @@
+"""The home service robot as a whole: launching, supervising and judging missions."""

@@ -1,0 +1,77 @@
+"""The commands behind the scripts; each runs a graph to its end and returns an exit code."""
+
+from argparse import Namespace
+from typing import Set
+
+import actionlib
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
+
+from home_service.run import Run
+from home_service.verdict import ARRIVAL_TOLERANCE, DEMO, ERRAND, MARKERS, Verdict
+from planar import Pose2
+from planar_ros.messages import pose2_to_msg
+
+
+def launch(options: Namespace) -> int:
+    with Run(options, "world.launch") as run:
+        run.display.say("the home is open; Ctrl-C closes it")
+        return _until_it_ends(run)
+
+
+def test_navigation(options: Namespace) -> int:
+    with Run(options, "navigation.launch", map_file=options.map.resolve()) as run:
+        if options.goals is None:
+            run.display.say("send goals to /move_base_simple/goal or to the action /move_base; Ctrl-C ends")
+            return _until_it_ends(run)
+        return run.conclude(_drive_through(run, [Pose2(*goal) for goal in options.goals]))
+
+
+def pick_objects(options: Namespace) -> int:
+    return _errand(options, "pick_objects.launch", {ERRAND})
+
+
+def add_marker(options: Namespace) -> int:
+    return _errand(options, "add_marker.launch", {DEMO})
+
+
+def home_service(options: Namespace) -> int:
+    return _errand(options, "home_service.launch", {ERRAND, MARKERS}, marker_source=options.marker_source)
+
+
+def _errand(options: Namespace, launch_file: str, expected: Set[str], **arguments) -> int:
+    files = {"map_file": options.map.resolve(), "zones_file": options.zones.resolve()}
+    with Run(options, launch_file, **files, **arguments) as run:
+        failure = run.watch(lambda: run.referee.ledger.is_complete(expected))
+        run.referee.ledger.failure = failure or run.referee.ledger.failure
+        return run.conclude(run.judge(expected))
+
+
+def _until_it_ends(run: Run) -> int:
+    return run.conclude(Verdict(False, run.watch(lambda: False) or ""))
+
+
+def _drive_through(run: Run, goals) -> Verdict:
+    client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
+    failure = run.watch(client.action_client.action_server_is_ready)
+    for number, pose in enumerate(goals, 1):
+        if failure:
+            return Verdict(False, failure)
+        goal = MoveBaseGoal()
+        goal.target_pose.header.frame_id = "map"
+        goal.target_pose.header.stamp = rospy.Time.from_sec(run.referee.simulated_time)
+        goal.target_pose.pose = pose2_to_msg(pose)
+        client.send_goal(goal)
+        failure = run.watch(lambda: client.get_state() not in (GoalStatus.PENDING, GoalStatus.ACTIVE))
+        name = f"goal {number} ({pose.x:g}, {pose.y:g}, {pose.yaw:g})"
+        if failure is None and client.get_state() != GoalStatus.SUCCEEDED:
+            failure = f"{name}: {client.get_goal_status_text()}"
+        if failure is None:
+            error = run.referee.truth.distance_to(pose)
+            run.display.say(f"{name}: reached, truly {error:.3f} m from it")
+            if error > ARRIVAL_TOLERANCE:
+                failure = f"{name}: the robot truly stood {error:.2f} m off"
+    if failure is None and run.referee.ledger.collisions:
+        failure = f"collided with {', '.join(sorted(set(run.referee.ledger.collisions)))}"
+    return Verdict(failure is None, failure or f"{len(goals)} of {len(goals)} goals reached, no collision")

@@ -1,0 +1,139 @@
+"""A ROS graph of its own: a master on a free port and everything that a launch file starts."""
+
+import contextlib
+import ctypes
+import os
+import re
+import signal
+import socket
+import subprocess
+import threading
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Dict, List, Mapping, Optional
+
+import psutil
+
+from home_service.errors import LaunchError
+
+PR_SET_CHILD_SUBREAPER = 36
+SIGINT_SECONDS = 8.0
+SIGTERM_SECONDS = 2.0
+DIED = re.compile(r"\[(?P<node>[^\]]+)-\d+\] process has died \[pid \d+, exit code (?P<code>-?\d+)")
+COMPLAINT = re.compile(r"^\[/(?P<node>\S+)\] error: (?P<text>.*)")
+BAD_INPUT = 2
+
+
+@dataclass(frozen=True)
+class NodeFailure:
+    """A node that died with an error: its own words, if it had any, and whether it refused its input."""
+
+    text: str
+    is_bad_input: bool
+
+
+class RosGraph:
+    """Runs ``roslaunch`` under a master of its own; leaves no process behind when it is closed.
+
+    What roslaunch prints, and each node on stderr, goes to ``log_folder``/roslaunch.log.
+    """
+
+    def __init__(self, package: str, launch_file: str, arguments: Mapping[str, object], log_folder: Path):
+        self._complaints: Dict[str, str] = {}
+        self._failure: Optional[NodeFailure] = None
+        self._log_folder = log_folder
+        adopt_orphans()
+        port = free_port()
+        os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{port}"
+        os.environ["ROS_LOG_DIR"] = str(log_folder)
+        command = ["roslaunch", "--port", str(port), package, launch_file]
+        command += [f"{name}:={value}" for name, value in arguments.items() if value is not None]
+        try:
+            self._roslaunch = subprocess.Popen(
+                command,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+                text=True,
+                errors="replace",
+            )
+        except FileNotFoundError:
+            raise LaunchError("roslaunch is not on the PATH: run scripts/setup.sh") from None
+        self._pump = threading.Thread(target=self._read_output, daemon=True)
+        self._pump.start()
+
+    @property
+    def is_running(self) -> bool:
+        return self._roslaunch.poll() is None
+
+    @property
+    def failure(self) -> Optional[NodeFailure]:
+        """The first node that died with an error; None if none did."""
+        return self._failure
+
+    def close(self) -> None:
+        """Ends every process of the graph: SIGINT first, then SIGTERM, then SIGKILL."""
+        if self.is_running:
+            self._roslaunch.send_signal(signal.SIGINT)
+        self._wait_for_roslaunch(SIGINT_SECONDS)
+        end_descendants(SIGTERM_SECONDS)
+        self._pump.join(1.0)
+
+    def _wait_for_roslaunch(self, seconds: float) -> None:
+        try:
+            self._roslaunch.wait(seconds)
+        except subprocess.TimeoutExpired:
+            self._roslaunch.terminate()
+
+    def _read_output(self) -> None:
+        with (self._log_folder / "roslaunch.log").open("w", encoding="utf-8") as log:
+            for line in self._roslaunch.stdout:  # type: ignore[union-attr]
+                log.write(line)
+                log.flush()
+                self._notice(line)
+
+    def _notice(self, line: str) -> None:
+        complaint, death = COMPLAINT.match(line), DIED.search(line)
+        if complaint:
+            self._complaints[complaint.group("node")] = complaint.group("text")
+        if death and self._failure is None:
+            node, code = death.group("node"), int(death.group("code"))
+            text = self._complaints.get(node, f"died with exit code {code}, see {self._log_folder}")
+            self._failure = NodeFailure(f"{node}: {text}", code == BAD_INPUT)
+
+
+def free_port() -> int:
+    """A TCP port on the loopback interface that nobody listens on right now."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def adopt_orphans() -> None:
+    """Makes this process the parent of every descendant whose own parent dies, so that none can hide."""
+    ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+
+
+def end_descendants(patience: float) -> None:
+    """Terminates and, after ``patience`` seconds, kills every descendant of this process, however deep."""
+    deadline = time.monotonic() + patience
+    descendants: List[psutil.Process] = psutil.Process().children(recursive=True)
+    for process in descendants:
+        _signal(process, signal.SIGTERM)
+    while descendants:
+        psutil.wait_procs(descendants, timeout=0.1)
+        descendants = [
+            process
+            for process in psutil.Process().children(recursive=True)
+            if process.status() != psutil.STATUS_ZOMBIE
+        ]
+        if time.monotonic() > deadline:
+            for process in descendants:
+                _signal(process, signal.SIGKILL)
+
+
+def _signal(process: psutil.Process, number: int) -> None:
+    with contextlib.suppress(psutil.NoSuchProcess):
+        process.send_signal(number)

@@ -1,0 +1,158 @@
+"""One run: a graph brought up, watched, ended, and written down."""
+
+import os
+import time
+from argparse import Namespace
+from pathlib import Path
+from typing import Callable, Optional
+
+import psutil
+import rosgraph
+import rospy
+
+from home_service.display import Display
+from home_service.errors import LaunchError
+from home_service.graph import RosGraph
+from home_service.referee import Referee
+from home_service.run_folder import create_run_folder, write_result
+from home_service.verdict import Verdict, judge
+from home_service.versions import versions
+from planar import PlanarError
+
+POLL_SECONDS = 0.05
+BRING_UP_SECONDS = 60.0
+
+
+class Run:
+    """Context of a run: entering brings the graph up, leaving takes it down, whatever happened."""
+
+    def __init__(self, options: Namespace, launch_file: str, **arguments):
+        self._options = options
+        self._launch_file = launch_file
+        self._speed = options.speed if options.speed is not None else float(options.rviz)
+        self._arguments = {
+            "world_file": options.world.resolve(),
+            "robot": options.robot,
+            "speed": self._speed,
+            "seed": options.seed,
+            "rviz": str(_wants_rviz(options)).lower(),
+            **arguments,
+        }
+        self._start_wall = psutil.Process().create_time()
+        self._deadline = time.monotonic() + options.timeout
+        self.folder = create_run_folder(options.output.resolve(), options.command)
+        self.display = Display()
+        self.referee: Optional[Referee] = None
+        self._graph: Optional[RosGraph] = None
+
+    def __enter__(self) -> "Run":
+        self.display.__enter__()
+        try:
+            self.display.say(f"run folder {self.folder}")
+            self._graph = RosGraph("home_service", self._launch_file, self._arguments, self.folder / "log")
+            self._wait("the ROS master", rosgraph.is_master_online)
+            rospy.init_node("referee", disable_signals=True, anonymous=True, log_level=rospy.ERROR)
+            self.referee = Referee(self._options.places, self.display.say)
+            self._wait("ground truth from the simulator", lambda: self.referee.truth is not None)
+        except BaseException as error:
+            self.__exit__(type(error), error, None)
+            raise
+        return self
+
+    def __exit__(self, _kind, error, _traceback) -> None:
+        self.display.show("shutting down")
+        if isinstance(error, PlanarError):
+            self._write_result(Verdict(False, str(error)))
+        rospy.signal_shutdown("the run is over")
+        if self._graph is not None:
+            self._graph.close()
+        self.display.__exit__()
+
+    def watch(self, is_over: Callable[[], bool]) -> Optional[str]:
+        """Shows progress until ``is_over``; returns why the run cannot go on, or None if it got there."""
+        while not is_over():
+            failure = self._node_failure()
+            if failure:
+                return failure
+            if not self._graph.is_running:
+                return f"roslaunch ended, see {self.folder / 'log'}"
+            if time.monotonic() > self._deadline:
+                return f"not done within {self._options.timeout:g} s of wall-clock time"
+            self.display.show(self._progress())
+            time.sleep(POLL_SECONDS)
+        return None
+
+    def conclude(self, verdict: Verdict) -> int:
+        """Writes result.json, prints the verdict, and returns the exit code it deserves."""
+        path = self._write_result(verdict)
+        word = "SUCCESS" if verdict.success else "FAILURE"
+        self.display.say(f"{word}: {verdict.reason}")
+        self.display.say(f"result in {path}")
+        return 0 if verdict.success else 1
+
+    def judge(self, expected) -> Verdict:
+        return judge(self.referee.ledger, expected)
+
+    def _progress(self) -> str:
+        referee = self.referee
+        to_go = "" if referee.distance_to_go is None else f"{referee.distance_to_go:.1f} m to go, "
+        return (
+            f"{referee.state or 'running'}: {to_go}simulated {referee.simulated_seconds:.1f} s, "
+            f"{referee.real_time_factor:.1f} x real time"
+        )
+
+    def _wait(self, what: str, is_there: Callable[[], bool]) -> None:
+        deadline = time.monotonic() + BRING_UP_SECONDS
+        while not is_there():
+            failure = self._node_failure()
+            if failure is None and not self._graph.is_running:
+                failure = f"roslaunch ended before {what} was there, see {self.folder / 'log'}"
+            if failure is None and time.monotonic() > deadline:
+                failure = f"no {what} within {BRING_UP_SECONDS:g} s, see {self.folder / 'log'}"
+            if failure:
+                raise LaunchError(failure)
+            self.display.show(f"waiting for {what}")
+            time.sleep(POLL_SECONDS)
+
+    def _node_failure(self) -> Optional[str]:
+        failure = self._graph.failure
+        if failure is None:
+            return None
+        if failure.is_bad_input:
+            raise LaunchError(failure.text, is_bad_input=True)
+        return failure.text
+
+    def _write_result(self, verdict: Verdict) -> Path:
+        options = self._options
+        result = {
+            "command": options.command,
+            "success": verdict.success,
+            "reason": verdict.reason,
+            "seed": options.seed,
+            "speed": self._speed,
+            "world": str(options.world),
+            "map": str(options.map),
+            "robot": options.robot,
+            "wall_seconds": round(time.time() - self._start_wall, 3),
+            **(self._observations() if self.referee else {}),
+            "versions": versions(),
+        }
+        return write_result(self.folder, result)
+
+    def _observations(self) -> dict:
+        referee, ledger = self.referee, self.referee.ledger
+        first_motion = referee.first_motion_wall
+        return {
+            "first_motion_wall_seconds": first_motion and round(first_motion - self._start_wall, 3),
+            "simulated_seconds": round(referee.simulated_seconds, 3),
+            "real_time_factor": round(referee.real_time_factor, 3),
+            "distance_driven": round(referee.distance_driven, 3),
+            "position_error": {zone: round(error, 4) for zone, error in ledger.errors.items()},
+            "collisions": ledger.collisions,
+            "markers": ledger.markers,
+            "final_state": ledger.final_state,
+        }
+
+
+def _wants_rviz(options: Namespace) -> bool:
+    return options.rviz and bool(os.environ.get("DISPLAY"))
