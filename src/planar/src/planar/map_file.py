@@ -20,19 +20,31 @@ class MapFileError(PlanarError):
     """A map file cannot be read or written; the text names the file and the key."""
 
 
+class MapMissingError(MapFileError):
+    """There is no such map file."""
+
+
+class MapImageError(MapFileError):
+    """The image of a map is missing or cannot be read."""
+
+
+class MapDescriptionError(MapFileError):
+    """The YAML file of a map cannot be read, or a key of it is missing or senseless."""
+
+
 def load_map(path) -> OccupancyGrid:
     """The grid described by a map_server YAML file. Raises MapFileError."""
     path = Path(path)
     fields = _read_fields(path)
     resolution = _number(path, fields, "resolution")
     if resolution <= 0.0:
-        raise MapFileError(f"{path}: resolution must be positive, got {resolution}")
+        raise MapDescriptionError(f"{path}: resolution must be positive, got {resolution}")
     mode = fields.get("mode", "trinary")
     if mode not in MODES:
-        raise MapFileError(f"{path}: mode must be one of {', '.join(MODES)}, got {mode!r}")
+        raise MapDescriptionError(f"{path}: mode must be one of {', '.join(MODES)}, got {mode!r}")
     negate = fields.get("negate")
     if isinstance(negate, bool) or negate not in (0, 1):
-        raise MapFileError(f"{path}: negate must be 0 or 1, got {negate!r}")
+        raise MapDescriptionError(f"{path}: negate must be 0 or 1, got {negate!r}")
     image_path = path.parent / str(_required(path, fields, "image"))
     cells = cells_from_image(
         image_path,
@@ -52,9 +64,9 @@ def cells_from_image(
         with Image.open(image_path) as image:
             pixels = np.asarray(image.convert("RGBA" if "A" in image.getbands() else "RGB"), dtype=np.float64)
     except FileNotFoundError:
-        raise MapFileError(f"{image_path}: no such map image") from None
+        raise MapImageError(f"{image_path}: no such map image") from None
     except (OSError, UnidentifiedImageError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
-        raise MapFileError(f"{image_path}: not a readable image ({error})") from None
+        raise MapImageError(f"{image_path}: not a readable image ({error})") from None
     channels = pixels if mode == "trinary" else pixels[:, :, :3]
     shade = np.flipud(channels.mean(axis=2))
     if negate:
@@ -116,19 +128,19 @@ def _read_fields(path: Path) -> dict:
     try:
         fields = yaml.safe_load(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
-        raise MapFileError(f"{path}: no such map file") from None
+        raise MapMissingError(f"{path}: no such map file") from None
     except (OSError, UnicodeDecodeError) as error:
-        raise MapFileError(f"{path}: cannot be read ({error})") from None
+        raise MapDescriptionError(f"{path}: cannot be read ({error})") from None
     except yaml.YAMLError as error:
-        raise MapFileError(f"{path}: not valid YAML ({' '.join(str(error).split())})") from None
+        raise MapDescriptionError(f"{path}: not valid YAML ({' '.join(str(error).split())})") from None
     if not isinstance(fields, dict):
-        raise MapFileError(f"{path}: not a map description (expected keys image, resolution, origin, ...)")
+        raise MapDescriptionError(f"{path}: not a map description (keys image, resolution, origin, ...)")
     return fields
 
 
 def _required(path: Path, fields: dict, key: str):
     if fields.get(key) is None:
-        raise MapFileError(f"{path}: {key} is missing")
+        raise MapDescriptionError(f"{path}: {key} is missing")
     return fields[key]
 
 
@@ -142,12 +154,12 @@ def _as_number(path: Path, key: str, value) -> float:
     except (TypeError, ValueError):
         number = math.nan
     if isinstance(value, bool) or not math.isfinite(number):
-        raise MapFileError(f"{path}: {key} must be a number, got {value!r}")
+        raise MapDescriptionError(f"{path}: {key} must be a number, got {value!r}")
     return number
 
 
 def _origin(path: Path, fields: dict) -> Pose2:
     origin = _required(path, fields, "origin")
     if not isinstance(origin, list) or len(origin) != 3:
-        raise MapFileError(f"{path}: origin must be [x, y, yaw], got {origin!r}")
+        raise MapDescriptionError(f"{path}: origin must be [x, y, yaw], got {origin!r}")
     return Pose2(*(_as_number(path, "origin", value) for value in origin))

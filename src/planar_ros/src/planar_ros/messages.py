@@ -1,11 +1,13 @@
 """ROS messages to planar types and back."""
 
 import math
+import struct
 
 import numpy as np
 import rospy
-from geometry_msgs.msg import Point, Pose, Quaternion, TransformStamped
+from geometry_msgs.msg import Point, Pose, PoseArray, Quaternion, TransformStamped
 from nav_msgs.msg import OccupancyGrid as OccupancyGridMsg
+from nav_msgs.srv import GetMap, GetMapResponse, LoadMap, LoadMapResponse, SetMap, SetMapRequest
 from rospy.numpy_msg import numpy_msg
 from sensor_msgs.msg import LaserScan
 
@@ -14,6 +16,24 @@ from planar import OccupancyGrid, Pose2, Scan
 # Subscribed to with these types, `ranges` and `data` arrive as numpy arrays instead of tuples.
 LaserScanArrays = numpy_msg(LaserScan)
 OccupancyGridArrays = numpy_msg(OccupancyGridMsg)
+
+
+class GetMapArrays(GetMap):
+    """nav_msgs/GetMap whose map comes and goes as a numpy array."""
+
+    _response_class = numpy_msg(GetMapResponse)
+
+
+class LoadMapArrays(LoadMap):
+    """nav_msgs/LoadMap whose map comes and goes as a numpy array."""
+
+    _response_class = numpy_msg(LoadMapResponse)
+
+
+class SetMapArrays(SetMap):
+    """nav_msgs/SetMap whose map comes and goes as a numpy array."""
+
+    _request_class = numpy_msg(SetMapRequest)
 
 
 def yaw_of(quaternion) -> float:
@@ -84,3 +104,20 @@ def scan_from_msg(message, laser_in_base: Pose2, upside_down: bool = False) -> S
 def time_of(stamp: float) -> rospy.Time:
     """Seconds as rospy.Time, to the nearest nanosecond."""
     return rospy.Time(0, round(stamp * 1e9))
+
+
+class PosesMsg(PoseArray):
+    """A geometry_msgs/PoseArray of poses (N, 3) x, y, yaw; serialized in one go, if anybody listens."""
+
+    def __init__(self, poses: np.ndarray, stamp: rospy.Time, frame_id: str):
+        super().__init__()
+        self.header.stamp, self.header.frame_id = stamp, frame_id
+        self._poses_xyt = poses
+
+    def serialize(self, buff):
+        rows = np.zeros((len(self._poses_xyt), 7), dtype="<f8")
+        rows[:, :2] = self._poses_xyt[:, :2]
+        rows[:, 5], rows[:, 6] = np.sin(self._poses_xyt[:, 2] / 2.0), np.cos(self._poses_xyt[:, 2] / 2.0)
+        self.header.serialize(buff)
+        buff.write(struct.pack("<I", len(rows)))
+        buff.write(rows.tobytes())

@@ -1,0 +1,62 @@
+"""The beams of a scan that the sensor model looks at."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from amcl_lite.config import LocalizerSettings
+from amcl_lite.particles import LocalizationError
+from planar import Scan
+
+
+@dataclass(frozen=True, eq=False)
+class Beams:
+    """Some beams of one scan in the base frame.
+
+    ``ranges``: (N,), metres, ``max_range`` where nothing was met. ``directions``: (N,), radians.
+    ``start_xy``: (2,), where the laser sits in the base frame.
+    """
+
+    ranges: np.ndarray
+    directions: np.ndarray
+    max_range: float
+    start_xy: np.ndarray
+
+    @property
+    def ends_xy(self) -> np.ndarray:
+        """Where the beams that met something end: (M, 2), in the base frame."""
+        met = self.ranges < self.max_range
+        ranges, directions = self.ranges[met], self.directions[met]
+        return self.start_xy + np.column_stack((ranges * np.cos(directions), ranges * np.sin(directions)))
+
+
+def evenly_spaced_beams(scan: Scan, settings: LocalizerSettings) -> Beams:
+    """About ``settings.beams`` beams of a scan; those without a measurement (NaN) are left out.
+
+    Readings up to the least range mean "no return" (amcl), as do +inf and those beyond the largest range.
+    Raises LocalizationError if the scan's limits make no sense.
+    """
+    max_range, min_range = float(scan.range_max), float(scan.range_min)
+    if settings.laser_max_range > 0.0:
+        max_range = min(max_range, settings.laser_max_range)
+    if settings.laser_min_range > 0.0:
+        min_range = max(min_range, settings.laser_min_range)
+    if not (max_range > 0.0 and min_range >= 0.0 and np.isfinite(max_range)):
+        raise LocalizationError(
+            f"a scan's limits make no sense: range_min {min_range}, range_max {max_range}"
+        )
+    chosen = slice(None, None, _step(len(scan.ranges), settings))
+    ranges = scan.ranges[chosen].astype(np.float64)
+    directions = scan.angles[chosen] + scan.laser_in_base.yaw
+    measured = ~np.isnan(ranges)
+    ranges, directions = ranges[measured], directions[measured]
+    ranges = np.where((ranges <= min_range) | (ranges > max_range), max_range, ranges)
+    start_xy = np.array([scan.laser_in_base.x, scan.laser_in_base.y])
+    return Beams(ranges, directions, max_range, start_xy)
+
+
+def _step(count: int, settings: LocalizerSettings) -> int:
+    """amcl's steps from one used beam to the next; they differ from model to model."""
+    if settings.sensor_model == "likelihood_field_prob":
+        return max(1, -(-count // settings.beams))
+    return max(1, (count - 1) // (settings.beams - 1))

@@ -1,0 +1,60 @@
+"""Sets of weighted particles and how they start."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from planar import FREE, OccupancyGrid, PlanarError, Pose2
+
+
+class LocalizationError(PlanarError):
+    """Localization is impossible with what it was given."""
+
+
+@dataclass(frozen=True, eq=False)
+class ParticleSet:
+    """``poses``: (N, 3) x, y, yaw in the map; ``weights``: (N,), their sum is 1."""
+
+    poses: np.ndarray
+    weights: np.ndarray
+
+    @property
+    def size(self) -> int:
+        return len(self.weights)
+
+    @property
+    def effective_size(self) -> float:
+        """How many equally weighted particles would tell as much (Liu, 1996)."""
+        return 1.0 / float(np.sum(self.weights**2))
+
+
+def equally_weighted(poses: np.ndarray) -> ParticleSet:
+    """Particles at ``poses`` (N, 3), all of one weight."""
+    return ParticleSet(poses, np.full(len(poses), 1.0 / len(poses)))
+
+
+def gaussian_particles(
+    mean: Pose2, covariance: np.ndarray, count: int, rng: np.random.Generator
+) -> ParticleSet:
+    """``count`` particles drawn from a normal distribution; ``covariance``: (3, 3), may be singular."""
+    eigenvalues, eigenvectors = np.linalg.eigh(covariance)
+    spread = eigenvectors * np.sqrt(np.maximum(eigenvalues, 0.0))
+    return equally_weighted(mean.as_array() + rng.standard_normal((count, 3)) @ spread.T)
+
+
+class FreeSpace:
+    """The free cells of a map, to draw poses from. Raises LocalizationError if there are none."""
+
+    def __init__(self, grid: OccupancyGrid):
+        self._grid = grid
+        self._cells = np.flatnonzero(grid.cells == FREE)
+        if self._cells.size == 0:
+            raise LocalizationError("the map has no free cell")
+
+    def draw(self, count: int, rng: np.random.Generator) -> np.ndarray:
+        """Poses (count, 3), uniform over the free area and all headings."""
+        drawn = rng.choice(self._cells, count)
+        row_col = np.column_stack(np.unravel_index(drawn, self._grid.cells.shape))
+        within_cell = rng.uniform(-0.5, 0.5, (count, 2))
+        positions_xy = self._grid.points_of(row_col + within_cell)
+        return np.column_stack((positions_xy, rng.uniform(-np.pi, np.pi, count)))

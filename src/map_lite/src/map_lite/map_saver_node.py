@@ -1,0 +1,98 @@
+"""The node ``map_saver``: writes the map on the topic ``map`` to NAME.pgm and NAME.yaml, as map_saver 1.17 does.
+
+    map_saver [--occ 65] [--free 25] [-f NAME] [--timeout SECONDS] [--force]
+
+Unlike the official one it names the image without a folder, so that the pair loads from anywhere, writes whole
+files or none, and ends with exit code 1 and a reason when there is no map in time, or nothing worth saving in
+it, or it cannot be written.
+"""
+
+import argparse
+import sys
+import threading
+
+import rospy
+
+from map_lite.config import SaverSettings
+from planar import UNKNOWN, PlanarError, SettingsError, save_map
+from planar_ros.messages import OccupancyGridArrays, grid_from_msg
+from planar_ros.shell import fail
+from planar_ros.waiting import Waiting
+
+
+class NothingToSaveError(PlanarError):
+    """No map arrived, or one of which nothing is known."""
+
+
+def main():
+    parser = _parser()
+    arguments = parser.parse_args(rospy.myargv()[1:])
+    try:
+        settings = SaverSettings(arguments.occ, arguments.free)
+    except SettingsError as error:
+        parser.error(str(error))
+    rospy.init_node("map_saver")
+    try:
+        path = _save(arguments, settings)
+    except rospy.ROSInterruptException:
+        sys.exit(1)
+    except PlanarError as error:
+        fail(str(error), exit_code=1)
+    rospy.loginfo("Done: %s", path)
+
+
+def _save(arguments, settings: SaverSettings):
+    message = _await_map(arguments.timeout)
+    rospy.loginfo(
+        "Received a %d X %d map @ %.3f m/pix",
+        message.info.width,
+        message.info.height,
+        message.info.resolution,
+    )
+    grid = grid_from_msg(message)
+    if not arguments.force and (grid.cells == UNKNOWN).all():
+        raise NothingToSaveError("nothing is known in this map; --force saves it all the same")
+    return save_map(grid, arguments.name, settings.occupied_at, settings.free_at)
+
+
+def _await_map(timeout):
+    topic = rospy.resolve_name("map")
+    rospy.loginfo("Waiting for the map")
+    received = threading.Event()
+    Waiting({f"a map on {topic}": received.is_set})
+    try:
+        return rospy.wait_for_message("map", OccupancyGridArrays, timeout)
+    except rospy.ROSInterruptException:
+        raise
+    except rospy.ROSException:
+        raise NothingToSaveError(f"no map on {topic} within {timeout:g} s") from None
+    finally:
+        received.set()
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog="map_saver", description="Saves the map on the topic map to a .pgm and a .yaml file."
+    )
+    parser.add_argument(
+        "--occ", type=int, default=65, metavar="PERCENT", help="from this on occupied (%(default)s)"
+    )
+    parser.add_argument(
+        "--free", type=int, default=25, metavar="PERCENT", help="up to this free (%(default)s)"
+    )
+    parser.add_argument(
+        "-f", dest="name", default="map", help="path of the files without ending (%(default)s)"
+    )
+    parser.add_argument(
+        "--timeout", type=float, metavar="SECONDS", help="give up after this time, wall clock"
+    )
+    parser.add_argument("--force", action="store_true", help="save even a map of which nothing is known")
+    return parser
+
+
+class _Parser(argparse.ArgumentParser):
+    """Wrong arguments are exit code 1, as the official map_saver has it."""
+
+    def error(self, message):
+        self.print_usage(sys.stderr)
+        self.exit(1, f"{self.prog}: error: {message}\n")
