@@ -1,0 +1,10 @@
+from catkin_pkg.python_setup import generate_distutils_setup
+from setuptools import setup
+
+setup(
+    **generate_distutils_setup(
+        packages=["sim_bridge", "sim_bridge.sdf"],
+        package_dir={"": "src"},
+        package_data={"sim_bridge": ["urdf/*.urdf"]},
+    )
+)

@@ -1,0 +1,19 @@
+"""A headless simulator of a wheeled robot in SDF worlds; pure but for node.py."""
+
+from sim_bridge.config import SimulationSettings
+from sim_bridge.errors import RobotError, WorldError
+from sim_bridge.robots import ROBOTS, RobotProfile, robot_named
+from sim_bridge.sdf import load_world
+from sim_bridge.simulation import Observation, Simulation
+
+__all__ = [
+    "ROBOTS",
+    "Observation",
+    "RobotError",
+    "RobotProfile",
+    "Simulation",
+    "SimulationSettings",
+    "WorldError",
+    "load_world",
+    "robot_named",
+]

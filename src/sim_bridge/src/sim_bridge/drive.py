@@ -1,0 +1,51 @@
+"""From commands to wheel speeds: limits, ramps and the time-out of a mobile base."""
+
+from typing import Tuple
+
+from planar import Twist2
+from sim_bridge.robots import DriveProfile
+
+
+class Drive:
+    """Turns the last command into speeds of the wheels, as the base's own controller does."""
+
+    def __init__(self, profile: DriveProfile, timeout: float):
+        self._profile = profile
+        self._timeout = timeout
+        self._target = Twist2()
+        self._set = Twist2()
+        self._age = 0.0
+
+    def command(self, twist: Twist2) -> None:
+        """Takes a new command; one that is not finite stops the robot."""
+        limits = self._profile
+        self._age = 0.0
+        self._target = Twist2()
+        if twist.is_finite():
+            self._target = Twist2(
+                _clip(twist.v, limits.max_speed), _clip(twist.omega, limits.max_turn_rate)
+            )
+
+    def wheel_speeds(self, seconds: float) -> Tuple[float, float]:
+        """Speeds of the left and right wheel, rad/s, after ``seconds`` more."""
+        limits = self._profile
+        self._age += seconds
+        if self._age > self._timeout + 1e-9:
+            self._target = Twist2()
+        self._set = Twist2(
+            _approach(self._set.v, self._target.v, limits.max_acceleration * seconds),
+            _approach(self._set.omega, self._target.omega, limits.max_turn_acceleration * seconds),
+        )
+        outward = self._set.omega * limits.wheel_separation / 2.0
+        return (
+            (self._set.v - outward) / limits.wheel_radius,
+            (self._set.v + outward) / limits.wheel_radius,
+        )
+
+
+def _clip(value: float, limit: float) -> float:
+    return max(-limit, min(limit, value))
+
+
+def _approach(value: float, target: float, step: float) -> float:
+    return value + _clip(target - value, step)

@@ -1,0 +1,11 @@
+"""What can be wrong with what a simulation is made of."""
+
+from planar import PlanarError
+
+
+class WorldError(PlanarError):
+    """A world cannot be built; the text names the file and the element."""
+
+
+class RobotError(PlanarError):
+    """A robot is unknown or its description cannot be used."""

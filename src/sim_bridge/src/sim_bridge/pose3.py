@@ -1,0 +1,55 @@
+"""Rigid poses in space as homogeneous (4, 4) matrices; ``a_in_b @ c_in_a = c_in_b``."""
+
+import math
+from typing import Sequence, Tuple
+
+import numpy as np
+
+from planar import Pose2
+
+IDENTITY = np.eye(4)
+
+
+def pose3(x=0.0, y=0.0, z=0.0, roll=0.0, pitch=0.0, yaw=0.0) -> np.ndarray:
+    """The pose of SDF and URDF: turned about the fixed axes x, y, z in this order, then moved."""
+    (cr, sr), (cp, sp), (cy, sy) = ((math.cos(a), math.sin(a)) for a in (roll, pitch, yaw))
+    return np.array(
+        [
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr, x],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr, y],
+            [-sp, cp * sr, cp * cr, z],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+    )
+
+
+def from_pose2(pose: Pose2, z: float = 0.0) -> np.ndarray:
+    return pose3(pose.x, pose.y, z, yaw=pose.yaw)
+
+
+def to_pose2(pose: np.ndarray) -> Pose2:
+    """The pose seen from above."""
+    return Pose2(float(pose[0, 3]), float(pose[1, 3]), math.atan2(pose[1, 0], pose[0, 0]))
+
+
+def quaternion(pose: np.ndarray) -> Tuple[float, float, float, float]:
+    """Orientation as (x, y, z, w) (Shepperd's method: divides by the largest component)."""
+    r = pose[:3, :3]
+    squares = np.array([1 + 2 * r[i, i] - np.trace(r) for i in range(3)] + [1 + np.trace(r)])
+    largest = int(squares.argmax())
+    if largest == 3:
+        q = np.array([r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1], squares[3]])
+    else:
+        i, j, k = largest, (largest + 1) % 3, (largest + 2) % 3
+        q = np.empty(4)
+        q[i], q[j], q[k], q[3] = squares[i], r[j, i] + r[i, j], r[k, i] + r[i, k], r[k, j] - r[j, k]
+    return tuple(float(value) for value in q / np.linalg.norm(q))  # type: ignore[return-value]
+
+
+def transform_points(pose: np.ndarray, points_xyz: np.ndarray) -> np.ndarray:
+    """Points (N, 3) given in the pose's frame, seen from outside."""
+    return points_xyz @ pose[:3, :3].T + pose[:3, 3]
+
+
+def position(pose: np.ndarray) -> Sequence[float]:
+    return pose[:3, 3].tolist()

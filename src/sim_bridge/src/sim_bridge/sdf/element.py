@@ -1,0 +1,101 @@
+"""XML elements that know where they stand, so that an error can name its place."""
+
+import math
+from pathlib import Path
+from typing import Iterator, List, Optional, Sequence, Tuple
+
+import defusedxml.ElementTree
+import numpy as np
+from defusedxml.common import DefusedXmlException
+
+from sim_bridge.errors import WorldError
+from sim_bridge.pose3 import IDENTITY, pose3
+
+
+class Element:
+    """A node of an SDF file: typed access to what is in it."""
+
+    def __init__(self, xml, file: str, place: str = ""):
+        self._xml = xml
+        self.file = file
+        self.tag: str = xml.tag
+        self.name: str = xml.get("name", "")
+        label = f"{self.tag} '{self.name}'" if self.name else self.tag
+        self.place = f"{place} > {label}" if place else label
+
+    def error(self, text: str) -> WorldError:
+        return WorldError(f"{self.file}: {self.place}: {text}")
+
+    def attribute(self, name: str) -> str:
+        return self._xml.get(name, "")
+
+    def children(self, tag: Optional[str] = None) -> Iterator["Element"]:
+        for xml in self._xml.iterfind(tag) if tag else self._xml:
+            if isinstance(xml.tag, str):
+                yield Element(xml, self.file, self.place)
+
+    def child(self, *path: str) -> Optional["Element"]:
+        """The first element below this one along a path of tags."""
+        element: Optional[Element] = self
+        for tag in path:
+            element = next(element.children(tag), None) if element else None
+        return element
+
+    def required(self, tag: str) -> "Element":
+        element = self.child(tag)
+        if element is None:
+            raise self.error(f"<{tag}> is missing")
+        return element
+
+    @property
+    def text(self) -> str:
+        return (self._xml.text or "").strip()
+
+    def numbers(self, count: int) -> List[float]:
+        """The text as exactly ``count`` finite numbers."""
+        words = self.text.split()
+        try:
+            values = [float(word) for word in words]
+        except ValueError:
+            raise self.error(f"expected {count} numbers, got {self.text!r}") from None
+        if len(values) != count or not all(math.isfinite(value) for value in values):
+            raise self.error(f"expected {count} finite numbers, got {self.text!r}")
+        return values
+
+    def lengths(self, count: int) -> Tuple[float, ...]:
+        """The text as ``count`` positive numbers."""
+        values = self.numbers(count)
+        if min(values) <= 0.0:
+            raise self.error(f"must be positive, got {self.text!r}")
+        return tuple(values)
+
+    def flag(self, tag: str) -> bool:
+        """Whether the child ``tag`` says true; false if it is not there."""
+        element = self.child(tag)
+        return element is not None and element.text.lower() in ("1", "true")
+
+    def pose(self) -> np.ndarray:
+        """The pose (4, 4) of this element in its parent; identity if none is given."""
+        element = self.child("pose")
+        return pose3(*element.numbers(6)) if element is not None and element.text else IDENTITY
+
+
+def parse(path: Path) -> Element:
+    """The root element of an SDF file. Raises WorldError."""
+    try:
+        return parse_text(path.read_bytes(), str(path))
+    except OSError as error:
+        raise WorldError(f"{path}: cannot be read ({error.strerror})") from None
+
+
+def parse_text(text, file: str, roots: Sequence[str] = ("sdf", "gazebo")) -> Element:
+    """The root element of XML in memory, one of ``roots``; ``file`` names it in errors. Raises WorldError."""
+    try:
+        root = defusedxml.ElementTree.fromstring(text, forbid_dtd=False)
+    except DefusedXmlException as error:
+        raise WorldError(f"{file}: refused, defines entities ({type(error).__name__})") from None
+    except (defusedxml.ElementTree.ParseError, ValueError) as error:
+        raise WorldError(f"{file}: not well-formed XML ({error})") from None
+    if root.tag not in roots:
+        raise WorldError(f"{file}: its root is <{root.tag}>, expected <{roots[0]}>")
+    return Element(root, file)

@@ -1,0 +1,44 @@
+"""Where the files are that an SDF file refers to."""
+
+from pathlib import Path
+from typing import Optional, Sequence
+from urllib.parse import unquote, urlparse
+
+from sim_bridge.errors import WorldError
+from sim_bridge.sdf.element import parse_text
+
+
+def resolve(uri: str, beside: Path, model_folders: Sequence[Path]) -> Optional[Path]:
+    """The existing file or folder that ``uri`` names, or None.
+
+    ``model://name/...`` is looked up in ``model_folders``, ``file://`` and plain paths are absolute, or
+    relative to the folder ``beside`` and then to the model folders, as Gazebo does.
+    """
+    parts = urlparse(uri)
+    path = Path(unquote(parts.netloc + parts.path))
+    if parts.scheme == "model":
+        candidates = [folder / path for folder in model_folders]
+    elif parts.scheme in ("", "file"):
+        candidates = [beside / path, *(folder / path for folder in model_folders)]
+    else:
+        candidates = []
+    return next((candidate for candidate in candidates if candidate.exists()), None)
+
+
+def model_file(folder: Path) -> Path:
+    """The newest SDF file that a model folder's ``model.config`` names. Raises WorldError."""
+    if folder.is_file():
+        return folder
+    config_path = folder / "model.config"
+    try:
+        config = parse_text(config_path.read_bytes(), str(config_path), roots=("model",))
+    except OSError as error:
+        raise WorldError(f"{config_path}: cannot be read ({error.strerror})") from None
+    versions = [(_version(sdf.attribute("version")), sdf.text) for sdf in config.children("sdf")]
+    if not versions:
+        raise WorldError(f"{config_path}: names no <sdf> file")
+    return folder / max(versions)[1]
+
+
+def _version(text: str):
+    return tuple(int(number) if number.isdigit() else 0 for number in text.split("."))
