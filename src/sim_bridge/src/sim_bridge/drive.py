@@ -22,9 +22,7 @@ class Drive:
         self._age = 0.0
         self._target = Twist2()
         if twist.is_finite():
-            self._target = Twist2(
-                _clip(twist.v, limits.max_speed), _clip(twist.omega, limits.max_turn_rate)
-            )
+            self._target = Twist2(_clip(twist.v, limits.max_speed), _clip(twist.omega, limits.max_turn_rate))
 
     def wheel_speeds(self, seconds: float) -> Tuple[float, float]:
         """Speeds of the left and right wheel, rad/s, after ``seconds`` more."""

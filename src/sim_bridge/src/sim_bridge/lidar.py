@@ -1,4 +1,4 @@
-"""A planar range finder with Gaussian noise (Probabilistic Robotics, section 6.3.1, measurement noise only)."""
+"""A planar range finder with Gaussian noise (Probabilistic Robotics, section 6.3, p_hit)."""
 
 import numpy as np
 
@@ -11,7 +11,9 @@ from sim_bridge.robots import LaserProfile
 class Lidar:
     """Sweeps the world of a Physics from where it is mounted, ``laser_in_base`` (4, 4)."""
 
-    def __init__(self, profile: LaserProfile, laser_in_base: np.ndarray, noise: float, rng: np.random.Generator):
+    def __init__(
+        self, profile: LaserProfile, laser_in_base: np.ndarray, noise: float, rng: np.random.Generator
+    ):
         self._profile = profile
         self._laser_in_base = laser_in_base
         self._laser_in_plane = to_pose2(laser_in_base)

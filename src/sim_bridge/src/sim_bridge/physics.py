@@ -140,12 +140,21 @@ class Physics:
         )
         # The base slides: its casters roll any way, and its sides must not climb walls.
         self._bullet.changeDynamics(
-            robot, -1, lateralFriction=0.0, linearDamping=0.0, angularDamping=0.0,
+            robot,
+            -1,
+            lateralFriction=0.0,
+            linearDamping=0.0,
+            angularDamping=0.0,
             localInertiaDiagonal=base.inertia.tolist(),
         )
         for link, wheel in enumerate(wheels):
             self._bullet.changeDynamics(
-                robot, link, lateralFriction=1.0, linearDamping=0.0, angularDamping=0.0, jointDamping=0.0,
+                robot,
+                link,
+                lateralFriction=1.0,
+                linearDamping=0.0,
+                angularDamping=0.0,
+                jointDamping=0.0,
                 localInertiaDiagonal=wheel.part.inertia.tolist(),
             )
         for link in range(-1, len(wheels)):
@@ -182,17 +191,24 @@ class Physics:
 
     def _mesh(self, mesh: Mesh, pose: np.ndarray, moves: bool) -> int:
         """A mesh as it is if it stands still, its convex hull if it moves."""
-        concave: Dict[str, Any] = {} if moves else {
-            "indices": mesh.triangles.ravel().tolist(),
-            "flags": pybullet.GEOM_FORCE_CONCAVE_TRIMESH,
-        }
+        concave: Dict[str, Any] = (
+            {}
+            if moves
+            else {
+                "indices": mesh.triangles.ravel().tolist(),
+                "flags": pybullet.GEOM_FORCE_CONCAVE_TRIMESH,
+            }
+        )
         return self._bullet.createCollisionShape(
             pybullet.GEOM_MESH, vertices=transform_points(pose, mesh.vertices).tolist(), **concave
         )
 
 
 _UNUSED_ARGUMENTS: Dict[str, Any] = {
-    "radius": 1.0, "halfExtents": [1.0, 1.0, 1.0], "height": 1.0, "planeNormal": [0.0, 0.0, 1.0],
+    "radius": 1.0,
+    "halfExtents": [1.0, 1.0, 1.0],
+    "height": 1.0,
+    "planeNormal": [0.0, 0.0, 1.0],
 }
 
 

@@ -62,7 +62,7 @@ class Simulation:
         return 1.0 / self._settings.odometry_rate
 
     def step(self, command: Optional[Twist2] = None) -> Observation:
-        """Moves on by one period of the odometry; without a new ``command`` the last one holds until its time-out."""
+        """Moves on by one period of the odometry; the last ``command`` holds until its time-out."""
         if command is not None:
             self._drive.command(command)
         rate = self._settings.physics_rate
@@ -71,7 +71,9 @@ class Simulation:
             self._physics.step(self._drive.wheel_speeds(1.0 / rate))
             self._physics_steps += 1
             if self._physics_steps % (rate // self._settings.scan_rate) == 0:
-                scan = self._lidar.sweep(self._physics_steps / rate, self._physics, self._physics.base_in_space())
+                scan = self._lidar.sweep(
+                    self._physics_steps / rate, self._physics, self._physics.base_in_space()
+                )
         base_in_space = self._physics.base_in_space()
         twist = self._physics.twist_in_base(base_in_space)
         wheel_angles, wheel_speeds = self._physics.wheels()

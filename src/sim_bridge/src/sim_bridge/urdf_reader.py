@@ -1,4 +1,4 @@
-"""A robot's URDF as the few rigid parts that physics needs: the base with all that is fixed to it, and wheels."""
+"""A robot's URDF as the few rigid parts that physics needs: a base with all that is fixed to it, and wheels."""
 
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
@@ -52,7 +52,9 @@ def read_robot(description: str) -> RobotModel:
     children = {_link_of(joint, "child") for joint in joints}
     roots = [name for name in links if name not in children]
     if len(roots) != 1:
-        raise RobotError(f"robot {root.get('name')}: expected one root link, got {', '.join(map(str, roots)) or 'none'}")
+        raise RobotError(
+            f"robot {root.get('name')}: expected one root link, got {', '.join(map(str, roots)) or 'none'}"
+        )
     fixed, wheels = [(links[roots[0]], IDENTITY)], {}
     at = 0
     while at < len(fixed):

@@ -9,19 +9,19 @@ from sim_bridge.sdf.meshes import load_mesh
 from sim_bridge.shapes import Box, Cylinder, Plane, Shape, Sphere
 
 
-class LeftOut(Exception):
+class LeftOutError(Exception):
     """A geometry that the rest of the world can do without; the text says why."""
 
 
 def read_shape(geometry: Element, folder: Path, model_folders: Sequence[Path]) -> Shape:
-    """The shape of a <geometry>. Raises WorldError, or LeftOut for what is missing or not supported."""
+    """The shape of a <geometry>. Raises WorldError, or LeftOutError for what is missing or not supported."""
     kind = next((child for child in geometry.children() if child.tag in _READERS), None)
     if kind is not None:
         return _READERS[kind.tag](kind)
     mesh = geometry.child("mesh")
     if mesh is None:
         tags = ", ".join(f"<{child.tag}>" for child in geometry.children()) or "no shape"
-        raise LeftOut(f"{tags} is not supported")
+        raise LeftOutError(f"{tags} is not supported")
     return _read_mesh(mesh, folder, model_folders)
 
 
@@ -53,7 +53,7 @@ def _read_mesh(mesh: Element, folder: Path, model_folders: Sequence[Path]) -> Sh
     uri = mesh.required("uri").text
     path = resolve(uri, folder, model_folders)
     if path is None:
-        raise LeftOut(f"mesh {uri} not found")
+        raise LeftOutError(f"mesh {uri} not found")
     scale, submesh = mesh.child("scale"), mesh.child("submesh")
     return load_mesh(
         path,

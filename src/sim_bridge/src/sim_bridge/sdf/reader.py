@@ -6,7 +6,7 @@ from typing import Dict, List, Optional, Sequence, Tuple
 import numpy as np
 
 from sim_bridge.sdf.element import Element, parse, parse_text
-from sim_bridge.sdf.geometry import LeftOut, read_shape
+from sim_bridge.sdf.geometry import LeftOutError, read_shape
 from sim_bridge.sdf.includes import model_file, resolve
 from sim_bridge.sdf.state import ModelState, read_states
 from sim_bridge.shapes import Plane
@@ -30,7 +30,12 @@ def load_world(path, model_folders: Sequence[Path] = ()) -> World:
     reader = _Reader(tuple(Path(folder) for folder in model_folders))
     states = list(world.children("state"))
     insertions = [inserted for state in states for inserted in state.children("insertions")]
-    deleted = {name.text for state in states for gone in state.children("deletions") for name in gone.children("name")}
+    deleted = {
+        name.text
+        for state in states
+        for gone in state.children("deletions")
+        for name in gone.children("name")
+    }
     overrides = read_states(states)
     for part in [world, *insertions]:
         for model in part.children("model"):
@@ -156,7 +161,7 @@ class _Reader:
         for collision in link.children("collision"):
             try:
                 shape = read_shape(collision.required("geometry"), folder, self._model_folders)
-            except LeftOut as missing:
+            except LeftOutError as missing:
                 self.leave_out(collision, f"{missing}, left out")
                 continue
             collisions.append(Collision(shape, collision.pose()))
