@@ -2,6 +2,7 @@
 
 import math
 
+import numba
 import numpy as np
 
 from amcl_lite.bins import cluster_labels
@@ -22,8 +23,8 @@ def mean_of_best_cluster(particles: ParticleSet) -> Pose2:
 
 def mean_pose(poses: np.ndarray, weights: np.ndarray) -> Pose2:
     """The weighted mean of poses (N, 3); headings are averaged on the circle."""
-    x, y = weights @ poses[:, :2] / weights.sum()
-    return Pose2(float(x), float(y), math.atan2(weights @ np.sin(poses[:, 2]), weights @ np.cos(poses[:, 2])))
+    x, y, c, s = _weighted_sums(poses, weights) / weights.sum()
+    return Pose2(float(x), float(y), math.atan2(s, c))
 
 
 def covariance(particles: ParticleSet) -> np.ndarray:
@@ -31,13 +32,29 @@ def covariance(particles: ParticleSet) -> np.ndarray:
 
     The variance of heading is that of circular statistics, -2 ln R.
     """
-    positions = np.cov(particles.poses[:, :2].T, aweights=particles.weights, ddof=0)
-    yaws = particles.poses[:, 2]
-    resultant = math.hypot(particles.weights @ np.cos(yaws), particles.weights @ np.sin(yaws))
+    poses, weights = particles.poses, particles.weights
+    x, y, c, s = _weighted_sums(poses, weights)
+    dx, dy = poses[:, 0] - x, poses[:, 1] - y
     result = np.zeros((3, 3))
-    result[:2, :2] = positions
-    result[2, 2] = -2.0 * math.log(min(max(resultant, 1e-12), 1.0))
+    result[0, 0], result[1, 1] = (weights * dx * dx).sum(), (weights * dy * dy).sum()
+    result[0, 1] = result[1, 0] = (weights * dx * dy).sum()
+    result[2, 2] = -2.0 * math.log(min(max(math.hypot(c, s), 1e-12), 1.0))
     return result
+
+
+@numba.njit(cache=True)
+def _weighted_sums(poses, weights):
+    """Weighted sums (4,) of x, y, cos(yaw), sin(yaw).
+
+    Added up in order: numpy's last bit depends on where in memory its arrays lie.
+    """
+    sums = np.zeros(4)
+    for i in range(weights.size):
+        sums[0] += weights[i] * poses[i, 0]
+        sums[1] += weights[i] * poses[i, 1]
+        sums[2] += weights[i] * math.cos(poses[i, 2])
+        sums[3] += weights[i] * math.sin(poses[i, 2])
+    return sums
 
 
 def has_converged(particles: ParticleSet) -> bool:

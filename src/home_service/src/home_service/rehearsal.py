@@ -1,0 +1,162 @@
+"""The whole mission in one process, without ROS: the same cores as in the nodes, stepped in lock-step.
+
+Bit-for-bit repeatable from a seed, and many times faster than real time.
+"""
+
+import hashlib
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import List, Optional, Tuple
+
+import numpy as np
+import yaml
+
+from add_markers import CarriedParcel
+from amcl_lite import Localizer, LocalizerSettings
+from amcl_lite.config import official_names
+from home_service.verdict import ERRAND, MARKERS, Ledger, Verdict, judge
+from move_base_lite import Decision, Navigator, Status, load_settings
+from pick_objects import Errand, ErrandSettings, ErrandState, Finish, GoalReached, GoalRefused, GoTo
+from planar import OccupancyGrid, Pose2, Twist2
+from planar.places import Place
+from planar.settings import settings_from
+from sim_bridge import Observation, RobotProfile, Simulation
+from sim_bridge.world import World
+
+PACKAGES = Path(__file__).resolve().parents[3]
+LOCALIZATION_CONFIG = PACKAGES / "amcl_lite/config/turtlebot.yaml"
+NAVIGATION_CONFIG = PACKAGES / "move_base_lite/config/turtlebot.yaml"
+
+
+@dataclass(frozen=True, eq=False)
+class Rehearsed:
+    """How a rehearsal went.
+
+    ``trajectory``: (N, 4) stamp, true x, y, yaw at each control period. ``localization_error``: (N,), metres.
+    """
+
+    verdict: Verdict
+    ledger: Ledger
+    trajectory: np.ndarray
+    localization_error: np.ndarray
+    wall_seconds: float
+
+    @property
+    def simulated_seconds(self) -> float:
+        return float(self.trajectory[-1, 0])
+
+    @property
+    def real_time_factor(self) -> float:
+        return self.simulated_seconds / self.wall_seconds
+
+    @property
+    def distance_driven(self) -> float:
+        steps = np.diff(self.trajectory[:, 1:3], axis=0)
+        return float(np.hypot(steps[:, 0], steps[:, 1]).sum())
+
+    @property
+    def trajectory_hash(self) -> str:
+        """The same for two runs only if every bit of the true trajectory is the same."""
+        return hashlib.sha256(np.ascontiguousarray(self.trajectory).tobytes()).hexdigest()
+
+
+class Rehearsal:
+    """Simulation, Localizer, Navigator, Errand and Parcel, stepped together; nothing but a seed is random."""
+
+    def __init__(
+        self,
+        world: World,
+        robot: RobotProfile,
+        grid: OccupancyGrid,
+        pickup: Place,
+        dropoff: Place,
+        seed: int,
+    ):
+        self._simulation = Simulation(world, robot, seed=seed)
+        self._localizer = Localizer(grid, _localizer_settings(), np.random.default_rng(seed))
+        navigation = load_settings(NAVIGATION_CONFIG)
+        self._navigator = Navigator(navigation, grid)
+        self._steps_per_tick = round(
+            1.0 / (navigation.move_base.controller_frequency * self._simulation.step_seconds)
+        )
+        self._errand = Errand(pickup, dropoff)
+        self._parcel = CarriedParcel(pickup, dropoff, ErrandSettings().pickup_seconds)
+        self._arrivals = {ErrandState.PICKING_UP: pickup, ErrandState.DELIVERED: dropoff}
+        self._ledger = Ledger()
+        self._trajectory: List[Tuple[float, float, float, float]] = []
+        self._errors: List[float] = []
+
+    def run(self, simulated_timeout: float = 600.0) -> Rehearsed:
+        """Plays the mission to its end."""
+        start = time.perf_counter()
+        command, event, outcome = Twist2(), None, None
+        while outcome is None:
+            observation, scan = self._advance_simulation(command)
+            now, odometry = observation.stamp, observation.odometry
+            if self._localizer.odom_in_map is None:
+                continue
+            base_in_map = self._localizer.odom_in_map @ odometry.base_in_odom
+            self._note(observation, base_in_map)
+            order = self._errand.advance(now, event)
+            self._note_state(observation.base_in_world)
+            if isinstance(order, GoTo):
+                self._navigator.set_goal(order.place.pose)
+            decision = self._navigator.tick(now, base_in_map, odometry.base_in_odom, odometry.twist, scan)
+            command, event = decision.command or Twist2(), _event_of(decision)
+            if isinstance(order, Finish):
+                outcome = order
+            elif now > simulated_timeout:
+                outcome = Finish(False, f"not done within {simulated_timeout:g} simulated seconds")
+        if not outcome.success:
+            self._ledger.failure = outcome.reason
+        self._simulation.close()
+        return Rehearsed(
+            judge(self._ledger, {ERRAND, MARKERS}),
+            self._ledger,
+            np.array(self._trajectory),
+            np.array(self._errors),
+            time.perf_counter() - start,
+        )
+
+    def _advance_simulation(self, command: Twist2):
+        """Moves on by one control period; returns the last observation and the scan made on the way."""
+        scan = None
+        for _ in range(self._steps_per_tick):
+            observation = self._simulation.step(command)
+            self._ledger.collisions.extend(observation.contacts)
+            if observation.scan is not None:
+                scan = observation.scan
+                self._localizer.update(observation.odometry.base_in_odom, scan)
+        return observation, scan
+
+    def _note(self, observation: Observation, base_in_map: Pose2) -> None:
+        truth = observation.base_in_world
+        self._trajectory.append((observation.stamp, truth.x, truth.y, truth.yaw))
+        self._errors.append(truth.distance_to(base_in_map))
+        self._note_marker(self._parcel.update(observation.stamp, base_in_map))
+
+    def _note_state(self, truth: Pose2) -> None:
+        state = self._errand.state
+        if state.value != self._ledger.final_state:
+            self._ledger.final_state = state.value
+            if state in self._arrivals:
+                place = self._arrivals[state]
+                self._ledger.errors[place.name] = truth.distance_to(place.pose)
+
+    def _note_marker(self, shown_at: Optional[Pose2]) -> None:
+        shown = [place.name for place in self._arrivals.values() if place.pose == shown_at]
+        event = f"shown at {shown[0]}" if shown else "hidden"
+        if self._ledger.markers[-1:] != [event]:
+            self._ledger.markers.append(event)
+
+
+def _localizer_settings() -> LocalizerSettings:
+    parameters = yaml.safe_load(LOCALIZATION_CONFIG.read_text(encoding="utf-8"))
+    return settings_from(LocalizerSettings, parameters, official_names(LocalizerSettings))[0]
+
+
+def _event_of(decision: Decision):
+    if decision.status is Status.SUCCEEDED:
+        return GoalReached()
+    return GoalRefused(decision.text) if decision.status is Status.ABORTED else None
