@@ -1,4 +1,4 @@
-"""Settings of the simulation."""
+"""Settings of the simulation and of its node."""
 
 from dataclasses import dataclass
 
@@ -33,3 +33,26 @@ class SimulationSettings:
         check(self.command_timeout > 0.0, "command_timeout", "positive", self.command_timeout)
         for name in ("range_noise", "encoder_scale", "wheel_slip", "gyro_scale", "gyro_bias", "gyro_noise"):
             check(getattr(self, name) >= 0.0, name, "not negative", getattr(self, name))
+
+
+@dataclass(frozen=True)
+class BridgeSettings:
+    """``wait_for``: names of nodes, separated by spaces; rates in hertz must divide the odometry's."""
+
+    world: str = ""
+    robot: str = "turtlebot_lidar"
+    seed: int = 0
+    speed: float = 1.0
+    x: float = 0.0
+    y: float = 0.0
+    yaw: float = 0.0
+    wait_for: str = ""
+    clock_rate: int = 50
+    joint_state_rate: int = 10
+
+    def __post_init__(self):
+        check(self.world != "", "world", "the path of an SDF file", self.world)
+        check(self.seed >= 0, "seed", "not negative", self.seed)
+        check(0.0 <= self.speed < float("inf"), "speed", "0 or a positive number", self.speed)
+        check(self.clock_rate > 0, "clock_rate", "positive", self.clock_rate)
+        check(self.joint_state_rate > 0, "joint_state_rate", "positive", self.joint_state_rate)

@@ -36,7 +36,7 @@ class DeadReckoning:
         self._pose = Pose2()
 
     def update(self, wheel_angles: Tuple[float, float], turn_rate: float, seconds: float) -> Odometry:
-        """Moves on by ``seconds``: the wheels have come to ``wheel_angles``, rad; ``turn_rate`` is the true one."""
+        """Moves on by ``seconds`` to ``wheel_angles``, rad; ``turn_rate``, rad/s, is the true one."""
         turned = np.asarray(wheel_angles) - self._angles
         self._angles = np.asarray(wheel_angles)
         distance = float((turned * self._radii).mean())

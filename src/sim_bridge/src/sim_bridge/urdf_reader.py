@@ -1,4 +1,4 @@
-"""A robot's URDF as the few rigid parts that physics needs: a base with all that is fixed to it, and wheels."""
+"""A robot's URDF as the few rigid parts that physics needs: a base with what is fixed to it, and wheels."""
 
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass

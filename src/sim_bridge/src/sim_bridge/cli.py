@@ -1,0 +1,61 @@
+"""Command lines that need no ROS master."""
+
+import argparse
+import os
+import sys
+from pathlib import Path
+from typing import List
+
+from planar import PlanarError, save_map
+from sim_bridge.robots import ROBOTS, robot_named
+from sim_bridge.sdf import load_world
+from sim_bridge.true_map import true_map
+
+
+def model_folders() -> List[Path]:
+    """Where Gazebo looks for models: the folders of GAZEBO_MODEL_PATH, then the user's own."""
+    listed = [Path(folder) for folder in os.environ.get("GAZEBO_MODEL_PATH", "").split(":") if folder]
+    return [*listed, Path("~/.gazebo/models").expanduser()]
+
+
+def render_map() -> None:
+    """Writes the true map of a world file."""
+    parser = argparse.ArgumentParser(
+        prog="render_map",
+        description="Renders the occupancy grid of a world file, as a perfect mapper would.",
+    )
+    parser.add_argument("world", metavar="WORLD", help="SDF world file")
+    parser.add_argument("stem", metavar="STEM", help="writes STEM.yaml and STEM.pgm")
+    parser.add_argument("--height", type=float, default=0.3, help="of the cut, metres (default: 0.3)")
+    parser.add_argument("--resolution", type=float, default=0.05, help="metres per cell (default: 0.05)")
+    parser.add_argument(
+        "--inside",
+        type=float,
+        nargs=2,
+        default=(0.0, 0.0),
+        metavar=("X", "Y"),
+        help="a point of free space; what can be reached from it is free (default: 0 0)",
+    )
+    arguments = parser.parse_args()
+    if not arguments.resolution > 0.0:
+        parser.error(f"--resolution must be positive, got {arguments.resolution:g}")
+    try:
+        world = load_world(arguments.world, model_folders())
+        for warning in world.warnings:
+            print(f"warning: {warning}", file=sys.stderr)
+        grid = true_map(world, arguments.height, arguments.resolution, tuple(arguments.inside))
+        print(f"{save_map(grid, arguments.stem)}: {grid.cols} x {grid.rows} cells of {grid.resolution:g} m")
+    except PlanarError as error:
+        sys.exit(f"render_map: error: {error}")
+
+
+def robot_description() -> None:
+    """Prints the URDF of a robot."""
+    parser = argparse.ArgumentParser(
+        prog="robot_description", description="Prints the URDF of a robot that sim_bridge simulates."
+    )
+    parser.add_argument("robot", metavar="ROBOT", help=", ".join(ROBOTS))
+    try:
+        print(robot_named(parser.parse_args().robot).description())
+    except PlanarError as error:
+        sys.exit(f"robot_description: error: {error}")

@@ -1,0 +1,79 @@
+"""How fast simulated time may pass: in step with the wall clock, and with the nodes that work on its data."""
+
+from typing import Dict, Iterable, List, Optional, Set
+
+REAL_TIME = 1.0
+# Wall seconds of delay that are not made up for.
+FORGIVEN_DELAY = 0.2
+# Wall seconds after which to ask again while a node is behind.
+RECHECK = 0.05
+
+
+class Pacer:
+    """Says when the next step of a simulation may be taken.
+
+    ``speed`` times as fast as the wall clock, 0 for no such limit. The nodes of ``wait_for`` report how far
+    they have come; simulated time never passes more than ``period`` seconds ahead of the slowest one. A node
+    that keeps all others waiting for ``patience`` wall seconds is given up as missing until it reports again.
+    While a node is missing, as all are at the start, the simulation goes on at most in real time.
+    """
+
+    def __init__(
+        self, speed: float, wait_for: Iterable[str] = (), period: float = 0.1, patience: float = 5.0
+    ):
+        self._speed = speed
+        self._period = period
+        self._patience = patience
+        self._missing: Set[str] = set(wait_for)
+        self._reached: Dict[str, float] = {}
+        self._wait_for = frozenset(wait_for)
+        self._blocked_since: Optional[float] = None
+        self._anchor_wall = self._anchor_stamp = 0.0
+        self._anchor_speed = -1.0
+
+    def report(self, name: str, stamp: float) -> None:
+        """A node has worked up to the simulated time ``stamp``."""
+        if name in self._wait_for:
+            self._reached[name] = stamp
+            self._missing.discard(name)
+
+    def is_missing(self, name: str) -> bool:
+        return name in self._missing
+
+    def delay(self, stamp: float, wall: float) -> float:
+        """Wall seconds to wait before asking again; 0 if the step to the time ``stamp`` may be taken."""
+        if self.behind(stamp):
+            if self._blocked_since is None:
+                self._blocked_since = wall
+            return RECHECK
+        self._blocked_since = None
+        return self._delay_of_speed(stamp, wall)
+
+    def behind(self, stamp: float) -> List[str]:
+        """The nodes that a step to ``stamp`` has to wait for."""
+        limit = stamp - self._period - 1e-6
+        return sorted(
+            name for name, reached in self._reached.items() if reached < limit and name not in self._missing
+        )
+
+    def give_up(self, stamp: float, wall: float) -> List[str]:
+        """The nodes that have been waited for too long; from now on they are missing."""
+        if self._blocked_since is None or wall - self._blocked_since < self._patience:
+            return []
+        given_up = self.behind(stamp)
+        self._missing.update(given_up)
+        self._blocked_since = None
+        return given_up
+
+    def _delay_of_speed(self, stamp: float, wall: float) -> float:
+        speed = self._speed
+        if self._missing and not 0.0 < speed < REAL_TIME:
+            speed = REAL_TIME
+        if speed == 0.0:
+            self._anchor_speed = speed
+            return 0.0
+        due = self._anchor_wall + (stamp - self._anchor_stamp) / speed
+        if speed != self._anchor_speed or wall > due + FORGIVEN_DELAY:
+            self._anchor_wall, self._anchor_stamp, self._anchor_speed = wall, stamp, speed
+            return 0.0
+        return max(0.0, due - wall)
