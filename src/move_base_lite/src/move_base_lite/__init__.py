@@ -1,0 +1,30 @@
+"""Navigation after move_base: from a goal, poses and scans to velocities that reach it without collision."""
+
+from move_base_lite.config import NavigatorSettings, load_settings, settings_from_parameters
+from move_base_lite.decision import Decision, Status
+from move_base_lite.errors import (
+    ControlError,
+    GoalBlocked,
+    NavigationError,
+    NoPath,
+    OutOfMap,
+    PlanningError,
+    StartBlocked,
+)
+from move_base_lite.navigator import Navigator
+
+__all__ = [
+    "ControlError",
+    "Decision",
+    "GoalBlocked",
+    "NavigationError",
+    "Navigator",
+    "NavigatorSettings",
+    "NoPath",
+    "OutOfMap",
+    "PlanningError",
+    "StartBlocked",
+    "Status",
+    "load_settings",
+    "settings_from_parameters",
+]

@@ -1,0 +1,141 @@
+"""The local planner: turns to the plan, follows it by DWA, stops at its end and turns to the goal's heading."""
+
+import math
+from dataclasses import dataclass
+from typing import Optional
+
+import numpy as np
+
+from move_base_lite.control.dwa import best_trajectory
+from move_base_lite.control.escape import way_out
+from move_base_lite.control.rotation import rotation_towards, stopping
+from move_base_lite.control.settings import DwaSettings
+from move_base_lite.control.tracking import Tracking
+from move_base_lite.costmap import LayeredCostmap
+from move_base_lite.errors import ControlError
+from planar import Pose2, Twist2, wrap
+
+ALIGNED_ANGLE = 0.3
+
+
+@dataclass(frozen=True, eq=False)
+class Control:
+    """A velocity; where it leads, poses (N, 3), and the plan followed (M, 2), both in the local frame."""
+
+    command: Twist2
+    poses: np.ndarray
+    plan_xy: np.ndarray
+
+
+class Controller:
+    """Follows one plan at a time; plan and goal are given in the map, costs in the local frame."""
+
+    def __init__(self, settings: DwaSettings, period: float):
+        self._settings = settings
+        self._period = period
+        self._tracking: Optional[Tracking] = None
+        self._goal_in_map = Pose2()
+        self._arrived = False
+        self._is_turning = False
+
+    def set_plan(self, path_xy: np.ndarray, goal_in_map: Pose2) -> None:
+        """Follows another path (N, 2); a change of goal forgets that the old one had been reached."""
+        self._tracking = Tracking(path_xy)
+        if goal_in_map != self._goal_in_map:
+            self._goal_in_map = goal_in_map
+            self._arrived = self._is_turning = False
+
+    def reset(self) -> None:
+        self._tracking = None
+        self._goal_in_map = Pose2()
+        self._arrived = self._is_turning = False
+
+    def is_goal_reached(self, base_in_map: Pose2, twist: Twist2) -> bool:
+        """Within both tolerances of the goal, and at a standstill."""
+        settings = self._settings
+        return (
+            self._is_near(base_in_map)
+            and abs(wrap(self._goal_in_map.yaw - base_in_map.yaw)) <= settings.yaw_goal_tolerance
+            and abs(twist.v) <= settings.trans_stopped_vel
+            and abs(twist.omega) <= settings.theta_stopped_vel
+        )
+
+    @property
+    def distance_left(self) -> float:
+        """Metres of the plan still to drive."""
+        return self._tracking.distance_left if self._tracking else 0.0
+
+    def control(
+        self, base_in_map: Pose2, base_in_local: Pose2, twist: Twist2, costmap: LayeredCostmap
+    ) -> Control:
+        """The velocity for the next period. Raises ControlError if none is safe."""
+        assert self._tracking is not None, "control() needs a plan"
+        self._tracking.advance(base_in_map.x, base_in_map.y)
+        if self._is_near(base_in_map):
+            return self._turn_at_goal(base_in_map, base_in_local, twist, costmap)
+        map_in_local = base_in_local @ base_in_map.inverse()
+        plan_xy = _within(costmap, map_in_local.transform_points(self._tracking.ahead_xy))
+        if costmap.collides(base_in_local):
+            command = way_out(costmap, base_in_local)
+            if command is None:
+                raise ControlError("the robot touches an obstacle and finds no way out")
+            return Control(command, base_in_local.as_array()[None, :], plan_xy)
+        error = self._tracking.heading_error(
+            base_in_map.x, base_in_map.y, base_in_map.yaw, self._settings.heading_lookahead
+        )
+        if self._should_turn(error):
+            return self._turn(error, base_in_local, twist, costmap, plan_xy)
+        try:
+            trajectory = best_trajectory(
+                self._settings, costmap, base_in_local, twist, plan_xy, self._speed_limit(), self._period
+            )
+        except ControlError:
+            if abs(error) < ALIGNED_ANGLE:
+                raise
+            return self._turn(error, base_in_local, twist, costmap, plan_xy)
+        return Control(trajectory.command, trajectory.poses, plan_xy)
+
+    def _is_near(self, base_in_map: Pose2) -> bool:
+        is_near = base_in_map.distance_to(self._goal_in_map) <= self._settings.xy_goal_tolerance
+        if self._settings.latch_xy_goal_tolerance:
+            self._arrived = self._arrived or is_near
+            return self._arrived
+        return is_near
+
+    def _should_turn(self, error: float) -> bool:
+        threshold = self._settings.rotate_to_path_angle
+        if threshold <= 0.0:
+            return False
+        self._is_turning = abs(error) > (min(ALIGNED_ANGLE, threshold) if self._is_turning else threshold)
+        return self._is_turning
+
+    def _turn_at_goal(self, base_in_map, base_in_local, twist, costmap) -> Control:
+        settings = self._settings
+        here = base_in_local.as_array()[None, :]
+        error = wrap(self._goal_in_map.yaw - base_in_map.yaw)
+        if abs(error) <= settings.yaw_goal_tolerance or abs(twist.v) > settings.trans_stopped_vel:
+            return Control(stopping(settings, twist, self._period), here, here[:, :2])
+        return self._turn(error, base_in_local, twist, costmap, here[:, :2])
+
+    def _turn(self, error, base_in_local, twist, costmap, plan_xy) -> Control:
+        """Turns on the spot, the other way round if this one is obstructed."""
+        for angle in (error, error - math.copysign(2.0 * math.pi, error)):
+            turned = [base_in_local @ Pose2(0.0, 0.0, angle * part) for part in np.linspace(0.0, 1.0, 8)]
+            if not any(costmap.collides(pose) for pose in turned[1:]):
+                command = rotation_towards(self._settings, angle, twist, self._period)
+                return Control(command, np.array([pose.as_array() for pose in turned]), plan_xy)
+        raise ControlError("there is no room to turn")
+
+    def _speed_limit(self) -> float:
+        """Slow enough to stop at the plan's end, braking gently."""
+        gentle = 0.3 * self._settings.acc_lim_x
+        return max(math.sqrt(2.0 * gentle * self.distance_left), self._settings.min_vel_trans)
+
+
+def _within(costmap: LayeredCostmap, plan_xy: np.ndarray) -> np.ndarray:
+    """The part of the plan up to where it leaves the costmap, at least one point."""
+    window = costmap.window
+    low = np.array([window.origin_x, window.origin_y])
+    high = low + window.resolution * np.array([window.cols, window.rows])
+    outside = np.flatnonzero(~((plan_xy >= low) & (plan_xy < high)).all(axis=1))
+    return plan_xy[: max(1, outside[0])] if len(outside) else plan_xy

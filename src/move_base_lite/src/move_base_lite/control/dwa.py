@@ -1,0 +1,207 @@
+"""The dynamic window approach (Fox, Burgard and Thrun, 1997) with the critics of dwa_local_planner."""
+
+import math
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+
+from move_base_lite.control.map_grid import UNREACHABLE, distances_to
+from move_base_lite.control.settings import DwaSettings
+from move_base_lite.costmap import LayeredCostmap
+from move_base_lite.costmap.footprint import COLLISION, footprint_cost
+from move_base_lite.errors import ControlError
+from planar import Pose2, Twist2
+
+REJECTED = -1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """The chosen velocity, where it leads, poses (N, 3) in the costmap's frame, and its cost."""
+
+    command: Twist2
+    poses: np.ndarray
+    cost: float
+
+
+def best_trajectory(
+    settings: DwaSettings,
+    costmap: LayeredCostmap,
+    base_pose: Pose2,
+    twist: Twist2,
+    plan_xy: np.ndarray,
+    speed_limit: float,
+    period: float,
+) -> Trajectory:
+    """The cheapest of the velocities reachable within ``period`` seconds.
+
+    ``plan_xy``: (N, 2), the part of the plan ahead within the costmap. ``speed_limit``: m/s.
+    Raises ControlError if each of them hits something or leads nowhere.
+    """
+    window = costmap.window
+    goal_x, goal_y = plan_xy[-1]
+    to_goal = math.atan2(goal_y - base_pose.y, goal_x - base_pose.x)
+    nose = settings.forward_point_distance
+    nose_goal_xy = plan_xy[-1] + nose * np.array([math.cos(to_goal), math.sin(to_goal)])
+    from_path = distances_to(costmap.costs, window, plan_xy)
+    from_goal = distances_to(costmap.costs, window, plan_xy[-1:])
+    from_nose_goal = distances_to(costmap.costs, window, nose_goal_xy[None, :])
+    path_scale = window.resolution * settings.path_distance_bias
+    goal_scale = window.resolution * settings.goal_distance_bias
+    far_from_goal = math.hypot(goal_x - base_pose.x, goal_y - base_pose.y) > nose * math.sqrt(
+        settings.cheat_factor
+    )
+    samples = velocity_samples(settings, twist, speed_limit, period)
+    scores = _score(
+        costmap.costs,
+        window.origin_x,
+        window.origin_y,
+        window.resolution,
+        costmap.outline_xy,
+        base_pose.as_array(),
+        samples,
+        settings.sim_time,
+        settings.sim_granularity,
+        settings.angular_sim_granularity,
+        from_path,
+        from_goal,
+        from_nose_goal,
+        nose,
+        (path_scale, goal_scale, path_scale if far_from_goal else 0.0, settings.occdist_scale),
+    )
+    scores = np.where(scores < 0.0, np.inf, scores + settings.twirling_scale * np.abs(samples[:, 1]))
+    best = int(np.argmin(scores))
+    if not math.isfinite(scores[best]):
+        raise ControlError("every velocity within reach leads into an obstacle")
+    v, omega = samples[best]
+    poses = _simulate(
+        base_pose.as_array(),
+        v,
+        omega,
+        settings.sim_time,
+        settings.sim_granularity,
+        settings.angular_sim_granularity,
+    )
+    return Trajectory(Twist2(float(v), float(omega)), poses, float(scores[best]))
+
+
+def velocity_samples(settings: DwaSettings, twist: Twist2, speed_limit: float, period: float) -> np.ndarray:
+    """Velocities (N, 2) as (v, omega) that the robot can have after ``period`` and that are fast enough.
+
+    However small the acceleration, a robot at rest may start at ``min_vel_trans``.
+    """
+    horizon = period if settings.use_dwa else settings.sim_time
+    highest = min(settings.max_vel_x, settings.max_vel_trans, speed_limit)
+    change = max(settings.acc_lim_x * horizon, settings.min_vel_trans - twist.v)
+    v = _spaced(twist.v, change, settings.min_vel_x, highest, settings.vx_samples)
+    limit = settings.max_vel_theta
+    omega = _spaced(twist.omega, settings.acc_lim_theta * horizon, -limit, limit, settings.vth_samples)
+    samples = np.stack(np.meshgrid(v, omega, indexing="ij"), axis=-1).reshape(-1, 2)
+    too_slow = (np.abs(samples[:, 0]) < settings.min_vel_trans - 1e-4) & (
+        np.abs(samples[:, 1]) < settings.min_vel_theta - 1e-4
+    )
+    return samples[~too_slow]
+
+
+def _spaced(now: float, change: float, lowest: float, highest: float, count: int) -> np.ndarray:
+    """``count`` values within reach of ``now`` and within limits; 0 is one more if it lies between them."""
+    low = min(max(now - change, lowest), highest)
+    high = max(min(now + change, highest), low)
+    values = np.linspace(low, high, count)
+    if low < 0.0 < high:
+        values = np.sort(np.append(values, 0.0))
+    return values
+
+
+@numba.njit(cache=True)
+def _steps(v, omega, sim_time, granularity, angular_granularity):
+    return max(
+        1, int(math.ceil(max(abs(v) * sim_time / granularity, abs(omega) * sim_time / angular_granularity)))
+    )
+
+
+@numba.njit(cache=True)
+def _simulate(start, v, omega, sim_time, granularity, angular_granularity):
+    """Poses (N, 3) along an arc driven at constant velocity."""
+    steps = _steps(v, omega, sim_time, granularity, angular_granularity)
+    dt = sim_time / steps
+    poses = np.empty((steps + 1, 3))
+    poses[0] = start
+    for i in range(steps):
+        heading = poses[i, 2] + 0.5 * omega * dt
+        poses[i + 1, 0] = poses[i, 0] + v * dt * math.cos(heading)
+        poses[i + 1, 1] = poses[i, 1] + v * dt * math.sin(heading)
+        poses[i + 1, 2] = poses[i, 2] + omega * dt
+    return poses
+
+
+@numba.njit(cache=True)
+def _score(
+    costs,
+    origin_x,
+    origin_y,
+    resolution,
+    outline_xy,
+    start,
+    samples,
+    sim_time,
+    granularity,
+    angular_granularity,
+    from_path,
+    from_goal,
+    from_nose_goal,
+    nose,
+    scales,
+):
+    """Cost of each sample, negative if it must not be driven."""
+    path_scale, goal_scale, alignment_scale, obstacle_scale = scales
+    scores = np.empty(samples.shape[0])
+    for i in range(samples.shape[0]):
+        v, omega = samples[i]
+        poses = _simulate(start, v, omega, sim_time, granularity, angular_granularity)
+        highest = 0.0
+        for j in range(poses.shape[0]):
+            x, y, yaw = poses[j]
+            cost = footprint_cost(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw)
+            if cost == COLLISION:
+                highest = REJECTED
+                break
+            highest = max(highest, float(cost))
+        if highest < 0.0:
+            scores[i] = REJECTED
+            continue
+        x, y, yaw = poses[-1]
+        to_path = _at(from_path, origin_x, origin_y, resolution, x, y)
+        to_goal = _at(from_goal, origin_x, origin_y, resolution, x, y)
+        if to_path >= UNREACHABLE or to_goal >= UNREACHABLE:
+            scores[i] = REJECTED
+            continue
+        nose_x, nose_y = x + nose * math.cos(yaw), y + nose * math.sin(yaw)
+        scores[i] = (
+            obstacle_scale * highest
+            + path_scale * to_path
+            + goal_scale * to_goal
+            + alignment_scale * _at(from_path, origin_x, origin_y, resolution, nose_x, nose_y)
+            + goal_scale * _at(from_nose_goal, origin_x, origin_y, resolution, nose_x, nose_y)
+        )
+    return scores
+
+
+@numba.njit(cache=True)
+def _at(distances, origin_x, origin_y, resolution, x, y):
+    """Distance in cells, interpolated between cell centres so that small motions count too."""
+    rows, cols = distances.shape
+    row, col = int((y - origin_y) / resolution), int((x - origin_x) / resolution)
+    if row < 0 or row >= rows or col < 0 or col >= cols:
+        return UNREACHABLE
+    nearest = distances[row, col]
+    u, w = (y - origin_y) / resolution - 0.5, (x - origin_x) / resolution - 0.5
+    row, col = int(math.floor(u)), int(math.floor(w))
+    if row < 0 or row >= rows - 1 or col < 0 or col >= cols - 1:
+        return nearest
+    u, w = u - row, w - col
+    value = (1.0 - u) * ((1.0 - w) * distances[row, col] + w * distances[row, col + 1]) + u * (
+        (1.0 - w) * distances[row + 1, col] + w * distances[row + 1, col + 1]
+    )
+    return value if value < UNREACHABLE / rows / cols else nearest

@@ -1,0 +1,57 @@
+"""Getting out of contact: the robot stands in an obstacle's cells, so no trajectory is free of collision."""
+
+import math
+from typing import Optional
+
+import numba
+import numpy as np
+
+from move_base_lite.costmap import LayeredCostmap
+from move_base_lite.costmap.footprint import count_collisions
+from planar import Pose2, Twist2
+
+SPEED = 0.1
+TURN_RATE = 0.4
+SECONDS = 1.5
+STEPS = 15
+
+
+def way_out(costmap: LayeredCostmap, base_pose: Pose2) -> Optional[Twist2]:
+    """A slow velocity along which less and less of the outline touches obstacles; None if there is none."""
+    window = costmap.window
+    candidates = np.array(
+        [(v, omega) for v in (-SPEED, SPEED, 0.0) for omega in (0.0, TURN_RATE, -TURN_RATE) if v or omega]
+    )
+    best = _best(
+        costmap.costs,
+        window.origin_x,
+        window.origin_y,
+        window.resolution,
+        costmap.outline_xy,
+        base_pose.as_array(),
+        candidates,
+    )
+    return None if best < 0 else Twist2(*map(float, candidates[best]))
+
+
+@numba.njit(cache=True)
+def _best(costs, origin_x, origin_y, resolution, outline_xy, start, candidates):
+    touching = count_collisions(
+        costs, origin_x, origin_y, resolution, outline_xy, start[0], start[1], start[2]
+    )
+    best, fewest = -1, touching
+    dt = SECONDS / STEPS
+    for i in range(candidates.shape[0]):
+        v, omega = candidates[i]
+        x, y, yaw = start
+        for _ in range(STEPS):
+            x += v * dt * math.cos(yaw)
+            y += v * dt * math.sin(yaw)
+            yaw += omega * dt
+            count = count_collisions(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw)
+            if count > touching:
+                break
+        else:
+            if count < fewest:
+                best, fewest = i, count
+    return best

@@ -1,0 +1,165 @@
+"""A costmap in layers: the map, what the laser sees, and inflation over both."""
+
+from dataclasses import dataclass, field
+from typing import Optional, Tuple
+
+import numba
+import numpy as np
+
+from move_base_lite.costmap.costs import FREE, UNKNOWN
+from move_base_lite.costmap.footprint import Footprint, collides, footprint_from
+from move_base_lite.costmap.inflation import Inflation, InflationSettings
+from move_base_lite.costmap.obstacle_layer import ObstacleLayer, ObstacleSettings
+from move_base_lite.costmap.static_layer import StaticSettings, static_costs
+from move_base_lite.costmap.window import Bounds, Window
+from planar import OccupancyGrid, Pose2, Scan
+from planar.settings import check
+
+
+@dataclass(frozen=True)
+class CostmapSettings:
+    """One costmap. Lengths in metres, frequencies in Hz; names and defaults of costmap_2d."""
+
+    global_frame: str = "map"
+    robot_base_frame: str = "base_link"
+    transform_tolerance: float = 0.3
+    update_frequency: float = 5.0
+    publish_frequency: float = 0.0
+    rolling_window: bool = False
+    width: float = 10.0
+    height: float = 10.0
+    resolution: float = 0.05
+    origin_x: float = 0.0
+    origin_y: float = 0.0
+    footprint: Tuple[Tuple[float, float], ...] = ()
+    robot_radius: float = 0.46
+    footprint_padding: float = 0.01
+    track_unknown_space: bool = False
+    always_send_full_costmap: bool = False
+    static: StaticSettings = field(default_factory=lambda: StaticSettings(enabled=False))
+    obstacles: ObstacleSettings = field(default_factory=ObstacleSettings)
+    inflation: InflationSettings = field(default_factory=InflationSettings)
+
+    def __post_init__(self):
+        for name in ("width", "height", "resolution"):
+            check(getattr(self, name) > 0.0, name, "positive", getattr(self, name))
+        for name in ("update_frequency", "publish_frequency", "robot_radius", "footprint_padding"):
+            check(getattr(self, name) >= 0.0, name, "at least 0", getattr(self, name))
+        check(len(self.footprint) not in (1, 2), "footprint", "at least 3 points", self.footprint)
+
+
+class LayeredCostmap:
+    """Costs, uint8 (rows, cols), of the cells of ``window``; fixed to its frame or rolling with the robot.
+
+    Only what can have changed is computed anew: the block seen by a scan, grown by the inflation radius.
+    """
+
+    def __init__(self, settings: CostmapSettings, grid: Optional[OccupancyGrid] = None):
+        self.settings = settings
+        self.footprint: Footprint = footprint_from(
+            settings.footprint, settings.robot_radius, settings.footprint_padding
+        )
+        self.window = _window_of(settings, grid)
+        self.outline_xy = self.footprint.outline_xy(0.8 * self.window.resolution)
+        self._inflation = Inflation(
+            settings.inflation, self.footprint.inscribed_radius, self.window.resolution
+        )
+        rows, cols = self.window.rows, self.window.cols
+        self._obstacles: Optional[ObstacleLayer] = None
+        if settings.obstacles.enabled:
+            self._obstacles = ObstacleLayer(settings.obstacles, rows, cols, settings.track_unknown_space)
+        self._ground = np.full((rows, cols), UNKNOWN if settings.track_unknown_space else FREE, np.uint8)
+        if settings.static.enabled and grid is not None and not settings.rolling_window:
+            self._ground = static_costs(grid.cells, settings.static)
+        self.costs = np.empty((rows, cols), dtype=np.uint8)
+        self.refresh(self.window.everything)
+        self.costs_of_map: np.ndarray = self.costs.copy()
+
+    def update(self, base_in_frame: Pose2, scan: Optional[Scan]) -> Bounds:
+        """Follows the robot and takes in a scan, if any; returns the block of cells that may have changed."""
+        changed = self._follow(base_in_frame)
+        if self._obstacles is not None:
+            if scan is not None:
+                changed = _union(changed, self._obstacles.integrate(self.window, base_in_frame, scan))
+            if self.settings.obstacles.footprint_clearing_enabled:
+                cleared = self._obstacles.clear_footprint(self.window, base_in_frame, self.footprint)
+                changed = _union(changed, cleared)
+        return self.refresh(changed)
+
+    def refresh(self, changed: Bounds) -> Bounds:
+        """Stacks the layers anew where they have changed; returns the block of cells that may differ now."""
+        bounds = self.window.grown(changed, self._inflation.reach_cells)
+        if self._obstacles is None:
+            rows, cols = slice(*bounds[:2]), slice(*bounds[2:])
+            self.costs[rows, cols] = self._ground[rows, cols]
+        else:
+            _stack(self.costs, self._ground, self._obstacles.costs, bounds)
+        self._inflation.apply(self.costs, self.window, bounds)
+        return bounds
+
+    def collides(self, pose: Pose2) -> bool:
+        """Whether the robot's footprint at ``pose`` touches an obstacle, the unknown or the edge."""
+        return collides(self.costs, self.window, self.outline_xy, pose)
+
+    def clear_outside(self, base_in_frame: Pose2, side: float) -> None:
+        """Forgets obstacles (not the map) outside a square of ``side`` metres round the robot."""
+        if self._obstacles is not None:
+            bounds = self.window.bounds_around(base_in_frame.x, base_in_frame.y, 0.5 * side)
+            self._obstacles.clear_outside(bounds)
+            self.refresh(self.window.everything)
+
+    def clear_around(self, base_in_frame: Pose2, side: float) -> None:
+        """Forgets obstacles (not the map) inside a square of ``side`` metres round the robot."""
+        if self._obstacles is not None:
+            bounds = self.window.bounds_around(base_in_frame.x, base_in_frame.y, 0.5 * side)
+            self._obstacles.clear_inside(bounds)
+            self.refresh(bounds)
+
+    def reset(self) -> None:
+        """Forgets all that was seen; the map stays."""
+        if self._obstacles is not None:
+            self._obstacles.reset()
+            self.refresh(self.window.everything)
+
+    def _follow(self, base_in_frame: Pose2) -> Bounds:
+        if not self.settings.rolling_window:
+            return Bounds(0, 0, 0, 0)
+        before, self.window = self.window, self.window.centred_on(base_in_frame.x, base_in_frame.y)
+        cols = round((self.window.origin_x - before.origin_x) / self.window.resolution)
+        rows = round((self.window.origin_y - before.origin_y) / self.window.resolution)
+        if (rows or cols) and self._obstacles is not None:
+            self._obstacles.roll(rows, cols)
+        return self.window.everything
+
+
+def _window_of(settings: CostmapSettings, grid: Optional[OccupancyGrid]) -> Window:
+    if settings.static.enabled and grid is not None and not settings.rolling_window:
+        return Window(grid.rows, grid.cols, grid.resolution, grid.origin.x, grid.origin.y)
+    rows, cols = round(settings.height / settings.resolution), round(settings.width / settings.resolution)
+    return Window(rows, cols, settings.resolution, settings.origin_x, settings.origin_y)
+
+
+def _union(a: Bounds, b: Bounds) -> Bounds:
+    if a.row_min >= a.row_max or a.col_min >= a.col_max:
+        return b
+    return Bounds(
+        min(a.row_min, b.row_min),
+        max(a.row_max, b.row_max),
+        min(a.col_min, b.col_min),
+        max(a.col_max, b.col_max),
+    )
+
+
+@numba.njit(cache=True)
+def _stack(costs, ground, obstacles, bounds):
+    """The higher of both layers; the unknown of one gives way to the knowledge of the other."""
+    row_min, row_max, col_min, col_max = bounds
+    for row in range(row_min, row_max):
+        for col in range(col_min, col_max):
+            below, above = ground[row, col], obstacles[row, col]
+            if above == UNKNOWN:
+                costs[row, col] = below
+            elif below == UNKNOWN:
+                costs[row, col] = above
+            else:
+                costs[row, col] = max(below, above)

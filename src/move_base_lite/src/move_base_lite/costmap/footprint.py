@@ -1,0 +1,104 @@
+"""The robot's outline, and whether it touches an obstacle."""
+
+import math
+from dataclasses import dataclass
+from typing import Sequence, Tuple
+
+import numba
+import numpy as np
+
+from move_base_lite.costmap.costs import INSCRIBED, LETHAL, UNKNOWN
+from move_base_lite.costmap.window import Window
+from planar import Pose2
+
+CIRCLE_CORNERS = 16
+COLLISION = 255
+
+
+@dataclass(frozen=True, eq=False)
+class Footprint:
+    """A polygon round the robot. ``corners_xy``: (N, 2), metres, in the base frame, padding included."""
+
+    corners_xy: np.ndarray
+
+    @property
+    def inscribed_radius(self) -> float:
+        """Largest circle about the base frame's origin that fits in: metres."""
+        starts, ends = self.corners_xy, np.roll(self.corners_xy, -1, axis=0)
+        edges = ends - starts
+        along = np.clip(-(starts * edges).sum(axis=1) / (edges * edges).sum(axis=1), 0.0, 1.0)
+        return float(np.linalg.norm(starts + along[:, None] * edges, axis=1).min())
+
+    @property
+    def circumscribed_radius(self) -> float:
+        """Smallest circle about the base frame's origin that holds everything: metres."""
+        return float(np.linalg.norm(self.corners_xy, axis=1).max())
+
+    def outline_xy(self, spacing: float) -> np.ndarray:
+        """Points (M, 2) along the outline, at most ``spacing`` metres apart, in the base frame."""
+        pieces = []
+        for start, end in zip(self.corners_xy, np.roll(self.corners_xy, -1, axis=0)):
+            count = max(1, math.ceil(float(np.linalg.norm(end - start)) / spacing))
+            pieces.append(start + np.linspace(0.0, 1.0, count, endpoint=False)[:, None] * (end - start))
+        return np.concatenate(pieces)
+
+
+def footprint_from(corners: Sequence[Tuple[float, float]], robot_radius: float, padding: float) -> Footprint:
+    """The polygon of ``corners``, or a circle of ``robot_radius`` if there are none.
+
+    Padding moves each corner outwards along both axes, as costmap_2d does.
+    """
+    corners_xy = np.array(corners, dtype=float).reshape(-1, 2)
+    if not len(corners_xy):
+        angles = 2.0 * math.pi * np.arange(CIRCLE_CORNERS) / CIRCLE_CORNERS
+        corners_xy = robot_radius * np.column_stack((np.cos(angles), np.sin(angles)))
+    return Footprint(corners_xy + padding * np.sign(np.where(np.abs(corners_xy) < 1e-9, 0.0, corners_xy)))
+
+
+def collides(costs: np.ndarray, window: Window, outline_xy: np.ndarray, pose: Pose2) -> bool:
+    """Whether the outline (M, 2), put at ``pose``, touches an obstacle or leaves the costmap."""
+    cost = footprint_cost(
+        costs, window.origin_x, window.origin_y, window.resolution, outline_xy, pose.x, pose.y, pose.yaw
+    )
+    return bool(cost == COLLISION)
+
+
+@numba.njit(cache=True)
+def footprint_cost(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw):
+    """Kernel: highest cost below the outline or the robot's centre; COLLISION if it cannot stand there."""
+    rows, cols = costs.shape
+    row = math.floor((y - origin_y) / resolution)
+    col = math.floor((x - origin_x) / resolution)
+    if row < 0 or row >= rows or col < 0 or col >= cols:
+        return COLLISION
+    highest = costs[row, col]
+    if highest >= INSCRIBED:
+        return COLLISION
+    c, s = math.cos(yaw) / resolution, math.sin(yaw) / resolution
+    base_col, base_row = (x - origin_x) / resolution, (y - origin_y) / resolution
+    for i in range(outline_xy.shape[0]):
+        col = math.floor(base_col + c * outline_xy[i, 0] - s * outline_xy[i, 1])
+        row = math.floor(base_row + s * outline_xy[i, 0] + c * outline_xy[i, 1])
+        if row < 0 or row >= rows or col < 0 or col >= cols:
+            return COLLISION
+        cost = costs[row, col]
+        if cost == LETHAL or cost == UNKNOWN:
+            return COLLISION
+        highest = max(highest, cost)
+    return highest
+
+
+@numba.njit(cache=True)
+def count_collisions(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw):
+    """Kernel: how many points of the outline lie in obstacles or outside the costmap."""
+    rows, cols = costs.shape
+    c, s = math.cos(yaw) / resolution, math.sin(yaw) / resolution
+    base_col, base_row = (x - origin_x) / resolution, (y - origin_y) / resolution
+    count = 0
+    for i in range(outline_xy.shape[0]):
+        col = math.floor(base_col + c * outline_xy[i, 0] - s * outline_xy[i, 1])
+        row = math.floor(base_row + s * outline_xy[i, 0] + c * outline_xy[i, 1])
+        inside = 0 <= row < rows and 0 <= col < cols
+        if not inside or costs[row, col] >= LETHAL:
+            count += 1
+    return count

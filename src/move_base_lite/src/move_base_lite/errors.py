@@ -1,0 +1,52 @@
+# ruff: noqa: N818  -- the names are the reasons
+"""Why the robot cannot go: one class per reason, the text for people."""
+
+from planar import PlanarError
+
+
+class NavigationError(PlanarError):
+    """Something keeps the robot from its goal; ``code`` names the reason for programs."""
+
+    code = "FAILURE"
+
+
+class PlanningError(NavigationError):
+    """There is no plan to the goal."""
+
+    code = "PLANNING_FAILED"
+
+
+class OutOfMap(PlanningError):
+    """The start or the goal lies outside the costmap."""
+
+    code = "OUT_OF_MAP"
+
+
+class StartBlocked(PlanningError):
+    """The robot stands in an obstacle and there is no free space near it."""
+
+    code = "START_BLOCKED"
+
+
+class GoalBlocked(PlanningError):
+    """The goal lies in or too close to an obstacle, and so does all that its tolerance allows."""
+
+    code = "GOAL_BLOCKED"
+
+
+class NoPath(PlanningError):
+    """Start and goal are free, but nothing connects them."""
+
+    code = "NO_PATH"
+
+
+class ControlError(NavigationError):
+    """No safe velocity follows the plan."""
+
+    code = "NO_VALID_CONTROL"
+
+
+class SensorStale(NavigationError):
+    """The scans have stopped, so the robot must not move."""
+
+    code = "SENSOR_STALE"

@@ -1,0 +1,1 @@
+"""Between move_base's topics, services and action, and the Navigator."""

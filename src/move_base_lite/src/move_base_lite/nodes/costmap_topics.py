@@ -1,0 +1,77 @@
+"""A costmap's topics as rviz expects them: costmap, costmap_updates, footprint."""
+
+import numpy as np
+import rospy
+from geometry_msgs.msg import Point32, PolygonStamped
+from map_msgs.msg import OccupancyGridUpdate
+from rospy.numpy_msg import numpy_msg
+
+from move_base_lite.costmap import LayeredCostmap, occupancy_of
+from planar import OccupancyGrid, Pose2
+from planar_ros.messages import OccupancyGridArrays, frame_name, grid_to_msg
+
+OccupancyGridUpdateArrays = numpy_msg(OccupancyGridUpdate)
+
+
+class CostmapTopics(rospy.SubscribeListener):
+    """Publishes while somebody listens; a new listener gets the whole costmap at the next occasion."""
+
+    def __init__(self, name: str):
+        super().__init__()
+        self._is_whole_wanted = False
+        self._next = rospy.Time(0)
+        self._last_window = None
+        self._costmap = rospy.Publisher(
+            f"~{name}/costmap", OccupancyGridArrays, subscriber_listener=self, queue_size=1
+        )
+        self._updates = rospy.Publisher(f"~{name}/costmap_updates", OccupancyGridUpdateArrays, queue_size=1)
+        self._footprint = rospy.Publisher(f"~{name}/footprint", PolygonStamped, queue_size=1)
+
+    def peer_subscribe(self, topic_name, topic_publish, peer_publish):
+        self._is_whole_wanted = True
+
+    def forget_time(self) -> None:
+        """Time has jumped back: the next occasion is now."""
+        self._next = rospy.Time(0)
+
+    def publish(self, now: rospy.Time, costmap: LayeredCostmap, base_in_frame: Pose2) -> None:
+        """To be called every tick; does nothing until it is due."""
+        settings = costmap.settings
+        is_due = settings.publish_frequency > 0.0 and now >= self._next
+        if not (is_due or self._is_whole_wanted):
+            return
+        if is_due:
+            self._next = now + rospy.Duration(1.0 / settings.publish_frequency)
+        frame = frame_name(settings.global_frame)
+        if self._costmap.get_num_connections():
+            is_moved = costmap.window != self._last_window
+            if self._is_whole_wanted or is_moved or settings.always_send_full_costmap:
+                self._publish_whole(now, costmap, frame)
+            else:
+                self._publish_update(now, costmap, frame)
+        if self._footprint.get_num_connections():
+            corners_xy = base_in_frame.transform_points(costmap.footprint.corners_xy)
+            self._footprint.publish(_polygon(corners_xy, now, frame))
+
+    def _publish_whole(self, now, costmap, frame):
+        self._is_whole_wanted = False
+        self._last_window = window = costmap.window
+        origin = Pose2(window.origin_x, window.origin_y)
+        grid = OccupancyGrid(occupancy_of(costmap.costs), window.resolution, origin)
+        self._costmap.publish(grid_to_msg(grid, now, frame))
+
+    def _publish_update(self, now, costmap, frame):
+        if not self._updates.get_num_connections():
+            return
+        rows, cols = costmap.costs.shape
+        update = OccupancyGridUpdateArrays(x=0, y=0, width=cols, height=rows)
+        update.header.stamp, update.header.frame_id = now, frame
+        update.data = np.ascontiguousarray(occupancy_of(costmap.costs)).ravel()
+        self._updates.publish(update)
+
+
+def _polygon(corners_xy: np.ndarray, now: rospy.Time, frame: str) -> PolygonStamped:
+    message = PolygonStamped()
+    message.header.stamp, message.header.frame_id = now, frame
+    message.polygon.points = [Point32(x, y, 0.0) for x, y in corners_xy]
+    return message

@@ -1,0 +1,56 @@
+# ruff: noqa: N818  -- the names are the reasons
+"""Goal messages made into goals, by move_base's rules."""
+
+import math
+
+from geometry_msgs.msg import PoseStamped
+
+from move_base_lite.errors import NavigationError
+from planar import Pose2
+from planar_ros.messages import frame_name, pose2_from_msg
+from planar_ros.transforms import Transforms
+
+INVALID_QUATERNION = "Aborting on goal because it was sent with an invalid quaternion"
+SHORTEST_SQUARED = 1e-6
+TILT_TOLERANCE = 1e-3
+
+
+class InvalidGoal(NavigationError):
+    """A goal that means nothing; the text is the action's result."""
+
+    code = "INVALID_GOAL"
+
+
+class GoalFrameUnknown(NavigationError):
+    """A goal in a frame that tf does not know."""
+
+    code = "TF_ERROR"
+
+
+def goal_from_msg(message: PoseStamped, map_frame: str, transforms: Transforms) -> Pose2:
+    """The goal in the map's frame, by the latest transforms whatever its stamp.
+
+    Raises InvalidGoal or GoalFrameUnknown.
+    """
+    if not is_upright(message.pose.orientation):
+        raise InvalidGoal(INVALID_QUATERNION)
+    goal = pose2_from_msg(message.pose)
+    if not goal.is_finite():
+        raise InvalidGoal("Aborting on goal because its position is not finite")
+    frame = frame_name(message.header.frame_id)
+    if frame == map_frame:
+        return goal
+    frame_in_map = transforms.lookup(map_frame, frame) if frame else None
+    if frame_in_map is None:
+        raise GoalFrameUnknown(f"the goal's frame '{frame}' is not connected to {map_frame}")
+    return frame_in_map @ goal
+
+
+def is_upright(quaternion) -> bool:
+    """Whether a quaternion is finite, has a length and turns about the vertical only."""
+    parts = (quaternion.x, quaternion.y, quaternion.z, quaternion.w)
+    squared = sum(part * part for part in parts)
+    if not math.isfinite(squared) or squared < SHORTEST_SQUARED:
+        return False
+    z_of_up = 1.0 - 2.0 * (quaternion.x**2 + quaternion.y**2) / squared
+    return abs(z_of_up - 1.0) <= TILT_TOLERANCE

@@ -1,0 +1,101 @@
+"""The global planner: navfn's costs, a wavefront from the robot, a path down its gradient from the goal."""
+
+from dataclasses import dataclass
+from typing import Tuple
+
+import numpy as np
+
+from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, Window
+from move_base_lite.errors import GoalBlocked, NoPath, OutOfMap, StartBlocked
+from move_base_lite.planning.nearest import nearest_passable
+from move_base_lite.planning.wavefront import descend, spread, traversal_costs
+from planar.settings import check
+
+STEP_CELLS = 0.5
+START_TOLERANCE = 0.5
+
+
+@dataclass(frozen=True)
+class PlannerSettings:
+    """``default_tolerance``: metres from a blocked goal within which another one will do."""
+
+    allow_unknown: bool = True
+    default_tolerance: float = 0.0
+    use_astar: bool = False
+
+    def __post_init__(self):
+        check(self.default_tolerance >= 0.0, "default_tolerance", "at least 0", self.default_tolerance)
+
+
+class GlobalPlanner:
+    """Plans on costs given with their window; holds no costmap of its own."""
+
+    def __init__(self, settings: PlannerSettings):
+        self._settings = settings
+
+    def plan(
+        self,
+        costs: np.ndarray,
+        window: Window,
+        start_xy: Tuple[float, float],
+        goal_xy: Tuple[float, float],
+        tolerance: float = 0.0,
+    ) -> np.ndarray:
+        """Path (N, 2), metres in the window's frame, from start to goal or near it.
+
+        A goal that cannot be stood on gives way to the nearest free place within ``tolerance`` (or the
+        default one if that is larger). A start in the costs of a near obstacle is left by the shortest way.
+        Raises OutOfMap, StartBlocked, GoalBlocked or NoPath.
+        """
+        traversal = traversal_costs(costs, self._settings.allow_unknown)
+        start = self._cell_in_map(window, start_xy, "robot")
+        goal = self._cell_in_map(window, goal_xy, "goal")
+        tolerance_cells = max(tolerance, self._settings.default_tolerance) / window.resolution
+        free_start = nearest_passable(traversal, start, START_TOLERANCE / window.resolution)
+        if free_start is None:
+            raise StartBlocked(f"{_named('robot', start_xy)} is {_why(costs[start])}")
+        free_goal = nearest_passable(traversal, goal, tolerance_cells)
+        if free_goal is None:
+            raise GoalBlocked(f"{_named('goal', goal_xy)} is {_why(costs[goal])}")
+        if free_start == free_goal:
+            return np.array([start_xy, goal_xy if free_goal == goal else _centre(window, free_goal)])
+        use_astar = self._settings.use_astar
+        potential = spread(traversal, *free_start, *free_goal, use_astar)
+        path_cells = descend(potential, *free_start, *free_goal, STEP_CELLS)
+        if not len(path_cells):
+            raise NoPath(f"no way leads from {_named('robot', start_xy)} to {_named('goal', goal_xy)}")
+        path_xy = path_cells * window.resolution + (window.origin_x, window.origin_y)
+        ends = [np.array([start_xy]), path_xy[1:-1] if free_start == start else path_xy[:-1]]
+        ends.append(np.array([goal_xy]) if free_goal == goal else path_xy[-1:])
+        return np.concatenate(ends)
+
+    @staticmethod
+    def _cell_in_map(window: Window, point_xy: Tuple[float, float], what: str) -> Tuple[int, int]:
+        if not window.contains(*point_xy):
+            raise OutOfMap(f"{_named(what, point_xy)} is outside the map")
+        return window.cell_of(*point_xy)
+
+
+def _named(what: str, point_xy: Tuple[float, float]) -> str:
+    return f"the {what} at ({point_xy[0]:.2f}, {point_xy[1]:.2f})"
+
+
+def _why(cost: int) -> str:
+    if cost == UNKNOWN:
+        return "in unknown space"
+    if cost == LETHAL:
+        return "in an obstacle"
+    return "too close to an obstacle" if cost == INSCRIBED else "on the edge of the map"
+
+
+def _centre(window: Window, cell: Tuple[int, int]) -> Tuple[float, float]:
+    row, col = cell
+    return (
+        window.origin_x + (col + 0.5) * window.resolution,
+        window.origin_y + (row + 0.5) * window.resolution,
+    )
+
+
+def path_length(path_xy: np.ndarray) -> float:
+    """Metres along a path (N, 2)."""
+    return float(np.linalg.norm(np.diff(path_xy, axis=0), axis=1).sum()) if len(path_xy) > 1 else 0.0

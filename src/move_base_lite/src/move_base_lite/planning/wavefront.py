@@ -1,0 +1,184 @@
+"""The wavefront of navfn: cost to come from one cell to all others (Konolige, "A gradient method", 2000)."""
+
+import math
+
+import numba
+import numpy as np
+
+NEUTRAL = 50.0
+FACTOR = 0.8
+IMPASSABLE = 254
+
+
+@numba.njit(cache=True)
+def traversal_costs(costs, allow_unknown):
+    """Navfn's cost of entering each cell, uint8: 50 + 0.8 cost, at most 253; 254 cannot be entered.
+
+    The rim of the map cannot be entered either, so that no neighbour ever lies outside.
+    """
+    rows, cols = costs.shape
+    traversal = np.empty((rows, cols), dtype=np.uint8)
+    for row in range(rows):
+        for col in range(cols):
+            cost = costs[row, col]
+            on_rim = row == 0 or col == 0 or row == rows - 1 or col == cols - 1
+            if cost == 255:
+                traversal[row, col] = 253 if allow_unknown and not on_rim else IMPASSABLE
+            elif cost >= 253 or on_rim:
+                traversal[row, col] = IMPASSABLE
+            else:
+                traversal[row, col] = min(int(NEUTRAL + FACTOR * cost), 253)
+    return traversal
+
+
+@numba.njit(cache=True)
+def spread(traversal, start_row, start_col, goal_row, goal_col, use_astar):
+    """Potential, float32 (rows, cols), of each cell reached before the goal's is settled; inf elsewhere.
+
+    Cells wait in three lists: this round's, the next, and those beyond the threshold, which rises when the
+    nearer ones are done. ``use_astar`` adds the straight way to the goal to what is held against it.
+    """
+    rows, cols = traversal.shape
+    size = rows * cols
+    flat = traversal.ravel()
+    potential = np.full(size, np.inf, dtype=np.float32)
+    waiting = np.zeros(size, dtype=np.bool_)
+    current, following, beyond = (
+        np.empty(size, dtype=np.int32),
+        np.empty(size, dtype=np.int32),
+        np.empty(size, dtype=np.int32),
+    )
+    start, goal = start_row * cols + start_col, goal_row * cols + goal_col
+    potential[start] = 0.0
+    neighbours = (1, -1, cols, -cols)
+    threshold = NEUTRAL
+    if use_astar:
+        threshold += NEUTRAL * math.hypot(goal_row - start_row, goal_col - start_col)
+    n_current, n_following, n_beyond = 0, 0, 0
+    for step in neighbours:
+        if 0 <= start + step < size and flat[start + step] < IMPASSABLE:
+            current[n_current] = start + step
+            waiting[start + step] = True
+            n_current += 1
+    while n_current > 0:
+        for i in range(n_current):
+            waiting[current[i]] = False
+        for i in range(n_current):
+            cell = current[i]
+            cost = float(flat[cell])
+            reached = _potential_from_neighbours(potential, cell, cols, cost)
+            if reached >= potential[cell]:
+                continue
+            potential[cell] = reached
+            held_against = reached
+            if use_astar:
+                row, col = cell // cols, cell % cols
+                held_against += NEUTRAL * math.hypot(goal_row - row, goal_col - col)
+            for step in neighbours:
+                other = cell + step
+                if waiting[other] or flat[other] >= IMPASSABLE:
+                    continue
+                if potential[other] > reached + 0.707 * flat[other]:
+                    waiting[other] = True
+                    if held_against < threshold:
+                        following[n_following] = other
+                        n_following += 1
+                    else:
+                        beyond[n_beyond] = other
+                        n_beyond += 1
+        current, following = following, current
+        n_current, n_following = n_following, 0
+        if n_current == 0:
+            if potential[goal] < np.inf:
+                break
+            threshold += 2.0 * NEUTRAL
+            current, beyond = beyond, current
+            n_current, n_beyond = n_beyond, 0
+    return potential.reshape(rows, cols)
+
+
+@numba.njit(cache=True)
+def _potential_from_neighbours(potential, cell, cols, cost):
+    """Planar wave update from the lower of each pair of opposite neighbours, as navfn approximates it."""
+    horizontal = min(potential[cell - 1], potential[cell + 1])
+    vertical = min(potential[cell - cols], potential[cell + cols])
+    lower, higher = min(horizontal, vertical), max(horizontal, vertical)
+    difference = higher - lower
+    if difference >= cost:
+        return np.float32(lower + cost)
+    ratio = difference / cost
+    return np.float32(lower + cost * (-0.2301 * ratio * ratio + 0.5307 * ratio + 0.7040))
+
+
+@numba.njit(cache=True)
+def descend(potential, start_row, start_col, goal_row, goal_col, step):
+    """Path, float64 (N, 2) as (col, row) in cells (centres at .5), from start to goal along the gradient.
+
+    Empty if the goal was not reached. ``step``: cells per point.
+    """
+    rows, cols = potential.shape
+    limit = int(2 * rows * cols / step)
+    points = np.empty((1024, 2))
+    row, col = float(goal_row), float(goal_col)
+    count = 0
+    while count < limit:
+        if count + 1 >= points.shape[0]:
+            grown = np.empty((2 * points.shape[0], 2))
+            grown[:count] = points[:count]
+            points = grown
+        points[count, 0], points[count, 1] = col + 0.5, row + 0.5
+        count += 1
+        if math.hypot(row - start_row, col - start_col) < 1.0:
+            points[count, 0], points[count, 1] = start_col + 0.5, start_row + 0.5
+            return points[: count + 1][::-1].copy()
+        nearest_row, nearest_col = int(round(row)), int(round(col))
+        slope_row, slope_col, smooth = _slope(potential, row, col)
+        if smooth:
+            next_row, next_col = row - step * slope_row, col - step * slope_col
+            landing = potential[int(round(next_row)), int(round(next_col))]
+            smooth = landing <= potential[nearest_row, nearest_col]
+        if not smooth:
+            next_row, next_col = _lowest_neighbour(potential, nearest_row, nearest_col)
+            if next_row == nearest_row and next_col == nearest_col:
+                break
+        row, col = next_row, next_col
+    return np.empty((0, 2))
+
+
+@numba.njit(cache=True)
+def _slope(potential, row, col):
+    """Unit gradient at a point between cell centres, bilinear; False where it touches the unreached."""
+    rows, cols = potential.shape
+    base_row, base_col = int(math.floor(row)), int(math.floor(col))
+    if base_row < 1 or base_col < 1 or base_row > rows - 3 or base_col > cols - 3:
+        return 0.0, 0.0, False
+    along_row, along_col = 0.0, 0.0
+    for i in range(2):
+        for j in range(2):
+            r, c = base_row + i, base_col + j
+            weight = (row - base_row if i else 1.0 - row + base_row) * (
+                col - base_col if j else 1.0 - col + base_col
+            )
+            if weight == 0.0:
+                continue
+            by_row = potential[r + 1, c] - potential[r - 1, c]
+            by_col = potential[r, c + 1] - potential[r, c - 1]
+            if not (math.isfinite(by_row) and math.isfinite(by_col) and math.isfinite(potential[r, c])):
+                return 0.0, 0.0, False
+            along_row += weight * by_row
+            along_col += weight * by_col
+    length = math.hypot(along_row, along_col)
+    if length < 1e-6:
+        return 0.0, 0.0, False
+    return along_row / length, along_col / length, True
+
+
+@numba.njit(cache=True)
+def _lowest_neighbour(potential, row, col):
+    rows, cols = potential.shape
+    best_row, best_col = row, col
+    for r in range(max(row - 1, 0), min(row + 2, rows)):
+        for c in range(max(col - 1, 0), min(col + 2, cols)):
+            if potential[r, c] < potential[best_row, best_col]:
+                best_row, best_col = r, c
+    return float(best_row), float(best_col)

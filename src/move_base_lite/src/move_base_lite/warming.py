@@ -1,0 +1,24 @@
+"""Compiles, or loads from the cache, what the first goal would otherwise wait for."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from move_base_lite.config import NavigatorSettings
+from move_base_lite.control.escape import way_out
+from move_base_lite.navigator import Navigator
+from planar import OccupancyGrid, Pose2, Scan, Twist2
+
+
+def warm_up(settings: NavigatorSettings) -> None:
+    """Drives a robot in an empty room for a moment."""
+    static = replace(settings.global_costmap.static, enabled=True)
+    settings = replace(settings, global_costmap=replace(settings.global_costmap, static=static))
+    navigator = Navigator(settings, OccupancyGrid(np.zeros((60, 60), np.int8), 0.1))
+    start = Pose2(3.0, 3.0)
+    ranges = np.array([2.0, np.inf, np.nan], dtype=np.float32)
+    navigator.set_goal(Pose2(5.0, 3.0))
+    for tick in range(2):
+        scan = Scan(float(tick), -0.1, 0.1, ranges, 0.1, 10.0)
+        navigator.tick(float(tick), start, start, Twist2(), scan)
+    way_out(navigator.local_costmap, start)
