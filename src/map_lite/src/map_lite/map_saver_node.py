@@ -1,10 +1,10 @@
-"""The node ``map_saver``: writes the map on the topic ``map`` to NAME.pgm and NAME.yaml, as map_saver 1.17 does.
+"""The node ``map_saver``: writes the map on the topic ``map`` to NAME.pgm and NAME.yaml, as map_saver 1.17.
 
     map_saver [--occ 65] [--free 25] [-f NAME] [--timeout SECONDS] [--force]
 
-Unlike the official one it names the image without a folder, so that the pair loads from anywhere, writes whole
-files or none, and ends with exit code 1 and a reason when there is no map in time, or nothing worth saving in
-it, or it cannot be written.
+Unlike the official one it names the image without a folder, so that the pair loads from anywhere, writes
+whole files or none, and ends with exit code 1 and a reason when there is no map in time, or nothing worth
+saving in it, or it cannot be written.
 """
 
 import argparse

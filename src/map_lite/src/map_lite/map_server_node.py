@@ -8,6 +8,7 @@ A map that cannot be loaded ends it with exit code 2 (the official one: 255) and
 
 import argparse
 
+import numpy as np
 import rospkg
 import rospy
 from nav_msgs.msg import MapMetaData
@@ -63,7 +64,9 @@ class MapServerNode:
             self._show(load_map(path_of(request.map_url, rospkg.RosPack().get_path)))
         except MapFileError as error:
             rospy.logerr("%s", error)
-            return {"result": RESULTS.get(type(error), LoadMapResponse.RESULT_UNDEFINED_FAILURE)}
+            nothing = OccupancyGridArrays(data=np.zeros(0, dtype=np.int8))
+            result = RESULTS.get(type(error), LoadMapResponse.RESULT_UNDEFINED_FAILURE)
+            return {"map": nothing, "result": result}
         return {"map": self._map, "result": LoadMapResponse.RESULT_SUCCESS}
 
 

@@ -1,0 +1,195 @@
+#!/usr/bin/env python3
+"""amcl_lite has the topics, services, frames, stamps and habits of amcl 1.17."""
+
+import math
+import unittest
+
+import numpy as np
+import rospy
+import rostest
+from geometry_msgs.msg import PoseArray, PoseWithCovarianceStamped
+from std_srvs.srv import Empty
+from tf2_msgs.msg import TFMessage
+from toy_robot import BEAMS, ToyRobot
+
+from planar import Pose2, wrap
+from planar_ros.messages import SetMapArrays, frame_name, pose2_from_msg, pose2_to_msg
+
+START = Pose2(1.2, 1.5, 0.0)
+STEP = Pose2(0.2, 0.0, 0.0)
+TURN = Pose2(0.0, 0.0, 0.4)
+# Of the position and the heading of a tracked pose, metres and radians.
+NEAR, NEAR_ANGLE = 0.15, 0.1
+
+
+class Latest:
+    """The messages of a topic."""
+
+    def __init__(self, topic, kind):
+        self.messages = []
+        self._subscriber = rospy.Subscriber(topic, kind, self.messages.append)
+
+    def wait(self, is_it, seconds=5.0):
+        """The first message for which ``is_it`` holds; fails if none comes."""
+        for _ in range(int(seconds / 0.02)):
+            for message in self.messages:
+                if is_it(message):
+                    return message
+            rospy.sleep(0.02)
+        raise AssertionError(f"no such message among {len(self.messages)}")
+
+
+class AmclContractTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node("test_amcl_contract")
+        cls.robot = ToyRobot(START)
+        cls.poses = Latest("amcl_pose", PoseWithCovarianceStamped)
+        cls.transforms = Latest("/tf", TFMessage)
+        cls.initial_pose = rospy.Publisher("initialpose", PoseWithCovarianceStamped, queue_size=2)
+        for service in ("global_localization", "request_nomotion_update", "set_map"):
+            rospy.wait_for_service(service, 20.0)
+        rospy.wait_for_service("amcl/get_loggers", 20.0)
+        cls.robot.sense()
+        for _ in range(100):
+            cls.robot.sense()
+            rospy.sleep(0.1)
+            if cls.poses.messages:
+                return
+        raise AssertionError("amcl_lite did not start")
+
+    def setUp(self):
+        self.set_pose(self.robot.base_in_map)
+
+    def set_pose(self, pose, frame="map", stamp=None, spread=0.1):
+        message = PoseWithCovarianceStamped()
+        message.header.frame_id = frame
+        message.header.stamp = stamp or rospy.Time(0)
+        message.pose.pose = pose2_to_msg(pose)
+        covariance = np.diag([spread**2, spread**2, 0, 0, 0, spread**2 / 4])
+        message.pose.covariance = covariance.ravel().tolist()
+        self.initial_pose.publish(message)
+        rospy.sleep(0.3)
+
+    def estimate(self):
+        """The pose that belongs to a new scan at which an update is due."""
+        stamp = self.robot.sense()
+        return self.poses.wait(lambda pose: pose.header.stamp == stamp)
+
+    def map_to_odom(self, stamp):
+        def is_it(message):
+            transform = message.transforms[0]
+            return transform.child_frame_id == "odom" and transform.header.stamp == stamp
+
+        return self.transforms.wait(is_it).transforms[0]
+
+    def assert_near(self, message, pose):
+        found = pose2_from_msg(message.pose.pose)
+        self.assertLess(found.distance_to(pose), NEAR, f"{found} is not near {pose}")
+        self.assertLess(abs(wrap(found.yaw - pose.yaw)), NEAR_ANGLE, f"{found} is not near {pose}")
+
+    def test_topics_have_the_official_types(self):
+        types = dict(rospy.get_published_topics())
+        self.assertEqual(types["/amcl_pose"], "geometry_msgs/PoseWithCovarianceStamped")
+        self.assertEqual(types["/particlecloud"], "geometry_msgs/PoseArray")
+
+    def test_a_driving_robot_is_tracked_although_its_odometry_drifts(self):
+        for step in range(12):
+            self.robot.move(STEP if step < 6 else TURN, slip=Pose2(0.005, 0.0, 0.01))
+            message = self.estimate()
+        self.assert_near(message, self.robot.base_in_map)
+        self.assertEqual(message.header.frame_id, "map")
+        self.assertGreater(message.pose.covariance[0], 0.0)
+        self.assertGreater(message.pose.covariance[35], 0.0)
+
+    def test_every_scan_sends_a_post_dated_transform(self):
+        self.estimate()
+        for _ in range(3):
+            stamp = self.robot.sense()
+            transform = self.map_to_odom(stamp + rospy.Duration(0.3))
+            self.assertEqual(transform.header.frame_id, "map")
+            rospy.sleep(0.05)
+
+    def test_pose_and_cloud_are_latched(self):
+        self.estimate()
+        rospy.sleep(0.2)
+        pose = rospy.wait_for_message("amcl_pose", PoseWithCovarianceStamped, 2.0)
+        cloud = rospy.wait_for_message("particlecloud", PoseArray, 2.0)
+        self.assertEqual(pose.header.stamp, self.poses.messages[-1].header.stamp)
+        self.assertGreaterEqual(len(cloud.poses), 500)
+        self.assertLess(pose2_from_msg(cloud.poses[0]).distance_to(self.robot.base_in_map), 1.0)
+
+    def test_a_standing_robot_publishes_no_new_pose_until_asked(self):
+        self.estimate()
+        rospy.sleep(0.2)
+        count = len(self.poses.messages)
+        for _ in range(5):
+            self.robot.sense()
+            rospy.sleep(0.05)
+        self.assertEqual(len(self.poses.messages), count)
+        rospy.ServiceProxy("request_nomotion_update", Empty)()
+        self.estimate()
+
+    def test_an_initial_pose_in_another_frame_is_ignored(self):
+        self.estimate()
+        self.set_pose(Pose2(6.0, 1.0, 1.0), frame="odom")
+        self.robot.move(TURN)
+        self.assert_near(self.estimate(), self.robot.base_in_map)
+
+    def test_an_initial_pose_of_the_past_is_moved_on_by_odometry(self):
+        then, pose_then = self.robot.sense(), self.robot.base_in_map
+        rospy.sleep(0.1)
+        self.robot.move(Pose2(0.0, 0.0, math.pi / 2))
+        self.robot.sense()
+        rospy.sleep(0.1)
+        self.set_pose(pose_then, stamp=then, spread=0.01)
+        self.assert_near(self.estimate(), self.robot.base_in_map)
+
+    def test_a_transform_that_comes_after_its_scan_is_waited_for(self):
+        stamp = self.robot.sense(tf_late=0.3)
+        self.poses.wait(lambda pose: pose.header.stamp == stamp)
+
+    def test_scans_without_a_valid_beam_do_no_harm(self):
+        self.estimate()
+        for value in (math.nan, math.inf, 0.0, -1.0):
+            self.robot.move(TURN)
+            stamp = self.robot.sense(ranges=np.full(BEAMS, value, dtype=np.float32))
+            transform = self.map_to_odom(stamp + rospy.Duration(0.3)).transform
+            self.assertTrue(math.isfinite(transform.translation.x + transform.rotation.w))
+        self.robot.move(TURN)
+        self.assert_near(self.estimate(), self.robot.base_in_map)
+
+    def test_global_localization_spreads_the_particles_over_the_free_space(self):
+        clouds = Latest("particlecloud", PoseArray)
+        rospy.ServiceProxy("global_localization", Empty)()
+        self.robot.sense()
+        cloud = clouds.wait(lambda cloud: np.ptp([pose.position.x for pose in cloud.poses]) > 6.0)
+        for pose in cloud.poses[::100]:
+            self.assertEqual(self.robot.grid.value_at(pose.position.x, pose.position.y), 0)
+
+    def test_set_map_takes_the_map_and_then_the_pose(self):
+        request = SetMapArrays._request_class()
+        request.map = self.robot.map_message
+        request.initial_pose.header.frame_id = "map"
+        request.initial_pose.pose.pose = pose2_to_msg(self.robot.base_in_map)
+        request.initial_pose.pose.covariance = 0.001 * np.eye(6).ravel()
+        self.assertTrue(rospy.ServiceProxy("set_map", SetMapArrays)(request).success)
+        self.assert_near(self.estimate(), self.robot.base_in_map)
+
+    def test_the_pose_is_saved_as_the_next_start(self):
+        self.estimate()
+        for _ in range(3):
+            rospy.sleep(0.15)
+            self.robot.sense()
+        rospy.sleep(0.3)
+        saved = [rospy.get_param("/amcl/initial_pose_" + name) for name in "xya"]
+        self.assertLess(Pose2(*saved).distance_to(self.robot.base_in_map), NEAR)
+        self.assertGreater(rospy.get_param("/amcl/initial_cov_xx"), 0.0)
+
+    def test_frames_are_sent_without_a_leading_slash(self):
+        transform = self.map_to_odom(self.robot.sense() + rospy.Duration(0.3))
+        self.assertEqual(transform.child_frame_id, frame_name(transform.child_frame_id))
+
+
+if __name__ == "__main__":
+    rostest.rosrun("home_service_tests", "amcl_contract", AmclContractTest)
