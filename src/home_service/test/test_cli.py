@@ -2,7 +2,8 @@ from argparse import ArgumentTypeError
 
 import pytest
 
-from home_service.cli import goal_list, main, parse, speed_factor
+from home_service.cli import main
+from home_service.options import goal_list, parse, speed_factor
 
 
 def test_goals_are_read_from_a_line():

@@ -29,7 +29,7 @@ class Run:
     def __init__(self, options: Namespace, launch_file: str, **arguments):
         self._options = options
         self._launch_file = launch_file
-        self._speed = options.speed if options.speed is not None else float(options.rviz)
+        self._speed = getattr(options, "speed", float(options.rviz))
         self._arguments = {
             "world_file": options.world.resolve(),
             "robot": options.robot,

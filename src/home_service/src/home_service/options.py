@@ -1,0 +1,126 @@
+"""The command line of each command."""
+
+import argparse
+from pathlib import Path
+from typing import List, Optional
+
+ROOT = Path(__file__).resolve().parents[4]
+MAX_SPEED = 1000.0
+
+COMMANDS = {
+    "launch": "Starts the simulated home with the robot in it, until Ctrl-C.",
+    "test_navigation": "Starts home, localization and navigation; goals by hand or from --goals.",
+    "pick_objects": "Drives to the pick-up zone, waits there, and on to the drop-off zone.",
+    "add_marker": "Shows the object at pick-up, hides it, and shows it at drop-off, by the clock.",
+    "home_service": "Fetches the object at the pick-up zone and delivers it at the drop-off zone.",
+    "rehearse": "Plays the home-service mission in one process, without ROS: fast and repeatable.",
+}
+ROS_COMMANDS = set(COMMANDS) - {"rehearse"}
+
+
+def parse(arguments: Optional[List[str]]) -> argparse.Namespace:
+    """The options of the command that ``arguments`` name; ends the process on --help and on nonsense."""
+    parser = argparse.ArgumentParser(prog="home_service", description="The commands behind the scripts.")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for name, text in COMMANDS.items():
+        command = commands.add_parser(
+            name,
+            prog=f"{name}.sh",
+            description=text,
+            help=text,
+            formatter_class=argparse.ArgumentDefaultsHelpFormatter,
+        )
+        _add_world_options(command)
+        if name in ROS_COMMANDS:
+            _add_graph_options(command)
+        _add_own_options(name, command)
+    return parser.parse_args(arguments)
+
+
+def _add_world_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--world", type=Path, default=ROOT / "map/home.world", help="SDF world")
+    parser.add_argument("--map", type=Path, default=ROOT / "map/home.yaml", help="map of that world")
+    parser.add_argument("--robot", default="turtlebot_lidar", help="robot profile of sim_bridge")
+    parser.add_argument("--seed", type=seed, default=0, help="seed of every noise and every particle")
+
+
+def _add_graph_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--speed",
+        type=speed_factor,
+        default=argparse.SUPPRESS,
+        help="1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz 1)",
+    )
+    parser.add_argument("--rviz", action="store_true", help="show the run in rviz, where there is a display")
+    parser.add_argument("--timeout", type=seconds, default=900.0, help="wall-clock seconds a run may take")
+    parser.add_argument("--output", type=Path, default=Path("runs"), help="where run folders are made")
+
+
+def _add_own_options(name: str, parser: argparse.ArgumentParser) -> None:
+    if name in ("home_service", "pick_objects", "add_marker", "rehearse"):
+        parser.add_argument("--zones", type=Path, default=ROOT / "map/zones.yaml", help="YAML of zones")
+    if name == "test_navigation":
+        parser.add_argument(
+            "--goals", type=goal_list, metavar='"X Y YAW; X Y YAW"', help="drive to these poses, then end"
+        )
+    if name == "home_service":
+        parser.add_argument(
+            "--marker-source",
+            choices=("tf", "amcl_pose", "odom", "state"),
+            default="tf",
+            help="what tells the marker where the robot is",
+        )
+    if name == "rehearse":
+        parser.add_argument("--runs", type=count, default=1, help="how many runs, each with the next seed")
+        parser.add_argument("--timeout", type=seconds, default=600.0, help="simulated seconds a run may take")
+
+
+def goal_list(text: str) -> List[List[float]]:
+    """Poses from "x y yaw; x y yaw" in metres and radians."""
+    goals = []
+    for part in filter(str.strip, text.split(";")):
+        try:
+            goal = [float(number) for number in part.split()]
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"'{part.strip()}' is not three numbers") from None
+        if len(goal) != 3:
+            raise argparse.ArgumentTypeError(f"'{part.strip()}' is not three numbers: x, y, yaw")
+        goals.append(goal)
+    if not goals:
+        raise argparse.ArgumentTypeError("no goal given")
+    return goals
+
+
+def speed_factor(text: str) -> float:
+    speed = _number(text)
+    if not 0.0 <= speed <= MAX_SPEED:
+        raise argparse.ArgumentTypeError(f"{text} is not between 0 and {MAX_SPEED:g}")
+    return speed
+
+
+def seconds(text: str) -> float:
+    value = _number(text)
+    if not value > 0.0:
+        raise argparse.ArgumentTypeError(f"{text} is not positive")
+    return value
+
+
+def seed(text: str) -> int:
+    return _whole_number(text, 0)
+
+
+def count(text: str) -> int:
+    return _whole_number(text, 1)
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number") from None
+
+
+def _whole_number(text: str, least: int) -> int:
+    if not text.isascii() or not text.isdigit() or int(text) < least:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from {least}")
+    return int(text)
