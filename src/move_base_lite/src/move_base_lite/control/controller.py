@@ -1,4 +1,4 @@
-"""The local planner: turns to the plan, follows it by DWA, stops at its end and turns to the goal's heading."""
+"""The local planner: turns to the plan, follows it by DWA, stops at the end and turns as the goal says."""
 
 import math
 from dataclasses import dataclass

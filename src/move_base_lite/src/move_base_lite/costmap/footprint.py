@@ -7,7 +7,7 @@ from typing import Sequence, Tuple
 import numba
 import numpy as np
 
-from move_base_lite.costmap.costs import INSCRIBED, LETHAL, UNKNOWN
+from move_base_lite.costmap.costs import INSCRIBED, LETHAL
 from move_base_lite.costmap.window import Window
 from planar import Pose2
 
@@ -82,7 +82,7 @@ def footprint_cost(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw)
         if row < 0 or row >= rows or col < 0 or col >= cols:
             return COLLISION
         cost = costs[row, col]
-        if cost == LETHAL or cost == UNKNOWN:
+        if cost >= LETHAL:
             return COLLISION
         highest = max(highest, cost)
     return highest

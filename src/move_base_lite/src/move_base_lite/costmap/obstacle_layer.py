@@ -15,7 +15,7 @@ from planar.settings import check
 
 @dataclass(frozen=True)
 class ObstacleSettings:
-    """Ranges in metres. ``expected_update_rate``: seconds between scans after which they are stale, 0 never."""
+    """Ranges in metres. ``expected_update_rate``: seconds after which scans are stale, 0 never."""
 
     enabled: bool = True
     footprint_clearing_enabled: bool = True

@@ -16,7 +16,7 @@ class Bounds(NamedTuple):
 
 @dataclass(frozen=True)
 class Window:
-    """An axis-aligned block of cells; (origin_x, origin_y) is the lower left corner of cell (0, 0), metres."""
+    """An axis-aligned block of cells; (origin_x, origin_y) is the lower left corner of (0, 0), metres."""
 
     rows: int
     cols: int

@@ -1,0 +1,211 @@
+#!/usr/bin/env python3
+"""Drives a simulated TurtleBot between random places of a home, without ROS, and says how well it went.
+
+The Navigator gets true poses in the map and drifting odometry; localization is another benchmark's subject.
+
+    python3 tests/benchmarks/navigation.py --pairs 50 --boxes 6
+"""
+
+import argparse
+import json
+import math
+import sys
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import List, Optional
+
+import numpy as np
+
+from move_base_lite import Navigator, NavigatorSettings, Status, load_settings
+from move_base_lite.costmap import LayeredCostmap
+from move_base_lite.warming import warm_up
+from planar import OccupancyGrid, Pose2, load_map, wrap
+from sim_bridge import Simulation, load_world
+from sim_bridge.world import World
+
+ROOT = Path(__file__).resolve().parents[2]
+BOX_SIZE = (0.35, 0.35, 0.5)
+BOX_CLEARANCE = 1.0
+SETTLE_SECONDS = 0.5
+
+
+@dataclass(frozen=True)
+class Run:
+    """One drive. Lengths in metres, times in simulated seconds but ``tick_ms``, CPU time per control tick."""
+
+    pair: int
+    status: str
+    text: str
+    seconds: float
+    planned: float
+    driven: float
+    off_by: float
+    off_by_angle: float
+    recoveries: int
+    touched: List[str]
+    tick_ms: List[float]
+
+
+def main() -> int:
+    options = _options()
+    settings, grid = load_settings(options.config), load_map(options.map)
+    world = load_world(options.world)
+    warm_up(settings)
+    pairs = range(options.pairs) if options.only is None else [options.only]
+    runs = [_drive(pair, options, settings, grid, world) for pair in pairs]
+    summary = _summary(runs)
+    print(json.dumps(summary, indent=2))
+    if options.json:
+        details = [{**asdict(run), "tick_ms": None} for run in runs]
+        Path(options.json).write_text(json.dumps({"summary": summary, "runs": details}, indent=2))
+    return 0 if summary["reached"] == len(runs) and not summary["runs_with_collision"] else 1
+
+
+def _drive(pair: int, options, settings: NavigatorSettings, grid: OccupancyGrid, world: World) -> Run:
+    rng = np.random.default_rng([options.seed, pair])
+    start, goal = _places(settings, grid, rng, 2)
+    simulation = Simulation(world, seed=pair, base_in_world=start)
+    for number in range(options.boxes):
+        _add_box(simulation, f"box_{number}", settings, grid, rng, keep_free=(start, goal))
+    try:
+        run = _pursue(pair, options, simulation, Navigator(settings, grid), goal)
+    finally:
+        simulation.close()
+    touched = f", touched {', '.join(run.touched)}" if run.touched else ""
+    print(
+        f"{pair:4d} {run.status:9s} {run.seconds:5.1f} s, {run.driven:5.2f} m of {run.planned:5.2f} planned, "
+        f"{run.recoveries} recoveries{touched} {run.text if run.status != 'succeeded' else ''}",
+        flush=True,
+    )
+    return run
+
+
+def _pursue(pair: int, options, simulation: Simulation, navigator: Navigator, goal: Pose2) -> Run:
+    period = round(1.0 / options.rate / simulation.step_seconds)
+    observation = simulation.step()
+    start_stamp, last, driven, planned = observation.stamp, observation.base_in_world, 0.0, 0.0
+    touched, recoveries, tick_ms = set(), 0, []
+    scan, decision = None, None
+    navigator.set_goal(goal)
+    while observation.stamp - start_stamp < options.limit:
+        command = None
+        if (decision is None or not decision.status.is_final) and scan is not None:
+            began = time.process_time()
+            decision = navigator.tick(
+                observation.stamp,
+                observation.base_in_world,
+                observation.odometry.base_in_odom,
+                observation.odometry.twist,
+                scan,
+            )
+            tick_ms.append(1e3 * (time.process_time() - began))
+            command, scan = decision.command, None
+            recoveries += decision.recovery is not None
+            if decision.plan_xy is not None and not planned:
+                planned = _length(decision.plan_xy)
+            if decision.status.is_final:
+                break
+        for _ in range(period):
+            observation = simulation.step(command)
+            command = None
+            scan = observation.scan or scan
+            touched.update(observation.contacts)
+        driven += last.distance_to(observation.base_in_world)
+        last = observation.base_in_world
+    return Run(
+        pair=pair,
+        status=decision.status.value if decision else Status.IDLE.value,
+        text=decision.text if decision else "no scan came",
+        seconds=observation.stamp - start_stamp,
+        planned=planned,
+        driven=driven,
+        off_by=last.distance_to(goal),
+        off_by_angle=abs(wrap(last.yaw - goal.yaw)),
+        recoveries=recoveries,
+        touched=sorted(touched),
+        tick_ms=tick_ms,
+    )
+
+
+def _places(settings: NavigatorSettings, grid: OccupancyGrid, rng, count: int) -> List[Pose2]:
+    """Random poses in the part of the map that the robot can reach from the map's origin."""
+    costmap = LayeredCostmap(settings.global_costmap, grid)
+    navigator = Navigator(settings, grid)
+    places: List[Pose2] = []
+    free = np.argwhere(costmap.costs_of_map < 128)
+    while len(places) < count:
+        x, y = grid.points_of(free[rng.integers(len(free), size=1)])[0]
+        place = Pose2(float(x), float(y), float(rng.uniform(-math.pi, math.pi)))
+        if _is_connected(navigator, place):
+            places.append(place)
+    return places
+
+
+def _is_connected(navigator: Navigator, place: Pose2) -> bool:
+    from move_base_lite import PlanningError
+
+    try:
+        return len(navigator.make_plan(Pose2(), place)) > 0
+    except PlanningError:
+        return False
+
+
+def _add_box(simulation, name, settings, grid, rng, keep_free) -> None:
+    """Puts a box that the map does not show somewhere off the ends of the way and off narrow places."""
+    costmap = LayeredCostmap(settings.global_costmap, grid)
+    open_cells = np.argwhere(costmap.costs_of_map == 0)
+    while True:
+        x, y = grid.points_of(open_cells[rng.integers(len(open_cells), size=1)])[0]
+        box = Pose2(float(x), float(y), float(rng.uniform(-math.pi, math.pi)))
+        if all(box.distance_to(place) > BOX_CLEARANCE for place in keep_free):
+            simulation.add_box(name, BOX_SIZE, box)
+            return
+
+
+def _length(path_xy: np.ndarray) -> float:
+    return float(np.linalg.norm(np.diff(path_xy, axis=0), axis=1).sum())
+
+
+def _summary(runs: List[Run]) -> dict:
+    reached = [run for run in runs if run.status == Status.SUCCEEDED.value]
+    ticks = np.concatenate([run.tick_ms for run in runs])
+    return {
+        "runs": len(runs),
+        "reached": len(reached),
+        "runs_with_collision": sum(bool(run.touched) for run in runs),
+        "recoveries": sum(run.recoveries for run in runs),
+        "mean_seconds": _mean([run.seconds for run in reached]),
+        "mean_speed": _mean([run.driven / run.seconds for run in reached]),
+        "driven_over_planned": _mean([run.driven / run.planned for run in reached if run.planned > 1.0]),
+        "worst_off_by": max((run.off_by for run in reached), default=None),
+        "worst_off_by_angle": max((run.off_by_angle for run in reached), default=None),
+        "tick_ms_mean": round(float(ticks.mean()), 3),
+        "tick_ms_p99": round(float(np.percentile(ticks, 99)), 3),
+        "tick_ms_max": round(float(ticks.max()), 3),
+    }
+
+
+def _mean(values: List[float]) -> Optional[float]:
+    return round(float(np.mean(values)), 3) if values else None
+
+
+def _options():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--pairs", type=int, default=50, help="number of random pairs of start and goal")
+    parser.add_argument("--only", type=int, help="drive only the pair of this number")
+    parser.add_argument("--boxes", type=int, default=0, help="boxes that the map does not show")
+    parser.add_argument("--seed", type=int, default=0, help="of all chance")
+    parser.add_argument("--limit", type=float, default=180.0, help="simulated seconds a drive may take")
+    parser.add_argument("--rate", type=float, default=10.0, help="control ticks per simulated second")
+    parser.add_argument("--world", default=ROOT / "map" / "home.world", help="SDF file of the world")
+    parser.add_argument("--map", default=ROOT / "map" / "home.yaml", help="map_server file of its map")
+    parser.add_argument(
+        "--config", default=ROOT / "src" / "move_base_lite" / "config" / "turtlebot.yaml", help="parameters"
+    )
+    parser.add_argument("--json", help="file for the figures of every run")
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
