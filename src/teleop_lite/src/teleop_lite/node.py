@@ -1,0 +1,203 @@
+"""The ROS node of the keyboard teleop: keys of a terminal or of a script become velocities."""
+
+import argparse
+import signal
+import sys
+import threading
+import time
+from typing import Optional
+
+import rospy
+from geometry_msgs.msg import Twist
+
+from planar import PlanarError, Twist2
+from planar_ros.parameters import read_settings
+from planar_ros.progress import Progress
+from planar_ros.shell import run
+from planar_ros.waiting import Waiting
+from teleop_lite.config import TeleopSettings
+from teleop_lite.key_script import KeyScript, parse
+from teleop_lite.teleop import TICK_SECONDS, Teleop
+from teleop_lite.terminal import CTRL_C, NoKeysError, Pipe, Terminal
+
+NODE_NAME = "turtlebot_teleop_keyboard"
+BANNER = """
+Control Your Turtlebot!
+---------------------------
+Moving around:
+   u    i    o
+   j    k    l
+   m    ,    .
+
+q/z : increase/decrease max speeds by 10%
+w/x : increase/decrease only linear speed by 10%
+e/c : increase/decrease only angular speed by 10%
+space key, k : force stop
+anything else : stop smoothly
+
+CTRL-C to quit
+"""
+CHANGES_PER_BANNER = 15
+LISTENER_SECONDS = 60.0
+POLL_SECONDS = 0.02
+DELIVERY_SECONDS = 0.1
+
+
+class KeyboardTeleop:
+    """Publishes velocities every TICK_SECONDS until the keys end; whatever ends it stops the robot."""
+
+    def __init__(self):
+        self._teleop = Teleop(read_settings(TeleopSettings))
+        self._changes = 0
+        self._is_stopped = False
+        self._lock = threading.Lock()
+        self._publisher = rospy.Publisher("~cmd_vel", Twist, queue_size=5, tcp_nodelay=True)
+        rospy.on_shutdown(self.stop)
+
+    def follow_keyboard(self, terminal: Terminal) -> None:
+        """Until Ctrl-C. Timed by the wall clock, like the hands on the keyboard."""
+        print(BANNER)
+        self._tell_speeds()
+        next_tick = time.monotonic()
+        while not rospy.is_shutdown():
+            for key in terminal.read(max(0.0, next_tick - time.monotonic())):
+                if key == CTRL_C:
+                    return
+                self._press(key)
+            now = time.monotonic()
+            if now >= next_tick:
+                next_tick = now + TICK_SECONDS
+                self._publish(self._teleop.tick(now))
+
+    def follow_script(self, script: KeyScript, pipe: Optional[Pipe]) -> None:
+        """Until the script, and the pipe that more of it may come from, is at its end. Timed by ROS time."""
+        self._wait_for_listener()
+        progress = Progress()
+        rate = rospy.Rate(1.0 / TICK_SECONDS)
+        while not rospy.is_shutdown():
+            if pipe is not None:
+                script.add(parse(pipe.read()))
+            now = rospy.get_rostime()
+            for key in script.keys_at(now.to_sec()):
+                self._press(key)
+            if script.is_over and (pipe is None or pipe.is_at_end):
+                return
+            self._publish(self._teleop.tick(now.to_sec()))
+            progress.report(now)
+            try:
+                rate.sleep()
+            except rospy.ROSTimeMovedBackwardsException:
+                raise PlanarError("time has jumped back: the rest of the script is not played") from None
+
+    def stop(self) -> None:
+        """Stops the robot for good."""
+        with self._lock:
+            if self._is_stopped:
+                return
+            self._is_stopped = True
+            self._publisher.publish(Twist())
+            # rospy delivers in another thread and would drop the message with the connection.
+            time.sleep(DELIVERY_SECONDS)
+
+    def _wait_for_listener(self):
+        conditions = {
+            f"somebody to listen on {self._publisher.resolved_name}": lambda: (
+                self._publisher.get_num_connections() > 0
+            ),
+            "the clock": lambda: not rospy.get_rostime().is_zero(),
+        }
+        Waiting(conditions)
+        deadline = time.monotonic() + LISTENER_SECONDS
+        while not rospy.is_shutdown():
+            missing = [name for name, is_met in conditions.items() if not is_met()]
+            if not missing:
+                return
+            if time.monotonic() > deadline:
+                raise PlanarError(f"waited for {' and '.join(missing)} for {LISTENER_SECONDS:g} s")
+            time.sleep(POLL_SECONDS)
+
+    def _press(self, key):
+        full = self._teleop.full
+        self._teleop.press(key)
+        if self._teleop.full != full:
+            self._changes += 1
+            self._tell_speeds()
+            if self._changes % CHANGES_PER_BANNER == 0:
+                print(BANNER)
+
+    def _tell_speeds(self):
+        print(f"currently:\tspeed {self._teleop.full.v:.4g}\tturn {self._teleop.full.omega:.4g}", flush=True)
+
+    def _publish(self, velocity: Twist2):
+        message = Twist()
+        message.linear.x, message.angular.z = velocity.v, velocity.omega
+        with self._lock:
+            if not self._is_stopped:
+                self._publisher.publish(message)
+
+
+def main():
+    keys = _parse_arguments().keys
+    try:
+        if not keys and sys.stdin is not None and sys.stdin.isatty():
+            terminal = Terminal(sys.stdin.fileno())
+            run(NODE_NAME, lambda: _drive(lambda node: _follow_in(terminal, node)))
+        else:
+            script, pipe = _open_script(" ".join(keys))
+            run(NODE_NAME, lambda: _drive(lambda node: node.follow_script(script, pipe)))
+    except PlanarError as error:
+        print(f"[/{NODE_NAME}] error: {error}", file=sys.stderr)
+        sys.exit(2)
+
+
+def _follow_in(terminal, node):
+    with terminal:
+        node.follow_keyboard(terminal)
+
+
+def _open_script(text):
+    """The script and the pipe from which more of it may come; what has already come is checked at once."""
+    if text:
+        return KeyScript(parse(text)), None
+    if sys.stdin is None:
+        raise NoKeysError(NO_KEYS)
+    pipe = Pipe(sys.stdin.fileno())
+    script = KeyScript(parse(pipe.read()))
+    if pipe.is_at_end and script.is_over:
+        raise NoKeysError(NO_KEYS)
+    return script, pipe
+
+
+NO_KEYS = (
+    "no keys: standard input is neither a terminal nor a script; "
+    "try: echo i:2.0 j:1.5 | rosrun teleop_lite turtlebot_teleop_key"
+)
+
+
+def _drive(follow):
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, _end)
+    node = KeyboardTeleop()
+    try:
+        follow(node)
+    finally:
+        node.stop()
+    rospy.signal_shutdown("no more keys")
+
+
+def _end(number, _frame):
+    for other in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(other, signal.SIG_IGN)
+    sys.exit(128 + number)
+
+
+def _parse_arguments():
+    parser = argparse.ArgumentParser(
+        prog="turtlebot_teleop_key",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description="Drives the robot with the keys of a terminal, or with a script of keys.\n" + BANNER,
+        epilog="A script comes as arguments or on a pipe:  echo 'i:2.0 j:1.5, ,:1' | turtlebot_teleop_key\n"
+        "Times are seconds of ROS time; without a time a key is pressed once. The robot stops at the end.",
+    )
+    parser.add_argument("keys", nargs="*", metavar="KEY:SECONDS", help="keys to hold one after the other")
+    return parser.parse_args(rospy.myargv()[1:])
