@@ -2,38 +2,42 @@
 
 import numpy as np
 
-from planar import Scan
-from sim_bridge.physics import Physics
-from sim_bridge.pose3 import to_pose2, transform_points
+from planar import Pose2, Scan
+from sim_bridge.pose3 import to_pose2
 from sim_bridge.robots import LaserProfile
+from sim_bridge.section import cast_beams
 
 
 class Lidar:
-    """Sweeps the world of a Physics from where it is mounted, ``laser_in_base`` (4, 4)."""
+    """Sweeps a level section of the world; mounted at ``laser_in_base`` (4, 4).
+
+    Its beams stay level: on a floor the robot tilts by less than a fifth of a degree.
+    """
 
     def __init__(
         self, profile: LaserProfile, laser_in_base: np.ndarray, noise: float, rng: np.random.Generator
     ):
         self._profile = profile
-        self._laser_in_base = laser_in_base
-        self._laser_in_plane = to_pose2(laser_in_base)
+        self._laser_in_base = to_pose2(laser_in_base)
         self._noise = noise
         self._rng = rng
-        angles = profile.angle_min + profile.angle_increment * np.arange(profile.beams)
-        ends = np.column_stack((np.cos(angles), np.sin(angles), np.zeros(profile.beams))) * profile.sight
-        self._ends_in_base = transform_points(laser_in_base, ends)
-        self._starts_in_base = np.broadcast_to(laser_in_base[:3, 3], ends.shape)
 
-    def sweep(self, stamp: float, physics: Physics, base_in_space: np.ndarray) -> Scan:
-        """All beams at one moment."""
+    def sweep(self, stamp: float, segments: np.ndarray, base_in_world: Pose2) -> Scan:
+        """All beams at one moment. ``segments``: (N, 4), what there is to see, as x, y, x, y."""
         profile = self._profile
-        fractions = physics.cast_rays(
-            transform_points(base_in_space, self._starts_in_base),
-            transform_points(base_in_space, self._ends_in_base),
+        laser = base_in_world @ self._laser_in_base
+        true_ranges = cast_beams(
+            segments,
+            laser.x,
+            laser.y,
+            laser.yaw + profile.angle_min,
+            profile.angle_increment,
+            profile.beams,
+            profile.sight,
         )
-        ranges = fractions * profile.sight + self._rng.normal(0.0, self._noise, profile.beams)
+        ranges = true_ranges + self._rng.normal(0.0, self._noise, profile.beams)
         ranges[ranges < profile.range_min] = profile.too_near
-        ranges[(fractions >= 1.0) | (ranges > profile.sight)] = profile.no_return
+        ranges[ranges > profile.sight] = profile.no_return
         return Scan(
             stamp=stamp,
             angle_min=profile.angle_min,
@@ -41,5 +45,5 @@ class Lidar:
             ranges=ranges.astype(np.float32),
             range_min=profile.range_min,
             range_max=profile.range_max,
-            laser_in_base=self._laser_in_plane,
+            laser_in_base=self._laser_in_base,
         )

@@ -171,7 +171,7 @@ class Bridge:
             self._joints.publish(self._joint_state_msg(observation, stamp))
         if observation.contacts != self._contacts:
             self._contacts = observation.contacts
-            self._touches.publish(" ".join(observation.contacts))
+            self._touches.publish("\n".join(observation.contacts))
         # Last, so that what it wakes up finds the data of this moment.
         if steps % self._clock_steps == 0:
             self._clock.publish(stamp)

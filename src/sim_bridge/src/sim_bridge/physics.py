@@ -12,14 +12,14 @@ from sim_bridge.pose3 import from_pose2, position, quaternion, transform_points
 from sim_bridge.robots import RobotProfile
 from sim_bridge.shapes import Box, Cylinder, Mesh, Plane, Shape, Sphere
 from sim_bridge.urdf_reader import Part, Wheel, read_robot
-from sim_bridge.world import Body, Collision, World
+from sim_bridge.world import Body, Collision
 
 # Bits of Bullet's collision groups: it puts what moves into 1 and what does not into 2.
 WORLD_GROUPS = 1 | 2
 ROBOT_GROUP = 4
 EVERYTHING = -1
 
-SOLVER_ITERATIONS = 20
+SOLVER_ITERATIONS = 50
 # Bullet's limit for the shapes of one compound.
 COMPOUND_SIZE = 16
 # A contact whose normal rises more steeply than this carries the robot; it is no collision.
@@ -32,15 +32,13 @@ class Physics:
     The robot starts with its base frame at ``base_in_world`` on the floor z = 0; ``rate``: steps per second.
     """
 
-    def __init__(self, world: World, robot: RobotProfile, base_in_world: Pose2, rate: int):
+    def __init__(self, robot: RobotProfile, base_in_world: Pose2, rate: int, gravity: float):
         self._bullet = BulletClient(pybullet.DIRECT)
         self._bullet.setPhysicsEngineParameter(
             fixedTimeStep=1.0 / rate, numSolverIterations=SOLVER_ITERATIONS, deterministicOverlappingPairs=1
         )
-        self._bullet.setGravity(0.0, 0.0, -world.gravity)
+        self._bullet.setGravity(0.0, 0.0, -gravity)
         self._names: Dict[int, str] = {}
-        for body in world.bodies:
-            self.add(body)
         model = read_robot(robot.description())
         wheels = [model.wheels[name] for name in (robot.drive.left_joint, robot.drive.right_joint)]
         self._efforts = [wheel.effort for wheel in wheels]
@@ -64,18 +62,16 @@ class Physics:
 
     def base_in_space(self) -> np.ndarray:
         """The robot's base frame in the world, (4, 4)."""
-        centre, orientation = self._bullet.getBasePositionAndOrientation(self._robot)
-        pose = np.eye(4)
-        pose[:3, :3] = np.reshape(pybullet.getMatrixFromQuaternion(orientation), (3, 3))
-        pose[:3, 3] = centre - pose[:3, :3] @ self._centre_in_base
+        pose = _pose(*self._bullet.getBasePositionAndOrientation(self._robot))
+        pose[:3, 3] -= pose[:3, :3] @ self._centre_in_base
         return pose
 
     def twist_in_base(self, base_in_space: np.ndarray) -> Twist2:
         """Velocity of the base frame's origin along its own x axis, and turn rate."""
-        linear, angular = self._bullet.getBaseVelocity(self._robot)
-        arm = base_in_space[:3, :3] @ self._centre_in_base
-        at_origin = np.subtract(linear, np.cross(angular, arm))
-        return Twist2(float(at_origin @ base_in_space[:3, 0]), angular[2])
+        (vx, vy, _), (_, _, omega) = self._bullet.getBaseVelocity(self._robot)
+        arm_x, arm_y, _ = base_in_space[:3, :3] @ self._centre_in_base
+        forward_x, forward_y = base_in_space[:2, 0]
+        return Twist2(float((vx + omega * arm_y) * forward_x + (vy - omega * arm_x) * forward_y), omega)
 
     def wheels(self) -> Tuple[Tuple[float, float], Tuple[float, float]]:
         """Angles, rad, and speeds, rad/s, of the left and right wheel."""
@@ -94,15 +90,10 @@ class Physics:
         }
         return tuple(sorted(names))
 
-    def cast_rays(self, starts_xyz: np.ndarray, ends_xyz: np.ndarray) -> np.ndarray:
-        """How far along each ray the world is met, as a fraction of its length: (N,), 1 if nowhere.
-
-        ``starts_xyz`` and ``ends_xyz``: (N, 3) in the world. The robot itself is transparent.
-        """
-        hits = self._bullet.rayTestBatch(
-            starts_xyz.tolist(), ends_xyz.tolist(), collisionFilterMask=WORLD_GROUPS
-        )
-        return np.array([hit[2] for hit in hits])
+    def pose_of(self, name: str) -> np.ndarray:
+        """Where a body is now, (4, 4) in the world."""
+        number = next(number for number, known in self._names.items() if known == name)
+        return _pose(*self._bullet.getBasePositionAndOrientation(number))
 
     def add(self, body: Body) -> None:
         """Puts a body into the world. Raises WorldError if one of its name is there already."""
@@ -210,6 +201,13 @@ _UNUSED_ARGUMENTS: Dict[str, Any] = {
     "height": 1.0,
     "planeNormal": [0.0, 0.0, 1.0],
 }
+
+
+def _pose(point: Sequence[float], orientation: Sequence[float]) -> np.ndarray:
+    pose = np.eye(4)
+    pose[:3, :3] = np.reshape(pybullet.getMatrixFromQuaternion(orientation), (3, 3))
+    pose[:3, 3] = point
+    return pose
 
 
 def _arguments(shape: Shape) -> Dict[str, Any]:

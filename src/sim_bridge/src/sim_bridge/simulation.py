@@ -13,6 +13,7 @@ from sim_bridge.odometry import DeadReckoning, Odometry
 from sim_bridge.physics import Physics
 from sim_bridge.pose3 import from_pose2, to_pose2
 from sim_bridge.robots import ROBOTS, RobotProfile
+from sim_bridge.section import Section
 from sim_bridge.shapes import Box
 from sim_bridge.world import Body, Collision, World
 
@@ -48,10 +49,13 @@ class Simulation:
         base_in_world: Pose2 = Pose2(),
     ):
         odometry_rng, lidar_rng = (np.random.default_rng([seed, stream]) for stream in range(2))
-        self._physics = Physics(world, robot, base_in_world, settings.physics_rate)
+        laser_in_base = robot.mounting(robot.laser.frame)
+        self._physics = Physics(robot, base_in_world, settings.physics_rate, world.gravity)
+        self._section = Section(height=float(laser_in_base[2, 3]))
+        for body in world.bodies:
+            self._add(body)
         self._drive = Drive(robot.drive, settings.command_timeout)
         self._dead_reckoning = DeadReckoning(robot.drive, settings, odometry_rng)
-        laser_in_base = robot.mounting(robot.laser.frame)
         self._lidar = Lidar(robot.laser, laser_in_base, settings.range_noise, lidar_rng)
         self._settings = settings
         self._physics_steps = 0
@@ -71,9 +75,9 @@ class Simulation:
             self._physics.step(self._drive.wheel_speeds(1.0 / rate))
             self._physics_steps += 1
             if self._physics_steps % (rate // self._settings.scan_rate) == 0:
-                scan = self._lidar.sweep(
-                    self._physics_steps / rate, self._physics, self._physics.base_in_space()
-                )
+                segments = self._section.segments(self._physics.pose_of)
+                base_in_world = to_pose2(self._physics.base_in_space())
+                scan = self._lidar.sweep(self._physics_steps / rate, segments, base_in_world)
         base_in_space = self._physics.base_in_space()
         twist = self._physics.twist_in_base(base_in_space)
         wheel_angles, wheel_speeds = self._physics.wheels()
@@ -96,7 +100,11 @@ class Simulation:
         Raises WorldError if the name is taken.
         """
         in_world = from_pose2(pose, z=size[2] / 2.0)
-        self._physics.add(Body(f"{name}::link", in_world, (Collision(Box(size), np.eye(4)),), mass))
+        self._add(Body(f"{name}::link", in_world, (Collision(Box(size), np.eye(4)),), mass))
+
+    def _add(self, body: Body) -> None:
+        self._physics.add(body)
+        self._section.add(body)
 
     def close(self) -> None:
         """Frees the physics engine."""

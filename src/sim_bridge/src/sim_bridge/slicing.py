@@ -1,0 +1,85 @@
+"""Level cuts through solid shapes."""
+
+import math
+from typing import Iterator, Union
+
+import numpy as np
+from scipy.spatial import ConvexHull, QhullError
+
+from sim_bridge.pose3 import transform_points
+from sim_bridge.shapes import Box, Cylinder, Mesh, Plane, Shape, Sphere
+
+# Circles become polygons that lie within this, in metres, of them.
+CIRCLE_DEVIATION = 5e-4
+# Cosine of the tilt up to which a level cut through a box or cylinder is its whole outline.
+UPRIGHT = 1.0 - 1e-12
+
+
+def cut(shape: Shape, pose: np.ndarray, bottom: float, top: float) -> Iterator[np.ndarray]:
+    """Convex outlines, seen from above, of what of a shape placed at ``pose`` lies between two heights.
+
+    Each is an array (N, 2) of corners in order. Planes, which are floors, have none.
+    """
+    if isinstance(shape, Plane):
+        return
+    if isinstance(shape, Mesh):
+        triangles = transform_points(pose, shape.vertices)[shape.triangles]
+        heights = triangles[:, :, 2]
+        crosses = (heights.min(axis=1) <= top) & (heights.max(axis=1) >= bottom)
+        for triangle in triangles[crosses]:
+            yield _outline(_between(triangle, bottom, top))
+        return
+    if isinstance(shape, Sphere):
+        x, y, z = pose[:3, 3]
+        off_centre = max(bottom - z, z - top, 0.0)
+        if off_centre < shape.radius:
+            yield _circle(math.sqrt(shape.radius**2 - off_centre**2)) + (x, y)
+        return
+    points = transform_points(pose, _corners(shape))
+    if points[:, 2].max() < bottom or points[:, 2].min() > top:
+        return
+    is_upright = abs(pose[2, 2]) > UPRIGHT
+    yield _outline(points if is_upright else _between(points, bottom, top))
+
+
+def _corners(shape: Union[Box, Cylinder]) -> np.ndarray:
+    """Corners (N, 3) of a box, or of a prism for a cylinder."""
+    if isinstance(shape, Cylinder):
+        circle = _circle(shape.radius)
+        half = np.full((len(circle), 1), shape.length / 2.0)
+        return np.vstack((np.hstack((circle, -half)), np.hstack((circle, half))))
+    signs = np.array(np.meshgrid([-0.5, 0.5], [-0.5, 0.5], [-0.5, 0.5])).reshape(3, -1).T
+    return signs * shape.size
+
+
+def _circle(radius: float) -> np.ndarray:
+    """Corners (N, 2), in order, of a polygon in a circle about the origin."""
+    bend = min(CIRCLE_DEVIATION / radius, 0.3)
+    angles = np.linspace(0.0, 2.0 * math.pi, math.ceil(math.pi / math.acos(1.0 - bend)), endpoint=False)
+    return radius * np.column_stack((np.cos(angles), np.sin(angles)))
+
+
+def _between(points_xyz: np.ndarray, bottom: float, top: float) -> np.ndarray:
+    """Points (N, 3) whose convex hull is that of ``points_xyz`` cut off below ``bottom`` and above ``top``.
+
+    Every pair of points on two sides of a cut adds where it crosses: a superset of the hull's edges.
+    """
+    for level, side in ((bottom, 1.0), (top, -1.0)):
+        above = side * (points_xyz[:, 2] - level)
+        kept, gone = above >= 0.0, above < 0.0
+        share = above[kept, None] / (above[kept, None] - above[None, gone])
+        crossings = points_xyz[kept, None] + share[..., None] * (
+            points_xyz[None, gone] - points_xyz[kept, None]
+        )
+        crossings[..., 2] = level
+        points_xyz = np.vstack((points_xyz[kept], crossings.reshape(-1, 3)))
+    return points_xyz
+
+
+def _outline(points_xyz: np.ndarray) -> np.ndarray:
+    """Corners (N, 2), in order, of the convex hull seen from above; all points if they lie on one line."""
+    points_xy = points_xyz[:, :2]
+    try:
+        return points_xy[ConvexHull(points_xy).vertices]
+    except QhullError:
+        return points_xy
