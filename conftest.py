@@ -1,0 +1,8 @@
+"""Lets pytest import every package from the source tree, built or not."""
+
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent
+sys.path[:0] = [str(path) for path in sorted(ROOT.glob("src/**/src")) if path.is_dir()]
+sys.path.insert(0, str(ROOT / "tests/runner"))

@@ -1,0 +1,103 @@
+# shellcheck shell=bash
+# What the scripts share: messages, long steps that Ctrl-C ends, the ROS environment, the way to a command.
+
+# Started in the background of another script, bash ignores SIGINT for good; only a new process can undo that.
+if [[ $(trap -p INT) == "trap -- '' SIGINT" ]] && env --default-signal=INT true 2>/dev/null; then
+    exec env --default-signal=INT "$BASH" "$0" "$@"
+fi
+
+set -euo pipefail
+root=$(cd -P -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)
+readonly root
+# shellcheck disable=SC2034 # used by setup.sh
+readonly noetic=/opt/ros/noetic
+step_pid=
+clock_pid=
+
+say() { printf '%s\n' "$*"; }
+
+fail() {
+    printf 'error: %s\n' "$*" >&2
+    exit 1
+}
+
+usage() { # prints the head comment of the script that was started
+    sed -n '2,/^$/ s/^# \{0,1\}//p' "$0"
+}
+
+is_among() { # WORD LIST...
+    local word=$1 other
+    shift
+    for other in "$@"; do [[ $other == "$word" ]] && return 0; done
+    return 1
+}
+
+interrupted() { # EXIT_CODE: ends the step that is running, then this script
+    trap '' INT TERM HUP
+    end_group "$clock_pid"
+    if [[ -n $step_pid ]]; then
+        as_root_if_needed kill -INT -- "-$step_pid"
+        local tenths=0
+        while kill -0 -- "-$step_pid" 2>/dev/null && ((tenths++ < 50)); do sleep 0.1; done
+        as_root_if_needed kill -KILL -- "-$step_pid"
+    fi
+    printf '\ninterrupted; the next start goes on from here\n' >&2
+    exit "$1"
+}
+trap 'interrupted 130' INT
+trap 'interrupted 143' TERM
+trap 'interrupted 129' HUP
+
+as_root_if_needed() { "$@" 2>/dev/null || sudo -n "$@" 2>/dev/null || true; }
+
+end_group() {
+    [[ -z $1 ]] || { kill -- "-$1" && wait "$1"; } 2>/dev/null || true
+}
+
+step() { # TITLE LOG COMMAND...: runs the command, shows how long it takes, returns its exit code
+    local title=$1 log=$2 status=0 started=$SECONDS
+    shift 2
+    say "$title ..."
+    # Own process groups, and waiting with `wait`, let a signal sent to this shell alone end the step at once.
+    set -m
+    (while sleep 15; do say "  ... $((SECONDS - started)) s"; done) &
+    clock_pid=$!
+    "$@" >>"$log" 2>&1 </dev/null &
+    step_pid=$!
+    set +m
+    wait "$step_pid" || status=$?
+    step_pid=
+    end_group "$clock_pid"
+    clock_pid=
+    ((status)) || say "  done in $((SECONDS - started)) s"
+    return "$status"
+}
+
+ros_environment() { # what ROS needs in the environment, every socket on the loopback interface
+    unset PYTHONHOME
+    export ROS_MASTER_URI=${ROS_MASTER_URI:-http://127.0.0.1:11311}
+    [[ -n ${ROS_HOSTNAME:-} ]] || export ROS_IP=${ROS_IP:-127.0.0.1}
+    set +u
+    # shellcheck source=/dev/null
+    . "$root/devel/setup.bash"
+    set -u
+    export PATH="$root/.venv/bin:$PATH"
+    export ROS_HOME=${ROS_HOME:-$root/logs/ros}
+    export ROS_LOG_DIR=${ROS_LOG_DIR:-$ROS_HOME/log}
+}
+
+answer_help() { # ARGUMENT...
+    if is_among --help "$@" || is_among -h "$@"; then
+        usage
+        exit 0
+    fi
+}
+
+run_command() { # NAME ARGUMENT...: a command of home_service, after the set-up it needs
+    answer_help "$@"
+    local extras=()
+    if is_among --rviz "$@" && [[ -n ${DISPLAY:-} ]]; then extras=(rviz); fi
+    set_up "${extras[@]}"
+    ros_environment
+    exec python3 -m home_service.cli "$@"
+}

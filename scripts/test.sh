@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# Usage: ./scripts/test.sh [unit|ros|all] [NAME...]
+#
+# Runs the tests: unit tests (pytest, no ROS), ROS tests (rostest: nodes and whole missions), or both, the
+# default; with NAMEs only the test files whose paths contain one. Sets everything up first if need be.
+# Logs and JUnit reports: logs/tests/. Exit code: 0 all passed, 1 failure, 2 bad usage, 130 interrupted.
+#
+#   --help   this text
+
+# shellcheck source=scripts/setup.sh
+. "$(dirname -- "$(readlink -f -- "$0")")/setup.sh"
+answer_help "$@"
+set_up
+ros_environment
+export ROS_PACKAGE_PATH="$root/tests:$ROS_PACKAGE_PATH"
+exec python3 "$root/tests/runner/run_tests.py" "$@"

@@ -1,0 +1,69 @@
+import pytest
+from run_tests import Outcome, judge_ros_test, judge_unit_tests, read_report, time_limits
+
+
+def write_report(path, tests, failures=0, errors=0, skipped=0):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(
+        f'<testsuite tests="{tests}" failures="{failures}" errors="{errors}" skipped="{skipped}"></testsuite>'
+    )
+    return path
+
+
+def test_a_report_is_counted_over_all_its_suites(tmp_path):
+    path = tmp_path / "unit.xml"
+    path.write_text(
+        '<testsuites><testsuite tests="5" failures="1" errors="1" skipped="1"/>'
+        '<testsuite tests="2"/></testsuites>'
+    )
+    assert read_report(path) == Outcome(passed=4, failed=2, skipped=1)
+
+
+def test_a_ros_test_without_a_report_has_failed_although_rostest_ended_with_zero(tmp_path):
+    write_report(tmp_path / "tests" / "rostest-a.xml", 1)
+    outcome = judge_ros_test(["a"], tmp_path, 0)
+    assert (outcome.passed, outcome.failed) == (0, 1)
+    assert "'a' left no report" in outcome.reason
+
+
+def test_a_report_of_no_tests_is_a_failure(tmp_path):
+    write_report(tmp_path / "rosunit-a.xml", 0)
+    assert judge_ros_test(["a"], tmp_path, 0).failed == 1
+
+
+def test_a_file_that_names_no_test_is_a_failure(tmp_path):
+    assert judge_ros_test([], tmp_path, 0).failed == 1
+
+
+def test_the_time_limits_a_file_are_summed(tmp_path):
+    write_report(tmp_path / "p" / "rosunit-a.xml", 3)
+    write_report(tmp_path / "p" / "rosunit-b.xml", 2, failures=1)
+    write_report(tmp_path / "p" / "rostest-ab.xml", 2)
+    assert judge_ros_test(["a", "b"], tmp_path, 1) == Outcome(passed=4, failed=1)
+
+
+def test_what_rostest_says_counts_when_every_report_is_clean(tmp_path):
+    write_report(tmp_path / "rosunit-a.xml", 3)
+    write_report(tmp_path / "rostest-a.xml", 1, errors=1)
+    assert judge_ros_test(["a"], tmp_path, 0).failed == 1
+
+
+@pytest.mark.parametrize("exit_code, failed", [(0, 0), (3, 1)])
+def test_an_exit_code_counts_when_every_report_is_clean(tmp_path, exit_code, failed):
+    write_report(tmp_path / "rosunit-a.xml", 3)
+    assert judge_ros_test(["a"], tmp_path, exit_code).failed == failed
+    assert judge_unit_tests(write_report(tmp_path / "unit.xml", 3), exit_code).failed == failed
+
+
+def test_a_garbled_report_is_a_failure(tmp_path):
+    (tmp_path / "unit.xml").write_text("<testsuite")
+    assert judge_unit_tests(tmp_path / "unit.xml", 0).failed == 1
+
+
+def test_the_time_limits_of_a_file_are_read(tmp_path):
+    path = tmp_path / "x.test"
+    path.write_text(
+        '<launch><test test-name="a" pkg="p" type="t" time-limit="90"/><group>'
+        '<test test-name="b" pkg="p" type="t"/></group></launch>'
+    )
+    assert time_limits(path) == {"a": 90.0, "b": 60.0}
