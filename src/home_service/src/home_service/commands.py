@@ -11,6 +11,7 @@ from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from home_service.run import Run
 from home_service.verdict import ARRIVAL_TOLERANCE, DEMO, ERRAND, MARKERS, Verdict
 from planar import Pose2
+from planar_ros.actions import server_is_ready
 from planar_ros.messages import pose2_to_msg
 
 
@@ -54,7 +55,7 @@ def _until_it_ends(run: Run) -> int:
 
 def _drive_through(run: Run, goals) -> Verdict:
     client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
-    failure = run.watch(client.action_client.action_server_is_ready)
+    failure = run.watch(lambda: server_is_ready(client))
     for number, pose in enumerate(goals, 1):
         if failure:
             return Verdict(False, failure)

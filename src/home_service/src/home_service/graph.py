@@ -20,7 +20,7 @@ from home_service.errors import LaunchError
 PR_SET_CHILD_SUBREAPER = 36
 SIGINT_SECONDS = 8.0
 SIGTERM_SECONDS = 2.0
-DIED = re.compile(r"\[(?P<node>[^\]]+)-\d+\] process has died \[pid \d+, exit code (?P<code>-?\d+)")
+DIED = re.compile(r"\[(?P<node>[^\]\[]+)-\d+\] process has died \[pid \d+, exit code (?P<code>-?\d+)")
 COMPLAINT = re.compile(r"^\[/(?P<node>\S+)\] error: (?P<text>.*)")
 BAD_INPUT = 2
 

@@ -81,7 +81,7 @@ class Referee:
                 self._say(f"at {arrived_at}: truly {error:.3f} m from the zone's centre")
 
     def _see_contact(self, message):
-        for name in filter(None, message.data.split(",")):
+        for name in message.data.splitlines():
             self.ledger.collisions.append(name)
             self._say(f"collision with {name}")
 

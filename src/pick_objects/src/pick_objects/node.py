@@ -12,6 +12,7 @@ from std_msgs.msg import String
 from pick_objects.config import ErrandSettings, NodeSettings
 from pick_objects.errand import Errand, ErrandState, Finish, GoalReached, GoalRefused, GoTo
 from planar.places import places_of_errand, why_unreachable
+from planar_ros.actions import server_is_ready
 from planar_ros.messages import OccupancyGridArrays, grid_from_msg, pose2_to_msg
 from planar_ros.parameters import read_settings
 from planar_ros.shell import fail, run
@@ -40,12 +41,11 @@ class PickObjects:
         self._map = None
         self._pending = False
         self._client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
-        self._server_is_there = False
         rospy.Subscriber("map", OccupancyGridArrays, self._keep_map, queue_size=1)
         Waiting(
             {
                 f"a map on {rospy.resolve_name('map')}": lambda: self._map is not None,
-                f"the action {rospy.resolve_name('move_base')}": lambda: self._server_is_there,
+                f"the action {rospy.resolve_name('move_base')}": self._is_server_ready,
             }
         )
 
@@ -78,11 +78,13 @@ class PickObjects:
                 problem = why_unreachable(place, self._map)
                 if problem:
                     return problem
-        self._wait_for(self._client.action_client.action_server_is_ready, self._settings.server_timeout)
-        if not self._client.action_client.action_server_is_ready():
+        self._wait_for(self._is_server_ready, self._settings.server_timeout)
+        if not self._is_server_ready():
             return f"no action {rospy.resolve_name('move_base')} within {self._settings.server_timeout:g} s"
-        self._server_is_there = True
         return None
+
+    def _is_server_ready(self):
+        return server_is_ready(self._client)
 
     @staticmethod
     def _wait_for(is_there, seconds):
