@@ -129,7 +129,7 @@ announce() {
 requirement_names() {
     local files
     mapfile -t files <<<"$requirements"
-    (cd "$root/scripts" && sed -n 's/ *;.*//; s/==/ /p' "${files[@]}" | paste -sd, | sed 's/,/, /g')
+    (cd "$root/scripts" && sed -n '/;/d; s/==/ /p' "${files[@]}" | paste -sd, | sed 's/,/, /g')
 }
 
 # -- the steps -----------------------------------------------------------------------------------------
