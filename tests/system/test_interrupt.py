@@ -1,0 +1,59 @@
+#!/usr/bin/env python3
+"""Ctrl-C at any moment of a run leaves no process behind and is no success."""
+
+import os
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+import uuid
+from pathlib import Path
+
+import psutil
+import rostest
+
+SCRIPT = Path(__file__).resolve().parents[2] / "scripts/home_service.sh"
+MOMENTS = (0.1, 0.6, 1.5, 3.0, 6.0)
+EXIT_SECONDS = 20.0
+
+
+class InterruptTest(unittest.TestCase):
+    def test_an_interrupted_run_leaves_nothing_behind(self):
+        for moment in MOMENTS:
+            mark = f"HOME_SERVICE_TEST={uuid.uuid4()}"
+            code = self._interrupted_run(moment, mark)
+            left = _processes_with(mark)
+            print(f"interrupted after {moment} s: exit code {code}, {len(left)} processes left")
+            self.assertNotEqual(code, 0)
+            self.assertEqual(left, [], f"interrupted after {moment} s")
+
+    def _interrupted_run(self, moment, mark):
+        name, value = mark.split("=")
+        with tempfile.TemporaryDirectory() as folder:
+            run = subprocess.Popen(
+                [str(SCRIPT), "--speed", "1", "--output", folder],
+                env={**os.environ, name: value},
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+            )
+            time.sleep(moment)
+            run.send_signal(signal.SIGINT)
+            return run.wait(EXIT_SECONDS)
+
+
+def _processes_with(mark):
+    """Living processes whose environment holds ``mark``."""
+    found = []
+    for process in psutil.process_iter():
+        try:
+            if mark.encode() in Path(f"/proc/{process.pid}/environ").read_bytes():
+                found.append(" ".join(process.cmdline()))
+        except (OSError, psutil.Error):
+            continue
+    return found
+
+
+if __name__ == "__main__":
+    rostest.rosrun("home_service_tests", "interrupt", InterruptTest)

@@ -1,0 +1,35 @@
+#!/usr/bin/env python3
+"""The whole mission in the whole graph, judged against ground truth."""
+
+import time
+import unittest
+
+import rospy
+import rostest
+
+from home_service.referee import Referee
+from home_service.verdict import ERRAND, MARKERS, judge
+from planar.places import places_of_errand
+
+SIMULATED_DEADLINE = 240.0
+WALL_DEADLINE = 240.0
+EXPECTED = {ERRAND, MARKERS}
+
+
+class MissionTest(unittest.TestCase):
+    def test_the_object_is_fetched_and_delivered(self):
+        places = {place.name: place for place in places_of_errand(rospy.get_param("~zones_file"))}
+        referee = Referee(places, print)
+        wall_deadline = time.monotonic() + WALL_DEADLINE
+        while not referee.ledger.is_complete(EXPECTED):
+            self.assertLess(referee.simulated_seconds, SIMULATED_DEADLINE, f"state '{referee.state}'")
+            self.assertLess(time.monotonic(), wall_deadline, f"state '{referee.state}'")
+            time.sleep(0.05)
+        print(f"errors {referee.ledger.errors}, {referee.simulated_seconds:.1f} s simulated")
+        verdict = judge(referee.ledger, EXPECTED)
+        self.assertTrue(verdict.success, verdict.reason)
+
+
+if __name__ == "__main__":
+    rospy.init_node("test_mission")
+    rostest.rosrun("home_service_tests", "mission", MissionTest)
