@@ -16,6 +16,7 @@ from move_base_lite.errors import ControlError
 from planar import Pose2, Twist2, wrap
 
 ALIGNED_ANGLE = 0.3
+SHORTEST_HORIZON = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,25 +76,36 @@ class Controller:
             return self._turn_at_goal(base_in_map, base_in_local, twist, costmap)
         map_in_local = base_in_local @ base_in_map.inverse()
         plan_xy = _within(costmap, map_in_local.transform_points(self._tracking.ahead_xy))
-        if costmap.collides(base_in_local):
-            command = way_out(costmap, base_in_local)
-            if command is None:
-                raise ControlError("the robot touches an obstacle and finds no way out")
-            return Control(command, base_in_local.as_array()[None, :], plan_xy)
         error = self._tracking.heading_error(
             base_in_map.x, base_in_map.y, base_in_map.yaw, self._settings.heading_lookahead
         )
         if self._should_turn(error):
             return self._turn(error, base_in_local, twist, costmap, plan_xy)
+        speed_limit = self._speed_limit()
         try:
             trajectory = best_trajectory(
-                self._settings, costmap, base_in_local, twist, plan_xy, self._speed_limit(), self._period
+                self._settings,
+                costmap,
+                base_in_local,
+                twist,
+                plan_xy,
+                speed_limit,
+                self._horizon(speed_limit),
+                self._period,
             )
         except ControlError:
-            if abs(error) < ALIGNED_ANGLE:
-                raise
-            return self._turn(error, base_in_local, twist, costmap, plan_xy)
+            return self._find_another_way(error, base_in_local, twist, costmap, plan_xy)
         return Control(trajectory.command, trajectory.poses, plan_xy)
+
+    def _find_another_way(self, error, base_in_local, twist, costmap, plan_xy) -> Control:
+        """Where no arc is free: turns to the plan, or backs out of a contact."""
+        if abs(error) > ALIGNED_ANGLE:
+            return self._turn(error, base_in_local, twist, costmap, plan_xy)
+        if costmap.contacts(base_in_local):
+            command = way_out(costmap, base_in_local)
+            if command is not None:
+                return Control(command, base_in_local.as_array()[None, :], plan_xy)
+        raise ControlError("every velocity within reach leads into an obstacle")
 
     def _is_near(self, base_in_map: Pose2) -> bool:
         is_near = base_in_map.distance_to(self._goal_in_map) <= self._settings.xy_goal_tolerance
@@ -119,9 +131,10 @@ class Controller:
 
     def _turn(self, error, base_in_local, twist, costmap, plan_xy) -> Control:
         """Turns on the spot, the other way round if this one is obstructed."""
+        contacts = costmap.contacts(base_in_local)
         for angle in (error, error - math.copysign(2.0 * math.pi, error)):
             turned = [base_in_local @ Pose2(0.0, 0.0, angle * part) for part in np.linspace(0.0, 1.0, 8)]
-            if not any(costmap.collides(pose) for pose in turned[1:]):
+            if all(costmap.contacts(pose) <= contacts for pose in turned[1:]):
                 command = rotation_towards(self._settings, angle, twist, self._period)
                 return Control(command, np.array([pose.as_array() for pose in turned]), plan_xy)
         raise ControlError("there is no room to turn")
@@ -130,6 +143,11 @@ class Controller:
         """Slow enough to stop at the plan's end, braking gently."""
         gentle = 0.3 * self._settings.acc_lim_x
         return max(math.sqrt(2.0 * gentle * self.distance_left), self._settings.min_vel_trans)
+
+    def _horizon(self, speed_limit: float) -> float:
+        """Looks no further ahead than the plan's end, or the robot would creep towards it."""
+        to_end = self.distance_left / speed_limit
+        return min(max(to_end, SHORTEST_HORIZON), self._settings.sim_time)
 
 
 def _within(costmap: LayeredCostmap, plan_xy: np.ndarray) -> np.ndarray:

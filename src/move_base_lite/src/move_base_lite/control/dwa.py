@@ -8,8 +8,8 @@ import numpy as np
 
 from move_base_lite.control.map_grid import UNREACHABLE, distances_to
 from move_base_lite.control.settings import DwaSettings
-from move_base_lite.costmap import LayeredCostmap
-from move_base_lite.costmap.footprint import COLLISION, footprint_cost
+from move_base_lite.costmap import INSCRIBED, LayeredCostmap
+from move_base_lite.costmap.footprint import COLLISION, count_contacts, footprint_cost
 from move_base_lite.errors import ControlError
 from planar import Pose2, Twist2
 
@@ -32,11 +32,13 @@ def best_trajectory(
     twist: Twist2,
     plan_xy: np.ndarray,
     speed_limit: float,
+    sim_time: float,
     period: float,
 ) -> Trajectory:
     """The cheapest of the velocities reachable within ``period`` seconds.
 
     ``plan_xy``: (N, 2), the part of the plan ahead within the costmap. ``speed_limit``: m/s.
+    ``sim_time``: seconds that each velocity is followed ahead.
     Raises ControlError if each of them hits something or leads nowhere.
     """
     window = costmap.window
@@ -61,7 +63,7 @@ def best_trajectory(
         costmap.outline_xy,
         base_pose.as_array(),
         samples,
-        settings.sim_time,
+        sim_time,
         settings.sim_granularity,
         settings.angular_sim_granularity,
         from_path,
@@ -79,7 +81,7 @@ def best_trajectory(
         base_pose.as_array(),
         v,
         omega,
-        settings.sim_time,
+        sim_time,
         settings.sim_granularity,
         settings.angular_sim_granularity,
     )
@@ -156,18 +158,12 @@ def _score(
 ):
     """Cost of each sample, negative if it must not be driven."""
     path_scale, goal_scale, alignment_scale, obstacle_scale = scales
+    contacts = count_contacts(costs, origin_x, origin_y, resolution, outline_xy, start[0], start[1], start[2])
     scores = np.empty(samples.shape[0])
     for i in range(samples.shape[0]):
         v, omega = samples[i]
         poses = _simulate(start, v, omega, sim_time, granularity, angular_granularity)
-        highest = 0.0
-        for j in range(poses.shape[0]):
-            x, y, yaw = poses[j]
-            cost = footprint_cost(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw)
-            if cost == COLLISION:
-                highest = REJECTED
-                break
-            highest = max(highest, float(cost))
+        highest = _obstacle_cost(costs, origin_x, origin_y, resolution, outline_xy, poses, contacts)
         if highest < 0.0:
             scores[i] = REJECTED
             continue
@@ -186,6 +182,30 @@ def _score(
             + goal_scale * _at(from_nose_goal, origin_x, origin_y, resolution, nose_x, nose_y)
         )
     return scores
+
+
+@numba.njit(cache=True)
+def _obstacle_cost(costs, origin_x, origin_y, resolution, outline_xy, poses, contacts):
+    """Highest cost below the footprint along a trajectory, REJECTED if it collides.
+
+    A robot that touches something already, at so many points of its outline, may move as long as it never
+    touches at more.
+    """
+    highest = 0.0
+    for j in range(poses.shape[0]):
+        x, y, yaw = poses[j]
+        if contacts > 0:
+            now = count_contacts(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw)
+            if now > contacts:
+                return REJECTED
+            contacts = now
+            highest = float(INSCRIBED)
+        else:
+            cost = footprint_cost(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw)
+            if cost == COLLISION:
+                return REJECTED
+            highest = max(highest, float(cost))
+    return highest
 
 
 @numba.njit(cache=True)

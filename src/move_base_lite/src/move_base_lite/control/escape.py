@@ -7,7 +7,7 @@ import numba
 import numpy as np
 
 from move_base_lite.costmap import LayeredCostmap
-from move_base_lite.costmap.footprint import count_collisions
+from move_base_lite.costmap.footprint import count_contacts
 from planar import Pose2, Twist2
 
 SPEED = 0.1
@@ -36,9 +36,7 @@ def way_out(costmap: LayeredCostmap, base_pose: Pose2) -> Optional[Twist2]:
 
 @numba.njit(cache=True)
 def _best(costs, origin_x, origin_y, resolution, outline_xy, start, candidates):
-    touching = count_collisions(
-        costs, origin_x, origin_y, resolution, outline_xy, start[0], start[1], start[2]
-    )
+    touching = count_contacts(costs, origin_x, origin_y, resolution, outline_xy, start[0], start[1], start[2])
     best, fewest = -1, touching
     dt = SECONDS / STEPS
     for i in range(candidates.shape[0]):
@@ -48,7 +46,7 @@ def _best(costs, origin_x, origin_y, resolution, outline_xy, start, candidates):
             x += v * dt * math.cos(yaw)
             y += v * dt * math.sin(yaw)
             yaw += omega * dt
-            count = count_collisions(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw)
+            count = count_contacts(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw)
             if count > touching:
                 break
         else:

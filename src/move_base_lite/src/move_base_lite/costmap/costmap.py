@@ -7,7 +7,7 @@ import numba
 import numpy as np
 
 from move_base_lite.costmap.costs import FREE, UNKNOWN
-from move_base_lite.costmap.footprint import Footprint, collides, footprint_from
+from move_base_lite.costmap.footprint import Footprint, collides, contacts, footprint_from
 from move_base_lite.costmap.inflation import Inflation, InflationSettings
 from move_base_lite.costmap.obstacle_layer import ObstacleLayer, ObstacleSettings
 from move_base_lite.costmap.static_layer import StaticSettings, static_costs
@@ -100,6 +100,10 @@ class LayeredCostmap:
     def collides(self, pose: Pose2) -> bool:
         """Whether the robot's footprint at ``pose`` touches an obstacle, the unknown or the edge."""
         return collides(self.costs, self.window, self.outline_xy, pose)
+
+    def contacts(self, pose: Pose2) -> int:
+        """At how many points of its outline the robot at ``pose`` touches something."""
+        return contacts(self.costs, self.window, self.outline_xy, pose)
 
     def clear_outside(self, base_in_frame: Pose2, side: float) -> None:
         """Forgets obstacles (not the map) outside a square of ``side`` metres round the robot."""

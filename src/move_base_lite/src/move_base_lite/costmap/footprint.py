@@ -63,6 +63,13 @@ def collides(costs: np.ndarray, window: Window, outline_xy: np.ndarray, pose: Po
     return bool(cost == COLLISION)
 
 
+def contacts(costs: np.ndarray, window: Window, outline_xy: np.ndarray, pose: Pose2) -> int:
+    """At how many of its points the outline (M, 2), put at ``pose``, touches an obstacle or the edge."""
+    return count_contacts(
+        costs, window.origin_x, window.origin_y, window.resolution, outline_xy, pose.x, pose.y, pose.yaw
+    )
+
+
 @numba.njit(cache=True)
 def footprint_cost(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw):
     """Kernel: highest cost below the outline or the robot's centre; COLLISION if it cannot stand there."""
@@ -89,7 +96,7 @@ def footprint_cost(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw)
 
 
 @numba.njit(cache=True)
-def count_collisions(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw):
+def count_contacts(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw):
     """Kernel: how many points of the outline lie in obstacles or outside the costmap."""
     rows, cols = costs.shape
     c, s = math.cos(yaw) / resolution, math.sin(yaw) / resolution

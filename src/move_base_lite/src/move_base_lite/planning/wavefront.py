@@ -8,6 +8,12 @@ import numpy as np
 NEUTRAL = 50.0
 FACTOR = 0.8
 IMPASSABLE = 254
+# How much cost the threshold rises by, and how far the wave goes on behind the goal, whose gradient needs it.
+ROUND = 2.0 * NEUTRAL
+SETTLED_BEYOND = 2.0 * NEUTRAL
+# Cost a cell that A* expects of the way to the goal: a little less than the least possible, since the
+# gradient is only smooth where the wave has spread a little beyond the straight line.
+EXPECTED = 0.9 * NEUTRAL
 
 
 @numba.njit(cache=True)
@@ -33,7 +39,7 @@ def traversal_costs(costs, allow_unknown):
 
 @numba.njit(cache=True)
 def spread(traversal, start_row, start_col, goal_row, goal_col, use_astar):
-    """Potential, float32 (rows, cols), of each cell reached before the goal's is settled; inf elsewhere.
+    """Potential, float32 (rows, cols), of each cell reached until the goal's has settled; inf elsewhere.
 
     Cells wait in three lists: this round's, the next, and those beyond the threshold, which rises when the
     nearer ones are done. ``use_astar`` adds the straight way to the goal to what is held against it.
@@ -53,7 +59,7 @@ def spread(traversal, start_row, start_col, goal_row, goal_col, use_astar):
     neighbours = (1, -1, cols, -cols)
     threshold = NEUTRAL
     if use_astar:
-        threshold += NEUTRAL * math.hypot(goal_row - start_row, goal_col - start_col)
+        threshold += EXPECTED * math.hypot(goal_row - start_row, goal_col - start_col)
     n_current, n_following, n_beyond = 0, 0, 0
     for step in neighbours:
         if 0 <= start + step < size and flat[start + step] < IMPASSABLE:
@@ -73,7 +79,7 @@ def spread(traversal, start_row, start_col, goal_row, goal_col, use_astar):
             held_against = reached
             if use_astar:
                 row, col = cell // cols, cell % cols
-                held_against += NEUTRAL * math.hypot(goal_row - row, goal_col - col)
+                held_against += EXPECTED * math.hypot(goal_row - row, goal_col - col)
             for step in neighbours:
                 other = cell + step
                 if waiting[other] or flat[other] >= IMPASSABLE:
@@ -89,9 +95,9 @@ def spread(traversal, start_row, start_col, goal_row, goal_col, use_astar):
         current, following = following, current
         n_current, n_following = n_following, 0
         if n_current == 0:
-            if potential[goal] < np.inf:
+            if potential[goal] + SETTLED_BEYOND < threshold:
                 break
-            threshold += 2.0 * NEUTRAL
+            threshold += ROUND
             current, beyond = beyond, current
             n_current, n_beyond = n_beyond, 0
     return potential.reshape(rows, cols)
@@ -117,6 +123,8 @@ def descend(potential, start_row, start_col, goal_row, goal_col, step):
     Empty if the goal was not reached. ``step``: cells per point.
     """
     rows, cols = potential.shape
+    if not math.isfinite(potential[goal_row, goal_col]):
+        return np.empty((0, 2))
     limit = int(2 * rows * cols / step)
     points = np.empty((1024, 2))
     row, col = float(goal_row), float(goal_col)

@@ -1,0 +1,177 @@
+"""The contract of a global planner, on maps drawn as pictures."""
+
+import numpy as np
+import pytest
+from move_base_lite import GoalBlocked, NoPath, OutOfMap, StartBlocked
+from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, Window
+from move_base_lite.planning import GlobalPlanner, PlannerSettings
+from scipy.ndimage import label
+
+PICTURES = {
+    "empty": """
+#########
+#.......#
+#.......#
+#.......#
+#########""",
+    "wall with a door": """
+#########
+#...#...#
+#.......#
+#...#...#
+#########""",
+    "two rooms": """
+#########
+#...#...#
+#...#...#
+#...#...#
+#########""",
+    "U": """
+###########
+#.........#
+#..#####..#
+#......#..#
+#......#..#
+#..#####..#
+#.........#
+###########""",
+    "spiral": """
+#########
+#.......#
+#.#####.#
+#.#...#.#
+#.#.###.#
+#.#.....#
+#########""",
+    "diagonal": """
+#######
+##....#
+#.#...#
+#..#..#
+#...#.#
+#....##
+#######""",
+    "islands": """
+##########
+#..#..#..#
+#.....#..#
+#..##....#
+#..#..#..#
+##########""",
+}
+
+
+def costs_of(picture):
+    meaning = {"#": LETHAL, ".": 0, "i": INSCRIBED, "?": UNKNOWN, "5": 50}
+    lines = picture.strip().splitlines()
+    return np.array([[meaning[char] for char in line] for line in reversed(lines)], dtype=np.uint8)
+
+
+def window_of(costs):
+    return Window(*costs.shape, resolution=0.5, origin_x=-1.0, origin_y=2.0)
+
+
+def centre(window, cell):
+    return window.origin_x + (cell[1] + 0.5) * 0.5, window.origin_y + (cell[0] + 0.5) * 0.5
+
+
+def assert_is_free(path_xy, costs, window):
+    longest_step = np.sqrt(2.0) * 1.5 * window.resolution
+    assert np.linalg.norm(np.diff(path_xy, axis=0), axis=1).max(initial=0.0) <= longest_step
+    for point in path_xy:
+        assert costs[window.cell_of(*point)] < INSCRIBED
+
+
+@pytest.mark.parametrize("use_astar", [False, True])
+@pytest.mark.parametrize("name", PICTURES)
+def test_each_free_cell_is_reached_from_each_that_is_connected_to_it(name, use_astar):
+    costs = costs_of(PICTURES[name])
+    window, planner = window_of(costs), GlobalPlanner(PlannerSettings(use_astar=use_astar))
+    rooms, _ = label(costs == 0)
+    free = np.argwhere(costs == 0)
+    for start in map(tuple, free):
+        for goal in map(tuple, free[::3]):
+            ends = centre(window, start), centre(window, goal)
+            if rooms[start] == rooms[goal]:
+                path_xy = planner.plan(costs, window, *ends)
+                assert tuple(path_xy[0]) == ends[0]
+                assert tuple(path_xy[-1]) == ends[1]
+                assert_is_free(path_xy, costs, window)
+            else:
+                with pytest.raises(NoPath):
+                    planner.plan(costs, window, *ends)
+
+
+@pytest.mark.parametrize("use_astar, excess", [(False, 1.01), (True, 1.03)])
+def test_a_path_over_open_ground_is_nearly_straight(use_astar, excess):
+    costs = np.zeros((200, 200), dtype=np.uint8)
+    planner = GlobalPlanner(PlannerSettings(use_astar=use_astar))
+    for goal in [(180.5, 20.5), (180.5, 100.5), (150.5, 190.5)]:
+        path_xy = planner.plan(costs, Window(200, 200, 1.0), (20.5, 10.5), goal)
+        straight = np.hypot(goal[0] - 20.5, goal[1] - 10.5)
+        assert np.linalg.norm(np.diff(path_xy, axis=0), axis=1).sum() < excess * straight
+
+
+def test_a_way_round_is_preferred_to_one_along_an_obstacle():
+    picture = "###########\n#.........#\n#.........#\n#.5555555.#\n#.5#####5.#\n#.5555555.#\n###########"
+    costs = costs_of(picture)
+    window = window_of(costs)
+    path_xy = GlobalPlanner(PlannerSettings()).plan(costs, window, centre(window, (3, 1)), centre(window, (3, 9)))
+    assert path_xy[:, 1].max() > centre(window, (4, 0))[1]
+
+
+def test_a_goal_in_an_obstacle_is_refused_by_name():
+    costs = costs_of("#####\n#.#i#\n#...#\n#####")
+    window, planner = window_of(costs), GlobalPlanner(PlannerSettings())
+    start = centre(window, (1, 1))
+    with pytest.raises(GoalBlocked, match=r"the goal at \(0.25, 3.25\) is in an obstacle"):
+        planner.plan(costs, window, start, centre(window, (2, 2)))
+    with pytest.raises(GoalBlocked, match="too close to an obstacle"):
+        planner.plan(costs, window, start, centre(window, (2, 3)))
+
+
+def test_a_blocked_goal_gives_way_to_the_nearest_free_place_within_tolerance():
+    costs = costs_of("######\n#..###\n#..###\n######")
+    window, planner = window_of(costs), GlobalPlanner(PlannerSettings())
+    blocked = centre(window, (1, 4))
+    path_xy = planner.plan(costs, window, centre(window, (1, 1)), blocked, tolerance=1.0)
+    assert tuple(path_xy[-1]) == centre(window, (1, 2))
+    with pytest.raises(GoalBlocked):
+        planner.plan(costs, window, centre(window, (1, 1)), blocked, tolerance=0.9)
+
+
+def test_a_start_in_an_obstacle_is_left_for_the_nearest_free_cell_or_refused():
+    costs = costs_of("#######\n#ii...#\n#######")
+    window, planner = window_of(costs), GlobalPlanner(PlannerSettings())
+    goal = centre(window, (1, 5))
+    path_xy = planner.plan(costs, window, centre(window, (1, 2)), goal)
+    assert tuple(path_xy[0]) == centre(window, (1, 2))
+    with pytest.raises(StartBlocked, match="the robot at"):
+        planner.plan(costs, window, centre(window, (1, 1)), goal)
+
+
+@pytest.mark.parametrize("outside", [(-5.0, 2.6), (0.0, 99.0)])
+def test_a_place_off_the_map_is_refused(outside):
+    costs = costs_of(PICTURES["empty"])
+    window, planner = window_of(costs), GlobalPlanner(PlannerSettings())
+    with pytest.raises(OutOfMap, match="the goal"):
+        planner.plan(costs, window, centre(window, (1, 1)), outside)
+    with pytest.raises(OutOfMap, match="the robot"):
+        planner.plan(costs, window, outside, centre(window, (1, 1)))
+
+
+def test_unknown_space_is_crossed_only_if_allowed():
+    costs = costs_of("#######\n#..?..#\n#######")
+    window = window_of(costs)
+    ends = centre(window, (1, 1)), centre(window, (1, 5))
+    assert len(GlobalPlanner(PlannerSettings(allow_unknown=True)).plan(costs, window, *ends))
+    with pytest.raises(NoPath):
+        GlobalPlanner(PlannerSettings(allow_unknown=False)).plan(costs, window, *ends)
+
+
+def test_being_there_already_is_a_plan():
+    costs = costs_of(PICTURES["empty"])
+    window = window_of(costs)
+    here = centre(window, (2, 2))
+    path_xy = GlobalPlanner(PlannerSettings()).plan(costs, window, here, here)
+    assert path_xy.tolist() == [list(here), list(here)]
