@@ -21,8 +21,8 @@ class SimulationSettings:
     encoder_scale: float = 0.02
     wheel_slip: float = 0.01
     gyro_scale: float = 0.01
-    gyro_bias: float = 0.0005
-    gyro_noise: float = 0.002
+    gyro_bias: float = 0.001
+    gyro_noise: float = 0.0005
 
     def __post_init__(self):
         check(self.physics_rate > 0, "physics_rate", "positive", self.physics_rate)

@@ -22,8 +22,9 @@ class Odometry:
 class DeadReckoning:
     """Distance from the encoders, heading from the gyro, as Kobuki does.
 
-    Encoder error: a scale for each wheel, drawn once, and slip that grows with the root of the distance.
-    Gyro error: scale and bias, drawn once, and white noise.
+    Encoder error: a scale for each wheel, drawn once. Wheels slip: what they turn and what the robot travels
+    differ by noise that grows with the root of the distance. Gyro error: scale and bias, drawn once, and
+    white noise.
     """
 
     def __init__(self, drive: DriveProfile, settings: SimulationSettings, rng: np.random.Generator):
@@ -40,10 +41,10 @@ class DeadReckoning:
         turned = np.asarray(wheel_angles) - self._angles
         self._angles = np.asarray(wheel_angles)
         distance = float((turned * self._radii).mean())
-        distance += self._settings.wheel_slip * math.sqrt(abs(distance)) * self._rng.standard_normal()
+        slip = self._settings.wheel_slip * math.sqrt(abs(distance)) * self._rng.standard_normal()
         noise = self._settings.gyro_noise / math.sqrt(seconds) * self._rng.standard_normal()
         measured_rate = self._gyro_scale * turn_rate + self._gyro_bias + noise
-        self._pose = self._pose @ _arc(distance, measured_rate * seconds)
+        self._pose = self._pose @ _arc(distance + slip, measured_rate * seconds)
         return Odometry(self._pose, Twist2(distance / seconds, measured_rate))
 
 

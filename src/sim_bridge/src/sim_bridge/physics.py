@@ -1,6 +1,6 @@
 """The bodies of a world and one robot in PyBullet."""
 
-from typing import Any, Dict, List, Sequence, Tuple
+from typing import Any, Dict, List, Sequence, Set, Tuple
 
 import numpy as np
 import pybullet
@@ -22,6 +22,8 @@ EVERYTHING = -1
 SOLVER_ITERATIONS = 50
 # Bullet's limit for the shapes of one compound.
 COMPOUND_SIZE = 16
+# Metres above and below the robot's start within which there must be a floor.
+FLOOR_SEARCH = 0.1
 # A contact whose normal rises more steeply than this carries the robot; it is no collision.
 SUPPORTING_NORMAL_Z = 0.7
 
@@ -80,15 +82,27 @@ class Physics:
         )
         return (left, right), (left_speed, right_speed)
 
-    def touched(self) -> Tuple[str, ...]:
-        """Names of the bodies the robot bumps into, sorted; what it stands on is not among them."""
+    def touched(self) -> Set[str]:
+        """Names of the bodies the robot bumps into; what it stands on is not among them."""
         contacts = self._bullet.getContactPoints(bodyA=self._robot)
-        names = {
+        return {
             self._names[body]
             for _, _, body, _, _, _, _, (_, _, normal_z), distance, *_ in contacts
             if distance <= 0.0 and abs(normal_z) < SUPPORTING_NORMAL_Z
         }
-        return tuple(sorted(names))
+
+    def check_start(self) -> None:
+        """Raises WorldError if the robot has no floor to stand on or stands in something."""
+        self._bullet.performCollisionDetection()
+        x, y, z = position(self.base_in_space())
+        ((_, _, share, _, _),) = self._bullet.rayTestBatch(
+            [[x, y, z + FLOOR_SEARCH]], [[x, y, z - FLOOR_SEARCH]], collisionFilterMask=WORLD_GROUPS
+        )
+        if share >= 1.0:
+            raise WorldError(f"the robot would start at ({x:g}, {y:g}), where there is no floor")
+        if self.touched():
+            names = ", ".join(sorted(self.touched()))
+            raise WorldError(f"the robot would start at ({x:g}, {y:g}), inside {names}")
 
     def pose_of(self, name: str) -> np.ndarray:
         """Where a body is now, (4, 4) in the world."""

@@ -1,5 +1,6 @@
 """The facade: one robot in one world, stepped."""
 
+import math
 from dataclasses import dataclass
 from typing import Optional, Tuple
 
@@ -24,7 +25,8 @@ class Observation:
 
     ``stamp``: simulated seconds since the start. ``base_in_world`` and ``twist`` are the truth, ``odometry``
     and ``scan`` (None if none is due) what the robot measures. ``wheel_angles``, ``wheel_speeds``: left and
-    right, rad and rad/s. ``contacts``: names (``model::link``) of what the robot bumps into.
+    right, rad and rad/s. ``contacts``: names (``model::link``) of what the robot has bumped into since the
+    last step. ``tilt``: between the robot's axis and the vertical, rad.
     """
 
     stamp: float
@@ -35,10 +37,14 @@ class Observation:
     contacts: Tuple[str, ...]
     wheel_angles: Tuple[float, float]
     wheel_speeds: Tuple[float, float]
+    tilt: float
 
 
 class Simulation:
-    """A robot that starts at ``base_in_world``. The same seed and commands give the same observations."""
+    """A robot that starts at ``base_in_world``. The same seed and commands give the same observations.
+
+    Raises WorldError if the robot cannot stand there.
+    """
 
     def __init__(
         self,
@@ -54,6 +60,7 @@ class Simulation:
         self._section = Section(height=float(laser_in_base[2, 3]))
         for body in world.bodies:
             self._add(body)
+        self._physics.check_start()
         self._drive = Drive(robot.drive, settings.command_timeout)
         self._dead_reckoning = DeadReckoning(robot.drive, settings, odometry_rng)
         self._lidar = Lidar(robot.laser, laser_in_base, settings.range_noise, lidar_rng)
@@ -70,14 +77,13 @@ class Simulation:
         if command is not None:
             self._drive.command(command)
         rate = self._settings.physics_rate
-        scan = None
+        scan, touched = None, set()
         for _ in range(rate // self._settings.odometry_rate):
             self._physics.step(self._drive.wheel_speeds(1.0 / rate))
             self._physics_steps += 1
+            touched.update(self._physics.touched())
             if self._physics_steps % (rate // self._settings.scan_rate) == 0:
-                segments = self._section.segments(self._physics.pose_of)
-                base_in_world = to_pose2(self._physics.base_in_space())
-                scan = self._lidar.sweep(self._physics_steps / rate, segments, base_in_world)
+                scan = self._sweep()
         base_in_space = self._physics.base_in_space()
         twist = self._physics.twist_in_base(base_in_space)
         wheel_angles, wheel_speeds = self._physics.wheels()
@@ -87,9 +93,10 @@ class Simulation:
             twist=twist,
             odometry=self._dead_reckoning.update(wheel_angles, twist.omega, self.step_seconds),
             scan=scan,
-            contacts=self._physics.touched(),
+            contacts=tuple(sorted(touched)),
             wheel_angles=wheel_angles,
             wheel_speeds=wheel_speeds,
+            tilt=math.acos(min(base_in_space[2, 2], 1.0)),
         )
 
     def add_box(
@@ -102,10 +109,17 @@ class Simulation:
         in_world = from_pose2(pose, z=size[2] / 2.0)
         self._add(Body(f"{name}::link", in_world, (Collision(Box(size), np.eye(4)),), mass))
 
+    def close(self) -> None:
+        """Frees the physics engine."""
+        self._physics.close()
+
     def _add(self, body: Body) -> None:
         self._physics.add(body)
         self._section.add(body)
 
-    def close(self) -> None:
-        """Frees the physics engine."""
-        self._physics.close()
+    def _sweep(self) -> Scan:
+        return self._lidar.sweep(
+            self._physics_steps / self._settings.physics_rate,
+            self._section.segments(self._physics.pose_of),
+            to_pose2(self._physics.base_in_space()),
+        )

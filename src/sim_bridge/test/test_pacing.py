@@ -1,0 +1,64 @@
+"""How fast simulated time may pass."""
+
+import pytest
+
+from sim_bridge.pacing import Pacer
+
+
+def steps_within(pacer, wall_seconds, step=0.02):
+    """Simulated seconds that pass while the wall clock does; checks in small portions of wall time."""
+    stamp, wall = 0.0, 0.0
+    while wall < wall_seconds:
+        while pacer.delay(stamp + step, wall) <= 0.0 and stamp < 1000.0:
+            stamp += step
+        wall += 0.001
+    return stamp
+
+
+@pytest.mark.parametrize("speed", [0.5, 1.0, 4.0])
+def test_simulated_time_passes_at_the_given_speed(speed):
+    assert steps_within(Pacer(speed), 2.0) == pytest.approx(2.0 * speed, abs=0.1)
+
+
+def test_speed_zero_knows_no_limit():
+    assert steps_within(Pacer(0.0), 0.01) >= 1000.0
+
+
+def test_a_delay_is_not_made_up_for():
+    pacer = Pacer(1.0)
+    assert pacer.delay(0.02, 0.0) == 0.0
+    assert pacer.delay(0.04, 60.0) == 0.0
+    assert pacer.delay(0.06, 60.0) == pytest.approx(0.02)
+
+
+def test_until_all_nodes_have_reported_time_passes_as_on_the_wall():
+    pacer = Pacer(0.0, ["amcl", "move_base"])
+    pacer.report("amcl", 0.0)
+    pacer.report("stranger", 0.0)
+    assert pacer.is_missing("move_base")
+    assert not pacer.is_missing("amcl")
+    assert pacer.delay(0.02, 0.0) == 0.0
+    assert pacer.delay(0.06, 0.0) > 0.0
+
+
+def test_in_lock_step_the_slowest_node_sets_the_pace():
+    pacer = Pacer(0.0, ["amcl", "move_base"], period=0.1)
+    pacer.report("amcl", 5.0)
+    pacer.report("move_base", 1.0)
+    assert pacer.delay(1.1, 0.0) == 0.0
+    assert pacer.delay(1.12, 0.0) > 0.0
+    assert pacer.behind(1.12) == ["move_base"]
+    pacer.report("move_base", 1.1)
+    assert pacer.delay(1.12, 0.0) == 0.0
+
+
+def test_a_node_that_falls_silent_is_given_up_once_until_it_reports_again():
+    pacer = Pacer(0.0, ["amcl"], patience=5.0)
+    pacer.report("amcl", 1.0)
+    assert pacer.delay(2.0, 10.0) > 0.0
+    assert pacer.give_up(2.0, 14.0) == []
+    assert pacer.give_up(2.0, 15.1) == ["amcl"]
+    assert pacer.delay(2.0, 15.2) == 0.0
+    assert pacer.give_up(2.02, 99.0) == []
+    pacer.report("amcl", 2.0)
+    assert not pacer.is_missing("amcl")

@@ -1,0 +1,84 @@
+"""Settings, robots and the configuration that is shipped."""
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from planar import SettingsError
+from sim_bridge.config import BridgeSettings, SimulationSettings
+from sim_bridge.errors import RobotError
+from sim_bridge.robots import ROBOTS, robot_named
+from sim_bridge.urdf_reader import read_robot
+
+CONFIG = Path(__file__).resolve().parents[1] / "config" / "sim_bridge.yaml"
+# What the launch file's arguments set.
+ARGUMENTS = {"world", "robot", "seed", "speed", "x", "y", "yaw", "wait_for"}
+
+
+def test_the_shipped_configuration_holds_every_default():
+    defaults = {**dataclasses.asdict(SimulationSettings()), **dataclasses.asdict(BridgeSettings(world="w"))}
+    expected = {name: value for name, value in defaults.items() if name not in ARGUMENTS}
+    assert yaml.safe_load(CONFIG.read_text()) == expected
+
+
+@pytest.mark.parametrize(
+    ("values", "named"),
+    [
+        ({"physics_rate": 0}, "physics_rate must be positive"),
+        ({"scan_rate": 30}, "scan_rate must be a divisor of physics_rate"),
+        ({"odometry_rate": 0}, "odometry_rate"),
+        ({"command_timeout": 0.0}, "command_timeout"),
+        ({"range_noise": -0.1}, "range_noise must be not negative"),
+    ],
+)
+def test_senseless_settings_are_named(values, named):
+    with pytest.raises(SettingsError, match=named):
+        SimulationSettings(**values)
+
+
+@pytest.mark.parametrize("values", [{"world": ""}, {"world": "w", "seed": -1}, {"world": "w", "speed": -1.0}])
+def test_senseless_settings_of_the_node_are_named(values):
+    with pytest.raises(SettingsError, match=list(values)[-1]):
+        BridgeSettings(**values)
+
+
+def test_an_unknown_robot_is_refused_with_the_nearest_name():
+    with pytest.raises(RobotError, match="did you mean turtlebot_lidar"):
+        robot_named("turtlebot_lidr")
+
+
+@pytest.mark.parametrize("robot", ROBOTS.values(), ids=list(ROBOTS))
+def test_lasers_look_where_costmaps_of_the_turtlebot_expect_them(robot):
+    assert 0.25 < robot.mounting(robot.laser.frame)[2, 3] < 0.35
+
+
+@pytest.mark.parametrize("robot", ROBOTS.values(), ids=list(ROBOTS))
+def test_the_drive_agrees_with_the_description(robot):
+    wheels = read_robot(robot.description()).wheels
+    left, right = wheels[robot.drive.left_joint], wheels[robot.drive.right_joint]
+    apart = left.origin_in_base[:3, 3] - right.origin_in_base[:3, 3]
+    assert apart == pytest.approx([0.0, robot.drive.wheel_separation, 0.0])
+    assert left.part.collisions[0].shape.radius == robot.drive.wheel_radius
+
+
+def test_fixed_parts_are_merged_into_the_base():
+    base = read_robot(robot_named("turtlebot_lidar").description()).base
+    assert base.mass == pytest.approx(2.4 + 0.01 + 0.01 + 1.0 + 0.2)
+    assert np.abs(base.centre_of_mass[:2]).max() < 0.02
+    assert len(base.collisions) == 5
+
+
+@pytest.mark.parametrize(
+    ("text", "named"),
+    [
+        ("<robot", "not well-formed"),
+        ("<robot name='r'><link name='a'/><link name='b'/></robot>", "one root link, got a, b"),
+        ("<robot name='r'><link name='a'/></robot>", "needs a mass"),
+    ],
+)
+def test_a_description_that_is_no_robot_is_refused(text, named):
+    with pytest.raises(RobotError, match=named):
+        read_robot(text)
