@@ -62,7 +62,7 @@ class Run:
     def __exit__(self, _kind, error, _traceback) -> None:
         self.display.show("shutting down")
         if isinstance(error, PlanarError):
-            self._write_result(Verdict(False, str(error)))
+            self.display.say(f"result in {self._write_result(Verdict(False, str(error)))}")
         rospy.signal_shutdown("the run is over")
         if self._graph is not None:
             self._graph.close()

@@ -1,23 +1,29 @@
 """The folder in which a run leaves its logs and its result."""
 
+import itertools
 import json
 from datetime import datetime
 from pathlib import Path
 
-from planar import write_atomically
+from planar import SettingsError, write_atomically
 
 
 def create_run_folder(parent: Path, name: str) -> Path:
-    """A new folder ``parent``/<date>-<time>-<name> with a folder ``log`` in it."""
-    stem = f"{datetime.now():%Y%m%d-%H%M%S}-{name}"
-    for suffix in ("", *(f"-{n}" for n in range(2, 1000))):
-        folder = parent / (stem + suffix)
-        try:
-            (folder / "log").mkdir(parents=True)
-            return folder
-        except FileExistsError:
-            continue
-    raise FileExistsError(f"{parent}: no name left for a run folder")
+    """A new folder ``parent``/<date>-<time>-<name> with a folder ``log`` in it. Raises SettingsError."""
+    try:
+        parent.mkdir(parents=True, exist_ok=True)
+        stem = f"{datetime.now():%Y%m%d-%H%M%S}-{name}"
+        folder = next(
+            folder for folder in (parent / (stem + suffix) for suffix in _suffixes()) if not folder.exists()
+        )
+        (folder / "log").mkdir(parents=True)
+    except OSError as error:
+        raise SettingsError(f"{parent}: no run folder can be made there ({error.strerror})") from None
+    return folder
+
+
+def _suffixes():
+    return itertools.chain([""], (f"-{number}" for number in itertools.count(2)))
 
 
 def write_result(folder: Path, result: dict) -> Path:

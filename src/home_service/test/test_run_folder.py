@@ -1,0 +1,22 @@
+import json
+
+import pytest
+
+from home_service.run_folder import create_run_folder, write_result
+from planar import SettingsError
+
+
+def test_two_runs_in_one_second_get_folders_of_their_own(tmp_path):
+    folders = {create_run_folder(tmp_path / "runs", "errand") for _ in range(3)}
+    assert len(folders) == 3
+    assert all((folder / "log").is_dir() for folder in folders)
+
+
+def test_a_place_where_no_folder_can_be_made_is_named(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(SettingsError, match="file/runs: no run folder can be made there"):
+        create_run_folder(tmp_path / "file/runs", "errand")
+
+
+def test_a_result_is_json(tmp_path):
+    assert json.loads(write_result(tmp_path, {"success": True}).read_text()) == {"success": True}
