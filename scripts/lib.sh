@@ -74,7 +74,7 @@ step() { # TITLE LOG COMMAND...: runs the command, shows how long it takes, retu
 }
 
 ros_environment() { # what ROS needs in the environment, every socket on the loopback interface
-    unset PYTHONHOME
+    unset PYTHONHOME ROS_DISTRO
     export ROS_MASTER_URI=${ROS_MASTER_URI:-http://127.0.0.1:11311}
     [[ -n ${ROS_HOSTNAME:-} ]] || export ROS_IP=${ROS_IP:-127.0.0.1}
     set +u

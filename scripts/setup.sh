@@ -202,7 +202,8 @@ build_workspace() {
 }
 
 catkin_build() {
-    unset CMAKE_PREFIX_PATH LD_LIBRARY_PATH PKG_CONFIG_PATH PYTHONHOME PYTHONPATH ROS_PACKAGE_PATH
+    # The workspace stands alone: another one that is sourced here must not become part of it.
+    unset CMAKE_PREFIX_PATH LD_LIBRARY_PATH PKG_CONFIG_PATH PYTHONHOME PYTHONPATH "${!ROS_@}"
     if [[ -d $noetic ]]; then
         set +u
         # shellcheck source=/dev/null
