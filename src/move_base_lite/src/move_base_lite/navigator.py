@@ -26,11 +26,15 @@ from move_base_lite.errors import (
     PlanningError,
     SensorStale,
 )
-from move_base_lite.planning import GlobalPlanner
+from move_base_lite.planning import GlobalPlanner, path_cost
 from move_base_lite.recovery import Recovery, RecoveryContext, recovery_from
 from planar import OccupancyGrid, Pose2, Scan, Twist2
 
 TIME_TOLERANCE = 1e-6
+# A plan under way is left only for one that is this much cheaper, lest the robot dither between two ways.
+WORTH_CHANGING = 0.8
+# Metres beside its plan from which on the robot takes a new one in any case.
+ASTRAY = 0.3
 
 
 @dataclass
@@ -193,18 +197,20 @@ class Navigator:
             return self._end(Status.ABORTED, with_reason(STALE_SENSOR_TEXT, stale))
         return Decision(pursuit.status, Twist2(), STALE_SENSOR_TEXT)
 
-    def _plan(self, pursuit: _Pursuit, now: float, base_in_map: Pose2) -> bool:
-        """Makes a new plan and hands it to the controller; False if there is none, the reason is noted."""
+    def _plan(self, pursuit: _Pursuit, now: float, base_in_map: Pose2, is_under_way: bool = False) -> bool:
+        """Makes a plan and hands it to the controller; False if there is none, the reason is noted."""
         frequency = self._settings.move_base.planner_frequency
         pursuit.next_plan = now + (1.0 / frequency if frequency > 0.0 else math.inf)
+        self._planned_at = now
         try:
-            self._plan_xy = self.make_plan(base_in_map, pursuit.goal)
+            plan_xy = self.make_plan(base_in_map, pursuit.goal)
         except PlanningError as error:
             pursuit.reason = error
             self._plan_xy = np.empty((0, 2))
             return False
-        finally:
-            self._planned_at = now
+        if is_under_way and not self._is_worth_changing(plan_xy, base_in_map):
+            return True
+        self._plan_xy = plan_xy
         end_x, end_y = map(float, self._plan_xy[-1])
         self._controller.set_plan(self._plan_xy, Pose2(end_x, end_y, pursuit.goal.yaw))
         pursuit.status = Status.CONTROLLING
@@ -212,6 +218,14 @@ class Navigator:
         if pursuit.trigger is Trigger.PLANNING:
             pursuit.recovery_index = 0
         return True
+
+    def _is_worth_changing(self, plan_xy: np.ndarray, base_in_map: Pose2) -> bool:
+        left_xy = self._controller.plan_left_xy
+        if not len(self._plan_xy) or math.dist(left_xy[0], (base_in_map.x, base_in_map.y)) > ASTRAY:
+            return True
+        costmap = self.global_costmap
+        present, offered = (path_cost(costmap.costs, costmap.window, path) for path in (left_xy, plan_xy))
+        return offered < WORTH_CHANGING * present
 
     def _be_patient_with_planning(self, pursuit: _Pursuit, now: float) -> Decision:
         settings = self._settings.move_base
@@ -229,7 +243,7 @@ class Navigator:
         if self._controller.is_goal_reached(base_in_map, twist):
             return self._end(Status.SUCCEEDED, SUCCESS_TEXT)
         if now >= pursuit.next_plan - TIME_TOLERANCE:
-            self._plan(pursuit, now, base_in_map)
+            self._plan(pursuit, now, base_in_map, is_under_way=True)
         plan_xy = self._plan_xy if self._planned_at == now else None
         if 0.0 < settings.oscillation_timeout < now - pursuit.last_progress:
             pursuit.status, pursuit.trigger, pursuit.reason = Status.CLEARING, Trigger.OSCILLATION, None

@@ -16,6 +16,7 @@ from move_base_lite.errors import ControlError
 from planar import Pose2, Twist2, wrap
 
 ALIGNED_ANGLE = 0.3
+FOLLOWED_ANGLE = 0.1
 SHORTEST_HORIZON = 0.5
 
 
@@ -62,6 +63,11 @@ class Controller:
         )
 
     @property
+    def plan_left_xy(self) -> np.ndarray:
+        """The plan from the robot on: (N, 2), in the map."""
+        return self._tracking.ahead_xy if self._tracking else np.empty((0, 2))
+
+    @property
     def distance_left(self) -> float:
         """Metres of the plan still to drive."""
         return self._tracking.distance_left if self._tracking else 0.0
@@ -99,7 +105,7 @@ class Controller:
 
     def _find_another_way(self, error, base_in_local, twist, costmap, plan_xy) -> Control:
         """Where no arc is free: turns to the plan, or backs out of a contact."""
-        if abs(error) > ALIGNED_ANGLE:
+        if abs(error) > FOLLOWED_ANGLE:
             return self._turn(error, base_in_local, twist, costmap, plan_xy)
         if costmap.contacts(base_in_local):
             command = way_out(costmap, base_in_local)

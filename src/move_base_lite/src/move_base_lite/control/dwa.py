@@ -89,9 +89,10 @@ def best_trajectory(
 
 
 def velocity_samples(settings: DwaSettings, twist: Twist2, speed_limit: float, period: float) -> np.ndarray:
-    """Velocities (N, 2) as (v, omega) that the robot can have after ``period`` and that are fast enough.
+    """Velocities (N, 2) as (v, omega) that the robot can have after ``period`` and that move it on.
 
-    However small the acceleration, a robot at rest may start at ``min_vel_trans``.
+    Turning on the spot is left to the controller, which knows which way. However small the acceleration,
+    a robot at rest may start at ``min_vel_trans``.
     """
     horizon = period if settings.use_dwa else settings.sim_time
     highest = min(settings.max_vel_x, settings.max_vel_trans, speed_limit)
@@ -100,10 +101,7 @@ def velocity_samples(settings: DwaSettings, twist: Twist2, speed_limit: float, p
     limit = settings.max_vel_theta
     omega = _spaced(twist.omega, settings.acc_lim_theta * horizon, -limit, limit, settings.vth_samples)
     samples = np.stack(np.meshgrid(v, omega, indexing="ij"), axis=-1).reshape(-1, 2)
-    too_slow = (np.abs(samples[:, 0]) < settings.min_vel_trans - 1e-4) & (
-        np.abs(samples[:, 1]) < settings.min_vel_theta - 1e-4
-    )
-    return samples[~too_slow]
+    return samples[np.abs(samples[:, 0]) >= settings.min_vel_trans - 1e-4]
 
 
 def _spaced(now: float, change: float, lowest: float, highest: float, count: int) -> np.ndarray:

@@ -1,5 +1,5 @@
 """Global planning: a way through a costmap."""
 
-from move_base_lite.planning.planner import GlobalPlanner, PlannerSettings
+from move_base_lite.planning.planner import GlobalPlanner, PlannerSettings, path_cost
 
-__all__ = ["GlobalPlanner", "PlannerSettings"]
+__all__ = ["GlobalPlanner", "PlannerSettings", "path_cost"]

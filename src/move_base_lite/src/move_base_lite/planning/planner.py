@@ -1,5 +1,6 @@
 """The global planner: navfn's costs, a wavefront from the robot, a path down its gradient from the goal."""
 
+import math
 from dataclasses import dataclass
 from typing import Tuple
 
@@ -8,7 +9,7 @@ import numpy as np
 from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, Window
 from move_base_lite.errors import GoalBlocked, NoPath, OutOfMap, StartBlocked
 from move_base_lite.planning.nearest import nearest_passable
-from move_base_lite.planning.wavefront import descend, spread, traversal_costs
+from move_base_lite.planning.wavefront import FACTOR, NEUTRAL, descend, spread, traversal_costs
 from planar.settings import check
 
 STEP_CELLS = 0.5
@@ -76,6 +77,16 @@ class GlobalPlanner:
         return window.cell_of(*point_xy)
 
 
+def path_cost(costs: np.ndarray, window: Window, path_xy: np.ndarray) -> float:
+    """What navfn would pay for a path (N, 2), in neutral metres; inf where it cannot be driven."""
+    cells = np.floor((path_xy - (window.origin_x, window.origin_y)) / window.resolution).astype(np.int64)
+    below = costs[cells[1:, 1], cells[1:, 0]].astype(float)
+    if (below >= INSCRIBED).any():
+        return math.inf
+    lengths = np.linalg.norm(np.diff(path_xy, axis=0), axis=1)
+    return float((lengths * (1.0 + FACTOR / NEUTRAL * below)).sum())
+
+
 def _named(what: str, point_xy: Tuple[float, float]) -> str:
     return f"the {what} at ({point_xy[0]:.2f}, {point_xy[1]:.2f})"
 
@@ -94,8 +105,3 @@ def _centre(window: Window, cell: Tuple[int, int]) -> Tuple[float, float]:
         window.origin_x + (col + 0.5) * window.resolution,
         window.origin_y + (row + 0.5) * window.resolution,
     )
-
-
-def path_length(path_xy: np.ndarray) -> float:
-    """Metres along a path (N, 2)."""
-    return float(np.linalg.norm(np.diff(path_xy, axis=0), axis=1).sum()) if len(path_xy) > 1 else 0.0
