@@ -29,7 +29,7 @@ PR_SET_CHILD_SUBREAPER = 36
 
 @dataclass(frozen=True)
 class Outcome:
-    """How many tests of a test file passed, failed, were skipped; ``reason`` if it did not run as it should."""
+    """How many tests of a file passed, failed, were skipped; ``reason`` if it did not run as it should."""
 
     passed: int = 0
     failed: int = 0
