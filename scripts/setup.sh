@@ -80,7 +80,8 @@ kernel_inputs() { (cd "$root" && grep -rl --include='*.py' numba src | sort | xa
 # -- what can be told before anything is changed -------------------------------------------------------
 
 check_place() {
-    if [[ $root =~ [^A-Za-z0-9_./+@%=,~-] ]]; then
+    local refused='[][:space:]"$;:\*?<>|!{}`&()#'"'[]"
+    if [[ $root =~ $refused ]]; then
         fail "catkin cannot build in '$root': move the project to a path without spaces and special characters"
     fi
     ((${#root} < 200)) || fail "catkin cannot build in a path of ${#root} characters: move the project to a shorter one"
