@@ -4,11 +4,19 @@ import math
 
 import numpy as np
 import pytest
-from move_base_lite.costmap import FREE, INSCRIBED, LETHAL, UNKNOWN, CostmapSettings, LayeredCostmap, occupancy_of
+
+from move_base_lite.costmap import (
+    FREE,
+    INSCRIBED,
+    LETHAL,
+    UNKNOWN,
+    CostmapSettings,
+    LayeredCostmap,
+    occupancy_of,
+)
 from move_base_lite.costmap.inflation import InflationSettings
 from move_base_lite.costmap.obstacle_layer import ObstacleSettings
 from move_base_lite.costmap.static_layer import StaticSettings
-
 from planar import OccupancyGrid, Pose2, Scan, SettingsError, grid_from_picture
 
 INFLATION = InflationSettings(inflation_radius=0.5, cost_scaling_factor=5.0)

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from scipy.ndimage import label
+
 from move_base_lite import GoalBlocked, NoPath, OutOfMap, StartBlocked
 from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, Window
 from move_base_lite.planning import GlobalPlanner, PlannerSettings
-from scipy.ndimage import label
 
 PICTURES = {
     "empty": """
@@ -116,7 +117,9 @@ def test_a_way_round_is_preferred_to_one_along_an_obstacle():
     picture = "###########\n#.........#\n#.........#\n#.5555555.#\n#.5#####5.#\n#.5555555.#\n###########"
     costs = costs_of(picture)
     window = window_of(costs)
-    path_xy = GlobalPlanner(PlannerSettings()).plan(costs, window, centre(window, (3, 1)), centre(window, (3, 9)))
+    path_xy = GlobalPlanner(PlannerSettings()).plan(
+        costs, window, centre(window, (3, 1)), centre(window, (3, 9))
+    )
     assert path_xy[:, 1].max() > centre(window, (4, 0))[1]
 
 

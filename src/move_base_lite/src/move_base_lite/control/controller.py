@@ -107,11 +107,16 @@ class Controller:
         """Where no arc is free: turns to the plan, or backs out of a contact."""
         if abs(error) > FOLLOWED_ANGLE:
             return self._turn(error, base_in_local, twist, costmap, plan_xy)
-        if costmap.contacts(base_in_local):
-            command = way_out(costmap, base_in_local)
-            if command is not None:
-                return Control(command, base_in_local.as_array()[None, :], plan_xy)
-        raise ControlError("every velocity within reach leads into an obstacle")
+        return self._back_out(
+            base_in_local, costmap, plan_xy, "every velocity within reach leads into an obstacle"
+        )
+
+    def _back_out(self, base_in_local, costmap, plan_xy, otherwise: str) -> Control:
+        """Leaves a contact the way that lessens it. Raises ControlError with the given text if it cannot."""
+        command = way_out(costmap, base_in_local) if costmap.contacts(base_in_local) else None
+        if command is None:
+            raise ControlError(otherwise)
+        return Control(command, base_in_local.as_array()[None, :], plan_xy)
 
     def _is_near(self, base_in_map: Pose2) -> bool:
         is_near = base_in_map.distance_to(self._goal_in_map) <= self._settings.xy_goal_tolerance
@@ -137,13 +142,11 @@ class Controller:
 
     def _turn(self, error, base_in_local, twist, costmap, plan_xy) -> Control:
         """Turns on the spot, the other way round if this one is obstructed."""
-        contacts = costmap.contacts(base_in_local)
         for angle in (error, error - math.copysign(2.0 * math.pi, error)):
-            turned = [base_in_local @ Pose2(0.0, 0.0, angle * part) for part in np.linspace(0.0, 1.0, 8)]
-            if all(costmap.contacts(pose) <= contacts for pose in turned[1:]):
+            if costmap.has_room_to_turn(base_in_local, angle):
                 command = rotation_towards(self._settings, angle, twist, self._period)
-                return Control(command, np.array([pose.as_array() for pose in turned]), plan_xy)
-        raise ControlError("there is no room to turn")
+                return Control(command, base_in_local.as_array()[None, :], plan_xy)
+        return self._back_out(base_in_local, costmap, plan_xy, "there is no room to turn")
 
     def _speed_limit(self) -> float:
         """Slow enough to stop at the plan's end, braking gently."""

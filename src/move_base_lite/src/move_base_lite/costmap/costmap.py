@@ -1,5 +1,6 @@
 """A costmap in layers: the map, what the laser sees, and inflation over both."""
 
+import math
 from dataclasses import dataclass, field
 from typing import Optional, Tuple
 
@@ -14,6 +15,9 @@ from move_base_lite.costmap.static_layer import StaticSettings, static_costs
 from move_base_lite.costmap.window import Bounds, Window
 from planar import OccupancyGrid, Pose2, Scan
 from planar.settings import check
+
+# Radians between the headings at which a turn on the spot is checked.
+TURN_STEP = 0.1
 
 
 @dataclass(frozen=True)
@@ -104,6 +108,18 @@ class LayeredCostmap:
     def contacts(self, pose: Pose2) -> int:
         """At how many points of its outline the robot at ``pose`` touches something."""
         return contacts(self.costs, self.window, self.outline_xy, pose)
+
+    def has_room_to_turn(self, pose: Pose2, angle: float) -> bool:
+        """Whether the robot at ``pose`` can turn so far on the spot without touching more than it does.
+
+        A footprint that is round to within a cell needs no room.
+        """
+        spread = self.footprint.circumscribed_radius - self.footprint.inscribed_radius
+        if spread < self.window.resolution:
+            return True
+        turns = np.linspace(0.0, angle, math.ceil(abs(angle) / TURN_STEP) + 1)[1:]
+        touching = self.contacts(pose)
+        return all(self.contacts(pose @ Pose2(0.0, 0.0, float(turn))) <= touching for turn in turns)
 
     def clear_outside(self, base_in_frame: Pose2, side: float) -> None:
         """Forgets obstacles (not the map) outside a square of ``side`` metres round the robot."""

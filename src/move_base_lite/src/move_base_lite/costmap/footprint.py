@@ -97,11 +97,14 @@ def footprint_cost(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw)
 
 @numba.njit(cache=True)
 def count_contacts(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw):
-    """Kernel: how many points of the outline lie in obstacles or outside the costmap."""
+    """Kernel: how many points of the outline touch something, and one if the centre is too near to it."""
     rows, cols = costs.shape
     c, s = math.cos(yaw) / resolution, math.sin(yaw) / resolution
     base_col, base_row = (x - origin_x) / resolution, (y - origin_y) / resolution
+    col, row = math.floor(base_col), math.floor(base_row)
     count = 0
+    if row < 0 or row >= rows or col < 0 or col >= cols or costs[row, col] >= INSCRIBED:
+        count = 1
     for i in range(outline_xy.shape[0]):
         col = math.floor(base_col + c * outline_xy[i, 0] - s * outline_xy[i, 1])
         row = math.floor(base_row + s * outline_xy[i, 0] + c * outline_xy[i, 1])

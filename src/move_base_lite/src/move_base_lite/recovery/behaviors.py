@@ -8,7 +8,7 @@ from move_base_lite.costmap import LayeredCostmap
 from planar import Pose2, SettingsError, Twist2, wrap
 from planar.settings import check
 
-LOOKAHEAD_ANGLES = (0.1, 0.2, 0.3, 0.4)
+LOOKAHEAD_ANGLE = 0.4
 
 
 @dataclass(frozen=True)
@@ -91,9 +91,8 @@ class Rotate(Recovery):
         self._last_yaw = base.yaw
         if self._left <= settings.yaw_goal_tolerance:
             return None
-        for angle in LOOKAHEAD_ANGLES:
-            if context.local_costmap.collides(base @ Pose2(0.0, 0.0, min(angle, self._left))):
-                return None
+        if not context.local_costmap.has_room_to_turn(base, min(LOOKAHEAD_ANGLE, self._left)):
+            return None
         stoppable = math.sqrt(2.0 * settings.acc_lim_theta * self._left)
         speed = min(max(stoppable, settings.min_in_place_vel_theta), settings.max_vel_theta)
         return Twist2(0.0, min(speed, context.twist.omega + settings.acc_lim_theta * context.period))

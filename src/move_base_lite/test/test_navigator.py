@@ -1,0 +1,247 @@
+"""The Navigator on a kinematic robot: it arrives, goes round, gives up with a reason, and obeys at once."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from move_base_lite import Navigator, Status, load_settings
+from planar import OCCUPIED, OccupancyGrid, Pose2, Scan, Twist2, wrap
+from planar.ray_casting import cast_rays
+
+PRESET = Path(__file__).parents[1] / "config" / "turtlebot.yaml"
+SETTINGS = load_settings(PRESET)
+BODY_RADIUS = 0.178
+PERIOD = 0.1
+
+
+def room(width, height):
+    """An empty room of so many metres, with walls round it."""
+    cells = np.zeros((round(height / 0.05), round(width / 0.05)), dtype=np.int8)
+    cells[:2], cells[-2:], cells[:, :2], cells[:, -2:] = (OCCUPIED,) * 4
+    return OccupancyGrid(cells, 0.05)
+
+
+def with_block(grid, x_min, y_min, x_max, y_max, value=OCCUPIED):
+    cells = grid.cells.copy()
+    rows, cols = (
+        slice(round(y_min / 0.05), round(y_max / 0.05)),
+        slice(round(x_min / 0.05), round(x_max / 0.05)),
+    )
+    cells[rows, cols] = value
+    return replace(grid, cells=cells)
+
+
+def two_rooms(door):
+    """Two rooms of 3 m by 4 m, side by side, with a door of that width in the wall between them."""
+    return with_block(
+        with_block(room(6.1, 4.0), 3.0, 0.0, 3.1, 4.0), 3.0, 2.0 - door / 2, 3.1, 2.0 + door / 2, 0
+    )
+
+
+class Robot:
+    """A unicycle of limited acceleration, with odometry off by a turn and a laser of 180 beams."""
+
+    ODOM_IN_MAP = Pose2(0.4, -0.3, 0.8)
+
+    def __init__(self, true_grid, pose):
+        self.grid, self.pose, self.twist, self.now, self.clearance = true_grid, pose, Twist2(), 0.0, math.inf
+        self.has_laser = True
+
+    def scan(self):
+        angles = 2.0 * math.pi / 180 * np.arange(180)
+        ranges = cast_rays(self.grid, self.pose, angles, 8.0)
+        return Scan(self.now, 0.0, 2.0 * math.pi / 180, np.where(ranges >= 8.0, np.inf, ranges), 0.1, 8.0)
+
+    def tick(self, navigator):
+        decision = navigator.tick(
+            self.now,
+            self.pose,
+            self.ODOM_IN_MAP.inverse() @ self.pose,
+            self.twist,
+            self.scan() if self.has_laser else None,
+        )
+        self.drive(decision.command or Twist2())
+        return decision
+
+    def drive(self, command):
+        self.now += PERIOD
+        v = self.twist.v + np.clip(command.v - self.twist.v, -0.2, 0.2)
+        omega = self.twist.omega + np.clip(command.omega - self.twist.omega, -0.5, 0.5)
+        self.twist = Twist2(float(v), float(omega))
+        angle = self.twist.omega * PERIOD
+        self.pose = self.pose @ Pose2(
+            v * PERIOD * math.cos(angle / 2), v * PERIOD * math.sin(angle / 2), angle
+        )
+        obstacles_xy = self.grid.points_of(np.argwhere(self.grid.cells == OCCUPIED))
+        gaps = np.maximum(np.abs(obstacles_xy - (self.pose.x, self.pose.y)) - self.grid.resolution / 2, 0.0)
+        self.clearance = min(self.clearance, float(np.hypot(*gaps.T).min()) - BODY_RADIUS)
+
+
+def drive_to_end(robot, navigator, seconds=90.0):
+    """All decisions until the goal has ended."""
+    decisions = []
+    while robot.now < seconds:
+        decisions.append(robot.tick(navigator))
+        if decisions[-1].status.is_final:
+            return decisions
+    raise AssertionError(f"not there after {seconds} s: {decisions[-1]}")
+
+
+def assert_arrived(robot, decisions, goal):
+    assert decisions[-1].status is Status.SUCCEEDED, decisions[-1].text
+    assert decisions[-1].text == "Goal reached."
+    assert decisions[-1].command == Twist2()
+    assert robot.pose.distance_to(goal) <= SETTINGS.controller.xy_goal_tolerance + 0.05
+    assert abs(wrap(robot.pose.yaw - goal.yaw)) <= SETTINGS.controller.yaw_goal_tolerance + 0.05
+    assert robot.clearance > 0.0
+
+
+@pytest.mark.parametrize("door", [0.6, 0.7, 0.9])
+@pytest.mark.parametrize("start", [Pose2(0.6, 0.6, 3.0), Pose2(2.6, 3.5, -1.5)])
+def test_the_robot_passes_a_door(door, start):
+    grid, goal = two_rooms(door), Pose2(5.4, 3.4, 1.0)
+    robot, navigator = Robot(grid, start), Navigator(SETTINGS, grid)
+    navigator.set_goal(goal)
+    decisions = drive_to_end(robot, navigator)
+    assert_arrived(robot, decisions, goal)
+    assert not any(decision.recovery for decision in decisions)
+
+
+def test_the_robot_leaves_a_trap_whose_end_is_near_the_goal():
+    grid = room(6.0, 5.0)
+    for block in ((4.0, 1.0, 4.1, 4.0), (2.0, 1.0, 4.1, 1.1), (2.0, 3.9, 4.1, 4.0)):
+        grid = with_block(grid, *block)
+    goal = Pose2(5.0, 2.5)
+    robot, navigator = Robot(grid, Pose2(3.5, 2.5)), Navigator(SETTINGS, grid)
+    navigator.set_goal(goal)
+    assert_arrived(robot, drive_to_end(robot, navigator), goal)
+
+
+def test_a_box_that_the_map_does_not_show_is_driven_around():
+    grid, goal = room(6.0, 4.0), Pose2(5.4, 2.0)
+    robot = Robot(with_block(grid, 2.8, 1.7, 3.2, 2.3), Pose2(0.6, 2.0))
+    navigator = Navigator(SETTINGS, grid)
+    navigator.set_goal(goal)
+    decisions = drive_to_end(robot, navigator)
+    assert_arrived(robot, decisions, goal)
+    assert not any(decision.recovery for decision in decisions)
+
+
+def test_a_box_in_the_door_stops_the_robot_until_it_is_taken_away():
+    grid, goal = two_rooms(0.9), Pose2(5.4, 2.0)
+    robot, navigator = Robot(with_block(grid, 2.8, 1.4, 3.0, 2.6), Pose2(0.8, 2.0)), Navigator(SETTINGS, grid)
+    navigator.set_goal(goal)
+    while robot.now < 12.0:
+        assert not robot.tick(navigator).status.is_final
+    assert robot.pose.x < 2.8
+    robot.grid = grid
+    assert_arrived(robot, drive_to_end(robot, navigator), goal)
+
+
+def test_a_goal_that_nothing_leads_to_is_given_up_after_all_recoveries_with_a_reason():
+    grid = two_rooms(0.0)
+    robot, navigator = Robot(grid, Pose2(1.0, 2.0)), Navigator(SETTINGS, grid)
+    navigator.set_goal(Pose2(5.0, 2.0))
+    decisions = drive_to_end(robot, navigator)
+    assert decisions[-1].status is Status.ABORTED
+    assert decisions[-1].text == (
+        "Failed to find a valid plan. Even after executing recovery behaviors. "
+        "[code=NO_PATH: no way leads from the robot at (1.00, 2.00) to the goal at (5.00, 2.00)]"
+    )
+    recoveries = [decision.recovery for decision in decisions if decision.recovery]
+    assert [(recovery.name, recovery.index) for recovery in recoveries] == [
+        ("conservative_reset", 0),
+        ("rotate_recovery", 1),
+        ("aggressive_reset", 2),
+        ("rotate_recovery_again", 3),
+    ]
+
+
+@pytest.mark.parametrize(
+    "goal, code",
+    [(Pose2(3.05, 1.0), "GOAL_BLOCKED"), (Pose2(2.9, 1.0), "GOAL_BLOCKED"), (Pose2(9.0, 1.0), "OUT_OF_MAP")],
+)
+def test_a_goal_that_can_never_be_stood_on_is_given_up_at_once(goal, code):
+    grid = two_rooms(0.9)
+    robot, navigator = Robot(grid, Pose2(1.0, 2.0)), Navigator(SETTINGS, grid)
+    navigator.set_goal(goal)
+    decision = robot.tick(navigator)
+    assert decision.status is Status.ABORTED
+    assert decision.text.startswith("Failed to find a valid plan. Even after executing recovery behaviors. ")
+    assert f"[code={code}: the goal at ({goal.x:.2f}, {goal.y:.2f}) is " in decision.text
+
+
+def test_a_cancelled_robot_is_told_to_stop_in_the_same_tick_whatever_it_is_doing():
+    grid = two_rooms(0.0)
+    for goal, wanted in [
+        (Pose2(2.0, 3.0), Status.CONTROLLING),
+        (Pose2(5.0, 2.0), Status.PLANNING),
+        (Pose2(5.0, 2.0), Status.CLEARING),
+    ]:
+        robot, navigator = Robot(grid, Pose2(1.0, 1.0)), Navigator(SETTINGS, grid)
+        navigator.set_goal(goal)
+        decision = robot.tick(navigator)
+        while decision.status is not wanted or (wanted is Status.CLEARING and decision.command == Twist2()):
+            decision = robot.tick(navigator)
+        navigator.cancel()
+        decision = robot.tick(navigator)
+        assert (decision.status, decision.command) == (Status.CANCELLED, Twist2())
+        assert robot.tick(navigator).status is Status.IDLE
+        assert robot.tick(navigator).command is None
+
+
+def test_a_new_goal_is_taken_over_without_stopping():
+    grid, goal = room(6.0, 4.0), Pose2(5.4, 3.0)
+    robot, navigator = Robot(grid, Pose2(0.6, 2.0)), Navigator(SETTINGS, grid)
+    navigator.set_goal(Pose2(5.4, 2.0))
+    while robot.twist.v < 0.4:
+        robot.tick(navigator)
+    navigator.set_goal(goal)
+    assert robot.tick(navigator).command.v > 0.2
+    assert_arrived(robot, drive_to_end(robot, navigator), goal)
+
+
+def test_an_ended_goal_says_so_once_and_leaves_the_robot_alone():
+    grid = room(3.0, 3.0)
+    robot, navigator = Robot(grid, Pose2(1.5, 1.5)), Navigator(SETTINGS, grid)
+    navigator.set_goal(Pose2(1.5, 1.5))
+    assert drive_to_end(robot, navigator)[-1].status is Status.SUCCEEDED
+    decision = robot.tick(navigator)
+    assert (decision.status, decision.command, navigator.is_active) == (Status.IDLE, None, False)
+
+
+def test_without_scans_the_robot_stops_and_after_a_while_gives_up():
+    grid = room(6.0, 4.0)
+    robot, navigator = Robot(grid, Pose2(0.6, 2.0)), Navigator(SETTINGS, grid)
+    navigator.set_goal(Pose2(5.4, 2.0))
+    while robot.twist.v < 0.4:
+        robot.tick(navigator)
+    robot.has_laser, lost_at = False, robot.now
+    while robot.now < lost_at + 2.0:
+        decision = robot.tick(navigator)
+    assert decision.command == Twist2()
+    assert decision.text.startswith("Sensor data is out of date")
+    decision = drive_to_end(robot, navigator)[-1]
+    assert decision.status is Status.ABORTED
+    assert "[code=SENSOR_STALE: no scan for 1" in decision.text
+
+
+def test_a_robot_pushed_against_a_wall_gets_away_from_it():
+    grid, goal = room(4.0, 4.0), Pose2(3.0, 2.0)
+    robot, navigator = Robot(grid, Pose2(0.1 + BODY_RADIUS + 0.01, 2.0, math.pi)), Navigator(SETTINGS, grid)
+    navigator.set_goal(goal)
+    assert_arrived(robot, drive_to_end(robot, navigator), goal)
+
+
+def test_the_same_run_gives_the_same_poses():
+    def poses():
+        grid = two_rooms(0.9)
+        robot, navigator = Robot(grid, Pose2(0.6, 0.6)), Navigator(SETTINGS, grid)
+        navigator.set_goal(Pose2(5.4, 3.4))
+        drive_to_end(robot, navigator)
+        return robot.now, robot.pose
+
+    assert poses() == poses()
