@@ -3,9 +3,9 @@ from pathlib import Path
 import pytest
 import yaml
 
-from amcl_lite.config import InitialPose, LocalizerSettings, NodeSettings, defaults, official_names
+from amcl_lite.config import InitialPose, LocalizerSettings, NodeSettings, defaults
 from planar import SettingsError
-from planar.settings import settings_from
+from planar.settings import official_names, settings_from
 
 CONFIG = Path(__file__).resolve().parents[1] / "config"
 

@@ -8,6 +8,8 @@ from amcl_lite.config import LocalizerSettings
 from amcl_lite.particles import LocalizationError
 from planar import Scan
 
+_MANY = 400
+
 
 @dataclass(frozen=True, eq=False)
 class Beams:
@@ -30,24 +32,30 @@ class Beams:
         return self.start_xy + np.column_stack((ranges * np.cos(directions), ranges * np.sin(directions)))
 
 
+def all_beams(scan: Scan, settings: LocalizerSettings) -> Beams:
+    """The beams of a scan, every so manyth if there are very many; else as ``evenly_spaced_beams``."""
+    return _beams(scan, settings, max(1, len(scan.ranges) // _MANY))
+
+
 def evenly_spaced_beams(scan: Scan, settings: LocalizerSettings) -> Beams:
     """About ``settings.beams`` beams of a scan; those without a measurement (NaN) are left out.
 
     Readings up to the least range mean "no return" (amcl), as do +inf and those beyond the largest range.
     Raises LocalizationError if the scan's limits make no sense.
     """
+    return _beams(scan, settings, _step(len(scan.ranges), settings))
+
+
+def _beams(scan: Scan, settings: LocalizerSettings, step: int) -> Beams:
     max_range, min_range = float(scan.range_max), float(scan.range_min)
     if settings.laser_max_range > 0.0:
         max_range = min(max_range, settings.laser_max_range)
     if settings.laser_min_range > 0.0:
         min_range = max(min_range, settings.laser_min_range)
     if not (max_range > 0.0 and min_range >= 0.0 and np.isfinite(max_range)):
-        raise LocalizationError(
-            f"a scan's limits make no sense: range_min {min_range}, range_max {max_range}"
-        )
-    chosen = slice(None, None, _step(len(scan.ranges), settings))
-    ranges = scan.ranges[chosen].astype(np.float64)
-    directions = scan.angles[chosen] + scan.laser_in_base.yaw
+        raise LocalizationError(f"a scan has senseless limits: range_min {min_range}, range_max {max_range}")
+    ranges = scan.ranges[::step].astype(np.float64)
+    directions = scan.angles[::step] + scan.laser_in_base.yaw
     measured = ~np.isnan(ranges)
     ranges, directions = ranges[measured], directions[measured]
     ranges = np.where((ranges <= min_range) | (ranges > max_range), max_range, ranges)
@@ -58,5 +66,5 @@ def evenly_spaced_beams(scan: Scan, settings: LocalizerSettings) -> Beams:
 def _step(count: int, settings: LocalizerSettings) -> int:
     """amcl's steps from one used beam to the next; they differ from model to model."""
     if settings.sensor_model == "likelihood_field_prob":
-        return max(1, -(-count // settings.beams))
-    return max(1, (count - 1) // (settings.beams - 1))
+        return max(1, -(-count // max(1, settings.beams)))
+    return max(1, (count - 1) // max(1, settings.beams - 1))

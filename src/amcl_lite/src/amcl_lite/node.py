@@ -16,10 +16,10 @@ from amcl_lite.config import (
     SENSOR_MODELS,
     InitialPose,
     NodeSettings,
-    official_names,
 )
 from amcl_lite.localizer import Estimate, Localizer, warm_up
 from planar import PlanarError, Pose2
+from planar.settings import official_names
 from planar_ros.messages import (
     GetMapArrays,
     OccupancyGridArrays,

@@ -1,32 +1,42 @@
 """KLD-sampling: a new particle set, as large as its spread requires (Probabilistic Robotics, table 8.4)."""
 
 import math
+from typing import Callable
 
 import numba
 import numpy as np
 
 from amcl_lite import bins
 from amcl_lite.config import LocalizerSettings
-from amcl_lite.particles import FreeSpace, ParticleSet, equally_weighted
+from amcl_lite.particles import ParticleSet, equally_weighted
+
+DrawPoses = Callable[[int, np.random.Generator], np.ndarray]
 
 
 def resampled(
     particles: ParticleSet,
     settings: LocalizerSettings,
-    injection_share: float,
-    free_space: FreeSpace,
+    injected_share: float,
+    draw_poses: DrawPoses,
     rng: np.random.Generator,
 ) -> ParticleSet:
-    """Particles drawn by weight until KLD-sampling has enough; about ``injection_share`` are random poses."""
+    """Particles drawn by weight until KLD-sampling has enough; about ``injected_share`` are new poses.
+
+    ``draw_poses(count, rng)`` makes the new poses, (count, 3).
+    """
     capacity = settings.max_particles
-    injected = rng.random(capacity) < injection_share
-    drawn = particles.poses[_drawn(particles.weights, rng.random(capacity))]
+    candidates = particles.poses[_drawn_independently(particles.weights, capacity, rng)]
+    injected = rng.random(capacity) < injected_share
     if injected.any():
-        drawn[injected] = free_space.draw(int(np.count_nonzero(injected)), rng)
+        candidates[injected] = draw_poses(int(np.count_nonzero(injected)), rng)
     count = _count_needed(
-        drawn, settings.min_particles, settings.max_particles, settings.kld_error, settings.kld_z
+        candidates, settings.min_particles, capacity, settings.kld_error, settings.kld_quantile
     )
-    return equally_weighted(drawn[:count])
+    if settings.resample_method == "systematic":
+        kept = ~injected[:count]
+        drawn = _drawn_systematically(particles.weights, int(np.count_nonzero(kept)), rng)
+        candidates[:count][kept] = particles.poses[drawn]
+    return equally_weighted(candidates[:count])
 
 
 def particles_needed(occupied_bins: int, minimum: int, maximum: int, error: float, z: float) -> int:
@@ -34,10 +44,19 @@ def particles_needed(occupied_bins: int, minimum: int, maximum: int, error: floa
     return _particles_needed(occupied_bins, minimum, maximum, error, z)
 
 
-def _drawn(weights: np.ndarray, uniform: np.ndarray) -> np.ndarray:
-    """Indices of particles, independently drawn by weight."""
+def _drawn_independently(weights: np.ndarray, count: int, rng: np.random.Generator) -> np.ndarray:
+    """Indices (count,) of particles, each drawn by weight on its own (amcl)."""
+    return _at_shares(weights, rng.random(count))
+
+
+def _drawn_systematically(weights: np.ndarray, count: int, rng: np.random.Generator) -> np.ndarray:
+    """Indices (count,) of particles drawn by weight with one random number for all (table 4.4)."""
+    return _at_shares(weights, (np.arange(count) + rng.random()) / max(count, 1))
+
+
+def _at_shares(weights: np.ndarray, shares: np.ndarray) -> np.ndarray:
     cumulative = np.cumsum(weights)
-    return np.minimum(np.searchsorted(cumulative, uniform * cumulative[-1], side="right"), len(weights) - 1)
+    return np.minimum(np.searchsorted(cumulative, shares * cumulative[-1], side="right"), len(weights) - 1)
 
 
 @numba.njit(cache=True)

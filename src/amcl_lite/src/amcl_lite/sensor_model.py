@@ -24,7 +24,7 @@ def log_likelihood_field(
     """
     return np.log1p(
         _sums_of_cubes(
-            *_in_cells(poses, beams, field),
+            *_in_cells(poses, beams.ends_xy, field),
             field.fit,
             field.fit_outside,
             settings.z_hit,
@@ -41,7 +41,7 @@ def log_likelihood_field_prob(
     With ``skip_beams``, those that too few particles can explain are left out: people and moved furniture;
     unless that would leave almost none, when it is the particles that are wrong.
     """
-    starts, ends = _in_cells(poses, beams, field)
+    starts, ends = _in_cells(poses, beams.ends_xy, field)
     if skip_beams:
         explained = field.fit_at_distance(settings.beam_skip_distance)
         shares = _shares_explaining(starts, ends, field.fit, explained)
@@ -72,15 +72,21 @@ def log_beam_model(
     )
 
 
+def mean_fits(poses: np.ndarray, ends_xy: np.ndarray, field: LikelihoodField) -> np.ndarray:
+    """How well (N,), 0 to 1, beams that end at ``ends_xy`` (M, 2) fit the map on average; no probability."""
+    starts, ends = _in_cells(poses, ends_xy, field)
+    return _sums_of_fits(starts, ends, field.fit) / max(len(ends), 1)
+
+
 def _random(beams: Beams, settings: LocalizerSettings) -> float:
     return settings.z_rand / beams.max_range
 
 
-def _in_cells(poses, beams, field):
+def _in_cells(poses, ends_xy, field):
     """Particles as (N, 4) col, row, cos, sin and beam ends as (M, 2), in cells of the field."""
     positions_xy = field.origin.inverse().transform_points(poses[:, :2]) / field.resolution
     yaws = poses[:, 2] - field.origin.yaw
-    return np.column_stack((positions_xy, np.cos(yaws), np.sin(yaws))), beams.ends_xy / field.resolution
+    return np.column_stack((positions_xy, np.cos(yaws), np.sin(yaws))), ends_xy / field.resolution
 
 
 @numba.njit(cache=True, inline="always")
@@ -90,6 +96,15 @@ def _fit_at(fit, outside, start, x, y):
     if col >= 0.0 and row >= 0.0 and col < fit.shape[1] and row < fit.shape[0]:
         return fit[int(row), int(col)]
     return outside
+
+
+@numba.njit(cache=True)
+def _sums_of_fits(starts, ends, fit):
+    sums = np.zeros(starts.shape[0])
+    for i in range(starts.shape[0]):
+        for j in range(ends.shape[0]):
+            sums[i] += _fit_at(fit, 0.0, starts[i], ends[j, 0], ends[j, 1])
+    return sums
 
 
 @numba.njit(cache=True)

@@ -13,18 +13,20 @@ from planar import Pose2
 _CONVERGED_WITHIN = 0.5
 
 
-def mean_of_best_cluster(particles: ParticleSet) -> Pose2:
-    """The mean of the heaviest group of particles: one of several hypotheses, never between two."""
+def best_cluster(particles: ParticleSet) -> ParticleSet:
+    """The heaviest group of particles: one of several hypotheses, never something between two."""
     labels = cluster_labels(particles.poses)
-    heaviest = int(np.argmax(np.bincount(labels, particles.weights)))
-    chosen = labels == heaviest
-    return mean_pose(particles.poses[chosen], particles.weights[chosen])
+    chosen = labels == int(np.argmax(np.bincount(labels, particles.weights)))
+    weights = particles.weights[chosen]
+    return ParticleSet(particles.poses[chosen], weights / weights.sum())
 
 
-def mean_pose(poses: np.ndarray, weights: np.ndarray) -> Pose2:
-    """The weighted mean of poses (N, 3); headings are averaged on the circle."""
-    x, y, c, s = _weighted_sums(poses, weights) / weights.sum()
-    return Pose2(float(x), float(y), math.atan2(s, c))
+def mean_pose(particles: ParticleSet) -> Pose2:
+    """The weighted mean of a set; headings are averaged on the circle."""
+    x, y = particles.weights @ particles.poses[:, :2]
+    yaws = particles.poses[:, 2]
+    yaw = math.atan2(particles.weights @ np.sin(yaws), particles.weights @ np.cos(yaws))
+    return Pose2(float(x), float(y), yaw)
 
 
 def covariance(particles: ParticleSet) -> np.ndarray:

@@ -4,7 +4,7 @@ import dataclasses
 import difflib
 import math
 import typing
-from typing import Any, Dict, List, Mapping, Tuple, Type, TypeVar
+from typing import Any, Dict, List, Mapping, Sequence, Tuple, Type, TypeVar, Union
 
 from planar.errors import SettingsError
 
@@ -51,6 +51,47 @@ def check(condition: bool, name: str, requirement: str, value: Any) -> None:
     """Raises SettingsError "<name> must be <requirement>, got <value>" unless ``condition`` holds."""
     if not condition:
         raise SettingsError(f"{name} must be {requirement}, got {value!r}")
+
+
+def parameter(
+    name: str,
+    default: Any,
+    meaning: str,
+    low: float = -math.inf,
+    high: float = math.inf,
+    choices: Sequence[str] = (),
+    dynamic: Union[None, bool, float] = None,
+) -> Any:
+    """A field of a settings dataclass that knows its parameter's official name, meaning and bounds.
+
+    ``dynamic``: whether dynamic_reconfigure may change it while the node runs (True); for a number, the
+    largest value that it then offers.
+    """
+    metadata = {
+        "name": name,
+        "meaning": meaning,
+        "low": low,
+        "high": high,
+        "choices": tuple(choices),
+        "dynamic": dynamic,
+    }
+    return dataclasses.field(default=default, metadata=metadata)
+
+
+def check_parameters(settings: Any) -> None:
+    """Raises SettingsError for the first field made by ``parameter`` that is out of its bounds."""
+    for field in dataclasses.fields(settings):
+        value, bounds = getattr(settings, field.name), field.metadata
+        if bounds["choices"]:
+            check(value in bounds["choices"], field.name, "one of " + ", ".join(bounds["choices"]), value)
+        elif isinstance(value, (int, float)):
+            within = f"between {bounds['low']:g} and {bounds['high']:g}"
+            check(bounds["low"] <= value <= bounds["high"], field.name, within, value)
+
+
+def official_names(kind: type) -> Dict[str, str]:
+    """The table official parameter name -> field of a dataclass whose fields are made by ``parameter``."""
+    return {field.metadata["name"]: field.name for field in dataclasses.fields(kind)}
 
 
 def _converted(kind: Any, value: Any, name: str) -> Any:

@@ -1,6 +1,7 @@
 """Scans that wait for their transforms."""
 
 import threading
+import traceback
 from typing import Callable, Dict, Tuple
 
 import rospy
@@ -75,9 +76,16 @@ class ScanQueue:
                 seen = self._news
                 waiting = list(self._waiting.items())
             for number, message in waiting:
-                if self._deal_with(message, is_overtaken=self._received - number >= self._size):
+                if self._is_done_with(message, is_overtaken=self._received - number >= self._size):
                     with self._has_news:
                         self._waiting.pop(number, None)
+
+    def _is_done_with(self, message, is_overtaken):
+        try:
+            return self._deal_with(message, is_overtaken)
+        except Exception:  # as rospy does with its callbacks: a fault must not silence the node for good
+            rospy.logerr("bad callback: %s", traceback.format_exc())
+            return True
 
     def _deal_with(self, message, is_overtaken):
         """Hands on or skips a scan; False if it must wait on."""

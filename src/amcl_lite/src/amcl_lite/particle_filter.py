@@ -1,0 +1,83 @@
+"""The particle filter: prediction, weighting and resampling of a particle set."""
+
+import math
+
+import numpy as np
+
+from amcl_lite.config import LocalizerSettings
+from amcl_lite.motion_model import moved
+from amcl_lite.particles import ParticleSet
+from amcl_lite.resampling import DrawPoses, resampled
+from amcl_lite.statistics import has_converged
+from planar import Pose2
+
+_TINY = 1e-300  # so that the logarithm of a weight exists
+
+
+class ParticleFilter:
+    """Particles that follow odometry and scans (Probabilistic Robotics, tables 8.2 and 8.3)."""
+
+    def __init__(self, particles: ParticleSet, rng: np.random.Generator):
+        self.particles = particles
+        self.has_converged = False
+        self._rng = rng
+        self._likelihood = _LikelihoodTrend()
+
+    def move(self, base_before: Pose2, base_now: Pose2, settings: LocalizerSettings) -> None:
+        """Moves the particles on as the odometry moved."""
+        poses = moved(self.particles.poses, base_before, base_now, settings, self._rng)
+        self.particles = ParticleSet(poses, self.particles.weights)
+
+    def weigh(self, log_likelihoods: np.ndarray, settings: LocalizerSettings) -> None:
+        """Multiplies the weights by likelihoods, given as logarithms (N,)."""
+        log_weights = log_likelihoods + np.log(np.maximum(self.particles.weights, _TINY))
+        largest = float(log_weights.max())
+        weights = np.exp(log_weights - largest)
+        total = float(weights.sum())
+        self.particles = ParticleSet(self.particles.poses, weights / total)
+        self._likelihood.take(math.exp(largest) * total, settings)
+
+    def resample(
+        self,
+        settings: LocalizerSettings,
+        draw_random: DrawPoses,
+        share_elsewhere: float,
+        draw_elsewhere: DrawPoses,
+    ) -> None:
+        """Draws particles anew by weight.
+
+        Some come from ``draw_random`` instead if the likelihood has fallen (augmented MCL), and a share of
+        ``share_elsewhere`` from ``draw_elsewhere``.
+        """
+        if settings.selective_resampling and 2.0 * self.particles.effective_size > self.particles.size:
+            return
+        if share_elsewhere > 0.0:
+            share, draw = share_elsewhere, draw_elsewhere
+        else:
+            share, draw = self._likelihood.take_fallen_share(), draw_random
+        self.particles = resampled(self.particles, settings, share, draw, self._rng)
+        self.has_converged = has_converged(self.particles)
+
+
+class _LikelihoodTrend:
+    """Short-term and long-term average of the likelihood, whose ratio tells a lost filter (table 8.3)."""
+
+    def __init__(self):
+        self._slow = self._fast = 0.0
+
+    def take(self, likelihood: float, settings: LocalizerSettings) -> None:
+        self._slow = _decayed(self._slow, likelihood, settings.recovery_alpha_slow)
+        self._fast = _decayed(self._fast, likelihood, settings.recovery_alpha_fast)
+
+    def take_fallen_share(self) -> float:
+        """By how much the short-term average has fallen below the other; if at all, both start anew."""
+        if self._fast >= self._slow:
+            return 0.0
+        share = 1.0 - self._fast / self._slow
+        self._slow = self._fast = 0.0
+        return share
+
+
+def _decayed(average: float, value: float, alpha: float) -> float:
+    """An exponential average; 0 means that there is none yet."""
+    return value if average == 0.0 else average + alpha * (value - average)

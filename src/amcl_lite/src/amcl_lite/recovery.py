@@ -1,0 +1,58 @@
+"""Where a lost robot may be: the places of the map that its scan fits."""
+
+from typing import List, Tuple
+
+import numpy as np
+
+from amcl_lite.beams import Beams
+from amcl_lite.likelihood_field import LikelihoodField
+from amcl_lite.particles import FreeSpace
+from amcl_lite.quality import quality_of
+from amcl_lite.scan_matching import matched
+from amcl_lite.sensor_model import mean_fits
+from planar import OccupancyGrid, Pose2
+
+_DRAWN, _MATCHED, _KEPT = 6000, 40, 10
+# How far a drawn pose may be from the place that scan matching pulls it to: metres, metres, radians.
+_REACH = np.diag((0.3, 0.3, 0.3)) ** 2
+# Particles are strewn this far about a hypothesis.
+_SPREAD = np.array((0.1, 0.1, 0.05))
+_BELIEVABLE = 0.5
+_BEAMS_TO_DRAW_BY = 30
+
+
+class Hypotheses:
+    """Some poses at which a scan fits the map, better ones first; ``poses``: (N, 3)."""
+
+    def __init__(self, poses: np.ndarray):
+        self.poses = poses
+
+    def __len__(self) -> int:
+        return len(self.poses)
+
+    def draw(self, count: int, rng: np.random.Generator) -> np.ndarray:
+        """Poses (count, 3) strewn about the hypotheses."""
+        chosen = self.poses[rng.integers(len(self.poses), size=count)]
+        return chosen + rng.standard_normal((count, 3)) * _SPREAD
+
+
+def find_hypotheses(
+    beams: Beams,
+    field: LikelihoodField,
+    grid: OccupancyGrid,
+    free_space: FreeSpace,
+    rng: np.random.Generator,
+) -> Hypotheses:
+    """Draws poses from the free space, pulls the best by scan matching, keeps those that are believable."""
+    ends_xy = beams.ends_xy
+    drawn = free_space.draw(_DRAWN, rng)
+    few = ends_xy[:: max(1, len(ends_xy) // _BEAMS_TO_DRAW_BY)]
+    best = drawn[np.argsort(-mean_fits(drawn, few, field), kind="stable")[:_MATCHED]]
+    found: List[Tuple[float, Pose2]] = []
+    for pose in best:
+        place = matched(Pose2.from_array(pose), _REACH, ends_xy, field)
+        probability = quality_of(place, beams, field, grid).probability
+        if probability > _BELIEVABLE and all(place.distance_to(other) > 0.2 for _, other in found):
+            found.append((probability, place))
+    found.sort(key=lambda pair: -pair[0])
+    return Hypotheses(np.array([place.as_array() for _, place in found[:_KEPT]]).reshape(-1, 3))

@@ -1,0 +1,103 @@
+"""Recorded drives of a simulated robot: what it measures, beside the truth."""
+
+import heapq
+import math
+from dataclasses import dataclass
+from typing import List, Optional
+
+import numpy as np
+
+from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, Scan, Twist2, wrap
+from planar.distance_field import distance_field
+from sim_bridge import Simulation, SimulationSettings, robot_named
+from sim_bridge.world import World
+
+# How far the driver keeps from walls, and how near to a waypoint it takes the next, metres.
+CLEARANCE, WAYPOINT_NEAR = 0.32, 0.25
+SPEED, TURN_SPEED = 0.45, 1.2
+
+
+@dataclass(frozen=True, eq=False)
+class Sighting:
+    """One scan of a drive, with odometry and truth at its stamp."""
+
+    scan: Scan
+    base_in_odom: Pose2
+    base_in_map: Pose2
+
+
+class RandomDriver:
+    """Drives, by the truth, to one random free place of a map after the other."""
+
+    def __init__(self, grid: OccupancyGrid, rng: np.random.Generator):
+        self._grid = grid
+        clearance = distance_field(grid.cells == OCCUPIED, grid.resolution)
+        self._open = (clearance > CLEARANCE) & (grid.cells == FREE)
+        self._rng = rng
+        self._waypoints: List[np.ndarray] = []
+
+    def command(self, base_in_map: Pose2) -> Twist2:
+        while self._waypoints and math.dist(self._waypoints[0], (base_in_map.x, base_in_map.y)) < WAYPOINT_NEAR:
+            self._waypoints.pop(0)
+        while not self._waypoints:
+            self._waypoints = self._way_to_somewhere(base_in_map)
+        x, y = self._waypoints[0]
+        bearing = wrap(math.atan2(y - base_in_map.y, x - base_in_map.x) - base_in_map.yaw)
+        speed = SPEED * max(0.0, math.cos(bearing)) ** 3 if abs(bearing) < 1.0 else 0.0
+        return Twist2(speed, float(np.clip(2.5 * bearing, -TURN_SPEED, TURN_SPEED)))
+
+    def _way_to_somewhere(self, base_in_map: Pose2) -> List[np.ndarray]:
+        start = tuple(self._grid.cells_of(np.array([[base_in_map.x, base_in_map.y]]))[0])
+        goals = np.argwhere(self._open)
+        cells = self._shortest_path(start, tuple(goals[self._rng.integers(len(goals))]))
+        return list(self._grid.points_of(np.array(cells[4::4]))) if len(cells) > 8 else []
+
+    def _shortest_path(self, start, goal) -> list:
+        """Cells from start to goal (A*, eight neighbours); empty if there is no way."""
+        came_from, cost, queue = {start: None}, {start: 0.0}, [(0.0, start)]
+        while queue:
+            _, cell = heapq.heappop(queue)
+            if cell == goal:
+                path = []
+                while cell is not None:
+                    path.append(cell)
+                    cell = came_from[cell]
+                return path[::-1]
+            for d_row in (-1, 0, 1):
+                for d_col in (-1, 0, 1):
+                    there = (cell[0] + d_row, cell[1] + d_col)
+                    if not (0 <= there[0] < self._grid.rows and 0 <= there[1] < self._grid.cols):
+                        continue
+                    if not self._open[there] and self._open[cell]:
+                        continue
+                    new_cost = cost[cell] + math.hypot(d_row, d_col)
+                    if new_cost < cost.get(there, math.inf):
+                        cost[there], came_from[there] = new_cost, cell
+                        heapq.heappush(queue, (new_cost + math.dist(there, goal), there))
+        return []
+
+
+def random_drive(
+    world: World,
+    grid: OccupancyGrid,
+    seed: int,
+    seconds: float,
+    settings: SimulationSettings = SimulationSettings(),
+    robot: str = "turtlebot_lidar",
+    start: Optional[Pose2] = None,
+) -> List[Sighting]:
+    """Drives about for some simulated seconds; the map frame is the world frame."""
+    simulation = Simulation(world, robot_named(robot), settings, seed, start or Pose2())
+    driver = RandomDriver(grid, np.random.default_rng([seed, 99]))
+    sightings, command = [], None
+    try:
+        for _ in range(round(seconds / simulation.step_seconds)):
+            seen = simulation.step(command)
+            if seen.scan is not None:
+                sightings.append(Sighting(seen.scan, seen.odometry.base_in_odom, seen.base_in_world))
+                command = driver.command(seen.base_in_world)
+            else:
+                command = None
+    finally:
+        simulation.close()
+    return sightings
