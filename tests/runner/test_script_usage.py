@@ -1,0 +1,28 @@
+"""The scripts tell their options before anything is installed; these tests hold that text to the parser."""
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from home_service.options import ROS_COMMANDS, parse
+
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+OPTION = re.compile(r"--[a-z][a-z-]*")
+
+
+@pytest.mark.parametrize("command", sorted(ROS_COMMANDS))
+def test_a_script_tells_the_options_that_its_command_takes(command, capsys):
+    with pytest.raises(SystemExit):
+        parse([command, "--help"])
+    usage = subprocess.run(
+        [SCRIPTS / f"{command}.sh", "--help"], check=True, capture_output=True, text=True
+    ).stdout
+    assert set(OPTION.findall(usage)) == set(OPTION.findall(capsys.readouterr().out))
+
+
+def test_the_set_up_refuses_an_option_that_it_does_not_know():
+    result = subprocess.run([SCRIPTS / "setup.sh", "--nonsense"], capture_output=True, text=True)
+    assert result.returncode == 2
+    assert "--nonsense" in result.stderr
