@@ -50,3 +50,9 @@ class SensorStale(NavigationError):
     """The scans have stopped, so the robot must not move."""
 
     code = "SENSOR_STALE"
+
+
+class RobotLost(NavigationError):
+    """It is not known where the robot is."""
+
+    code = "TF_ERROR"

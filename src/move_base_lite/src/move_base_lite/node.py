@@ -14,7 +14,7 @@ from std_srvs.srv import Empty, EmptyResponse
 
 from move_base_lite.config import settings_from_parameters
 from move_base_lite.decision import Decision, Status, Trigger, with_reason
-from move_base_lite.errors import NavigationError
+from move_base_lite.errors import NavigationError, RobotLost
 from move_base_lite.navigator import Navigator
 from move_base_lite.nodes.costmap_topics import CostmapTopics
 from move_base_lite.nodes.goals import InvalidGoal, goal_from_msg
@@ -52,7 +52,7 @@ class MoveBaseNode:
         self._navigator: Optional[Navigator] = None
         self._view: Optional[View] = None
         self._goal = Pose2()
-        self._last_status = Status.IDLE
+        self._lost_since = rospy.Time(0)
         self._advertise(parameters)
         self._transforms = Transforms()
         odom_topic = parameters.get("DWAPlannerROS", {}).get("odom_topic", "odom")
@@ -186,7 +186,7 @@ class MoveBaseNode:
             if view is None:
                 self._stand_still(now)
                 return
-            self._view = view
+            self._view, self._lost_since = view, now
             self._take_goal(now)
             decision = self._navigator.tick(
                 now.to_sec(), view.base_in_map, view.base_in_odom, view.twist, view.scan
@@ -207,15 +207,19 @@ class MoveBaseNode:
             self._navigator.set_map(grid)
 
     def _stand_still(self, now: rospy.Time):
-        """Without transforms nothing is safe but standing; a cancel still counts."""
-        missing = self._surroundings.missing_transform(now)
-        rospy.logwarn_throttle(WARN_SECONDS, f"waiting for {missing}")
+        """Without transforms nothing is safe but standing; goals still come, are cancelled and given up."""
+        missing = f"waiting for {self._surroundings.missing_transform(now)}"
+        rospy.logwarn_throttle(WARN_SECONDS, missing)
+        self._take_goal(now)
         if not self._server.is_active():
+            self._lost_since = now
             return
         self._command.publish(Twist())
-        if self._server.is_preempt_requested() and not self._server.is_new_goal_available():
+        if self._server.is_preempt_requested():
             self._navigator.forget_goal()
             self._server.set_preempted()
+        elif (now - self._lost_since).to_sec() > self._settings.move_base.sensor_patience:
+            self._refuse(with_reason(Trigger.CONTROLLING.value, RobotLost(missing)))
 
     def _take_goal(self, now: rospy.Time):
         """Accepts a new goal, which preempts the old one, or hears that the present one is cancelled."""
@@ -260,9 +264,6 @@ class MoveBaseNode:
             self._server.set_preempted()
         elif decision.text:
             rospy.logwarn_throttle(WARN_SECONDS, decision.text)
-        if decision.status is not self._last_status:
-            rospy.logdebug("%s -> %s", self._last_status.value, decision.status.value)
-            self._last_status = decision.status
 
     def _publish_plans(self, now: rospy.Time, decision: Decision):
         if decision.plan_xy is not None and self._plan.get_num_connections():
