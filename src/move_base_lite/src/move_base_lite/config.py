@@ -152,7 +152,11 @@ _DWA_IGNORED = {
     "odom_topic",
     "holonomic_robot",
     "restore_defaults",
-    "trans_stopped_velocity",
+    "prune_plan",
+    "scaling_speed",
+    "max_scaling_factor",
+    "oscillation_reset_dist",
+    "oscillation_reset_angle",
 }
 
 
@@ -200,7 +204,6 @@ _COSTMAP_IGNORED = {
     "circumscribed_radius",
     "footprint_topic",
     "published_footprint_topic",
-    "transform_tolerance",
 }
 _LAYER_KEYS = {
     "static": {item.name for item in fields(StaticSettings)} | {"first_map_only", "subscribe_to_updates"},

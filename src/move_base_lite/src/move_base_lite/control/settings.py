@@ -26,7 +26,6 @@ class DwaSettings:
     latch_xy_goal_tolerance: bool = False
     trans_stopped_vel: float = 0.1
     theta_stopped_vel: float = 0.1
-    prune_plan: bool = False
     sim_time: float = 1.7
     sim_granularity: float = 0.025
     angular_sim_granularity: float = 0.1
@@ -39,10 +38,6 @@ class DwaSettings:
     twirling_scale: float = 0.0
     forward_point_distance: float = 0.325
     cheat_factor: float = 1.0
-    scaling_speed: float = 0.25
-    max_scaling_factor: float = 0.2
-    oscillation_reset_dist: float = 0.05
-    oscillation_reset_angle: float = 0.2
     rotate_to_path_angle: float = 0.9
     heading_lookahead: float = 0.4
 

@@ -13,7 +13,6 @@ class StaticSettings:
     enabled: bool = True
     map_topic: str = "map"
     track_unknown_space: bool = True
-    use_maximum: bool = False
     lethal_cost_threshold: int = 100
     unknown_cost_value: int = -1
     trinary_costmap: bool = True

@@ -1,0 +1,150 @@
+"""Official parameters become settings; what is wrong or unknown is named."""
+
+from dataclasses import fields
+from pathlib import Path
+
+import pytest
+import yaml
+
+from move_base_lite import NavigatorSettings, load_settings, settings_from_parameters
+from move_base_lite.config import MoveBaseSettings
+from move_base_lite.control import DwaSettings
+from move_base_lite.costmap import CostmapSettings
+from move_base_lite.costmap.inflation import InflationSettings
+from move_base_lite.costmap.obstacle_layer import ObstacleSettings
+from move_base_lite.costmap.static_layer import StaticSettings
+from move_base_lite.planning import PlannerSettings
+from move_base_lite.recovery import RotateSettings
+from planar import SettingsError
+
+CONFIG = Path(__file__).resolve().parents[1] / "config"
+DOCUMENTED = yaml.safe_load((CONFIG / "move_base_lite.yaml").read_text())
+
+
+@pytest.mark.parametrize(
+    "kind, keys, not_there",
+    [
+        (MoveBaseSettings, [], set()),
+        (PlannerSettings, ["NavfnROS"], {"use_astar"}),
+        (DwaSettings, ["DWAPlannerROS"], set()),
+        (RotateSettings, ["TrajectoryPlannerROS"], set()),
+        (CostmapSettings, ["global_costmap"], {"static", "obstacles", "inflation"}),
+        (StaticSettings, ["global_costmap", "static_layer"], set()),
+        (InflationSettings, ["global_costmap", "inflation_layer"], set()),
+    ],
+)
+def test_each_default_is_documented_as_it_is(kind, keys, not_there):
+    tree = DOCUMENTED
+    for key in keys:
+        tree = tree[key]
+    for item in fields(kind):
+        if item.name not in not_there:
+            default = getattr(kind(), item.name)
+            assert tree[item.name] == (list(default) if isinstance(default, tuple) else default), item.name
+
+
+def test_each_default_of_the_obstacle_layer_is_documented_as_it_is():
+    layer = DOCUMENTED["global_costmap"]["obstacle_layer"]
+    documented = {**layer, **layer["scan"]}
+    assert {item.name: documented[item.name] for item in fields(ObstacleSettings)} == vars(ObstacleSettings())
+
+
+@pytest.mark.parametrize("name", ["move_base_lite.yaml", "turtlebot.yaml"])
+def test_a_shipped_file_is_read_without_a_warning(name):
+    _, warnings = settings_from_parameters(yaml.safe_load((CONFIG / name).read_text()))
+    assert warnings == []
+
+
+def test_the_preset_has_both_costmaps_as_they_are_needed():
+    settings = load_settings(CONFIG / "turtlebot.yaml")
+    assert settings.global_costmap.static.enabled
+    assert not settings.local_costmap.static.enabled
+    assert settings.local_costmap.rolling_window
+    for costmap in (settings.global_costmap, settings.local_costmap):
+        assert costmap.robot_radius == 0.2
+        assert costmap.transform_tolerance == 0.5
+        assert costmap.obstacles.inf_is_valid
+
+
+def test_files_in_the_manner_before_plugins_are_understood():
+    settings, _ = settings_from_parameters(
+        {
+            "global_costmap": {
+                "static_map": True,
+                "inflation_radius": 0.4,
+                "observation_sources": "scan bump",
+                "scan": {"data_type": "LaserScan", "topic": "/scan", "clearing": True},
+                "bump": {"data_type": "PointCloud2"},
+            }
+        }
+    )
+    costmap = settings.global_costmap
+    assert costmap.static.enabled
+    assert costmap.inflation.inflation_radius == 0.4
+    assert (costmap.obstacles.topic, costmap.obstacles.clearing) == ("/scan", True)
+
+
+def test_old_names_of_dwa_are_honoured_with_a_warning():
+    settings, warnings = settings_from_parameters(
+        {"DWAPlannerROS": {"max_trans_vel": 0.3, "max_rot_vel": 5.0}}
+    )
+    assert (settings.controller.max_vel_trans, settings.controller.max_vel_theta) == (0.3, 5.0)
+    assert "parameter DWAPlannerROS/max_trans_vel is deprecated, use max_vel_trans instead" in warnings
+
+
+def test_the_latch_is_accepted_at_both_levels():
+    for parameters in (
+        {"latch_xy_goal_tolerance": True},
+        {"DWAPlannerROS": {"latch_xy_goal_tolerance": True}},
+    ):
+        assert settings_from_parameters(parameters)[0].controller.latch_xy_goal_tolerance
+
+
+def test_a_footprint_may_be_written_as_text_and_stand_above_the_costmaps():
+    corners = "[[0.2, 0.1], [0.2, -0.1], [-0.2, 0.0]]"
+    settings, _ = settings_from_parameters({"footprint": corners})
+    assert settings.local_costmap.footprint == ((0.2, 0.1), (0.2, -0.1), (-0.2, 0.0))
+
+
+@pytest.mark.parametrize(
+    "parameters, text",
+    [
+        ({"controller_frequency": 0}, "/move_base/controller_frequency must be positive, got 0.0"),
+        ({"DWAPlannerROS": {"max_vel_x": "fast"}}, "/move_base/DWAPlannerROS/max_vel_x must be a number"),
+        ({"footprint": "here"}, "/move_base/global_costmap/footprint must be a list of points"),
+        (
+            {"recovery_behaviors": [{"name": "jump", "type": "jump/Jump"}]},
+            "recovery_behaviors: jump has an unknown type 'jump/Jump'",
+        ),
+    ],
+)
+def test_a_senseless_value_is_refused_by_its_full_name(parameters, text):
+    with pytest.raises(SettingsError) as caught:
+        settings_from_parameters(parameters, "/move_base/")
+    assert text in str(caught.value)
+
+
+def test_an_unknown_name_is_warned_of():
+    _, warnings = settings_from_parameters({"DWAPlannerROS": {"max_vel_z": 1.0}}, "/move_base/")
+    assert warnings == ["unknown parameter /move_base/DWAPlannerROS/max_vel_z"]
+
+
+def test_recoveries_come_in_the_configured_order():
+    listed = [
+        {"name": "look", "type": "rotate_recovery/RotateRecovery"},
+        {"name": "forget", "type": "clear_costmap_recovery/ClearCostmapRecovery"},
+    ]
+    settings, _ = settings_from_parameters({"recovery_behaviors": listed, "forget": {"reset_distance": 1.5}})
+    assert [recovery.name for recovery in settings.recoveries] == ["look", "forget"]
+    assert settings.recoveries[1].reset_distance == 1.5
+
+
+def test_no_parameters_at_all_mean_the_official_defaults():
+    settings, warnings = settings_from_parameters({})
+    assert settings.move_base == NavigatorSettings().move_base
+    assert settings.controller == NavigatorSettings().controller
+    assert [recovery.name for recovery in settings.recoveries][::2] == [
+        "conservative_reset",
+        "aggressive_reset",
+    ]
+    assert warnings == []
