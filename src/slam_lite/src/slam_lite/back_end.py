@@ -1,0 +1,162 @@
+"""The back end: key scans as nodes of a pose graph, and the search for loop closures among them.
+
+The search is cut out as a task that holds all it needs by value, so that it can run in another thread while
+the front end goes on: ``result = back_end.task().run()``, then ``back_end.adopt(result)``.
+"""
+
+from dataclasses import dataclass
+from typing import List, Sequence
+
+import numpy as np
+
+from planar import Pose2
+from slam_lite.config import MapperSettings
+from slam_lite.loop_closure import Closure, agree, candidates, find_closure
+from slam_lite.matching.local_map import LocalMap
+from slam_lite.pose_graph import Edge, EdgeList, Edges, chi_squares, edges_of, optimise
+from slam_lite.surface import Surface
+
+# Errors that a match's own information knows nothing of: between consecutive keys, and across a closure.
+_STEP_SIGMA_XY, _STEP_SIGMA_YAW = 0.01, 0.003
+_CLOSURE_SIGMA_XY, _CLOSURE_SIGMA_YAW = 0.02, 0.005
+# A new closure with a larger chi-square, or this many smaller ones, are worth an optimisation.
+_NEWS_CHI_SQUARE, _NEWS_COUNT = 10.0, 20
+_MAX_PENDING = 50
+
+
+@dataclass(frozen=True, eq=False)
+class ClosureResult:
+    """What a task found: new loop ``edges`` and the ``poses`` (N, 3) of the keys that it knew."""
+
+    edges: Sequence[Edge]
+    poses: np.ndarray
+    pending: Sequence[Closure]
+    moved: bool
+
+
+@dataclass(frozen=True, eq=False)
+class ClosureTask:
+    """The search for closures of the newest of some keys, and the optimisation if there is news."""
+
+    settings: MapperSettings
+    local_map: LocalMap
+    surfaces: Sequence[Surface]
+    poses: np.ndarray
+    edges: Edges
+    pending: Sequence[Closure]
+    unsettled: int
+
+    def run(self) -> ClosureResult:
+        """Does the work; touches nothing but ``local_map``."""
+        accepted: List[Closure] = []
+        pending = list(self.pending)
+        for candidate in candidates(len(self.poses) - 1, self.poses, self.edges, self.settings):
+            closure = find_closure(candidate, self.poses, self.surfaces, self.local_map, self.settings)
+            if closure is None:
+                continue
+            witnesses = [other for other in pending if agree(closure, other, self.poses)]
+            if closure.is_familiar or witnesses:
+                accepted += [closure, *witnesses]
+                pending = [other for other in pending if other not in witnesses]
+            else:
+                pending = [*pending[1 - _MAX_PENDING :], closure]
+        edges = [_widened(closure.edge, _CLOSURE_SIGMA_XY, _CLOSURE_SIGMA_YAW) for closure in accepted]
+        if not self._is_news(edges):
+            return ClosureResult(edges, self.poses, pending, False)
+        poses = optimise(self.poses, _with(self.edges, edges))
+        return ClosureResult(edges, poses, pending, True)
+
+    def _is_news(self, edges: Sequence[Edge]) -> bool:
+        if not edges:
+            return False
+        if self.unsettled + len(edges) >= _NEWS_COUNT:
+            return True
+        return bool(chi_squares(self.poses, edges_of(*edges)).max() > _NEWS_CHI_SQUARE)
+
+
+class BackEnd:
+    """Places key scans in the map; every key is a node of the graph."""
+
+    def __init__(self, settings: MapperSettings):
+        self._settings = settings
+        self._local_map = LocalMap()
+        self._surfaces: List[Surface] = []
+        self._edges = EdgeList()
+        self._poses = np.empty((64, 3))
+        self._pending: Sequence[Closure] = ()
+        self._unsettled = 0
+
+    def __len__(self) -> int:
+        return len(self._surfaces)
+
+    @property
+    def poses(self) -> np.ndarray:
+        """Poses (N, 3) of the keys in the map; a view that later calls change."""
+        return self._poses[: len(self)]
+
+    @property
+    def edges(self) -> Edges:
+        """All edges of the graph."""
+        return self._edges.view()
+
+    def pose(self, key: int) -> Pose2:
+        """Where a key lies in the map."""
+        return Pose2.from_array(self._poses[key])
+
+    def add_first(self, surface: Surface, base_in_map: Pose2) -> None:
+        """Adds a key that is tied to no other."""
+        n = len(self)
+        if n == len(self._poses):
+            self._poses = np.concatenate((self._poses, np.empty_like(self._poses)))
+        self._poses[n] = base_in_map.as_array()
+        self._surfaces.append(surface)
+
+    def add(self, surface: Surface, base_in_last: Pose2, information: np.ndarray) -> None:
+        """Adds a key seen from the last key at ``base_in_last``; ``information`` (3, 3) along last's axes."""
+        last = len(self) - 1
+        self.add_first(surface, self.pose(last) @ base_in_last)
+        edge = Edge(last, last + 1, base_in_last, information)
+        self._edges.append(_widened(edge, _STEP_SIGMA_XY, _STEP_SIGMA_YAW))
+
+    def task(self) -> ClosureTask:
+        """The search for closures of the newest key, as of now. One at a time: they share a local map."""
+        return ClosureTask(
+            self._settings,
+            self._local_map,
+            tuple(self._surfaces),
+            self.poses.copy(),
+            self.edges,
+            self._pending,
+            self._unsettled,
+        )
+
+    def adopt(self, result: ClosureResult) -> None:
+        """Takes over what a task found; keys added since move along with the last one that it knew."""
+        known = len(result.poses)
+        if result.moved:
+            last = known - 1
+            moved = Pose2.from_array(result.poses[last]) @ self.pose(last).inverse()
+            for key in range(known, len(self)):
+                self._poses[key] = (moved @ self.pose(key)).as_array()
+            self._poses[:known] = result.poses
+        for edge in result.edges:
+            self._edges.append(edge)
+        self._pending = result.pending
+        self._unsettled = 0 if result.moved else self._unsettled + len(result.edges)
+
+    def settle(self) -> None:
+        """Optimises to the end."""
+        self._poses[: len(self)] = optimise(self.poses, self.edges, tolerance=1e-5)
+        self._unsettled = 0
+
+
+def _with(edges: Edges, more: Sequence[Edge]) -> Edges:
+    pairs = zip(vars(edges).values(), vars(edges_of(*more)).values())
+    return Edges(*(np.concatenate(pair) for pair in pairs))
+
+
+def _widened(edge: Edge, sigma_xy: float, sigma_yaw: float) -> Edge:
+    """The edge with independent errors of its own added to those of the match."""
+    covariance = np.linalg.inv(edge.information + 1e-3 * np.eye(3))
+    covariance += np.diag([sigma_xy**2, sigma_xy**2, sigma_yaw**2])
+    return Edge(edge.first, edge.second, edge.second_in_first, np.linalg.inv(covariance), edge.is_loop)

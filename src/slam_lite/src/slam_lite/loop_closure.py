@@ -1,0 +1,170 @@
+"""Loop closures: recognising a place seen before, and being slow to believe it.
+
+Where to look follows from the graph: a place is a candidate if the way to it along the graph, on which errors
+add up, is much longer than the straight way (E. Olson, "Recognizing places using spectrally clustered local
+matches", RAS 2009). What a search finds must be a good match, the only good one in the window, and - unless
+the graph already knew the place to within a small window - be confirmed by a second closure nearby that says
+the same.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import List, Optional, Sequence
+
+import numpy as np
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import dijkstra
+
+from planar import Pose2
+from slam_lite.config import MapperSettings
+from slam_lite.matching.correlative import Window, search_far
+from slam_lite.matching.local_map import LocalMap
+from slam_lite.matching.refinement import refine
+from slam_lite.pose_graph import Edge, Edges
+from slam_lite.surface import Surface
+
+# Growth of the search window with the way along the graph: metres and radians per metre.
+_DRIFT_DISTANCE, _DRIFT_ANGLE = 0.04, 0.008
+_MIN_WINDOW, _MAX_WINDOW = Window(0.3, 0.1), Window(6.0, 0.8)
+# Closures found in windows up to this size need no second witness.
+_FAMILIAR_DISTANCE = 1.0
+# Key scans of the place (to each side) and of the robot's recent way that are put together for a match.
+_PLACE_KEYS, _RECENT_KEYS = 20, 12
+_PLACE_RADIUS = 6.0
+# A closure adds as much error as so many metres of way.
+_CLOSURE_LENGTH = 0.5
+_MAX_POINTS = 500
+_MAX_CANDIDATES = 3
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """Key ``place``, perhaps near key ``recent``, and the ``window`` in which to look for recent."""
+
+    place: int
+    recent: int
+    window: Window
+
+
+@dataclass(frozen=True, eq=False)
+class Closure:
+    """An edge from a place seen before to a recent key, with the detour (metres) that it shortens."""
+
+    edge: Edge
+    window: Window
+
+    @property
+    def is_familiar(self) -> bool:
+        """Whether the graph knew the place so well beforehand that the closure needs no second witness."""
+        return self.window.distance <= _FAMILIAR_DISTANCE
+
+
+def candidates(recent: int, poses: np.ndarray, edges: Edges, settings: MapperSettings) -> List[Candidate]:
+    """Places worth searching for key ``recent``, most likely first; ``poses`` (N, 3) of all keys."""
+    straight = np.hypot(poses[:, 0] - poses[recent, 0], poses[:, 1] - poses[recent, 1])
+    old = recent - np.arange(len(poses)) > settings.window_keys // 2
+    if not np.any(old & (straight < _MAX_WINDOW.distance + 2.0)):
+        return []
+    detours = _ways_along_graph(recent, poses, edges)
+    windows = np.clip(_DRIFT_DISTANCE * detours, _MIN_WINDOW.distance, _MAX_WINDOW.distance)
+    possible = (detours > settings.closure_min_detour + 2.0 * straight) & (straight < windows + 2.0)
+    keys = np.flatnonzero(possible & old)
+    if len(keys) == 0:
+        return []
+    stretches = np.split(keys, np.flatnonzero(np.diff(keys) > 5) + 1)
+    nearest = [int(stretch[np.argmin(straight[stretch])]) for stretch in stretches]
+    nearest.sort(key=lambda key: straight[key])
+    return [
+        Candidate(
+            key,
+            recent,
+            Window(
+                float(windows[key]),
+                float(np.clip(_DRIFT_ANGLE * detours[key], _MIN_WINDOW.angle, _MAX_WINDOW.angle)),
+            ),
+        )
+        for key in nearest[:_MAX_CANDIDATES]
+    ]
+
+
+def find_closure(
+    candidate: Candidate,
+    poses: np.ndarray,
+    surfaces: Sequence[Surface],
+    local_map: LocalMap,
+    settings: MapperSettings,
+) -> Optional[Closure]:
+    """The closure at a candidate, if a good and unambiguous match is there. ``local_map`` is overwritten."""
+    place, recent = candidate.place, candidate.recent
+    local_map.clear(Pose2())
+    for key in range(max(0, place - _PLACE_KEYS), min(recent - _RECENT_KEYS, place + _PLACE_KEYS + 1)):
+        in_place = _between(poses[place], poses[key])
+        if math.hypot(in_place.x, in_place.y) < _PLACE_RADIUS:
+            local_map.add(surfaces[key], in_place)
+    recent_surface = _joined(
+        [
+            (surfaces[key], _between(poses[recent], poses[key]))
+            for key in range(max(0, recent - _RECENT_KEYS + 1), recent + 1)
+        ]
+    )
+    if len(recent_surface) < 50:
+        return None
+    guess = _between(poses[place], poses[recent])
+    min_score = 0.7 * settings.closure_min_response
+    peak = search_far(_thinned(recent_surface, 200), local_map, guess, candidate.window, min_score, apart=0.6)
+    if peak is None or not peak.is_unique:
+        return None
+    match = refine(recent_surface, local_map, peak.base_pose, peak.base_pose, np.zeros((3, 3)))
+    if match.response < settings.closure_min_response:
+        return None
+    moved = peak.base_pose.inverse() @ match.base_pose
+    if math.hypot(moved.x, moved.y) > 0.3 or abs(moved.yaw) > 0.1:
+        return None
+    edge = Edge(place, recent, match.base_pose, match.information, is_loop=True)
+    return Closure(edge, candidate.window)
+
+
+def agree(one: Closure, other: Closure, poses: np.ndarray) -> bool:
+    """Whether two closures between the same two stretches of the way tell the same story.
+
+    Around the cycle place - recent - other recent - other place - place the errors must cancel, up to what
+    the front end may have drifted between them.
+    """
+    a, b = one.edge, other.edge
+    recent_step = _between(poses[a.second], poses[b.second])
+    place_step = _between(poses[a.first], poses[b.first])
+    way = math.hypot(recent_step.x, recent_step.y) + math.hypot(place_step.x, place_step.y)
+    if not 0.3 < way < 20.0:
+        return False
+    cycle = (a.second_in_first @ recent_step).inverse() @ (place_step @ b.second_in_first)
+    return math.hypot(cycle.x, cycle.y) < 0.15 + 0.02 * way and abs(cycle.yaw) < 0.05 + 0.005 * way
+
+
+def _ways_along_graph(start: int, poses: np.ndarray, edges: Edges) -> np.ndarray:
+    """Shortest way (N,), metres with a radian counted as one, along the edges from ``start`` to every key."""
+    first, second = edges.nodes.T
+    steps = edges.measured
+    lengths = np.hypot(steps[:, 0], steps[:, 1]) + np.abs(steps[:, 2]) + 1e-3
+    lengths[edges.is_loop] = _CLOSURE_LENGTH
+    graph = csr_matrix((lengths, (first, second)), shape=(len(poses), len(poses)))
+    return dijkstra(graph, directed=False, indices=start)
+
+
+def _between(first: np.ndarray, second: np.ndarray) -> Pose2:
+    return Pose2.from_array(first).inverse() @ Pose2.from_array(second)
+
+
+def _joined(parts) -> Surface:
+    points = [pose.transform_points(surface.points_xy) for surface, pose in parts]
+    normals = [Pose2(0.0, 0.0, pose.yaw).transform_points(surface.normals_xy) for surface, pose in parts]
+    return _thinned(
+        Surface(np.concatenate(points).astype(np.float32), np.concatenate(normals).astype(np.float32)),
+        _MAX_POINTS,
+    )
+
+
+def _thinned(surface: Surface, count: int) -> Surface:
+    step = max(1, len(surface) // count)
+    return Surface(
+        np.ascontiguousarray(surface.points_xy[::step]), np.ascontiguousarray(surface.normals_xy[::step])
+    )

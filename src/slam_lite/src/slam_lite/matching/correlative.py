@@ -1,0 +1,217 @@
+"""Correlative scan matching: the best pose of a whole window, found coarse to fine.
+
+E. Olson, "Real-time correlative scan matching", ICRA 2009: a coarse grid that holds maxima bounds from above
+what any pose inside a coarse cell can score, so that only promising cells are searched finely. With a grid
+for each halving of the cell this is the branch and bound of W. Hess et al., "Real-time loop closure in 2D
+LIDAR SLAM", ICRA 2016.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Optional
+
+import numba
+import numpy as np
+
+from planar import Pose2, wrap
+from slam_lite.matching.local_map import LocalMap
+from slam_lite.surface import Surface
+
+
+@dataclass(frozen=True)
+class Window:
+    """Poses to search: ``distance`` metres to each side in x and y, ``angle`` radians to each side."""
+
+    distance: float
+    angle: float
+
+
+@dataclass(frozen=True)
+class Peak:
+    """The best pose of a window and its ``score``, the mean likelihood, 0 to 1, of the surface's points.
+
+    ``is_unique``: no pose elsewhere in the window scores nearly as well.
+    """
+
+    base_pose: Pose2
+    score: float
+    is_unique: bool
+
+
+def search_near(surface: Surface, local_map: LocalMap, guess: Pose2, window: Window) -> Pose2:
+    """The best pose of a small window, in steps of two cells; deviation from the guess costs a little."""
+    best = _search_near(
+        local_map.likelihood,
+        local_map.resolution,
+        surface.points_xy,
+        local_map.to_grid(guess),
+        max(1, round(window.distance / (2.0 * local_map.resolution))),
+        max(1, round(window.angle / _NEAR_ANGLE_STEP)),
+    )
+    return local_map.from_grid(best)
+
+
+_NEAR_ANGLE_STEP = 0.02
+
+
+@numba.njit(cache=True, nogil=True)
+def _search_near(likelihood, resolution, points, guess, steps, angle_steps):
+    rows, cols = likelihood.shape
+    n = len(points)
+    best_score, best = -np.inf, guess.copy()
+    col, row = np.empty(n, dtype=np.int64), np.empty(n, dtype=np.int64)
+    for k in range(-angle_steps, angle_steps + 1):
+        yaw = guess[2] + k * _NEAR_ANGLE_STEP
+        _project(points, guess[0], guess[1], yaw, resolution, col, row)
+        for j in range(-steps, steps + 1):
+            for i in range(-steps, steps + 1):
+                total = 0
+                for p in range(n):
+                    q, r = col[p] + 2 * i, row[p] + 2 * j
+                    if 0 <= q < cols and 0 <= r < rows:
+                        total += likelihood[r, q]
+                penalty = 0.002 * (i * i + j * j) + 0.0001 * k * k
+                score = total / (255.0 * max(n, 1)) - penalty
+                if score > best_score:
+                    best_score = score
+                    best[0] = guess[0] + 2 * i * resolution
+                    best[1] = guess[1] + 2 * j * resolution
+                    best[2] = yaw
+    return best
+
+
+def search_far(
+    surface: Surface, local_map: LocalMap, guess: Pose2, window: Window, min_score: float, apart: float
+) -> Optional[Peak]:
+    """The best pose of a wide window, to one cell and about one cell's width at the far points.
+
+    None if no pose scores ``min_score``. Poses less than ``apart`` metres and 0.5 rad away are no rivals.
+    """
+    if len(surface) == 0:
+        return None
+    resolution = local_map.resolution
+    radius = float(np.sqrt(np.mean(np.sum(surface.points_xy.astype(np.float64) ** 2, axis=1))))
+    angle_step = 1.5 * resolution / max(radius, 1.0)
+    angle_steps = math.ceil(window.angle / angle_step)
+    cells = math.ceil(window.distance / resolution)
+    start = local_map.to_grid(guess)
+    maxima = _maxima(local_map.likelihood)
+    cols, rows = _rotated_cells(resolution, surface.points_xy, start, angle_step, angle_steps)
+    bounds = _coarse_bounds(maxima[-1], cols, rows, cells)
+    order = np.argsort(-bounds, axis=None, kind="stable")[: np.count_nonzero(bounds > min_score)]
+    search = (maxima, bounds, order, cols, rows, cells)
+    best, score = _climb(*search, min_score, 2.0, np.zeros(3, dtype=np.int64), 0, 0)
+    if score <= min_score:
+        return None
+    rivalling = _RIVAL_SHARE * score
+    _, rival = _climb(
+        *search, rivalling, rivalling, best, round(apart / resolution), math.ceil(0.5 / angle_step)
+    )
+    shift = best[:2] * resolution
+    yaw = wrap(start[2] + (best[2] - angle_steps) * angle_step)
+    base_pose = local_map.from_grid(np.array([start[0] + shift[0], start[1] + shift[1], yaw]))
+    return Peak(base_pose, score, rival <= rivalling)
+
+
+# A pose elsewhere that scores this share of the best one makes it doubtful.
+_RIVAL_SHARE = 0.9
+_LEVELS = 4
+_COARSE = 2**_LEVELS
+
+
+@numba.njit(cache=True, nogil=True)
+def _project(points, x, y, yaw, resolution, col, row):
+    c, s = math.cos(yaw), math.sin(yaw)
+    for p in range(len(points)):
+        col[p] = int(math.floor((x + c * points[p, 0] - s * points[p, 1]) / resolution))
+        row[p] = int(math.floor((y + s * points[p, 0] + c * points[p, 1]) / resolution))
+
+
+def _maxima(likelihood: np.ndarray) -> np.ndarray:
+    """(levels + 1, rows, cols): at level k the maximum of the 2^k x 2^k cells from each cell on."""
+    maxima = np.empty((_LEVELS + 1, *likelihood.shape), dtype=np.uint8)
+    maxima[0] = likelihood
+    for level in range(_LEVELS):
+        width = 2**level
+        wide = maxima[level].copy()
+        np.maximum(wide[:, :-width], maxima[level][:, width:], out=wide[:, :-width])
+        maxima[level + 1] = wide
+        np.maximum(wide[:-width], wide[width:], out=maxima[level + 1][:-width])
+    return maxima
+
+
+@numba.njit(cache=True, nogil=True)
+def _rotated_cells(resolution, points, start, angle_step, angle_steps):
+    """Columns and rows (angles, N) of the points' cells for each angle of the window."""
+    cols = np.empty((2 * angle_steps + 1, len(points)), dtype=np.int64)
+    rows = np.empty_like(cols)
+    for k in range(len(cols)):
+        yaw = start[2] + (k - angle_steps) * angle_step
+        _project(points, start[0], start[1], yaw, resolution, cols[k], rows[k])
+    return cols, rows
+
+
+@numba.njit(cache=True, nogil=True)
+def _score(grid, cols, rows, du, dv):
+    total = 0
+    for p in range(len(cols)):
+        col, row = cols[p] + du, rows[p] + dv
+        if 0 <= col < grid.shape[1] and 0 <= row < grid.shape[0]:
+            total += grid[row, col]
+    return total / (255.0 * len(cols))
+
+
+@numba.njit(cache=True, nogil=True)
+def _coarse_bounds(coarse, cols, rows, cells):
+    """Upper bounds (angles, side, side) of the score of shifts by ``-cells`` and coarse steps from there."""
+    side = 2 * cells // _COARSE + 1
+    bounds = np.empty((len(cols), side, side), dtype=np.float32)
+    for k in range(len(cols)):
+        for j in range(side):
+            for i in range(side):
+                bounds[k, j, i] = _score(coarse, cols[k], rows[k], i * _COARSE - cells, j * _COARSE - cells)
+    return bounds
+
+
+@numba.njit(cache=True, nogil=True)
+def _climb(maxima, bounds, order, cols, rows, cells, min_score, enough, excluded, apart_cells, apart_angles):
+    """Best (col shift, row shift, angle index) above ``min_score``, and its score, by branch and bound.
+
+    Poses near the ``excluded`` one do not count. Ends early when a score exceeds ``enough``.
+    """
+    side = bounds.shape[1]
+    best, best_score = np.zeros(3, dtype=np.int64), min_score
+    stack = np.empty((4 * _LEVELS, 3), dtype=np.int64)
+    stack_bounds = np.empty(4 * _LEVELS)
+    for flat in order:
+        k, j, i = flat // (side * side), flat // side % side, flat % side
+        if bounds[k, j, i] <= best_score or best_score > enough:
+            break
+        stack[0] = _LEVELS, i * _COARSE - cells, j * _COARSE - cells
+        stack_bounds[0] = bounds[k, j, i]
+        depth = 1
+        while depth > 0:
+            depth -= 1
+            if stack_bounds[depth] <= best_score:
+                continue
+            level, u, v = stack[depth]
+            if level == 0:
+                near = abs(u - excluded[0]) < apart_cells and abs(v - excluded[1]) < apart_cells
+                outside = abs(u) > cells or abs(v) > cells
+                if not (outside or (near and abs(k - excluded[2]) < apart_angles)):
+                    best_score = stack_bounds[depth]
+                    best[0], best[1], best[2] = u, v, k
+                continue
+            half = 2 ** (level - 1)
+            for quarter in range(4):
+                du, dv = u + half * (quarter % 2), v + half * (quarter // 2)
+                bound = _score(maxima[level - 1], cols[k], rows[k], du, dv)
+                # The best child ends on top of the stack.
+                at = depth
+                depth += 1
+                while at > depth - 1 - quarter and stack_bounds[at - 1] > bound:
+                    stack[at], stack_bounds[at] = stack[at - 1], stack_bounds[at - 1]
+                    at -= 1
+                stack[at] = level - 1, du, dv
+                stack_bounds[at] = bound
+    return best, best_score

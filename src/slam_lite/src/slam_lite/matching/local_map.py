@@ -1,0 +1,126 @@
+"""A local map: the surface points of some scans, indexed by a grid of nearest points."""
+
+import math
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+
+from planar import Pose2
+from slam_lite.surface import Surface
+
+# How far from a surface a point may lie and still be drawn to it, cells.
+_REACH_CELLS = 6
+# Standard deviation of the likelihood of a point given its distance from the surface, cells.
+_SIGMA_CELLS = 2.0
+# Cells along the border that stay empty, so that a search may look past it without missing anything.
+BORDER_CELLS = 16
+
+
+class LocalMap:
+    """Surface points around a centre; each grid cell knows the nearest one and how likely a hit there is.
+
+    The grid is square, ``2 * reach`` metres wide, in the frame in which the poses given to ``add`` are.
+    """
+
+    def __init__(self, resolution: float = 0.05, reach: float = 25.0):
+        cells = math.ceil(2.0 * reach / resolution) + 2 * BORDER_CELLS
+        self.resolution = resolution
+        self.corner = np.zeros(2)
+        self.nearest = np.full((cells, cells), -1, dtype=np.int32)
+        self.likelihood = np.zeros((cells, cells), dtype=np.uint8)
+        self.points_xy = np.empty((0, 2), dtype=np.float32)
+        self.normals_xy = np.empty((0, 2), dtype=np.float32)
+        self.count = 0
+
+    def clear(self, center: Pose2) -> None:
+        """Forgets all points and moves the grid so that ``center`` lies in its middle."""
+        half = 0.5 * len(self.nearest) * self.resolution
+        self.corner = np.array([center.x - half, center.y - half])
+        self.nearest.fill(-1)
+        self.likelihood.fill(0)
+        self.count = 0
+
+    def add(self, surface: Surface, base_pose: Pose2) -> None:
+        """Adds the surface seen from ``base_pose``; points beyond the grid are left out."""
+        needed = self.count + len(surface)
+        if needed > len(self.points_xy):
+            self.points_xy = _grown(self.points_xy, needed)
+            self.normals_xy = _grown(self.normals_xy, needed)
+        self.count = _add(
+            self.nearest,
+            self.likelihood,
+            self.points_xy,
+            self.normals_xy,
+            self.count,
+            surface.points_xy,
+            surface.normals_xy,
+            base_pose.x - self.corner[0],
+            base_pose.y - self.corner[1],
+            base_pose.yaw,
+            self.resolution,
+            _LIKELIHOOD,
+        )
+
+    def to_grid(self, pose: Pose2) -> np.ndarray:
+        """A pose as ``[x, y, yaw]``, metres from the grid's corner."""
+        return np.array([pose.x - self.corner[0], pose.y - self.corner[1], pose.yaw])
+
+    def from_grid(self, pose: np.ndarray) -> Pose2:
+        """The inverse of ``to_grid``."""
+        return Pose2(float(pose[0] + self.corner[0]), float(pose[1] + self.corner[1]), float(pose[2]))
+
+
+@dataclass(frozen=True, eq=False)
+class Match:
+    """Where a surface fits: ``base_pose`` in the local map's frame.
+
+    ``information``: (3, 3), 1 / (m, m, rad)^2, of base_pose's x, y, yaw along the map's axes.
+    ``response``: share of the surface's points, 0 to 1, that lie on the map's surfaces.
+    """
+
+    base_pose: Pose2
+    information: np.ndarray
+    response: float
+
+
+def _likelihood_kernel() -> np.ndarray:
+    squared = np.arange((_REACH_CELLS + 1) ** 2 * 2 + 1)
+    return np.rint(255.0 * np.exp(-0.5 * squared / _SIGMA_CELLS**2)).astype(np.uint8)
+
+
+_LIKELIHOOD = _likelihood_kernel()
+
+
+def _grown(array: np.ndarray, needed: int) -> np.ndarray:
+    grown = np.empty((max(needed, 2 * len(array)), 2), dtype=np.float32)
+    grown[: len(array)] = array
+    return grown
+
+
+@numba.njit(cache=True, nogil=True)
+def _add(nearest, likelihood, map_points, map_normals, count, points, normals, x, y, yaw, resolution, kernel):
+    c, s = math.cos(yaw), math.sin(yaw)
+    side = len(nearest)
+    reach, border = _REACH_CELLS, BORDER_CELLS + _REACH_CELLS
+    for i in range(len(points)):
+        px, py = x + c * points[i, 0] - s * points[i, 1], y + s * points[i, 0] + c * points[i, 1]
+        col, row = int(math.floor(px / resolution)), int(math.floor(py / resolution))
+        if not (border <= col < side - border and border <= row < side - border):
+            continue
+        map_points[count, 0], map_points[count, 1] = px, py
+        map_normals[count, 0] = c * normals[i, 0] - s * normals[i, 1]
+        map_normals[count, 1] = s * normals[i, 0] + c * normals[i, 1]
+        u, v = px / resolution, py / resolution
+        for r in range(row - reach, row + reach + 1):
+            for q in range(col - reach, col + reach + 1):
+                squared = (q + 0.5 - u) ** 2 + (r + 0.5 - v) ** 2
+                old = nearest[r, q]
+                if old >= 0:
+                    du, dv = map_points[old, 0] / resolution, map_points[old, 1] / resolution
+                    if squared >= (q + 0.5 - du) ** 2 + (r + 0.5 - dv) ** 2:
+                        continue
+                nearest[r, q] = count
+                likelihood[r, q] = kernel[int(squared)]
+        count += 1
+    return count

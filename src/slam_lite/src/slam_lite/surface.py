@@ -1,0 +1,84 @@
+"""What a scan says about surfaces: the compact form in which scans are matched and kept."""
+
+import math
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+
+from planar import Scan
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """The surface points that one scan saw, in the base frame.
+
+    ``points_xy``: float32 (N, 2), metres, thinned to an even spacing. ``normals_xy``: float32 (N, 2), the
+    unit normal of the line through each point's neighbours, (0, 0) where the neighbours do not form a line.
+    """
+
+    points_xy: np.ndarray
+    normals_xy: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.points_xy)
+
+
+def surface_of(scan: Scan, usable_range: float, spacing: float) -> Surface:
+    """The surface seen by ``scan`` up to ``usable_range``, at most one point per ``spacing`` metres."""
+    mount = scan.laser_in_base
+    angle_sign = -1.0 if scan.upside_down else 1.0
+    points_xy, normals_xy = _surface(
+        scan.ranges,
+        mount.yaw + angle_sign * scan.angle_min,
+        angle_sign * scan.angle_increment,
+        max(scan.range_min, 1e-3),
+        min(usable_range, scan.range_max),
+        mount.x,
+        mount.y,
+        spacing,
+    )
+    return Surface(points_xy, normals_xy)
+
+
+@numba.njit(cache=True, nogil=True)
+def _surface(ranges, angle, increment, shortest, longest, x, y, spacing):
+    points = np.empty((ranges.size, 2), dtype=np.float32)
+    count = 0
+    for i in range(ranges.size):
+        reading = ranges[i]
+        if not shortest <= reading < longest:
+            continue
+        px = x + reading * math.cos(angle + i * increment)
+        py = y + reading * math.sin(angle + i * increment)
+        if count == 0 or math.hypot(px - points[count - 1, 0], py - points[count - 1, 1]) >= spacing:
+            points[count, 0], points[count, 1] = px, py
+            count += 1
+    points = points[:count].copy()
+    normals = np.zeros((count, 2), dtype=np.float32)
+    for i in range(count):
+        _set_normal(points, normals, i)
+    return points, normals
+
+
+@numba.njit(cache=True, nogil=True)
+def _set_normal(points, normals, i):
+    """Principal axis of the neighbours: three on each side, more of them as far as 0.2 m, none past a gap."""
+    n, sx, sy, sxx, syy, sxy = 1, 0.0, 0.0, 0.0, 0.0, 0.0
+    for side in (-1, 1):
+        j = i + side
+        while 0 <= j < len(points):
+            dx, dy = points[j, 0] - points[i, 0], points[j, 1] - points[i, 1]
+            distance = math.hypot(dx, dy)
+            if distance > 0.5 or (abs(j - i) > 3 and distance > 0.2):
+                break
+            n, sx, sy = n + 1, sx + dx, sy + dy
+            sxx, syy, sxy = sxx + dx * dx, syy + dy * dy, sxy + dx * dy
+            j += side
+    if n < 3:
+        return
+    cxx, cyy, cxy = sxx / n - (sx / n) ** 2, syy / n - (sy / n) ** 2, sxy / n - sx * sy / n**2
+    middle, half = 0.5 * (cxx + cyy), math.hypot(0.5 * (cxx - cyy), cxy)
+    if middle - half < 0.1 * (middle + half):
+        direction = 0.5 * math.atan2(2.0 * cxy, cxx - cyy)
+        normals[i, 0], normals[i, 1] = -math.sin(direction), math.cos(direction)
