@@ -276,5 +276,28 @@ def defaults() -> Dict[str, Tuple[Any, str]]:
     }
 
 
+def as_yaml() -> str:
+    """All parameters with defaults and meanings, as the text of a YAML file."""
+    lines = ["# Every parameter of amcl_lite with its default: the official amcl's, and a few of its own."]
+    for name, (default, meaning) in defaults().items():
+        value = str(default).lower() if isinstance(default, bool) else default
+        lines.append(f"{name}: {value}  # {meaning}")
+    return "\n".join(lines) + "\n"
+
+
+def advice(settings: LocalizerSettings) -> List[str]:
+    """What a user may not expect of these settings, in sentences."""
+    lines = []
+    if settings.beams < 2:
+        lines.append("laser_max_beams is below 2: scans are not used, the robot follows its odometry")
+    if settings.beam_skip and settings.sensor_model != "likelihood_field_prob":
+        lines.append("do_beamskip has no effect unless laser_model_type is likelihood_field_prob")
+    if (settings.recovery_alpha_slow == 0.0) != (settings.recovery_alpha_fast == 0.0):
+        lines.append("recovery_alpha_slow and recovery_alpha_fast must both be above 0 to have an effect")
+    if settings.recovery_alpha_slow > settings.recovery_alpha_fast:
+        lines.append("recovery_alpha_slow above recovery_alpha_fast adds random poses when scans fit well")
+    return lines
+
+
 def _choices(field) -> List[str]:
     return [", ".join(field.metadata["choices"])] if field.metadata["choices"] else []

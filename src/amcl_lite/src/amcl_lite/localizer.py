@@ -55,6 +55,8 @@ class Localizer:
         self._rng = rng
         self._free_space = FreeSpace(grid)
         self._odom_in_map: Optional[Pose2] = None
+        self._base_in_odom = Pose2()
+        self._covariance = np.zeros((3, 3))
         self._quality: Optional[Quality] = None
         self._configure(settings)
         start = InitialPose()
@@ -88,6 +90,18 @@ class Localizer:
         """Whether scans have not fitted the map for some time; also after ``scatter``, until they do."""
         return self._detector.is_lost
 
+    @property
+    def fit_grid(self) -> OccupancyGrid:
+        """The likelihood field as a grid of 0 (far from any obstacle) to 100 (on one), to look at."""
+        fits = np.rint(100.0 * self._field.fit).astype(np.int8)
+        return OccupancyGrid(fits, self._grid.resolution, self._grid.origin)
+
+    def reconfigure(self, settings: LocalizerSettings) -> None:
+        """Goes on with other settings, from a new start around the last estimate (as amcl does)."""
+        self._configure(settings)
+        if self._odom_in_map is not None:
+            self.set_pose(self._odom_in_map @ self._base_in_odom, self._covariance)
+
     def set_pose(self, base_in_map: Pose2, pose_covariance: np.ndarray) -> None:
         """Starts anew around a pose; ``pose_covariance``: (3, 3), m^2 and rad^2."""
         if not (base_in_map.is_finite() and np.isfinite(pose_covariance).all()):
@@ -112,6 +126,7 @@ class Localizer:
         if not base_in_odom.is_finite():
             raise LocalizationError("odometry must be finite")
         beams = evenly_spaced_beams(scan, self._settings)
+        self._base_in_odom = base_in_odom
         estimate = None
         if self._is_due(base_in_odom, laser):
             self._lasers_done.add(laser)
@@ -190,7 +205,8 @@ class Localizer:
             ends_xy = all_beams(scan, self._settings).ends_xy
             base_in_map = matched(base_in_map, covariance(cluster), ends_xy, self._field)
         self._odom_in_map = base_in_map @ base_in_odom.inverse()
-        return Estimate(base_in_map, covariance(self.particles))
+        self._covariance = covariance(self.particles)
+        return Estimate(base_in_map, self._covariance)
 
     def _judge(self, base_in_odom: Pose2, beams: Beams, stamp: float) -> None:
         if self._odom_in_map is None:

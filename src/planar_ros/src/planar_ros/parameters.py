@@ -1,7 +1,9 @@
 """Parameters of the parameter server made into settings."""
 
+import xmlrpc.client
 from typing import Any, Dict, Iterable, Mapping, Type, TypeVar
 
+import rosgraph
 import rospy
 
 from planar import SettingsError
@@ -33,6 +35,14 @@ def parameters_below(namespace: str) -> Dict[str, Any]:
     """All parameters below a namespace as a (nested) dictionary; empty if there are none."""
     values = rospy.get_param(rospy.resolve_name(namespace).rstrip("/"), {})
     return values if isinstance(values, dict) else {}
+
+
+def write_parameters(values: Mapping[str, Any]) -> None:
+    """Sets several parameters in one call of the master."""
+    calls = xmlrpc.client.MultiCall(xmlrpc.client.ServerProxy(rosgraph.get_master_uri()))
+    for name, value in values.items():
+        calls.setParam(rospy.get_name(), rospy.resolve_name(name), value)
+    calls()
 
 
 def _report_unknown(name: str, nearest: str) -> None:

@@ -11,7 +11,7 @@ RESTORE = "restore_defaults"
 
 
 class Reconfiguration:
-    """Serves ``~set_parameters`` for the fields of ``settings`` that ``planar.settings.parameter`` calls dynamic.
+    """Serves ``~set_parameters`` for the dynamic fields (planar.settings.parameter) of ``settings``.
 
     ``change(values)``, values by official name, is asked at each call and returns the values then in force.
     ``restore_defaults`` brings back those that the node was started with.

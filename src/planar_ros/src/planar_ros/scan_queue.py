@@ -35,11 +35,12 @@ class ScanQueue:
         size: int = 100,
     ):
         self.topic = rospy.resolve_name(topic)
+        self.size = size
         self._transforms, self._odom_frame, self._base_frame = transforms, odom_frame, base_frame
         self._handle, self._skip = handle, skip
         self._waiting: Dict[int, LaserScanArrays] = {}
         self._received = 0
-        self._size = size
+        self._is_ending = False
         self._mountings: Dict[str, Tuple[Pose2, bool]] = {}
         self._newest_stamp = rospy.Time(0)
         self._has_news = threading.Condition()
@@ -49,9 +50,26 @@ class ScanQueue:
         # Subscribed to after the listener, whose callback has then already taken in the same message.
         rospy.Subscriber("/tf", TFMessage, lambda message: self._wake(), tcp_nodelay=True)
         rospy.Subscriber("/tf_static", TFMessage, lambda message: self._wake())
-        rospy.Subscriber(topic, LaserScanArrays, self._receive, queue_size=size, tcp_nodelay=True)
+        rospy.Subscriber(topic, LaserScanArrays, self.take, queue_size=size, tcp_nodelay=True)
 
-    def _receive(self, message):
+    @property
+    def has_received(self) -> bool:
+        """Whether any scan has come yet."""
+        return self._received > 0
+
+    @property
+    def waiting(self) -> int:
+        """How many scans have not been dealt with yet."""
+        return len(self._waiting)
+
+    def use_frames(self, odom_frame: str, base_frame: str) -> None:
+        """From now on asks for transforms between these frames."""
+        with self._has_news:
+            self._odom_frame, self._base_frame = odom_frame, base_frame
+            self._mountings.clear()
+
+    def take(self, message) -> None:
+        """Takes in a scan, as one that comes by topic."""
         with self._has_news:
             if message.header.stamp.to_sec() < self._newest_stamp.to_sec() - JUMP_BACK_SECONDS:
                 rospy.logwarn("time has jumped back: forgetting waiting scans and transforms")
@@ -61,6 +79,11 @@ class ScanQueue:
             self._newest_stamp = max(self._newest_stamp, message.header.stamp)
             self._received += 1
             self._waiting[self._received] = message
+        self._wake()
+
+    def take_no_more(self) -> None:
+        """Nothing more will come: what cannot be handed on now is skipped."""
+        self._is_ending = True
         self._wake()
 
     def _wake(self):
@@ -76,18 +99,19 @@ class ScanQueue:
                 seen = self._news
                 waiting = list(self._waiting.items())
             for number, message in waiting:
-                if self._is_done_with(message, is_overtaken=self._received - number >= self._size):
+                is_late = self._is_ending or self._received - number >= self.size
+                if self._is_done_with(message, is_late):
                     with self._has_news:
                         self._waiting.pop(number, None)
 
-    def _is_done_with(self, message, is_overtaken):
+    def _is_done_with(self, message, is_late):
         try:
-            return self._deal_with(message, is_overtaken)
+            return self._deal_with(message, is_late)
         except Exception:  # as rospy does with its callbacks: a fault must not silence the node for good
             rospy.logerr("bad callback: %s", traceback.format_exc())
             return True
 
-    def _deal_with(self, message, is_overtaken):
+    def _deal_with(self, message, is_late):
         """Hands on or skips a scan; False if it must wait on."""
         stamp, frame = message.header.stamp, frame_name(message.header.frame_id)
         latest = self._transforms.latest_stamp(self._odom_frame, self._base_frame)
@@ -100,10 +124,8 @@ class ScanQueue:
         if base_in_odom is None and latest is not None and latest > stamp:
             self._skip(message, f"{self._odom_frame} -> {self._base_frame} is not known for its stamp")
             return True
-        if is_overtaken:
-            missing = (
-                (self._odom_frame, self._base_frame) if base_in_odom is None else (self._base_frame, frame)
-            )
-            self._skip(message, "no transform {} -> {} came in time".format(*missing))
+        if is_late:
+            known = self._odom_frame if base_in_odom is None else frame
+            self._skip(message, f"no transform between {known} and {self._base_frame} came in time")
             return True
         return False

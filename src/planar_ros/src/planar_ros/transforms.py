@@ -45,6 +45,14 @@ class Transforms:
     def send(self, child_in_parent: Pose2, parent: str, child: str, stamp: rospy.Time) -> None:
         self._broadcaster.sendTransform(transform_msg(child_in_parent, parent, child, stamp))
 
+    def take(self, message, is_static: bool = False) -> None:
+        """Takes in a tf2_msgs/TFMessage that did not come by topic, as from a bag."""
+        for transform in message.transforms:
+            if is_static:
+                self.buffer.set_transform_static(transform, "take")
+            else:
+                self.buffer.set_transform(transform, "take")
+
     def clear(self) -> None:
         """Forgets everything, as after time has jumped back."""
         self.buffer.clear()

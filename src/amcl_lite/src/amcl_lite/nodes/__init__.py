@@ -1,0 +1,1 @@
+"""The parts of the node ``amcl`` that speak ROS."""
