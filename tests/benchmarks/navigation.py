@@ -17,7 +17,7 @@ from typing import List, Optional
 
 import numpy as np
 
-from move_base_lite import Navigator, NavigatorSettings, Status, load_settings
+from move_base_lite import Navigator, NavigatorSettings, PlanningError, Status, load_settings
 from move_base_lite.costmap import LayeredCostmap
 from move_base_lite.warming import warm_up
 from planar import OccupancyGrid, Pose2, load_map, wrap
@@ -143,8 +143,6 @@ def _places(settings: NavigatorSettings, grid: OccupancyGrid, rng, count: int) -
 
 
 def _is_connected(navigator: Navigator, place: Pose2) -> bool:
-    from move_base_lite import PlanningError
-
     try:
         return len(navigator.make_plan(Pose2(), place)) > 0
     except PlanningError:

@@ -1,0 +1,205 @@
+#!/usr/bin/env python3
+"""move_base_lite has the action, topics, services and texts of move_base 1.17."""
+
+import math
+import unittest
+
+import actionlib
+import rospy
+import rostest
+from actionlib_msgs.msg import GoalStatus
+from geometry_msgs.msg import PolygonStamped, PoseStamped, Quaternion, Twist
+from map_msgs.msg import OccupancyGridUpdate
+from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal, RecoveryStatus
+from nav_msgs.msg import OccupancyGrid, Odometry, Path
+from nav_msgs.srv import GetPlan
+from std_srvs.srv import Empty
+
+PERIOD = 0.1
+LEVEL = (0.0, 0.0, 0.0, 1.0)
+NO_PLAN = "Failed to find a valid plan. Even after executing recovery behaviors."
+IN_THE_NEXT_ROOM, NEAR, IN_A_WALL, OFF_THE_MAP = (2.0, 3.0), (1.0, 0.0), (5.0, 4.0), (50.0, 3.0)
+
+
+def pose_at(x, y, frame="map", quaternion=LEVEL):
+    message = PoseStamped()
+    message.header.frame_id = frame
+    message.pose.position.x, message.pose.position.y = x, y
+    message.pose.orientation = Quaternion(*quaternion)
+    return message
+
+
+class Heard:
+    """The messages of a topic with the times they came at."""
+
+    def __init__(self, topic, kind):
+        self.messages, self.times = [], []
+        self._subscriber = rospy.Subscriber(topic, kind, self._on_message)
+
+    def _on_message(self, message):
+        self.times.append(rospy.get_time())
+        self.messages.append(message)
+
+    def close(self):
+        self._subscriber.unregister()
+
+    def since(self, time):
+        return [message for at, message in zip(self.times, self.messages) if at >= time]
+
+    def wait(self, seconds=10.0):
+        until = rospy.get_time() + seconds
+        while not self.messages and rospy.get_time() < until:
+            rospy.sleep(0.05)
+        return self.messages[-1]
+
+
+class TestMoveBaseContract(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
+        assert cls.client.wait_for_server(rospy.Duration(30.0))
+        cls.make_plan = rospy.ServiceProxy("move_base/make_plan", GetPlan)
+        cls.make_plan.wait_for_service(30.0)
+        cls.commands = Heard("cmd_vel", Twist)
+        cls.odometry = Heard("odom", Odometry)
+
+    def tearDown(self):
+        self.client.cancel_all_goals()
+        self.wait_until(lambda: abs(self.odometry.messages[-1].twist.twist.linear.x) < 0.01)
+
+    def wait_until(self, is_so, seconds=30.0):
+        until = rospy.get_time() + seconds
+        while not is_so():
+            self.assertLess(rospy.get_time(), until, "waited in vain")
+            rospy.sleep(0.02)
+
+    def end_of(self, pose, seconds=60.0):
+        self.client.send_goal(MoveBaseGoal(pose))
+        self.assertTrue(self.client.wait_for_result(rospy.Duration(seconds)), "no result")
+        return self.client.get_state(), self.client.get_goal_status_text()
+
+    def drive(self, pose):
+        """Sends a goal and returns when the robot is under way."""
+        self.client.send_goal(MoveBaseGoal(pose))
+        self.wait_until(
+            lambda: self.odometry.messages and self.odometry.messages[-1].twist.twist.linear.x > 0.2
+        )
+
+    def test_a_goal_is_reached_and_says_so_in_the_official_words(self):
+        current_goal, plan = (
+            Heard("move_base/current_goal", PoseStamped),
+            Heard("move_base/NavfnROS/plan", Path),
+        )
+        local_plan = Heard("move_base/DWAPlannerROS/local_plan", Path)
+        global_plan = Heard("move_base/DWAPlannerROS/global_plan", Path)
+        rospy.sleep(0.5)
+        self.assertEqual(self.end_of(pose_at(0.8, 0.3)), (GoalStatus.SUCCEEDED, "Goal reached."))
+        self.assertEqual(self.commands.messages[-1], Twist())
+        self.assertEqual(current_goal.wait().pose.position.x, 0.8)
+        self.assertEqual(plan.wait().header.frame_id, "map")
+        self.assertEqual(local_plan.wait().header.frame_id, "odom")
+        self.assertEqual(global_plan.wait().header.frame_id, "odom")
+
+    def test_a_goal_in_another_frame_or_with_a_leading_slash_is_understood(self):
+        self.assertEqual(self.end_of(pose_at(0.3, 0.0, "/map"))[0], GoalStatus.SUCCEEDED)
+        self.assertEqual(self.end_of(pose_at(0.3, 0.0, "base_footprint"))[0], GoalStatus.SUCCEEDED)
+
+    def test_senseless_goals_are_aborted_with_a_reason(self):
+        invalid = "Aborting on goal because it was sent with an invalid quaternion"
+        for pose, text in [
+            (pose_at(*NEAR, quaternion=(0.0, 0.0, 0.0, 0.0)), invalid),
+            (pose_at(*NEAR, quaternion=(0.3, 0.0, 0.0, 1.0)), invalid),
+            (pose_at(*NEAR, quaternion=(0.0, 0.0, math.nan, 1.0)), invalid),
+            (pose_at(*OFF_THE_MAP), f"{NO_PLAN} [code=OUT_OF_MAP: "),
+            (pose_at(*IN_A_WALL), f"{NO_PLAN} [code=GOAL_BLOCKED: "),
+            (pose_at(*NEAR, frame="nowhere"), f"{NO_PLAN} [code=TF_ERROR: "),
+        ]:
+            state, said = self.end_of(pose)
+            self.assertEqual(state, GoalStatus.ABORTED)
+            self.assertTrue(said.startswith(text), said)
+
+    def test_cancelling_stops_the_robot_within_a_period(self):
+        self.drive(pose_at(*IN_THE_NEXT_ROOM))
+        at = rospy.get_time()
+        self.client.cancel_goal()
+        self.assertTrue(self.client.wait_for_result(rospy.Duration(5.0)))
+        self.assertEqual(self.client.get_state(), GoalStatus.PREEMPTED)
+        self.wait_until(lambda: Twist() in self.commands.since(at))
+        times = zip(self.commands.times, self.commands.messages)
+        first_stop = min(time for time, message in times if time >= at and message == Twist())
+        # One period to decide, and lock-step lets the clock run one period ahead of the node.
+        self.assertLessEqual(first_stop - at, 2 * PERIOD + 0.02)
+
+    def test_a_new_goal_preempts_the_old_one_without_stopping(self):
+        other = actionlib.SimpleActionClient("move_base", MoveBaseAction)
+        self.assertTrue(other.wait_for_server(rospy.Duration(5.0)))
+        self.drive(pose_at(*IN_THE_NEXT_ROOM))
+        at = rospy.get_time()
+        other.send_goal(MoveBaseGoal(pose_at(2.0, 2.5)))
+        self.assertTrue(self.client.wait_for_result(rospy.Duration(5.0)))
+        self.assertEqual(self.client.get_state(), GoalStatus.PREEMPTED)
+        rospy.sleep(0.3)
+        self.assertNotIn(Twist(), self.commands.since(at))
+
+    def test_the_simple_topic_sends_a_goal(self):
+        publisher = rospy.Publisher("move_base_simple/goal", PoseStamped, queue_size=1)
+        current_goal = Heard("move_base/current_goal", PoseStamped)
+        self.wait_until(publisher.get_num_connections)
+        rospy.sleep(0.5)
+        publisher.publish(pose_at(*NEAR))
+        self.assertEqual(current_goal.wait().pose.position.x, NEAR[0])
+
+    def test_make_plan_plans_while_idle_and_is_refused_while_active(self):
+        plan = self.make_plan(PoseStamped(), pose_at(*IN_THE_NEXT_ROOM), 0.0).plan
+        self.assertGreater(len(plan.poses), 50)
+        self.assertEqual(plan.header.frame_id, "")
+        self.assertEqual(plan.poses[0].header.frame_id, "map")
+        self.assertEqual(plan.poses[-1].pose.position.x, IN_THE_NEXT_ROOM[0])
+        self.assertEqual(self.make_plan(PoseStamped(), pose_at(*OFF_THE_MAP), 0.0).plan.poses, [])
+        self.drive(pose_at(*IN_THE_NEXT_ROOM))
+        with self.assertRaisesRegex(rospy.ServiceException, "must be in an inactive state"):
+            self.make_plan(PoseStamped(), pose_at(*NEAR), 0.0)
+
+    def test_each_new_listener_gets_the_whole_costmap_then_updates(self):
+        for _ in range(2):
+            whole = Heard("move_base/global_costmap/costmap", OccupancyGrid)
+            self.assertEqual((whole.wait().info.width, whole.wait().info.height), (264, 224))
+            self.assertEqual(whole.wait().header.frame_id, "map")
+            whole.close()
+        whole = Heard("move_base/global_costmap/costmap", OccupancyGrid)
+        updates = Heard("move_base/global_costmap/costmap_updates", OccupancyGridUpdate)
+        self.assertEqual(len(updates.wait().data), 264 * 224)
+        local = Heard("move_base/local_costmap/costmap", OccupancyGrid)
+        self.assertEqual((local.wait().info.width, local.wait().header.frame_id), (80, "odom"))
+        footprint = Heard("move_base/local_costmap/footprint", PolygonStamped)
+        self.assertEqual(len(footprint.wait().polygon.points), 16)
+
+    def test_costmaps_are_cleared_on_request(self):
+        clear = rospy.ServiceProxy("move_base/clear_costmaps", Empty)
+        clear.wait_for_service(5.0)
+        clear()
+
+    def test_a_goal_without_a_way_tries_the_recoveries_before_it_is_aborted(self):
+        recoveries = Heard("move_base/recovery_status", RecoveryStatus)
+        rospy.sleep(0.5)
+        state, text = self.end_of(pose_at(-6.0, -5.0))
+        self.assertEqual(state, GoalStatus.ABORTED)
+        self.assertTrue(text.startswith(f"{NO_PLAN} [code=NO_PATH: "), text)
+        self.assertEqual(
+            [
+                (status.recovery_behavior_name, status.current_recovery_number)
+                for status in recoveries.messages
+            ],
+            [
+                ("conservative_reset", 0),
+                ("rotate_recovery", 1),
+                ("aggressive_reset", 2),
+                ("rotate_recovery_again", 3),
+            ],
+        )
+        self.assertEqual(recoveries.messages[0].total_number_of_recoveries, 4)
+
+
+if __name__ == "__main__":
+    rospy.init_node("move_base_contract")
+    rostest.rosrun("home_service_tests", "move_base_contract", TestMoveBaseContract)
