@@ -1,6 +1,7 @@
 """The rules of SDF, one by one."""
 
 import math
+import time
 
 import numpy as np
 import pytest
@@ -203,6 +204,15 @@ def test_a_broken_mesh_is_an_error_that_names_it(load, tmp_path):
     (tmp_path / "broken.dae").write_text("<COLLADA")
     with pytest.raises(WorldError, match=r"broken\.dae"):
         load(geometry("<mesh><uri>broken.dae</uri></mesh>"))
+
+
+def test_three_hundred_cylinders_load_within_a_second(load):
+    shape = "<geometry><cylinder><radius>0.1</radius><length>1</length></cylinder></geometry>"
+    link = f"<link name='l'><collision name='c'>{shape}</collision></link>"
+    start = time.process_time()
+    world = load("".join(model(link, name=f"cylinder_{number}") for number in range(300)))
+    assert len(world.bodies) == 300
+    assert time.process_time() - start < 1.0
 
 
 def test_a_single_model_can_be_read_from_text():

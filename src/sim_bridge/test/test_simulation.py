@@ -199,6 +199,8 @@ def test_a_box_can_be_added_is_seen_and_bumped_into():
     assert drive(simulation, Twist2(0.7, 0.0), 2.0).contacts == ("parcel::link",)
     with pytest.raises(WorldError, match="parcel::link is in the world already"):
         simulation.add_box("parcel", (0.4, 0.4, 0.5), Pose2(2.0, 0.0))
+    with pytest.raises(WorldError, match="flat: a box needs positive lengths"):
+        simulation.add_box("flat", (0.4, 0.4, 0.0), Pose2(2.0, 0.0))
 
 
 def test_a_light_box_is_pushed_along():
@@ -210,5 +212,7 @@ def test_a_light_box_is_pushed_along():
 def test_the_robot_must_have_room_and_a_floor_to_start():
     with pytest.raises(WorldError, match="inside wall::link"):
         Simulation(WALLED, base_in_world=Pose2(1.0, 0.0))
+    with pytest.raises(WorldError, match="inside wardrobe::link"):
+        Simulation(load_world(HOME), base_in_world=Pose2(-2.6, 4.99))
     with pytest.raises(WorldError, match="there is no floor"):
         Simulation(World("empty", (WALL,)))

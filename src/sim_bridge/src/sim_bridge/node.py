@@ -36,7 +36,7 @@ WORLD_FRAME = "world"
 ODOMETRY_COVARIANCE = np.diag([0.1, 0.1, 1e6, 1e6, 1e6, 0.05]).ravel().tolist()
 RATE_PERIOD_SECONDS = 1.0
 # So that a shutdown is noticed at once.
-LONGEST_WAIT_SECONDS = 0.2
+LONGEST_WAIT_SECONDS = 0.05
 
 
 class Bridge:

@@ -22,6 +22,8 @@ EVERYTHING = -1
 SOLVER_ITERATIONS = 50
 # Bullet's limit for the shapes of one compound.
 COMPOUND_SIZE = 16
+# Metres that a robot at its start may reach into what it stands on.
+START_DEPTH = 0.01
 # Metres above and below the robot's start within which there must be a floor.
 FLOOR_SEARCH = 0.1
 # A contact whose normal rises more steeply than this carries the robot; it is no collision.
@@ -84,10 +86,9 @@ class Physics:
 
     def touched(self) -> Set[str]:
         """Names of the bodies the robot bumps into; what it stands on is not among them."""
-        contacts = self._bullet.getContactPoints(bodyA=self._robot)
         return {
             self._names[body]
-            for _, _, body, _, _, _, _, (_, _, normal_z), distance, *_ in contacts
+            for _, _, body, _, _, _, _, (_, _, normal_z), distance, *_ in self._contacts()
             if distance <= 0.0 and abs(normal_z) < SUPPORTING_NORMAL_Z
         }
 
@@ -98,11 +99,16 @@ class Physics:
         ((_, _, share, _, _),) = self._bullet.rayTestBatch(
             [[x, y, z + FLOOR_SEARCH]], [[x, y, z - FLOOR_SEARCH]], collisionFilterMask=WORLD_GROUPS
         )
+        deep = {self._names[contact[2]] for contact in self._contacts() if contact[8] < -START_DEPTH}
+        if deep or self.touched():
+            names = ", ".join(sorted(deep | self.touched()))
+            raise WorldError(f"the robot would start at ({x:g}, {y:g}), inside {names}")
         if share >= 1.0:
             raise WorldError(f"the robot would start at ({x:g}, {y:g}), where there is no floor")
-        if self.touched():
-            names = ", ".join(sorted(self.touched()))
-            raise WorldError(f"the robot would start at ({x:g}, {y:g}), inside {names}")
+
+    def _contacts(self):
+        """Bullet's contacts of the robot: [2] the other body, [7] the normal on it, [8] the distance."""
+        return self._bullet.getContactPoints(bodyA=self._robot)
 
     def pose_of(self, name: str) -> np.ndarray:
         """Where a body is now, (4, 4) in the world."""

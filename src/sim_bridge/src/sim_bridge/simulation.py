@@ -9,6 +9,7 @@ import numpy as np
 from planar import Pose2, Scan, Twist2
 from sim_bridge.config import SimulationSettings
 from sim_bridge.drive import Drive
+from sim_bridge.errors import WorldError
 from sim_bridge.lidar import Lidar
 from sim_bridge.odometry import DeadReckoning, Odometry
 from sim_bridge.physics import Physics
@@ -104,8 +105,10 @@ class Simulation:
     ) -> None:
         """Puts a box on the floor, ``size`` in metres; it stays where it is unless it has a ``mass``, kg.
 
-        Raises WorldError if the name is taken.
+        Raises WorldError if the name is taken or the box has no size or place.
         """
+        if not (all(0.0 < length < math.inf for length in size) and pose.is_finite()):
+            raise WorldError(f"{name}: a box needs positive lengths and a place, got {size} at {pose}")
         in_world = from_pose2(pose, z=size[2] / 2.0)
         self._add(Body(f"{name}::link", in_world, (Collision(Box(size), np.eye(4)),), mass))
 

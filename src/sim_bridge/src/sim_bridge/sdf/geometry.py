@@ -1,7 +1,7 @@
 """<geometry> elements as shapes."""
 
 from pathlib import Path
-from typing import Sequence
+from typing import Callable, Dict, Sequence
 
 from sim_bridge.sdf.element import Element
 from sim_bridge.sdf.includes import resolve
@@ -63,4 +63,9 @@ def _read_mesh(mesh: Element, folder: Path, model_folders: Sequence[Path]) -> Sh
     )
 
 
-_READERS = {"box": _read_box, "cylinder": _read_cylinder, "sphere": _read_sphere, "plane": _read_plane}
+_READERS: Dict[str, Callable[[Element], Shape]] = {
+    "box": _read_box,
+    "cylinder": _read_cylinder,
+    "sphere": _read_sphere,
+    "plane": _read_plane,
+}

@@ -1,7 +1,7 @@
 """Meshes of COLLADA, STL and OBJ files as triangles in metres."""
 
 from pathlib import Path
-from typing import Sequence
+from typing import Any, Sequence
 
 import numpy as np
 
@@ -17,7 +17,7 @@ def load_mesh(path: Path, scale: Sequence[float], submesh: str = "", centred: bo
     import trimesh
 
     try:
-        scene = trimesh.load(str(path), force="scene")
+        scene: Any = trimesh.load(str(path), force="scene")
         parts = [(node, *scene.graph[node]) for node in scene.graph.nodes_geometry]
         chosen = [
             scene.geometry[name].copy().apply_transform(placed)

@@ -1,0 +1,49 @@
+#!/usr/bin/env python3
+"""In lock-step the simulation waits for those that work on its data."""
+
+import time
+import unittest
+
+import rospy
+import rostest
+from std_msgs.msg import Float64
+
+from planar_ros.messages import LaserScanArrays
+from planar_ros.progress import Progress
+
+PERIOD = 0.1
+
+
+class TestLockStep(unittest.TestCase):
+    def test_a_slow_node_loses_no_scan_and_a_silent_one_is_not_waited_for_for_ever(self):
+        progress, stamps, factors = Progress(), [], []
+        working = True
+
+        def work(scan):
+            stamps.append(scan.header.stamp.to_sec())
+            if working:
+                time.sleep(0.02)
+                self.assertLess(rospy.get_time(), stamps[-1] + PERIOD + 1e-6, "the simulation has run ahead")
+                progress.report(scan.header.stamp)
+
+        rospy.Subscriber("scan", LaserScanArrays, work, queue_size=100, tcp_nodelay=True)
+        rospy.Subscriber("sim_bridge/real_time_factor", Float64, lambda message: factors.append(message.data))
+        self._wait_until(lambda: len(factors) >= 2 and len(stamps) > 50)
+        gaps = [later - earlier for earlier, later in zip(stamps, stamps[1:])]
+        self.assertLess(max(gaps), PERIOD + 1e-6)
+        self.assertGreater(max(factors), 1.5)
+
+        working = False
+        count = len(stamps)
+        self._wait_until(lambda: len(stamps) > count + 20)
+
+    def _wait_until(self, is_met):
+        deadline = time.monotonic() + 25.0
+        while not is_met():
+            self.assertLess(time.monotonic(), deadline, "waited in vain")
+            time.sleep(0.01)
+
+
+if __name__ == "__main__":
+    rospy.init_node("lock_step")
+    rostest.rosrun("home_service_tests", "lock_step", TestLockStep)
