@@ -82,6 +82,12 @@ def test_a_narrow_gap_that_is_really_there_is_no_doubled_wall():
     assert score_map(truth, truth, START).doubled_walls == 0
 
 
+def test_the_corner_beside_a_cupboard_is_no_doubled_wall():
+    truth = changed(box_room(), slice(6, 12), slice(20, 40), OCCUPIED)
+    rim_too_far = changed(truth, 11, 19, OCCUPIED)
+    assert score_map(rim_too_far, truth, START).doubled_walls == 0
+
+
 def test_an_empty_map_scores_nothing():
     empty = changed(box_room(), slice(None), slice(None), UNKNOWN)
     assert score_map(empty, box_room(), START).recall == 0.0

@@ -82,23 +82,27 @@ def _share_near(points_xy, others_xy, tolerance) -> float:
 
 def _count_doubled_walls(grid, truth, truth_in_map, tolerance) -> int:
     """Long narrow gaps between walls that the truth has not: the same wall, drawn in two places."""
-    gap_cells = np.argwhere(_gaps(grid))
-    if len(gap_cells) == 0:
-        return 0
-    true_gaps_xy = truth_in_map.transform_points(truth.points_of(np.argwhere(_gaps(truth))))
-    if len(true_gaps_xy):
-        distances, _ = cKDTree(true_gaps_xy).query(grid.points_of(gap_cells))
+    return sum(_count_false_gaps(grid, truth, truth_in_map, tolerance, across) for across in (0, 1))
+
+
+def _count_false_gaps(grid, truth, truth_in_map, tolerance, across) -> int:
+    gap_cells = np.argwhere(_gaps(grid, across))
+    true_gaps_xy = [
+        truth_in_map.transform_points(truth.points_of(np.argwhere(_gaps(truth, i)))) for i in (0, 1)
+    ]
+    if len(gap_cells) and any(map(len, true_gaps_xy)):
+        distances, _ = cKDTree(np.vstack(true_gaps_xy)).query(grid.points_of(gap_cells))
         gap_cells = gap_cells[distances > tolerance]
     is_false = np.zeros(grid.cells.shape, dtype=bool)
     is_false[tuple(gap_cells.T)] = True
     gaps, _ = label(is_false, structure=np.ones((3, 3)))
-    extents = [max(part.stop - part.start for part in gap) for gap in find_objects(gaps)]
-    return sum(extent * grid.resolution >= DOUBLING_LENGTH for extent in extents)
+    lengths = [gap[1 - across].stop - gap[1 - across].start for gap in find_objects(gaps)]
+    return sum(length * grid.resolution >= DOUBLING_LENGTH for length in lengths)
 
 
-def _gaps(grid) -> np.ndarray:
-    """Free cells with a wall close on both sides along a row or column: bool (rows, cols)."""
+def _gaps(grid, across) -> np.ndarray:
+    """Free cells with a wall close on both sides along one axis of the grid: bool (rows, cols)."""
     reach = round(DOUBLING_GAP / grid.resolution) + 1
     walls = np.pad(grid.cells == OCCUPIED, reach)
-    closed = binary_closing(walls, np.ones((1, reach))) | binary_closing(walls, np.ones((reach, 1)))
+    closed = binary_closing(walls, np.ones((reach, 1) if across == 0 else (1, reach)))
     return closed[reach:-reach, reach:-reach] & (grid.cells == FREE)
