@@ -19,6 +19,8 @@ from slam_lite.surface import Surface
 # Errors that a match's own information knows nothing of: between consecutive keys, and across a closure.
 _STEP_SIGMA_XY, _STEP_SIGMA_YAW = 0.01, 0.003
 _CLOSURE_SIGMA_XY, _CLOSURE_SIGMA_YAW = 0.02, 0.005
+# How well a robot that goes on from a saved map is believed to be placed.
+_GUESS_SIGMA_XY, _GUESS_SIGMA_YAW = 0.5, 0.3
 # A new closure with a larger chi-square, or this many smaller ones, are worth an optimisation.
 _NEWS_CHI_SQUARE, _NEWS_COUNT = 10.0, 20
 _MAX_PENDING = 50
@@ -80,14 +82,14 @@ class BackEnd:
     def __init__(self, settings: MapperSettings):
         self._settings = settings
         self._local_map = LocalMap()
-        self._surfaces: List[Surface] = []
+        self.surfaces: List[Surface] = []
         self._edges = EdgeList()
         self._poses = np.empty((64, 3))
         self._pending: Sequence[Closure] = ()
         self._unsettled = 0
 
     def __len__(self) -> int:
-        return len(self._surfaces)
+        return len(self.surfaces)
 
     @property
     def poses(self) -> np.ndarray:
@@ -104,17 +106,31 @@ class BackEnd:
         return Pose2.from_array(self._poses[key])
 
     def add_first(self, surface: Surface, base_in_map: Pose2) -> None:
-        """Adds a key that is tied to no other."""
+        """Adds the first key, or after ``restore`` one whose tie to the last key is but a guess."""
+        last_in_map = self.pose(len(self) - 1) if len(self) else None
+        self._append(surface, base_in_map)
+        if last_in_map is not None:
+            last = len(self) - 2
+            guess = np.diag([_GUESS_SIGMA_XY**-2, _GUESS_SIGMA_XY**-2, _GUESS_SIGMA_YAW**-2])
+            self._edges.append(Edge(last, last + 1, last_in_map.inverse() @ base_in_map, guess))
+
+    def restore(self, surfaces: Sequence[Surface], poses: np.ndarray, edges: Edges) -> None:
+        """Takes over the keys and edges of a saved graph, while there are none."""
+        self.surfaces = list(surfaces)
+        self._poses = poses.copy()
+        self._edges = EdgeList(edges)
+
+    def _append(self, surface: Surface, base_in_map: Pose2) -> None:
         n = len(self)
         if n == len(self._poses):
             self._poses = np.concatenate((self._poses, np.empty_like(self._poses)))
         self._poses[n] = base_in_map.as_array()
-        self._surfaces.append(surface)
+        self.surfaces.append(surface)
 
     def add(self, surface: Surface, base_in_last: Pose2, information: np.ndarray) -> None:
         """Adds a key seen from the last key at ``base_in_last``; ``information`` (3, 3) along last's axes."""
         last = len(self) - 1
-        self.add_first(surface, self.pose(last) @ base_in_last)
+        self._append(surface, self.pose(last) @ base_in_last)
         edge = Edge(last, last + 1, base_in_last, information)
         self._edges.append(_widened(edge, _STEP_SIGMA_XY, _STEP_SIGMA_YAW))
 
@@ -123,7 +139,7 @@ class BackEnd:
         return ClosureTask(
             self._settings,
             self._local_map,
-            tuple(self._surfaces),
+            tuple(self.surfaces),
             self.poses.copy(),
             self.edges,
             self._pending,

@@ -1,9 +1,9 @@
-"""The front end: follows the robot from scan to scan against a window of its recent key scans."""
+"""The front end: follows the robot from scan to scan against a local map of scans whose poses it trusts."""
 
 import math
 from collections import deque
 from dataclasses import dataclass
-from typing import Deque, Optional, Tuple
+from typing import Deque, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -17,65 +17,107 @@ from slam_lite.surface import Surface
 # A match with a smaller response than this is searched again in a wide window, as after a slip of the wheels.
 _POOR_RESPONSE = 0.4
 _WIDE_WINDOW = Window(distance=0.8, angle=0.8)
+_CLEARLY_BETTER = 0.2
+# Known scans are matched to out to this distance, metres, and gathered anew after half of it.
+_KNOWN_RADIUS = 10.0
+_NO_BELIEF = np.zeros((3, 3))
 
 
 @dataclass(frozen=True, eq=False)
 class Tracked:
     """One scan followed: ``base_in_track`` drifts, but never jumps.
 
-    ``information``: (3, 3), of the pose relative to the recent scans, along the track's axes.
-    ``response``: share of the scan explained by the recent scans; ``surprise``: squared deviation of the
-    matched from the odometric motion in units of its variance. ``is_key``: the scan joined the window.
+    ``information``: (3, 3), of the pose relative to the local map, along the track's axes. ``response``:
+    share of the scan explained by the local map; ``surprise``: squared deviation of the matched from the
+    odometric motion in units of its variance.
     """
 
     base_in_track: Pose2
     information: np.ndarray
     response: float
     surprise: float
-    is_key: bool
+
+
+class RecentScans:
+    """The local map of the last key scans: grows to ``window_keys``, then leaves out the older half."""
+
+    def __init__(self, window_keys: int):
+        self.local_map = LocalMap()
+        self._window_keys = window_keys
+        self._window: Deque[Tuple[Surface, Pose2]] = deque()
+
+    def add(self, surface: Surface, base_in_track: Pose2) -> None:
+        """Adds a key scan."""
+        if len(self._window) >= self._window_keys:
+            for _ in range(len(self._window) // 2):
+                self._window.popleft()
+            self.local_map.clear(base_in_track)
+            for old, old_in_track in self._window:
+                self.local_map.add(old, old_in_track)
+        elif not self._window:
+            self.local_map.clear(base_in_track)
+        self._window.append((surface, base_in_track))
+        self.local_map.add(surface, base_in_track)
+
+    def gather(self, base_in_track: Pose2) -> None:
+        """Nothing to do: the scans around the robot are those it has just made."""
+
+
+class KnownScans:
+    """The local map of a finished map's scans around the robot; the track frame is the map frame."""
+
+    def __init__(self, surfaces: Sequence[Surface], poses: np.ndarray):
+        self.local_map = LocalMap()
+        self._surfaces, self._poses = surfaces, poses
+        self._center: Optional[Pose2] = None
+
+    def gather(self, base_in_track: Pose2) -> None:
+        """Takes the scans around the robot, if it has left the middle of those taken last."""
+        if self._center is not None and self._center.distance_to(base_in_track) < 0.5 * _KNOWN_RADIUS:
+            return
+        self._center = base_in_track
+        self.local_map.clear(base_in_track)
+        distances = np.hypot(self._poses[:, 0] - base_in_track.x, self._poses[:, 1] - base_in_track.y)
+        for key in np.flatnonzero(distances < _KNOWN_RADIUS):
+            self.local_map.add(self._surfaces[key], Pose2.from_array(self._poses[key]))
 
 
 class FrontEnd:
-    """Scan matching against the last key scans, with odometry as prediction and prior.
+    """Matches scans to a local map, with odometry as prediction and prior."""
 
-    The track frame is the odometry frame at the first scan. The window grows to ``window_keys`` key scans;
-    then the older half is left out.
-    """
-
-    def __init__(self, settings: MapperSettings):
+    def __init__(self, settings: MapperSettings, scans, base_in_track: Optional[Pose2] = None):
+        """``scans``: RecentScans or KnownScans. ``base_in_track``: at the start; default: as in odometry."""
         self._settings = settings
-        self._local_map = LocalMap()
-        self._window: Deque[Tuple[Surface, Pose2]] = deque()
+        self._scans = scans
         self._last_in_odom: Optional[Pose2] = None
-        self._last_in_track = Pose2()
+        self._last_in_track = base_in_track
 
     def track(self, base_in_odom: Pose2, surface: Surface) -> Tracked:
         """Follows one scan, taken where odometry believed ``base_in_odom``."""
-        if self._last_in_odom is None:
-            self._last_in_odom, self._last_in_track = base_in_odom, base_in_odom
-            self._add_key(surface, base_in_odom)
-            return Tracked(base_in_odom, np.zeros((3, 3)), 1.0, 0.0, True)
-        motion = self._last_in_odom.inverse() @ base_in_odom
+        if self._last_in_track is None:
+            self._last_in_track = base_in_odom
+        motion = Pose2() if self._last_in_odom is None else self._last_in_odom.inverse() @ base_in_odom
         variance = self._motion_variance(motion)
         match = self._match(surface, motion, variance)
         matched_motion = self._last_in_track.inverse() @ match.base_pose
         deviation = (motion.inverse() @ matched_motion).as_array()
         self._last_in_odom, self._last_in_track = base_in_odom, match.base_pose
-        is_key = self._is_key(match.base_pose)
-        if is_key:
-            self._add_key(surface, match.base_pose)
         surprise = float(np.sum(deviation**2 / variance))
-        return Tracked(match.base_pose, match.information, match.response, surprise, is_key)
+        return Tracked(match.base_pose, match.information, match.response, surprise)
 
     def _match(self, surface: Surface, motion: Pose2, variance: np.ndarray) -> Match:
         prior = np.diag(1.0 / variance)
         predicted = self._last_in_track @ motion
+        self._scans.gather(predicted)
+        local_map = self._scans.local_map
+        if local_map.count == 0:
+            return Match(predicted, _NO_BELIEF, 1.0)
         window = Window(
             float(np.clip(3.0 * math.sqrt(variance[0]), 0.1, 0.4)),
             float(np.clip(3.0 * math.sqrt(variance[2]), 0.1, 0.5)),
         )
-        start = search_near(surface, self._local_map, predicted, window)
-        match = refine(surface, self._local_map, start, predicted, prior)
+        start = search_near(surface, local_map, predicted, window)
+        match = refine(surface, local_map, start, predicted, prior)
         if match.response < _POOR_RESPONSE:
             match = self._search_wide(surface, predicted, match)
         if match.response < self._settings.min_response:
@@ -84,11 +126,12 @@ class FrontEnd:
 
     def _search_wide(self, surface: Surface, predicted: Pose2, match: Match) -> Match:
         """A clearly better match than ``match`` around the prediction or the last pose, if there is one."""
+        local_map = self._scans.local_map
         for center in (predicted, self._last_in_track):
-            peak = search_far(surface, self._local_map, center, _WIDE_WINDOW, _POOR_RESPONSE, apart=0.5)
+            peak = search_far(surface, local_map, center, _WIDE_WINDOW, _POOR_RESPONSE, apart=0.5)
             if peak is not None:
-                wide = refine(surface, self._local_map, peak.base_pose, peak.base_pose, np.zeros((3, 3)))
-                if wide.response > match.response + 0.2:
+                wide = refine(surface, local_map, peak.base_pose, peak.base_pose, _NO_BELIEF)
+                if wide.response > match.response + _CLEARLY_BETTER:
                     match = wide
         return match
 
@@ -99,20 +142,3 @@ class FrontEnd:
         xy = settings.odom_xy_per_distance**2 * distance + settings.odom_xy_per_turn**2 * turn
         yaw = settings.odom_yaw_per_distance**2 * distance + settings.odom_yaw_per_turn**2 * turn
         return np.array([xy + 0.005**2, xy + 0.005**2, yaw + 0.005**2])
-
-    def _is_key(self, base_in_track: Pose2) -> bool:
-        moved = self._window[-1][1].inverse() @ base_in_track
-        far = math.hypot(moved.x, moved.y) >= self._settings.key_distance
-        return far or abs(moved.yaw) >= self._settings.key_angle
-
-    def _add_key(self, surface: Surface, base_in_track: Pose2) -> None:
-        if len(self._window) >= self._settings.window_keys:
-            for _ in range(len(self._window) // 2):
-                self._window.popleft()
-            self._local_map.clear(base_in_track)
-            for old, old_in_track in self._window:
-                self._local_map.add(old, old_in_track)
-        elif not self._window:
-            self._local_map.clear(base_in_track)
-        self._window.append((surface, base_in_track))
-        self._local_map.add(surface, base_in_track)

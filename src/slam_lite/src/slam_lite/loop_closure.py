@@ -30,19 +30,21 @@ _MIN_WINDOW, _MAX_WINDOW = Window(0.3, 0.1), Window(6.0, 0.8)
 _FAMILIAR_DISTANCE = 1.0
 # Key scans of the place (to each side) and of the robot's recent way that are put together for a match.
 _PLACE_KEYS, _RECENT_KEYS = 20, 12
-_PLACE_RADIUS = 6.0
-# A closure adds as much error as so many metres of way.
-_CLOSURE_LENGTH = 0.5
+_PLACE_RADIUS, _RECENT_WAY = 6.0, 4.0
 _MAX_POINTS = 500
 _MAX_CANDIDATES = 3
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """Key ``place``, perhaps near key ``recent``, and the ``window`` in which to look for recent."""
+    """Key ``place``, perhaps near key ``recent``, and the ``window`` in which to look for recent.
+
+    ``recent_keys``: how many keys up to recent belong to the way that has just been gone.
+    """
 
     place: int
     recent: int
+    recent_keys: int
     window: Window
 
 
@@ -62,15 +64,16 @@ class Closure:
 def candidates(recent: int, poses: np.ndarray, edges: Edges, settings: MapperSettings) -> List[Candidate]:
     """Places worth searching for key ``recent``, most likely first; ``poses`` (N, 3) of all keys."""
     straight = np.hypot(poses[:, 0] - poses[recent, 0], poses[:, 1] - poses[recent, 1])
-    old = recent - np.arange(len(poses)) > settings.window_keys // 2
-    if not np.any(old & (straight < _MAX_WINDOW.distance + 2.0)):
+    if np.count_nonzero(straight < _MAX_WINDOW.distance + 2.0) <= _RECENT_KEYS:
         return []
     detours = _ways_along_graph(recent, poses, edges)
     windows = np.clip(_DRIFT_DISTANCE * detours, _MIN_WINDOW.distance, _MAX_WINDOW.distance)
     possible = (detours > settings.closure_min_detour + 2.0 * straight) & (straight < windows + 2.0)
-    keys = np.flatnonzero(possible & old)
+    keys = np.flatnonzero(possible)
     if len(keys) == 0:
         return []
+    latest = detours[max(0, recent - _RECENT_KEYS + 1) : recent + 1][::-1]
+    recent_keys = int(np.argmax(latest > _RECENT_WAY)) or len(latest)
     stretches = np.split(keys, np.flatnonzero(np.diff(keys) > 5) + 1)
     nearest = [int(stretch[np.argmin(straight[stretch])]) for stretch in stretches]
     nearest.sort(key=lambda key: straight[key])
@@ -78,6 +81,7 @@ def candidates(recent: int, poses: np.ndarray, edges: Edges, settings: MapperSet
         Candidate(
             key,
             recent,
+            recent_keys,
             Window(
                 float(windows[key]),
                 float(np.clip(_DRIFT_ANGLE * detours[key], _MIN_WINDOW.angle, _MAX_WINDOW.angle)),
@@ -96,16 +100,14 @@ def find_closure(
 ) -> Optional[Closure]:
     """The closure at a candidate, if a good and unambiguous match is there. ``local_map`` is overwritten."""
     place, recent = candidate.place, candidate.recent
+    first_recent = recent - candidate.recent_keys + 1
     local_map.clear(Pose2())
-    for key in range(max(0, place - _PLACE_KEYS), min(recent - _RECENT_KEYS, place + _PLACE_KEYS + 1)):
+    for key in range(max(0, place - _PLACE_KEYS), min(first_recent, place + _PLACE_KEYS + 1)):
         in_place = _between(poses[place], poses[key])
         if math.hypot(in_place.x, in_place.y) < _PLACE_RADIUS:
             local_map.add(surfaces[key], in_place)
     recent_surface = _joined(
-        [
-            (surfaces[key], _between(poses[recent], poses[key]))
-            for key in range(max(0, recent - _RECENT_KEYS + 1), recent + 1)
-        ]
+        [(surfaces[key], _between(poses[recent], poses[key])) for key in range(first_recent, recent + 1)]
     )
     if len(recent_surface) < 50:
         return None
@@ -141,12 +143,16 @@ def agree(one: Closure, other: Closure, poses: np.ndarray) -> bool:
 
 
 def _ways_along_graph(start: int, poses: np.ndarray, edges: Edges) -> np.ndarray:
-    """Shortest way (N,), metres with a radian counted as one, along the edges from ``start`` to every key."""
-    first, second = edges.nodes.T
+    """Shortest way (N,) along the edges from ``start`` to every key, metres, with a radian counted as one.
+
+    An edge is as long as the way on which the front end would err as much as the edge may.
+    """
     steps = edges.measured
-    lengths = np.hypot(steps[:, 0], steps[:, 1]) + np.abs(steps[:, 2]) + 1e-3
-    lengths[edges.is_loop] = _CLOSURE_LENGTH
-    graph = csr_matrix((lengths, (first, second)), shape=(len(poses), len(poses)))
+    lengths = np.hypot(steps[:, 0], steps[:, 1]) + np.abs(steps[:, 2])
+    weakest = np.minimum(edges.information[:, 0, 0], edges.information[:, 1, 1])
+    doubts = 1.0 / np.sqrt(weakest) / _DRIFT_DISTANCE
+    lengths = np.where(edges.is_loop, doubts, np.maximum(lengths, doubts))
+    graph = csr_matrix((lengths, tuple(edges.nodes.T)), shape=(len(poses), len(poses)))
     return dijkstra(graph, directed=False, indices=start)
 
 

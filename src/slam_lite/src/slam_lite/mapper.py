@@ -2,15 +2,16 @@
 
 import math
 from dataclasses import dataclass
-from typing import List, Optional
+from typing import List, Optional, Tuple
 
 import numpy as np
 
 from planar import OccupancyGrid, Pose2, Scan
 from slam_lite.back_end import BackEnd, ClosureResult, ClosureTask
 from slam_lite.config import MapperSettings
-from slam_lite.front_end import FrontEnd, Tracked
+from slam_lite.front_end import FrontEnd, KnownScans, RecentScans, Tracked
 from slam_lite.rendering import Beams, MapRenderer, beams_of
+from slam_lite.state import MapState
 from slam_lite.surface import Surface, surface_of
 
 # Odometry of less than this, metres or radians, counts as standing still.
@@ -18,21 +19,31 @@ _STILL = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
-class MapUpdate:
+class PoseUpdate:
     """Where a scan was taken.
 
-    ``key``, ``base_in_key``: the pose relative to a key scan, which stays true when the key is moved later.
-    ``response``: share of the scan explained by the recent scans; ``surprise``: squared deviation of the
-    matched from the odometric motion in units of its variance, 3 on average for good odometry.
+    ``information``: (3, 3), of the pose relative to the scans around. ``response``: share of the scan that
+    those explain; ``surprise``: squared deviation of the matched from the odometric motion in units of its
+    variance, 3 on average for odometry as good as its settings say.
     """
 
     base_in_map: Pose2
     odom_in_map: Pose2
+    information: np.ndarray
+    response: float
+    surprise: float
+
+
+@dataclass(frozen=True, eq=False)
+class MapUpdate(PoseUpdate):
+    """``base_in_key``: the pose relative to the key scan ``key``, which stays true when keys are moved later.
+
+    ``is_key``: the scan itself became that key.
+    """
+
     key: int
     base_in_key: Pose2
     is_key: bool
-    response: float
-    surprise: float
 
 
 class Mapper:
@@ -47,32 +58,39 @@ class Mapper:
     def __init__(self, settings: MapperSettings = MapperSettings(), deferred: bool = False):
         self._settings = settings
         self._deferred = deferred
-        self._front_end = FrontEnd(settings)
+        self._recent = RecentScans(settings.window_keys)
+        self._front_end = FrontEnd(settings, self._recent)
         self._back_end = BackEnd(settings)
         self._beams: List[Beams] = []
-        self._renderer = MapRenderer(settings.resolution, settings.occupied_threshold)
         self._searched = 0
-        self._key_in_track = Pose2()
-        self._last_stamp = -math.inf
-        self._last_in_odom: Optional[Pose2] = None
+        self._key_in_track: Optional[Pose2] = None
+        self._pause = _Pause(settings.still_interval)
+        self._last_in_map = Pose2()
 
     def insert(self, base_in_odom: Pose2, scan: Scan) -> Optional[MapUpdate]:
         """Takes one scan in; None if it says nothing new because the robot stands still."""
-        if self._stands_still(base_in_odom, scan.stamp):
+        if self._pause.lasts(base_in_odom, scan.stamp):
             return None
-        self._last_in_odom, self._last_stamp = base_in_odom, scan.stamp
-        max_range = self._settings.max_range or scan.range_max - 0.01
-        usable_range = self._settings.usable_range or max_range
+        max_range, usable_range = ranges_of(scan, self._settings)
         surface = surface_of(scan, usable_range, self._settings.point_spacing)
         tracked = self._front_end.track(base_in_odom, surface)
-        if tracked.is_key:
+        is_key = self._is_key(tracked.base_in_track)
+        if is_key:
             self._add_key(tracked, surface, beams_of(scan, max_range, usable_range))
+        assert self._key_in_track is not None
         base_in_key = self._key_in_track.inverse() @ tracked.base_in_track
         key = len(self._back_end) - 1
         base_in_map = self._back_end.pose(key) @ base_in_key
-        odom_in_map = base_in_map @ base_in_odom.inverse()
+        self._last_in_map = base_in_map
         return MapUpdate(
-            base_in_map, odom_in_map, key, base_in_key, tracked.is_key, tracked.response, tracked.surprise
+            base_in_map,
+            base_in_map @ base_in_odom.inverse(),
+            tracked.information,
+            tracked.response,
+            tracked.surprise,
+            key,
+            base_in_key,
+            is_key,
         )
 
     def task(self) -> Optional[ClosureTask]:
@@ -101,30 +119,108 @@ class Mapper:
         """How many loop closures tie the graph."""
         return int(self._back_end.edges.is_loop.sum())
 
-    def grid(self) -> OccupancyGrid:
-        """The map of all key scans at their present poses."""
-        self._renderer.update(self._beams, self._back_end.poses)
-        return self._renderer.grid()
+    def evidence(self) -> Tuple[List[Beams], np.ndarray]:
+        """What a MapRenderer draws: the beams of all key scans and their present poses (N, 3)."""
+        return list(self._beams), self._back_end.poses.copy()
 
-    def _stands_still(self, base_in_odom: Pose2, stamp: float) -> bool:
-        if self._last_in_odom is None or stamp - self._last_stamp >= self._settings.still_interval:
-            return False
-        motion = self._last_in_odom.inverse() @ base_in_odom
-        return math.hypot(motion.x, motion.y) < _STILL and abs(motion.yaw) < _STILL
+    def grid(self) -> OccupancyGrid:
+        """The map of all key scans at their present poses, drawn from scratch."""
+        renderer = MapRenderer(self._settings.resolution, self._settings.occupied_threshold)
+        renderer.update(*self.evidence())
+        return renderer.grid()
+
+    def state(self) -> MapState:
+        """All that is needed to go on later."""
+        return MapState(
+            tuple(self._back_end.surfaces),
+            tuple(self._beams),
+            self._back_end.poses.copy(),
+            self._back_end.edges,
+            self._last_in_map,
+        )
+
+    def resume(self, state: MapState, base_in_map: Optional[Pose2] = None) -> None:
+        """Goes on from a state with the robot near ``base_in_map``, default: where it was last."""
+        self._back_end = BackEnd(self._settings)
+        self._back_end.restore(state.surfaces, state.poses, state.edges)
+        self._beams = list(state.beams)
+        self._searched = 0
+        self._key_in_track = None
+        self._last_in_map = base_in_map or state.base_in_map
+        self._recent = RecentScans(self._settings.window_keys)
+        self._front_end = FrontEnd(self._settings, self._recent, self._last_in_map)
+
+    def _is_key(self, base_in_track: Pose2) -> bool:
+        if self._key_in_track is None:
+            return True
+        moved = self._key_in_track.inverse() @ base_in_track
+        far = math.hypot(moved.x, moved.y) >= self._settings.key_distance
+        return far or abs(moved.yaw) >= self._settings.key_angle
 
     def _add_key(self, tracked: Tracked, surface: Surface, beams: Beams) -> None:
-        if len(self._back_end) == 0:
+        if self._key_in_track is None:
             self._back_end.add_first(surface, tracked.base_in_track)
         else:
             base_in_last = self._key_in_track.inverse() @ tracked.base_in_track
             turned = _rotated(tracked.information, -self._key_in_track.yaw)
             self._back_end.add(surface, base_in_last, turned)
         self._key_in_track = tracked.base_in_track
+        self._recent.add(surface, tracked.base_in_track)
         self._beams.append(beams)
         if not self._deferred:
             task = self.task()
             if task is not None:
                 self.adopt(task.run())
+
+
+class Follower:
+    """Follows the robot in a finished map, which stays as it is."""
+
+    def __init__(self, settings: MapperSettings, state: MapState, base_in_map: Optional[Pose2] = None):
+        self._settings = settings
+        self._state = state
+        self._pause = _Pause(settings.still_interval)
+        self.place(base_in_map or state.base_in_map)
+
+    def place(self, base_in_map: Pose2) -> None:
+        """Says where the robot is; it may be a few decimetres off."""
+        known = KnownScans(self._state.surfaces, self._state.poses)
+        self._front_end = FrontEnd(self._settings, known, base_in_map)
+
+    def insert(self, base_in_odom: Pose2, scan: Scan) -> Optional[PoseUpdate]:
+        """Follows one scan; None if the robot stands still."""
+        if self._pause.lasts(base_in_odom, scan.stamp):
+            return None
+        _, usable_range = ranges_of(scan, self._settings)
+        tracked = self._front_end.track(
+            base_in_odom, surface_of(scan, usable_range, self._settings.point_spacing)
+        )
+        base_in_map = tracked.base_in_track
+        odom_in_map = base_in_map @ base_in_odom.inverse()
+        return PoseUpdate(base_in_map, odom_in_map, tracked.information, tracked.response, tracked.surprise)
+
+
+class _Pause:
+    """Tells when the robot stands still, so that its scans need only be looked at now and then."""
+
+    def __init__(self, interval: float):
+        self._interval = interval
+        self._stamp = -math.inf
+        self._base_in_odom = Pose2()
+
+    def lasts(self, base_in_odom: Pose2, stamp: float) -> bool:
+        motion = self._base_in_odom.inverse() @ base_in_odom
+        still = math.hypot(motion.x, motion.y) < _STILL and abs(motion.yaw) < _STILL
+        if still and 0.0 <= stamp - self._stamp < self._interval:
+            return True
+        self._stamp, self._base_in_odom = stamp, base_in_odom
+        return False
+
+
+def ranges_of(scan: Scan, settings: MapperSettings) -> Tuple[float, float]:
+    """maxRange and maxUrange for a scan, metres."""
+    max_range = settings.max_range or scan.range_max - 0.01
+    return max_range, settings.usable_range or max_range
 
 
 def _rotated(information: np.ndarray, angle: float) -> np.ndarray:

@@ -5,6 +5,7 @@ normal equations); P. Agarwal et al., "Robust map optimization using dynamic cov
 """
 
 from dataclasses import dataclass
+from typing import Optional
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -48,14 +49,14 @@ class Edges:
 class EdgeList:
     """A list of edges that only grows, kept as arrays; what it has given out does not change."""
 
-    def __init__(self) -> None:
-        self._arrays = Edges(
-            np.empty((64, 2), dtype=np.int64),
-            np.empty((64, 3)),
-            np.empty((64, 3, 3)),
-            np.empty(64, dtype=bool),
+    def __init__(self, edges: Optional[Edges] = None) -> None:
+        self._arrays = edges or Edges(
+            np.empty((0, 2), dtype=np.int64),
+            np.empty((0, 3)),
+            np.empty((0, 3, 3)),
+            np.empty(0, dtype=bool),
         )
-        self._count = 0
+        self._count = len(self._arrays)
 
     def __len__(self) -> int:
         return self._count
@@ -64,9 +65,7 @@ class EdgeList:
         """Adds one edge."""
         i, arrays = self._count, self._arrays
         if i == len(arrays):
-            arrays = self._arrays = Edges(
-                *(np.concatenate((a, np.empty_like(a))) for a in vars(arrays).values())
-            )
+            self._arrays = arrays = Edges(*(_room(array, 2 * i + 64) for array in vars(arrays).values()))
         arrays.nodes[i] = edge.first, edge.second
         arrays.measured[i] = edge.second_in_first.as_array()
         arrays.information[i] = edge.information
@@ -113,6 +112,12 @@ def chi_squares(poses: np.ndarray, edges: Edges) -> np.ndarray:
     """How badly each edge is met: its squared error weighted by its information, (E,)."""
     errors = _errors(poses, edges)
     return np.einsum("ei,eij,ej->e", errors, edges.information, errors)
+
+
+def _room(array: np.ndarray, rows: int) -> np.ndarray:
+    larger = np.empty((rows, *array.shape[1:]), dtype=array.dtype)
+    larger[: len(array)] = array
+    return larger
 
 
 def _cost(poses: np.ndarray, edges: Edges) -> float:

@@ -75,10 +75,15 @@ class MapRenderer:
     def grid(self) -> OccupancyGrid:
         """The map of all scans counted so far, as large as what they reached."""
         hits, visits = self._counts
+        rows, cols = (np.flatnonzero(visits.any(axis=axis)) for axis in (1, 0))
+        if len(rows) == 0:
+            return OccupancyGrid(np.full((1, 1), UNKNOWN, dtype=np.int8), self._resolution)
+        row, col = rows[0], cols[0]
+        hits, visits = (part[row : rows[-1] + 1, col : cols[-1] + 1] for part in (hits, visits))
         cells = np.full(hits.shape, UNKNOWN, dtype=np.int8)
         cells[visits > 0] = FREE
         cells[hits > self._threshold * visits] = OCCUPIED
-        x, y = self._corner * self._resolution
+        x, y = (self._corner + [col, row]) * self._resolution
         return OccupancyGrid(cells, self._resolution, Pose2(float(x), float(y), 0.0))
 
     def _count(self, beams: Beams, pose: np.ndarray, amount: int) -> None:
