@@ -65,7 +65,7 @@ class Mapper:
         self._searched = 0
         self._key_in_track: Optional[Pose2] = None
         self._pause = _Pause(settings.still_interval)
-        self._last_in_map = Pose2()
+        self._last_in_key = Pose2()
 
     def insert(self, base_in_odom: Pose2, scan: Scan) -> Optional[MapUpdate]:
         """Takes one scan in; None if it says nothing new because the robot stands still."""
@@ -81,7 +81,7 @@ class Mapper:
         base_in_key = self._key_in_track.inverse() @ tracked.base_in_track
         key = len(self._back_end) - 1
         base_in_map = self._back_end.pose(key) @ base_in_key
-        self._last_in_map = base_in_map
+        self._last_in_key = base_in_key
         return MapUpdate(
             base_in_map,
             base_in_map @ base_in_odom.inverse(),
@@ -115,6 +115,12 @@ class Mapper:
         return self._back_end.poses
 
     @property
+    def last_in_map(self) -> Pose2:
+        """Where the robot was at the last scan."""
+        keys = len(self._back_end)
+        return self._back_end.pose(keys - 1) @ self._last_in_key if keys else Pose2()
+
+    @property
     def loop_count(self) -> int:
         """How many loop closures tie the graph."""
         return int(self._back_end.edges.is_loop.sum())
@@ -136,7 +142,7 @@ class Mapper:
             tuple(self._beams),
             self._back_end.poses.copy(),
             self._back_end.edges,
-            self._last_in_map,
+            self.last_in_map,
         )
 
     def resume(self, state: MapState, base_in_map: Optional[Pose2] = None) -> None:
@@ -146,9 +152,12 @@ class Mapper:
         self._beams = list(state.beams)
         self._searched = 0
         self._key_in_track = None
-        self._last_in_map = base_in_map or state.base_in_map
+        start = base_in_map or state.base_in_map
+        self._last_in_key = (
+            Pose2.from_array(state.poses[-1]).inverse() @ start if len(state.poses) else Pose2()
+        )
         self._recent = RecentScans(self._settings.window_keys)
-        self._front_end = FrontEnd(self._settings, self._recent, self._last_in_map)
+        self._front_end = FrontEnd(self._settings, self._recent, start)
 
     def _is_key(self, base_in_track: Pose2) -> bool:
         if self._key_in_track is None:
