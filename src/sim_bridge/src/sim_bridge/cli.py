@@ -46,7 +46,7 @@ def render_map() -> None:
         grid = true_map(world, arguments.height, arguments.resolution, tuple(arguments.inside))
         print(f"{save_map(grid, arguments.stem)}: {grid.cols} x {grid.rows} cells of {grid.resolution:g} m")
     except PlanarError as error:
-        sys.exit(f"render_map: error: {error}")
+        parser.exit(2, f"render_map: error: {error}\n")
 
 
 def robot_description() -> None:
@@ -58,4 +58,4 @@ def robot_description() -> None:
     try:
         print(robot_named(parser.parse_args().robot).description())
     except PlanarError as error:
-        sys.exit(f"robot_description: error: {error}")
+        parser.exit(2, f"robot_description: error: {error}\n")

@@ -1,0 +1,43 @@
+"""The command lines of sim_bridge."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from planar import load_map
+from sim_bridge import load_world
+from sim_bridge.cli import render_map, robot_description
+from sim_bridge.true_map import true_map
+
+HOME = Path(__file__).resolve().parents[3] / "map" / "home.world"
+
+
+def test_render_map_writes_the_true_map(monkeypatch, tmp_path):
+    monkeypatch.setattr("sys.argv", ["render_map", str(HOME), str(tmp_path / "home"), "--resolution", "0.1"])
+    render_map()
+    expected = true_map(load_world(HOME), resolution=0.1)
+    assert np.array_equal(load_map(tmp_path / "home.yaml").cells, expected.cells)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        (["/no.world", "stem"], "/no.world: cannot be read"),
+        ([str(HOME), "/nowhere/stem"], "/nowhere/stem.pgm: cannot be written"),
+        ([str(HOME), "stem", "--resolution", "0"], "--resolution must be positive"),
+        ([str(HOME), "stem", "--height", "9"], "nothing is solid at a height of 9 m"),
+    ],
+)
+def test_render_map_says_what_is_wrong(monkeypatch, capsys, arguments, named):
+    monkeypatch.setattr("sys.argv", ["render_map", *arguments])
+    with pytest.raises(SystemExit) as ended:
+        render_map()
+    assert ended.value.code == 2
+    assert named in capsys.readouterr().err
+
+
+def test_robot_description_prints_a_urdf(monkeypatch, capsys):
+    monkeypatch.setattr("sys.argv", ["robot_description", "turtlebot_kinect"])
+    robot_description()
+    assert "camera_depth_frame" in capsys.readouterr().out
