@@ -14,13 +14,12 @@ import yaml
 
 from add_markers import CarriedParcel
 from amcl_lite import Localizer, LocalizerSettings
-from amcl_lite.config import official_names
 from home_service.verdict import ERRAND, MARKERS, Ledger, Verdict, judge
 from move_base_lite import Decision, Navigator, Status, load_settings
 from pick_objects import Errand, ErrandSettings, ErrandState, Finish, GoalReached, GoalRefused, GoTo
 from planar import OccupancyGrid, Pose2, Twist2
 from planar.places import Place
-from planar.settings import settings_from
+from planar.settings import official_names, settings_from
 from sim_bridge import Observation, RobotProfile, Simulation
 from sim_bridge.world import World
 
