@@ -153,9 +153,8 @@ class Mapper:
         self._searched = 0
         self._key_in_track = None
         start = base_in_map or state.base_in_map
-        self._last_in_key = (
-            Pose2.from_array(state.poses[-1]).inverse() @ start if len(state.poses) else Pose2()
-        )
+        if len(state.poses):
+            self._last_in_key = Pose2.from_array(state.poses[-1]).inverse() @ start
         self._recent = RecentScans(self._settings.window_keys)
         self._front_end = FrontEnd(self._settings, self._recent, start)
 

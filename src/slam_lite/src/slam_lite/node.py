@@ -1,4 +1,4 @@
-"""The node ``slam_gmapping``: translates between ROS and a Mapper, with the names and habits of gmapping 1.4."""
+"""The node ``slam_gmapping``: between ROS and a Mapper, with the names and habits of gmapping 1.4."""
 
 import math
 import threading
@@ -20,6 +20,7 @@ from planar_ros.messages import (
     frame_name,
     grid_to_msg,
     pose2_from_msg,
+    scan_from_msg,
 )
 from planar_ros.parameters import read_settings
 from planar_ros.progress import Progress
@@ -34,6 +35,7 @@ from slam_lite.state import load_state, save_state
 from slam_lite.warming import warm_up
 
 ALARM_SECONDS = 15.0
+SCAN_QUEUE_SIZE = 5
 # A surprise of 3 is normal; odometry that errs several times more than it should is worth a warning.
 MEAN_SURPRISE_ALARM = 30.0
 SURPRISE_MEMORY = 100
@@ -44,8 +46,8 @@ ENTROPY_CELL = 1e-6
 class SlamNode:
     """Holds one Mapper, or a Follower in localization-only mode, guarded by one lock.
 
-    Scans are dealt with in the queue's thread, loop closures and maps in threads of their own, so that neither
-    keeps a scan waiting.
+    Scans are dealt with in the queue's thread, loop closures and maps in threads of their own, so that
+    neither keeps a scan waiting.
     """
 
     def __init__(self):
@@ -94,7 +96,12 @@ class SlamNode:
         threading.Thread(target=self._draw_maps, daemon=True).start()
         rospy.on_shutdown(self._has_map_due.set)
         self._scans = ScanQueue(
-            self._transforms, settings.odom_frame, settings.base_frame, self._on_scan, self._on_skipped_scan
+            self._transforms,
+            settings.odom_frame,
+            settings.base_frame,
+            self._on_scan,
+            self._on_skipped_scan,
+            size=SCAN_QUEUE_SIZE,
         )
         Waiting(
             {
@@ -129,12 +136,23 @@ class SlamNode:
         if self._surprise > MEAN_SURPRISE_ALARM:
             rospy.logwarn_throttle(
                 ALARM_SECONDS,
-                "odometry disagrees with the scans (%.0f times the variance that srr, srt, str, stt promise): "
-                "mapping goes on, but may suffer where there is little to see",
+                "odometry disagrees with the scans (%.0f times the variance promised by srr, srt, str, stt); "
+                "the map may suffer where there is little to see",
                 self._surprise / 3.0,
             )
 
     def _on_skipped_scan(self, message, reason):
+        settings = self._settings
+        mounting = self._transforms.mounting(settings.base_frame, message.header.frame_id)
+        if mounting is not None and not self._has_odometry():
+            rospy.logwarn_throttle(
+                ALARM_SECONDS,
+                "no odometry (no transform %s -> %s): mapping from the scans alone",
+                settings.odom_frame,
+                settings.base_frame,
+            )
+            self._on_scan(message, scan_from_msg(message, *mounting), Pose2())
+            return
         rospy.logwarn_throttle(ALARM_SECONDS, "skipping a scan: %s", reason)
         self._progress.report(message.header.stamp)
 
@@ -269,7 +287,7 @@ def _tell_without_effect():
     given = [name for name in WITHOUT_EFFECT if rospy.has_param("~" + name)]
     if given:
         rospy.loginfo(
-            "there is no particle filter here: %s has no effect (key_distance and key_angle say which scans are kept)",
+            "no particle filter, so no effect of %s (key_distance, key_angle say which scans are kept)",
             ", ".join(given),
         )
 
