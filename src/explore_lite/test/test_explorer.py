@@ -1,0 +1,162 @@
+from pathlib import Path
+
+import pytest
+import yaml
+
+from explore_lite import Explorer, ExplorerSettings, ExplorerState, Finish, GoalReached, GoalRefused, GoTo
+from explore_lite.config import NodeSettings
+from planar import Pose2, SettingsError, grid_from_picture
+
+SETTINGS = ExplorerSettings(clearance=0.4, progress_timeout=20.0, map_patience=6.0, attempts=2)
+ROBOT = Pose2(1.25, 1.25)
+
+# Half a metre a cell; the robot stands in the lower left corner.
+CLOSED = """
+##########
+#........#
+#........#
+#........#
+##########
+"""
+OPEN_TO_THE_RIGHT = """
+#######???
+#......???
+#......???
+#......???
+#######???
+"""
+OPEN_AT_BOTH_ENDS = """
+############
+............
+############
+"""
+
+
+def grid(picture):
+    return grid_from_picture(picture, resolution=0.5)
+
+
+def explorer(return_to_start=True, **settings):
+    return Explorer(ExplorerSettings(**{**vars(SETTINGS), **settings}), return_to_start)
+
+
+def test_the_robot_is_sent_to_the_frontier_and_home_when_all_is_known():
+    task = explorer()
+    order = task.advance(0.0, grid(OPEN_TO_THE_RIGHT), ROBOT)
+    assert isinstance(order, GoTo)
+    assert order.pose.x == pytest.approx(3.25)
+    assert task.advance(0.5, None, ROBOT) is None
+    assert task.advance(5.0, grid(CLOSED), Pose2(3.0, 1.25)) == GoTo(ROBOT)
+    assert task.state is ExplorerState.RETURNING
+    end = task.advance(20.0, None, ROBOT, GoalReached())
+    assert end == Finish(True, "explored 6.0 m2")
+    assert task.state is ExplorerState.DONE
+    assert task.advance(21.0, None, ROBOT) is None
+
+
+def test_without_a_way_home_asked_for_it_ends_where_all_is_known():
+    assert explorer(return_to_start=False).advance(0.0, grid(CLOSED), ROBOT) == Finish(
+        True, "explored 6.0 m2"
+    )
+
+
+def test_nothing_is_ordered_before_there_is_a_map():
+    assert explorer().advance(0.0, None, ROBOT) is None
+
+
+@pytest.mark.parametrize("robot_x, goal_x", [(2.0, 0.25), (4.0, 5.75)])
+def test_the_nearer_of_two_frontiers_is_first(robot_x, goal_x):
+    task = explorer(orientation_scale=0.0)
+    order = task.advance(0.0, grid(OPEN_AT_BOTH_ENDS), Pose2(robot_x, 0.75))
+    assert order.pose.x == pytest.approx(goal_x)
+
+
+def test_a_frontier_under_way_is_only_left_for_a_much_cheaper_one():
+    task = explorer(orientation_scale=0.0, switch_gain=1.0)
+    corridor = grid(OPEN_AT_BOTH_ENDS)
+    assert task.advance(0.0, corridor, Pose2(2.75, 0.75)).pose.x == pytest.approx(0.25)
+    assert task.advance(1.0, corridor, Pose2(3.25, 0.75)) is None
+    assert task.advance(2.0, corridor, Pose2(3.75, 0.75)).pose.x == pytest.approx(5.75)
+
+
+def test_a_frontier_that_stays_is_tried_from_elsewhere_and_then_given_up():
+    task = explorer(return_to_start=False)
+    room = grid(OPEN_TO_THE_RIGHT)
+    first = task.advance(0.0, room, ROBOT)
+    assert task.advance(10.0, None, first.pose, GoalReached()) is None
+    second = task.advance(12.0, room, first.pose)
+    assert second.pose.distance_to(first.pose) > SETTINGS.blacklist_radius
+    assert task.advance(20.0, None, second.pose, GoalReached()) is None
+    end = task.advance(22.0, room, second.pose)
+    assert end == Finish(True, "explored 4.5 m2, 1 unreachable frontier left")
+    assert len(task.unreachable) == 1
+
+
+def test_at_a_goal_a_map_is_waited_for_but_not_for_ever():
+    task = explorer()
+    first = task.advance(0.0, grid(OPEN_TO_THE_RIGHT), ROBOT)
+    task.advance(10.0, None, first.pose, GoalReached())
+    assert task.advance(10.5, grid(OPEN_TO_THE_RIGHT), first.pose) is None
+    assert task.advance(15.9, None, first.pose) is None
+    assert isinstance(task.advance(16.0, None, first.pose), GoTo)
+
+
+def test_a_refused_goal_is_followed_by_another_at_once():
+    task = explorer()
+    first = task.advance(0.0, grid(OPEN_TO_THE_RIGHT), ROBOT)
+    second = task.advance(5.0, None, ROBOT, GoalRefused("Failed to find a valid plan."))
+    assert second.pose.distance_to(first.pose) > SETTINGS.blacklist_radius
+
+
+def test_a_goal_that_comes_no_nearer_is_given_up():
+    task = explorer()
+    room = grid(OPEN_TO_THE_RIGHT)
+    first = task.advance(0.0, room, ROBOT)
+    orders = [task.advance(float(second), room, ROBOT) for second in range(1, 23)]
+    assert orders[:19] == [None] * 19
+    (second,) = filter(None, orders)
+    assert second.pose.distance_to(first.pose) > SETTINGS.blacklist_radius
+
+
+def test_a_robot_that_does_not_get_away_ends_the_exploration():
+    task = explorer(attempts=100, blacklist_radius=0.1)
+    task.advance(0.0, grid(OPEN_TO_THE_RIGHT), ROBOT)
+    orders = [task.advance(1.0 + i, None, ROBOT, GoalRefused("blocked")) for i in range(8)]
+    assert orders[-1] == Finish(False, "the robot does not get away from here: blocked")
+
+
+def test_a_frontier_that_opens_on_the_way_home_is_explored_too():
+    task = explorer()
+    task.advance(0.0, grid(CLOSED), Pose2(1.25, 1.25))
+    order = task.advance(5.0, grid(OPEN_TO_THE_RIGHT), Pose2(1.75, 1.25))
+    assert isinstance(order, GoTo)
+    assert task.state is ExplorerState.EXPLORING
+
+
+def test_the_way_home_is_tried_again_before_it_fails():
+    task = explorer(attempts=2)
+    task.advance(0.0, grid(CLOSED), ROBOT)
+    assert task.advance(1.0, None, ROBOT, GoalRefused("blocked")) == GoTo(ROBOT)
+    assert task.advance(2.0, None, ROBOT, GoalRefused("blocked")) == GoTo(ROBOT)
+    end = task.advance(3.0, None, ROBOT, GoalRefused("blocked"))
+    assert end == Finish(False, "explored 6.0 m2, but there is no way back to the start: blocked")
+
+
+def test_a_robot_in_no_free_space_waits_for_a_better_map_but_not_for_ever():
+    task = explorer()
+    unknown = grid("?????\n?????\n?...?")
+    assert task.advance(0.0, unknown, Pose2(10.0, 10.0)) is None
+    assert task.advance(19.0, unknown, Pose2(10.0, 10.0)) is None
+    end = task.advance(21.0, unknown, Pose2(10.0, 10.0))
+    assert end == Finish(False, "the map shows no free space around the robot")
+
+
+@pytest.mark.parametrize("name, value", [("attempts", 0), ("reach", 0.0), ("max_frontier_size", 0.1)])
+def test_senseless_settings_are_refused(name, value):
+    with pytest.raises(SettingsError, match=name):
+        ExplorerSettings(**{name: value})
+
+
+def test_the_shipped_configuration_is_the_default_one():
+    shipped = yaml.safe_load((Path(__file__).parents[1] / "config/explore_lite.yaml").read_text())
+    assert shipped == {**vars(ExplorerSettings()), **vars(NodeSettings())}
