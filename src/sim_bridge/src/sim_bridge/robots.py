@@ -97,11 +97,34 @@ _KINECT = LaserProfile(
     too_near=math.nan,
 )
 
+# Hokuyo UST-10LX in front, as BARN's Jackal has it.
+_HOKUYO = LaserProfile(
+    frame="front_laser",
+    beams=720,
+    angle_min=-math.radians(270.0) / 2.0,
+    angle_increment=math.radians(270.0) / 719,
+    range_min=0.1,
+    range_max=30.0,
+    sight=30.0,
+    no_return=math.inf,
+    too_near=-math.inf,
+)
+
+_JACKAL_DRIVE = DriveProfile(
+    wheel_radius=0.049,
+    wheel_separation=0.22,
+    max_speed=2.0,
+    max_turn_rate=4.0,
+    max_acceleration=4.0,
+    max_turn_acceleration=12.0,
+)
+
 ROBOTS: Dict[str, RobotProfile] = {
     profile.name: profile
     for profile in (
         RobotProfile("turtlebot_lidar", ("turtlebot2.urdf", "lidar.urdf"), DriveProfile(), _LIDAR, 0.178),
         RobotProfile("turtlebot_kinect", ("turtlebot2.urdf", "kinect.urdf"), DriveProfile(), _KINECT, 0.178),
+        RobotProfile("jackal", ("jackal.urdf",), _JACKAL_DRIVE, _HOKUYO, 0.267),
     )
 }
 
