@@ -67,6 +67,7 @@ class Toy:
     def __init__(self, base_in_map, seed=0, **scan_fields):
         self.grid, self.base_in_map, self.base_in_odom = home(), base_in_map, Pose2(5.0, -3.0, 1.0)
         self._rng, self._fields = np.random.default_rng(seed), scan_fields
+        self.stamp = 0.0
 
     def move(self, step):
         self.base_in_map = self.base_in_map @ step
@@ -75,6 +76,7 @@ class Toy:
         self.base_in_odom = self.base_in_odom @ Pose2(0.97 * step.x, step.y, step.yaw + turn)
 
     def scan(self):
+        self.stamp += 0.3
         angles = -math.pi + np.arange(BEAMS) * 2.0 * math.pi / BEAMS
         laser = Pose2(0.1, 0.0, 0.3)
         sign = -1.0 if self._fields.get("upside_down") else 1.0
@@ -82,7 +84,7 @@ class Toy:
         ranges = (ranges + self._rng.normal(0.0, 0.02, BEAMS)).astype(np.float32)
         ranges[ranges >= RANGE_MAX] = np.inf
         increment = 2.0 * math.pi / BEAMS
-        return Scan(0.0, -math.pi, increment, ranges, 0.1, RANGE_MAX, laser, **self._fields)
+        return Scan(self.stamp, -math.pi, increment, ranges, 0.1, RANGE_MAX, laser, **self._fields)
 
 
 def tracking_errors(toy, localizer, steps):
@@ -135,16 +137,55 @@ def test_a_scattered_filter_finds_the_robot():
     assert tracking_errors(toy, localizer, CIRCLE * 120)[-1, 0] < 0.25
 
 
-def test_a_kidnapped_robot_is_found_again():
-    settings = LocalizerSettings(
-        beams=60, resample_interval=1, recovery_alpha_slow=0.01, recovery_alpha_fast=0.5
-    )
+def test_a_kidnapped_robot_knows_that_it_is_lost_and_is_found_again():
     toy = Toy(START)
-    localizer = started(toy, settings)
-    assert tracking_errors(toy, localizer, THROUGH_ALL_ROOMS[:30])[-1, 0] < 0.25
+    localizer = started(toy)
+    assert tracking_errors(toy, localizer, THROUGH_ALL_ROOMS[:30])[-1, 0] < 0.1
+    assert not localizer.is_lost
     toy.base_in_map = Pose2(8.0, 2.0, math.pi)
-    about = way((3.0, 6.4), (3.0, 3.14), (3.0, 3.14), (3.0, 3.14))
-    assert tracking_errors(toy, localizer, about)[-20:, 0].max() < 0.25
+    tracking_errors(toy, localizer, way((1.5, 0.0)))
+    assert localizer.is_lost
+    forth_and_back = way((1.5, 3.14), (3.0, 3.14), (3.0, 3.14))
+    assert tracking_errors(toy, localizer, forth_and_back)[-20:, 0].max() < 0.1
+    assert not localizer.is_lost
+
+
+def test_without_recovery_a_kidnapped_robot_stays_lost():
+    toy = Toy(START)
+    localizer = started(toy, replace(TURTLEBOT, recover_when_lost=False))
+    toy.base_in_map = Pose2(8.0, 2.0, math.pi)
+    assert tracking_errors(toy, localizer, way((3.0, 3.14), (3.0, 3.14)))[-1, 0] > 1.0
+    assert localizer.is_lost
+
+
+def test_scan_matching_makes_the_estimate_better():
+    errors = []
+    for refine_pose in (False, True):
+        toy = Toy(START)
+        localizer = started(toy, replace(TURTLEBOT, refine_pose=refine_pose))
+        errors.append(tracking_errors(toy, localizer, THROUGH_ALL_ROOMS)[:, 0].mean())
+    assert errors[1] < 0.5 * errors[0]
+
+
+def test_a_change_of_settings_goes_on_from_the_estimate():
+    toy = Toy(START)
+    localizer = started(toy)
+    tracking_errors(toy, localizer, THROUGH_ALL_ROOMS[:20])
+    localizer.reconfigure(replace(TURTLEBOT, sensor_model="likelihood_field_prob", max_particles=1000))
+    assert localizer.particles.size == 1000
+    assert tracking_errors(toy, localizer, THROUGH_ALL_ROOMS[20:])[:, 0].max() < 0.15
+
+
+def test_furniture_that_is_not_on_the_map_does_no_harm():
+    toy = Toy(START)
+    localizer = started(toy)
+    cells = toy.grid.cells.copy()
+    for x, y in ((7.0, 4.6), (3.2, 4.7), (1.0, 3.4), (0.6, 2.0), (6.0, 0.5), (7.5, 2.1), (5.2, 2.0)):
+        cells[round(y / 0.05) : round((y + 0.5) / 0.05), round(x / 0.05) : round((x + 0.6) / 0.05)] = 100
+    toy.grid = OccupancyGrid(cells, 0.05)
+    errors = tracking_errors(toy, localizer, THROUGH_ALL_ROOMS)
+    assert errors[:, 0].max() < 0.2
+    assert not localizer.is_lost
 
 
 def test_nothing_is_done_while_the_robot_stands():

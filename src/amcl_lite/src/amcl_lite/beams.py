@@ -1,6 +1,7 @@
 """The beams of a scan that the sensor model looks at."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -24,7 +25,7 @@ class Beams:
     max_range: float
     start_xy: np.ndarray
 
-    @property
+    @cached_property
     def ends_xy(self) -> np.ndarray:
         """Where the beams that met something end: (M, 2), in the base frame."""
         met = self.ranges < self.max_range
@@ -55,7 +56,7 @@ def _beams(scan: Scan, settings: LocalizerSettings, step: int) -> Beams:
     if not (max_range > 0.0 and min_range >= 0.0 and np.isfinite(max_range)):
         raise LocalizationError(f"a scan has senseless limits: range_min {min_range}, range_max {max_range}")
     ranges = scan.ranges[::step].astype(np.float64)
-    directions = scan.angles[::step] + scan.laser_in_base.yaw
+    directions = scan.angles_of(np.arange(0, len(scan.ranges), step)) + scan.laser_in_base.yaw
     measured = ~np.isnan(ranges)
     ranges, directions = ranges[measured], directions[measured]
     ranges = np.where((ranges <= min_range) | (ranges > max_range), max_range, ranges)

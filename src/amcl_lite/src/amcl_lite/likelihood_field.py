@@ -22,16 +22,6 @@ class LikelihoodField:
     resolution: float
     origin: Pose2
 
-    def distances(self, points_xy: np.ndarray) -> np.ndarray:
-        """Metres (N,) from map points (N, 2) to the nearest obstacle, as far as they are told apart."""
-        local_xy = self.origin.inverse().transform_points(points_xy) / self.resolution
-        col, row = np.floor(local_xy).astype(np.int64).T
-        rows, cols = self.fit.shape
-        inside = (row >= 0) & (row < rows) & (col >= 0) & (col < cols)
-        fits = np.full(len(points_xy), self.fit_outside)
-        fits[inside] = self.fit[row[inside], col[inside]]
-        return self.sigma * np.sqrt(-2.0 * np.log(np.clip(fits, max(self.fit_outside, 1e-30), 1.0)))
-
     def fit_at_distance(self, distance: float) -> float:
         """The field's value at this distance, metres, from the nearest obstacle."""
         return math.exp(-0.5 * (distance / self.sigma) ** 2)

@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+import numba
 import numpy as np
 
 from amcl_lite.beams import Beams
@@ -14,6 +15,7 @@ from planar.ray_casting import cast_rays
 _EXPLAINED_WITHIN = 0.1
 # A beam that is longer than the map allows by this, metres, went through a wall.
 _THROUGH = 0.25
+_TINY = 1e-30  # so that the logarithm of a fit exists
 # Logistic regression of "the pose is right to 0.5 m" on 7200 poses of ten drives through map/home.world,
 # half of them wrong, with up to 40 % of the beams cut short by things that are not on the map: area under
 # the ROC curve 0.997. tests/benchmarks/localization_quality.py makes these numbers.
@@ -41,17 +43,48 @@ class Quality:
 
 
 def quality_of(base_in_map: Pose2, beams: Beams, field: LikelihoodField, grid: OccupancyGrid) -> Quality:
-    """Judges a pose by a scan's beams; 0 if no beam met anything."""
+    """Judges a pose by a scan's beams; the probability is 0 if no beam met anything."""
     laser_in_map = base_in_map @ Pose2(beams.start_xy[0], beams.start_xy[1], 0.0)
     expected = cast_rays(grid, laser_in_map, beams.directions, beams.max_range)
-    through = float(np.mean(beams.ranges > expected + _THROUGH)) if beams.ranges.size else 0.0
-    ends_xy = beams.ends_xy
-    if len(ends_xy) == 0:
-        return Quality(0.0, 0.0, through, math.inf)
-    distances = field.distances(base_in_map.transform_points(ends_xy))
-    explained = float(np.mean(np.exp(-0.5 * (distances / _EXPLAINED_WITHIN) ** 2)))
+    laser_in_grid = field.origin.inverse() @ laser_in_map
+    explained, through, mean_distance = _judged(
+        laser_in_grid.as_array(),
+        beams.ranges,
+        beams.directions,
+        beams.max_range,
+        expected,
+        (field.fit, field.fit_outside, field.sigma, field.resolution),
+    )
+    if math.isinf(mean_distance):
+        return Quality(0.0, explained, through, mean_distance)
     evidence = _BIAS + _PER_EXPLAINED * explained + _PER_THROUGH * through
-    return Quality(1.0 / (1.0 + math.exp(-evidence)), explained, through, float(distances.mean()))
+    return Quality(1.0 / (1.0 + math.exp(-evidence)), explained, through, mean_distance)
+
+
+@numba.njit(cache=True)
+def _judged(laser, ranges, directions, max_range, expected, field):
+    """How well beams are explained, the share through walls, the mean distance (inf: no beam met)."""
+    fit, fit_outside, sigma, resolution = field
+    explained, distance, through, met = 0.0, 0.0, 0, 0
+    for i in range(ranges.size):
+        if ranges[i] > expected[i] + _THROUGH:
+            through += 1
+        if ranges[i] >= max_range:
+            continue
+        met += 1
+        angle = laser[2] + directions[i]
+        col = (laser[0] + ranges[i] * math.cos(angle)) / resolution
+        row = (laser[1] + ranges[i] * math.sin(angle)) / resolution
+        value = fit_outside
+        if col >= 0.0 and row >= 0.0 and col < fit.shape[1] and row < fit.shape[0]:
+            value = max(fit[int(row), int(col)], fit_outside)
+        squared = -2.0 * sigma**2 * math.log(max(value, _TINY))
+        distance += math.sqrt(max(squared, 0.0))
+        explained += math.exp(-0.5 * squared / _EXPLAINED_WITHIN**2)
+    share_through = through / max(ranges.size, 1)
+    if met == 0:
+        return 0.0, share_through, np.inf
+    return explained / met, share_through, distance / met
 
 
 class LostDetector:

@@ -25,18 +25,16 @@ def resampled(
     ``draw_poses(count, rng)`` makes the new poses, (count, 3).
     """
     capacity = settings.max_particles
-    candidates = particles.poses[_drawn_independently(particles.weights, capacity, rng)]
-    injected = rng.random(capacity) < injected_share
-    if injected.any():
-        candidates[injected] = draw_poses(int(np.count_nonzero(injected)), rng)
-    count = _count_needed(
-        candidates, settings.min_particles, capacity, settings.kld_error, settings.kld_quantile
+    cumulative = np.cumsum(particles.weights)
+    is_new = rng.random(capacity) < injected_share
+    new = draw_poses(int(np.count_nonzero(is_new)), rng) if injected_share > 0.0 else np.empty((0, 3))
+    bounds = (settings.min_particles, capacity, settings.kld_error, settings.kld_quantile)
+    drawn, new_count = _draw_until_enough(
+        particles.poses, cumulative, rng.random(capacity), is_new, new, bounds
     )
     if settings.resample_method == "systematic":
-        kept = ~injected[:count]
-        drawn = _drawn_systematically(particles.weights, int(np.count_nonzero(kept)), rng)
-        candidates[:count][kept] = particles.poses[drawn]
-    return equally_weighted(candidates[:count])
+        drawn = _drawn_systematically(cumulative, len(drawn), rng.random())
+    return equally_weighted(np.concatenate((particles.poses[drawn], new[:new_count])))
 
 
 def particles_needed(occupied_bins: int, minimum: int, maximum: int, error: float, z: float) -> int:
@@ -44,19 +42,10 @@ def particles_needed(occupied_bins: int, minimum: int, maximum: int, error: floa
     return _particles_needed(occupied_bins, minimum, maximum, error, z)
 
 
-def _drawn_independently(weights: np.ndarray, count: int, rng: np.random.Generator) -> np.ndarray:
-    """Indices (count,) of particles, each drawn by weight on its own (amcl)."""
-    return _at_shares(weights, rng.random(count))
-
-
-def _drawn_systematically(weights: np.ndarray, count: int, rng: np.random.Generator) -> np.ndarray:
+def _drawn_systematically(cumulative: np.ndarray, count: int, chance: float) -> np.ndarray:
     """Indices (count,) of particles drawn by weight with one random number for all (table 4.4)."""
-    return _at_shares(weights, (np.arange(count) + rng.random()) / max(count, 1))
-
-
-def _at_shares(weights: np.ndarray, shares: np.ndarray) -> np.ndarray:
-    cumulative = np.cumsum(weights)
-    return np.minimum(np.searchsorted(cumulative, shares * cumulative[-1], side="right"), len(weights) - 1)
+    shares = (np.arange(count) + chance) / max(count, 1) * cumulative[-1]
+    return np.minimum(np.searchsorted(cumulative, shares, side="right"), len(cumulative) - 1)
 
 
 @numba.njit(cache=True)
@@ -69,13 +58,27 @@ def _particles_needed(occupied_bins, minimum, maximum, error, z):
 
 
 @numba.njit(cache=True)
-def _count_needed(poses, minimum, maximum, error, z):
-    table = bins.new_table(poses.shape[0])
-    occupied = 0
-    for i in range(poses.shape[0]):
-        col, row, turn = bins.bin_of(poses[i, 0], poses[i, 1], poses[i, 2])
+def _draw_until_enough(poses, cumulative, chances, is_new, new, bounds):
+    """Draws one after the other, old particles by weight and new ones, until there are enough.
+
+    Returns the indices of the old ones drawn, and how many of the new were.
+    """
+    table = bins.new_table(chances.size)
+    drawn = np.empty(chances.size, dtype=np.int64)
+    occupied, old_count, new_count = 0, 0, 0
+    for i in range(chances.size):
+        if is_new[i]:
+            x, y, yaw = new[new_count]
+            new_count += 1
+        else:
+            j = np.searchsorted(cumulative, chances[i] * cumulative[-1], side="right")
+            j = min(j, cumulative.size - 1)
+            drawn[old_count] = j
+            old_count += 1
+            x, y, yaw = poses[j]
+        col, row, turn = bins.bin_of(x, y, yaw)
         if bins.insert(table, col, row, turn):
             occupied += 1
-        if i >= _particles_needed(occupied, minimum, maximum, error, z):
-            return i + 1
-    return poses.shape[0]
+        if i >= _particles_needed(occupied, *bounds):
+            break
+    return drawn[:old_count], new_count

@@ -52,10 +52,11 @@ def _matched(start, prior, points, fit, outside):
 def _linearized(pose, start, prior, points, fit, outside):
     """Cost, gradient (3,) and Gauss-Newton Hessian (3, 3) of misfits and prior at a pose in cells."""
     weight = 1.0 / _MISFIT_SPREAD**2
-    away = pose - start
-    gradient = prior @ away
-    hessian = prior.copy()
-    cost = 0.5 * away @ gradient
+    gradient, hessian, cost = np.zeros(3), prior.copy(), 0.0
+    for j in range(3):
+        for k in range(3):
+            gradient[j] += prior[j, k] * (pose[k] - start[k])
+        cost += 0.5 * gradient[j] * (pose[j] - start[j])
     c, s = math.cos(pose[2]), math.sin(pose[2])
     jacobian = np.empty(3)
     for i in range(points.shape[0]):

@@ -23,10 +23,8 @@ def best_cluster(particles: ParticleSet) -> ParticleSet:
 
 def mean_pose(particles: ParticleSet) -> Pose2:
     """The weighted mean of a set; headings are averaged on the circle."""
-    x, y = particles.weights @ particles.poses[:, :2]
-    yaws = particles.poses[:, 2]
-    yaw = math.atan2(particles.weights @ np.sin(yaws), particles.weights @ np.cos(yaws))
-    return Pose2(float(x), float(y), yaw)
+    x, y, c, s = _weighted_sums(particles.poses, particles.weights)
+    return Pose2(float(x), float(y), math.atan2(s, c))
 
 
 def covariance(particles: ParticleSet) -> np.ndarray:

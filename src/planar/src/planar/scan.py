@@ -28,7 +28,11 @@ class Scan:
     @property
     def angles(self) -> np.ndarray:
         """Beam directions (N,) in the laser frame seen from above (already mirrored if upside down)."""
-        angles = self.angle_min + self.angle_increment * np.arange(len(self.ranges))
+        return self.angles_of(np.arange(len(self.ranges)))
+
+    def angles_of(self, beams: np.ndarray) -> np.ndarray:
+        """The directions of some beams (M,) given by their numbers (M,), as ``angles``."""
+        angles = self.angle_min + self.angle_increment * beams
         return -angles if self.upside_down else angles
 
     @property

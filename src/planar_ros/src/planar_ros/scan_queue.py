@@ -48,8 +48,8 @@ class ScanQueue:
         rospy.on_shutdown(self._wake)
         threading.Thread(target=self._work, daemon=True).start()
         # Subscribed to after the listener, whose callback has then already taken in the same message.
-        rospy.Subscriber("/tf", TFMessage, lambda message: self._wake(), tcp_nodelay=True)
-        rospy.Subscriber("/tf_static", TFMessage, lambda message: self._wake())
+        rospy.Subscriber("/tf", TFMessage, self._on_transforms, tcp_nodelay=True)
+        rospy.Subscriber("/tf_static", TFMessage, self._on_transforms)
         rospy.Subscriber(topic, LaserScanArrays, self.take, queue_size=size, tcp_nodelay=True)
 
     @property
@@ -85,6 +85,10 @@ class ScanQueue:
         """Nothing more will come: what cannot be handed on now is skipped."""
         self._is_ending = True
         self._wake()
+
+    def _on_transforms(self, message):
+        if self._waiting:
+            self._wake()
 
     def _wake(self):
         with self._has_news:

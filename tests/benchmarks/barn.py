@@ -1,0 +1,191 @@
+#!/usr/bin/env python3
+"""Drives BARN's worlds (Perille et al., "Benchmarking metric ground navigation", 2020) without ROS.
+
+No map: a Jackal plans in odom to a place ten metres ahead. A run ends within 1 m of it, at the first touch,
+or after 100 simulated seconds. Score of a run: OT / clip(time, 2 OT, 8 OT), OT the time that the benchmark's
+reference path takes at 2 m/s; 0 unless it has arrived. The best possible score is 0.5.
+
+    python3 tests/benchmarks/barn.py FOLDER --seeds 10
+
+FOLDER holds, at any depth, files world_N.world and path_N.npy of the BARN data set.
+"""
+
+import argparse
+import json
+import math
+import sys
+import time
+from dataclasses import asdict, dataclass, replace
+from multiprocessing import Pool
+from pathlib import Path
+from typing import Dict, List, Tuple
+
+import numpy as np
+
+from move_base_lite import Navigator, NavigatorSettings, Status, load_settings
+from move_base_lite.warming import warm_up
+from planar import Pose2
+from sim_bridge import ROBOTS, Simulation, SimulationSettings, load_world
+
+ROOT = Path(__file__).resolve().parents[2]
+START = Pose2(-2.25, 3.0, math.pi / 2.0)
+GOAL_IN_ODOM = Pose2(10.0, 0.0)
+ARRIVED = 1.0
+TIME_LIMIT = 100.0
+REFERENCE_SPEED = 2.0
+SIMULATION = SimulationSettings(odometry_rate=100, scan_rate=20)
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run. Lengths in metres, times in simulated seconds but ``tick_ms_*``, CPU time per control tick."""
+
+    world: int
+    seed: int
+    outcome: str
+    text: str
+    seconds: float
+    driven: float
+    score: float
+    recoveries: int
+    tick_ms_mean: float
+    tick_ms_p99: float
+
+
+def main() -> int:
+    options = _options()
+    worlds = _worlds(options.folder)
+    if options.only is not None:
+        worlds = {number: worlds[number] for number in options.only}
+    settings = load_settings(options.config)
+    warm_up(settings)
+    tasks = [
+        (number, *files, seed, settings) for number, files in worlds.items() for seed in range(options.seeds)
+    ]
+    runs: List[Run] = []
+    with Pool(options.jobs) as pool:
+        for run in pool.imap(_run, tasks):
+            print(
+                f"world {run.world:3d} seed {run.seed}: {run.outcome:9s} {run.seconds:5.1f} s, "
+                f"{run.driven:5.2f} m, score {run.score:.3f}, {run.recoveries} recoveries, "
+                f"{run.tick_ms_mean:.1f} ms a tick {run.text}",
+                flush=True,
+            )
+            runs.append(run)
+    summary = _summary(runs)
+    print(json.dumps(summary, indent=2))
+    if options.json:
+        details = {"summary": summary, "runs": [asdict(run) for run in runs]}
+        Path(options.json).write_text(json.dumps(details, indent=2))
+    return 0
+
+
+def score(seconds: float, path_length: float) -> float:
+    """BARN's score of a run that has arrived after ``seconds``."""
+    optimal = path_length / REFERENCE_SPEED
+    return optimal / min(max(seconds, 2.0 * optimal), 8.0 * optimal)
+
+
+def reference_length(path_cells: np.ndarray) -> float:
+    """Metres from start over the cells (N, 2) of a reference path to the goal."""
+    goal = START @ GOAL_IN_ODOM
+    path_xy = path_cells * 0.15 + (-4.575, 5.075)
+    path_xy = np.concatenate(([[START.x, START.y]], path_xy, [[goal.x, goal.y]]))
+    return float(np.linalg.norm(np.diff(path_xy, axis=0), axis=1).sum())
+
+
+def _run(task) -> Run:
+    number, world_file, path_file, seed, settings = task
+    simulation = Simulation(load_world(world_file), ROBOTS["jackal"], SIMULATION, seed, START)
+    try:
+        run = _drive(simulation, settings)
+    finally:
+        simulation.close()
+    points = score(run.seconds, reference_length(np.load(path_file))) if run.outcome == "success" else 0.0
+    return replace(run, world=number, seed=seed, score=points)
+
+
+def _drive(simulation: Simulation, settings: NavigatorSettings) -> Run:
+    """One run, not yet scored; the clock starts with the goal."""
+    navigator = Navigator(settings)
+    steps = round(1.0 / settings.move_base.controller_frequency / simulation.step_seconds)
+    goal = START @ GOAL_IN_ODOM
+    scan = None
+    while scan is None:
+        observation = simulation.step()
+        scan = observation.scan
+    began, last, driven, recoveries, text, outcome = observation.stamp, START, 0.0, 0, "", "timeout"
+    tick_ms = []
+    navigator.set_goal(GOAL_IN_ODOM)
+    while observation.stamp - began < TIME_LIMIT:
+        base_in_odom = observation.odometry.base_in_odom
+        cpu = time.process_time()
+        decision = navigator.tick(
+            observation.stamp, base_in_odom, base_in_odom, observation.odometry.twist, scan
+        )
+        tick_ms.append(1e3 * (time.process_time() - cpu))
+        recoveries += decision.recovery is not None
+        if decision.status.is_final and decision.status is not Status.SUCCEEDED:
+            outcome, text = decision.status.value, decision.text
+            break
+        command, scan, touched = decision.command, None, set()
+        for _ in range(steps):
+            observation = simulation.step(command)
+            command, scan = None, observation.scan or scan
+            touched.update(observation.contacts)
+        driven += last.distance_to(observation.base_in_world)
+        last = observation.base_in_world
+        if touched:
+            outcome, text = "collision", f"{', '.join(sorted(touched))} at {last.x:.2f}, {last.y:.2f}"
+            break
+        if last.distance_to(goal) <= ARRIVED:
+            outcome = "success"
+            break
+    seconds = observation.stamp - began
+    return Run(
+        0, 0, outcome, text, seconds, driven, 0.0, recoveries,
+        float(np.mean(tick_ms)), float(np.percentile(tick_ms, 99)),
+    )  # fmt: skip
+
+
+def _worlds(folder: Path) -> Dict[int, Tuple[Path, Path]]:
+    """Number -> files of the world and of its reference path."""
+    worlds = {int(file.stem.split("_")[1]): file for file in folder.rglob("world_*.world")}
+    paths = {int(file.stem.split("_")[1]): file for file in folder.rglob("path_*.npy")}
+    both = sorted(set(worlds) & set(paths))
+    if not both:
+        sys.exit(f"{folder}: no pairs of world_N.world and path_N.npy")
+    return {number: (worlds[number], paths[number]) for number in both}
+
+
+def _summary(runs: List[Run]) -> dict:
+    outcomes = [run.outcome for run in runs]
+    arrived = [run for run in runs if run.outcome == "success"]
+    return {
+        "runs": len(runs),
+        "score": round(float(np.mean([run.score for run in runs])), 4),
+        "success": round(len(arrived) / len(runs), 4),
+        "outcomes": {outcome: outcomes.count(outcome) for outcome in sorted(set(outcomes))},
+        "mean_seconds": round(float(np.mean([run.seconds for run in arrived])), 2) if arrived else None,
+        "mean_driven": round(float(np.mean([run.driven for run in arrived])), 2) if arrived else None,
+        "recoveries": sum(run.recoveries for run in runs),
+        "tick_ms_mean": round(float(np.mean([run.tick_ms_mean for run in runs])), 2),
+        "tick_ms_p99": round(float(np.max([run.tick_ms_p99 for run in runs])), 2),
+    }
+
+
+def _options():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path, help="with world_N.world and path_N.npy")
+    parser.add_argument("--seeds", type=int, default=10, help="runs of each world, seeds 0, 1, ...")
+    parser.add_argument("--only", type=int, nargs="+", help="numbers of the worlds to drive")
+    parser.add_argument("--jobs", type=int, default=1, help="processes")
+    parser.add_argument(
+        "--config", default=ROOT / "src" / "move_base_lite" / "config" / "jackal.yaml", help="parameters"
+    )
+    parser.add_argument("--json", help="file for the figures of every run")
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
