@@ -42,7 +42,7 @@ class MapServerNode:
         rospy.Service("change_map", LoadMapArrays, self._on_change_map)
 
     def _load(self, arguments) -> OccupancyGrid:
-        path = path_of(arguments.map, rospkg.RosPack().get_path)
+        path = path_of(arguments.map, _package_folder)
         if arguments.resolution is None:
             return load_map(path)
         rospy.logwarn("an image and a resolution for a map are deprecated: write a YAML file")
@@ -61,13 +61,20 @@ class MapServerNode:
 
     def _on_change_map(self, request):
         try:
-            self._show(load_map(path_of(request.map_url, rospkg.RosPack().get_path)))
+            self._show(load_map(path_of(request.map_url, _package_folder)))
         except MapFileError as error:
             rospy.logerr("%s", error)
             nothing = OccupancyGridArrays(data=np.zeros(0, dtype=np.int8))
             result = RESULTS.get(type(error), LoadMapResponse.RESULT_UNDEFINED_FAILURE)
             return {"map": nothing, "result": result}
         return {"map": self._map, "result": LoadMapResponse.RESULT_SUCCESS}
+
+
+def _package_folder(package: str) -> str:
+    try:
+        return rospkg.RosPack().get_path(package)
+    except rospkg.ResourceNotFound as error:
+        raise LookupError(package) from error
 
 
 def main():

@@ -7,9 +7,8 @@ from planar.map_file import MapMissingError
 
 
 def path_of(map_url: str, package_path: Callable[[str], str]) -> Path:
-    """The file that a path or a ``file://`` or ``package://`` URL names; ``package_path`` finds packages.
-
-    Raises MapMissingError.
+    """The file that a path or a ``file://`` or ``package://`` URL names; ``package_path`` finds packages
+    or raises LookupError. Raises MapMissingError.
     """
     if map_url.startswith("file://"):
         return Path(map_url[len("file://") :])
