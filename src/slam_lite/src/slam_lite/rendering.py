@@ -128,7 +128,8 @@ def on_canvas(grid: OccupancyGrid, extent: Tuple[float, float, float, float]) ->
     cells = np.full((rows, cols), UNKNOWN, dtype=np.int8)
     col, row = corner - lowest
     cells[row : row + grid.rows, col : col + grid.cols] = grid.cells
-    return OccupancyGrid(cells, resolution, Pose2(*(lowest * resolution).tolist(), 0.0))
+    x, y = lowest * resolution
+    return OccupancyGrid(cells, resolution, Pose2(float(x), float(y)))
 
 
 @numba.njit(cache=True, nogil=True)
