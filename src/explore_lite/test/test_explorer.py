@@ -7,7 +7,9 @@ from explore_lite import Explorer, ExplorerSettings, ExplorerState, Finish, Goal
 from explore_lite.config import NodeSettings
 from planar import Pose2, SettingsError, grid_from_picture
 
-SETTINGS = ExplorerSettings(clearance=0.4, progress_timeout=20.0, map_patience=6.0, attempts=2)
+SETTINGS = ExplorerSettings(
+    clearance=0.4, goal_clearance=0.4, progress_timeout=20.0, map_patience=6.0, attempts=2
+)
 ROBOT = Pose2(1.25, 1.25)
 
 # Half a metre a cell; the robot stands in the lower left corner.

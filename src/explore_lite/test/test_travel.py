@@ -6,7 +6,8 @@ import pytest
 from explore_lite.frontiers import Frontier
 from explore_lite.travel import travel_distances
 from explore_lite.viewpoints import viewpoint_of
-from planar import Pose2, grid_from_picture
+from planar import OCCUPIED, Pose2, grid_from_picture
+from planar.distance_field import distance_field
 
 WALL = """
 .........
@@ -17,35 +18,60 @@ WALL = """
 """
 
 
+def distances_in(picture, robot, clearance, resolution=1.0):
+    grid = grid_from_picture(picture, resolution)
+    return travel_distances(grid, distance_field(grid.cells == OCCUPIED, resolution), robot, clearance)
+
+
 def test_the_way_leads_around_walls():
-    grid = grid_from_picture(WALL)
-    distances = travel_distances(grid, Pose2(0.5, 0.5), 0.0)
+    distances = distances_in(WALL, Pose2(0.5, 0.5), 0.0)
     assert distances[0, 3] == pytest.approx(3.0)
-    assert distances[0, 8] == pytest.approx(6 * math.sqrt(2.0) + 2.0)
+    assert distances[0, 8] == pytest.approx(6.0 * math.sqrt(2.0) + 2.0)
     assert np.isinf(distances[0, 4])
 
 
 def test_the_way_keeps_clear_of_obstacles():
-    grid = grid_from_picture("......\n..##..\n......\n......")
-    distances = travel_distances(grid, Pose2(0.5, 0.5), 1.0)
+    distances = distances_in("......\n..##..\n......\n......", Pose2(0.5, 0.5), 1.0)
     assert np.isinf(distances[1, 2:4]).all()
     assert distances[0, 5] == pytest.approx(5.0)
 
 
 def test_beyond_a_gap_that_is_too_narrow_there_is_no_way():
-    grid = grid_from_picture("...#...\n.......\n...#...")
-    assert np.isinf(travel_distances(grid, Pose2(0.5, 1.5), 1.0)[1, 5])
+    assert np.isinf(distances_in("...#...\n.......\n...#...", Pose2(0.5, 1.5), 1.0)[1, 5])
 
 
-def test_a_robot_close_to_a_wall_sets_out_from_the_nearest_clear_cell():
-    grid = grid_from_picture("#....")
-    assert travel_distances(grid, Pose2(1.6, 0.5), 1.0)[0, 4] == pytest.approx(2.0)
-    assert np.isinf(travel_distances(grid, Pose2(0.4, 0.5), 1.0)).all()
+def test_between_obstacles_that_touch_at_a_corner_there_is_no_way():
+    assert np.isinf(distances_in("..#\n##.", Pose2(0.5, 1.5), 0.0)[0, 2])
+
+
+POCKET = """
+##########
+#........#
+######...#
+#........#
+##########
+"""
+
+
+def test_a_robot_in_a_tight_place_may_leave_it_with_less_room():
+    robot = Pose2(0.3, 0.3)
+    distances = distances_in(POCKET, robot, 0.25, resolution=0.2)
+    assert np.isfinite(distances[2, 7])
+    assert np.isinf(distances[3, 8])
+
+
+def test_a_robot_that_does_not_see_the_floor_around_it_may_leave_through_the_unknown():
+    distances = distances_in("??........\n??........\n??........", Pose2(0.1, 0.3), 0.1, resolution=0.2)
+    assert np.isfinite(distances[1, 9])
+
+
+def test_a_robot_far_from_all_that_is_free_cannot_go_anywhere():
+    assert np.isinf(distances_in("...", Pose2(-5.0, 0.5), 0.1)).all()
 
 
 def view(picture, middle_xy, robot=Pose2(0.5, 0.5), reach=3.0, shunned=()):
     grid = grid_from_picture(picture)
-    distances = travel_distances(grid, robot, 0.5)
+    distances = distances_in(picture, robot, 0.5)
     frontier = Frontier(np.array([middle_xy]), 1.0)
     return viewpoint_of(frontier, grid, distances, robot, reach, list(shunned), 0.5)
 

@@ -16,13 +16,14 @@ class ExplorerSettings:
     min_frontier_size: float = 0.5
     max_frontier_size: float = 2.0
     clearance: float = 0.25
+    goal_clearance: float = 0.35
     reach: float = 1.5
     potential_scale: float = 1.0
     orientation_scale: float = 0.5
     gain_scale: float = 0.5
     switch_gain: float = 1.0
     planner_frequency: float = 1.0
-    progress_timeout: float = 20.0
+    progress_timeout: float = 10.0
     map_patience: float = 6.0
     attempts: int = 2
     blacklist_radius: float = 0.4
@@ -38,6 +39,7 @@ class ExplorerSettings:
             check(getattr(self, name) > 0.0, name, "positive", getattr(self, name))
         for name in (
             "clearance",
+            "goal_clearance",
             "potential_scale",
             "orientation_scale",
             "gain_scale",

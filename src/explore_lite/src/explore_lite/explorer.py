@@ -11,10 +11,11 @@ from explore_lite.config import ExplorerSettings
 from explore_lite.frontiers import Frontier, find_frontiers, known_part
 from explore_lite.travel import travel_distances
 from explore_lite.viewpoints import viewpoint_of
-from planar import FREE, OccupancyGrid, Pose2, wrap
+from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, wrap
+from planar.distance_field import distance_field
 
 PROGRESS_DISTANCE = 0.1
-RESEND_DISTANCE = 0.25
+RESEND_DISTANCE = 0.5
 STRANDED_REFUSALS = 8
 """So many goals refused at the same place say more about the robot than about the goals."""
 SETTLE_SECONDS = 1.0
@@ -148,13 +149,16 @@ class Explorer:
         """Takes stock of the frontiers and decides where to go."""
         assert self._grid is not None
         self._next_look = now + 1.0 / self._settings.planner_frequency
-        distances = travel_distances(self._grid, robot, self._settings.clearance)
-        targets = self._targets(self._grid, distances, robot)
+        room = distance_field(self._grid.cells == OCCUPIED, self._grid.resolution)
+        distances = travel_distances(self._grid, room, robot, self._settings.clearance)
+        known_room = distance_field(self._grid.cells != FREE, self._grid.resolution)
+        goals = np.where(known_room > self._settings.goal_clearance, distances, np.inf)
+        targets = self._targets(self._grid, goals, robot)
         if self._arrived_at is not None:
             self._arrived_at = None
             if self._same_as_before(targets) is not None:
                 self._refuse_target()
-                targets = self._targets(self._grid, distances, robot)
+                targets = self._targets(self._grid, goals, robot)
             self._target = None
         if self._is_stuck(now, distances):
             if self.state is ExplorerState.RETURNING:
@@ -162,54 +166,57 @@ class Explorer:
             if self._target is None:
                 return self._finish(False, "the map shows no free space around the robot")
             self._refuse_target()
-            targets = self._targets(self._grid, distances, robot)
+            targets = self._targets(self._grid, goals, robot)
         if not np.isfinite(distances).any():
             return None
         if not targets:
             return self._go_back(now)
-        return self._go_on(now, targets)
+        return self._go_on(now, targets, distances)
 
-    def _targets(self, grid: OccupancyGrid, distances: np.ndarray, robot: Pose2) -> List[Target]:
+    def _targets(self, grid: OccupancyGrid, goals: np.ndarray, robot: Pose2) -> List[Target]:
+        """The frontiers that can be looked at; ``goals``: metres of way to where the robot may be sent."""
         settings = self._settings
         self.frontiers, self.unreachable = [], []
         targets = []
         for frontier in find_frontiers(grid, settings.min_frontier_size, settings.max_frontier_size):
-            viewpoint = self._viewpoint(frontier, grid, distances, robot)
+            viewpoint = self._viewpoint(frontier, grid, goals, robot)
             if viewpoint is None:
                 self.unreachable.append(frontier)
                 continue
             self.frontiers.append(frontier)
-            cost = settings.potential_scale * _at(distances, grid, viewpoint)
+            cost = settings.potential_scale * _at(goals, grid, viewpoint)
             cost += settings.orientation_scale * _turn(robot, viewpoint)
             targets.append(Target(frontier, viewpoint, cost - settings.gain_scale * frontier.size))
         return targets
 
     def _viewpoint(
-        self, frontier: Frontier, grid: OccupancyGrid, distances: np.ndarray, robot: Pose2
+        self, frontier: Frontier, grid: OccupancyGrid, goals: np.ndarray, robot: Pose2
     ) -> Optional[Pose2]:
         settings, middle_xy = self._settings, frontier.middle_xy
         gaps = [float(np.hypot(*(refusal.middle_xy - middle_xy))) for refusal in self._refusals]
         if sum(gap <= settings.blacklist_radius for gap in gaps) >= settings.attempts:
             return None
         shunned = [refusal.viewpoint for refusal, gap in zip(self._refusals, gaps) if gap <= settings.reach]
-        return viewpoint_of(
-            frontier, grid, distances, robot, settings.reach, shunned, settings.blacklist_radius
-        )
+        return viewpoint_of(frontier, grid, goals, robot, settings.reach, shunned, settings.blacklist_radius)
 
-    def _go_on(self, now: float, targets: List[Target]) -> Optional[Order]:
+    def _go_on(self, now: float, targets: List[Target], distances: np.ndarray) -> Optional[Order]:
         best = min(targets, key=lambda target: target.cost)
-        former = self._target
-        current = self._same_as_before(targets)
-        if current is not None and current.cost <= best.cost + self._settings.switch_gain:
-            best = current
-        else:
-            self._nearest, self._progress_at = math.inf, now
+        former, current = self._target, self._same_as_before(targets)
         self.state = ExplorerState.EXPLORING
-        if former is not None and best.viewpoint.distance_to(former.viewpoint) < RESEND_DISTANCE:
-            self._target = Target(best.frontier, former.viewpoint, best.cost)
+        if former is None or current is None or current.cost > best.cost + self._settings.switch_gain:
+            self._nearest, self._progress_at = math.inf, now
+        elif self._still_serves(former, current.frontier, distances):
             return None
+        else:
+            best = current
         self._target = best
         return GoTo(best.viewpoint)
+
+    def _still_serves(self, former: Target, frontier: Frontier, distances: np.ndarray) -> bool:
+        """Whether what is left of a frontier may be looked at from where the robot is already going."""
+        assert self._grid is not None
+        has_moved = math.dist(former.frontier.middle_xy, frontier.middle_xy) > RESEND_DISTANCE
+        return not has_moved and math.isfinite(_at(distances, self._grid, former.viewpoint))
 
     def _same_as_before(self, targets: List[Target]) -> Optional[Target]:
         """The target with what is left of the frontier that the robot was sent to."""

@@ -16,6 +16,7 @@ from explore_lite.markers import frontier_markers
 from explore_lite.msg import ExploreAction, ExploreFeedback, ExploreResult
 from explore_lite.warming import warm_up
 from planar import OccupancyGrid, Pose2
+from planar_ros.actions import server_is_ready
 from planar_ros.messages import OccupancyGridArrays, grid_from_msg, pose2_to_msg
 from planar_ros.parameters import read_settings
 from planar_ros.shell import run
@@ -53,11 +54,10 @@ class Explore:
         rospy.Subscriber("map", OccupancyGridArrays, self._keep_map, queue_size=1, tcp_nodelay=True)
         rospy.on_shutdown(self._client.cancel_all_goals)
         frames = f"{self._settings.global_frame} to {self._settings.robot_base_frame}"
-        has_server = self._client.action_client.action_server_is_ready
         self._conditions = {
             f"a map on {rospy.resolve_name('map')}": lambda: self._map is not None,
             f"the transform {frames}": lambda: self._robot() is not None,
-            f"the action {rospy.resolve_name('move_base')}": has_server,
+            f"the action {rospy.resolve_name('move_base')}": lambda: server_is_ready(self._client),
         }
         Waiting(self._conditions)
         self._server = actionlib.SimpleActionServer("explore", ExploreAction, self._execute, auto_start=False)
