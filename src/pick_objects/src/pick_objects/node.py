@@ -53,7 +53,7 @@ class PickObjects:
         """Carries the errand out and says how it ended."""
         self._tell_state()
         obstacle = self._why_not_to_start()
-        if obstacle:
+        if obstacle and not rospy.is_shutdown():
             return Finish(False, obstacle)
         state, event = self._errand.state, None
         while not rospy.is_shutdown():
