@@ -37,7 +37,9 @@ class RandomDriver:
         self._waypoints: List[np.ndarray] = []
 
     def command(self, base_in_map: Pose2) -> Twist2:
-        while self._waypoints and math.dist(self._waypoints[0], (base_in_map.x, base_in_map.y)) < WAYPOINT_NEAR:
+        while (
+            self._waypoints and math.dist(self._waypoints[0], (base_in_map.x, base_in_map.y)) < WAYPOINT_NEAR
+        ):
             self._waypoints.pop(0)
         while not self._waypoints:
             self._waypoints = self._way_to_somewhere(base_in_map)

@@ -19,7 +19,14 @@ from tf2_msgs.msg import TFMessage
 from tf2_ros import StaticTransformBroadcaster
 
 from planar import OccupancyGrid, Pose2
-from planar_ros.messages import GetMapArrays, LaserScanArrays, grid_to_msg, pose2_to_msg, transform_msg, yaw_of
+from planar_ros.messages import (
+    GetMapArrays,
+    LaserScanArrays,
+    grid_to_msg,
+    pose2_to_msg,
+    transform_msg,
+    yaw_of,
+)
 
 TOLERANCE = 0.1
 # How long, wall seconds, a node may take to answer a scan before the scan counts as unanswered.
