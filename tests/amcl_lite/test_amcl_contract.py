@@ -7,7 +7,10 @@ import unittest
 import numpy as np
 import rospy
 import rostest
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from dynamic_reconfigure.client import Client
 from geometry_msgs.msg import PoseArray, PoseWithCovarianceStamped
+from std_msgs.msg import Float32, String
 from std_srvs.srv import Empty
 from tf2_msgs.msg import TFMessage
 from toy_robot import BEAMS, ToyRobot
@@ -185,6 +188,41 @@ class AmclContractTest(unittest.TestCase):
         saved = [rospy.get_param("/amcl/initial_pose_" + name) for name in "xya"]
         self.assertLess(Pose2(*saved).distance_to(self.robot.base_in_map), NEAR)
         self.assertGreater(rospy.get_param("/amcl/initial_cov_xx"), 0.0)
+
+    def test_parameters_change_while_the_node_runs_and_come_back(self):
+        client = Client("amcl", timeout=5.0)
+        started_with = client.get_configuration(timeout=5.0)
+        self.assertEqual((started_with["max_particles"], started_with["transform_tolerance"]), (2000, 0.3))
+        self.assertEqual(started_with["recovery_alpha_slow"], 0.001)
+        self.estimate()
+        changed = client.update_configuration({"max_particles": 700, "min_particles": 700})
+        self.assertEqual(changed["max_particles"], 700)
+        clouds = Latest("particlecloud", PoseArray)
+        self.robot.move(TURN)
+        self.assert_near(self.estimate(), self.robot.base_in_map)
+        clouds.wait(lambda cloud: len(cloud.poses) == 700)
+        refused = client.update_configuration({"odom_model_type": "hover"})
+        self.assertEqual(refused["odom_model_type"], "diff")
+        restored = client.update_configuration({"restore_defaults": True})
+        self.assertEqual((restored["max_particles"], restored["min_particles"]), (2000, 500))
+
+    def test_diagnostics_tell_the_spread_and_the_quality(self):
+        diagnostics = Latest("/diagnostics", DiagnosticArray)
+        quality = Latest("amcl/localization_quality", Float32)
+        rospy.sleep(0.5)
+        for _ in range(12):
+            self.robot.move(TURN)
+            self.robot.sense()
+            rospy.sleep(0.1)
+        spread, fit = diagnostics.wait(lambda message: len(message.status) == 2).status
+        self.assertEqual((spread.name, spread.hardware_id), ("amcl: Standard deviation", "None"))
+        keys = [value.key for value in spread.values]
+        self.assertEqual(keys[:3], ["std_x", "std_y", "std_yaw"])
+        self.assertEqual(keys[3:], ["std_warn_level_x", "std_warn_level_y", "std_warn_level_yaw"])
+        self.assertEqual((spread.level, spread.message), (DiagnosticStatus.OK, "OK"))
+        self.assertEqual(fit.message, "ok")
+        self.assertGreater(quality.messages[-1].data, 0.9)
+        self.assertEqual(rospy.wait_for_message("amcl/localization_state", String, 2.0).data, "ok")
 
     def test_frames_are_sent_without_a_leading_slash(self):
         transform = self.map_to_odom(self.robot.sense() + rospy.Duration(0.3))

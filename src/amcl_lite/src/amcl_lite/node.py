@@ -33,7 +33,7 @@ from planar_ros.messages import (
 )
 from planar_ros.parameters import read_settings
 from planar_ros.progress import Progress
-from planar_ros.reconfigure import Reconfiguration, dynamic_values
+from planar_ros.reconfigure import RESTORE, Reconfiguration, dynamic_values
 from planar_ros.scan_queue import ScanQueue
 from planar_ros.shell import run
 from planar_ros.transforms import Transforms
@@ -311,7 +311,7 @@ def _read_settings() -> NodeSettings:
     _replace_unknown("odom_model_type", MOTION_MODELS, "odom model type", "diff model")
     _replace_unknown("laser_model_type", SENSOR_MODELS, "laser model type", "likelihood_field model")
     settings = read_settings(
-        NodeSettings, official_names(NodeSettings), ignore=(*official_names(InitialPose), "restore_defaults")
+        NodeSettings, official_names(NodeSettings), ignore=(*official_names(InitialPose), RESTORE)
     )
     for line in advice(settings):
         rospy.logwarn(line)

@@ -9,6 +9,7 @@ from amcl_lite.config import InitialPose, NodeSettings
 from planar import Pose2
 from planar.settings import official_names
 from planar_ros.parameters import read_settings, write_parameters
+from planar_ros.reconfigure import RESTORE
 
 
 def read_start_pose() -> InitialPose:
@@ -19,7 +20,7 @@ def read_start_pose() -> InitialPose:
         if isinstance(value, float) and math.isnan(value):
             rospy.logwarn("ignoring NAN in %s", name)
             rospy.delete_param("~" + name)
-    return read_settings(InitialPose, names, ignore=official_names(NodeSettings))
+    return read_settings(InitialPose, names, ignore=(*official_names(NodeSettings), RESTORE))
 
 
 class PoseKeeper:
