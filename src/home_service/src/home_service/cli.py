@@ -7,7 +7,7 @@ from typing import List, Optional
 
 from home_service.display import complain
 from home_service.errors import LaunchError, RunInterruptedError
-from home_service.options import ROS_COMMANDS, parse
+from home_service.options import MAPPING_COMMANDS, ROS_COMMANDS, parse
 from planar import PlanarError
 
 FAILURE, BAD_INPUT, INTERRUPTED = 1, 2, 130
@@ -20,6 +20,10 @@ def main(arguments: Optional[List[str]] = None) -> int:
     try:
         options = parse(arguments)
         read_inputs(options)
+        if options.command in MAPPING_COMMANDS:
+            from home_service import mapping
+
+            return getattr(mapping, options.command)(options)
         if options.command in ROS_COMMANDS:
             from home_service import commands
 
@@ -45,7 +49,7 @@ def read_inputs(options) -> None:
     from sim_bridge import load_world, robot_named
 
     options.loaded_world = load_world(options.world)
-    options.loaded_map = load_map(options.map)
+    options.loaded_map = load_map(options.map) if "map" in options else None
     options.loaded_robot = robot_named(options.robot)
     options.places = {}
     if "zones" in options:

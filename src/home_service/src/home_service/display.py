@@ -1,5 +1,6 @@
 """What a person sees in the terminal while a run goes on."""
 
+import math
 import sys
 import threading
 import time
@@ -31,6 +32,11 @@ class Display:
         if self._status is not None:
             self._status.stop()
             self._status = None
+
+    def hush(self) -> None:
+        """Shows no status any more: the terminal belongs to somebody else."""
+        self.__exit__()
+        self._latest_plain = math.inf
 
     def say(self, line: str) -> None:
         """Prints a line that stays."""

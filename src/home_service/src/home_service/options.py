@@ -13,9 +13,12 @@ COMMANDS = {
     "pick_objects": "Drives to the pick-up zone, waits there, and on to the drop-off zone.",
     "add_marker": "Shows the object at pick-up, hides it, and shows it at drop-off, by the clock.",
     "home_service": "Fetches the object at the pick-up zone and delivers it at the drop-off zone.",
+    "test_slam": "Starts home and SLAM, driven with keys (terminal or pipe), or by itself; saves the map.",
+    "map_home": "Lets the robot explore the world, saves its map, and scores it against the true one.",
     "rehearse": "Plays the home-service mission in one process, without ROS: fast and repeatable.",
 }
 ROS_COMMANDS = set(COMMANDS) - {"rehearse"}
+MAPPING_COMMANDS = {"test_slam", "map_home"}
 
 
 def parse(arguments: Optional[List[str]]) -> argparse.Namespace:
@@ -39,7 +42,6 @@ def parse(arguments: Optional[List[str]]) -> argparse.Namespace:
 
 def _add_world_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--world", type=Path, default=ROOT / "map/home.world", help="SDF world")
-    parser.add_argument("--map", type=Path, default=ROOT / "map/home.yaml", help="map of that world")
     parser.add_argument("--robot", default="turtlebot_lidar", help="robot profile of sim_bridge")
     parser.add_argument("--seed", type=seed, default=0, help="seed of every noise and every particle")
 
@@ -57,6 +59,14 @@ def _add_graph_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_own_options(name: str, parser: argparse.ArgumentParser) -> None:
+    if name in MAPPING_COMMANDS:
+        parser.add_argument(
+            "--save", type=Path, metavar="STEM", help="write STEM.pgm and STEM.yaml, not to the run folder"
+        )
+    else:
+        parser.add_argument("--map", type=Path, default=ROOT / "map/home.yaml", help="map of that world")
+    if name == "test_slam":
+        parser.add_argument("--drive", choices=("keys", "auto"), default="keys", help="who drives the robot")
     if name in ("home_service", "pick_objects", "add_marker", "rehearse"):
         parser.add_argument("--zones", type=Path, default=ROOT / "map/zones.yaml", help="YAML of zones")
     if name == "test_navigation":

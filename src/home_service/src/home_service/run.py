@@ -82,9 +82,9 @@ class Run:
             time.sleep(POLL_SECONDS)
         return None
 
-    def conclude(self, verdict: Verdict) -> int:
-        """Writes result.json, prints the verdict, and returns the exit code it deserves."""
-        path = self._write_result(verdict)
+    def conclude(self, verdict: Verdict, **findings) -> int:
+        """Writes result.json with the findings, prints the verdict, and returns the exit code it deserves."""
+        path = self._write_result(verdict, **findings)
         word = "SUCCESS" if verdict.success else "FAILURE"
         self.display.say(f"{word}: {verdict.reason}")
         self.display.say(f"result in {path}")
@@ -122,7 +122,7 @@ class Run:
             raise LaunchError(failure.text, is_bad_input=True)
         return failure.text
 
-    def _write_result(self, verdict: Verdict) -> Path:
+    def _write_result(self, verdict: Verdict, **findings) -> Path:
         options = self._options
         result = {
             "command": options.command,
@@ -131,10 +131,11 @@ class Run:
             "seed": options.seed,
             "speed": self._speed,
             "world": str(options.world),
-            "map": str(options.map),
+            **({"map": str(options.map)} if "map" in options else {}),
             "robot": options.robot,
             "wall_seconds": round(time.time() - self._start_wall, 3),
             **(self._observations() if self.referee else {}),
+            **findings,
             "versions": versions(),
         }
         return write_result(self.folder, result)

@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# Usage: ./scripts/map_home.sh [options]
+#
+# Lets the robot explore a world with SLAM and come back, saves the map, and scores it against the true one.
+# Sets everything up first if need be. Exit code: 0 success, 1 failure, 2 bad input, 130 interrupted.
+#
+#   --save STEM      write STEM.pgm and STEM.yaml (default: map in the run folder)
+#   --rviz           show it in rviz, where there is a display
+#   --speed N        1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz 1)
+#   --world FILE     SDF world (default: map/home.world)
+#   --robot NAME     robot profile of sim_bridge (default: turtlebot_lidar)
+#   --seed N         seed of every noise (default: 0)
+#   --timeout N      the run fails after N seconds of wall time (default: 900)
+#   --output FOLDER  where the run folder is made (default: ./runs)
+#   --help           this text
+
+# shellcheck source=scripts/setup.sh
+. "$(dirname -- "$(readlink -f -- "$0")")/setup.sh"
+run_command map_home "$@"

@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# Usage: ./scripts/test_slam.sh [options]
+#
+# Starts home and SLAM; the robot is driven with the keys of the terminal or of a pipe, such as
+#   echo i:2.0 j:1.5 | ./scripts/test_slam.sh
+# or by itself. Saves the map at the end. Sets everything up first if need be.
+# Exit code: 0 success, 1 failure, 2 bad input, 130 interrupted.
+#
+#   --drive WHO      keys, or auto: the robot explores by itself (default: keys)
+#   --save STEM      write STEM.pgm and STEM.yaml (default: map in the run folder)
+#   --rviz           show it in rviz, where there is a display
+#   --speed N        1 real time, N times that, 0 as fast as the nodes keep up
+#                    (default: with keys or --rviz 1, else 0)
+#   --world FILE     SDF world (default: map/home.world)
+#   --robot NAME     robot profile of sim_bridge (default: turtlebot_lidar)
+#   --seed N         seed of every noise (default: 0)
+#   --timeout N      the run fails after N seconds of wall time (default: 900)
+#   --output FOLDER  where the run folder is made (default: ./runs)
+#   --help           this text
+
+# shellcheck source=scripts/setup.sh
+. "$(dirname -- "$(readlink -f -- "$0")")/setup.sh"
+run_command test_slam "$@"

@@ -1,0 +1,122 @@
+"""The commands that map a world: by hand, or by a robot that explores it, with a score against the truth."""
+
+import subprocess
+from argparse import Namespace
+from dataclasses import asdict
+from pathlib import Path
+from typing import Optional
+
+import actionlib
+from actionlib_msgs.msg import GoalStatus
+
+from explore_lite.msg import ExploreAction, ExploreGoal
+from home_service.errors import LaunchError
+from home_service.run import Run
+from home_service.verdict import ARRIVAL_TOLERANCE, Verdict
+from planar import Pose2, SettingsError, load_map
+from planar.map_score import MapScore, score_map
+from planar_ros.actions import server_is_ready
+from sim_bridge.true_map import true_map
+
+LEAST_RECALL = LEAST_PRECISION = 0.95
+SAVE_SECONDS = 30.0
+TELEOP = ["rosrun", "teleop_lite", "turtlebot_teleop_key", "turtlebot_teleop_keyboard/cmd_vel:=cmd_vel"]
+
+
+def test_slam(options: Namespace) -> int:
+    by_itself = options.drive == "auto"
+    if not by_itself and "speed" not in options:
+        options.speed = 1.0
+    _check_place_to_save(options)
+    with Run(options, "mapping.launch" if by_itself else "slam.launch") as run:
+        failure = _explore(run) if by_itself else _drive_by_keys(run)
+        path = _save_map(run, options)
+        return run.conclude(Verdict(failure is None, failure or f"map saved in {path}"))
+
+
+def map_home(options: Namespace) -> int:
+    _check_place_to_save(options)
+    with Run(options, "mapping.launch") as run:
+        failure = _explore(run)
+        path = _save_map(run, options)
+        way_home = run.referee.truth.distance_to(Pose2())
+        score = _score(path, options)
+        run.display.say(f"map saved in {path}")
+        return run.conclude(_judge(failure, run, score, way_home), map=str(path), **asdict(score))
+
+
+def _explore(run: Run) -> Optional[str]:
+    """Has the robot explore and return; why that failed, or None."""
+    client = actionlib.SimpleActionClient("explore", ExploreAction)
+    failure = run.watch(lambda: server_is_ready(client))
+    if failure:
+        return failure
+
+    def show(feedback):
+        run.referee.state = (
+            f"{feedback.state}, {feedback.explored_area:.0f} m2 known, {feedback.frontiers} frontiers"
+        )
+
+    client.send_goal(ExploreGoal(return_to_start=True), feedback_cb=show)
+    failure = run.watch(lambda: client.get_state() not in (GoalStatus.PENDING, GoalStatus.ACTIVE))
+    if failure is None and client.get_state() != GoalStatus.SUCCEEDED:
+        failure = client.get_goal_status_text()
+    run.display.say(f"{client.get_goal_status_text()}, {run.referee.simulated_seconds:.0f} s simulated")
+    return failure
+
+
+def _drive_by_keys(run: Run) -> Optional[str]:
+    """Leaves terminal or pipe to the keyboard teleop until it ends; why the run cannot go on, or None."""
+    run.display.hush()
+    teleop = subprocess.Popen(TELEOP)
+    failure = run.watch(lambda: teleop.poll() is not None)
+    if failure is None and teleop.returncode != 0:
+        raise LaunchError("the keyboard teleop has failed", is_bad_input=teleop.returncode == 2)
+    return failure
+
+
+def _check_place_to_save(options: Namespace) -> None:
+    if options.save and not options.save.resolve().parent.is_dir():
+        raise SettingsError(f"{options.save.resolve().parent}: no such folder to save the map in")
+
+
+def _save_map(run: Run, options: Namespace) -> Path:
+    stem = (options.save or run.folder / "map").resolve()
+    saver = subprocess.run(
+        ["rosrun", "map_lite", "map_saver", "-f", str(stem)],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        timeout=SAVE_SECONDS,
+        text=True,
+        check=False,
+    )
+    if saver.returncode != 0:
+        raise LaunchError(f"map_saver: {' '.join(saver.stderr.split()) or 'failed'}")
+    return stem.with_name(stem.name + ".yaml")
+
+
+def _score(path: Path, options: Namespace) -> MapScore:
+    """The saved map against what the robot's laser could have seen of the world."""
+    robot = options.loaded_robot
+    height = float(robot.mounting(robot.laser.frame)[2, 3])
+    truth = true_map(options.loaded_world, height)
+    return score_map(load_map(path), truth, robot_radius=robot.radius, sight=robot.laser.sight)
+
+
+def _judge(failure: Optional[str], run: Run, score: MapScore, way_home: float) -> Verdict:
+    collisions = run.referee.ledger.collisions
+    complaints = [
+        (failure is not None, failure),
+        (way_home > ARRIVAL_TOLERANCE, f"the robot truly stands {way_home:.2f} m from where it started"),
+        (score.recall < LEAST_RECALL, f"recall below {LEAST_RECALL}"),
+        (score.precision < LEAST_PRECISION, f"precision below {LEAST_PRECISION}"),
+        (score.doubled_walls > 0, "walls are doubled"),
+        (bool(collisions), f"collided with {', '.join(sorted(set(collisions)))}"),
+    ]
+    figures = (
+        f"recall {score.recall:.3f}, precision {score.precision:.3f}, {score.doubled_walls} doubled walls, "
+        f"back {way_home:.2f} m from the start"
+    )
+    reasons = [text for is_wrong, text in complaints if is_wrong]
+    return Verdict(not reasons, f"{'; '.join(reasons)} ({figures})" if reasons else figures)
