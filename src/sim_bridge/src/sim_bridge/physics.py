@@ -3,10 +3,9 @@
 from typing import Any, Dict, List, Sequence, Set, Tuple
 
 import numpy as np
-import pybullet
-from pybullet_utils.bullet_client import BulletClient
 
 from planar import Pose2, Twist2
+from sim_bridge.bullet import BulletClient, pybullet
 from sim_bridge.errors import WorldError
 from sim_bridge.pose3 import from_pose2, position, quaternion, transform_points
 from sim_bridge.robots import RobotProfile
@@ -37,7 +36,7 @@ class Physics:
     """
 
     def __init__(self, robot: RobotProfile, base_in_world: Pose2, rate: int, gravity: float):
-        self._bullet = BulletClient(pybullet.DIRECT)
+        self._bullet = BulletClient()
         self._bullet.setPhysicsEngineParameter(
             fixedTimeStep=1.0 / rate, numSolverIterations=SOLVER_ITERATIONS, deterministicOverlappingPairs=1
         )
