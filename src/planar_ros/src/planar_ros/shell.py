@@ -1,6 +1,9 @@
 """The manners of a node: how it starts, fails and ends."""
 
+import queue
+import signal
 import sys
+import threading
 from typing import Callable
 
 import rospy
@@ -13,15 +16,22 @@ def run(node_name: str, start: Callable[[], object]) -> None:
 
     A PlanarError during the start is a user's mistake: one line on stderr, exit code 2.
     """
-    rospy.init_node(node_name)
+    rospy.init_node(node_name, disable_signals=True)
+    _shut_down_on_signals()
+    is_ending, is_over = threading.Event(), threading.Event()
+    rospy.on_shutdown(is_ending.set)
+    # Called after rospy's own hooks: then the master and all peers have been told.
+    rospy.core.add_shutdown_hook(lambda _reason: is_over.set())
     try:
         node = start()
-        rospy.spin()
+        is_over.wait()
         del node
-    except rospy.ROSInterruptException:
-        pass
     except PlanarError as error:
         fail(str(error))
+    except Exception:
+        if not is_ending.is_set():  # else its topics were closed while it still worked
+            raise
+        is_over.wait()
 
 
 def fail(text: str, exit_code: int = 2) -> None:
@@ -29,3 +39,19 @@ def fail(text: str, exit_code: int = 2) -> None:
     print(f"[{rospy.get_name()}] error: {text}", file=sys.stderr, flush=True)
     rospy.signal_shutdown(text)
     sys.exit(exit_code)
+
+
+def _shut_down_on_signals() -> None:
+    """Shuts down on SIGINT and SIGTERM in a thread.
+
+    rospy would do it in the signal's handler, on top of whatever the main thread is at, and wait for ever for
+    a lock that this holds, as while it publishes.
+    """
+    received = queue.SimpleQueue()
+
+    def shut_down():
+        rospy.signal_shutdown(f"signal {received.get()}")
+
+    threading.Thread(target=shut_down, daemon=True).start()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda number, _frame: received.put(number))
