@@ -8,7 +8,7 @@ import yaml
 
 from move_base_lite import NavigatorSettings, load_settings, settings_from_parameters
 from move_base_lite.config import MoveBaseSettings
-from move_base_lite.control import DwaSettings
+from move_base_lite.control import DwaSettings, MppiSettings
 from move_base_lite.costmap import CostmapSettings
 from move_base_lite.costmap.inflation import InflationSettings
 from move_base_lite.costmap.obstacle_layer import ObstacleSettings
@@ -27,6 +27,7 @@ DOCUMENTED = yaml.safe_load((CONFIG / "move_base_lite.yaml").read_text())
         (MoveBaseSettings, [], set()),
         (PlannerSettings, ["NavfnROS"], {"use_astar"}),
         (DwaSettings, ["DWAPlannerROS"], set()),
+        (MppiSettings, ["MppiPlannerROS"], set()),
         (RotateSettings, ["TrajectoryPlannerROS"], set()),
         (CostmapSettings, ["global_costmap"], {"static", "obstacles", "inflation"}),
         (StaticSettings, ["global_costmap", "static_layer"], set()),

@@ -6,15 +6,24 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 
-from move_base_lite import Navigator, Status, load_settings
+from move_base_lite import Navigator, Status, load_settings, settings_from_parameters
 from planar import OCCUPIED, OccupancyGrid, Pose2, Scan, Twist2, wrap
 from planar.ray_casting import cast_rays
 
 PRESET = Path(__file__).parents[1] / "config" / "turtlebot.yaml"
 SETTINGS = load_settings(PRESET)
+LOCAL_PLANNERS = ("dwa_local_planner/DWAPlannerROS", "move_base_lite/MppiPlannerROS")
 BODY_RADIUS = 0.178
 PERIOD = 0.1
+
+
+@pytest.fixture(params=LOCAL_PLANNERS)
+def settings(request):
+    """The preset, with each local planner in turn."""
+    parameters = yaml.safe_load(PRESET.read_text())
+    return settings_from_parameters({**parameters, "base_local_planner": request.param})[0]
 
 
 def room(width, height):
@@ -101,38 +110,38 @@ def assert_arrived(robot, decisions, goal):
 
 @pytest.mark.parametrize("door", [0.6, 0.7, 0.9])
 @pytest.mark.parametrize("start", [Pose2(0.6, 0.6, 3.0), Pose2(2.6, 3.5, -1.5)])
-def test_the_robot_passes_a_door(door, start):
+def test_the_robot_passes_a_door(settings, door, start):
     grid, goal = two_rooms(door), Pose2(5.4, 3.4, 1.0)
-    robot, navigator = Robot(grid, start), Navigator(SETTINGS, grid)
+    robot, navigator = Robot(grid, start), Navigator(settings, grid)
     navigator.set_goal(goal)
     decisions = drive_to_end(robot, navigator)
     assert_arrived(robot, decisions, goal)
     assert not any(decision.recovery for decision in decisions)
 
 
-def test_the_robot_leaves_a_trap_whose_end_is_near_the_goal():
+def test_the_robot_leaves_a_trap_whose_end_is_near_the_goal(settings):
     grid = room(6.0, 5.0)
     for block in ((4.0, 1.0, 4.1, 4.0), (2.0, 1.0, 4.1, 1.1), (2.0, 3.9, 4.1, 4.0)):
         grid = with_block(grid, *block)
     goal = Pose2(5.0, 2.5)
-    robot, navigator = Robot(grid, Pose2(3.5, 2.5)), Navigator(SETTINGS, grid)
+    robot, navigator = Robot(grid, Pose2(3.5, 2.5)), Navigator(settings, grid)
     navigator.set_goal(goal)
     assert_arrived(robot, drive_to_end(robot, navigator), goal)
 
 
-def test_a_box_that_the_map_does_not_show_is_driven_around():
+def test_a_box_that_the_map_does_not_show_is_driven_around(settings):
     grid, goal = room(6.0, 4.0), Pose2(5.4, 2.0)
     robot = Robot(with_block(grid, 2.8, 1.7, 3.2, 2.3), Pose2(0.6, 2.0))
-    navigator = Navigator(SETTINGS, grid)
+    navigator = Navigator(settings, grid)
     navigator.set_goal(goal)
     decisions = drive_to_end(robot, navigator)
     assert_arrived(robot, decisions, goal)
     assert not any(decision.recovery for decision in decisions)
 
 
-def test_a_box_in_the_door_stops_the_robot_until_it_is_taken_away():
+def test_a_box_in_the_door_stops_the_robot_until_it_is_taken_away(settings):
     grid, goal = two_rooms(0.9), Pose2(5.4, 2.0)
-    robot, navigator = Robot(with_block(grid, 2.8, 1.4, 3.0, 2.6), Pose2(0.8, 2.0)), Navigator(SETTINGS, grid)
+    robot, navigator = Robot(with_block(grid, 2.8, 1.4, 3.0, 2.6), Pose2(0.8, 2.0)), Navigator(settings, grid)
     navigator.set_goal(goal)
     while robot.now < 12.0:
         assert not robot.tick(navigator).status.is_final
@@ -141,9 +150,9 @@ def test_a_box_in_the_door_stops_the_robot_until_it_is_taken_away():
     assert_arrived(robot, drive_to_end(robot, navigator), goal)
 
 
-def test_a_goal_that_nothing_leads_to_is_given_up_after_all_recoveries_with_a_reason():
+def test_a_goal_that_nothing_leads_to_is_given_up_after_all_recoveries_with_a_reason(settings):
     grid = two_rooms(0.0)
-    robot, navigator = Robot(grid, Pose2(1.0, 2.0)), Navigator(SETTINGS, grid)
+    robot, navigator = Robot(grid, Pose2(1.0, 2.0)), Navigator(settings, grid)
     navigator.set_goal(Pose2(5.0, 2.0))
     decisions = drive_to_end(robot, navigator)
     assert decisions[-1].status is Status.ABORTED
@@ -164,9 +173,9 @@ def test_a_goal_that_nothing_leads_to_is_given_up_after_all_recoveries_with_a_re
     "goal, code",
     [(Pose2(3.05, 1.0), "GOAL_BLOCKED"), (Pose2(2.9, 1.0), "GOAL_BLOCKED"), (Pose2(9.0, 1.0), "OUT_OF_MAP")],
 )
-def test_a_goal_that_can_never_be_stood_on_is_given_up_at_once(goal, code):
+def test_a_goal_that_can_never_be_stood_on_is_given_up_at_once(settings, goal, code):
     grid = two_rooms(0.9)
-    robot, navigator = Robot(grid, Pose2(1.0, 2.0)), Navigator(SETTINGS, grid)
+    robot, navigator = Robot(grid, Pose2(1.0, 2.0)), Navigator(settings, grid)
     navigator.set_goal(goal)
     decision = robot.tick(navigator)
     assert decision.status is Status.ABORTED
@@ -174,14 +183,14 @@ def test_a_goal_that_can_never_be_stood_on_is_given_up_at_once(goal, code):
     assert f"[code={code}: the goal at ({goal.x:.2f}, {goal.y:.2f}) is " in decision.text
 
 
-def test_a_cancelled_robot_is_told_to_stop_in_the_same_tick_whatever_it_is_doing():
+def test_a_cancelled_robot_is_told_to_stop_in_the_same_tick_whatever_it_is_doing(settings):
     grid = two_rooms(0.0)
     for goal, wanted in [
         (Pose2(2.0, 3.0), Status.CONTROLLING),
         (Pose2(5.0, 2.0), Status.PLANNING),
         (Pose2(5.0, 2.0), Status.CLEARING),
     ]:
-        robot, navigator = Robot(grid, Pose2(1.0, 1.0)), Navigator(SETTINGS, grid)
+        robot, navigator = Robot(grid, Pose2(1.0, 1.0)), Navigator(settings, grid)
         navigator.set_goal(goal)
         decision = robot.tick(navigator)
         while decision.status is not wanted or (wanted is Status.CLEARING and decision.command == Twist2()):
@@ -193,9 +202,9 @@ def test_a_cancelled_robot_is_told_to_stop_in_the_same_tick_whatever_it_is_doing
         assert robot.tick(navigator).command is None
 
 
-def test_a_new_goal_is_taken_over_without_stopping():
+def test_a_new_goal_is_taken_over_without_stopping(settings):
     grid, goal = room(6.0, 4.0), Pose2(5.4, 3.0)
-    robot, navigator = Robot(grid, Pose2(0.6, 2.0)), Navigator(SETTINGS, grid)
+    robot, navigator = Robot(grid, Pose2(0.6, 2.0)), Navigator(settings, grid)
     navigator.set_goal(Pose2(5.4, 2.0))
     while robot.twist.v < 0.4:
         robot.tick(navigator)
@@ -204,18 +213,18 @@ def test_a_new_goal_is_taken_over_without_stopping():
     assert_arrived(robot, drive_to_end(robot, navigator), goal)
 
 
-def test_an_ended_goal_says_so_once_and_leaves_the_robot_alone():
+def test_an_ended_goal_says_so_once_and_leaves_the_robot_alone(settings):
     grid = room(3.0, 3.0)
-    robot, navigator = Robot(grid, Pose2(1.5, 1.5)), Navigator(SETTINGS, grid)
+    robot, navigator = Robot(grid, Pose2(1.5, 1.5)), Navigator(settings, grid)
     navigator.set_goal(Pose2(1.5, 1.5))
     assert drive_to_end(robot, navigator)[-1].status is Status.SUCCEEDED
     decision = robot.tick(navigator)
     assert (decision.status, decision.command, navigator.is_active) == (Status.IDLE, None, False)
 
 
-def test_without_scans_the_robot_stops_and_after_a_while_gives_up():
+def test_without_scans_the_robot_stops_and_after_a_while_gives_up(settings):
     grid = room(6.0, 4.0)
-    robot, navigator = Robot(grid, Pose2(0.6, 2.0)), Navigator(SETTINGS, grid)
+    robot, navigator = Robot(grid, Pose2(0.6, 2.0)), Navigator(settings, grid)
     navigator.set_goal(Pose2(5.4, 2.0))
     while robot.twist.v < 0.4:
         robot.tick(navigator)
@@ -229,17 +238,17 @@ def test_without_scans_the_robot_stops_and_after_a_while_gives_up():
     assert "[code=SENSOR_STALE: no scan for 1" in decision.text
 
 
-def test_a_robot_pushed_against_a_wall_gets_away_from_it():
+def test_a_robot_pushed_against_a_wall_gets_away_from_it(settings):
     grid, goal = room(4.0, 4.0), Pose2(3.0, 2.0)
-    robot, navigator = Robot(grid, Pose2(0.1 + BODY_RADIUS + 0.01, 2.0, math.pi)), Navigator(SETTINGS, grid)
+    robot, navigator = Robot(grid, Pose2(0.1 + BODY_RADIUS + 0.01, 2.0, math.pi)), Navigator(settings, grid)
     navigator.set_goal(goal)
     assert_arrived(robot, drive_to_end(robot, navigator), goal)
 
 
-def test_the_same_run_gives_the_same_poses():
+def test_the_same_run_gives_the_same_poses(settings):
     def poses():
         grid = two_rooms(0.9)
-        robot, navigator = Robot(grid, Pose2(0.6, 0.6)), Navigator(SETTINGS, grid)
+        robot, navigator = Robot(grid, Pose2(0.6, 0.6)), Navigator(settings, grid)
         navigator.set_goal(Pose2(5.4, 3.4))
         drive_to_end(robot, navigator)
         return robot.now, robot.pose

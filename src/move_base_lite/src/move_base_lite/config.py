@@ -5,7 +5,7 @@ from typing import Any, Dict, List, Mapping, Tuple
 
 import yaml
 
-from move_base_lite.control import DwaSettings
+from move_base_lite.control import ControllerSettings, DwaSettings, MppiSettings
 from move_base_lite.costmap import CostmapSettings, footprint_from
 from move_base_lite.costmap.inflation import InflationSettings
 from move_base_lite.costmap.obstacle_layer import ObstacleSettings
@@ -16,7 +16,11 @@ from planar import SettingsError
 from planar.settings import check, settings_from
 
 GLOBAL_PLANNERS = ("navfn/NavfnROS", "global_planner/GlobalPlanner")
-LOCAL_PLANNERS = ("dwa_local_planner/DWAPlannerROS", "base_local_planner/TrajectoryPlannerROS")
+LOCAL_PLANNERS = (
+    "dwa_local_planner/DWAPlannerROS",
+    "base_local_planner/TrajectoryPlannerROS",
+    "move_base_lite/MppiPlannerROS",
+)
 
 
 @dataclass(frozen=True)
@@ -57,7 +61,7 @@ class NavigatorSettings:
 
     move_base: MoveBaseSettings = field(default_factory=MoveBaseSettings)
     planner: PlannerSettings = field(default_factory=PlannerSettings)
-    controller: DwaSettings = field(default_factory=DwaSettings)
+    controller: ControllerSettings = field(default_factory=DwaSettings)
     global_costmap: CostmapSettings = field(default_factory=CostmapSettings)
     local_costmap: CostmapSettings = field(default_factory=CostmapSettings)
     recoveries: Tuple[RecoverySettings, ...] = ()
@@ -160,8 +164,10 @@ _DWA_IGNORED = {
 }
 
 
-def _controller_settings(reader: _Reader, parameters, move_base: MoveBaseSettings) -> DwaSettings:
+def _controller_settings(reader: _Reader, parameters, move_base: MoveBaseSettings) -> ControllerSettings:
     planner = str(parameters.get("base_local_planner", LOCAL_PLANNERS[0]))
+    if planner == LOCAL_PLANNERS[2]:
+        return reader.read(MppiSettings, _below(parameters, "MppiPlannerROS"), "MppiPlannerROS/")
     values = dict(_below(parameters, "DWAPlannerROS"))
     for old, new in _DWA_DEPRECATED.items():
         if old in values:

@@ -1,4 +1,4 @@
-"""The local planner: turns to the plan, follows it by DWA, stops at the end and turns as the goal says."""
+"""The local planner: turns to the plan, follows it, stops at the end and turns as the goal says."""
 
 import math
 from dataclasses import dataclass
@@ -6,10 +6,11 @@ from typing import Optional
 
 import numpy as np
 
-from move_base_lite.control.dwa import best_trajectory
+from move_base_lite.control.dwa import DynamicWindow
 from move_base_lite.control.escape import way_out
+from move_base_lite.control.mppi import PathIntegral
 from move_base_lite.control.rotation import rotation_towards, stopping
-from move_base_lite.control.settings import DwaSettings
+from move_base_lite.control.settings import ControllerSettings, DwaSettings, MppiSettings
 from move_base_lite.control.tracking import Tracking
 from move_base_lite.costmap import LayeredCostmap
 from move_base_lite.errors import ControlError
@@ -17,7 +18,6 @@ from planar import Pose2, Twist2, wrap
 
 ALIGNED_ANGLE = 0.3
 FOLLOWED_ANGLE = 0.1
-SHORTEST_HORIZON = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,11 +30,16 @@ class Control:
 
 
 class Controller:
-    """Follows one plan at a time; plan and goal are given in the map, costs in the local frame."""
+    """Follows one plan at a time; plan and goal are given in the map, costs in the local frame.
 
-    def __init__(self, settings: DwaSettings, period: float):
+    How it is followed is for a DynamicWindow or a PathIntegral to say; turning on the spot, the end of the
+    plan and the way out of a contact are the same for both.
+    """
+
+    def __init__(self, settings: ControllerSettings, period: float):
         self._settings = settings
         self._period = period
+        self._follower = follower_for(settings, period)
         self._tracking: Optional[Tracking] = None
         self._goal_in_map = Pose2()
         self._arrived = False
@@ -87,17 +92,9 @@ class Controller:
         )
         if self._should_turn(error):
             return self._turn(error, base_in_local, twist, costmap, plan_xy)
-        speed_limit = self._speed_limit()
         try:
-            trajectory = best_trajectory(
-                self._settings,
-                costmap,
-                base_in_local,
-                twist,
-                plan_xy,
-                speed_limit,
-                self._horizon(speed_limit),
-                self._period,
+            trajectory = self._follower.follow(
+                costmap, base_in_local, twist, plan_xy, self._speed_limit(), self.distance_left
             )
         except ControlError:
             return self._find_another_way(error, base_in_local, twist, costmap, plan_xy)
@@ -153,10 +150,13 @@ class Controller:
         gentle = 0.3 * self._settings.acc_lim_x
         return max(math.sqrt(2.0 * gentle * self.distance_left), self._settings.min_vel_trans)
 
-    def _horizon(self, speed_limit: float) -> float:
-        """Looks no further ahead than the plan's end, or the robot would creep towards it."""
-        to_end = self.distance_left / speed_limit
-        return min(max(to_end, SHORTEST_HORIZON), self._settings.sim_time)
+
+def follower_for(settings: ControllerSettings, period: float):
+    """The local planner that the settings are meant for."""
+    if isinstance(settings, MppiSettings):
+        return PathIntegral(settings, period)
+    assert isinstance(settings, DwaSettings)
+    return DynamicWindow(settings, period)
 
 
 def _within(costmap: LayeredCostmap, plan_xy: np.ndarray) -> np.ndarray:

@@ -1,13 +1,13 @@
 """The dynamic window approach (Fox, Burgard and Thrun, 1997) with the critics of dwa_local_planner."""
 
 import math
-from dataclasses import dataclass
 
 import numba
 import numpy as np
 
 from move_base_lite.control.map_grid import UNREACHABLE, distances_to
 from move_base_lite.control.settings import DwaSettings
+from move_base_lite.control.trajectory import Trajectory
 from move_base_lite.costmap import INSCRIBED, LayeredCostmap
 from move_base_lite.costmap.footprint import COLLISION, count_contacts, footprint_cost
 from move_base_lite.errors import ControlError
@@ -16,13 +16,36 @@ from planar import Pose2, Twist2
 REJECTED = -1.0
 
 
-@dataclass(frozen=True, eq=False)
-class Trajectory:
-    """The chosen velocity, where it leads, poses (N, 3) in the costmap's frame, and its cost."""
+SHORTEST_HORIZON = 0.5
 
-    command: Twist2
-    poses: np.ndarray
-    cost: float
+
+class DynamicWindow:
+    """Chooses among the velocities within reach, each kept for a while."""
+
+    def __init__(self, settings: DwaSettings, period: float):
+        self._settings = settings
+        self._period = period
+
+    def reset(self) -> None:
+        """Nothing is remembered."""
+
+    def follow(
+        self,
+        costmap: LayeredCostmap,
+        base_pose: Pose2,
+        twist: Twist2,
+        plan_xy: np.ndarray,
+        speed_limit: float,
+        distance_left: float,
+    ) -> Trajectory:
+        """The cheapest velocity, looking no further ahead than the end, or the robot would creep towards it.
+
+        Raises ControlError if each of them hits something or leads nowhere.
+        """
+        horizon = min(max(distance_left / speed_limit, SHORTEST_HORIZON), self._settings.sim_time)
+        return best_trajectory(
+            self._settings, costmap, base_pose, twist, plan_xy, speed_limit, horizon, self._period
+        )
 
 
 def best_trajectory(

@@ -1,4 +1,4 @@
-"""Settings of the local planner: DWAPlannerROS's parameters, and what makes it dependable."""
+"""Settings of the local planners: DWAPlannerROS's parameters, and what makes it dependable."""
 
 from dataclasses import dataclass
 
@@ -6,11 +6,11 @@ from planar.settings import check
 
 
 @dataclass(frozen=True)
-class DwaSettings:
-    """Names, defaults and meaning of DWAPlannerROS (Noetic); metres, seconds, radians.
+class ControllerSettings:
+    """What every local planner needs; names, defaults and meaning of DWAPlannerROS (Noetic).
 
-    Beyond it: ``rotate_to_path_angle``, the error of heading above which the robot first turns on the spot
-    (0 never); ``heading_lookahead``, how far along the plan that heading is taken.
+    Metres, seconds, radians. Beyond it: ``rotate_to_path_angle``, the error of heading above which the robot
+    first turns on the spot (0 never); ``heading_lookahead``, how far along the plan that heading is taken.
     """
 
     max_vel_trans: float = 0.55
@@ -26,36 +26,18 @@ class DwaSettings:
     latch_xy_goal_tolerance: bool = False
     trans_stopped_vel: float = 0.1
     theta_stopped_vel: float = 0.1
-    sim_time: float = 1.7
-    sim_granularity: float = 0.025
-    angular_sim_granularity: float = 0.1
-    vx_samples: int = 3
-    vth_samples: int = 20
-    use_dwa: bool = True
-    path_distance_bias: float = 0.6
-    goal_distance_bias: float = 0.8
-    occdist_scale: float = 0.01
-    twirling_scale: float = 0.0
-    forward_point_distance: float = 0.325
-    cheat_factor: float = 1.0
     rotate_to_path_angle: float = 0.9
     heading_lookahead: float = 0.4
 
     def __post_init__(self):
-        positive = (
+        for name in (
             "max_vel_trans",
             "max_vel_theta",
             "acc_lim_x",
             "acc_lim_theta",
             "xy_goal_tolerance",
             "yaw_goal_tolerance",
-            "sim_time",
-            "sim_granularity",
-            "angular_sim_granularity",
-            "vx_samples",
-            "vth_samples",
-        )
-        for name in positive:
+        ):
             check(getattr(self, name) > 0, name, "positive", getattr(self, name))
         check(
             self.max_vel_x >= self.min_vel_x,
@@ -69,3 +51,64 @@ class DwaSettings:
             "at most max_vel_theta",
             self.min_vel_theta,
         )
+
+
+@dataclass(frozen=True)
+class DwaSettings(ControllerSettings):
+    """DWAPlannerROS's own: metres, seconds, radians."""
+
+    sim_time: float = 1.7
+    sim_granularity: float = 0.025
+    angular_sim_granularity: float = 0.1
+    vx_samples: int = 3
+    vth_samples: int = 20
+    use_dwa: bool = True
+    path_distance_bias: float = 0.6
+    goal_distance_bias: float = 0.8
+    occdist_scale: float = 0.01
+    twirling_scale: float = 0.0
+    forward_point_distance: float = 0.325
+    cheat_factor: float = 1.0
+
+    def __post_init__(self):
+        super().__post_init__()
+        for name in ("sim_time", "sim_granularity", "angular_sim_granularity", "vx_samples", "vth_samples"):
+            check(getattr(self, name) > 0, name, "positive", getattr(self, name))
+
+
+@dataclass(frozen=True)
+class MppiSettings(ControllerSettings):
+    """Model predictive path integral control: metres, seconds, radians.
+
+    ``horizon``: seconds looked ahead, with ``samples`` ways of driving, drawn from ``seed``. ``noise_vel_x``,
+    ``noise_vel_theta``: standard deviations of the speeds tried. ``temperature``: metres that a way may be
+    worse than the best and still count. ``safe_distance``: clearance below which it is dear to drive;
+    ``approach_time``: the robot is no faster than takes so many seconds to cover its clearance, but never
+    slower than ``creep_vel_x``. The weights of nearness, turning, driving backwards, an end that faces away
+    from the goal, and delay are of costs counted in metres left to drive.
+    """
+
+    min_vel_x: float = -0.3
+    rotate_to_path_angle: float = 1.6
+    horizon: float = 2.0
+    samples: int = 600
+    noise_vel_x: float = 0.3
+    noise_vel_theta: float = 0.8
+    temperature: float = 0.05
+    safe_distance: float = 0.15
+    approach_time: float = 0.25
+    creep_vel_x: float = 0.3
+    obstacle_weight: float = 2.0
+    turn_weight: float = 0.02
+    backward_weight: float = 1.0
+    heading_weight: float = 0.2
+    delay_weight: float = 0.5
+    seed: int = 0
+
+    def __post_init__(self):
+        super().__post_init__()
+        for name in ("horizon", "samples", "noise_vel_x", "noise_vel_theta", "temperature", "creep_vel_x"):
+            check(getattr(self, name) > 0, name, "positive", getattr(self, name))
+        weights = [f"{name}_weight" for name in ("obstacle", "turn", "backward", "heading", "delay")]
+        for name in ("safe_distance", "approach_time", *weights):
+            check(getattr(self, name) >= 0, name, "at least 0", getattr(self, name))

@@ -1,6 +1,7 @@
 """The wavefront of navfn: cost to come from one cell to all others (Konolige, "A gradient method", 2000)."""
 
 import math
+from typing import Optional
 
 import numba
 import numpy as np
@@ -35,6 +36,20 @@ def traversal_costs(costs, allow_unknown):
             else:
                 traversal[row, col] = min(int(NEUTRAL + FACTOR * cost), 253)
     return traversal
+
+
+def cost_to_go(costs: np.ndarray, targets: np.ndarray) -> Optional[np.ndarray]:
+    """Potential, float32 (rows, cols), of each cell from the last of ``targets`` (N, 2), as (row, col), that
+    can be entered; inf where nothing leads there. None if no target can be entered."""
+    traversal = traversal_costs(costs, True)
+    inside = ((targets >= 0) & (targets < costs.shape)).all(axis=1)
+    targets = targets[inside]
+    free = np.flatnonzero(traversal[targets[:, 0], targets[:, 1]] < IMPASSABLE)
+    if not len(free):
+        return None
+    row, col = map(int, targets[free[-1]])
+    # The corner is never reached, so the wave runs until it has been everywhere.
+    return spread(traversal, row, col, 0, 0, False)
 
 
 @numba.njit(cache=True)

@@ -1,0 +1,290 @@
+"""Model predictive path integral control (Williams et al., 2017) on a field of the cost to go."""
+
+import math
+from typing import NamedTuple
+
+import numba
+import numpy as np
+
+from move_base_lite.control.settings import MppiSettings
+from move_base_lite.control.trajectory import Trajectory
+from move_base_lite.costmap import LETHAL, LayeredCostmap
+from move_base_lite.errors import ControlError
+from move_base_lite.planning.wavefront import NEUTRAL, cost_to_go
+from planar import Pose2, Twist2
+from planar.distance_field import distance_field
+
+# Points in time at which the speeds of a sample are drawn; between them they change evenly.
+KNOTS = 5
+# Radians of a turn, and metres, after which the footprint is checked anew.
+CHECKED_ANGLE = 0.1
+CHECKED_DISTANCE = 0.05
+# Metres ahead at which the slope of the cost to go is felt.
+NOSE = 0.3
+# m/s that a robot counts as at least when it lingers near an obstacle.
+CREEPING = 0.1
+FAR = 1e3
+
+
+class PathIntegral:
+    """Drives the mean of many random ways, weighted by what each costs, and starts the next from it.
+
+    What a way costs is what is left to drive at its end, through free cells and shy of obstacles, in metres,
+    with penalties for nearness, turning and driving backwards. A way that touches something ends there; if
+    the robot could not stop before, it does not count. The random deviations are drawn once, from the seed.
+    """
+
+    def __init__(self, settings: MppiSettings, period: float):
+        self._settings = settings
+        self._period = period
+        steps = max(KNOTS, round(settings.horizon / period))
+        rng = np.random.default_rng(settings.seed)
+        self._noise = _smooth_noise(rng, settings, steps)
+        self._fan = _fan(settings, steps)
+        self._mean = np.zeros((steps, 2))
+        self._weights = _Weights(
+            safe_distance=settings.safe_distance,
+            obstacle=settings.obstacle_weight,
+            turn=settings.turn_weight,
+            backward=settings.backward_weight,
+            heading=settings.heading_weight,
+            delay=settings.delay_weight,
+        )
+
+    def reset(self) -> None:
+        """Forgets how it has been driving."""
+        self._mean[:] = 0.0
+
+    def follow(
+        self,
+        costmap: LayeredCostmap,
+        base_pose: Pose2,
+        twist: Twist2,
+        plan_xy: np.ndarray,
+        speed_limit: float,
+        distance_left: float,
+    ) -> Trajectory:
+        """The velocity that ``period`` seconds are to be driven at, and where it may lead.
+
+        Raises ControlError if every way tried hits something.
+        """
+        settings = self._settings
+        scene = _Scene(
+            clearance=distance_field(costmap.costs >= LETHAL, costmap.window.resolution, FAR),
+            to_go=self._cost_to_go(costmap, plan_xy),
+            origin_x=costmap.window.origin_x,
+            origin_y=costmap.window.origin_y,
+            resolution=costmap.window.resolution,
+            outline_xy=costmap.outline_xy,
+            inscribed_radius=costmap.footprint.inscribed_radius,
+            circumscribed_radius=costmap.footprint.circumscribed_radius,
+        )
+        start = np.array([*base_pose.as_array(), twist.v, twist.omega])
+        problem = (start, scene, self._limits(speed_limit), self._weights)
+        samples = np.concatenate((self._mean + self._noise, self._fan))
+        costs = _costs_of(samples, *problem)
+        best = int(np.argmin(costs))
+        if not math.isfinite(costs[best]):
+            self.reset()
+            raise ControlError("every way tried leads into an obstacle")
+        weights = np.exp((costs[best] - costs) / settings.temperature)
+        mean = np.tensordot(weights / weights.sum(), samples, axes=1)
+        cost, poses, speeds = _drive(mean, *problem)
+        if not cost <= costs[best] + settings.temperature:
+            mean = samples[best]
+            cost, poses, speeds = _drive(mean, *problem)
+        self._mean = np.concatenate((mean[1:], mean[-1:]))
+        v, omega = map(float, speeds[0])
+        return Trajectory(Twist2(v, omega), poses, float(cost))
+
+    def _limits(self, speed_limit: float) -> "_Limits":
+        settings = self._settings
+        return _Limits(
+            period=self._period,
+            lowest_v=settings.min_vel_x,
+            highest_v=min(settings.max_vel_x, settings.max_vel_trans, speed_limit),
+            highest_omega=settings.max_vel_theta,
+            acceleration=settings.acc_lim_x,
+            turn_acceleration=settings.acc_lim_theta,
+            approach_time=settings.approach_time,
+            creep_v=settings.creep_vel_x,
+        )
+
+    def _cost_to_go(self, costmap: LayeredCostmap, plan_xy: np.ndarray) -> np.ndarray:
+        """Metres, float32 (rows, cols), to the plan's last point in the window that is free."""
+        window = costmap.window
+        cells = np.floor((plan_xy - (window.origin_x, window.origin_y)) / window.resolution)
+        field = cost_to_go(costmap.costs, cells[:, ::-1].astype(np.int64))
+        if field is None:
+            raise ControlError("all of the plan in sight is blocked")
+        return field * np.float32(window.resolution / NEUTRAL)
+
+
+def _smooth_noise(rng: np.random.Generator, settings: MppiSettings, steps: int) -> np.ndarray:
+    """Deviations (samples, steps, 2) of speed and turn rate; the first is none."""
+    knots = rng.standard_normal((settings.samples, KNOTS, 2))
+    knots *= (settings.noise_vel_x, settings.noise_vel_theta)
+    knots[0] = 0.0
+    at = np.linspace(0.0, KNOTS - 1.0, steps)
+    before = np.minimum(at.astype(int), KNOTS - 2)
+    share = (at - before)[None, :, None]
+    return (1.0 - share) * knots[:, before] + share * knots[:, before + 1]
+
+
+def _fan(settings: MppiSettings, steps: int) -> np.ndarray:
+    """Ways (N, steps, 2) that a stuck mean would not come upon: arcs at some speeds, ahead and back."""
+    speeds = [settings.max_vel_x, 0.5 * settings.max_vel_x, settings.creep_vel_x, 0.0, settings.min_vel_x]
+    rates = np.linspace(-settings.max_vel_theta, settings.max_vel_theta, 11)
+    arcs = np.array([(v, omega) for v in speeds for omega in rates])
+    return np.repeat(arcs[:, None, :], steps, axis=1)
+
+
+class _Scene(NamedTuple):
+    """What there is around the robot: fields (rows, cols) in metres, and the outline it fills itself."""
+
+    clearance: np.ndarray
+    to_go: np.ndarray
+    origin_x: float
+    origin_y: float
+    resolution: float
+    outline_xy: np.ndarray
+    inscribed_radius: float
+    circumscribed_radius: float
+
+
+class _Limits(NamedTuple):
+    period: float
+    lowest_v: float
+    highest_v: float
+    highest_omega: float
+    acceleration: float
+    turn_acceleration: float
+    approach_time: float
+    creep_v: float
+
+
+class _Weights(NamedTuple):
+    safe_distance: float
+    obstacle: float
+    turn: float
+    backward: float
+    heading: float
+    delay: float
+
+
+@numba.njit(cache=True)
+def _costs_of(samples, start, scene, limits, weights):
+    costs = np.empty(samples.shape[0])
+    for i in range(samples.shape[0]):
+        costs[i] = _drive(samples[i], start, scene, limits, weights)[0]
+    return costs
+
+
+@numba.njit(cache=True)
+def _drive(wanted, start, scene, limits, weights):
+    """Cost, poses (N + 1, 3) and speeds (N, 2) of a robot that is asked for the speeds ``wanted`` (N, 2).
+
+    The speeds are those it can reach, cut to what its clearance allows. The cost is inf if it hits something
+    before it could have stopped.
+    """
+    steps = wanted.shape[0]
+    poses, speeds = np.empty((steps + 1, 3)), np.zeros((steps, 2))
+    dt = limits.period
+    x, y, yaw, v, omega = start
+    poses[0] = x, y, yaw
+    room = _room(scene, x, y, yaw)
+    least_room = min(scene.resolution, room)
+    seconds_to_stop = abs(v) / limits.acceleration
+    cost, moved, turned = 0.0, 0.0, 0.0
+    to_go = _at(scene.to_go, scene, x, y)
+    for step in range(steps):
+        v = _towards(v, wanted[step, 0], limits.acceleration * dt)
+        v = _speed_in(v, room, limits)
+        omega = _towards(omega, wanted[step, 1], limits.turn_acceleration * dt)
+        omega = min(max(omega, -limits.highest_omega), limits.highest_omega)
+        heading = yaw + 0.5 * omega * dt
+        x_next, y_next = x + v * dt * math.cos(heading), y + v * dt * math.sin(heading)
+        yaw_next = yaw + omega * dt
+        moved, turned = moved + abs(v) * dt, turned + abs(omega) * dt
+        if moved > CHECKED_DISTANCE or turned > CHECKED_ANGLE or step == steps - 1:
+            moved, turned = 0.0, 0.0
+            room = _room(scene, x_next, y_next, yaw_next)
+            if room < least_room:
+                if (step - 1) * dt < seconds_to_stop:
+                    return np.inf, poses, speeds
+                cost += (1.0 - step / steps) * (1.0 + weights.delay * steps * dt * to_go)
+                for rest in range(step, steps):
+                    poses[rest + 1] = x, y, yaw
+                break
+        x, y, yaw = x_next, y_next, yaw_next
+        poses[step + 1] = x, y, yaw
+        speeds[step] = v, omega
+        if room < weights.safe_distance:
+            nearness = 1.0 - room / weights.safe_distance
+            cost += weights.obstacle * nearness * nearness * (abs(v) + CREEPING) * dt
+        to_go = _at(scene.to_go, scene, x, y)
+        cost += dt * (weights.delay * to_go + weights.turn * omega * omega - weights.backward * min(v, 0.0))
+    ahead = _at(scene.to_go, scene, x + NOSE * math.cos(yaw), y + NOSE * math.sin(yaw))
+    slope = min(max((ahead - to_go) / NOSE, -1.0), 1.0)
+    return cost + to_go + weights.heading * slope, poses, speeds
+
+
+@numba.njit(cache=True)
+def _towards(value, wanted, change):
+    return min(max(wanted, value - change), value + change)
+
+
+@numba.njit(cache=True)
+def _speed_in(v, room, limits):
+    """The speed cut to the limits and to what ``room`` metres of clearance allow."""
+    highest = limits.highest_v
+    if limits.approach_time > 0.0:
+        highest = min(highest, max(limits.creep_v, room / limits.approach_time))
+    return min(max(v, limits.lowest_v, -highest), highest)
+
+
+@numba.njit(cache=True)
+def _room(scene, x, y, yaw):
+    """Metres from the outline to the nearest obstacle, at least; 0 outside the window."""
+    rows, cols = scene.clearance.shape
+    base_col = (x - scene.origin_x) / scene.resolution
+    base_row = (y - scene.origin_y) / scene.resolution
+    row, col = math.floor(base_row), math.floor(base_col)
+    if row < 0 or row >= rows or col < 0 or col >= cols:
+        return 0.0
+    around = scene.clearance[row, col]
+    if around > 2.0 * scene.circumscribed_radius:
+        return around - scene.circumscribed_radius
+    nearest = around - scene.inscribed_radius
+    if nearest < 0.0:
+        return 0.0
+    c, s = math.cos(yaw) / scene.resolution, math.sin(yaw) / scene.resolution
+    for i in range(scene.outline_xy.shape[0]):
+        along, across = scene.outline_xy[i]
+        row = math.floor(base_row + s * along + c * across)
+        col = math.floor(base_col + c * along - s * across)
+        if row < 0 or row >= rows or col < 0 or col >= cols:
+            return 0.0
+        nearest = min(nearest, scene.clearance[row, col])
+    return nearest
+
+
+@numba.njit(cache=True)
+def _at(field, scene, x, y):
+    """A field between the centres of its cells; FAR where it is not known."""
+    rows, cols = field.shape
+    u = (y - scene.origin_y) / scene.resolution - 0.5
+    w = (x - scene.origin_x) / scene.resolution - 0.5
+    row, col = int(math.floor(u)), int(math.floor(w))
+    if row < 0 or row >= rows - 1 or col < 0 or col >= cols - 1:
+        return FAR
+    u, w = u - row, w - col
+    total, weight = 0.0, 0.0
+    for i in range(2):
+        for j in range(2):
+            value = field[row + i, col + j]
+            if value < np.inf:
+                share = (u if i else 1.0 - u) * (w if j else 1.0 - w)
+                total += share * value
+                weight += share
+    return total / weight if weight > 0.0 else FAR
