@@ -94,7 +94,8 @@ class Explore:
             if not missing:
                 complete_at = time.monotonic()
             elif time.monotonic() - complete_at > self._settings.server_timeout:
-                return Finish(False, f"no {' and no '.join(missing)} for {self._settings.server_timeout:g} s")
+                text = f"{' and '.join(missing)} missing for {self._settings.server_timeout:g} s"
+                return Finish(False, text)
             now, grid, robot = rospy.get_time(), self._map, self._robot()
             order = None
             if not missing and robot is not None:

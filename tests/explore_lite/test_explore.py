@@ -1,0 +1,126 @@
+#!/usr/bin/env python3
+"""The action explore in a toy world: a map that opens, a move_base that obeys, dawdles or refuses."""
+
+import time
+import unittest
+
+import actionlib
+import rospy
+import rostest
+from actionlib_msgs.msg import GoalStatus
+from move_base_msgs.msg import MoveBaseAction
+
+from explore_lite.msg import ExploreAction, ExploreGoal
+from planar import Pose2, grid_from_picture
+from planar_ros.actions import server_is_ready
+from planar_ros.messages import OccupancyGridArrays, grid_to_msg, pose2_from_msg
+from planar_ros.transforms import Transforms
+
+HALF_KNOWN = grid_from_picture("######??\n#....???\n#....???\n#....???\n######??", resolution=0.5)
+KNOWN = grid_from_picture("########\n#......#\n#......#\n#......#\n########", resolution=0.5)
+START = Pose2(1.25, 1.25)
+PATIENCE_SECONDS = 20.0
+
+
+class ToyWorld:
+    """Publishes map and pose, and plays move_base."""
+
+    def __init__(self):
+        self.robot = START
+        self.manner = "obeys"
+        self.cancelled = 0
+        self._transforms = Transforms()
+        self._map = rospy.Publisher("map", OccupancyGridArrays, queue_size=1, latch=True)
+        self._server = actionlib.SimpleActionServer("move_base", MoveBaseAction, self._execute, False)
+        self._server.start()
+        pose_timer = rospy.Timer(rospy.Duration(0.05), self._tell_pose)
+        rospy.on_shutdown(pose_timer.shutdown)
+
+    def reset(self, manner):
+        self.robot, self.manner, self.cancelled = START, manner, 0
+        self.show(HALF_KNOWN)
+
+    def show(self, grid):
+        self._map.publish(grid_to_msg(grid, rospy.Time.now(), "map"))
+
+    def _tell_pose(self, _event):
+        self._transforms.send(self.robot, "map", "base_footprint", rospy.Time.now())
+
+    def _execute(self, goal):
+        if self.manner == "refuses":
+            self._server.set_aborted(text="Failed to find a valid plan.")
+            return
+        while self.manner == "dawdles":
+            if self._server.is_preempt_requested():
+                self.cancelled += 1
+                self._server.set_preempted()
+                return
+            time.sleep(0.02)
+        self.robot = pose2_from_msg(goal.target_pose.pose)
+        self.show(KNOWN)
+        self._server.set_succeeded(text="Goal reached.")
+
+
+class ExploreTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.world = ToyWorld()
+        cls.client = actionlib.SimpleActionClient("explore", ExploreAction)
+        cls.lonely = actionlib.SimpleActionClient("lonely/explore", ExploreAction)
+
+    def test_an_open_map_is_explored_and_the_robot_comes_back(self):
+        feedback = []
+        self._explore(self.client, "obeys", feedback.append)
+        self.assertEqual(self._end(self.client), GoalStatus.SUCCEEDED)
+        result = self.client.get_result()
+        self.assertAlmostEqual(result.explored_area, 6 * 3 * 0.25)
+        self.assertGreater(result.duration.to_sec(), 0.0)
+        self.assertEqual(result.unreachable, [])
+        self.assertLess(self.world.robot.distance_to(START), 0.01)
+        self.assertEqual(feedback[0].state, "exploring")
+        self.assertEqual(feedback[0].goal.header.frame_id, "map")
+
+    def test_cancelling_stops_the_robot_and_ends_at_once(self):
+        feedback = []
+        self._explore(self.client, "dawdles", feedback.append)
+        self._wait_until(lambda: feedback)
+        start = time.monotonic()
+        self.client.cancel_goal()
+        self.assertEqual(self._end(self.client), GoalStatus.PREEMPTED)
+        self.assertLess(time.monotonic() - start, 1.0)
+        self._wait_until(lambda: self.world.cancelled == 1)
+        self.assertGreater(self.client.get_result().explored_area, 0.0)
+
+    def test_what_cannot_be_reached_is_reported(self):
+        self._explore(self.client, "refuses")
+        self.assertEqual(self._end(self.client), GoalStatus.ABORTED)
+        self.assertIn("Failed to find a valid plan.", self.client.get_goal_status_text())
+        self.assertEqual(len(self.client.get_result().unreachable), 1)
+
+    def test_without_map_and_move_base_it_gives_up_and_names_them(self):
+        self._explore(self.lonely, "obeys")
+        self.assertEqual(self._end(self.lonely), GoalStatus.ABORTED)
+        self.assertEqual(
+            self.lonely.get_goal_status_text(),
+            "a map on /lonely/map and the action /lonely/move_base missing for 1 s",
+        )
+
+    def _explore(self, client, manner, feedback=None):
+        self.world.reset(manner)
+        self._wait_until(lambda: server_is_ready(client))
+        client.send_goal(ExploreGoal(return_to_start=True), feedback_cb=feedback)
+
+    def _end(self, client):
+        self._wait_until(lambda: client.get_state() not in (GoalStatus.PENDING, GoalStatus.ACTIVE))
+        return client.get_state()
+
+    def _wait_until(self, is_met):
+        deadline = time.monotonic() + PATIENCE_SECONDS
+        while not is_met():
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.02)
+
+
+if __name__ == "__main__":
+    rospy.init_node("test_explore")
+    rostest.rosrun("home_service_tests", "explore_action", ExploreTest)
