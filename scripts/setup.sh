@@ -212,7 +212,15 @@ catkin_build() {
         set -u
     fi
     cd "$root" || return
-    catkin_make -DPYTHON_EXECUTABLE="$root/.venv/bin/python3" -DCATKIN_ENABLE_TESTING=OFF
+    catkin_make -DPYTHON_EXECUTABLE="$root/.venv/bin/python3" -DCATKIN_ENABLE_TESTING=OFF \
+        -DCATKIN_BLACKLIST_PACKAGES="$(system_messages | paste -sd ';')"
+}
+
+system_messages() { # the message packages of src/compat that the system has itself
+    local package
+    for package in gazebo_msgs kobuki_msgs; do
+        [[ ! -e $noetic/share/$package && ! -e /usr/share/$package ]] || say "$package"
+    done
 }
 
 compile_kernels() {
