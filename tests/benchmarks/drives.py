@@ -1,6 +1,7 @@
 """Recorded drives of a simulated robot: what it measures, beside the truth."""
 
 import heapq
+import itertools
 import math
 from dataclasses import dataclass
 from typing import List, Optional
@@ -15,6 +16,7 @@ from sim_bridge.world import World
 # How far the driver keeps from walls, and how near to a waypoint it takes the next, metres.
 CLEARANCE, WAYPOINT_NEAR = 0.32, 0.25
 SPEED, TURN_SPEED = 0.45, 1.2
+CRAZY_TURN_SPEED = 2.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,10 +50,14 @@ class RandomDriver:
         speed = SPEED * max(0.0, math.cos(bearing)) ** 3 if abs(bearing) < 1.0 else 0.0
         return Twist2(speed, float(np.clip(2.5 * bearing, -TURN_SPEED, TURN_SPEED)))
 
+    def _next_goal(self) -> np.ndarray:
+        """The cell (row, col) to go to next."""
+        goals = np.argwhere(self._open)
+        return goals[self._rng.integers(len(goals))]
+
     def _way_to_somewhere(self, base_in_map: Pose2) -> List[np.ndarray]:
         start = tuple(self._grid.cells_of(np.array([[base_in_map.x, base_in_map.y]]))[0])
-        goals = np.argwhere(self._open)
-        cells = self._shortest_path(start, tuple(goals[self._rng.integers(len(goals))]))
+        cells = self._shortest_path(start, tuple(self._next_goal()))
         return list(self._grid.points_of(np.array(cells[4::4]))) if len(cells) > 8 else []
 
     def _shortest_path(self, start, goal) -> list:
@@ -79,18 +85,42 @@ class RandomDriver:
         return []
 
 
-def random_drive(
+class Tour(RandomDriver):
+    """Drives to given places (x, y), one after the other, again and again."""
+
+    def __init__(self, grid: OccupancyGrid, *places_xy):
+        super().__init__(grid, np.random.default_rng(0))
+        self._goals = itertools.cycle(grid.cells_of(np.array(places_xy)))
+
+    def _next_goal(self) -> np.ndarray:
+        return next(self._goals)
+
+
+class Crazy:
+    """Another driver's way, but swinging from side to side, in jerks."""
+
+    def __init__(self, driver: RandomDriver):
+        self._driver = driver
+        self._commands = 0
+
+    def command(self, base_in_map: Pose2) -> Twist2:
+        self._commands += 1
+        sane = self._driver.command(base_in_map)
+        swing = CRAZY_TURN_SPEED if self._commands % 10 < 5 else -CRAZY_TURN_SPEED
+        return Twist2(sane.v if self._commands % 7 else 0.0, sane.omega + swing)
+
+
+def drive(
     world: World,
-    grid: OccupancyGrid,
+    driver,
     seed: int,
     seconds: float,
     settings: SimulationSettings = SimulationSettings(),
     robot: str = "turtlebot_lidar",
     start: Optional[Pose2] = None,
 ) -> List[Sighting]:
-    """Drives about for some simulated seconds; the map frame is the world frame."""
+    """Drives for some simulated seconds as ``driver.command`` says; the map frame is the world frame."""
     simulation = Simulation(world, robot_named(robot), settings, seed, start or Pose2())
-    driver = RandomDriver(grid, np.random.default_rng([seed, 99]))
     sightings, command = [], None
     try:
         for _ in range(round(seconds / simulation.step_seconds)):
@@ -103,3 +133,8 @@ def random_drive(
     finally:
         simulation.close()
     return sightings
+
+
+def random_drive(world: World, grid: OccupancyGrid, seed: int, seconds: float, **others) -> List[Sighting]:
+    """Drives about, to random places; ``others`` as in ``drive``."""
+    return drive(world, RandomDriver(grid, np.random.default_rng([seed, 99])), seed, seconds, **others)

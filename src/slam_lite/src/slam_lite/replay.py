@@ -5,17 +5,17 @@ import sys
 from pathlib import Path
 from typing import List, Optional
 
-import yaml
 from rich.console import Console
 from rich.progress import Progress
 
-from planar import PlanarError, SettingsError, save_map
+from planar import PlanarError, save_map
 from planar.map_file import write_atomically
-from planar.settings import official_names, settings_from
-from slam_lite.bag import BagError, ScanLog
+from planar.settings_file import settings_from_yaml
+from planar.tum import tum_text
+from planar_ros.scan_log import BagError, ScanLog
 from slam_lite.config import NodeSettings
 from slam_lite.mapper import Mapper
-from slam_lite.trajectory import Trajectory, tum_text
+from slam_lite.trajectory import Trajectory
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
@@ -82,13 +82,7 @@ def _replay(options: argparse.Namespace) -> int:
 def _settings(path: Optional[Path]) -> NodeSettings:
     if path is None:
         return NodeSettings()
-    try:
-        values = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        raise SettingsError(f"{path}: {' '.join(str(error).split())}") from None
-    if not isinstance(values, dict):
-        raise SettingsError(f"{path}: not a table of parameters")
-    settings, unknown = settings_from(NodeSettings, values, official_names(NodeSettings), f"{path}: ")
+    settings, unknown = settings_from_yaml(NodeSettings, path)
     for name in unknown:
         _warn(f"{path}: {name} has no meaning here")
     return settings

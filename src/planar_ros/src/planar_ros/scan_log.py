@@ -1,4 +1,4 @@
-"""Scans and odometry out of a bag, without a master."""
+"""Scans, odometry and the truth out of a bag, without a master."""
 
 import contextlib
 import io
@@ -7,6 +7,7 @@ from collections import deque
 from dataclasses import dataclass
 from typing import Any, Callable, Deque, Dict, Iterator, List, Optional, Set, Tuple
 
+import numpy as np
 import rosbag
 import tf2_py
 from genpy import Duration, Time
@@ -14,7 +15,7 @@ from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
 from std_msgs.msg import Header
 
 from planar import PlanarError, Pose2, Scan
-from planar_ros.messages import frame_name, scan_from_msg, yaw_of
+from planar_ros.messages import frame_name, pose2_from_msg, scan_from_msg, yaw_of
 
 # Odometry may lag behind or start after a scan by this much, seconds of the bag's time.
 _PATIENCE = 2.0
@@ -27,9 +28,13 @@ class BagError(PlanarError):
 
 @dataclass(frozen=True, eq=False)
 class LoggedScan:
-    """A scan, where odometry believed the base to be, and the share (0 to 1) of the bag that it lies at."""
+    """A scan of the laser with that frame, where odometry believed the base to be, and how far into the bag.
+
+    ``position``: the share of the bag, 0 to 1, that the scan lies at.
+    """
 
     scan: Scan
+    laser: str
     base_in_odom: Pose2
     position: float
 
@@ -53,6 +58,14 @@ class ScanLog:
         self._last_in_odom = Pose2()
         self._last_stamp = -math.inf
         self._told: Set[str] = set()
+
+    def truth(self, topic: str = "base_pose_ground_truth") -> np.ndarray:
+        """Stamps and true poses (N, 4) ``[t, x, y, yaw]`` of nav_msgs/Odometry messages, often none."""
+        stamped = [
+            (message.header.stamp.to_sec(), *pose2_from_msg(message.pose.pose).as_array())
+            for _, message, _ in self._bag.read_messages([topic, "/" + topic])
+        ]
+        return np.array(stamped).reshape(-1, 4)
 
     def __iter__(self) -> Iterator[LoggedScan]:
         """Raises BagError where the bag breaks off; what was read before is good."""
@@ -102,7 +115,7 @@ class ScanLog:
         if base_in_odom is None:
             what = f"no transform {self._odom} -> {self._base}"
             frames = ", ".join(self._transforms.frames()) or "none"
-            self._tell(what, f"(frames: {frames}), mapping from the scans alone", stamp, position)
+            self._tell(what, f"(frames: {frames}), taking the base to stand still", stamp, position)
             base_in_odom = self._last_in_odom
         self._last_in_odom = base_in_odom
         laser = frame_name(message.header.frame_id)
@@ -115,7 +128,7 @@ class ScanLog:
                 position,
             )
             mounting = (Pose2(), False)
-        yield LoggedScan(scan_from_msg(message, *mounting), base_in_odom, position)
+        yield LoggedScan(scan_from_msg(message, *mounting), laser, base_in_odom, position)
 
     def _tell(self, what: str, details: str, stamp: float, position: float) -> None:
         if what not in self._told:

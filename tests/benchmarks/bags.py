@@ -1,0 +1,93 @@
+"""Drives written as bags, with one laser or more."""
+
+import math
+from dataclasses import dataclass
+from typing import List, Sequence
+
+import numpy as np
+import rosbag
+import rospy
+from drives import Sighting
+from geometry_msgs.msg import Quaternion, TransformStamped
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import LaserScan
+from tf2_msgs.msg import TFMessage
+
+from planar import OccupancyGrid, Pose2
+from planar.ray_casting import cast_rays
+from planar_ros.messages import pose2_to_msg, time_of, transform_msg
+
+BASE_FRAME = "base_footprint"
+# Bags start here, so that no stamp is 0.
+START = 10.0
+BEAMS, RANGE_MAX, RANGE_NOISE = 180, 10.0, 0.01
+
+
+@dataclass(frozen=True)
+class Laser:
+    """A further laser, of 180 degrees; where it is mounted, and whether upside down."""
+
+    frame: str
+    in_base: Pose2
+    upside_down: bool = False
+
+
+def write_bag(
+    path: str,
+    sightings: List[Sighting],
+    scan_topic: str = "scan",
+    grid: OccupancyGrid = None,
+    lasers: Sequence[Laser] = (),
+) -> None:
+    """Writes what a robot with a laser measured, beside the truth.
+
+    If ``lasers`` are given, they take the place of the drive's own, and measure the map ``grid``.
+    """
+    rng = np.random.default_rng(0)
+    own = Laser("laser", sightings[0].scan.laser_in_base)
+    with rosbag.Bag(str(path), "w") as bag:
+        mountings = TFMessage([_mounting(laser) for laser in (lasers or [own])])
+        bag.write("/tf_static", mountings, time_of(START))
+        for sighting in sightings:
+            stamp = time_of(START + sighting.scan.stamp)
+            base = transform_msg(sighting.base_in_odom, "odom", BASE_FRAME, stamp)
+            bag.write("/tf", TFMessage([base]), stamp)
+            truth = Odometry()
+            truth.header.stamp, truth.header.frame_id = stamp, "world"
+            truth.pose.pose = pose2_to_msg(sighting.base_in_map)
+            bag.write("/base_pose_ground_truth", truth, stamp)
+            if not lasers:
+                bag.write("/" + scan_topic, _own_scan(sighting, own, stamp), stamp)
+            for laser in lasers:
+                bag.write("/" + scan_topic, _measured(grid, sighting.base_in_map, laser, stamp, rng), stamp)
+
+
+def _mounting(laser: Laser) -> TransformStamped:
+    transform = transform_msg(laser.in_base, BASE_FRAME, laser.frame, rospy.Time(0))
+    if laser.upside_down:  # turned by pi about its own x axis, then by its yaw
+        half = laser.in_base.yaw / 2.0
+        transform.transform.rotation = Quaternion(math.cos(half), math.sin(half), 0.0, 0.0)
+    return transform
+
+
+def _own_scan(sighting: Sighting, laser: Laser, stamp) -> LaserScan:
+    scan = sighting.scan
+    message = LaserScan(angle_min=scan.angle_min, angle_increment=scan.angle_increment)
+    message.range_min, message.range_max = scan.range_min, scan.range_max
+    return _completed(message, scan.ranges, laser, stamp)
+
+
+def _measured(grid: OccupancyGrid, base_in_map: Pose2, laser: Laser, stamp, rng) -> LaserScan:
+    message = LaserScan(angle_min=-math.pi / 2.0, angle_increment=math.pi / (BEAMS - 1))
+    message.range_min, message.range_max = 0.1, RANGE_MAX
+    angles = message.angle_min + message.angle_increment * np.arange(BEAMS)
+    seen_from_above = -angles if laser.upside_down else angles
+    ranges = cast_rays(grid, base_in_map @ laser.in_base, seen_from_above, RANGE_MAX)
+    return _completed(message, ranges + rng.normal(0.0, RANGE_NOISE, BEAMS), laser, stamp)
+
+
+def _completed(message: LaserScan, ranges, laser: Laser, stamp) -> LaserScan:
+    message.header.stamp, message.header.frame_id = stamp, laser.frame
+    message.angle_max = message.angle_min + (len(ranges) - 1) * message.angle_increment
+    message.ranges = np.asarray(ranges, dtype=np.float32).tolist()
+    return message
