@@ -151,14 +151,13 @@ class Explorer:
         self._next_look = now + 1.0 / self._settings.planner_frequency
         room = distance_field(self._grid.cells == OCCUPIED, self._grid.resolution)
         distances = travel_distances(self._grid, room, robot, self._settings.clearance)
-        known_room = distance_field(self._grid.cells != FREE, self._grid.resolution)
-        goals = np.where(known_room > self._settings.goal_clearance, distances, np.inf)
-        targets = self._targets(self._grid, goals, robot)
+        goals = self._goals(self._grid, room, distances)
+        targets = self._targets(self._grid, goals, distances, robot)
         if self._arrived_at is not None:
             self._arrived_at = None
             if self._same_as_before(targets) is not None:
                 self._refuse_target()
-                targets = self._targets(self._grid, goals, robot)
+                targets = self._targets(self._grid, goals, distances, robot)
             self._target = None
         if self._is_stuck(now, distances):
             if self.state is ExplorerState.RETURNING:
@@ -166,15 +165,23 @@ class Explorer:
             if self._target is None:
                 return self._finish(False, "the map shows no free space around the robot")
             self._refuse_target()
-            targets = self._targets(self._grid, goals, robot)
+            targets = self._targets(self._grid, goals, distances, robot)
         if not np.isfinite(distances).any():
             return None
         if not targets:
             return self._go_back(now)
         return self._go_on(now, targets, distances)
 
-    def _targets(self, grid: OccupancyGrid, goals: np.ndarray, robot: Pose2) -> List[Target]:
-        """The frontiers that can be looked at; ``goals``: metres of way to where the robot may be sent."""
+    def _goals(self, grid: OccupancyGrid, room: np.ndarray, distances: np.ndarray) -> List[np.ndarray]:
+        """Metres of way to where the robot may be sent: well within the known, or else beside the unknown."""
+        known_room = distance_field(grid.cells != FREE, grid.resolution)
+        clearance = self._settings.goal_clearance
+        return [np.where(space > clearance, distances, np.inf) for space in (known_room, room)]
+
+    def _targets(
+        self, grid: OccupancyGrid, goals: List[np.ndarray], distances: np.ndarray, robot: Pose2
+    ) -> List[Target]:
+        """The frontiers that can be looked at from one of the goals, the earlier ones first."""
         settings = self._settings
         self.frontiers, self.unreachable = [], []
         targets = []
@@ -184,20 +191,26 @@ class Explorer:
                 self.unreachable.append(frontier)
                 continue
             self.frontiers.append(frontier)
-            cost = settings.potential_scale * _at(goals, grid, viewpoint)
+            cost = settings.potential_scale * _at(distances, grid, viewpoint)
             cost += settings.orientation_scale * _turn(robot, viewpoint)
             targets.append(Target(frontier, viewpoint, cost - settings.gain_scale * frontier.size))
         return targets
 
     def _viewpoint(
-        self, frontier: Frontier, grid: OccupancyGrid, goals: np.ndarray, robot: Pose2
+        self, frontier: Frontier, grid: OccupancyGrid, goals: List[np.ndarray], robot: Pose2
     ) -> Optional[Pose2]:
         settings, middle_xy = self._settings, frontier.middle_xy
         gaps = [float(np.hypot(*(refusal.middle_xy - middle_xy))) for refusal in self._refusals]
         if sum(gap <= settings.blacklist_radius for gap in gaps) >= settings.attempts:
             return None
         shunned = [refusal.viewpoint for refusal, gap in zip(self._refusals, gaps) if gap <= settings.reach]
-        return viewpoint_of(frontier, grid, goals, robot, settings.reach, shunned, settings.blacklist_radius)
+        for goal_distances in goals:
+            viewpoint = viewpoint_of(
+                frontier, grid, goal_distances, robot, settings.reach, shunned, settings.blacklist_radius
+            )
+            if viewpoint is not None:
+                return viewpoint
+        return None
 
     def _go_on(self, now: float, targets: List[Target], distances: np.ndarray) -> Optional[Order]:
         best = min(targets, key=lambda target: target.cost)
