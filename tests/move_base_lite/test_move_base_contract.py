@@ -8,6 +8,7 @@ import actionlib
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
+from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PolygonStamped, PoseStamped, Quaternion, Twist
 from map_msgs.msg import OccupancyGridUpdate
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal, RecoveryStatus
@@ -117,6 +118,21 @@ class TestMoveBaseContract(unittest.TestCase):
             state, said = self.end_of(pose)
             self.assertEqual(state, GoalStatus.ABORTED)
             self.assertTrue(said.startswith(text), said)
+
+    def test_the_outcome_is_told_in_move_base_flex_numbers(self):
+        feedback = Heard("move_base/nav_feedback", DiagnosticStatus)
+        outcomes = Heard("move_base/outcome", DiagnosticStatus)
+        for pose, code, reason in [
+            (pose_at(*NEAR), "0", "SUCCESS"),
+            (pose_at(*IN_A_WALL), "15", "GOAL_BLOCKED"),
+            (pose_at(*NEAR, frame="nowhere"), "16", "TF_ERROR"),
+        ]:
+            _, text = self.end_of(pose)
+            self.wait_until(lambda text=text: outcomes.messages and outcomes.messages[-1].message == text)
+            values = {pair.key: pair.value for pair in outcomes.messages[-1].values}
+            self.assertEqual((values["outcome"], values["reason"]), (code, reason))
+        known = {pair.key for pair in feedback.wait().values}
+        self.assertLessEqual({"distance_remaining", "estimated_time_remaining"}, known)
 
     def test_cancelling_stops_the_robot_within_a_period(self):
         self.drive(pose_at(*IN_THE_NEXT_ROOM))

@@ -161,6 +161,10 @@ def test_a_goal_that_nothing_leads_to_is_given_up_after_all_recoveries_with_a_re
         "[code=NO_PATH: no way leads from the robot at (1.00, 2.00) to the goal at (5.00, 2.00)]"
     )
     recoveries = [decision.recovery for decision in decisions if decision.recovery]
+    outcome = decisions[-1].outcome
+    assert (outcome.code, outcome.reason, outcome.recoveries) == (50, "NO_PATH", 4)
+    assert outcome.distance_to_goal == pytest.approx(4.0, abs=0.1)
+    assert outcome.seconds > 20.0
     assert [(recovery.name, recovery.index) for recovery in recoveries] == [
         ("conservative_reset", 0),
         ("rotate_recovery", 1),
@@ -243,6 +247,19 @@ def test_a_robot_pushed_against_a_wall_gets_away_from_it(settings):
     robot, navigator = Robot(grid, Pose2(0.1 + BODY_RADIUS + 0.01, 2.0, math.pi)), Navigator(settings, grid)
     navigator.set_goal(goal)
     assert_arrived(robot, drive_to_end(robot, navigator), goal)
+
+
+def test_what_is_left_is_told_all_the_way(settings):
+    grid = room(6.0, 4.0)
+    robot, navigator = Robot(grid, Pose2(0.6, 2.0)), Navigator(settings, grid)
+    navigator.set_goal(Pose2(5.4, 2.0))
+    *on_the_way, last = drive_to_end(robot, navigator)
+    left = [decision.progress.distance_left for decision in on_the_way[1:]]
+    assert left[0] == pytest.approx(4.8, abs=0.2)
+    assert left == sorted(left, reverse=True)
+    half = len(on_the_way) // 2
+    assert on_the_way[half].progress.seconds_left == pytest.approx(half * PERIOD, rel=0.5)
+    assert (last.progress, last.outcome.code, last.outcome.reason) == (None, 0, "SUCCESS")
 
 
 def test_the_same_run_gives_the_same_poses(settings):

@@ -38,9 +38,43 @@ SUCCESS_TEXT = "Goal reached."
 STALE_SENSOR_TEXT = "Sensor data is out of date, we're not going to allow commanding of the base for safety"
 
 
-def with_reason(text: str, error: Optional[NavigationError]) -> str:
+def with_reason(text: str, error: NavigationError) -> str:
     """move_base's text, which clients match on, followed by the reason it keeps to itself."""
-    return text if error is None else f"{text} [code={error.code}: {error}]"
+    return f"{text} [code={error.code}: {error}]"
+
+
+SUCCEEDED_OUTCOME = 0
+CANCELLED_OUTCOME = 11
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How the pursuit of a goal stands: seconds and metres driven so far, recoveries used, and what is left.
+
+    ``seconds_left`` is an estimate from the speed so far.
+    """
+
+    seconds: float
+    travelled: float
+    recoveries: int
+    distance_left: float
+    seconds_left: float
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a goal ended. ``code``: the number move_base_flex has for it; ``reason``: the same as a word.
+
+    ``distance_to_goal`` in metres, ``angle_to_goal`` in radians, of the robot at the end.
+    """
+
+    code: int
+    reason: str
+    text: str
+    distance_to_goal: float = 0.0
+    angle_to_goal: float = 0.0
+    recoveries: int = 0
+    seconds: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -59,7 +93,8 @@ class Decision:
     ``command``: the velocity to send, None while there is no goal. ``text``: why, where there is something
     to tell. ``plan_xy``: (N, 2) in the map, a plan made in this period, empty if none was found.
     ``trajectory``: poses (N, 3) the command leads through, and ``followed_xy``: (M, 2) the part of the plan
-    it follows, both in the local frame. ``distance_left``: metres of the plan still to drive.
+    it follows, both in the local frame. ``progress``: while there is a goal. ``outcome``: with the last
+    decision for a goal.
     """
 
     status: Status
@@ -69,4 +104,5 @@ class Decision:
     trajectory: Optional[np.ndarray] = None
     followed_xy: Optional[np.ndarray] = None
     recovery: Optional[RecoveryStart] = None
-    distance_left: float = 0.0
+    progress: Optional[Progress] = None
+    outcome: Optional[Outcome] = None

@@ -5,15 +5,18 @@ from planar import PlanarError
 
 
 class NavigationError(PlanarError):
-    """Something keeps the robot from its goal; ``code`` names the reason for programs."""
+    """Something keeps the robot from its goal; ``code`` names the reason for programs, ``outcome`` is the
+    number that move_base_flex has for it (mbf_msgs/MoveBaseResult)."""
 
     code = "FAILURE"
+    outcome = 10
 
 
 class PlanningError(NavigationError):
     """There is no plan to the goal."""
 
     code = "PLANNING_FAILED"
+    outcome = 50
 
 
 class OutOfMap(PlanningError):
@@ -26,12 +29,14 @@ class StartBlocked(PlanningError):
     """The robot stands in an obstacle and there is no free space near it."""
 
     code = "START_BLOCKED"
+    outcome = 14
 
 
 class GoalBlocked(PlanningError):
     """The goal lies in or too close to an obstacle, and so does all that its tolerance allows."""
 
     code = "GOAL_BLOCKED"
+    outcome = 15
 
 
 class NoPath(PlanningError):
@@ -44,6 +49,14 @@ class ControlError(NavigationError):
     """No safe velocity follows the plan."""
 
     code = "NO_VALID_CONTROL"
+    outcome = 100
+
+
+class Oscillation(NavigationError):
+    """The robot moves, but gets nowhere."""
+
+    code = "OSCILLATION"
+    outcome = 13
 
 
 class SensorStale(NavigationError):
@@ -56,3 +69,4 @@ class RobotLost(NavigationError):
     """It is not known where the robot is."""
 
     code = "TF_ERROR"
+    outcome = 16

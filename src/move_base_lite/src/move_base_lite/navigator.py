@@ -1,7 +1,7 @@
 """The Navigator: move_base's state machine, from poses and scans to velocities."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Optional
 
 import numpy as np
@@ -10,9 +10,13 @@ from move_base_lite.config import NavigatorSettings
 from move_base_lite.control import Controller
 from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, LayeredCostmap
 from move_base_lite.decision import (
+    CANCELLED_OUTCOME,
     STALE_SENSOR_TEXT,
+    SUCCEEDED_OUTCOME,
     SUCCESS_TEXT,
     Decision,
+    Outcome,
+    Progress,
     RecoveryStart,
     Status,
     Trigger,
@@ -22,19 +26,22 @@ from move_base_lite.errors import (
     ControlError,
     GoalBlocked,
     NavigationError,
+    Oscillation,
     OutOfMap,
     PlanningError,
     SensorStale,
 )
 from move_base_lite.planning import GlobalPlanner, path_cost
 from move_base_lite.recovery import Recovery, RecoveryContext, recovery_from
-from planar import OccupancyGrid, Pose2, Scan, Twist2
+from planar import OccupancyGrid, Pose2, Scan, Twist2, wrap
 
 TIME_TOLERANCE = 1e-6
 # A plan under way is left only for one that is this much cheaper, lest the robot dither between two ways.
 WORTH_CHANGING = 0.8
 # Metres beside its plan from which on the robot takes a new one in any case.
 ASTRAY = 0.3
+# Metres after which the speed so far tells how long the rest will take.
+TELLING_DISTANCE = 1.0
 
 
 @dataclass
@@ -42,6 +49,8 @@ class _Pursuit:
     """The pursuit of one goal: since when what has failed, and how far recovery has come."""
 
     goal: Pose2
+    started: float
+    pose: Pose2
     progress_pose: Pose2
     last_progress: float
     planning_since: float
@@ -53,6 +62,12 @@ class _Pursuit:
     recovery_index: int = 0
     recovery: Optional[Recovery] = None
     reason: Optional[NavigationError] = None
+    travelled: float = 0.0
+    recoveries_used: int = 0
+
+    def advance(self, base_in_map: Pose2) -> None:
+        self.travelled += self.pose.distance_to(base_in_map)
+        self.pose = base_in_map
 
 
 class Navigator:
@@ -111,18 +126,25 @@ class Navigator:
         ``now``: seconds; ``scan``: one not given before, as seen from the present pose, or None.
         """
         self._look(now, base_in_map, base_in_odom, scan)
-        if self._is_cancelled:
-            return self._end(Status.CANCELLED)
-        if self._new_goal is not None:
-            self._pursuit = _Pursuit(self._new_goal, base_in_map, now, now, now)
+        if self._new_goal is not None and not self._is_cancelled:
+            self._pursuit = _Pursuit(self._new_goal, now, base_in_map, base_in_map, now, now, now)
             self._new_goal = None
             try:
                 self._check(self._pursuit.goal)
             except PlanningError as error:
-                return self._end(Status.ABORTED, with_reason(Trigger.PLANNING.value, error))
+                return self._give_up(now, Trigger.PLANNING.value, error)
+        if self._is_cancelled:
+            return self._end(Status.CANCELLED, "", self._outcome(now, CANCELLED_OUTCOME, "CANCELLED", ""))
         if self._pursuit is None:
             return Decision(Status.IDLE)
         pursuit = self._pursuit
+        pursuit.advance(base_in_map)
+        decision = self._pursue(pursuit, now, base_in_map, base_in_odom, twist)
+        return decision if decision.status.is_final else replace(decision, progress=self._progress(now))
+
+    def _pursue(
+        self, pursuit: _Pursuit, now: float, base_in_map: Pose2, base_in_odom: Pose2, twist: Twist2
+    ) -> Decision:
         self._note_progress(pursuit, now, base_in_map)
         if self._is_blind(now):
             return self._wait_for_scan(pursuit, now)
@@ -194,7 +216,7 @@ class Navigator:
         since = max(self._last_scan_stamp, pursuit.last_progress)
         if now - since > self._settings.move_base.sensor_patience:
             stale = SensorStale(f"no scan for {now - since:.1f} s")
-            return self._end(Status.ABORTED, with_reason(STALE_SENSOR_TEXT, stale))
+            return self._give_up(now, STALE_SENSOR_TEXT, stale)
         return Decision(pursuit.status, Twist2(), STALE_SENSOR_TEXT)
 
     def _plan(self, pursuit: _Pursuit, now: float, base_in_map: Pose2, is_under_way: bool = False) -> bool:
@@ -241,12 +263,16 @@ class Navigator:
     ) -> Decision:
         settings = self._settings.move_base
         if self._controller.is_goal_reached(base_in_map, twist):
-            return self._end(Status.SUCCEEDED, SUCCESS_TEXT)
+            outcome = self._outcome(now, SUCCEEDED_OUTCOME, "SUCCESS", SUCCESS_TEXT)
+            return self._end(Status.SUCCEEDED, SUCCESS_TEXT, outcome)
         if now >= pursuit.next_plan - TIME_TOLERANCE:
             self._plan(pursuit, now, base_in_map, is_under_way=True)
         plan_xy = self._plan_xy if self._planned_at == now else None
         if 0.0 < settings.oscillation_timeout < now - pursuit.last_progress:
-            pursuit.status, pursuit.trigger, pursuit.reason = Status.CLEARING, Trigger.OSCILLATION, None
+            pursuit.status, pursuit.trigger = Status.CLEARING, Trigger.OSCILLATION
+            pursuit.reason = Oscillation(
+                f"less than {settings.oscillation_distance:g} m driven in {settings.oscillation_timeout:g} s"
+            )
             return Decision(pursuit.status, Twist2(), plan_xy=plan_xy)
         try:
             control = self._controller.control(base_in_map, base_in_odom, twist, self.local_costmap)
@@ -262,7 +288,6 @@ class Navigator:
             plan_xy=plan_xy,
             trajectory=control.poses,
             followed_xy=control.plan_xy,
-            distance_left=self._controller.distance_left,
         )
 
     def _be_patient_with_control(self, pursuit: _Pursuit, now: float, error: ControlError) -> None:
@@ -284,9 +309,11 @@ class Navigator:
         if pursuit.recovery is None:
             is_enabled = self._settings.move_base.recovery_behavior_enabled
             if not is_enabled or pursuit.recovery_index >= len(recoveries):
-                return self._end(Status.ABORTED, with_reason(pursuit.trigger.value, pursuit.reason))
+                reason = pursuit.reason or NavigationError("no reason is known")
+                return self._give_up(now, pursuit.trigger.value, reason)
             next_one = recoveries[pursuit.recovery_index]
             pursuit.recovery = recovery_from(next_one)
+            pursuit.recoveries_used += 1
             start = RecoveryStart(next_one.name, pursuit.recovery_index, len(recoveries))
         context = RecoveryContext(
             base_in_map, base_in_odom, twist, self._period, self.global_costmap, self.local_costmap
@@ -301,6 +328,34 @@ class Navigator:
             pursuit.failed_plans = 0
         return Decision(Status.CLEARING, command or Twist2(), recovery=start)
 
-    def _end(self, status: Status, text: str = "") -> Decision:
+    def _progress(self, now: float) -> Optional[Progress]:
+        pursuit = self._pursuit
+        if pursuit is None:
+            return None
+        left = self._controller.distance_left
+        highest = self._settings.controller.max_vel_x
+        seconds = now - pursuit.started
+        speed = pursuit.travelled / seconds if pursuit.travelled > TELLING_DISTANCE else highest
+        return Progress(seconds, pursuit.travelled, pursuit.recoveries_used, left, left / speed)
+
+    def _outcome(self, now: float, code: int, reason: str, text: str) -> Outcome:
+        pursuit = self._pursuit
+        if pursuit is None:
+            return Outcome(code, reason, text)
+        return Outcome(
+            code,
+            reason,
+            text,
+            pursuit.pose.distance_to(pursuit.goal),
+            abs(wrap(pursuit.goal.yaw - pursuit.pose.yaw)),
+            pursuit.recoveries_used,
+            now - pursuit.started,
+        )
+
+    def _give_up(self, now: float, text: str, error: NavigationError) -> Decision:
+        text = with_reason(text, error)
+        return self._end(Status.ABORTED, text, self._outcome(now, error.outcome, error.code, text))
+
+    def _end(self, status: Status, text: str, outcome: Outcome) -> Decision:
         self.forget_goal()
-        return Decision(status, Twist2(), text)
+        return Decision(status, Twist2(), text, outcome=outcome)

@@ -6,6 +6,7 @@ from typing import Optional
 import numpy as np
 import rospy
 from actionlib import SimpleActionServer
+from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PoseStamped, Twist
 from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseFeedback, RecoveryStatus
 from nav_msgs.msg import Path
@@ -13,12 +14,13 @@ from nav_msgs.srv import GetPlan, GetPlanResponse
 from std_srvs.srv import Empty, EmptyResponse
 
 from move_base_lite.config import settings_from_parameters
-from move_base_lite.decision import Decision, Status, Trigger, with_reason
+from move_base_lite.decision import CANCELLED_OUTCOME, Decision, Outcome, Status, Trigger, with_reason
 from move_base_lite.errors import NavigationError, RobotLost
 from move_base_lite.navigator import Navigator
 from move_base_lite.nodes.costmap_topics import CostmapTopics
 from move_base_lite.nodes.goals import InvalidGoal, goal_from_msg
 from move_base_lite.nodes.plan_messages import path_msg, pose_msg, trajectory_msg
+from move_base_lite.nodes.status_messages import outcome_msg, progress_msg
 from move_base_lite.nodes.surroundings import Surroundings, View
 from move_base_lite.warming import warm_up
 from planar import Pose2, SettingsError, Twist2
@@ -30,6 +32,7 @@ from planar_ros.transforms import Transforms
 from planar_ros.waiting import Waiting
 
 WARN_SECONDS = 5.0
+FEEDBACK_PERIOD = rospy.Duration(0.2)
 INACTIVE_TEXT = "move_base must be in an inactive state to make a plan for an external user"
 KILLED_TEXT = "Aborting on the goal because the node has been killed"
 
@@ -53,6 +56,7 @@ class MoveBaseNode:
         self._view: Optional[View] = None
         self._goal = Pose2()
         self._lost_since = rospy.Time(0)
+        self._next_feedback = rospy.Time(0)
         self._advertise(parameters)
         self._transforms = Transforms()
         odom_topic = parameters.get("DWAPlannerROS", {}).get("odom_topic", "odom")
@@ -68,6 +72,8 @@ class MoveBaseNode:
         planner = str(parameters.get("base_global_planner", "navfn/NavfnROS")).rpartition("/")[2]
         self._command = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True)
         self._current_goal = rospy.Publisher("~current_goal", PoseStamped, queue_size=1)
+        self._outcome = rospy.Publisher("~outcome", DiagnosticStatus, queue_size=1, latch=True)
+        self._feedback = rospy.Publisher("~nav_feedback", DiagnosticStatus, queue_size=1)
         self._recovery = rospy.Publisher("move_base/recovery_status", RecoveryStatus, queue_size=1)
         self._action_goal = rospy.Publisher("move_base/goal", MoveBaseActionGoal, queue_size=1)
         self._plan = rospy.Publisher(f"~{planner}/plan", Path, queue_size=1)
@@ -169,6 +175,7 @@ class MoveBaseNode:
         rospy.logwarn("time has jumped back: forgetting goal, obstacles and transforms")
         with self._lock:
             self._surroundings.forget()
+            self._next_feedback = rospy.Time(0)
             self._global_topics.forget_time()
             self._local_topics.forget_time()
             if self._navigator is not None:
@@ -217,9 +224,11 @@ class MoveBaseNode:
         self._command.publish(Twist())
         if self._server.is_preempt_requested():
             self._navigator.forget_goal()
+            self._outcome.publish(outcome_msg(Outcome(CANCELLED_OUTCOME, "CANCELLED", "")))
             self._server.set_preempted()
         elif (now - self._lost_since).to_sec() > self._settings.move_base.sensor_patience:
-            self._refuse(with_reason(Trigger.CONTROLLING.value, RobotLost(missing)))
+            lost = RobotLost(missing)
+            self._refuse(with_reason(Trigger.CONTROLLING.value, lost), lost)
 
     def _take_goal(self, now: rospy.Time):
         """Accepts a new goal, which preempts the old one, or hears that the present one is cancelled."""
@@ -233,15 +242,16 @@ class MoveBaseNode:
         try:
             self._goal = goal_from_msg(message, self._map_frame, self._transforms)
         except InvalidGoal as error:
-            self._refuse(str(error))
+            self._refuse(str(error), error)
         except NavigationError as error:
-            self._refuse(with_reason(Trigger.PLANNING.value, error))
+            self._refuse(with_reason(Trigger.PLANNING.value, error), error)
         else:
             self._navigator.set_goal(self._goal)
             self._current_goal.publish(pose_msg(self._goal, now, self._map_frame))
 
-    def _refuse(self, text: str):
+    def _refuse(self, text: str, error: NavigationError):
         rospy.logerr(text)
+        self._outcome.publish(outcome_msg(Outcome(error.outcome, error.code, text)))
         self._navigator.forget_goal()
         self._command.publish(Twist())
         self._server.set_aborted(text=text)
@@ -255,6 +265,11 @@ class MoveBaseNode:
         if self._server.is_active():
             feedback = MoveBaseFeedback(pose_msg(self._view.base_in_map, now, self._map_frame))
             self._server.publish_feedback(feedback)
+        if decision.progress is not None and now >= self._next_feedback:
+            self._next_feedback = now + FEEDBACK_PERIOD
+            self._feedback.publish(progress_msg(decision))
+        if decision.outcome is not None:
+            self._outcome.publish(outcome_msg(decision.outcome))
         if decision.status is Status.SUCCEEDED:
             self._server.set_succeeded(text=decision.text)
         elif decision.status is Status.ABORTED:

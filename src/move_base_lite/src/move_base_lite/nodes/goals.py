@@ -25,6 +25,7 @@ class GoalFrameUnknown(NavigationError):
     """A goal in a frame that tf does not know."""
 
     code = "TF_ERROR"
+    outcome = 16
 
 
 def goal_from_msg(message: PoseStamped, map_frame: str, transforms: Transforms) -> Pose2:

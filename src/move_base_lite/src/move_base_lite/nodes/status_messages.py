@@ -1,0 +1,44 @@
+"""How a goal stands and how it ended, as diagnostic_msgs/DiagnosticStatus: readable without our messages."""
+
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+
+from move_base_lite.decision import SUCCEEDED_OUTCOME, Decision, Outcome
+
+
+def outcome_msg(outcome: Outcome) -> DiagnosticStatus:
+    """The end of a goal; ``outcome`` is the number move_base_flex has for it (mbf_msgs/MoveBaseResult)."""
+    level = DiagnosticStatus.OK if outcome.code == SUCCEEDED_OUTCOME else DiagnosticStatus.ERROR
+    return _status(
+        level,
+        outcome.text,
+        outcome=str(outcome.code),
+        reason=outcome.reason,
+        dist_to_goal=_rounded(outcome.distance_to_goal),
+        angle_to_goal=_rounded(outcome.angle_to_goal),
+        recoveries=str(outcome.recoveries),
+        seconds=_rounded(outcome.seconds),
+    )
+
+
+def progress_msg(decision: Decision) -> DiagnosticStatus:
+    """What the robot does for its goal, and what is left: metres, seconds."""
+    progress = decision.progress
+    return _status(
+        DiagnosticStatus.WARN if decision.text else DiagnosticStatus.OK,
+        decision.text,
+        state=decision.status.value,
+        distance_remaining=_rounded(progress.distance_left),
+        estimated_time_remaining=_rounded(progress.seconds_left),
+        navigation_time=_rounded(progress.seconds),
+        distance_travelled=_rounded(progress.travelled),
+        number_of_recoveries=str(progress.recoveries),
+    )
+
+
+def _status(level: int, text: str, **values: str) -> DiagnosticStatus:
+    pairs = [KeyValue(key, value) for key, value in values.items()]
+    return DiagnosticStatus(level=level, name="move_base", message=text, values=pairs)
+
+
+def _rounded(value: float) -> str:
+    return f"{value:.3f}"
