@@ -2,15 +2,18 @@
 
 from sim_bridge.config import SimulationSettings
 from sim_bridge.errors import RobotError, WorldError
+from sim_bridge.robot import Observation
 from sim_bridge.robots import ROBOTS, RobotProfile, robot_named
+from sim_bridge.scene import Scene
 from sim_bridge.sdf import load_world
-from sim_bridge.simulation import Observation, Simulation
+from sim_bridge.simulation import Simulation
 
 __all__ = [
     "ROBOTS",
     "Observation",
     "RobotError",
     "RobotProfile",
+    "Scene",
     "Simulation",
     "SimulationSettings",
     "WorldError",

@@ -24,6 +24,10 @@ class Drive:
         if twist.is_finite():
             self._target = Twist2(_clip(twist.v, limits.max_speed), _clip(twist.omega, limits.max_turn_rate))
 
+    def halt(self) -> None:
+        """Forgets the command and stands still at once."""
+        self._target = self._set = Twist2()
+
     def wheel_speeds(self, seconds: float) -> Tuple[float, float]:
         """Speeds of the left and right wheel, rad/s, after ``seconds`` more."""
         limits = self._profile

@@ -7,5 +7,9 @@ class WorldError(PlanarError):
     """A world cannot be built; the text names the file and the element."""
 
 
+class UnknownEntityError(WorldError):
+    """There is no model, link or robot of that name."""
+
+
 class RobotError(PlanarError):
     """A robot is unknown or its description cannot be used."""

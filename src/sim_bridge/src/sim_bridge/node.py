@@ -25,9 +25,10 @@ from sim_bridge.cli import model_folders
 from sim_bridge.config import BridgeSettings, SimulationSettings
 from sim_bridge.errors import WorldError
 from sim_bridge.pacing import Pacer
+from sim_bridge.robot import Observation
 from sim_bridge.robots import robot_named
 from sim_bridge.sdf import load_world
-from sim_bridge.simulation import Observation, Simulation
+from sim_bridge.simulation import Simulation
 
 ODOM_FRAME = "odom"
 # The frame of the world file; it coincides with a map made or rendered of that world.

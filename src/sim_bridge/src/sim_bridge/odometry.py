@@ -36,6 +36,10 @@ class DeadReckoning:
         self._angles = np.zeros(2)
         self._pose = Pose2()
 
+    def reset(self) -> None:
+        """The robot's present place becomes the origin of odometry."""
+        self._pose = Pose2()
+
     def update(self, wheel_angles: Tuple[float, float], turn_rate: float, seconds: float) -> Odometry:
         """Moves on by ``seconds`` to ``wheel_angles``, rad; ``turn_rate``, rad/s, is the true one."""
         turned = np.asarray(wheel_angles) - self._angles

@@ -1,7 +1,8 @@
 """The outlines of a world's bodies at one height, and beams cast at them."""
 
 import math
-from typing import Callable, List, Tuple
+from dataclasses import dataclass
+from typing import Callable, Dict, Optional
 
 import numba
 import numpy as np
@@ -13,28 +14,55 @@ from sim_bridge.world import Body
 STILL = 1e-6
 
 
+@dataclass(frozen=True, eq=False)
+class _Outline:
+    """The sides (N, 4) of a body's cut, drawn where it was at ``drawn_at``, (4, 4)."""
+
+    body: Body
+    drawn_at: np.ndarray
+    segments: np.ndarray
+
+
 class Section:
     """A level cut through the bodies of a world that follows those that move."""
 
     def __init__(self, height: float):
         self._height = height
-        self._still = np.empty((0, 4))
-        self._moving: List[Tuple[Body, np.ndarray, np.ndarray]] = []
+        self._still: Dict[str, _Outline] = {}
+        self._moving: Dict[str, _Outline] = {}
+        self._still_segments: Optional[np.ndarray] = None
 
     def add(self, body: Body) -> None:
-        segments = self._segments_of(body, body.pose_in_world)
-        if body.mass is None:
-            self._still = np.vstack((self._still, segments))
-        else:
-            self._moving.append((body, body.pose_in_world, segments))
+        self._place(body, body.pose_in_world)
+
+    def move(self, name: str, pose: np.ndarray) -> None:
+        """A body that otherwise keeps still has been put to another place."""
+        if name in self._still:
+            self._place(self._still[name].body, pose)
+
+    def remove(self, name: str) -> None:
+        self._moving.pop(name, None)
+        if self._still.pop(name, None) is not None:
+            self._still_segments = None
 
     def segments(self, pose_of: Callable[[str], np.ndarray]) -> np.ndarray:
         """Sides (N, 4) of all outlines as x, y, x, y; ``pose_of`` says where a body is now, (4, 4)."""
-        for index, (body, drawn_at, _) in enumerate(self._moving):
-            pose = pose_of(body.name)
-            if not np.allclose(pose, drawn_at, rtol=0.0, atol=STILL):
-                self._moving[index] = (body, pose, self._segments_of(body, pose))
-        return np.vstack([self._still, *(segments for _, _, segments in self._moving)])
+        if self._still_segments is None:
+            sides = [outline.segments for outline in self._still.values()]
+            self._still_segments = np.vstack([np.empty((0, 4)), *sides])
+        for name, outline in self._moving.items():
+            pose = pose_of(name)
+            if np.abs(pose - outline.drawn_at).max() > STILL:
+                self._place(outline.body, pose)
+        return np.vstack([self._still_segments, *(outline.segments for outline in self._moving.values())])
+
+    def _place(self, body: Body, pose: np.ndarray) -> None:
+        outline = _Outline(body, pose, self._segments_of(body, pose))
+        if body.mass is None:
+            self._still[body.name] = outline
+            self._still_segments = None
+        else:
+            self._moving[body.name] = outline
 
     def _segments_of(self, body: Body, pose: np.ndarray) -> np.ndarray:
         sides = [

@@ -14,12 +14,13 @@ from sim_bridge.world import Collision
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """A rigid part of a robot.
+    """A rigid part of a robot; ``name``: of its link, or of the first of those that are fixed to each other.
 
     ``mass`` in kg, ``centre_of_mass`` (3,) in the part's frame, ``inertia`` (3,) about it along the axes of
     that frame, kg m^2.
     """
 
+    name: str
     mass: float
     centre_of_mass: np.ndarray
     inertia: np.ndarray
@@ -143,7 +144,7 @@ def _merged(links: List[Tuple[ElementTree.Element, np.ndarray]]) -> Part:
     for weight, at, inertia in zip(weights, centres, inertias):
         arm = at - centre
         total += np.diag(inertia) + weight * (arm @ arm - arm * arm)
-    return Part(mass, centre, total, tuple(collisions))
+    return Part(links[0][0].get("name", ""), mass, centre, total, tuple(collisions))
 
 
 def _inertia(inertial: ElementTree.Element) -> np.ndarray:

@@ -1,10 +1,11 @@
 """What a simulated world consists of."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Optional, Tuple
 
 import numpy as np
 
+from sim_bridge.pose3 import IDENTITY
 from sim_bridge.shapes import Shape
 
 
@@ -20,7 +21,8 @@ class Collision:
 class Body:
     """A rigid thing; ``name`` is ``model::link``, ``pose_in_world``: (4, 4).
 
-    ``mass`` in kg, None if it never moves. ``friction``: Coulomb's coefficient.
+    ``pose_in_model``: (4, 4), of the link in the frame of the outermost model that it belongs to. ``mass`` in
+    kg, None if it never moves. ``friction``: Coulomb's coefficient.
     """
 
     name: str
@@ -28,6 +30,11 @@ class Body:
     collisions: Tuple[Collision, ...]
     mass: Optional[float] = None
     friction: float = 1.0
+    pose_in_model: np.ndarray = field(default_factory=lambda: IDENTITY)
+
+    @property
+    def model(self) -> str:
+        return self.name.split("::", 1)[0]
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,242 @@
+"""A world with robots in it, stepped: what Gazebo's server is, without its connections."""
+
+from dataclasses import dataclass
+from typing import Dict, List, Mapping, Optional, Sequence, Tuple
+
+import numpy as np
+
+from planar import Pose2, Twist2
+from planar.settings import nearest_name
+from sim_bridge.config import SimulationSettings
+from sim_bridge.engine import Engine, Motion
+from sim_bridge.errors import UnknownEntityError, WorldError
+from sim_bridge.pose3 import from_pose2
+from sim_bridge.robot import Observation, Robot
+from sim_bridge.robots import RobotProfile
+from sim_bridge.world import Body, World
+
+AT_REST = (np.zeros(3), np.zeros(3))
+
+
+@dataclass(frozen=True, eq=False)
+class Push:
+    """A ``force``, N, at the centre of a link's mass, and a ``torque``, N m, from ``start`` to ``end``, s.
+
+    Both (3,), along the axes of the world.
+    """
+
+    link: str
+    force: np.ndarray
+    torque: np.ndarray
+    start: float
+    end: float
+
+
+class Scene:
+    """Models that stand and move, robots that are commanded. The same seed and calls give the same results.
+
+    A model is known by its name, its links by ``model::link``; a robot is a model. Methods that take a name
+    raise UnknownEntityError if there is nothing of that name.
+    """
+
+    def __init__(self, world: World, settings: SimulationSettings = SimulationSettings(), seed: int = 0):
+        self.settings = settings
+        self.gravity = world.gravity
+        self._seed = seed
+        self._bodies: Dict[str, Body] = {}
+        self._starts: Dict[str, Tuple[RobotProfile, Pose2]] = {}
+        self._robots: Dict[str, Robot] = {}
+        self._pushes: List[Push] = []
+        self._physics_steps = 0
+        self._engine = Engine(settings.physics_rate, world.gravity)
+        self.add(world.bodies)
+
+    @property
+    def stamp(self) -> float:
+        """Simulated seconds since the start."""
+        return self._physics_steps / self.settings.physics_rate
+
+    @property
+    def step_seconds(self) -> float:
+        """Simulated seconds that a step takes: the period of the odometry."""
+        return 1.0 / self.settings.odometry_rate
+
+    def step(self, commands: Mapping[str, Twist2] = {}) -> Dict[str, Observation]:
+        """Moves on by one period of the odometry; a robot's last command holds until its time-out.
+
+        Returns what each robot has observed.
+        """
+        for name, command in commands.items():
+            self.robot(name).command(command)
+        robots = self._robots.values()
+        for _ in range(self.settings.physics_rate // self.settings.odometry_rate):
+            for robot in robots:
+                robot.begin_step()
+            self._push()
+            self._engine.step()
+            self._physics_steps += 1
+            for robot in robots:
+                robot.end_step(self._physics_steps)
+        return {robot.name: robot.observe(self.stamp) for robot in robots}
+
+    def close(self) -> None:
+        """Frees the physics engine."""
+        self._engine.close()
+
+    def add_robot(self, name: str, profile: RobotProfile, base_in_world: Pose2 = Pose2()) -> None:
+        """Puts a robot on the floor. Raises WorldError if it cannot stand there or the name is taken."""
+        if name in self.model_names():
+            raise WorldError(f"{name} is in the world already")
+        self._add_robot(name, profile, base_in_world)
+        try:
+            self._robots[name].vehicle.check_start()
+        except WorldError:
+            self.remove_model(name)
+            raise
+
+    def add(self, bodies: Sequence[Body]) -> None:
+        """Puts bodies into the world. Raises WorldError if a name is taken."""
+        for body in bodies:
+            self._engine.add(body)
+            self._bodies[body.name] = body
+            for robot in self._robots.values():
+                robot.look_at([body])
+
+    def remove_model(self, name: str) -> None:
+        links = self.links_of(name)
+        robot = self._robots.pop(name, None)
+        self._starts.pop(name, None)
+        for link in links[:1] if robot else links:
+            self._engine.remove(link)
+            self._bodies.pop(link, None)
+            for other in self._robots.values():
+                other.section.remove(link)
+
+    def robot(self, name: str) -> Robot:
+        return _found(self._robots, name, "robot")
+
+    def model_names(self) -> List[str]:
+        return list(dict.fromkeys([*(body.model for body in self._bodies.values()), *self._robots]))
+
+    def links_of(self, model: str) -> List[str]:
+        """The names of a model's links; the first is the one that its pose is told by."""
+        if model in self._robots:
+            return list(self._robots[model].vehicle.links)
+        links = [body.name for body in self._bodies.values() if body.model == model]
+        if not links:
+            raise UnknownEntityError(_unknown("model", model, self.model_names()))
+        return links
+
+    def is_static(self, model: str) -> bool:
+        """Whether nothing of a model can move."""
+        return model not in self._robots and all(
+            self._bodies[link].mass is None for link in self.links_of(model)
+        )
+
+    def model_motion(self, name: str) -> Motion:
+        """Where a model's frame is and how it moves."""
+        link = self.links_of(name)[0]
+        motion = self._engine.motion_of(link)
+        if link not in self._bodies:
+            return motion
+        return _seen_from(motion, np.linalg.inv(self._bodies[link].pose_in_model))
+
+    def link_motion(self, link: str) -> Motion:
+        model = link.split("::", 1)[0]
+        if model not in self.model_names() or link not in self.links_of(model):
+            links = [name for known in self.model_names() for name in self.links_of(known)]
+            raise UnknownEntityError(_unknown("link", link, links))
+        return self._engine.motion_of(link)
+
+    def set_model_motion(self, name: str, motion: Motion) -> None:
+        """Puts a model with all its links to another place, and sets its velocity."""
+        from_here = motion.pose @ np.linalg.inv(self.model_motion(name).pose)
+        links = self.links_of(name)
+        for link in links[:1] if name in self._robots else links:
+            pose = from_here @ self._engine.pose_of(link)
+            arm = pose[:3, 3] - motion.pose[:3, 3]
+            self._set_motion(
+                link, Motion(pose, motion.linear + np.cross(motion.angular, arm), motion.angular)
+            )
+        if name in self._robots:
+            self._robots[name].halt()
+
+    def set_link_motion(self, link: str, motion: Motion) -> None:
+        self.link_motion(link)
+        self._set_motion(link, motion)
+
+    def push(self, push: Push) -> None:
+        """Applies a force and torque for a while."""
+        self.link_motion(push.link)
+        self._pushes.append(push)
+
+    def stop_pushing(self, link: str) -> None:
+        """Ends all pushes on a link."""
+        self._pushes = [push for push in self._pushes if push.link != link]
+
+    def set_gravity(self, gravity: float) -> None:
+        """``gravity``: downwards, m/s^2."""
+        self.gravity = gravity
+        self._engine.set_gravity(gravity)
+
+    def reset_poses(self) -> None:
+        """Puts every model and robot back to where it was first put, at rest. Time and odometry go on."""
+        for body in self._bodies.values():
+            self._set_motion(body.name, Motion(body.pose_in_world, *AT_REST))
+        for name, (_, base_in_world) in self._starts.items():
+            robot = self._robots[name]
+            self._set_motion(robot.vehicle.base, Motion(from_pose2(base_in_world), *AT_REST))
+            robot.halt()
+        self._pushes.clear()
+
+    def reset(self) -> None:
+        """Starts again at time 0, with all models and robots where they were first put, to the same noise."""
+        starts, bodies = self._starts, list(self._bodies.values())
+        self._engine.close()
+        self._engine = Engine(self.settings.physics_rate, self.gravity)
+        self._starts, self._bodies, self._robots = {}, {}, {}
+        self._pushes.clear()
+        self._physics_steps = 0
+        self.add(bodies)
+        for name, (profile, base_in_world) in starts.items():
+            self._add_robot(name, profile, base_in_world)
+
+    def _add_robot(self, name: str, profile: RobotProfile, base_in_world: Pose2) -> None:
+        index = len(self._robots)
+        seed = [self._seed] if index == 0 else [self._seed, index]
+        robot = Robot(self._engine, name, profile, base_in_world, self.settings, seed)
+        robot.look_at(self._bodies.values())
+        for other in self._robots.values():
+            other.look_at([robot.body()])
+            robot.look_at([other.body()])
+        self._robots[name] = robot
+        self._starts[name] = (profile, base_in_world)
+
+    def _set_motion(self, link: str, motion: Motion) -> None:
+        self._engine.set_motion(link, motion)
+        for robot in self._robots.values():
+            robot.section.move(link, motion.pose)
+
+    def _push(self) -> None:
+        for push in self._pushes:
+            if push.start <= self.stamp < push.end:
+                self._engine.push(push.link, push.force.tolist(), push.torque.tolist())
+        self._pushes = [push for push in self._pushes if self.stamp < push.end]
+
+
+def _seen_from(motion: Motion, offset: np.ndarray) -> Motion:
+    """The motion of a frame that is fixed at ``offset`` (4, 4) in a moving one."""
+    pose = motion.pose @ offset
+    arm = pose[:3, 3] - motion.pose[:3, 3]
+    return Motion(pose, motion.linear + np.cross(motion.angular, arm), motion.angular)
+
+
+def _found(table: Mapping, name: str, kind: str):
+    if name not in table:
+        raise UnknownEntityError(_unknown(kind, name, table))
+    return table[name]
+
+
+def _unknown(kind: str, name: str, known) -> str:
+    nearest: Optional[str] = nearest_name(name, known)
+    return f"no {kind} named {name!r}" + (f", did you mean {nearest}?" if nearest else "")
