@@ -17,6 +17,7 @@ from planar.places import Place
 from planar_ros.messages import pose2_from_msg
 
 MOTION_DISTANCE = 0.02
+CONNECTION_CHATTER = "tcpros_base.py"
 SPOKEN_NODES = ("/pick_objects", "/add_markers")
 
 
@@ -102,6 +103,8 @@ class Referee:
         self.distance_to_go = sum(math.dist(a, b) for a, b in zip(points, points[1:]))
 
     def _hear(self, message):
+        if message.file == CONNECTION_CHATTER:
+            return
         if message.level >= Log.WARN or message.name in SPOKEN_NODES:
             mark = "warning: " if message.level >= Log.WARN else ""
             self._say(f"{message.name.lstrip('/')}: {mark}{message.msg}")
