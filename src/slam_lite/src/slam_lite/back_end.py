@@ -24,6 +24,8 @@ _GUESS_SIGMA_XY, _GUESS_SIGMA_YAW = 0.5, 0.3
 # A new closure with a larger chi-square, or this many smaller ones, are worth an optimisation.
 _NEWS_CHI_SQUARE, _NEWS_COUNT = 10.0, 20
 _MAX_PENDING = 50
+# When to end an optimisation, metres and radians: while mapping, and in the end.
+_ROUGHLY, _EXACTLY = 5e-3, 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +67,7 @@ class ClosureTask:
         edges = [_widened(closure.edge, _CLOSURE_SIGMA_XY, _CLOSURE_SIGMA_YAW) for closure in accepted]
         if not self._is_news(edges):
             return ClosureResult(edges, self.poses, pending, False)
-        poses = optimise(self.poses, _with(self.edges, edges))
+        poses = optimise(self.poses, _with(self.edges, edges), _ROUGHLY)
         return ClosureResult(edges, poses, pending, True)
 
     def _is_news(self, edges: Sequence[Edge]) -> bool:
@@ -162,7 +164,7 @@ class BackEnd:
 
     def settle(self) -> None:
         """Optimises to the end."""
-        self._poses[: len(self)] = optimise(self.poses, self.edges, tolerance=1e-5)
+        self._poses[: len(self)] = optimise(self.poses, self.edges, _EXACTLY)
         self._unsettled = 0
 
 

@@ -31,6 +31,9 @@ _FAMILIAR_DISTANCE = 1.0
 # Key scans of the place (to each side) and of the robot's recent way that are put together for a match.
 _PLACE_KEYS, _RECENT_KEYS = 20, 12
 _PLACE_RADIUS, _RECENT_WAY = 6.0, 4.0
+_GUESS_WAY = 5.0
+# How far from each other two closures are made that share no scan and yet speak of the same stretch, metres.
+_MAX_WITNESS_WAY = 15.0
 _MAX_POINTS = 500
 _MAX_CANDIDATES = 3
 
@@ -135,9 +138,10 @@ def agree(one: Closure, other: Closure, poses: np.ndarray) -> bool:
     a, b = one.edge, other.edge
     recent_step = _between(poses[a.second], poses[b.second])
     place_step = _between(poses[a.first], poses[b.first])
-    way = math.hypot(recent_step.x, recent_step.y) + math.hypot(place_step.x, place_step.y)
-    if not 0.3 < way < 20.0:
+    recent_way = math.hypot(recent_step.x, recent_step.y)
+    if not _RECENT_WAY <= recent_way <= _MAX_WITNESS_WAY:
         return False
+    way = recent_way + math.hypot(place_step.x, place_step.y)
     cycle = (a.second_in_first @ recent_step).inverse() @ (place_step @ b.second_in_first)
     return math.hypot(cycle.x, cycle.y) < 0.15 + 0.02 * way and abs(cycle.yaw) < 0.05 + 0.005 * way
 
@@ -145,13 +149,13 @@ def agree(one: Closure, other: Closure, poses: np.ndarray) -> bool:
 def _ways_along_graph(start: int, poses: np.ndarray, edges: Edges) -> np.ndarray:
     """Shortest way (N,) along the edges from ``start`` to every key, metres, with a radian counted as one.
 
-    An edge is as long as the way on which the front end would err as much as the edge may.
+    A closure, and a step that is but a guess, is as long as the way on which the front end would err as much.
     """
     steps = edges.measured
     lengths = np.hypot(steps[:, 0], steps[:, 1]) + np.abs(steps[:, 2])
     weakest = np.minimum(edges.information[:, 0, 0], edges.information[:, 1, 1])
     doubts = 1.0 / np.sqrt(weakest) / _DRIFT_DISTANCE
-    lengths = np.where(edges.is_loop, doubts, np.maximum(lengths, doubts))
+    lengths = np.where(edges.is_loop | (doubts > _GUESS_WAY), doubts, lengths)
     graph = csr_matrix((lengths, tuple(edges.nodes.T)), shape=(len(poses), len(poses)))
     return dijkstra(graph, directed=False, indices=start)
 

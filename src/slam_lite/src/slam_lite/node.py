@@ -171,8 +171,8 @@ class SlamNode:
                 before = mapper.last_in_map
                 mapper.adopt(result)
                 self._odom_in_map = mapper.last_in_map @ before.inverse() @ self._odom_in_map
-                if result.edges:
-                    rospy.loginfo("closed a loop (%d so far)", mapper.loop_count)
+                if result.moved:
+                    rospy.loginfo("mended the map (%d loop closures so far)", mapper.loop_count)
 
     def _draw_maps(self):
         while not rospy.is_shutdown():

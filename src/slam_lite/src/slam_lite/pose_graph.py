@@ -85,7 +85,7 @@ def edges_of(*edges: Edge) -> Edges:
     return table.view()
 
 
-def optimise(poses: np.ndarray, edges: Edges, tolerance: float = 1e-3) -> np.ndarray:
+def optimise(poses: np.ndarray, edges: Edges, tolerance: float) -> np.ndarray:
     """Poses (N, 3) that agree best with the edges, starting from ``poses``; node 0 stays where it is.
 
     Levenberg-Marquardt; ends when no pose moves more than ``tolerance`` (metres, radians) in a step.

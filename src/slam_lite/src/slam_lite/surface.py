@@ -63,7 +63,10 @@ def _surface(ranges, angle, increment, shortest, longest, x, y, spacing):
 
 @numba.njit(cache=True, nogil=True)
 def _set_normal(points, normals, i):
-    """Principal axis of the neighbours: three on each side, more of them as far as 0.2 m, none past a gap."""
+    """Principal axis of the neighbours: three on each side, more of them as far as 0.2 m, none past a gap.
+
+    Where gaps leave no neighbours, the wall may be seen at a glancing angle: the next points on both sides tell.
+    """
     n, sx, sy, sxx, syy, sxy = 1, 0.0, 0.0, 0.0, 0.0, 0.0
     for side in (-1, 1):
         j = i + side
@@ -76,9 +79,23 @@ def _set_normal(points, normals, i):
             sxx, syy, sxy = sxx + dx * dx, syy + dy * dy, sxy + dx * dy
             j += side
     if n < 3:
+        _set_normal_from_chord(points, normals, i)
         return
     cxx, cyy, cxy = sxx / n - (sx / n) ** 2, syy / n - (sy / n) ** 2, sxy / n - sx * sy / n**2
     middle, half = 0.5 * (cxx + cyy), math.hypot(0.5 * (cxx - cyy), cxy)
     if middle - half < 0.1 * (middle + half):
         direction = 0.5 * math.atan2(2.0 * cxy, cxx - cyy)
         normals[i, 0], normals[i, 1] = -math.sin(direction), math.cos(direction)
+
+
+@numba.njit(cache=True, nogil=True)
+def _set_normal_from_chord(points, normals, i):
+    if not 0 < i < len(points) - 1:
+        return
+    dx, dy = points[i + 1, 0] - points[i - 1, 0], points[i + 1, 1] - points[i - 1, 1]
+    length = math.hypot(dx, dy)
+    if not 0.0 < length < 12.0:
+        return
+    nx, ny = -dy / length, dx / length
+    if abs(nx * (points[i, 0] - points[i - 1, 0]) + ny * (points[i, 1] - points[i - 1, 1])) < 0.05:
+        normals[i, 0], normals[i, 1] = nx, ny

@@ -8,7 +8,7 @@ LIDAR SLAM", ICRA 2016.
 
 import math
 from dataclasses import dataclass
-from typing import Optional
+from typing import Optional, Tuple
 
 import numba
 import numpy as np
@@ -95,7 +95,9 @@ def search_far(
     angle_steps = math.ceil(window.angle / angle_step)
     cells = math.ceil(window.distance / resolution)
     start = local_map.to_grid(guess)
-    maxima = _maxima(local_map.likelihood)
+    likelihood, corner = _cropped(local_map.likelihood)
+    start[:2] -= corner * resolution
+    maxima = _maxima(likelihood)
     cols, rows = _rotated_cells(resolution, surface.points_xy, start, angle_step, angle_steps)
     bounds = _coarse_bounds(maxima[-1], cols, rows, cells)
     order = np.argsort(-bounds, axis=None, kind="stable")[: np.count_nonzero(bounds > min_score)]
@@ -107,9 +109,9 @@ def search_far(
     _, rival = _climb(
         *search, rivalling, rivalling, best, round(apart / resolution), math.ceil(0.5 / angle_step)
     )
-    shift = best[:2] * resolution
+    x, y = start[:2] + (best[:2] + corner) * resolution
     yaw = wrap(start[2] + (best[2] - angle_steps) * angle_step)
-    base_pose = local_map.from_grid(np.array([start[0] + shift[0], start[1] + shift[1], yaw]))
+    base_pose = local_map.from_grid(np.array([x, y, yaw]))
     return Peak(base_pose, score, rival <= rivalling)
 
 
@@ -125,6 +127,15 @@ def _project(points, x, y, yaw, resolution, col, row):
     for p in range(len(points)):
         col[p] = int(math.floor((x + c * points[p, 0] - s * points[p, 1]) / resolution))
         row[p] = int(math.floor((y + s * points[p, 0] + c * points[p, 1]) / resolution))
+
+
+def _cropped(likelihood: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """The part of a grid that holds something, with an empty border, and its first (col, row)."""
+    bounds = [np.flatnonzero(likelihood.any(axis=axis)) for axis in (0, 1)]
+    if len(bounds[0]) == 0:
+        return likelihood[:1, :1], np.zeros(2)
+    (left, right), (low, high) = ((filled[0] - _COARSE, filled[-1] + 1 + _COARSE) for filled in bounds)
+    return likelihood[low:high, left:right], np.array([left, low])
 
 
 def _maxima(likelihood: np.ndarray) -> np.ndarray:

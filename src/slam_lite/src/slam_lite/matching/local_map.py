@@ -13,6 +13,8 @@ from slam_lite.surface import Surface
 _REACH_CELLS = 6
 # Standard deviation of the likelihood of a point given its distance from the surface, cells.
 _SIGMA_CELLS = 2.0
+# A point nearer than this to one that the map has adds nothing, cells.
+_SAME = 0.5
 # Cells along the border that stay empty, so that a search may look past it without missing anything.
 BORDER_CELLS = 16
 
@@ -107,6 +109,12 @@ def _add(nearest, likelihood, map_points, map_normals, count, points, normals, x
         px, py = x + c * points[i, 0] - s * points[i, 1], y + s * points[i, 0] + c * points[i, 1]
         col, row = int(math.floor(px / resolution)), int(math.floor(py / resolution))
         if not (border <= col < side - border and border <= row < side - border):
+            continue
+        known = nearest[row, col]
+        if (
+            known >= 0
+            and math.hypot(px - map_points[known, 0], py - map_points[known, 1]) < _SAME * resolution
+        ):
             continue
         map_points[count, 0], map_points[count, 1] = px, py
         map_normals[count, 0] = c * normals[i, 0] - s * normals[i, 1]
