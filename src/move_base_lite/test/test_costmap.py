@@ -1,6 +1,7 @@
 """Costmaps: what scans mark and clear, how far obstacles reach."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,14 +14,24 @@ from move_base_lite.costmap import (
     CostmapSettings,
     LayeredCostmap,
     occupancy_of,
+    sighting_of_points,
+    sighting_of_scan,
 )
 from move_base_lite.costmap.inflation import InflationSettings
-from move_base_lite.costmap.obstacle_layer import ObstacleSettings
+from move_base_lite.costmap.obstacle_layer import ObstacleSettings, SourceSettings
 from move_base_lite.costmap.static_layer import StaticSettings
 from planar import OccupancyGrid, Pose2, Scan, SettingsError, grid_from_picture
 
 INFLATION = InflationSettings(inflation_radius=0.5, cost_scaling_factor=5.0)
-OBSTACLES = ObstacleSettings(clearing=True, inf_is_valid=True)
+
+
+def laser(**values):
+    """An obstacle layer with one laser."""
+    source = {"topic": "scan", "data_type": "LaserScan", "clearing": True, "inf_is_valid": True}
+    return ObstacleSettings(sources=(SourceSettings(**{**source, **values}),))
+
+
+OBSTACLES = laser()
 ROLLING = CostmapSettings(
     rolling_window=True, width=4.0, height=4.0, robot_radius=0.2, obstacles=OBSTACLES, inflation=INFLATION
 )
@@ -30,13 +41,19 @@ def scan_of(*ranges, angle_min=0.0, angle_increment=0.1):
     return Scan(0.0, angle_min, angle_increment, np.array(ranges, dtype=np.float32), 0.1, 10.0)
 
 
+def see(costmap, base, scan):
+    """Takes in a scan made at a pose."""
+    costmap.note(sighting_of_scan("scan", scan), base)
+    costmap.update(base)
+
+
 def cost_at(costmap, x, y):
     return costmap.costs[costmap.window.cell_of(x, y)]
 
 
 def test_costs_fall_with_distance_as_costmap_2d_computes_them():
     costmap = LayeredCostmap(ROLLING)
-    costmap.update(Pose2(), scan_of(1.025))
+    see(costmap, Pose2(), scan_of(1.025))
     inscribed = costmap.footprint.inscribed_radius
     for cells in range(11):
         distance = cells * 0.05
@@ -51,9 +68,9 @@ def test_costs_fall_with_distance_as_costmap_2d_computes_them():
 
 def test_a_beam_that_passes_where_an_obstacle_was_clears_it():
     costmap = LayeredCostmap(ROLLING)
-    costmap.update(Pose2(), scan_of(1.025))
+    see(costmap, Pose2(), scan_of(1.025))
     assert cost_at(costmap, 1.025, 0.01) == LETHAL
-    costmap.update(Pose2(), scan_of(1.525))
+    see(costmap, Pose2(), scan_of(1.525))
     assert cost_at(costmap, 1.025, 0.01) < INSCRIBED
     assert cost_at(costmap, 1.525, 0.01) == LETHAL
 
@@ -63,33 +80,33 @@ def test_a_beam_that_passes_where_an_obstacle_was_clears_it():
     [(np.inf, True, True), (np.inf, False, False), (np.nan, True, False), (-np.inf, True, False)],
 )
 def test_a_beam_without_return_clears_only_as_valid_infinity(no_return, inf_is_valid, is_cleared):
-    obstacles = ObstacleSettings(clearing=True, inf_is_valid=inf_is_valid)
+    obstacles = laser(inf_is_valid=inf_is_valid)
     costmap = LayeredCostmap(CostmapSettings(rolling_window=True, width=4.0, height=4.0, obstacles=obstacles))
-    costmap.update(Pose2(), scan_of(1.025))
-    costmap.update(Pose2(), scan_of(no_return))
+    see(costmap, Pose2(), scan_of(1.025))
+    see(costmap, Pose2(), scan_of(no_return))
     assert (cost_at(costmap, 1.025, 0.01) != LETHAL) == is_cleared
 
 
 def test_what_lies_beyond_obstacle_range_is_not_marked():
     costmap = LayeredCostmap(CostmapSettings(rolling_window=True, width=8.0, height=8.0, obstacles=OBSTACLES))
-    costmap.update(Pose2(), scan_of(2.6))
+    see(costmap, Pose2(), scan_of(2.6))
     assert not (costmap.costs == LETHAL).any()
 
 
 def test_a_laser_mounted_upside_down_marks_on_the_other_side():
     scan = scan_of(1.0, angle_min=math.pi / 2)
     costmap = LayeredCostmap(ROLLING)
-    costmap.update(Pose2(), Scan(**{**vars(scan), "upside_down": True}))
+    see(costmap, Pose2(), Scan(**{**vars(scan), "upside_down": True}))
     assert cost_at(costmap, 0.01, -0.99) == LETHAL
 
 
 def test_a_rolling_window_keeps_what_stays_in_it_where_it_was():
     costmap = LayeredCostmap(ROLLING)
-    costmap.update(Pose2(), scan_of(1.025))
-    costmap.update(Pose2(0.33, 0.71), None)
+    see(costmap, Pose2(), scan_of(1.025))
+    costmap.update(Pose2(0.33, 0.71))
     assert cost_at(costmap, 1.025, 0.01) == LETHAL
     assert np.count_nonzero(costmap.costs == LETHAL) == 1
-    costmap.update(Pose2(5.0, 0.0), None)
+    costmap.update(Pose2(5.0, 0.0))
     assert not costmap.costs.any()
 
 
@@ -103,7 +120,7 @@ def test_updating_what_a_scan_touches_equals_computing_everything():
     for _ in range(5):
         base = Pose2(*rng.uniform(1.0, 5.0, 2), rng.uniform(-3.0, 3.0))
         ranges = np.where(rng.random(90) < 0.2, np.inf, rng.uniform(0.2, 5.0, 90))
-        costmap.update(base, scan_of(*ranges, angle_increment=2 * math.pi / 90))
+        see(costmap, base, scan_of(*ranges, angle_increment=2 * math.pi / 90))
         part_by_part = costmap.costs.copy()
         costmap.refresh(costmap.window.everything)
         np.testing.assert_array_equal(part_by_part, costmap.costs)
@@ -113,7 +130,7 @@ def test_the_map_stays_when_obstacles_are_forgotten():
     grid = grid_from_picture("#....\n.....\n.....", 1.0)
     settings = CostmapSettings(static=StaticSettings(), robot_radius=0.2, obstacles=OBSTACLES)
     costmap = LayeredCostmap(settings, grid)
-    costmap.update(Pose2(0.5, 0.5), scan_of(2.0))
+    see(costmap, Pose2(0.5, 0.5), scan_of(2.0))
     assert cost_at(costmap, 2.5, 0.5) == LETHAL
     costmap.reset()
     assert cost_at(costmap, 2.5, 0.5) == FREE
@@ -122,7 +139,7 @@ def test_the_map_stays_when_obstacles_are_forgotten():
 
 def test_clearing_outside_a_square_keeps_what_is_near():
     costmap = LayeredCostmap(ROLLING)
-    costmap.update(Pose2(), scan_of(0.6, 1.8, angle_increment=math.pi / 2))
+    see(costmap, Pose2(), scan_of(0.6, 1.8, angle_increment=math.pi / 2))
     costmap.clear_outside(Pose2(), side=2.0)
     assert cost_at(costmap, 0.61, 0.01) == LETHAL
     assert cost_at(costmap, 0.01, 1.81) == FREE
@@ -130,7 +147,7 @@ def test_clearing_outside_a_square_keeps_what_is_near():
 
 def test_nothing_is_marked_where_the_robot_stands():
     costmap = LayeredCostmap(ROLLING)
-    costmap.update(Pose2(), scan_of(0.15))
+    see(costmap, Pose2(), scan_of(0.15))
     assert not costmap.collides(Pose2())
 
 
@@ -139,7 +156,7 @@ def test_unknown_cells_stay_unknown_until_seen():
     settings = CostmapSettings(static=StaticSettings(), track_unknown_space=True, obstacles=OBSTACLES)
     costmap = LayeredCostmap(settings, grid)
     assert cost_at(costmap, 1.5, 2.5) == UNKNOWN
-    costmap.update(Pose2(0.5, 2.5), scan_of(np.inf))
+    see(costmap, Pose2(0.5, 2.5), scan_of(np.inf))
     assert cost_at(costmap, 1.5, 2.5) == FREE
     assert cost_at(costmap, 4.5, 2.5) == UNKNOWN
 
@@ -147,11 +164,9 @@ def test_unknown_cells_stay_unknown_until_seen():
 @pytest.mark.parametrize("name", ["circle", "rectangle"])
 def test_the_exact_footprint_decides_about_a_collision(name):
     corners = {"circle": (), "rectangle": ((-0.3, -0.1), (-0.3, 0.1), (0.3, 0.1), (0.3, -0.1))}[name]
-    settings = CostmapSettings(
-        rolling_window=True, width=4.0, height=4.0, footprint=corners, robot_radius=0.2, footprint_padding=0.0
-    )
+    settings = replace(ROLLING, footprint=corners, footprint_padding=0.0)
     costmap = LayeredCostmap(settings)
-    costmap.update(Pose2(1.0, 0.0), scan_of(0.525))
+    see(costmap, Pose2(1.0, 0.0), scan_of(0.525))
     assert costmap.collides(Pose2(1.24, 0.0)) == (name == "rectangle")
     assert not costmap.collides(Pose2(1.24, 0.0, math.pi / 2))
     assert costmap.collides(Pose2(1.49, 0.0, math.pi / 2))
@@ -165,4 +180,64 @@ def test_rviz_sees_costs_on_a_scale_to_100():
 
 def test_marks_that_could_never_be_cleared_are_refused():
     with pytest.raises(SettingsError, match="raytrace_range must be at least obstacle_range"):
-        ObstacleSettings(clearing=True, obstacle_range=3.0, raytrace_range=2.5)
+        laser(obstacle_range=3.0, raytrace_range=2.5)
+
+
+def test_each_sensor_marks_what_lies_within_its_heights():
+    sources = (
+        SourceSettings(topic="low", data_type="PointCloud2", max_obstacle_height=0.3),
+        SourceSettings(topic="high", data_type="PointCloud2", min_obstacle_height=0.25),
+    )
+    costmap = LayeredCostmap(replace(ROLLING, obstacles=ObstacleSettings(sources=sources)))
+    points_xyz = np.array([[1.0, 0.0, 0.1], [1.0, 0.5, 1.0], [1.0, -0.5, 2.5], [1.0, -1.0, np.nan]])
+    for topic, marked in [("unheard", []), ("low", [0]), ("high", [0, 1])]:
+        costmap.note(sighting_of_points(topic, 0.0, Pose2(0.1, 0.2, 0.3), points_xyz), Pose2())
+        costmap.update(Pose2())
+        is_marked = [cost_at(costmap, x, y) == LETHAL for x, y, _ in points_xyz]
+        assert np.flatnonzero(is_marked).tolist() == marked
+
+
+def test_a_scan_at_a_height_where_the_source_does_not_look_is_ignored():
+    costmap = LayeredCostmap(replace(ROLLING, obstacles=laser(min_obstacle_height=0.25)))
+    costmap.note(sighting_of_scan("scan", scan_of(1.0), height=0.1), Pose2())
+    costmap.update(Pose2())
+    assert not costmap.costs.any()
+
+
+def test_marks_persist_as_long_as_they_are_told_to():
+    costmap = LayeredCostmap(replace(ROLLING, obstacles=laser(observation_persistence=1.0)))
+    for stamp, is_marked in [(0.0, True), (0.9, True), (1.8, False)]:
+        scan = replace(scan_of(1.025 if stamp == 0.0 else 1.525), stamp=stamp)
+        see(costmap, Pose2(), scan)
+        assert (cost_at(costmap, 1.025, 0.01) == LETHAL) == is_marked
+
+
+@pytest.mark.parametrize("method, expected", [(0, FREE), (1, LETHAL), (99, LETHAL)])
+def test_a_layer_overwrites_the_map_only_if_told_to(method, expected):
+    grid = grid_from_picture("#....\n.....\n.....", 1.0)
+    obstacles = replace(OBSTACLES, combination_method=method)
+    costmap = LayeredCostmap(CostmapSettings(static=StaticSettings(), obstacles=obstacles), grid)
+    see(costmap, Pose2(0.5, 0.5), scan_of(2.0))
+    assert cost_at(costmap, 0.5, 2.5) == expected
+    assert (cost_at(costmap, 2.5, 0.5) == LETHAL) == (method != 99)
+
+
+def test_a_rolling_window_shows_the_map_as_it_lies_in_its_frame():
+    grid = OccupancyGrid(np.zeros((100, 100), np.int8), 0.1, Pose2(-5.0, -5.0))
+    grid.cells[60, 70] = 100
+    costmap = LayeredCostmap(replace(ROLLING, static=StaticSettings()), grid)
+    map_in_odom = Pose2(0.3, -0.2, 0.7)
+    block = map_in_odom @ Pose2(2.05, 1.05)
+    costmap.update(map_in_odom @ Pose2(1.0, 1.0, 0.4), map_in_odom)
+    assert cost_at(costmap, block.x, block.y) == LETHAL
+    assert np.count_nonzero(costmap.costs == LETHAL) == pytest.approx(4, abs=2), "a cell of 0.1 m"
+
+
+def test_only_the_block_that_changed_is_told():
+    costmap = LayeredCostmap(CostmapSettings(width=20.0, height=20.0, obstacles=OBSTACLES))
+    assert costmap.take_changed() == costmap.window.everything
+    see(costmap, Pose2(10.0, 10.0), scan_of(1.0))
+    block = costmap.take_changed()
+    assert (block.row_max - block.row_min) * 0.05 < 10.0
+    assert cost_at(costmap, 11.01, 10.01) == LETHAL
+    assert costmap.take_changed() == (0, 0, 0, 0)

@@ -11,12 +11,13 @@ from move_base_lite.config import MoveBaseSettings
 from move_base_lite.control import DwaSettings, MppiSettings
 from move_base_lite.costmap import CostmapSettings
 from move_base_lite.costmap.inflation import InflationSettings
-from move_base_lite.costmap.obstacle_layer import ObstacleSettings
+from move_base_lite.costmap.obstacle_layer import ObstacleSettings, SourceSettings
 from move_base_lite.costmap.static_layer import StaticSettings
 from move_base_lite.planning import PlannerSettings
-from move_base_lite.recovery import RotateSettings
+from move_base_lite.recovery import RotateSettings, SlowSettings
 from planar import SettingsError
 
+DWA = {"base_local_planner": "dwa_local_planner/DWAPlannerROS"}
 CONFIG = Path(__file__).resolve().parents[1] / "config"
 DOCUMENTED = yaml.safe_load((CONFIG / "move_base_lite.yaml").read_text())
 
@@ -31,6 +32,9 @@ DOCUMENTED = yaml.safe_load((CONFIG / "move_base_lite.yaml").read_text())
         (RotateSettings, ["TrajectoryPlannerROS"], set()),
         (CostmapSettings, ["global_costmap"], {"static", "obstacles", "inflation"}),
         (StaticSettings, ["global_costmap", "static_layer"], set()),
+        (ObstacleSettings, ["global_costmap", "obstacle_layer"], {"sources"}),
+        (SourceSettings, ["global_costmap", "obstacle_layer", "scan"], {"topic"}),
+        (SlowSettings, ["move_slow"], set()),
         (InflationSettings, ["global_costmap", "inflation_layer"], set()),
     ],
 )
@@ -44,13 +48,7 @@ def test_each_default_is_documented_as_it_is(kind, keys, not_there):
             assert tree[item.name] == (list(default) if isinstance(default, tuple) else default), item.name
 
 
-def test_each_default_of_the_obstacle_layer_is_documented_as_it_is():
-    layer = DOCUMENTED["global_costmap"]["obstacle_layer"]
-    documented = {**layer, **layer["scan"]}
-    assert {item.name: documented[item.name] for item in fields(ObstacleSettings)} == vars(ObstacleSettings())
-
-
-@pytest.mark.parametrize("name", ["move_base_lite.yaml", "turtlebot.yaml"])
+@pytest.mark.parametrize("name", ["move_base_lite.yaml", "turtlebot.yaml", "jackal.yaml"])
 def test_a_shipped_file_is_read_without_a_warning(name):
     _, warnings = settings_from_parameters(yaml.safe_load((CONFIG / name).read_text()))
     assert warnings == []
@@ -64,7 +62,7 @@ def test_the_preset_has_both_costmaps_as_they_are_needed():
     for costmap in (settings.global_costmap, settings.local_costmap):
         assert costmap.robot_radius == 0.2
         assert costmap.transform_tolerance == 0.5
-        assert costmap.obstacles.inf_is_valid
+        assert costmap.obstacles.sources[0].inf_is_valid
 
 
 def test_files_in_the_manner_before_plugins_are_understood():
@@ -82,12 +80,14 @@ def test_files_in_the_manner_before_plugins_are_understood():
     costmap = settings.global_costmap
     assert costmap.static.enabled
     assert costmap.inflation.inflation_radius == 0.4
-    assert (costmap.obstacles.topic, costmap.obstacles.clearing) == ("/scan", True)
+    scan, bump = costmap.obstacles.sources
+    assert (scan.topic, scan.clearing, scan.data_type) == ("/scan", True, "LaserScan")
+    assert (bump.topic, bump.clearing, bump.data_type) == ("bump", False, "PointCloud2")
 
 
 def test_old_names_of_dwa_are_honoured_with_a_warning():
     settings, warnings = settings_from_parameters(
-        {"DWAPlannerROS": {"max_trans_vel": 0.3, "max_rot_vel": 5.0}}
+        {**DWA, "DWAPlannerROS": {"max_trans_vel": 0.3, "max_rot_vel": 5.0}}
     )
     assert (settings.controller.max_vel_trans, settings.controller.max_vel_theta) == (0.3, 5.0)
     assert "parameter DWAPlannerROS/max_trans_vel is deprecated, use max_vel_trans instead" in warnings
@@ -96,7 +96,7 @@ def test_old_names_of_dwa_are_honoured_with_a_warning():
 def test_the_latch_is_accepted_at_both_levels():
     for parameters in (
         {"latch_xy_goal_tolerance": True},
-        {"DWAPlannerROS": {"latch_xy_goal_tolerance": True}},
+        {**DWA, "DWAPlannerROS": {"latch_xy_goal_tolerance": True}},
     ):
         assert settings_from_parameters(parameters)[0].controller.latch_xy_goal_tolerance
 
@@ -111,7 +111,10 @@ def test_a_footprint_may_be_written_as_text_and_stand_above_the_costmaps():
     "parameters, text",
     [
         ({"controller_frequency": 0}, "/move_base/controller_frequency must be positive, got 0.0"),
-        ({"DWAPlannerROS": {"max_vel_x": "fast"}}, "/move_base/DWAPlannerROS/max_vel_x must be a number"),
+        (
+            {**DWA, "DWAPlannerROS": {"max_vel_x": "fast"}},
+            "/move_base/DWAPlannerROS/max_vel_x must be a number",
+        ),
         ({"footprint": "here"}, "/move_base/global_costmap/footprint must be a list of points"),
         (
             {"recovery_behaviors": [{"name": "jump", "type": "jump/Jump"}]},
@@ -126,8 +129,47 @@ def test_a_senseless_value_is_refused_by_its_full_name(parameters, text):
 
 
 def test_an_unknown_name_is_warned_of():
-    _, warnings = settings_from_parameters({"DWAPlannerROS": {"max_vel_z": 1.0}}, "/move_base/")
-    assert warnings == ["unknown parameter /move_base/DWAPlannerROS/max_vel_z"]
+    parameters = {**DWA, "DWAPlannerROS": {"sim_tme": 1.0, "zebra": 2}, "planner_frequncy": 1.0}
+    _, warnings = settings_from_parameters(parameters, "/move_base/")
+    assert warnings == [
+        "unknown parameter /move_base/planner_frequncy, did you mean planner_frequency?",
+        "unknown parameter /move_base/DWAPlannerROS/sim_tme, did you mean sim_time?",
+        "unknown parameter /move_base/DWAPlannerROS/zebra",
+    ]
+
+
+def test_parameters_of_trajectory_planner_are_read_by_their_own_names_and_defaults():
+    own = {"max_rotational_vel": 0.8, "pdist_scale": 0.9, "dwa": False, "escape_vel": -0.1}
+    settings, warnings = settings_from_parameters({"TrajectoryPlannerROS": own})
+    controller = settings.controller
+    assert (controller.max_vel_theta, controller.path_distance_bias, controller.use_dwa) == (0.8, 0.9, False)
+    assert (controller.max_vel_x, controller.max_vel_trans, controller.min_vel_x) == (0.5, 0.5, 0.1)
+    assert (controller.sim_time, controller.yaw_goal_tolerance) == (1.0, 0.05)
+    assert warnings == []
+
+
+def test_ranges_of_sensors_are_searched_for_upwards():
+    layer = {
+        "observation_sources": "front back",
+        "raytrace_range": 6.0,
+        "back": {"data_type": "LaserScan", "obstacle_range": 1.0},
+    }
+    plugins = [{"name": "obstacle_layer", "type": "costmap_2d::VoxelLayer"}]
+    settings, warnings = settings_from_parameters(
+        {"obstacle_range": 4.0, "local_costmap": {"plugins": plugins, "obstacle_layer": layer}}
+    )
+    front, back = settings.local_costmap.obstacles.sources
+    assert (front.topic, front.obstacle_range, front.raytrace_range) == ("front", 4.0, 6.0)
+    assert (back.topic, back.obstacle_range, back.raytrace_range) == ("back", 1.0, 6.0)
+    assert warnings == []
+
+
+def test_move_slow_and_clear_is_read():
+    listed = [{"name": "slow", "type": "move_slow_and_clear/MoveSlowAndClear"}]
+    slow = {"limited_trans_speed": 0.1, "max_trans_param_name": "max_vel_trans"}
+    settings, warnings = settings_from_parameters({"recovery_behaviors": listed, "slow": slow})
+    assert settings.recoveries[0].slow == SlowSettings(limited_trans_speed=0.1)
+    assert warnings == []
 
 
 def test_recoveries_come_in_the_configured_order():
@@ -143,7 +185,7 @@ def test_recoveries_come_in_the_configured_order():
 def test_no_parameters_at_all_mean_the_official_defaults():
     settings, warnings = settings_from_parameters({})
     assert settings.move_base == NavigatorSettings().move_base
-    assert settings.controller == NavigatorSettings().controller
+    assert isinstance(settings.controller, DwaSettings), "TrajectoryPlannerROS"
     assert [recovery.name for recovery in settings.recoveries][::2] == [
         "conservative_reset",
         "aggressive_reset",

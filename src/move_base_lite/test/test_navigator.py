@@ -9,6 +9,7 @@ import pytest
 import yaml
 
 from move_base_lite import Navigator, Status, load_settings, settings_from_parameters
+from move_base_lite.recovery import RecoverySettings, SlowSettings
 from planar import OCCUPIED, OccupancyGrid, Pose2, Scan, Twist2, wrap
 from planar.ray_casting import cast_rays
 
@@ -239,7 +240,7 @@ def test_without_scans_the_robot_stops_and_after_a_while_gives_up(settings):
     assert decision.text.startswith("Sensor data is out of date")
     decision = drive_to_end(robot, navigator)[-1]
     assert decision.status is Status.ABORTED
-    assert "[code=SENSOR_STALE: no scan for 1" in decision.text
+    assert "[code=SENSOR_STALE: nothing on scan for 1" in decision.text
 
 
 def test_a_robot_pushed_against_a_wall_gets_away_from_it(settings):
@@ -247,6 +248,23 @@ def test_a_robot_pushed_against_a_wall_gets_away_from_it(settings):
     robot, navigator = Robot(grid, Pose2(0.1 + BODY_RADIUS + 0.01, 2.0, math.pi)), Navigator(settings, grid)
     navigator.set_goal(goal)
     assert_arrived(robot, drive_to_end(robot, navigator), goal)
+
+
+def test_after_move_slow_and_clear_the_robot_is_slow_until_it_has_moved_on(settings):
+    slow = SlowSettings(limited_trans_speed=0.2, limited_distance=0.5)
+    recovery = RecoverySettings("slow", "move_slow_and_clear/MoveSlowAndClear", slow=slow)
+    navigator = Navigator(replace(settings, recoveries=(recovery,)), room(6.0, 4.0))
+    robot = Robot(with_block(room(6.0, 4.0), 1.4, 0.0, 1.5, 4.0), Pose2(0.8, 2.0))
+    navigator.set_goal(Pose2(5.4, 2.0))
+    while robot.tick(navigator).recovery is None:
+        assert robot.now < 30.0
+    robot.grid = room(6.0, 4.0)
+    since, speeds = robot.pose, []
+    while robot.pose.distance_to(since) < 1.5:
+        robot.tick(navigator)
+        speeds.append((robot.pose.distance_to(since), robot.twist.v))
+    assert max(v for moved, v in speeds if moved < 0.45) < 0.21
+    assert max(v for moved, v in speeds if moved > 0.8) > 0.4
 
 
 def test_what_is_left_is_told_all_the_way(settings):

@@ -1,6 +1,6 @@
 """Navigation after move_base: from a goal, poses and scans to velocities that reach it without collision."""
 
-from move_base_lite.config import NavigatorSettings, load_settings, settings_from_parameters
+from move_base_lite.config import NavigatorSettings
 from move_base_lite.decision import Decision, Status
 from move_base_lite.errors import (
     ControlError,
@@ -12,6 +12,7 @@ from move_base_lite.errors import (
     StartBlocked,
 )
 from move_base_lite.navigator import Navigator
+from move_base_lite.parameters import load_settings, settings_from_parameters
 
 __all__ = [
     "ControlError",

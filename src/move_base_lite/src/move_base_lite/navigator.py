@@ -2,13 +2,13 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Optional
+from typing import Dict, Optional, Sequence, Tuple
 
 import numpy as np
 
 from move_base_lite.config import NavigatorSettings
 from move_base_lite.control import Controller
-from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, LayeredCostmap
+from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, LayeredCostmap, Sighting, sighting_of_scan
 from move_base_lite.decision import (
     CANCELLED_OUTCOME,
     STALE_SENSOR_TEXT,
@@ -32,10 +32,11 @@ from move_base_lite.errors import (
     SensorStale,
 )
 from move_base_lite.planning import GlobalPlanner, path_cost
-from move_base_lite.recovery import Recovery, RecoveryContext, recovery_from
+from move_base_lite.recovery import Recovery, RecoveryContext, SpeedLimit, recovery_from
 from planar import OccupancyGrid, Pose2, Scan, Twist2, wrap
 
 TIME_TOLERANCE = 1e-6
+UNLIMITED = Twist2(math.inf, math.inf)
 # A plan under way is left only for one that is this much cheaper, lest the robot dither between two ways.
 WORTH_CHANGING = 0.8
 # Metres beside its plan from which on the robot takes a new one in any case.
@@ -64,6 +65,7 @@ class _Pursuit:
     reason: Optional[NavigationError] = None
     travelled: float = 0.0
     recoveries_used: int = 0
+    slow: Optional[Tuple[SpeedLimit, Pose2]] = None
 
     def advance(self, base_in_map: Pose2) -> None:
         self.travelled += self.pose.distance_to(base_in_map)
@@ -82,20 +84,21 @@ class Navigator:
         self._period = 1.0 / settings.move_base.controller_frequency
         self._planner = GlobalPlanner(settings.planner)
         self._grid = grid
+        self._scan_topic = settings.scan_topic
         self.forget()
 
     def forget(self) -> None:
         """Forgets the goal and all that was seen, as after a jump of time."""
-        self.local_costmap = LayeredCostmap(self._settings.local_costmap)
+        self._last_seen: Dict[str, float] = {}
         self.set_map(self._grid)
-        self._last_scan_stamp = -math.inf
         self.forget_goal()
 
     def set_map(self, grid: Optional[OccupancyGrid]) -> None:
         """Goes on with another map, from which obstacles have to be seen anew."""
         self._grid = grid
         self.global_costmap = LayeredCostmap(self._settings.global_costmap, grid)
-        self._next_global_update = -math.inf
+        self.local_costmap = LayeredCostmap(self._settings.local_costmap, grid)
+        self._next_updates = [-math.inf, -math.inf]
 
     def set_goal(self, goal_in_map: Pose2) -> None:
         """Drives there from the next tick on; a goal under way is left without stopping."""
@@ -119,13 +122,22 @@ class Navigator:
         return self._pursuit is not None or self._new_goal is not None
 
     def tick(
-        self, now: float, base_in_map: Pose2, base_in_odom: Pose2, twist: Twist2, scan: Optional[Scan]
+        self,
+        now: float,
+        base_in_map: Pose2,
+        base_in_odom: Pose2,
+        twist: Twist2,
+        scan: Optional[Scan],
+        sightings: Sequence[Sighting] = (),
     ) -> Decision:
         """The velocity for the coming period.
 
         ``now``: seconds; ``scan``: one not given before, as seen from the present pose, or None.
+        ``sightings``: the same of any other sensors.
         """
-        self._look(now, base_in_map, base_in_odom, scan)
+        if scan is not None:
+            sightings = [*sightings, sighting_of_scan(self._scan_topic, scan)]
+        self._look(now, base_in_map, base_in_odom, sightings)
         if self._new_goal is not None and not self._is_cancelled:
             self._pursuit = _Pursuit(self._new_goal, now, base_in_map, base_in_map, now, now, now)
             self._new_goal = None
@@ -146,8 +158,9 @@ class Navigator:
         self, pursuit: _Pursuit, now: float, base_in_map: Pose2, base_in_odom: Pose2, twist: Twist2
     ) -> Decision:
         self._note_progress(pursuit, now, base_in_map)
-        if self._is_blind(now):
-            return self._wait_for_scan(pursuit, now)
+        silent = self._silent_source(now)
+        if silent is not None:
+            return self._wait_for_sensor(pursuit, now, silent)
         if pursuit.status is Status.CLEARING:
             return self._recover(pursuit, now, base_in_map, base_in_odom, twist)
         if pursuit.status is Status.PLANNING and not self._plan(pursuit, now, base_in_map):
@@ -171,19 +184,31 @@ class Navigator:
 
     def clear_around(self, base_in_map: Pose2) -> None:
         """Forgets what obstacles the map's costmap shows where the robot stands."""
+        radius = self._settings.move_base.clearing_radius
         self.global_costmap.clear_around(
-            base_in_map, 2.0 * self.global_costmap.footprint.circumscribed_radius
+            base_in_map, 2.0 * (radius or self.global_costmap.footprint.circumscribed_radius)
         )
 
-    def _look(self, now: float, base_in_map: Pose2, base_in_odom: Pose2, scan: Optional[Scan]) -> None:
-        self.local_costmap.update(base_in_odom, scan)
-        if scan is None:
+    def _look(
+        self, now: float, base_in_map: Pose2, base_in_odom: Pose2, sightings: Sequence[Sighting]
+    ) -> None:
+        """Has the costmaps note what is seen, and brings those up to date that are due."""
+        if self._settings.move_base.shutdown_costmaps and not self.is_active:
             return
-        self._last_scan_stamp = scan.stamp
-        if now >= self._next_global_update - TIME_TOLERANCE:
-            self.global_costmap.update(base_in_map, scan)
-            frequency = self._settings.global_costmap.update_frequency
-            self._next_global_update = now + (1.0 / frequency if frequency > 0.0 else math.inf)
+        map_in_odom = base_in_odom @ base_in_map.inverse()
+        views = (
+            (self.local_costmap, base_in_odom, map_in_odom),
+            (self.global_costmap, base_in_map, Pose2()),
+        )
+        for sighting in sightings:
+            self._last_seen[sighting.topic] = sighting.stamp
+        for number, (costmap, base_in_frame, map_in_frame) in enumerate(views):
+            for sighting in sightings:
+                costmap.note(sighting, base_in_frame)
+            if now >= self._next_updates[number] - TIME_TOLERANCE:
+                costmap.update(base_in_frame, map_in_frame)
+                frequency = costmap.settings.update_frequency
+                self._next_updates[number] = now + (1.0 / frequency if frequency > 0.0 else math.inf)
 
     def _check(self, goal: Pose2) -> None:
         """Says at once what no recovery can change: a goal off the map, or in the map's own obstacles."""
@@ -206,17 +231,21 @@ class Navigator:
             if pursuit.trigger is Trigger.OSCILLATION:
                 pursuit.recovery_index = 0
 
-    def _is_blind(self, now: float) -> bool:
-        """Whether the newest scan is older than a costmap allows."""
-        costmaps = (self._settings.local_costmap, self._settings.global_costmap)
-        limits = [costmap.obstacles.expected_update_rate for costmap in costmaps if costmap.obstacles.enabled]
-        return any(0.0 < limit < now - self._last_scan_stamp for limit in limits)
+    def _silent_source(self, now: float) -> Optional[str]:
+        """The topic of a sensor whose newest data are older than a costmap allows, if there is one."""
+        for costmap in (self._settings.local_costmap, self._settings.global_costmap):
+            for source in costmap.obstacles.sources if costmap.obstacles.enabled else ():
+                age = now - self._last_seen.get(source.topic, -math.inf)
+                if 0.0 < source.expected_update_rate < age:
+                    return source.topic
+        return None
 
-    def _wait_for_scan(self, pursuit: _Pursuit, now: float) -> Decision:
-        since = max(self._last_scan_stamp, pursuit.last_progress)
+    def _wait_for_sensor(self, pursuit: _Pursuit, now: float, topic: str) -> Decision:
+        since = max(self._last_seen.get(topic, -math.inf), pursuit.last_progress)
         if now - since > self._settings.move_base.sensor_patience:
-            stale = SensorStale(f"no scan for {now - since:.1f} s")
-            return self._give_up(now, STALE_SENSOR_TEXT, stale)
+            return self._give_up(
+                now, STALE_SENSOR_TEXT, SensorStale(f"nothing on {topic} for {now - since:.1f} s")
+            )
         return Decision(pursuit.status, Twist2(), STALE_SENSOR_TEXT)
 
     def _plan(self, pursuit: _Pursuit, now: float, base_in_map: Pose2, is_under_way: bool = False) -> bool:
@@ -275,7 +304,9 @@ class Navigator:
             )
             return Decision(pursuit.status, Twist2(), plan_xy=plan_xy)
         try:
-            control = self._controller.control(base_in_map, base_in_odom, twist, self.local_costmap)
+            control = self._controller.control(
+                base_in_map, base_in_odom, twist, self.local_costmap, self._speed_limit(pursuit, base_in_odom)
+            )
         except ControlError as error:
             self._be_patient_with_control(pursuit, now, error)
             return Decision(pursuit.status, Twist2(), str(error), plan_xy=plan_xy)
@@ -289,6 +320,16 @@ class Navigator:
             trajectory=control.poses,
             followed_xy=control.plan_xy,
         )
+
+    @staticmethod
+    def _speed_limit(pursuit: _Pursuit, base_in_odom: Pose2) -> Twist2:
+        """The highest speeds that anything but the controller's own settings allows."""
+        if pursuit.slow is not None:
+            limit, since = pursuit.slow
+            if base_in_odom.distance_to(since) < limit.distance:
+                return limit.highest
+            pursuit.slow = None
+        return UNLIMITED
 
     def _be_patient_with_control(self, pursuit: _Pursuit, now: float, error: ControlError) -> None:
         """Without a velocity another plan may help, or, after a while, recovery."""
@@ -316,7 +357,13 @@ class Navigator:
             pursuit.recoveries_used += 1
             start = RecoveryStart(next_one.name, pursuit.recovery_index, len(recoveries))
         context = RecoveryContext(
-            base_in_map, base_in_odom, twist, self._period, self.global_costmap, self.local_costmap
+            base_in_map,
+            base_in_odom,
+            twist,
+            self._period,
+            self.global_costmap,
+            self.local_costmap,
+            lambda limit: setattr(pursuit, "slow", (limit, base_in_odom)),
         )
         command = pursuit.recovery.step(context)
         if command is None:

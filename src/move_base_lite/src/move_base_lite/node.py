@@ -13,7 +13,6 @@ from nav_msgs.msg import Path
 from nav_msgs.srv import GetPlan, GetPlanResponse
 from std_srvs.srv import Empty, EmptyResponse
 
-from move_base_lite.config import settings_from_parameters
 from move_base_lite.decision import CANCELLED_OUTCOME, Decision, Outcome, Status, Trigger, with_reason
 from move_base_lite.errors import NavigationError, RobotLost
 from move_base_lite.navigator import Navigator
@@ -22,6 +21,8 @@ from move_base_lite.nodes.goals import InvalidGoal, goal_from_msg
 from move_base_lite.nodes.plan_messages import path_msg, pose_msg, trajectory_msg
 from move_base_lite.nodes.status_messages import outcome_msg, progress_msg
 from move_base_lite.nodes.surroundings import Surroundings, View
+from move_base_lite.parameters import settings_from_parameters
+from move_base_lite.planning import headings_along
 from move_base_lite.warming import warm_up
 from planar import Pose2, SettingsError, Twist2
 from planar_ros.messages import OccupancyGridArrays, frame_name, grid_from_msg
@@ -88,10 +89,12 @@ class MoveBaseNode:
 
     def _await_inputs(self):
         conditions = {
-            f"a scan on {self._surroundings.scan_topic}": lambda: self._surroundings.has_scan,
             f"the transforms {self._map_frame} -> {self._odom_frame} -> "
             f"{frame_name(self._settings.local_costmap.robot_base_frame)}": lambda: self._view is not None,
         }
+        for topic in self._surroundings.topics:
+            heard = f"a message on {topic}"
+            conditions[heard] = lambda topic=topic: topic not in self._surroundings.silent_topics
         static = self._settings.global_costmap.static
         if static.enabled:
             conditions[f"a map on {rospy.resolve_name(static.map_topic)}"] = self._has_map
@@ -126,7 +129,7 @@ class MoveBaseNode:
                 rospy.logwarn("make_plan: %s", error)
                 return GetPlanResponse()
         response = GetPlanResponse()
-        response.plan.poses = path_msg(path_xy, rospy.Time.now(), self._map_frame, goal.yaw).poses
+        response.plan.poses = self._plan_msg(path_xy, rospy.Time.now(), start.yaw, goal.yaw).poses
         return response
 
     def _start_of(self, message) -> Pose2:
@@ -196,7 +199,7 @@ class MoveBaseNode:
             self._view, self._lost_since = view, now
             self._take_goal(now)
             decision = self._navigator.tick(
-                now.to_sec(), view.base_in_map, view.base_in_odom, view.twist, view.scan
+                now.to_sec(), view.base_in_map, view.base_in_odom, view.twist, None, view.sightings
             )
             self._act(now, decision)
             self._global_topics.publish(now, self._navigator.global_costmap, view.base_in_map)
@@ -282,11 +285,17 @@ class MoveBaseNode:
 
     def _publish_plans(self, now: rospy.Time, decision: Decision):
         if decision.plan_xy is not None and self._plan.get_num_connections():
-            self._plan.publish(path_msg(decision.plan_xy, now, self._map_frame, self._goal.yaw))
+            start_yaw = self._view.base_in_map.yaw
+            self._plan.publish(self._plan_msg(decision.plan_xy, now, start_yaw, self._goal.yaw))
         if decision.followed_xy is not None and self._global_plan.get_num_connections():
-            self._global_plan.publish(path_msg(decision.followed_xy, now, self._odom_frame))
+            level = np.zeros(len(decision.followed_xy))
+            self._global_plan.publish(path_msg(decision.followed_xy, now, self._odom_frame, level))
         if decision.trajectory is not None and self._local_plan.get_num_connections():
             self._local_plan.publish(trajectory_msg(decision.trajectory, now, self._odom_frame))
+
+    def _plan_msg(self, path_xy: np.ndarray, now: rospy.Time, start_yaw: float, goal_yaw: float) -> Path:
+        mode = self._settings.planner.orientation_mode
+        return path_msg(path_xy, now, self._map_frame, headings_along(path_xy, mode, start_yaw, goal_yaw))
 
     def _tell_recovery(self, now: rospy.Time, decision: Decision):
         recovery = decision.recovery

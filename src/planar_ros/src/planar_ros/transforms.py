@@ -2,8 +2,10 @@
 
 from typing import Optional, Tuple
 
+import numpy as np
 import rospy
 import tf2_ros
+from scipy.spatial.transform import Rotation
 
 from planar import Pose2
 from planar_ros.messages import frame_name, transform_msg, yaw_of
@@ -34,6 +36,17 @@ class Transforms:
         q = transform.rotation
         upside_down = 1.0 - 2.0 * (q.x * q.x + q.y * q.y) < 0.0
         return Pose2(transform.translation.x, transform.translation.y, yaw_of(q)), upside_down
+
+    def matrix(self, target: str, source: str) -> Optional[np.ndarray]:
+        """Where ``source`` lies in ``target`` in space, (4, 4), by the latest transform; None: not known."""
+        transform = self._lookup(target, source, None, 0.0)
+        if transform is None:
+            return None
+        q, at = transform.rotation, transform.translation
+        matrix = np.eye(4)
+        matrix[:3, :3] = Rotation.from_quat([q.x, q.y, q.z, q.w]).as_matrix()
+        matrix[:3, 3] = at.x, at.y, at.z
+        return matrix
 
     def latest_stamp(self, target: str, source: str) -> Optional[rospy.Time]:
         """The newest time at which the transform is known; None if it is not."""

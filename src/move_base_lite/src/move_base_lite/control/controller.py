@@ -78,9 +78,17 @@ class Controller:
         return self._tracking.distance_left if self._tracking else 0.0
 
     def control(
-        self, base_in_map: Pose2, base_in_local: Pose2, twist: Twist2, costmap: LayeredCostmap
+        self,
+        base_in_map: Pose2,
+        base_in_local: Pose2,
+        twist: Twist2,
+        costmap: LayeredCostmap,
+        highest: Twist2,
     ) -> Control:
-        """The velocity for the next period. Raises ControlError if none is safe."""
+        """The velocity for the next period, within the settings and the ``highest`` speeds.
+
+        Raises ControlError if none is safe.
+        """
         assert self._tracking is not None, "control() needs a plan"
         self._tracking.advance(base_in_map.x, base_in_map.y)
         if self._is_near(base_in_map):
@@ -94,7 +102,7 @@ class Controller:
             return self._turn(error, base_in_local, twist, costmap, plan_xy)
         try:
             trajectory = self._follower.follow(
-                costmap, base_in_local, twist, plan_xy, self._speed_limit(), self.distance_left
+                costmap, base_in_local, twist, plan_xy, self._within_limits(highest), self.distance_left
             )
         except ControlError:
             return self._find_another_way(error, base_in_local, twist, costmap, plan_xy)
@@ -145,10 +153,15 @@ class Controller:
                 return Control(command, base_in_local.as_array()[None, :], plan_xy)
         return self._back_out(base_in_local, costmap, plan_xy, "there is no room to turn")
 
-    def _speed_limit(self) -> float:
-        """Slow enough to stop at the plan's end, braking gently."""
-        gentle = 0.3 * self._settings.acc_lim_x
-        return max(math.sqrt(2.0 * gentle * self.distance_left), self._settings.min_vel_trans)
+    def _within_limits(self, highest: Twist2) -> Twist2:
+        """The highest speeds: those of the settings, lower where asked for and to stop at the plan's end."""
+        settings = self._settings
+        gentle = 0.3 * settings.acc_lim_x
+        stoppable = max(math.sqrt(2.0 * gentle * self.distance_left), settings.min_vel_trans)
+        return Twist2(
+            min(settings.max_vel_x, settings.max_vel_trans, highest.v, stoppable),
+            min(settings.max_vel_theta, highest.omega),
+        )
 
 
 def follower_for(settings: ControllerSettings, period: float):

@@ -35,16 +35,16 @@ class DynamicWindow:
         base_pose: Pose2,
         twist: Twist2,
         plan_xy: np.ndarray,
-        speed_limit: float,
+        highest: Twist2,
         distance_left: float,
     ) -> Trajectory:
         """The cheapest velocity, looking no further ahead than the end, or the robot would creep towards it.
 
         Raises ControlError if each of them hits something or leads nowhere.
         """
-        horizon = min(max(distance_left / speed_limit, SHORTEST_HORIZON), self._settings.sim_time)
+        horizon = min(max(distance_left / highest.v, SHORTEST_HORIZON), self._settings.sim_time)
         return best_trajectory(
-            self._settings, costmap, base_pose, twist, plan_xy, speed_limit, horizon, self._period
+            self._settings, costmap, base_pose, twist, plan_xy, highest, horizon, self._period
         )
 
 
@@ -54,13 +54,13 @@ def best_trajectory(
     base_pose: Pose2,
     twist: Twist2,
     plan_xy: np.ndarray,
-    speed_limit: float,
+    highest: Twist2,
     sim_time: float,
     period: float,
 ) -> Trajectory:
     """The cheapest of the velocities reachable within ``period`` seconds.
 
-    ``plan_xy``: (N, 2), the part of the plan ahead within the costmap. ``speed_limit``: m/s.
+    ``plan_xy``: (N, 2), the part of the plan ahead within the costmap. ``highest``: speeds.
     ``sim_time``: seconds that each velocity is followed ahead.
     Raises ControlError if each of them hits something or leads nowhere.
     """
@@ -77,7 +77,7 @@ def best_trajectory(
     far_from_goal = math.hypot(goal_x - base_pose.x, goal_y - base_pose.y) > nose * math.sqrt(
         settings.cheat_factor
     )
-    samples = velocity_samples(settings, twist, speed_limit, period)
+    samples = velocity_samples(settings, twist, highest, period)
     scores = _score(
         costmap.costs,
         window.origin_x,
@@ -111,17 +111,16 @@ def best_trajectory(
     return Trajectory(Twist2(float(v), float(omega)), poses, float(scores[best]))
 
 
-def velocity_samples(settings: DwaSettings, twist: Twist2, speed_limit: float, period: float) -> np.ndarray:
+def velocity_samples(settings: DwaSettings, twist: Twist2, highest: Twist2, period: float) -> np.ndarray:
     """Velocities (N, 2) as (v, omega) that the robot can have after ``period`` and that move it on.
 
     Turning on the spot is left to the controller, which knows which way. However small the acceleration,
     a robot at rest may start at ``min_vel_trans``.
     """
     horizon = period if settings.use_dwa else settings.sim_time
-    highest = min(settings.max_vel_x, settings.max_vel_trans, speed_limit)
     change = max(settings.acc_lim_x * horizon, settings.min_vel_trans - twist.v)
-    v = _spaced(twist.v, change, settings.min_vel_x, highest, settings.vx_samples)
-    limit = settings.max_vel_theta
+    v = _spaced(twist.v, change, settings.min_vel_x, highest.v, settings.vx_samples)
+    limit = highest.omega
     omega = _spaced(twist.omega, settings.acc_lim_theta * horizon, -limit, limit, settings.vth_samples)
     samples = np.stack(np.meshgrid(v, omega, indexing="ij"), axis=-1).reshape(-1, 2)
     return samples[np.abs(samples[:, 0]) >= settings.min_vel_trans - 1e-4]

@@ -61,10 +61,10 @@ class PathIntegral:
         base_pose: Pose2,
         twist: Twist2,
         plan_xy: np.ndarray,
-        speed_limit: float,
+        highest: Twist2,
         distance_left: float,
     ) -> Trajectory:
-        """The velocity that ``period`` seconds are to be driven at, and where it may lead.
+        """The velocity for the next period, within the ``highest`` speeds, and where it may lead.
 
         Raises ControlError if every way tried hits something.
         """
@@ -80,7 +80,7 @@ class PathIntegral:
             circumscribed_radius=costmap.footprint.circumscribed_radius,
         )
         start = np.array([*base_pose.as_array(), twist.v, twist.omega])
-        problem = (start, scene, self._limits(speed_limit), self._weights)
+        problem = (start, scene, self._limits(highest), self._weights)
         samples = np.concatenate((self._mean + self._noise, self._fan))
         costs = _costs_of(samples, *problem)
         best = int(np.argmin(costs))
@@ -97,13 +97,13 @@ class PathIntegral:
         v, omega = map(float, speeds[0])
         return Trajectory(Twist2(v, omega), poses, float(cost))
 
-    def _limits(self, speed_limit: float) -> "_Limits":
+    def _limits(self, highest: Twist2) -> "_Limits":
         settings = self._settings
         return _Limits(
             period=self._period,
             lowest_v=settings.min_vel_x,
-            highest_v=min(settings.max_vel_x, settings.max_vel_trans, speed_limit),
-            highest_omega=settings.max_vel_theta,
+            highest_v=highest.v,
+            highest_omega=highest.omega,
             acceleration=settings.acc_lim_x,
             turn_acceleration=settings.acc_lim_theta,
             approach_time=settings.approach_time,

@@ -3,6 +3,7 @@
 from move_base_lite.costmap.costmap import CostmapSettings, LayeredCostmap
 from move_base_lite.costmap.costs import FREE, INSCRIBED, LETHAL, UNKNOWN, occupancy_of
 from move_base_lite.costmap.footprint import Footprint, footprint_from
+from move_base_lite.costmap.sighting import Sighting, sighting_of_points, sighting_of_scan
 from move_base_lite.costmap.window import Bounds, Window
 
 __all__ = [
@@ -14,7 +15,10 @@ __all__ = [
     "CostmapSettings",
     "Footprint",
     "LayeredCostmap",
+    "Sighting",
     "Window",
     "footprint_from",
     "occupancy_of",
+    "sighting_of_points",
+    "sighting_of_scan",
 ]

@@ -10,10 +10,11 @@ import numpy as np
 from move_base_lite.costmap.costs import FREE, UNKNOWN
 from move_base_lite.costmap.footprint import Footprint, collides, contacts, footprint_from
 from move_base_lite.costmap.inflation import Inflation, InflationSettings
-from move_base_lite.costmap.obstacle_layer import ObstacleLayer, ObstacleSettings
-from move_base_lite.costmap.static_layer import StaticSettings, static_costs
-from move_base_lite.costmap.window import Bounds, Window
-from planar import OccupancyGrid, Pose2, Scan
+from move_base_lite.costmap.obstacle_layer import NOTHING, OVERWRITE, ObstacleLayer, ObstacleSettings
+from move_base_lite.costmap.sighting import Sighting
+from move_base_lite.costmap.static_layer import StaticSettings, static_costs, static_costs_in
+from move_base_lite.costmap.window import NO_CELLS, Bounds, Window, union
+from planar import OccupancyGrid, Pose2
 from planar.settings import check
 
 # Radians between the headings at which a turn on the spot is checked.
@@ -55,7 +56,7 @@ class CostmapSettings:
 class LayeredCostmap:
     """Costs, uint8 (rows, cols), of the cells of ``window``; fixed to its frame or rolling with the robot.
 
-    Only what can have changed is computed anew: the block seen by a scan, grown by the inflation radius.
+    Only what can have changed is computed anew: the block that was seen, grown by the inflation radius.
     """
 
     def __init__(self, settings: CostmapSettings, grid: Optional[OccupancyGrid] = None):
@@ -73,33 +74,47 @@ class LayeredCostmap:
         if settings.obstacles.enabled:
             self._obstacles = ObstacleLayer(settings.obstacles, rows, cols, settings.track_unknown_space)
         self._ground = np.full((rows, cols), UNKNOWN if settings.track_unknown_space else FREE, np.uint8)
-        if settings.static.enabled and grid is not None and not settings.rolling_window:
-            self._ground = static_costs(grid.cells, settings.static)
+        self._grid = grid if settings.static.enabled else None
+        if self._grid is not None:
+            self._map_costs = static_costs(self._grid.cells, settings.static)
+            if not settings.rolling_window:
+                self._ground = self._map_costs
+        self._changed = NO_CELLS
         self.costs = np.empty((rows, cols), dtype=np.uint8)
         self.refresh(self.window.everything)
         self.costs_of_map: np.ndarray = self.costs.copy()
 
-    def update(self, base_in_frame: Pose2, scan: Optional[Scan]) -> Bounds:
-        """Follows the robot and takes in a scan, if any; returns the block of cells that may have changed."""
-        changed = self._follow(base_in_frame)
+    def note(self, sighting: Sighting, base_in_frame: Pose2) -> None:
+        """Keeps what a sensor saw from there for the next update."""
         if self._obstacles is not None:
-            if scan is not None:
-                changed = _union(changed, self._obstacles.integrate(self.window, base_in_frame, scan))
+            self._obstacles.note(sighting, base_in_frame)
+
+    def update(self, base_in_frame: Pose2, map_in_frame: Pose2 = Pose2()) -> None:
+        """Follows the robot and takes in what has been noted."""
+        changed = self._follow(base_in_frame, map_in_frame)
+        if self._obstacles is not None:
+            changed = union(changed, self._obstacles.update(self.window))
             if self.settings.obstacles.footprint_clearing_enabled:
                 cleared = self._obstacles.clear_footprint(self.window, base_in_frame, self.footprint)
-                changed = _union(changed, cleared)
-        return self.refresh(changed)
+                changed = union(changed, cleared)
+        self.refresh(changed)
 
-    def refresh(self, changed: Bounds) -> Bounds:
-        """Stacks the layers anew where they have changed; returns the block of cells that may differ now."""
+    def refresh(self, changed: Bounds) -> None:
+        """Stacks the layers anew where they have changed."""
         bounds = self.window.grown(changed, self._inflation.reach_cells)
-        if self._obstacles is None:
+        method = self.settings.obstacles.combination_method
+        if self._obstacles is None or method == NOTHING:
             rows, cols = slice(*bounds[:2]), slice(*bounds[2:])
             self.costs[rows, cols] = self._ground[rows, cols]
         else:
-            _stack(self.costs, self._ground, self._obstacles.costs, bounds)
+            _stack(self.costs, self._ground, self._obstacles.costs, bounds, method == OVERWRITE)
         self._inflation.apply(self.costs, self.window, bounds)
-        return bounds
+        self._changed = union(self._changed, bounds)
+
+    def take_changed(self) -> Bounds:
+        """The block of cells that may have changed since this was asked last."""
+        changed, self._changed = self._changed, NO_CELLS
+        return changed
 
     def collides(self, pose: Pose2) -> bool:
         """Whether the robot's footprint at ``pose`` touches an obstacle, the unknown or the edge."""
@@ -141,14 +156,16 @@ class LayeredCostmap:
             self._obstacles.reset()
             self.refresh(self.window.everything)
 
-    def _follow(self, base_in_frame: Pose2) -> Bounds:
+    def _follow(self, base_in_frame: Pose2, map_in_frame: Pose2) -> Bounds:
         if not self.settings.rolling_window:
-            return Bounds(0, 0, 0, 0)
+            return NO_CELLS
         before, self.window = self.window, self.window.centred_on(base_in_frame.x, base_in_frame.y)
         cols = round((self.window.origin_x - before.origin_x) / self.window.resolution)
         rows = round((self.window.origin_y - before.origin_y) / self.window.resolution)
         if (rows or cols) and self._obstacles is not None:
             self._obstacles.roll(rows, cols)
+        if self._grid is not None:
+            self._ground = static_costs_in(self.window, map_in_frame.inverse(), self._grid, self._map_costs)
         return self.window.everything
 
 
@@ -159,27 +176,16 @@ def _window_of(settings: CostmapSettings, grid: Optional[OccupancyGrid]) -> Wind
     return Window(rows, cols, settings.resolution, settings.origin_x, settings.origin_y)
 
 
-def _union(a: Bounds, b: Bounds) -> Bounds:
-    if a.row_min >= a.row_max or a.col_min >= a.col_max:
-        return b
-    return Bounds(
-        min(a.row_min, b.row_min),
-        max(a.row_max, b.row_max),
-        min(a.col_min, b.col_min),
-        max(a.col_max, b.col_max),
-    )
-
-
 @numba.njit(cache=True)
-def _stack(costs, ground, obstacles, bounds):
-    """The higher of both layers; the unknown of one gives way to the knowledge of the other."""
+def _stack(costs, ground, obstacles, bounds, overwrite):
+    """The higher of both layers, or the upper; the unknown of one gives way to the knowledge of the other."""
     row_min, row_max, col_min, col_max = bounds
     for row in range(row_min, row_max):
         for col in range(col_min, col_max):
             below, above = ground[row, col], obstacles[row, col]
             if above == UNKNOWN:
                 costs[row, col] = below
-            elif below == UNKNOWN:
+            elif overwrite or below == UNKNOWN:
                 costs[row, col] = above
             else:
                 costs[row, col] = max(below, above)

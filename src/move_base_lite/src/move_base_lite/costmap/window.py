@@ -14,6 +14,23 @@ class Bounds(NamedTuple):
     col_max: int
 
 
+NO_CELLS = Bounds(0, 0, 0, 0)
+
+
+def union(a: Bounds, b: Bounds) -> Bounds:
+    """The smallest block that holds both."""
+    if a.row_min >= a.row_max or a.col_min >= a.col_max:
+        return b
+    if b.row_min >= b.row_max or b.col_min >= b.col_max:
+        return a
+    return Bounds(
+        min(a.row_min, b.row_min),
+        max(a.row_max, b.row_max),
+        min(a.col_min, b.col_min),
+        max(a.col_max, b.col_max),
+    )
+
+
 @dataclass(frozen=True)
 class Window:
     """An axis-aligned block of cells; (origin_x, origin_y) is the lower left corner of (0, 0), metres."""

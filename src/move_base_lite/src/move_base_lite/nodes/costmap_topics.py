@@ -56,17 +56,20 @@ class CostmapTopics(rospy.SubscribeListener):
     def _publish_whole(self, now, costmap, frame):
         self._is_whole_wanted = False
         self._last_window = window = costmap.window
+        costmap.take_changed()
         origin = Pose2(window.origin_x, window.origin_y)
         grid = OccupancyGrid(occupancy_of(costmap.costs), window.resolution, origin)
         self._costmap.publish(grid_to_msg(grid, now, frame))
 
     def _publish_update(self, now, costmap, frame):
-        if not self._updates.get_num_connections():
+        block = costmap.take_changed()
+        rows, cols = slice(block.row_min, block.row_max), slice(block.col_min, block.col_max)
+        update = OccupancyGridUpdateArrays(x=block.col_min, y=block.row_min)
+        update.width, update.height = block.col_max - block.col_min, block.row_max - block.row_min
+        if not (self._updates.get_num_connections() and update.width and update.height):
             return
-        rows, cols = costmap.costs.shape
-        update = OccupancyGridUpdateArrays(x=0, y=0, width=cols, height=rows)
         update.header.stamp, update.header.frame_id = now, frame
-        update.data = np.ascontiguousarray(occupancy_of(costmap.costs)).ravel()
+        update.data = np.ascontiguousarray(occupancy_of(costmap.costs[rows, cols])).ravel()
         self._updates.publish(update)
 
 

@@ -2,22 +2,17 @@
 
 import numpy as np
 import rospy
-from geometry_msgs.msg import Point, Pose, PoseStamped, Quaternion
+from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Path
 from std_msgs.msg import Header
 
 from planar import Pose2
-from planar_ros.messages import pose2_to_msg, quaternion_of
+from planar_ros.messages import pose2_to_msg
 
 
-def path_msg(path_xy: np.ndarray, stamp: rospy.Time, frame: str, last_yaw: float = 0.0) -> Path:
-    """A path (N, 2) as navfn publishes it: no orientation but at its end."""
-    header = Header(stamp=stamp, frame_id=frame)
-    level = Quaternion(0.0, 0.0, 0.0, 1.0)
-    poses = [PoseStamped(header, Pose(Point(x, y, 0.0), level)) for x, y in path_xy.tolist()]
-    if poses:
-        poses[-1].pose.orientation = quaternion_of(last_yaw)
-    return Path(header, poses)
+def path_msg(path_xy: np.ndarray, stamp: rospy.Time, frame: str, yaws: np.ndarray) -> Path:
+    """A path (N, 2) with headings (N,)."""
+    return trajectory_msg(np.column_stack((path_xy, yaws)), stamp, frame)
 
 
 def trajectory_msg(poses: np.ndarray, stamp: rospy.Time, frame: str) -> Path:

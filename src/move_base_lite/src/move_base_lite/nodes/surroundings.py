@@ -1,29 +1,35 @@
-"""What the robot's transforms, odometry and laser say at a control tick."""
+"""What the robot's transforms, odometry and sensors say at a control tick."""
 
 import threading
 from collections import deque
 from dataclasses import dataclass, replace
-from typing import Deque, Dict, Optional, Tuple
+from typing import Deque, Dict, List, Optional, Tuple
 
+import numpy as np
 import rospy
 from nav_msgs.msg import Odometry
+from sensor_msgs.msg import PointCloud, PointCloud2
 
 from move_base_lite.config import NavigatorSettings
-from planar import Pose2, Scan, Twist2
+from move_base_lite.costmap import Sighting, sighting_of_points, sighting_of_scan
+from move_base_lite.costmap.obstacle_layer import SourceSettings
+from move_base_lite.nodes.clouds import points_of
+from planar import Pose2, Twist2
 from planar_ros.messages import LaserScanArrays, frame_name, scan_from_msg
 from planar_ros.transforms import Transforms
 
-SCANS_KEPT = 5
+KEPT = 5
+MESSAGES = {"LaserScan": LaserScanArrays, "PointCloud": PointCloud, "PointCloud2": PointCloud2}
 
 
 @dataclass(frozen=True)
 class View:
-    """The robot now; ``scan``: one not given before, as seen from the present pose, if there is one."""
+    """The robot now; ``sightings``: those not given before, as seen from the present pose."""
 
     base_in_map: Pose2
     base_in_odom: Pose2
     twist: Twist2
-    scan: Optional[Scan]
+    sightings: Tuple[Sighting, ...]
 
 
 class Surroundings:
@@ -39,19 +45,22 @@ class Surroundings:
             settings.local_costmap.transform_tolerance,
         )
         self._twist = Twist2()
-        self._scans: Deque[LaserScanArrays] = deque(maxlen=SCANS_KEPT)
         self._lock = threading.Lock()
-        self._mountings: Dict[str, Tuple[Pose2, bool]] = {}
-        self.has_scan = False
         rospy.Subscriber(odom_topic, Odometry, self._on_odometry, queue_size=1, tcp_nodelay=True)
-        self._scan_topic = settings.local_costmap.obstacles.topic
-        rospy.Subscriber(
-            self._scan_topic, LaserScanArrays, self._on_scan, queue_size=SCANS_KEPT, tcp_nodelay=True
-        )
+        self._sensors = [
+            _Sensor(source, transforms, self._local_frame, self._base_frame)
+            for source in _sources_of(settings).values()
+        ]
 
     @property
-    def scan_topic(self) -> str:
-        return rospy.resolve_name(self._scan_topic)
+    def silent_topics(self) -> List[str]:
+        """Topics of sensors from which nothing has come yet."""
+        return [sensor.topic for sensor in self._sensors if not sensor.has_spoken]
+
+    @property
+    def topics(self) -> List[str]:
+        """Topics of all sensors."""
+        return [sensor.topic for sensor in self._sensors]
 
     def view(self, now: rospy.Time) -> Optional[View]:
         """The robot as far as it is known at ``now``; None if its transforms are missing or too old."""
@@ -61,7 +70,9 @@ class Surroundings:
         odom_in_map = self._transforms.lookup(self._global_frame, self._local_frame)
         if base_in_odom is None or odom_in_map is None:
             return None
-        return View(odom_in_map @ base_in_odom, base_in_odom, self._twist, self._newest_scan(base_in_odom))
+        newest = (sensor.newest(base_in_odom) for sensor in self._sensors)
+        sightings = tuple(sighting for sighting in newest if sighting is not None)
+        return View(odom_in_map @ base_in_odom, base_in_odom, self._twist, sightings)
 
     def missing_transform(self, now: rospy.Time) -> Optional[str]:
         """Which transform is not known or too old, for people; None if all are well."""
@@ -76,38 +87,85 @@ class Surroundings:
 
     def forget(self) -> None:
         """Time has jumped back: what was heard is worthless."""
-        with self._lock:
-            self._scans.clear()
+        for sensor in self._sensors:
+            sensor.forget()
         self._transforms.clear()
 
-    def _newest_scan(self, base_in_odom: Pose2) -> Optional[Scan]:
+    def _on_odometry(self, message):
+        self._twist = Twist2(message.twist.twist.linear.x, message.twist.twist.angular.z)
+
+
+class _Sensor:
+    """The newest messages of one topic, made into sightings as soon as tf knows where they were taken."""
+
+    def __init__(self, source: SourceSettings, transforms: Transforms, local_frame: str, base_frame: str):
+        self._source = source
+        self._transforms = transforms
+        self._local_frame, self._base_frame = local_frame, base_frame
+        self._messages: Deque = deque(maxlen=KEPT)
+        self._lock = threading.Lock()
+        self._mountings: Dict[str, np.ndarray] = {}
+        self.has_spoken = False
+        rospy.Subscriber(
+            source.topic, MESSAGES[source.data_type], self._on_message, queue_size=KEPT, tcp_nodelay=True
+        )
+
+    @property
+    def topic(self) -> str:
+        return rospy.resolve_name(self._source.topic)
+
+    def newest(self, base_in_odom: Pose2) -> Optional[Sighting]:
+        """The newest message not given before, as if taken from the present pose; None if there is none."""
         with self._lock:
-            waiting = list(self._scans)
+            waiting = list(self._messages)
         for message in reversed(waiting):
-            scan = self._seen_from(base_in_odom, message)
-            if scan is not None:
+            sighting = self._seen_from(base_in_odom, message)
+            if sighting is not None:
                 with self._lock:
-                    while self._scans and self._scans[0].header.stamp <= message.header.stamp:
-                        self._scans.popleft()
-                return scan
+                    while self._messages and self._messages[0].header.stamp <= message.header.stamp:
+                        self._messages.popleft()
+                return sighting
         return None
 
-    def _seen_from(self, base_in_odom: Pose2, message) -> Optional[Scan]:
-        """The scan as if taken from the present pose; None as long as it is not known where it was taken."""
-        frame = frame_name(message.header.frame_id)
-        base_then = self._transforms.lookup(self._local_frame, self._base_frame, message.header.stamp)
-        mounting = self._mountings.get(frame) or self._transforms.mounting(self._base_frame, frame)
-        if base_then is None or mounting is None:
-            return None
-        self._mountings[frame] = mounting
-        scan = scan_from_msg(message, *mounting)
-        return replace(scan, laser_in_base=base_in_odom.inverse() @ base_then @ scan.laser_in_base)
-
-    def _on_odometry(self, message):
-        twist = message.twist.twist
-        self._twist = Twist2(twist.linear.x, twist.angular.z)
-
-    def _on_scan(self, message):
-        self.has_scan = True
+    def forget(self) -> None:
         with self._lock:
-            self._scans.append(message)
+            self._messages.clear()
+
+    def _on_message(self, message):
+        self.has_spoken = True
+        with self._lock:
+            self._messages.append(message)
+
+    def _seen_from(self, base_in_odom: Pose2, message) -> Optional[Sighting]:
+        """None as long as it is not known where the message was taken."""
+        frame = frame_name(self._source.sensor_frame or message.header.frame_id)
+        base_then = self._transforms.lookup(self._local_frame, self._base_frame, message.header.stamp)
+        if frame not in self._mountings:
+            mounting = self._transforms.matrix(self._base_frame, frame)
+            if mounting is None:
+                return None
+            self._mountings[frame] = mounting
+        if base_then is None:
+            return None
+        sensor_in_base = self._mountings[frame]
+        sighting = self._sighting(message, sensor_in_base)
+        moved = base_in_odom.inverse() @ base_then
+        return replace(sighting, sensor_in_base=moved @ sighting.sensor_in_base)
+
+    def _sighting(self, message, sensor_in_base: np.ndarray) -> Sighting:
+        x, y, height = sensor_in_base[:3, 3]
+        yaw = float(np.arctan2(sensor_in_base[1, 0], sensor_in_base[0, 0]))
+        if self._source.data_type == "LaserScan":
+            upside_down = bool(sensor_in_base[2, 2] < 0.0)
+            scan = scan_from_msg(message, Pose2(float(x), float(y), yaw), upside_down)
+            return sighting_of_scan(self._source.topic, scan, float(height))
+        points = points_of(message) @ sensor_in_base[:3, :3].T + sensor_in_base[:3, 3]
+        return sighting_of_points(
+            self._source.topic, message.header.stamp.to_sec(), Pose2(float(x), float(y)), points
+        )
+
+
+def _sources_of(settings: NavigatorSettings) -> Dict[str, SourceSettings]:
+    """One source for each topic that any costmap listens to."""
+    costmaps = (settings.global_costmap, settings.local_costmap)
+    return {source.topic: source for costmap in costmaps for source in costmap.obstacles.sources}

@@ -18,13 +18,29 @@ START_TOLERANCE = 0.5
 
 @dataclass(frozen=True)
 class PlannerSettings:
-    """``default_tolerance``: metres from a blocked goal within which another one will do."""
+    """``default_tolerance``: metres from a blocked goal within which another one will do.
+
+    ``neutral_cost``, ``cost_factor``: entering a cell costs neutral + factor * cost; ``lethal_cost``: from
+    which cost on it cannot be entered. ``use_grid_path``: from cell to cell instead of down the gradient.
+    ``orientation_mode``: which way the robot is to look on the way (see headings_along).
+    """
 
     allow_unknown: bool = True
     default_tolerance: float = 0.0
     use_astar: bool = False
+    use_grid_path: bool = False
+    neutral_cost: int = 50
+    cost_factor: float = 0.8
+    lethal_cost: int = 253
+    orientation_mode: int = 0
 
     def __post_init__(self):
+        check(
+            1 <= self.neutral_cost < self.lethal_cost, "neutral_cost", "1 to lethal_cost", self.neutral_cost
+        )
+        check(self.lethal_cost <= 253, "lethal_cost", "at most 253", self.lethal_cost)
+        check(self.cost_factor >= 0.0, "cost_factor", "at least 0", self.cost_factor)
+        check(0 <= self.orientation_mode <= 6, "orientation_mode", "0 to 6", self.orientation_mode)
         check(self.default_tolerance >= 0.0, "default_tolerance", "at least 0", self.default_tolerance)
 
 
@@ -48,7 +64,10 @@ class GlobalPlanner:
         default one if that is larger). A start in the costs of a near obstacle is left by the shortest way.
         Raises OutOfMap, StartBlocked, GoalBlocked or NoPath.
         """
-        traversal = traversal_costs(costs, self._settings.allow_unknown)
+        settings = self._settings
+        traversal = traversal_costs(
+            costs, settings.allow_unknown, settings.neutral_cost, settings.cost_factor, settings.lethal_cost
+        )
         start = self._cell_in_map(window, start_xy, "robot")
         goal = self._cell_in_map(window, goal_xy, "goal")
         tolerance_cells = max(tolerance, self._settings.default_tolerance) / window.resolution
@@ -60,9 +79,10 @@ class GlobalPlanner:
             raise GoalBlocked(f"{_named('goal', goal_xy)} is {_why(costs[goal])}")
         if free_start == free_goal:
             return np.array([start_xy, goal_xy if free_goal == goal else _centre(window, free_goal)])
-        use_astar = self._settings.use_astar
-        potential = spread(traversal, *free_start, *free_goal, use_astar)
-        path_cells = descend(potential, *free_start, *free_goal, STEP_CELLS)
+        potential = spread(traversal, *free_start, *free_goal, settings.use_astar)
+        path_cells = descend(
+            potential, *free_start, *free_goal, 0.0 if settings.use_grid_path else STEP_CELLS
+        )
         if not len(path_cells):
             raise NoPath(f"no way leads from {_named('robot', start_xy)} to {_named('goal', goal_xy)}")
         path_xy = path_cells * window.resolution + (window.origin_x, window.origin_y)

@@ -8,6 +8,7 @@ import numpy as np
 
 NEUTRAL = 50.0
 FACTOR = 0.8
+LETHAL = 253
 IMPASSABLE = 254
 # How much cost the threshold rises by, and how far the wave goes on behind the goal, whose gradient needs it.
 ROUND = 2.0 * NEUTRAL
@@ -18,8 +19,8 @@ EXPECTED = 0.9 * NEUTRAL
 
 
 @numba.njit(cache=True)
-def traversal_costs(costs, allow_unknown):
-    """Navfn's cost of entering each cell, uint8: 50 + 0.8 cost, at most 253; 254 cannot be entered.
+def traversal_costs(costs, allow_unknown, neutral=NEUTRAL, factor=FACTOR, lethal=LETHAL):
+    """Cost of entering each cell, uint8, as navfn has it: 50 + 0.8 cost, at most 253; 254 cannot be entered.
 
     The rim of the map cannot be entered either, so that no neighbour ever lies outside.
     """
@@ -31,10 +32,10 @@ def traversal_costs(costs, allow_unknown):
             on_rim = row == 0 or col == 0 or row == rows - 1 or col == cols - 1
             if cost == 255:
                 traversal[row, col] = 253 if allow_unknown and not on_rim else IMPASSABLE
-            elif cost >= 253 or on_rim:
+            elif cost >= lethal or on_rim:
                 traversal[row, col] = IMPASSABLE
             else:
-                traversal[row, col] = min(int(NEUTRAL + FACTOR * cost), 253)
+                traversal[row, col] = min(int(neutral + factor * cost), lethal)
     return traversal
 
 
@@ -135,12 +136,12 @@ def _potential_from_neighbours(potential, cell, cols, cost):
 def descend(potential, start_row, start_col, goal_row, goal_col, step):
     """Path, float64 (N, 2) as (col, row) in cells (centres at .5), from start to goal along the gradient.
 
-    Empty if the goal was not reached. ``step``: cells per point.
+    Empty if the goal was not reached. ``step``: cells per point; 0: from cell to neighbouring cell.
     """
     rows, cols = potential.shape
     if not math.isfinite(potential[goal_row, goal_col]):
         return np.empty((0, 2))
-    limit = int(2 * rows * cols / step)
+    limit = 4 * rows * cols
     points = np.empty((1024, 2))
     row, col = float(goal_row), float(goal_col)
     count = 0
@@ -155,7 +156,9 @@ def descend(potential, start_row, start_col, goal_row, goal_col, step):
             points[count, 0], points[count, 1] = start_col + 0.5, start_row + 0.5
             return points[: count + 1][::-1].copy()
         nearest_row, nearest_col = int(round(row)), int(round(col))
-        slope_row, slope_col, smooth = _slope(potential, row, col)
+        smooth = step > 0.0
+        if smooth:
+            slope_row, slope_col, smooth = _slope(potential, row, col)
         if smooth:
             next_row, next_col = row - step * slope_row, col - step * slope_col
             landing = potential[int(round(next_row)), int(round(next_col))]

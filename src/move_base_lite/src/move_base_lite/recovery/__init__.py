@@ -7,6 +7,8 @@ from move_base_lite.recovery.behaviors import (
     RecoverySettings,
     Rotate,
     RotateSettings,
+    SlowSettings,
+    SpeedLimit,
     recovery_from,
 )
 
@@ -17,5 +19,7 @@ __all__ = [
     "RecoverySettings",
     "Rotate",
     "RotateSettings",
+    "SlowSettings",
+    "SpeedLimit",
     "recovery_from",
 ]

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import Optional
+from typing import Callable, Optional
 
 from move_base_lite.costmap import LayeredCostmap
 from planar import Pose2, SettingsError, Twist2, wrap
@@ -26,14 +26,36 @@ class RotateSettings:
 
 
 @dataclass(frozen=True)
+class SlowSettings:
+    """What is cleared around the robot, and how fast it may go until it has moved on: m, m/s, rad/s."""
+
+    clearing_distance: float = 0.5
+    limited_trans_speed: float = 0.25
+    limited_rot_speed: float = 0.45
+    limited_distance: float = 0.3
+
+    def __post_init__(self):
+        for name in ("limited_trans_speed", "limited_rot_speed"):
+            check(getattr(self, name) > 0.0, name, "positive", getattr(self, name))
+        for name in ("clearing_distance", "limited_distance"):
+            check(getattr(self, name) >= 0.0, name, "at least 0", getattr(self, name))
+
+
+@dataclass(frozen=True)
 class RecoverySettings:
-    """One behaviour of the list: its name and official type; metres."""
+    """One behaviour of the list: its name and official type; metres.
+
+    ``reset_distance``, ``invert_area_to_clear``, ``affected_maps``: for one that clears costmaps; ``rotate``
+    and ``slow`` for the others.
+    """
 
     name: str
     type: str
     reset_distance: float = 3.0
+    invert_area_to_clear: bool = False
     affected_maps: str = "both"
     rotate: RotateSettings = field(default_factory=RotateSettings)
+    slow: SlowSettings = field(default_factory=SlowSettings)
 
     def __post_init__(self):
         check(self.reset_distance >= 0.0, "reset_distance", "at least 0", self.reset_distance)
@@ -42,8 +64,16 @@ class RecoverySettings:
 
 
 @dataclass(frozen=True)
+class SpeedLimit:
+    """How fast the robot may go until it has moved ``distance`` metres."""
+
+    highest: Twist2
+    distance: float
+
+
+@dataclass(frozen=True)
 class RecoveryContext:
-    """What a behaviour may look at and change."""
+    """What a behaviour may look at and change; ``limit_speed`` tells the robot to go slowly for a while."""
 
     base_in_map: Pose2
     base_in_local: Pose2
@@ -51,6 +81,7 @@ class RecoveryContext:
     period: float
     global_costmap: LayeredCostmap
     local_costmap: LayeredCostmap
+    limit_speed: Callable[[SpeedLimit], None]
 
 
 class Recovery:
@@ -62,17 +93,20 @@ class Recovery:
 
 
 class ClearCostmap(Recovery):
-    """Forgets obstacles outside a square round the robot; what the laser still sees comes back at once."""
+    """Forgets obstacles outside a square round the robot, or inside it; what is still seen comes back."""
 
     def __init__(self, settings: RecoverySettings):
         self._settings = settings
 
     def step(self, context: RecoveryContext) -> Optional[Twist2]:
         side, affected = self._settings.reset_distance, self._settings.affected_maps
-        if affected in ("global", "both"):
-            context.global_costmap.clear_outside(context.base_in_map, side)
-        if affected in ("local", "both"):
-            context.local_costmap.clear_outside(context.base_in_local, side)
+        for name, costmap, base in (
+            ("global", context.global_costmap, context.base_in_map),
+            ("local", context.local_costmap, context.base_in_local),
+        ):
+            if affected in (name, "both"):
+                clear = costmap.clear_around if self._settings.invert_area_to_clear else costmap.clear_outside
+                clear(base, side)
         return None
 
 
@@ -98,6 +132,21 @@ class Rotate(Recovery):
         return Twist2(0.0, min(speed, context.twist.omega + settings.acc_lim_theta * context.period))
 
 
+class MoveSlow(Recovery):
+    """Forgets obstacles near the robot and has it go on slowly."""
+
+    def __init__(self, settings: SlowSettings):
+        self._settings = settings
+
+    def step(self, context: RecoveryContext) -> Optional[Twist2]:
+        settings = self._settings
+        context.global_costmap.clear_around(context.base_in_map, 2.0 * settings.clearing_distance)
+        context.local_costmap.clear_around(context.base_in_local, 2.0 * settings.clearing_distance)
+        highest = Twist2(settings.limited_trans_speed, settings.limited_rot_speed)
+        context.limit_speed(SpeedLimit(highest, settings.limited_distance))
+        return None
+
+
 def recovery_from(settings: RecoverySettings) -> Recovery:
     """A new run of the behaviour. Raises SettingsError for a type that is not known."""
     kind = settings.type.rpartition("/")[2]
@@ -105,4 +154,6 @@ def recovery_from(settings: RecoverySettings) -> Recovery:
         return ClearCostmap(settings)
     if kind == "RotateRecovery":
         return Rotate(settings.rotate)
+    if kind == "MoveSlowAndClear":
+        return MoveSlow(settings.slow)
     raise SettingsError(f"recovery_behaviors: {settings.name} has an unknown type {settings.type!r}")
