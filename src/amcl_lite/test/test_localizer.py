@@ -274,3 +274,13 @@ def test_a_seed_settles_everything():
         tracking_errors(toy, localizer, THROUGH_ALL_ROOMS[:30])
         ends.append(localizer.particles.poses.tobytes())
     assert ends[0] == ends[1]
+
+
+def test_a_robot_that_stands_is_localized_again_if_asked_for_by_rate():
+    toy = Toy(START)
+    still = [Pose2()] * 10  # 0.3 s each
+    for rate, updates in ((0.0, 0), (1.0, 2)):
+        localizer = started(toy, replace(TURTLEBOT, update_when_still=rate))
+        before = localizer.updates
+        tracking_errors(toy, localizer, still)
+        assert localizer.updates - before == updates

@@ -17,7 +17,12 @@ from planar.settings import check, check_parameters, parameter
 MOTION_MODELS = ("diff", "omni", "diff-corrected", "omni-corrected")
 SENSOR_MODELS = ("likelihood_field", "likelihood_field_prob", "beam")
 RESAMPLE_METHODS = ("systematic", "multinomial")
-AS_AMCL = {"resample_method": "multinomial", "refine_pose": False, "recover_when_lost": False}
+AS_AMCL: Dict[str, Any] = {
+    "resample_method": "multinomial",
+    "refine_pose": False,
+    "recover_when_lost": False,
+    "update_when_still": 0.0,
+}
 
 
 @dataclass(frozen=True)
@@ -167,10 +172,17 @@ class LocalizerSettings:
     recover_when_lost: bool = parameter(
         "recover_when_lost", True, "when scans do not fit the map, add particles where they do"
     )
+    update_when_still: float = parameter(
+        "update_when_still",
+        0.0,
+        "how often a robot that does not move is localized nevertheless, Hz; 0: never",
+        0.0,
+        dynamic=10.0,
+    )
     strict_compat: bool = parameter(
         "strict_compat",
         False,
-        "be amcl, mistakes included: kld_z is z, not a probability; the three above are off",
+        "be amcl, mistakes included: kld_z is z, not a probability; the four above are off",
     )
 
     def __post_init__(self):

@@ -128,7 +128,7 @@ class Localizer:
         beams = evenly_spaced_beams(scan, self._settings)
         self._base_in_odom = base_in_odom
         estimate = None
-        if self._is_due(base_in_odom, laser):
+        if self._is_due(base_in_odom, laser, scan.stamp):
             self._lasers_done.add(laser)
             estimate = self._take(base_in_odom, scan, beams)
         self._judge(base_in_odom, beams, scan.stamp)
@@ -145,18 +145,21 @@ class Localizer:
         self._filter = ParticleFilter(particles, self._rng)
         self._detector = LostDetector(is_lost)
         self._updated_at: Optional[Pose2] = None
+        self._updated_stamp = 0.0
         self._lasers_done: Set[str] = set()
         self._update_requested = False
         self._updates = 0
 
-    def _is_due(self, base_in_odom: Pose2, laser: str) -> bool:
+    def _is_due(self, base_in_odom: Pose2, laser: str, stamp: float) -> bool:
         """Whether this laser's scan is to be worked in; after a motion, each laser's next scan is, once."""
         if (
             self._updated_at is None
             or self._has_moved(self._updated_at, base_in_odom)
+            or self._has_stood_long(stamp)
             or self._update_requested
         ):
             self._update_requested = False
+            self._updated_stamp = stamp
             self._lasers_done.clear()
         return laser not in self._lasers_done
 
@@ -166,6 +169,9 @@ class Localizer:
             or abs(base_in_odom.y - before.y) > self._settings.update_min_distance
             or abs(wrap(base_in_odom.yaw - before.yaw)) > self._settings.update_min_angle
         )
+
+    def _has_stood_long(self, stamp: float) -> bool:
+        return abs(stamp - self._updated_stamp) * self._settings.update_when_still >= 1.0
 
     def _take(self, base_in_odom: Pose2, scan: Scan, beams: Beams) -> Optional[Estimate]:
         """Works a scan into the filter."""

@@ -84,7 +84,7 @@ class AmclNode:
         rospy.Subscriber("initialpose", PoseWithCovarianceStamped, self._on_initial_pose, queue_size=2)
         if self._settings.use_map_topic:
             rospy.Subscriber("map", OccupancyGridArrays, self._on_map, queue_size=1)
-        rospy.Timer(rospy.Duration(SCAN_ALARM_SECONDS), self._check_scans)
+        rospy.Timer(rospy.Duration(SCAN_ALARM_SECONDS), self._check_scans, reset=True)  # time may jump back
         rospy.on_shutdown(self._keep_pose)
 
     def _say_what_is_missing(self):

@@ -1,0 +1,124 @@
+#!/usr/bin/env python3
+"""Bags: replayed offline, run by the node itself, played in a loop; and maps that come by topic."""
+
+import math
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+import rospy
+import rostest
+from bag_stage import BagStage
+
+from planar import FREE, UNKNOWN, OccupancyGrid, Pose2, save_map, wrap
+from planar_ros.messages import OccupancyGridArrays, grid_to_msg
+from sim_bridge import load_world
+from sim_bridge.true_map import true_map
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "benchmarks"))
+
+from bags import BASE_FRAME, write_bag  # noqa: E402
+from drives import random_drive  # noqa: E402
+
+NEAR, NEAR_ANGLE = 0.15, 0.1
+SECONDS = 20.0
+
+
+class AmclBagsTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node("test_amcl_bags")
+        world = load_world(str(ROOT / "map" / "home.world"))
+        cls.grid = true_map(world)
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.temporary.name)
+        cls.sightings = random_drive(world, cls.grid, 1, SECONDS)
+        cls.bag = str(cls.folder / "drive.bag")
+        write_bag(cls.bag, cls.sightings)
+        save_map(cls.grid, cls.folder / "home")
+        cls.node = BagStage("amcl_lite")
+        cls.parameters = {"base_frame_id": BASE_FRAME, "seed": 3}
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.node.stop_node()
+        cls.temporary.cleanup()
+
+    def assert_near(self, found, truth):
+        self.assertIsNotNone(found, "the node never said where the robot is")
+        self.assertLess(found.distance_to(truth), NEAR, f"{found} is not near {truth}")
+        self.assertLess(abs(wrap(found.yaw - truth.yaw)), NEAR_ANGLE, f"{found} is not near {truth}")
+
+    def replay(self, name, *arguments):
+        """The trajectory, as bytes, and what the command prints."""
+        tum = self.folder / f"{name}.tum"
+        config = self.folder / "amcl.yaml"
+        config.write_text(f"base_frame_id: {BASE_FRAME}\n")
+        command = ["rosrun", "amcl_lite", "amcl_lite_replay", self.bag, "--config", str(config)]
+        command += ["--map", str(self.folder / "home.yaml"), "--trajectory", str(tum), *arguments]
+        printed = subprocess.run(command, stdout=subprocess.PIPE, check=True).stdout.decode()
+        return tum.read_bytes(), printed
+
+    def test_the_same_seed_and_bag_give_the_same_trajectory_byte_for_byte(self):
+        for start in ((), ("--global",)):
+            first, _ = self.replay("first", "--seed", "5", *start)
+            second, _ = self.replay("second", "--seed", "5", *start)
+            other, _ = self.replay("other", "--seed", "6", *start)
+            self.assertEqual(first, second)
+            self.assertNotEqual(first, other)
+
+    def test_a_replay_writes_a_pose_a_scan_and_tells_its_errors(self):
+        trajectory, printed = self.replay("errors")
+        rows = np.array([line.split() for line in trajectory.decode().splitlines()], dtype=float)
+        self.assertEqual(rows.shape, (len(self.sightings), 8))
+        rmse = float(re.search(r"position error: .* rmse ([\d.]+) m", printed).group(1))
+        truth = np.array([(seen.base_in_map.x, seen.base_in_map.y) for seen in self.sightings])
+        errors = np.hypot(*(rows[:, 1:3] - truth).T)
+        self.assertAlmostEqual(rmse, math.sqrt(np.mean(errors**2)), delta=1e-3)
+        self.assertLess(rmse, NEAR)
+
+    def test_a_bag_that_is_none_and_a_map_that_is_none_are_told_in_one_line(self):
+        for bag, map_file in ((__file__, self.folder / "home.yaml"), (self.bag, self.folder / "none.yaml")):
+            command = ["rosrun", "amcl_lite", "amcl_lite_replay", str(bag), "--map", str(map_file)]
+            done = subprocess.run(command, capture_output=True, check=False)
+            self.assertEqual(done.returncode, 2)
+            self.assertRegex(done.stderr.decode(), r"^error: [^\n]+\n$")
+
+    def test_the_node_runs_a_bag_and_says_where_it_ends(self):
+        bag = str(self.folder / "base_scan.bag")
+        write_bag(bag, self.sightings, scan_topic="base_scan")
+        printed = self.node.run_node(self.grid, self.parameters, "--run-from-bag", bag)
+        place = re.search(r"Final location (\S+), (\S+), (\S+) with stamp=(\S+)", printed)
+        self.assertIsNotNone(place, printed)
+        x, y, yaw, stamp = map(float, place.groups())
+        seen = min(self.sightings, key=lambda one: abs(one.scan.stamp - (stamp - 10.0)))
+        self.assert_near(Pose2(x, y, yaw), seen.base_in_map)
+
+    def test_a_bag_in_a_loop_is_followed_again_from_its_start(self):
+        self.node.start_node(self.grid, self.parameters)
+        for _ in range(2):
+            ending = self.node.play(self.bag)
+            self.assert_near(ending.found, ending.truth)
+
+    def test_a_map_comes_by_topic_and_one_without_free_cells_is_refused(self):
+        publisher = rospy.Publisher("map", OccupancyGridArrays, queue_size=1, latch=True)
+        self.node.start_node(self.grid, {**self.parameters, "use_map_topic": True, "first_map_only": True})
+        blank = OccupancyGrid(np.full((20, 20), UNKNOWN, dtype=np.int8), 0.05)
+        room = OccupancyGrid(np.full((20, 20), FREE, dtype=np.int8), 0.05)
+        for grid in (blank, self.grid, room):  # refused, taken, ignored
+            while publisher.get_num_connections() == 0:
+                rospy.rostime.wallsleep(0.1)
+            publisher.publish(grid_to_msg(grid, rospy.Time(1), "map"))
+            rospy.rostime.wallsleep(2.0)
+        ending = self.node.play(self.bag)
+        self.assert_near(ending.found, ending.truth)
+        publisher.unregister()
+
+
+if __name__ == "__main__":
+    rostest.rosrun("home_service_tests", "amcl_bags", AmclBagsTest)
