@@ -67,7 +67,7 @@ class ClosureTask:
         edges = [_widened(closure.edge, _CLOSURE_SIGMA_XY, _CLOSURE_SIGMA_YAW) for closure in accepted]
         if not self._is_news(edges):
             return ClosureResult(edges, self.poses, pending, False)
-        poses = optimise(self.poses, _with(self.edges, edges), _ROUGHLY)
+        poses = optimise(self.poses, _with(self.edges, edges), _ROUGHLY, fresh=len(edges))
         return ClosureResult(edges, poses, pending, True)
 
     def _is_news(self, edges: Sequence[Edge]) -> bool:

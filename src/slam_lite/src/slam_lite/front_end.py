@@ -17,10 +17,21 @@ from slam_lite.surface import Surface
 # A match with a smaller response than this is searched again in a wide window, as after a slip of the wheels.
 _POOR_RESPONSE = 0.4
 _WIDE_WINDOW = Window(distance=0.8, angle=0.8)
-_CLEARLY_BETTER = 0.2
+_SURE_RESPONSE = 0.7
 # Known scans are matched to out to this distance, metres, and gathered anew after half of it.
 _KNOWN_RADIUS = 10.0
 _NO_BELIEF = np.zeros((3, 3))
+
+
+# Odometry of less than this, metres or radians, counts as standing still; scans err by less than that.
+_STILL, _STUCK = 1e-3, 0.03
+# Variance of a robot's motion from one scan to the next, if it moves on as it did: (3,), m^2, m^2, rad^2.
+_STEADY_MOTION_VARIANCE = np.array([0.1**2, 0.1**2, 0.15**2])
+
+
+def moves(motion: Pose2, least: float = _STILL) -> bool:
+    """Whether a motion is one of at least ``least`` metres or radians."""
+    return math.hypot(motion.x, motion.y) >= least or abs(motion.yaw) >= least
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +94,11 @@ class KnownScans:
 
 
 class FrontEnd:
-    """Matches scans to a local map, with odometry as prediction and prior."""
+    """Matches scans to a local map, with odometry as prediction and prior.
+
+    ``odometry_is_stuck``: odometry stands still while the scans move; then the robot is predicted to move on
+    as it did.
+    """
 
     def __init__(self, settings: MapperSettings, scans, base_in_track: Optional[Pose2] = None):
         """``scans``: RecentScans or KnownScans. ``base_in_track``: at the start; default: as in odometry."""
@@ -91,6 +106,8 @@ class FrontEnd:
         self._scans = scans
         self._last_in_odom: Optional[Pose2] = None
         self._last_in_track = base_in_track
+        self._matched_motion = Pose2()
+        self.odometry_is_stuck = False
 
     def track(self, base_in_odom: Pose2, surface: Surface) -> Tracked:
         """Follows one scan, taken where odometry believed ``base_in_odom``."""
@@ -98,11 +115,15 @@ class FrontEnd:
             self._last_in_track = base_in_odom
         motion = Pose2() if self._last_in_odom is None else self._last_in_odom.inverse() @ base_in_odom
         variance = self._motion_variance(motion)
-        match = self._match(surface, motion, variance)
-        matched_motion = self._last_in_track.inverse() @ match.base_pose
-        deviation = (motion.inverse() @ matched_motion).as_array()
-        self._last_in_odom, self._last_in_track = base_in_odom, match.base_pose
+        if self.odometry_is_stuck and not moves(motion):
+            match = self._match(surface, self._matched_motion, _STEADY_MOTION_VARIANCE)
+        else:
+            match = self._match(surface, motion, variance)
+        self._matched_motion = self._last_in_track.inverse() @ match.base_pose
+        deviation = (motion.inverse() @ self._matched_motion).as_array()
         surprise = float(np.sum(deviation**2 / variance))
+        self.odometry_is_stuck = not moves(motion) and moves(self._matched_motion, _STUCK)
+        self._last_in_odom, self._last_in_track = base_in_odom, match.base_pose
         return Tracked(match.base_pose, match.information, match.response, surprise)
 
     def _match(self, surface: Surface, motion: Pose2, variance: np.ndarray) -> Match:
@@ -125,14 +146,17 @@ class FrontEnd:
         return match
 
     def _search_wide(self, surface: Surface, predicted: Pose2, match: Match) -> Match:
-        """A clearly better match than ``match`` around the prediction or the last pose, if there is one."""
+        """A good and only match around the prediction or the last pose, if there is one; else ``match``.
+
+        What is seen for the first time matches poorly too, and must not be taken for something else.
+        """
         local_map = self._scans.local_map
         for center in (predicted, self._last_in_track):
-            peak = search_far(surface, local_map, center, _WIDE_WINDOW, _POOR_RESPONSE, apart=0.5)
-            if peak is not None:
+            peak = search_far(surface, local_map, center, _WIDE_WINDOW, _SURE_RESPONSE - 0.1, apart=0.5)
+            if peak is not None and peak.is_unique:
                 wide = refine(surface, local_map, peak.base_pose, peak.base_pose, _NO_BELIEF)
-                if wide.response > match.response + _CLEARLY_BETTER:
-                    match = wide
+                if wide.response > _SURE_RESPONSE:
+                    return wide
         return match
 
     def _motion_variance(self, motion: Pose2) -> np.ndarray:

@@ -9,13 +9,10 @@ import numpy as np
 from planar import OccupancyGrid, Pose2, Scan
 from slam_lite.back_end import BackEnd, ClosureResult, ClosureTask
 from slam_lite.config import MapperSettings
-from slam_lite.front_end import FrontEnd, KnownScans, RecentScans, Tracked
+from slam_lite.front_end import FrontEnd, KnownScans, RecentScans, Tracked, moves
 from slam_lite.rendering import Beams, MapRenderer, beams_of
 from slam_lite.state import MapState
 from slam_lite.surface import Surface, surface_of
-
-# Odometry of less than this, metres or radians, counts as standing still.
-_STILL = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +66,7 @@ class Mapper:
 
     def insert(self, base_in_odom: Pose2, scan: Scan) -> Optional[MapUpdate]:
         """Takes one scan in; None if it says nothing new because the robot stands still."""
-        if self._pause.lasts(base_in_odom, scan.stamp):
+        if self._pause.lasts(base_in_odom, scan.stamp) and not self._front_end.odometry_is_stuck:
             return None
         max_range, usable_range = ranges_of(scan, self._settings)
         surface = surface_of(scan, usable_range, self._settings.point_spacing)
@@ -197,7 +194,7 @@ class Follower:
 
     def insert(self, base_in_odom: Pose2, scan: Scan) -> Optional[PoseUpdate]:
         """Follows one scan; None if the robot stands still."""
-        if self._pause.lasts(base_in_odom, scan.stamp):
+        if self._pause.lasts(base_in_odom, scan.stamp) and not self._front_end.odometry_is_stuck:
             return None
         _, usable_range = ranges_of(scan, self._settings)
         tracked = self._front_end.track(
@@ -217,8 +214,7 @@ class _Pause:
         self._base_in_odom = Pose2()
 
     def lasts(self, base_in_odom: Pose2, stamp: float) -> bool:
-        motion = self._base_in_odom.inverse() @ base_in_odom
-        still = math.hypot(motion.x, motion.y) < _STILL and abs(motion.yaw) < _STILL
+        still = not moves(self._base_in_odom.inverse() @ base_in_odom)
         if still and 0.0 <= stamp - self._stamp < self._interval:
             return True
         self._stamp, self._base_in_odom = stamp, base_in_odom

@@ -4,9 +4,11 @@ G. Grisetti et al., "A tutorial on graph-based SLAM", IEEE ITS Magazine 2010 (Ga
 normal equations); P. Agarwal et al., "Robust map optimization using dynamic covariance scaling", ICRA 2013.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Optional
 
+import numba
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import splu
@@ -16,6 +18,8 @@ from planar import Pose2, wrap
 _MAX_STEPS = 20
 # Phi of dynamic covariance scaling: the chi-square of a loop edge at which its influence starts to fade.
 _FREE_CHI_SQUARE = 10.0
+# A new edge's influence is narrowed down by this factor at a time.
+_RELAXATION = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,33 +89,46 @@ def edges_of(*edges: Edge) -> Edges:
     return table.view()
 
 
-def optimise(poses: np.ndarray, edges: Edges, tolerance: float) -> np.ndarray:
+def optimise(poses: np.ndarray, edges: Edges, tolerance: float, fresh: int = 0) -> np.ndarray:
     """Poses (N, 3) that agree best with the edges, starting from ``poses``; node 0 stays where it is.
 
-    Levenberg-Marquardt; ends when no pose moves more than ``tolerance`` (metres, radians) in a step.
+    The last ``fresh`` edges are new: the poses do not yet know of them, so they are believed at first however
+    badly they are met, and less and less so (graduated non-convexity, H. Yang et al., RA-L 2020). Ends when
+    no pose moves more than ``tolerance`` (metres, radians) in a step.
     """
     if len(edges) == 0:
         return poses.copy()
-    damping, cost = 0.0, _cost(poses, edges)
+    free = np.full(len(edges), _FREE_CHI_SQUARE)
+    is_fresh = np.arange(len(edges)) >= len(edges) - fresh
+    relaxed = chi_squares(poses, edges)[is_fresh].max(initial=_FREE_CHI_SQUARE)
+    while relaxed > _FREE_CHI_SQUARE:
+        free[is_fresh] = relaxed
+        poses = _descend(poses, edges, free, 10.0 * tolerance)
+        relaxed *= _RELAXATION
+    free[is_fresh] = _FREE_CHI_SQUARE
+    poses = _descend(poses, edges, free, tolerance)
+    return np.column_stack((poses[:, :2], wrap(poses[:, 2])))
+
+
+def _descend(poses: np.ndarray, edges: Edges, free: np.ndarray, tolerance: float) -> np.ndarray:
+    """Levenberg-Marquardt; ``free`` (E,): chi-square at which each loop edge's influence starts to fade."""
+    damping, cost = 0.0, _cost(poses, edges, free)
     for _ in range(_MAX_STEPS):
-        step = _step(poses, edges, damping)
+        step = _step(poses, edges, free, damping)
         moved = poses + step
-        moved_cost = _cost(moved, edges)
-        if moved_cost > cost:
+        moved_cost = _cost(moved, edges, free)
+        if moved_cost <= cost:
+            poses, cost, damping = moved, moved_cost, 0.1 * damping
+        else:
             damping = max(10.0 * damping, 1e-4)
-            if np.abs(step).max() < tolerance:
-                break
-            continue
-        poses, cost, damping = moved, moved_cost, 0.1 * damping
         if np.abs(step).max() < tolerance:
             break
-    return np.column_stack((poses[:, :2], wrap(poses[:, 2])))
+    return poses
 
 
 def chi_squares(poses: np.ndarray, edges: Edges) -> np.ndarray:
     """How badly each edge is met: its squared error weighted by its information, (E,)."""
-    errors = _errors(poses, edges)
-    return np.einsum("ei,eij,ej->e", errors, edges.information, errors)
+    return _chi_squares(poses, edges.nodes, edges.measured, edges.information)
 
 
 def _room(array: np.ndarray, rows: int) -> np.ndarray:
@@ -120,55 +137,81 @@ def _room(array: np.ndarray, rows: int) -> np.ndarray:
     return larger
 
 
-def _cost(poses: np.ndarray, edges: Edges) -> float:
+def _cost(poses: np.ndarray, edges: Edges, free: np.ndarray) -> float:
     chi = chi_squares(poses, edges)
-    phi = _FREE_CHI_SQUARE
-    faded = phi * (3.0 * chi - phi) / (chi + phi)
-    return float(np.sum(np.where(edges.is_loop & (chi > phi), faded, chi)))
+    faded = free * (3.0 * chi - free) / (chi + free)
+    return math.fsum(np.where(edges.is_loop & (chi > free), faded, chi))
 
 
-def _errors(poses: np.ndarray, edges: Edges) -> np.ndarray:
-    first, second = poses[edges.nodes[:, 0]], poses[edges.nodes[:, 1]]
-    c, s = np.cos(first[:, 2]), np.sin(first[:, 2])
-    dx, dy = second[:, 0] - first[:, 0], second[:, 1] - first[:, 1]
-    predicted = np.column_stack((c * dx + s * dy, -s * dx + c * dy, second[:, 2] - first[:, 2]))
-    errors = predicted - edges.measured
-    errors[:, 2] = wrap(errors[:, 2])
-    return errors
-
-
-def _step(poses: np.ndarray, edges: Edges, damping: float) -> np.ndarray:
+def _step(poses: np.ndarray, edges: Edges, free: np.ndarray, damping: float) -> np.ndarray:
     """One Gauss-Newton step (N, 3) with loop edges weighed by how well they are met."""
-    nodes, n = edges.nodes, len(poses)
-    errors = _errors(poses, edges)
-    chi = np.einsum("ei,eij,ej->e", errors, edges.information, errors)
-    scale = np.where(edges.is_loop, np.minimum(1.0, 2.0 * _FREE_CHI_SQUARE / (_FREE_CHI_SQUARE + chi)), 1.0)
-    jacobians = _jacobians(poses, edges)
-    weighted = jacobians.transpose(0, 1, 3, 2) @ (edges.information * (scale**2)[:, None, None])[:, None]
-    blocks = weighted[:, :, None] @ jacobians[:, None]
-    gradient = np.zeros((n, 3))
-    np.add.at(gradient, nodes, np.einsum("enij,ej->eni", weighted, errors))
-    offsets = np.arange(3)
-    rows = (3 * nodes)[:, :, None, None, None] + offsets[:, None]
-    cols = (3 * nodes)[:, None, :, None, None] + offsets
-    rows, cols = np.broadcast_arrays(rows, cols)
-    matrix = coo_matrix((blocks.ravel(), (rows.ravel(), cols.ravel())), shape=(3 * n, 3 * n)).tocsc()
-    matrix = matrix[3:, 3:]
+    n = len(poses)
+    rows, cols, values, gradient = _linearize(
+        poses, edges.nodes, edges.measured, edges.information, edges.is_loop, free
+    )
+    matrix = coo_matrix((values, (rows, cols)), shape=(3 * n, 3 * n)).tocsc()[3:, 3:]
     matrix.setdiag(matrix.diagonal() * (1.0 + damping) + 1e-9)
     factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    return np.vstack((np.zeros((1, 3)), -factors.solve(gradient[1:].ravel()).reshape(-1, 3)))
+    return np.vstack((np.zeros((1, 3)), -factors.solve(gradient[3:]).reshape(-1, 3)))
 
 
-def _jacobians(poses: np.ndarray, edges: Edges) -> np.ndarray:
-    """Derivatives (E, 2, 3, 3) of each edge's error by the poses of its two nodes."""
-    first, second = poses[edges.nodes[:, 0]], poses[edges.nodes[:, 1]]
-    c, s = np.cos(first[:, 2]), np.sin(first[:, 2])
-    dx, dy = second[:, 0] - first[:, 0], second[:, 1] - first[:, 1]
-    jacobians = np.zeros((len(first), 2, 3, 3))
-    jacobians[:, 0, 0, 0], jacobians[:, 0, 0, 1], jacobians[:, 0, 0, 2] = -c, -s, -s * dx + c * dy
-    jacobians[:, 0, 1, 0], jacobians[:, 0, 1, 1], jacobians[:, 0, 1, 2] = s, -c, -c * dx - s * dy
-    jacobians[:, 0, 2, 2] = -1.0
-    jacobians[:, 1, 0, 0], jacobians[:, 1, 0, 1] = c, s
-    jacobians[:, 1, 1, 0], jacobians[:, 1, 1, 1] = -s, c
-    jacobians[:, 1, 2, 2] = 1.0
-    return jacobians
+@numba.njit(cache=True, nogil=True)
+def _error(poses, first, second, measured):
+    """Error (3,) of an edge, and first's heading as cosine and sine with the way to second, (4,)."""
+    c, s = math.cos(poses[first, 2]), math.sin(poses[first, 2])
+    dx, dy = poses[second, 0] - poses[first, 0], poses[second, 1] - poses[first, 1]
+    turn = poses[second, 2] - poses[first, 2] - measured[2]
+    turn = (turn + math.pi) % (2.0 * math.pi) - math.pi
+    return (c * dx + s * dy - measured[0], c * dy - s * dx - measured[1], turn), (c, s, dx, dy)
+
+
+@numba.njit(cache=True, nogil=True)
+def _chi_square(error, information):
+    total = 0.0
+    for i in range(3):
+        for j in range(3):
+            total += error[i] * information[i, j] * error[j]
+    return total
+
+
+@numba.njit(cache=True, nogil=True)
+def _chi_squares(poses, nodes, measured, information):
+    chi = np.empty(len(nodes))
+    for e in range(len(nodes)):
+        error, _ = _error(poses, nodes[e, 0], nodes[e, 1], measured[e])
+        chi[e] = _chi_square(error, information[e])
+    return chi
+
+
+@numba.njit(cache=True, nogil=True)
+def _linearize(poses, nodes, measured, information, is_loop, free):
+    """The normal equations: rows, columns and values (36 E,) of the matrix, and the gradient (3 N,)."""
+    rows, cols = np.empty(36 * len(nodes), dtype=np.int32), np.empty(36 * len(nodes), dtype=np.int32)
+    values, gradient = np.empty(36 * len(nodes)), np.zeros(3 * len(poses))
+    at = 0
+    jacobian, weighted = np.zeros((3, 6)), np.empty((3, 6))
+    for e in range(len(nodes)):
+        error, (c, s, dx, dy) = _error(poses, nodes[e, 0], nodes[e, 1], measured[e])
+        scale = 1.0
+        if is_loop[e]:
+            chi = _chi_square(error, information[e])
+            scale = min(1.0, 2.0 * free[e] / (free[e] + chi)) ** 2
+        jacobian[0, 0], jacobian[0, 1], jacobian[0, 2] = -c, -s, -s * dx + c * dy
+        jacobian[1, 0], jacobian[1, 1], jacobian[1, 2] = s, -c, -c * dx - s * dy
+        jacobian[0, 3], jacobian[0, 4], jacobian[1, 3], jacobian[1, 4] = c, s, -s, c
+        jacobian[2, 2], jacobian[2, 5] = -1.0, 1.0
+        for i in range(3):
+            for b in range(6):
+                weighted[i, b] = 0.0
+                for j in range(3):
+                    weighted[i, b] += scale * information[e, i, j] * jacobian[j, b]
+        for a in range(6):
+            row = 3 * nodes[e, a // 3] + a % 3
+            for i in range(3):
+                gradient[row] += weighted[i, a] * error[i]
+            for b in range(6):
+                rows[at], cols[at], values[at] = row, 3 * nodes[e, b // 3] + b % 3, 0.0
+                for i in range(3):
+                    values[at] += jacobian[i, a] * weighted[i, b]
+                at += 1
+    return rows, cols, values, gradient

@@ -65,7 +65,7 @@ def _surface(ranges, angle, increment, shortest, longest, x, y, spacing):
 def _set_normal(points, normals, i):
     """Principal axis of the neighbours: three on each side, more of them as far as 0.2 m, none past a gap.
 
-    Where gaps leave no neighbours, the wall may be seen at a glancing angle: the next points on both sides tell.
+    Where gaps leave none, it may be a wall seen at a glancing angle: the next points on both sides tell.
     """
     n, sx, sy, sxx, syy, sxy = 1, 0.0, 0.0, 0.0, 0.0, 0.0
     for side in (-1, 1):

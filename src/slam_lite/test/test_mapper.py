@@ -1,0 +1,169 @@
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from planar import OCCUPIED, Pose2, wrap
+from planar.map_score import score_map
+from slam_lite.config import MapperSettings
+from slam_lite.mapper import Follower, Mapper
+
+# half a cell of the true grid, from which ranges are cast, plus what the front end drifts in a lap
+FOLLOWED = 0.15
+
+
+def mapped(drive, settings=MapperSettings(), mapper=None):
+    mapper = mapper or Mapper(settings)
+    updates = [mapper.insert(sighting.base_in_odom, sighting.scan) for sighting in drive]
+    mapper.settle()
+    return mapper, updates
+
+
+def worst_error(drive, updates):
+    return max(
+        update.base_in_map.distance_to(sighting.base_in_map)
+        for sighting, update in zip(drive, updates)
+        if update is not None
+    )
+
+
+@pytest.fixture(scope="module")
+def drive(office):
+    return office.drive()
+
+
+@pytest.fixture(scope="module")
+def mapper(drive):
+    return mapped(drive)[0]
+
+
+def test_the_robot_is_followed_although_odometry_drifts(drive):
+    off = drive[-1].base_in_odom.distance_to(drive[-1].base_in_map)
+    assert off > 1.0
+    assert worst_error(drive, mapped(drive)[1]) < FOLLOWED
+
+
+def test_the_map_is_the_true_one(office, mapper):
+    score = score_map(mapper.grid(), office.truth, start_in_truth=Pose2(2.0, 2.0, 0.0))
+    assert score.recall > 0.95
+    assert score.precision > 0.95
+    assert score.doubled_walls == 0
+
+
+def test_the_same_drive_gives_the_same_poses_bit_for_bit(drive, mapper):
+    again, _ = mapped(drive)
+    assert np.array_equal(again.key_poses, mapper.key_poses)
+
+
+def test_a_loop_is_closed(mapper):
+    assert mapper.loop_count > 0
+
+
+def test_deferred_closures_find_the_same_loops(drive, mapper):
+    deferred = Mapper(deferred=True)
+    for sighting in drive:
+        deferred.insert(sighting.base_in_odom, sighting.scan)
+        task = deferred.task()
+        if task is not None:
+            deferred.adopt(task.run())
+    assert deferred.loop_count == mapper.loop_count
+
+
+def test_a_robot_that_stands_still_adds_nothing(office):
+    mapper = Mapper()
+    here = Pose2(2.0, 2.0, 0.3)
+    updates = [mapper.insert(here, office.scan(here, 0.1 * i)) for i in range(50)]
+    assert len(mapper.key_poses) == 1
+    assert sum(update is not None for update in updates) == 10
+
+
+def test_without_odometry_the_scans_alone_tell_the_way(office):
+    drive = [s._replace(base_in_odom=Pose2(2.0, 2.0, 0.0)) for s in office.drive(laps=0.5)]
+    assert worst_error(drive, mapped(drive)[1]) < FOLLOWED
+
+
+def test_a_slip_of_the_wheels_is_noticed_and_survived(office):
+    drive = office.drive(laps=0.5)
+    middle = len(drive) // 2
+    slip = Pose2(0.4, -0.3, 0.5)
+    slipped = drive[:middle] + [s._replace(base_in_odom=slip @ s.base_in_odom) for s in drive[middle:]]
+    _, updates = mapped(slipped)
+    assert updates[middle].surprise > 100.0
+    assert worst_error(slipped, updates) < FOLLOWED
+
+
+@pytest.mark.parametrize(
+    "laser",
+    [
+        {"beams": 640, "field_of_view": math.radians(58.0), "range_max": 8.0},
+        {"beams": 360, "field_of_view": 2.0 * math.pi * 359.0 / 360.0, "range_max": 12.0},
+    ],
+    ids=["kinect", "lidar"],
+)
+def test_other_lasers_map_as_well(office, laser):
+    drive = office.drive(turn_error=0.01, **laser)
+    mapper, updates = mapped(drive)
+    keys = [sighting.base_in_map for sighting, update in zip(drive, updates) if update and update.is_key]
+    for key, pose in zip(keys, mapper.key_poses):
+        assert key.distance_to(Pose2.from_array(pose)) < FOLLOWED
+
+
+def test_a_beam_count_may_change_on_the_way(office):
+    full, half = office.drive(laps=0.5), office.drive(laps=0.5, beams=91)
+    drive = [pair[i % 2] for i, pair in enumerate(zip(full, half))]
+    assert worst_error(drive, mapped(drive)[1]) < FOLLOWED
+
+
+def test_an_upside_down_laser_maps_as_well(office):
+    drive = [
+        s._replace(scan=dataclasses.replace(s.scan, ranges=s.scan.ranges[::-1].copy(), upside_down=True))
+        for s in office.drive(laps=0.4)
+    ]
+    assert worst_error(drive, mapped(drive)[1]) < FOLLOWED
+
+
+def test_a_scan_that_sees_nothing_is_survived(office):
+    drive = office.drive(laps=0.4)
+    blind = dataclasses.replace(drive[20].scan, ranges=np.full(181, np.nan, dtype=np.float32))
+    drive[20:24] = [s._replace(scan=dataclasses.replace(blind, stamp=s.scan.stamp)) for s in drive[20:24]]
+    assert worst_error(drive, mapped(drive)[1]) < FOLLOWED
+
+
+def test_mapping_goes_on_from_a_saved_state(office, mapper):
+    resumed = Mapper()
+    resumed.resume(mapper.state(), Pose2(2.3, 1.8, 0.1))
+    restarted = Pose2(5.0, 5.0, 1.0)
+    drive = [s._replace(base_in_odom=restarted @ s.base_in_odom) for s in office.drive(laps=0.5, seed=1)]
+    mapped(drive, mapper=resumed)
+    assert len(resumed.key_poses) > len(mapper.key_poses)
+    score = score_map(resumed.grid(), office.truth, start_in_truth=Pose2(2.0, 2.0, 0.0))
+    assert score.precision > 0.95
+    assert score.doubled_walls == 0
+
+
+def test_a_follower_follows_in_a_finished_map_and_leaves_it_alone(office, mapper):
+    state = mapper.state()
+    poses = state.poses.copy()
+    drive = office.drive(laps=0.5, seed=2)
+    follower = Follower(MapperSettings(), state, Pose2(2.2, 1.9, 0.1))
+    updates = [follower.insert(s.base_in_odom, s.scan) for s in drive]
+    assert worst_error(drive[5:], updates[5:]) < FOLLOWED
+    assert np.array_equal(state.poses, poses)
+
+
+def test_odom_in_map_carries_odometry_to_the_estimate(drive):
+    _, updates = mapped(drive[:40])
+    for sighting, update in zip(drive, updates):
+        there = update.odom_in_map @ sighting.base_in_odom
+        assert there.distance_to(update.base_in_map) < 1e-9
+        assert abs(wrap(there.yaw - update.base_in_map.yaw)) < 1e-9
+
+
+def test_no_wall_is_drawn_where_nothing_was_met(office):
+    mapper = Mapper()
+    here = Pose2(2.0, 2.0, 0.0)
+    mapper.insert(here, office.scan(here, range_max=1.05))
+    grid = mapper.grid()
+    distances = np.hypot(*(grid.points_of(np.argwhere(grid.cells == OCCUPIED)) - [2.0, 2.0]).T)
+    assert distances.max() < 1.05

@@ -1,0 +1,124 @@
+import math
+
+import numpy as np
+
+from planar import Pose2, wrap
+from slam_lite.matching.correlative import Window, search_far, search_near
+from slam_lite.matching.local_map import LocalMap
+from slam_lite.matching.refinement import refine
+from slam_lite.surface import surface_of
+
+HERE = Pose2(6.5, 2.2, 0.2)
+NO_BELIEF = np.zeros((3, 3))
+
+
+def surface_at(office, pose):
+    return surface_of(office.scan(pose), 20.0, 0.03)
+
+
+def local_map_at(office, *poses):
+    local_map = LocalMap()
+    local_map.clear(poses[0])
+    for pose in poses:
+        local_map.add(surface_at(office, pose), pose)
+    return local_map
+
+
+def error(one, other):
+    return one.distance_to(other), abs(wrap(one.yaw - other.yaw))
+
+
+def test_a_scan_matches_itself_exactly(office):
+    local_map = local_map_at(office, HERE)
+    start = HERE @ Pose2(0.05, -0.04, 0.03)
+    match = refine(surface_at(office, HERE), local_map, start, start, NO_BELIEF)
+    distance, angle = error(match.base_pose, HERE)
+    assert distance < 1e-3 and angle < 1e-3
+    assert match.response > 0.99
+
+
+def test_refinement_finds_the_step_between_two_scans_to_a_centimetre(office):
+    there = HERE @ Pose2(0.3, 0.02, 0.1)
+    match = refine(surface_at(office, there), local_map_at(office, HERE), HERE, HERE, NO_BELIEF)
+    distance, angle = error(match.base_pose, there)
+    assert distance < 0.01 and angle < 0.003
+
+
+def test_along_a_bare_wall_a_match_knows_that_it_knows_nothing(office):
+    from slam_lite.surface import Surface
+
+    wall_xy = np.column_stack((np.arange(-3.0, 3.0, 0.05), np.full(120, 1.0))).astype(np.float32)
+    wall = Surface(wall_xy, np.tile(np.array([0.0, 1.0], dtype=np.float32), (120, 1)))
+    local_map = LocalMap()
+    local_map.clear(Pose2())
+    local_map.add(wall, Pose2())
+    match = refine(wall, local_map, Pose2(0.2, 0.1, 0.0), Pose2(0.2, 0.1, 0.0), NO_BELIEF)
+    assert abs(match.base_pose.y) < 1e-3
+    assert match.information[0, 0] < 1e-3 * match.information[1, 1]
+
+
+def test_belief_decides_where_nothing_is_seen():
+    from slam_lite.surface import Surface
+
+    nothing = Surface(np.empty((0, 2), dtype=np.float32), np.empty((0, 2), dtype=np.float32))
+    local_map = LocalMap()
+    local_map.clear(Pose2())
+    match = refine(nothing, local_map, Pose2(), Pose2(0.1, 0.2, 0.3), 100.0 * np.eye(3))
+    distance, angle = error(match.base_pose, Pose2(0.1, 0.2, 0.3))
+    assert distance < 1e-6 and angle < 1e-6
+
+
+def test_a_near_search_brings_refinement_within_reach(office):
+    local_map = local_map_at(office, HERE)
+    start = search_near(surface_at(office, HERE), local_map, HERE @ Pose2(0.25, -0.2, 0.25), Window(0.3, 0.3))
+    distance, angle = error(start, HERE)
+    assert distance < 0.15 and angle < 0.03
+
+
+def test_a_far_search_finds_the_place_in_a_wide_window(office):
+    local_map = local_map_at(office, *(HERE @ Pose2(d, 0.0, 0.0) for d in (0.0, -1.0, -2.0, 1.0)))
+    guess = HERE @ Pose2(3.0, -1.0, 0.6)
+    peak = search_far(surface_at(office, HERE), local_map, guess, Window(5.0, 0.8), 0.5, apart=0.6)
+    distance, angle = error(peak.base_pose, HERE)
+    assert distance < 0.1 and angle < 0.02
+    assert peak.is_unique
+
+
+def test_branch_and_bound_finds_what_trying_every_pose_finds(office):
+    local_map = local_map_at(office, HERE)
+    surface = surface_at(office, HERE @ Pose2(0.5, 0.1, 0.0))
+    peak = search_far(surface, local_map, HERE, Window(1.0, 1e-6), 0.1, apart=0.5)
+    start = local_map.to_grid(HERE)
+    c, s = math.cos(start[2]), math.sin(start[2])
+    points = surface.points_xy.astype(np.float64) @ np.array([[c, s], [-s, c]]) + start[:2]
+    cols, rows = np.floor(points / local_map.resolution).astype(int).T
+    cells = range(-20, 21)
+    best = max(local_map.likelihood[rows + dv, cols + du].mean() / 255.0 for du in cells for dv in cells)
+    assert peak.score == np.float64(best)
+
+
+def test_two_places_alike_are_not_unique():
+    from slam_lite.surface import Surface
+
+    niches = [np.column_stack((x + np.array([0.0, 0.1, 0.2, 0.3]), np.full(4, 1.0))) for x in (0.0, 2.0)]
+    local_map = LocalMap()
+    local_map.clear(Pose2())
+    for niche in niches:
+        local_map.add(Surface(niche.astype(np.float32), np.zeros((4, 2), dtype=np.float32)), Pose2())
+    one = Surface(niches[0].astype(np.float32), np.zeros((4, 2), dtype=np.float32))
+    assert not search_far(one, local_map, Pose2(), Window(3.0, 0.05), 0.3, apart=0.5).is_unique
+
+
+def test_nowhere_alike_is_no_peak(office):
+    local_map = local_map_at(office, HERE)
+    elsewhere = surface_at(office, Pose2(14.0, 6.0, 1.6))
+    assert search_far(elsewhere, local_map, HERE, Window(1.0, 0.3), 0.8, apart=0.5) is None
+
+
+def test_points_are_thinned_and_walls_have_normals(office):
+    surface = surface_at(office, HERE)
+    steps = np.hypot(*np.diff(surface.points_xy, axis=0).T)
+    assert steps.min() >= 0.03
+    lengths = np.hypot(*surface.normals_xy.T)
+    assert np.mean(np.abs(lengths - 1.0) < 1e-5) > 0.8
+    assert np.all((np.abs(lengths - 1.0) < 1e-5) | (lengths == 0.0))

@@ -1,0 +1,86 @@
+import math
+
+import numpy as np
+import pytest
+
+from planar import Pose2
+from slam_lite.pose_graph import Edge, EdgeList, chi_squares, edges_of, optimise
+
+SURE = np.diag([1e4, 1e4, 1e5])
+DOUBTFUL = np.diag([1e3, 1e3, 1e3])
+
+
+def ring(count=40, radius=5.0):
+    """True poses round a circle."""
+    angles = np.linspace(0.0, 2.0 * math.pi, count, endpoint=False)
+    return [Pose2(radius * math.sin(a), radius * (1.0 - math.cos(a)), a) for a in angles]
+
+
+def edge(poses, first, second, information=SURE, **kwargs):
+    return Edge(first, second, poses[first].inverse() @ poses[second], information, **kwargs)
+
+
+def drifting(poses):
+    """What odometry that turns 3 % too much makes of a way."""
+    guessed = [poses[0]]
+    for one, other in zip(poses, poses[1:]):
+        step = one.inverse() @ other
+        guessed.append(guessed[-1] @ Pose2(step.x, step.y, 1.03 * step.yaw))
+    return np.array([pose.as_array() for pose in guessed])
+
+
+def farthest(poses, optimised):
+    return max(math.hypot(p.x - x, p.y - y) for p, (x, y, _) in zip(poses, optimised))
+
+
+@pytest.fixture
+def poses():
+    return ring()
+
+
+@pytest.fixture
+def steps(poses):
+    return [edge(poses, i, i + 1) for i in range(len(poses) - 1)]
+
+
+def test_poses_that_agree_with_all_edges_are_found(poses, steps):
+    start = drifting(poses)
+    assert farthest(poses, start) > 0.3
+    optimised = optimise(start, edges_of(*steps, edge(poses, len(poses) - 1, 0)), 1e-6)
+    assert farthest(poses, optimised) < 1e-4
+
+
+def test_a_closure_mends_measured_drift(poses):
+    start = drifting(poses)
+    guesses = [Pose2.from_array(row) for row in start]
+    steps = [edge(guesses, i, i + 1, DOUBTFUL) for i in range(len(poses) - 1)]
+    optimised = optimise(start, edges_of(*steps, edge(poses, len(poses) - 1, 0, is_loop=True)), 1e-6, fresh=1)
+    assert farthest(poses, optimised) < 0.3 * farthest(poses, start)
+
+
+def test_a_false_closure_hardly_bends_the_map(poses, steps):
+    false = Edge(0, 20, Pose2(0.5, 0.0, 0.0), SURE, is_loop=True)
+    truth = np.array([pose.as_array() for pose in poses])
+    optimised = optimise(truth, edges_of(*steps, edge(poses, len(poses) - 1, 0, is_loop=True), false), 1e-6)
+    assert farthest(poses, optimised) < 0.05
+
+
+def test_the_first_node_stays(poses, steps):
+    optimised = optimise(drifting(poses), edges_of(*steps), 1e-6)
+    assert tuple(optimised[0]) == tuple(poses[0].as_array())
+
+
+def test_chi_square_is_the_weighted_squared_error():
+    table = edges_of(Edge(0, 1, Pose2(1.0, 0.0, 0.0), np.diag([4.0, 1.0, 1.0])))
+    chi = chi_squares(np.array([[0.0, 0.0, 0.0], [1.5, 0.0, 0.0]]), table)
+    assert chi == pytest.approx([4.0 * 0.5**2])
+
+
+def test_a_view_of_an_edge_list_does_not_change_when_it_grows(poses, steps):
+    edges = EdgeList()
+    edges.append(steps[0])
+    view = edges.view()
+    for step in steps[1:] * 5:
+        edges.append(step)
+    assert len(view) == 1 and len(edges) == 1 + 5 * (len(steps) - 1)
+    assert view.nodes.tolist() == [[0, 1]]

@@ -1,0 +1,68 @@
+from pathlib import Path
+
+import pytest
+import yaml
+
+from planar import SettingsError
+from planar.settings import official_names, settings_from
+from slam_lite.config import WITHOUT_EFFECT, NodeSettings, defaults
+
+CONFIG = Path(__file__).resolve().parents[1] / "config"
+
+# contracts of gmapping 1.4; maxRange and maxUrange follow the scan there, which 0 stands for
+OFFICIAL = {
+    "throttle_scans": 1,
+    "base_frame": "base_link",
+    "map_frame": "map",
+    "odom_frame": "odom",
+    "transform_publish_period": 0.05,
+    "map_update_interval": 5.0,
+    "srr": 0.1,
+    "srt": 0.2,
+    "str": 0.1,
+    "stt": 0.2,
+    "xmin": -100.0,
+    "ymin": -100.0,
+    "xmax": 100.0,
+    "ymax": 100.0,
+    "delta": 0.05,
+    "occ_thresh": 0.25,
+}
+
+
+def test_every_official_parameter_has_its_official_default():
+    ours = {name: default for name, (default, _) in defaults().items()}
+    assert {name: ours.get(name) for name in OFFICIAL} == OFFICIAL
+
+
+def test_no_parameter_both_has_a_meaning_and_has_none():
+    assert not set(WITHOUT_EFFECT) & set(defaults())
+
+
+def test_the_documented_defaults_are_the_real_ones():
+    text = (CONFIG / "slam_lite.yaml").read_text()
+    assert yaml.safe_load(text) == {name: default for name, (default, _) in defaults().items()}
+    for name, (_, meaning) in defaults().items():
+        assert f"{name}: " in text and f"  # {meaning}\n" in text, name
+
+
+def test_the_turtlebot_preset_is_understood():
+    preset = yaml.safe_load((CONFIG / "turtlebot.yaml").read_text())
+    settings, unknown = settings_from(NodeSettings, preset, official_names(NodeSettings))
+    assert unknown == []
+    assert settings.extent == (-1.0, -1.0, 1.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    "values, complaint",
+    [
+        ({"delta": 0.0}, "/slam_gmapping/delta must be between"),
+        ({"srr": -1.0}, "/slam_gmapping/srr must be"),
+        ({"maxRange": 5.0, "maxUrange": 6.0}, "/slam_gmapping/maxUrange must be at most maxRange"),
+        ({"xmin": 2.0, "xmax": 1.0}, "/slam_gmapping/xmin must be less than xmax"),
+        ({"localization_only": True}, "/slam_gmapping/localization_only must be used with state"),
+    ],
+)
+def test_a_senseless_value_is_refused_by_its_official_name(values, complaint):
+    with pytest.raises(SettingsError, match=complaint):
+        settings_from(NodeSettings, values, official_names(NodeSettings), where="/slam_gmapping/")

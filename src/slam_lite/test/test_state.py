@@ -1,0 +1,65 @@
+import numpy as np
+import pytest
+
+from planar import MapFileError
+from slam_lite.mapper import Mapper
+from slam_lite.state import StateFileError, load_state, save_state
+
+
+@pytest.fixture(scope="module")
+def state(office):
+    mapper = Mapper()
+    for sighting in office.drive(laps=0.25):
+        mapper.insert(sighting.base_in_odom, sighting.scan)
+    return mapper.state()
+
+
+def test_a_state_comes_back_as_it_was(state, tmp_path):
+    save_state(state, tmp_path / "map.npz")
+    back = load_state(tmp_path / "map.npz")
+    assert np.array_equal(back.poses, state.poses)
+    assert np.array_equal(back.edges.information, state.edges.information)
+    assert back.base_in_map == state.base_in_map
+    assert len(back.surfaces) == len(state.surfaces)
+    assert np.array_equal(back.surfaces[-1].normals_xy, state.surfaces[-1].normals_xy)
+    assert np.array_equal(back.beams[-1].ends_xy, state.beams[-1].ends_xy)
+
+
+def test_an_empty_state_comes_back_too(tmp_path):
+    save_state(Mapper().state(), tmp_path / "map.npz")
+    assert len(load_state(tmp_path / "map.npz").surfaces) == 0
+
+
+def test_a_folder_that_is_not_there_is_an_error_and_the_old_file_stays(state, tmp_path):
+    with pytest.raises(MapFileError, match="cannot be written"):
+        save_state(state, tmp_path / "nowhere" / "map.npz")
+
+
+@pytest.mark.parametrize(
+    "content, complaint",
+    [(None, "no such"), (b"", "not a readable"), (b"PK\x03\x04broken", "not a readable")],
+)
+def test_what_is_no_state_is_refused(content, complaint, tmp_path):
+    path = tmp_path / "map.npz"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(StateFileError, match=complaint):
+        load_state(path)
+
+
+def test_half_a_state_is_refused(state, tmp_path):
+    path = tmp_path / "map.npz"
+    save_state(state, path)
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    with pytest.raises(StateFileError, match="not a readable"):
+        load_state(path)
+
+
+def test_another_version_is_refused(state, tmp_path):
+    path = tmp_path / "map.npz"
+    save_state(state, path)
+    with np.load(path) as file:
+        table = dict(file)
+    np.savez(path, **{**table, "version": 99})
+    with pytest.raises(StateFileError, match="version 99"):
+        load_state(path)
