@@ -7,7 +7,7 @@ import unittest
 import actionlib
 import rospy
 import rostest
-from actionlib_msgs.msg import GoalStatus
+from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PolygonStamped, PoseStamped, Quaternion, Twist
 from map_msgs.msg import OccupancyGridUpdate
@@ -63,9 +63,19 @@ class TestMoveBaseContract(unittest.TestCase):
         cls.make_plan.wait_for_service(30.0)
         cls.commands = Heard("cmd_vel", Twist)
         cls.odometry = Heard("odom", Odometry)
+        cls.statuses = Heard("move_base/status", GoalStatusArray)
+
+    def has_active_goal(self):
+        newest = self.statuses.messages[-1].status_list
+        return any(status.status in (GoalStatus.PENDING, GoalStatus.ACTIVE) for status in newest)
 
     def tearDown(self):
-        self.client.cancel_all_goals()
+        """Ends what is under way, and nothing else: a cancellation may overtake the next test's goal."""
+        at = rospy.get_time()
+        self.wait_until(lambda: self.statuses.since(at))
+        if self.has_active_goal():
+            self.client.cancel_all_goals()
+        self.wait_until(lambda: not self.has_active_goal())
         self.wait_until(lambda: abs(self.odometry.messages[-1].twist.twist.linear.x) < 0.01)
 
     def wait_until(self, is_so, seconds=30.0):
@@ -95,7 +105,7 @@ class TestMoveBaseContract(unittest.TestCase):
         global_plan = Heard("move_base/DWAPlannerROS/global_plan", Path)
         rospy.sleep(0.5)
         self.assertEqual(self.end_of(pose_at(0.8, 0.3)), (GoalStatus.SUCCEEDED, "Goal reached."))
-        self.assertEqual(self.commands.messages[-1], Twist())
+        self.wait_until(lambda: self.commands.messages[-1] == Twist(), seconds=1.0)
         self.assertEqual(current_goal.wait().pose.position.x, 0.8)
         self.assertEqual(plan.wait().header.frame_id, "map")
         self.assertEqual(local_plan.wait().header.frame_id, "odom")
