@@ -40,6 +40,12 @@ class BulletClient:
         setattr(self, name, function)
         return function
 
+    def disconnect(self) -> None:
+        """Frees the engine; PyBullet gives its number to the next one."""
+        if self._number >= 0:
+            pybullet.disconnect(physicsClientId=self._number)
+            self._number = -1
+
     def __del__(self):
         with contextlib.suppress(pybullet.error):
-            pybullet.disconnect(physicsClientId=self._number)
+            self.disconnect()

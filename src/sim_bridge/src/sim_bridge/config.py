@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from planar.settings import check
+from planar.settings import check, check_parameters, parameter
 
 
 @dataclass(frozen=True)
@@ -56,3 +56,15 @@ class BridgeSettings:
         check(0.0 <= self.speed < float("inf"), "speed", "0 or a positive number", self.speed)
         check(self.clock_rate > 0, "clock_rate", "positive", self.clock_rate)
         check(self.joint_state_rate > 0, "joint_state_rate", "positive", self.joint_state_rate)
+
+
+@dataclass(frozen=True)
+class RunTimeSettings:
+    """What dynamic_reconfigure may change."""
+
+    speed: float = parameter(
+        "speed", 1.0, "times real time; 0: as fast as the nodes of wait_for keep up", low=0.0, dynamic=100.0
+    )
+
+    def __post_init__(self):
+        check_parameters(self)

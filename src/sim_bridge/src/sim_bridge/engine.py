@@ -1,13 +1,13 @@
 """Rigid bodies in PyBullet: what stands and moves in a world, and what touches what."""
 
 from dataclasses import dataclass
-from typing import Any, Dict, Iterator, List, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, NamedTuple, Sequence, Tuple
 
 import numpy as np
 
 from sim_bridge.bullet import BulletClient, pybullet
 from sim_bridge.errors import WorldError
-from sim_bridge.pose3 import position, quaternion, transform_points
+from sim_bridge.pose3 import cross, position, quaternion, transform_points
 from sim_bridge.shapes import Box, Cylinder, Mesh, Plane, Shape, Sphere
 from sim_bridge.urdf_reader import RobotModel
 from sim_bridge.world import Body, Collision
@@ -33,8 +33,7 @@ class Motion:
     angular: np.ndarray
 
 
-@dataclass(frozen=True)
-class Contact:
+class Contact(NamedTuple):
     """Where a robot touches ``link``: z of the unit normal there, and how deep the two overlap, metres."""
 
     link: str
@@ -61,8 +60,9 @@ class Engine:
     def __init__(self, rate: int, gravity: float):
         self._bullet = BulletClient()
         self._bullet.setPhysicsEngineParameter(
-            fixedTimeStep=1.0 / rate, numSolverIterations=SOLVER_ITERATIONS, deterministicOverlappingPairs=1
+            numSolverIterations=SOLVER_ITERATIONS, deterministicOverlappingPairs=1
         )
+        self.set_rate(rate)
         self._bullet.setGravity(0.0, 0.0, -gravity)
         self._links: Dict[str, _Link] = {}
         self._names: Dict[Tuple[int, int], str] = {}
@@ -72,6 +72,10 @@ class Engine:
 
     def step(self) -> None:
         self._bullet.stepSimulation()
+
+    def set_rate(self, rate: int) -> None:
+        """``rate``: steps per second."""
+        self._bullet.setPhysicsEngineParameter(fixedTimeStep=1.0 / rate)
 
     def set_gravity(self, gravity: float) -> None:
         """``gravity``: downwards, m/s^2."""
@@ -87,7 +91,7 @@ class Engine:
             pose, (linear, angular) = _pose(*state[:2]), map(np.array, state[6:8])
         arm = pose[:3, :3] @ link.centre
         pose[:3, 3] -= arm
-        return Motion(pose, linear - np.cross(angular, arm), angular)
+        return Motion(pose, linear - cross(angular, arm), angular)
 
     def pose_of(self, name: str) -> np.ndarray:
         """Where a link is, (4, 4) in the world."""
@@ -105,7 +109,7 @@ class Engine:
         centred = motion.pose.copy()
         centred[:3, 3] += arm
         self._bullet.resetBasePositionAndOrientation(link.number, position(centred), quaternion(centred))
-        linear = motion.linear + np.cross(motion.angular, arm)
+        linear = motion.linear + cross(motion.angular, arm)
         self._bullet.resetBaseVelocity(link.number, linear.tolist(), motion.angular.tolist())
 
     def push(self, name: str, force: Sequence[float], torque: Sequence[float]) -> None:
@@ -130,7 +134,7 @@ class Engine:
             **_links(others, [np.eye(4)] * len(others)),
         )
         for index in range(-1, len(others)):
-            self._bullet.changeDynamics(number, index, lateralFriction=body.friction)
+            self._bullet.changeDynamics(number, index, lateralFriction=body.friction, **_UNDAMPED)
             self._names[number, index] = body.name
         self._links[body.name] = _Link(number, -1, np.zeros(3))
 
@@ -164,14 +168,13 @@ class Engine:
             ),
         )
         # The base slides: its casters roll any way, and its sides must not climb walls.
-        undamped = {"linearDamping": 0.0, "angularDamping": 0.0, "jointDamping": 0.0}
         for index, (part, friction) in enumerate([(base, 0.0)] + [(wheel.part, 1.0) for wheel in wheels], -1):
             self._bullet.changeDynamics(
                 number,
                 index,
                 lateralFriction=friction,
                 localInertiaDiagonal=part.inertia.tolist(),
-                **undamped,
+                **_UNDAMPED,
             )
             self._bullet.setCollisionFilterGroupMask(number, index, ROBOT_GROUP, WORLD_GROUPS | ROBOT_GROUP)
             self._names[number, index] = f"{name}::{part.name}"
@@ -253,6 +256,7 @@ class Engine:
         )
 
 
+_UNDAMPED: Dict[str, float] = {"linearDamping": 0.0, "angularDamping": 0.0, "jointDamping": 0.0}
 _UNUSED_ARGUMENTS: Dict[str, Any] = {
     "radius": 1.0,
     "halfExtents": [1.0, 1.0, 1.0],

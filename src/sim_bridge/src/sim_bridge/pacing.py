@@ -12,42 +12,53 @@ RECHECK = 0.05
 class Pacer:
     """Says when the next step of a simulation may be taken.
 
-    ``speed`` times as fast as the wall clock, 0 for no such limit. The nodes of ``wait_for`` report how far
-    they have come; simulated time never passes more than ``period`` seconds ahead of the slowest one. A node
-    that keeps all others waiting for ``patience`` wall seconds is given up as missing until it reports again.
+    ``speed`` times as fast as the wall clock, 0 for no such limit; may be changed. The nodes of ``wait_for``
+    report how far they have come; simulated time never passes more than ``period`` seconds ahead of the
+    slowest one. A node that keeps all others waiting for ``patience`` wall seconds is given up as missing
+    until it reports again.
     While a node is missing, as all are at the start, the simulation goes on at most in real time.
     """
 
     def __init__(
         self, speed: float, wait_for: Iterable[str] = (), period: float = 0.1, patience: float = 5.0
     ):
-        self._speed = speed
+        self.speed = speed
+        self.wait_for = frozenset(wait_for)
         self._period = period
         self._patience = patience
-        self._missing: Set[str] = set(wait_for)
+        self._missing: Set[str] = set(self.wait_for)
         self._reached: Dict[str, float] = {}
-        self._wait_for = frozenset(wait_for)
         self._blocked_since: Optional[float] = None
         self._anchor_wall = self._anchor_stamp = 0.0
         self._anchor_speed = -1.0
 
     def report(self, name: str, stamp: float) -> None:
         """A node has worked up to the simulated time ``stamp``."""
-        if name in self._wait_for:
+        if name in self.wait_for:
             self._reached[name] = stamp
             self._missing.discard(name)
 
     def is_missing(self, name: str) -> bool:
         return name in self._missing
 
-    def delay(self, stamp: float, wall: float) -> float:
-        """Wall seconds to wait before asking again; 0 if the step to the time ``stamp`` may be taken."""
+    def restart(self) -> None:
+        """Time begins anew: what the nodes have reported is void."""
+        self._reached.clear()
+        self._missing = set(self.wait_for)
+        self._blocked_since = None
+        self._anchor_speed = -1.0
+
+    def delay(self, stamp: float, wall: float, is_limited: bool = True) -> float:
+        """Wall seconds to wait before asking again; 0 if the step to the time ``stamp`` may be taken.
+
+        Unless ``is_limited``, only the nodes are waited for.
+        """
         if self.behind(stamp):
             if self._blocked_since is None:
                 self._blocked_since = wall
             return RECHECK
         self._blocked_since = None
-        return self._delay_of_speed(stamp, wall)
+        return self._delay_of_speed(stamp, wall) if is_limited else 0.0
 
     def behind(self, stamp: float) -> List[str]:
         """The nodes that a step to ``stamp`` has to wait for."""
@@ -66,7 +77,7 @@ class Pacer:
         return given_up
 
     def _delay_of_speed(self, stamp: float, wall: float) -> float:
-        speed = self._speed
+        speed = self.speed
         if self._missing and not 0.0 < speed < REAL_TIME:
             speed = REAL_TIME
         if speed == 0.0:

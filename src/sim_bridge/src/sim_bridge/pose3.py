@@ -46,9 +46,27 @@ def quaternion(pose: np.ndarray) -> Tuple[float, float, float, float]:
     return tuple(float(value) for value in q / np.linalg.norm(q))  # type: ignore[return-value]
 
 
+def from_quaternion(q: Sequence[float]) -> np.ndarray:
+    """The rotation of a quaternion (x, y, z, w) of any length but zero."""
+    x, y, z, w = np.asarray(q, dtype=float) / np.linalg.norm(q)
+    pose = np.eye(4)
+    pose[:3, :3] = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+    return pose
+
+
 def transform_points(pose: np.ndarray, points_xyz: np.ndarray) -> np.ndarray:
     """Points (N, 3) given in the pose's frame, seen from outside."""
     return points_xyz @ pose[:3, :3].T + pose[:3, 3]
+
+
+def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """The vector product (3,); numpy's takes ten times as long for so little."""
+    (ax, ay, az), (bx, by, bz) = a, b
+    return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
 
 
 def position(pose: np.ndarray) -> Sequence[float]:

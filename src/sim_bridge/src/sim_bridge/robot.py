@@ -58,7 +58,7 @@ class Robot:
         self.vehicle = Vehicle(engine, name, profile, from_pose2(base_in_world))
         self.section = Section(height=float(laser_in_base[2, 3]))
         self._engine = engine
-        self._settings = settings
+        self.settings = settings
         self._drive = Drive(profile.drive, settings.command_timeout)
         self._dead_reckoning = DeadReckoning(profile.drive, settings, odometry_rng)
         self._lidar = Lidar(profile.laser, laser_in_base, settings.range_noise, lidar_rng)
@@ -87,15 +87,14 @@ class Robot:
 
     def begin_step(self) -> None:
         """Before a step of physics: sets the motors."""
-        self.vehicle.drive(self._drive.wheel_speeds(1.0 / self._settings.physics_rate))
+        self.vehicle.drive(self._drive.wheel_speeds(1.0 / self.settings.physics_rate))
 
-    def end_step(self, steps: int) -> None:
-        """After the step of physics number ``steps``: feels and looks around."""
-        rate = self._settings.physics_rate
+    def end_step(self, steps: int, stamp: float) -> None:
+        """After the step of physics number ``steps``, at the time ``stamp``: feels and looks around."""
         self._touched.update(self.vehicle.touched())
-        if steps % (rate // self._settings.scan_rate) == 0:
+        if steps % (self.settings.physics_rate // self.settings.scan_rate) == 0:
             self._scan = self._lidar.sweep(
-                steps / rate,
+                stamp,
                 self.section.segments(self._engine.pose_of),
                 to_pose2(self._engine.pose_of(self.vehicle.base)),
             )
@@ -112,7 +111,7 @@ class Robot:
             base_in_world=to_pose2(motion.pose),
             twist=twist,
             odometry=self._dead_reckoning.update(
-                wheel_angles, twist.omega, 1.0 / self._settings.odometry_rate
+                wheel_angles, twist.omega, 1.0 / self.settings.odometry_rate
             ),
             scan=scan,
             contacts=contacts,

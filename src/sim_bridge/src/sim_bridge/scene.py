@@ -1,6 +1,6 @@
 """A world with robots in it, stepped: what Gazebo's server is, without its connections."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
@@ -10,7 +10,7 @@ from planar.settings import nearest_name
 from sim_bridge.config import SimulationSettings
 from sim_bridge.engine import Engine, Motion
 from sim_bridge.errors import UnknownEntityError, WorldError
-from sim_bridge.pose3 import from_pose2
+from sim_bridge.pose3 import cross, from_pose2
 from sim_bridge.robot import Observation, Robot
 from sim_bridge.robots import RobotProfile
 from sim_bridge.world import Body, World
@@ -48,13 +48,15 @@ class Scene:
         self._robots: Dict[str, Robot] = {}
         self._pushes: List[Push] = []
         self._physics_steps = 0
+        # When the present rate of physics began.
+        self._stamp_at_rate = 0.0
         self._engine = Engine(settings.physics_rate, world.gravity)
         self.add(world.bodies)
 
     @property
     def stamp(self) -> float:
         """Simulated seconds since the start."""
-        return self._physics_steps / self.settings.physics_rate
+        return self._stamp_at_rate + self._physics_steps / self.settings.physics_rate
 
     @property
     def step_seconds(self) -> float:
@@ -76,7 +78,7 @@ class Scene:
             self._engine.step()
             self._physics_steps += 1
             for robot in robots:
-                robot.end_step(self._physics_steps)
+                robot.end_step(self._physics_steps, self.stamp)
         return {robot.name: robot.observe(self.stamp) for robot in robots}
 
     def close(self) -> None:
@@ -155,9 +157,7 @@ class Scene:
         for link in links[:1] if name in self._robots else links:
             pose = from_here @ self._engine.pose_of(link)
             arm = pose[:3, 3] - motion.pose[:3, 3]
-            self._set_motion(
-                link, Motion(pose, motion.linear + np.cross(motion.angular, arm), motion.angular)
-            )
+            self._set_motion(link, Motion(pose, motion.linear + cross(motion.angular, arm), motion.angular))
         if name in self._robots:
             self._robots[name].halt()
 
@@ -179,6 +179,15 @@ class Scene:
         self.gravity = gravity
         self._engine.set_gravity(gravity)
 
+    def set_physics_rate(self, rate: int) -> None:
+        """``rate``: steps of physics a second. Raises SettingsError if another rate is no divisor of it."""
+        settings = replace(self.settings, physics_rate=rate)
+        self._stamp_at_rate, self._physics_steps = self.stamp, 0
+        self.settings = settings
+        self._engine.set_rate(rate)
+        for robot in self._robots.values():
+            robot.settings = settings
+
     def reset_poses(self) -> None:
         """Puts every model and robot back to where it was first put, at rest. Time and odometry go on."""
         for body in self._bodies.values():
@@ -196,7 +205,7 @@ class Scene:
         self._engine = Engine(self.settings.physics_rate, self.gravity)
         self._starts, self._bodies, self._robots = {}, {}, {}
         self._pushes.clear()
-        self._physics_steps = 0
+        self._physics_steps, self._stamp_at_rate = 0, 0.0
         self.add(bodies)
         for name, (profile, base_in_world) in starts.items():
             self._add_robot(name, profile, base_in_world)
@@ -228,7 +237,7 @@ def _seen_from(motion: Motion, offset: np.ndarray) -> Motion:
     """The motion of a frame that is fixed at ``offset`` (4, 4) in a moving one."""
     pose = motion.pose @ offset
     arm = pose[:3, 3] - motion.pose[:3, 3]
-    return Motion(pose, motion.linear + np.cross(motion.angular, arm), motion.angular)
+    return Motion(pose, motion.linear + cross(motion.angular, arm), motion.angular)
 
 
 def _found(table: Mapping, name: str, kind: str):

@@ -2,14 +2,17 @@
 
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
-from typing import Dict, List, Tuple
+from pathlib import Path
+from typing import Dict, List, Sequence, Tuple
 
+import defusedxml.ElementTree
 import numpy as np
+from defusedxml.common import DefusedXmlException
 
 from sim_bridge.errors import RobotError
 from sim_bridge.pose3 import IDENTITY, pose3
 from sim_bridge.shapes import Box, Cylinder, Shape, Sphere
-from sim_bridge.world import Collision
+from sim_bridge.world import Body, Collision, World
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +75,18 @@ def read_robot(description: str) -> RobotModel:
     return RobotModel(_merged(fixed), wheels)
 
 
+def read_prop(description: str, name: str, pose: np.ndarray, model_folders: Sequence[Path] = ()) -> World:
+    """A world of the one thing that a URDF text describes, called ``name``; its joints are held as they are.
+
+    Raises RobotError.
+    """
+    root = _parse(description)
+    for joint in root.iter("joint"):
+        joint.set("type", "fixed")
+    base = read_robot(ElementTree.tostring(root, encoding="unicode")).base
+    return World(name, (Body(f"{name}::{base.name}", pose, base.collisions, base.mass),))
+
+
 def frame_in_base(description: str, base: str, frame: str) -> np.ndarray:
     """Where a frame is fixed on the robot, (4, 4) in the frame ``base``. Raises RobotError."""
     root = _parse(description)
@@ -95,8 +110,10 @@ def origin_of(element: ElementTree.Element) -> np.ndarray:
 
 def _parse(description: str) -> ElementTree.Element:
     try:
-        return ElementTree.fromstring(description)
-    except ElementTree.ParseError as error:
+        return defusedxml.ElementTree.fromstring(description, forbid_dtd=False)
+    except DefusedXmlException as error:
+        raise RobotError(f"robot description: refused, defines entities ({type(error).__name__})") from None
+    except (ElementTree.ParseError, ValueError) as error:
         raise RobotError(f"robot description: not well-formed XML ({error})") from None
 
 

@@ -78,6 +78,7 @@ class _Reader:
         scope: str = "",
         static: bool = False,
         depth: int = 0,
+        outermost: Optional[np.ndarray] = None,
     ) -> None:
         """Adds the model that an <include> names; its own <name>, <pose> and <static> win."""
         if depth >= MAX_INCLUDE_DEPTH:
@@ -110,6 +111,7 @@ class _Reader:
             scope=scope,
             static=static or include.flag("static"),
             depth=depth + 1,
+            outermost=outermost,
         )
 
     def add_model(
@@ -123,14 +125,19 @@ class _Reader:
         scope: str = "",
         static: bool = False,
         depth: int = 0,
+        outermost: Optional[np.ndarray] = None,
     ) -> None:
-        """Adds each link of a model, and of the models nested in it, as a body."""
+        """Adds each link of a model, and of the models nested in it, as a body.
+
+        ``outermost``: (4, 4), pose in the world of the outermost model that this one is nested in, if any.
+        """
         state = state or ModelState()
         full_name = scope + (name or model.name)
         in_parent = model.pose() if pose is None else pose
         in_world = in_parent if parent_in_world is None else parent_in_world @ in_parent
         if state.pose is not None:
             in_world = state.pose
+        outermost = in_world if outermost is None else outermost
         joints = list(model.children("joint"))
         static = static or model.flag("static")
         for joint in joints:
@@ -139,7 +146,8 @@ class _Reader:
             self.leave_out(plugin)
         for link in model.children("link"):
             link_in_world = state.links.get(link.name, in_world @ link.pose())
-            self._add_link(link, folder, f"{full_name}::{link.name}", link_in_world, static or bool(joints))
+            name_of_link = f"{full_name}::{link.name}"
+            self._add_link(link, folder, name_of_link, link_in_world, static or bool(joints), outermost)
         for nested in model.children("model"):
             self.add_model(
                 nested,
@@ -149,11 +157,22 @@ class _Reader:
                 scope=full_name + "::",
                 static=static,
                 depth=depth,
+                outermost=outermost,
             )
         for include in model.children("include"):
-            self.add_include(include, folder, state.models, in_world, full_name + "::", static, depth)
+            self.add_include(
+                include, folder, state.models, in_world, full_name + "::", static, depth, outermost
+            )
 
-    def _add_link(self, link: Element, folder: Path, name: str, in_world: np.ndarray, static: bool) -> None:
+    def _add_link(
+        self,
+        link: Element,
+        folder: Path,
+        name: str,
+        in_world: np.ndarray,
+        static: bool,
+        outermost: np.ndarray,
+    ) -> None:
         for tag in ("sensor", "plugin"):
             for element in link.children(tag):
                 self.leave_out(element)
@@ -168,7 +187,8 @@ class _Reader:
         if collisions:
             fixed = static or any(isinstance(part.shape, Plane) for part in collisions)
             mass = None if fixed else _mass(link)
-            self.bodies.append(Body(name, in_world, tuple(collisions), mass, _friction(link)))
+            in_model = np.linalg.inv(outermost) @ in_world
+            self.bodies.append(Body(name, in_world, tuple(collisions), mass, _friction(link), in_model))
 
 
 def _mass(link: Element) -> float:

@@ -1,0 +1,43 @@
+"""Poses and motions in space as messages, and back."""
+
+import math
+from typing import Tuple
+
+import numpy as np
+from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
+
+from sim_bridge.engine import Motion
+from sim_bridge.errors import WorldError
+from sim_bridge.pose3 import from_quaternion, position, quaternion
+
+
+def pose3_to_msg(pose: np.ndarray) -> Pose:
+    return Pose(Point(*position(pose)), Quaternion(*quaternion(pose)))
+
+
+def pose3_from_msg(message: Pose) -> np.ndarray:
+    """The pose (4, 4); a quaternion of length 0 means not turned. Raises WorldError if it is not finite."""
+    q, at = message.orientation, message.position
+    values = (q.x, q.y, q.z, q.w, at.x, at.y, at.z)
+    if not all(math.isfinite(value) for value in values):
+        raise WorldError("the pose is not finite")
+    pose = from_quaternion(values[:4] if any(values[:4]) else (0.0, 0.0, 0.0, 1.0))
+    pose[:3, 3] = values[4:]
+    return pose
+
+
+def motion_to_msgs(motion: Motion) -> Tuple[Pose, Twist]:
+    return pose3_to_msg(motion.pose), Twist(Vector3(*motion.linear), Vector3(*motion.angular))
+
+
+def motion_from_msgs(pose: Pose, twist: Twist) -> Motion:
+    """Raises WorldError if a number is not finite."""
+    linear, angular = vector_from_msg(twist.linear), vector_from_msg(twist.angular)
+    if not (np.isfinite(linear).all() and np.isfinite(angular).all()):
+        raise WorldError("the twist is not finite")
+    return Motion(pose3_from_msg(pose), linear, angular)
+
+
+def vector_from_msg(message) -> np.ndarray:
+    """(3,) of a Vector3 or Point."""
+    return np.array([message.x, message.y, message.z])

@@ -1,0 +1,136 @@
+"""A robot's topics and transforms."""
+
+from typing import List, Optional
+
+import numpy as np
+import rospy
+from geometry_msgs.msg import TransformStamped, Twist
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Empty, String
+
+from planar import Pose2, Scan, Twist2
+from planar_ros.messages import LaserScanArrays, pose2_to_msg, time_of, transform_msg
+from sim_bridge.nodes.orders import Orders
+from sim_bridge.robot import Observation
+from sim_bridge.scene import Scene
+
+# The frame of the world file; it coincides with a map made or rendered of that world.
+WORLD_FRAME = "world"
+# Kobuki's: x, y and yaw are measured, the rest is not.
+ODOMETRY_COVARIANCE = np.diag([0.1, 0.1, 1e6, 1e6, 1e6, 0.05]).ravel().tolist()
+
+
+class RobotTopics:
+    """Tells what a robot observes and takes its commands; its topics are below ``namespace``.
+
+    ``tf_prefix`` is put before the names of its frames.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        name: str,
+        orders: Orders,
+        joint_steps: int,
+        namespace: str = "",
+        tf_prefix: str = "",
+    ):
+        self._scene = scene
+        self._name = name
+        self._profile = scene.robot(name).profile
+        self._orders = orders
+        self._joint_steps = joint_steps
+        self._namespace = namespace
+        self._tf_prefix = f"{tf_prefix}/" if tf_prefix else ""
+        self._steps = 0
+        self._command: Optional[Twist2] = None
+        self._contacts = None
+        self._odom = self._publisher("odom", Odometry, 100)
+        self._scan = self._publisher("scan", LaserScanArrays)
+        self._joints = self._publisher("joint_states", JointState)
+        self._truth = self._publisher("base_pose_ground_truth", Odometry, 100)
+        self._touches = self._publisher("contacts", String, latch=True)
+        for topic in ("cmd_vel", "mobile_base/commands/velocity"):
+            self._subscribe(topic, Twist, self._on_command)
+        self._subscribe("mobile_base/commands/reset_odometry", Empty, self._on_reset_odometry)
+
+    def take_command(self) -> Optional[Twist2]:
+        """The command that has come since the last call, if any."""
+        command, self._command = self._command, None
+        return command
+
+    def publish(self, observation: Observation) -> List[TransformStamped]:
+        """Tells what was observed, but for the transforms, which it returns."""
+        self._steps += 1
+        stamp = time_of(observation.stamp)
+        base_frame, odom_frame = self._frame(self._profile.base_frame), self._frame("odom")
+        odometry = observation.odometry
+        message = _odometry_msg(odometry.base_in_odom, odometry.twist, stamp, odom_frame, base_frame)
+        message.pose.covariance = message.twist.covariance = ODOMETRY_COVARIANCE
+        self._odom.publish(message)
+        self._truth.publish(
+            _odometry_msg(observation.base_in_world, observation.twist, stamp, WORLD_FRAME, base_frame)
+        )
+        if observation.scan is not None:
+            self._scan.publish(_scan_msg(observation.scan, self._frame(self._profile.laser.frame)))
+        if self._steps % self._joint_steps == 0:
+            self._joints.publish(self._joint_state_msg(observation, stamp))
+        if observation.contacts != self._contacts:
+            self._contacts = observation.contacts
+            self._touches.publish("\n".join(observation.contacts))
+        return [transform_msg(odometry.base_in_odom, odom_frame, base_frame, stamp)]
+
+    def _publisher(self, topic, kind, queue_size=10, latch=False):
+        name = rospy.names.ns_join(self._namespace, topic)
+        return rospy.Publisher(name, kind, queue_size=queue_size, latch=latch, tcp_nodelay=True)
+
+    def _subscribe(self, topic, kind, callback):
+        name = rospy.names.ns_join(self._namespace, topic)
+        rospy.Subscriber(name, kind, callback, queue_size=1, tcp_nodelay=True)
+
+    def _frame(self, name: str) -> str:
+        return self._tf_prefix + name
+
+    def _on_command(self, message):
+        command = Twist2(message.linear.x, message.angular.z)
+        if not command.is_finite():
+            rospy.logwarn_throttle(1.0, "velocity command is not finite: the robot stops")
+        self._command = command
+
+    def _on_reset_odometry(self, _message):
+        self._orders.leave(lambda: self._scene.robot(self._name).reset_odometry())
+
+    def _joint_state_msg(self, observation: Observation, stamp) -> JointState:
+        drive = self._profile.drive
+        message = JointState()
+        message.header.stamp = stamp
+        message.header.frame_id = self._frame("base_link")
+        message.name = [drive.left_joint, drive.right_joint]
+        message.position = observation.wheel_angles
+        message.velocity = observation.wheel_speeds
+        return message
+
+
+def _odometry_msg(base: Pose2, twist: Twist2, stamp, frame: str, base_frame: str) -> Odometry:
+    message = Odometry()
+    message.header.stamp = stamp
+    message.header.frame_id = frame
+    message.child_frame_id = base_frame
+    message.pose.pose = pose2_to_msg(base)
+    message.twist.twist.linear.x = twist.v
+    message.twist.twist.angular.z = twist.omega
+    return message
+
+
+def _scan_msg(scan: Scan, frame: str) -> LaserScanArrays:
+    message = LaserScanArrays()
+    message.header.stamp = time_of(scan.stamp)
+    message.header.frame_id = frame
+    message.angle_min = scan.angle_min
+    message.angle_increment = scan.angle_increment
+    message.angle_max = scan.angle_min + scan.angle_increment * (len(scan.ranges) - 1)
+    message.range_min, message.range_max = scan.range_min, scan.range_max
+    message.ranges = scan.ranges
+    message.intensities = np.empty(0, dtype=np.float32)
+    return message

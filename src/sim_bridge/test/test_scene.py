@@ -1,0 +1,168 @@
+"""Models are told, set, pushed and reset; several robots share a scene."""
+
+import math
+
+import numpy as np
+import pytest
+
+from planar import Pose2, SettingsError, Twist2
+from sim_bridge import ROBOTS, Scene, SimulationSettings, WorldError
+from sim_bridge.engine import Motion
+from sim_bridge.errors import UnknownEntityError
+from sim_bridge.pose3 import pose3
+from sim_bridge.scene import Push
+from sim_bridge.sdf import read_model
+from sim_bridge.shapes import Box, Plane
+from sim_bridge.world import Body, Collision, World
+
+LIDAR = ROBOTS["turtlebot_lidar"]
+EXACT = SimulationSettings(
+    range_noise=0.0, encoder_scale=0.0, wheel_slip=0.0, gyro_scale=0.0, gyro_bias=0.0, gyro_noise=0.0
+)
+BARBELL = """<sdf version='1.6'><model name='m'>
+<link name='a'><pose>0 1 0 0 0 0</pose><collision name='c'><geometry><sphere><radius>0.2</radius></sphere>
+</geometry></collision></link>
+<link name='b'><pose>0 -1 0 0 0 0</pose><collision name='c'><geometry><sphere><radius>0.2</radius></sphere>
+</geometry></collision></link></model></sdf>"""
+
+
+def box(name, x, y=0.0, mass=None):
+    return Body(f"{name}::link", pose3(x, y, 0.25), (Collision(Box((0.5, 0.5, 0.5)), np.eye(4)),), mass)
+
+
+def at_rest(pose):
+    return Motion(pose, np.zeros(3), np.zeros(3))
+
+
+@pytest.fixture
+def scene():
+    floor = Body("floor::link", np.eye(4), (Collision(Plane(), np.eye(4)),))
+    return Scene(World("w", (floor, box("wall", 5.0), box("crate", 3.0, 2.0, mass=2.0))), EXACT)
+
+
+def drive(scene, seconds, commands={}):
+    """Gives the commands at every step; returns the last observations."""
+    for _ in range(round(seconds / scene.step_seconds)):
+        seen = scene.step(commands)
+    return seen
+
+
+def test_a_models_pose_is_that_of_its_frame_not_of_its_first_link(scene):
+    scene.add(read_model(BARBELL, "barbell", pose3(-2.0, 0.0, 0.2, yaw=math.pi / 2.0)).bodies)
+    assert scene.links_of("barbell") == ["barbell::a", "barbell::b"]
+    assert scene.model_motion("barbell").pose == pytest.approx(pose3(-2.0, 0.0, 0.2, yaw=math.pi / 2.0))
+    scene.set_model_motion("barbell", at_rest(pose3(1.0, 1.0, 0.2)))
+    assert scene.model_motion("barbell").pose == pytest.approx(pose3(1.0, 1.0, 0.2))
+    assert scene.link_motion("barbell::b").pose == pytest.approx(pose3(1.0, 0.0, 0.2))
+
+
+def test_a_model_in_motion_keeps_moving(scene):
+    moving = Motion(pose3(0.0, -3.0, 2.0), np.array([1.0, 0.0, 0.0]), np.zeros(3))
+    scene.set_model_motion("crate", moving)
+    drive(scene, 0.2)
+    assert scene.model_motion("crate").pose[0, 3] == pytest.approx(0.2, abs=0.01)
+    assert scene.model_motion("crate").linear[2] == pytest.approx(-9.8 * 0.2, rel=0.05)
+
+
+def test_gravity_can_be_switched_off(scene):
+    scene.set_gravity(0.0)
+    scene.set_model_motion("crate", at_rest(pose3(0.0, -3.0, 2.0)))
+    drive(scene, 0.5)
+    assert scene.model_motion("crate").pose[2, 3] == pytest.approx(2.0)
+
+
+def test_a_still_model_that_is_put_elsewhere_is_seen_there(scene):
+    scene.add_robot("r", LIDAR)
+    scene.set_model_motion("wall", at_rest(pose3(2.0, 0.0, 0.25)))
+    assert drive(scene, 0.1)["r"].scan.ranges[180] == pytest.approx(1.75, abs=1e-3)
+    scene.remove_model("wall")
+    assert math.isinf(drive(scene, 0.1)["r"].scan.ranges[180])
+    with pytest.raises(UnknownEntityError, match="no model named 'wall'"):
+        scene.model_motion("wall")
+
+
+def test_names_that_are_not_there_are_refused_with_the_nearest(scene):
+    with pytest.raises(UnknownEntityError, match="no model named 'crat', did you mean crate"):
+        scene.remove_model("crat")
+    with pytest.raises(UnknownEntityError, match="did you mean crate::link"):
+        scene.link_motion("crate::lnk")
+    with pytest.raises(UnknownEntityError, match="no robot named 'r'"):
+        scene.step({"r": Twist2()})
+
+
+def test_a_push_lasts_as_long_as_asked_and_can_be_stopped(scene):
+    scene.set_gravity(0.0)
+    scene.set_model_motion("crate", at_rest(pose3(0.0, -3.0, 2.0)))
+    scene.push(Push("crate::link", np.array([4.0, 0.0, 0.0]), np.zeros(3), 0.0, 0.5))
+    drive(scene, 1.0)
+    assert scene.model_motion("crate").linear[0] == pytest.approx(4.0 / 2.0 * 0.5, rel=0.05)
+    scene.push(Push("crate::link", np.array([4.0, 0.0, 0.0]), np.zeros(3), 0.0, math.inf))
+    scene.stop_pushing("crate::link")
+    drive(scene, 1.0)
+    assert scene.model_motion("crate").linear[0] == pytest.approx(1.0, rel=0.1)
+
+
+def test_robots_see_and_do_not_pass_through_each_other(scene):
+    scene.add_robot("one", LIDAR, Pose2(-1.0, 0.0, 0.0))
+    scene.add_robot("two", LIDAR, Pose2(1.0, 0.0, math.pi))
+    seen = drive(scene, 0.1)
+    assert seen["one"].scan.ranges[180] == pytest.approx(2.0 - 0.05, abs=0.01), "the other's lidar"
+    seen = drive(scene, 6.0, {"one": Twist2(0.5, 0.0)})
+    assert "two::base_footprint" in seen["one"].contacts
+    assert seen["one"].base_in_world.distance_to(seen["two"].base_in_world) > 2 * 0.178 - 0.01
+
+
+def test_two_robots_are_driven_apart(scene):
+    scene.add_robot("one", LIDAR, Pose2(0.0, 0.0))
+    scene.add_robot("two", LIDAR, Pose2(0.0, 1.0))
+    seen = drive(scene, 3.0, {"one": Twist2(0.3, 0.0), "two": Twist2(-0.3, 0.0)})
+    assert seen["one"].base_in_world.x > 0.7
+    assert seen["two"].base_in_world.x < -0.7
+
+
+def test_a_robot_must_have_room_and_a_name_of_its_own(scene):
+    scene.add_robot("one", LIDAR)
+    with pytest.raises(WorldError, match="one is in the world already"):
+        scene.add_robot("one", LIDAR, Pose2(1.0, 0.0))
+    with pytest.raises(WorldError, match="inside one::base_footprint"):
+        scene.add_robot("two", LIDAR, Pose2(0.1, 0.0))
+    assert "two" not in scene.model_names()
+
+
+def test_resetting_poses_puts_all_back_and_time_goes_on(scene):
+    scene.add_robot("r", LIDAR, Pose2(1.0, 0.0))
+    scene.set_model_motion("crate", at_rest(pose3(0.0, -3.0, 0.25)))
+    before = drive(scene, 2.0, {"r": Twist2(0.4, 0.0)})["r"]
+    scene.reset_poses()
+    after = scene.step()["r"]
+    assert after.stamp > before.stamp
+    assert after.base_in_world.distance_to(Pose2(1.0, 0.0)) < 0.01
+    assert after.odometry.base_in_odom.distance_to(before.odometry.base_in_odom) < 0.02, "it never jumps"
+    assert scene.model_motion("crate").pose == pytest.approx(pose3(3.0, 2.0, 0.25), abs=1e-2)
+
+
+def test_a_reset_scene_repeats_itself_bit_for_bit():
+    def trace():
+        seen = []
+        for _ in range(100):
+            one = scene.step({"r": Twist2(0.3, 0.4)})["r"]
+            seen.append((one.stamp, one.base_in_world, one.odometry))
+            if one.scan is not None:
+                seen.append(one.scan.ranges.tobytes())
+        return seen
+
+    floor = Body("floor::link", np.eye(4), (Collision(Plane(), np.eye(4)),))
+    scene = Scene(World("w", (floor, box("wall", 3.0))), seed=3)
+    scene.add_robot("r", LIDAR)
+    first = trace()
+    scene.reset()
+    assert trace() == first
+
+
+def test_the_rate_of_physics_can_be_changed_and_time_goes_on(scene):
+    drive(scene, 0.5)
+    scene.set_physics_rate(1000)
+    drive(scene, 0.5)
+    assert scene.stamp == pytest.approx(1.0)
+    with pytest.raises(SettingsError, match="divisor of physics_rate"):
+        scene.set_physics_rate(77)

@@ -1,0 +1,246 @@
+#!/usr/bin/env python3
+"""Gazebo's services and topics, and control of time."""
+
+import math
+import time
+import unittest
+
+import gazebo_msgs.srv as srv
+import rospy
+import rostest
+from dynamic_reconfigure.client import Client
+from gazebo_msgs.msg import LinkState, LinkStates, ModelState, ModelStates
+from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3, Wrench
+from nav_msgs.msg import Odometry
+from sim_bridge_msgs.srv import Step
+from std_msgs.msg import Float64
+from std_srvs.srv import Empty
+
+BOX = """<sdf version='1.6'><model name='any'><pose>0 0 0.2 0 0 0</pose><link name='body'>
+<inertial><mass>2</mass></inertial>
+<collision name='c'><geometry><box><size>0.4 0.4 0.4</size></box></geometry>
+<surface><friction><ode><mu>0.1</mu></ode></friction></surface></collision></link></model></sdf>"""
+CAN = """<robot name='can'><link name='can'><inertial><mass value='0.3'/>
+<inertia ixx='0.001' iyy='0.001' izz='0.001' ixy='0' ixz='0' iyz='0'/></inertial>
+<collision><geometry><cylinder radius='0.05' length='0.2'/></geometry></collision></link></robot>"""
+
+
+def call(name, kind, *arguments, **named):
+    proxy = rospy.ServiceProxy(name, kind)
+    proxy.wait_for_service(20.0)
+    return proxy(*arguments, **named)
+
+
+def pose_at(x, y, z=0.0, yaw=0.0):
+    return Pose(Point(x, y, z), Quaternion(0.0, 0.0, math.sin(yaw / 2.0), math.cos(yaw / 2.0)))
+
+
+def model_state(name, relative_to=""):
+    return call("/gazebo/get_model_state", srv.GetModelState, name, relative_to)
+
+
+def yaw_of(pose):
+    return 2.0 * math.atan2(pose.orientation.z, pose.orientation.w)
+
+
+class TestGazebo(unittest.TestCase):
+    def setUp(self):
+        call("/gazebo/unpause_physics", Empty)
+        call("/gazebo/reset_world", Empty)
+
+    def tearDown(self):
+        for name in ("crate", "can"):
+            call("/gazebo/delete_model", srv.DeleteModel, name)
+
+    def spawn(self, x=0.0, y=0.0, frame="", name="crate"):
+        return call("/gazebo/spawn_sdf_model", srv.SpawnModel, name, BOX, "", pose_at(x, y, 0.21), frame)
+
+    def simulated(self, seconds):
+        steps = round(seconds / 0.02)
+        call("/sim_bridge/step", Step, steps)
+
+    def test_a_paused_simulation_stands_still_and_steps_as_told(self):
+        call("/gazebo/pause_physics", Empty)
+        before = call("/sim_bridge/step", Step, 0).stamp
+        time.sleep(0.3)
+        self.assertEqual(call("/sim_bridge/step", Step, 0).stamp, before)
+        after = call("/sim_bridge/step", Step, 50).stamp
+        self.assertAlmostEqual((after - before).to_sec(), 1.0, places=6)
+        world = call("/gazebo/get_world_properties", srv.GetWorldProperties)
+        self.assertAlmostEqual(world.sim_time, after.to_sec(), places=6)
+
+    def test_speed_can_be_changed_while_it_runs(self):
+        client = Client("sim_bridge", timeout=20.0)
+        client.update_configuration({"speed": 2.0})
+        rospy.wait_for_message("sim_bridge/real_time_factor", Float64, 10.0)
+        factor = rospy.wait_for_message("sim_bridge/real_time_factor", Float64, 10.0).data
+        client.update_configuration({"speed": 0.0})
+        self.assertAlmostEqual(factor, 2.0, delta=0.4)
+
+    def test_reset_world_puts_models_back_and_time_goes_on(self):
+        self.spawn(1.0)
+        moved = ModelState(model_name="crate", pose=pose_at(2.0, 0.5, 0.21))
+        call("/gazebo/set_model_state", srv.SetModelState, moved)
+        call(
+            "/gazebo/set_model_state",
+            srv.SetModelState,
+            ModelState("mobile_base", pose_at(0.5, 0.0), Twist(), ""),
+        )
+        before = call("/sim_bridge/step", Step, 1).stamp
+        call("/gazebo/reset_world", Empty)
+        self.assertAlmostEqual(model_state("crate").pose.position.x, 1.0, delta=0.01)
+        self.assertAlmostEqual(model_state("mobile_base").pose.position.x, 0.0, delta=0.01)
+        self.assertGreaterEqual(call("/sim_bridge/step", Step, 0).stamp, before)
+
+    def test_reset_simulation_starts_again_at_time_0(self):
+        call("/gazebo/pause_physics", Empty)
+        call("/gazebo/reset_simulation", Empty)
+        self.assertEqual(call("/sim_bridge/step", Step, 0).stamp.to_sec(), 0.0)
+        self.assertAlmostEqual(call("/sim_bridge/step", Step, 5).stamp.to_sec(), 0.1, places=6)
+        odometry = rospy.Subscriber(
+            "odom", Odometry, lambda message: stamps.append(message.header.stamp.to_sec())
+        )
+        stamps = []
+        call("/gazebo/unpause_physics", Empty)
+        self.wait_until(lambda: stamps)
+        odometry.unregister()
+
+    def test_world_properties_list_the_models(self):
+        world = call("/gazebo/get_world_properties", srv.GetWorldProperties)
+        self.assertTrue(world.success)
+        self.assertIn("mobile_base", world.model_names)
+        self.assertIn("ground_plane", world.model_names)
+        self.assertFalse(world.rendering_enabled)
+
+    def test_a_spawned_model_is_listed_told_and_deleted(self):
+        self.assertEqual(self.spawn(1.0).status_message, "SpawnModel: Successfully spawned entity")
+        state = model_state("crate")
+        self.assertTrue(state.success)
+        self.assertAlmostEqual(state.pose.position.x, 1.0, delta=0.01)
+        properties = call("/gazebo/get_model_properties", srv.GetModelProperties, "crate")
+        self.assertEqual((properties.body_names, properties.is_static), (["body"], False))
+        again = self.spawn(1.0)
+        self.assertFalse(again.success)
+        self.assertEqual(again.status_message, "SpawnModel: Failure - entity already exists.")
+        self.assertTrue(call("/gazebo/delete_model", srv.DeleteModel, "crate").success)
+        gone = call("/gazebo/delete_model", srv.DeleteModel, "crate")
+        self.assertEqual((gone.success, gone.status_message), (False, "DeleteModel: model does not exist"))
+
+    def test_a_thing_described_in_urdf_can_be_spawned(self):
+        pose = pose_at(1.0, 0.0, 0.1)
+        self.assertTrue(call("/gazebo/spawn_urdf_model", srv.SpawnModel, "can", CAN, "", pose, "").success)
+        self.assertAlmostEqual(model_state("can").pose.position.x, 1.0, delta=0.01)
+
+    def test_what_cannot_be_spawned_is_refused_with_a_reason(self):
+        broken = call("/gazebo/spawn_sdf_model", srv.SpawnModel, "crate", "<sdf", "", Pose(), "")
+        self.assertFalse(broken.success)
+        self.assertIn("not well-formed", broken.status_message)
+        lost = self.spawn(frame="nothing")
+        self.assertFalse(lost.success)
+        self.assertIn("reference_frame not found", lost.status_message)
+        nowhere = self.spawn(math.nan)
+        self.assertFalse(nowhere.success)
+
+    def test_states_are_relative_to_the_frame_asked_for(self):
+        state = ModelState("mobile_base", pose_at(1.0, 0.0, 0.0, math.pi / 2.0), Twist(), "world")
+        self.assertTrue(call("/gazebo/set_model_state", srv.SetModelState, state).success)
+        self.assertTrue(self.spawn(1.0, 0.0, frame="mobile_base").success)
+        in_world, in_robot = model_state("crate").pose, model_state("crate", "mobile_base").pose
+        self.assertAlmostEqual(in_world.position.y, 1.0, delta=0.02)
+        self.assertAlmostEqual(in_robot.position.x, 1.0, delta=0.02)
+        self.assertAlmostEqual(yaw_of(in_robot), 0.0, delta=0.02)
+
+    def test_states_of_what_is_not_there_fail_as_gazebos_do(self):
+        for answer, text in (
+            (model_state("nothing"), "GetModelState: model does not exist"),
+            (
+                model_state("mobile_base", "nothing"),
+                "GetModelState: reference relative_entity_name not found, "
+                "did you forget to scope the body by model name?",
+            ),
+            (
+                call("/gazebo/set_model_state", srv.SetModelState, ModelState(model_name="nothing")),
+                "SetModelState: model does not exist",
+            ),
+            (
+                call("/gazebo/get_link_state", srv.GetLinkState, "nothing", ""),
+                "GetLinkState: link not found, did you forget to scope the link by model name?",
+            ),
+            (
+                call("/gazebo/set_link_state", srv.SetLinkState, LinkState(link_name="nothing")),
+                "SetLinkState: link does not exist",
+            ),
+            (
+                call("/gazebo/get_model_properties", srv.GetModelProperties, "nothing"),
+                "GetModelProperties: model does not exist",
+            ),
+            (
+                call("/gazebo/apply_body_wrench", srv.ApplyBodyWrench, body_name="nothing"),
+                "ApplyBodyWrench: body does not exist",
+            ),
+        ):
+            self.assertEqual((answer.success, answer.status_message), (False, text))
+
+    def test_links_can_be_told_and_set(self):
+        self.spawn(1.0)
+        state = LinkState("crate::body", pose_at(1.5, 0.2, 0.2), Twist(), "")
+        self.assertTrue(call("/gazebo/set_link_state", srv.SetLinkState, state).success)
+        told = call("/gazebo/get_link_state", srv.GetLinkState, "crate::body", "").link_state
+        self.assertAlmostEqual(told.pose.position.x, 1.5, delta=0.01)
+
+    def test_states_can_be_set_by_topic(self):
+        publisher = rospy.Publisher("/gazebo/set_model_state", ModelState, queue_size=1)
+        self.wait_until(publisher.get_num_connections)
+        publisher.publish(ModelState("mobile_base", pose_at(0.6, 0.0), Twist(), ""))
+        self.wait_until(lambda: abs(model_state("mobile_base").pose.position.x - 0.6) < 0.01)
+
+    def test_all_models_and_links_are_told_by_topic(self):
+        models = rospy.wait_for_message("/gazebo/model_states", ModelStates, 10.0)
+        self.assertIn("mobile_base", models.name)
+        self.assertEqual(len(models.name), len(models.pose))
+        links = rospy.wait_for_message("/gazebo/link_states", LinkStates, 10.0)
+        self.assertIn("mobile_base::base_footprint", links.name)
+        self.assertEqual(len(links.name), len(links.twist))
+
+    def test_a_wrench_pushes_for_its_duration(self):
+        self.spawn(1.0)
+        call("/gazebo/pause_physics", Empty)
+        self.simulated(0.2)
+        before = model_state("crate").pose.position.y
+        push = Wrench(Vector3(0.0, 8.0, 0.0), Vector3())
+        answer = call(
+            "/gazebo/apply_body_wrench", srv.ApplyBodyWrench, "crate::body", "", Point(), push,
+            rospy.Time(0), rospy.Duration(0.5),
+        )  # fmt: skip
+        self.assertTrue(answer.success)
+        self.simulated(0.4)
+        self.assertGreater(model_state("crate").twist.linear.y, 0.5)
+        self.simulated(3.0)
+        self.assertAlmostEqual(model_state("crate").twist.linear.y, 0.0, delta=0.01)
+        self.assertGreater(model_state("crate").pose.position.y, before + 0.2)
+
+    def test_physics_can_be_told_and_changed(self):
+        kept = call("/gazebo/get_physics_properties", srv.GetPhysicsProperties)
+        self.assertAlmostEqual(kept.time_step, 0.005)
+        self.assertAlmostEqual(kept.gravity.z, -9.8)
+        change = srv.SetPhysicsPropertiesRequest(0.0025, 0.0, kept.gravity, kept.ode_config)
+        self.assertTrue(call("/gazebo/set_physics_properties", srv.SetPhysicsProperties, change).success)
+        changed = call("/gazebo/get_physics_properties", srv.GetPhysicsProperties)
+        self.assertAlmostEqual(changed.time_step, 0.0025)
+        self.assertEqual(changed.max_update_rate, 0.0)
+        change.time_step = 0.013
+        refused = call("/gazebo/set_physics_properties", srv.SetPhysicsProperties, change)
+        self.assertFalse(refused.success)
+        change.time_step = 0.005
+        call("/gazebo/set_physics_properties", srv.SetPhysicsProperties, change)
+
+    def wait_until(self, is_met):
+        deadline = time.monotonic() + 20.0
+        while not is_met():
+            self.assertLess(time.monotonic(), deadline, "waited in vain")
+            time.sleep(0.01)
+
+
+if __name__ == "__main__":
+    rospy.init_node("gazebo_test")
+    rostest.rosrun("home_service_tests", "gazebo", TestGazebo)
