@@ -1,93 +1,284 @@
 #!/usr/bin/env python3
 """Localization of amcl_lite, and of the official amcl where it is installed, on the same drives.
 
-Both nodes get the same scans, odometry and parameters (those of the TurtleBot), scan by scan. Errors are
-those of map -> odom at every scan, against the truth; CPU is that of the whole process.
+Both nodes get the same scans, odometry and parameters, scan by scan. Errors are those of map -> odom at every
+scan, against the truth; CPU is that of the whole process.
 
-    tests/benchmarks/localization.py [--drives 4] [--seconds 120]
+    tests/benchmarks/localization.py [accuracy] [updates] [recovery] [memory] [--seconds 100] [--runs 100]
 """
 
 import argparse
 import subprocess
+import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Dict, List, Optional
 
 import numpy as np
 import yaml
 from drives import Sighting, random_drive
-from lockstep import Master, Player
+from lockstep import Master, Node, Player
+from worlds import HALLWAY, OFFICE, world_from_picture
 
-from planar import load_map, wrap
-from sim_bridge import load_world
+from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, wrap
+from sim_bridge import SimulationSettings, load_world
+from sim_bridge.true_map import true_map
+from sim_bridge.world import World
 
 ROOT = Path(__file__).resolve().parents[2]
 PORT = 11399
+NODES = ("amcl", "amcl_lite")
+NOISES = {
+    "turtlebot": SimulationSettings(),
+    "bad": SimulationSettings(
+        range_noise=0.03,
+        encoder_scale=0.06,
+        wheel_slip=0.03,
+        gyro_scale=0.03,
+        gyro_bias=0.005,
+        gyro_noise=0.002,
+    ),
+}
+FRAMES = {"base_frame_id": "base_footprint"}
+TURTLEBOT = yaml.safe_load((ROOT / "src/amcl_lite/config/turtlebot.yaml").read_text())
+PARAMETERS = {"turtlebot": TURTLEBOT, "default": FRAMES}
+SCANS_PER_SECOND = 10
+# A recovery has succeeded when the position has been right for so long, metres and scans; in time, seconds.
+RECOVERED_WITHIN, RECOVERED_SCANS = 0.25, 20
+DEADLINES = {"global": 30, "kidnapped": 30, "wrong by 1 m, 30 deg": 10}
+SECTIONS = ("accuracy", "updates", "recovery", "memory")
+
+
+@dataclass(frozen=True)
+class Place:
+    """A world, its true map, and where the robot starts."""
+
+    name: str
+    world: World
+    grid: OccupancyGrid
+    start: Pose2
 
 
 def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--drives", type=int, default=4, help="how many drives (%(default)s)")
-    parser.add_argument("--seconds", type=float, default=120.0, help="length of each (%(default)s)")
+    parser.add_argument(
+        "sections", nargs="*", metavar="SECTION", help=f"of {', '.join(SECTIONS)}; default: all"
+    )
+    parser.add_argument("--seconds", type=float, default=100.0, help="length of each drive (%(default)s)")
+    parser.add_argument("--runs", type=int, default=100, help="of each kind of recovery (%(default)s)")
     arguments = parser.parse_args()
-    grid = load_map(ROOT / "map/home.yaml")
-    world = load_world(str(ROOT / "map/home.world"))
-    drives = [random_drive(world, grid, seed, arguments.seconds) for seed in range(arguments.drives)]
-    parameters = yaml.safe_load((ROOT / "src/amcl_lite/config/turtlebot.yaml").read_text())
+    sections = arguments.sections or SECTIONS
+    unknown = set(sections) - set(SECTIONS)
+    if unknown:
+        parser.error(f"no such section: {', '.join(sorted(unknown))}")
+    home, *others = places()
+    commands = {name: _executable(name) for name in NODES}
+    for name in [name for name, command in commands.items() if command is None]:
+        print(f"{name} is not installed")
+        del commands[name]
     master = Master(PORT)
     try:
-        player = Player(grid, drives[0][0].scan.laser_in_base)
-        commands = {name: _executable(name) for name in ("amcl", "amcl_lite")}
-        print(f"{'':10} mean m   rmse m   95 % m   max m    heading rmse   CPU ms/scan   MB")
-        for name, command in commands.items():
-            if command is None:
-                print(f"{name:10} not installed")
-                continue
-            print(f"{name:10}", _row(_measure(player, [command], parameters, drives)))
+        first = random_drive(home.world, home.grid, 0, 10.0, start=home.start)
+        player = Player(home.grid, first[0].scan.laser_in_base)
+        if "accuracy" in sections:
+            accuracy(player, commands, [home, *others], arguments.seconds)
+        if "updates" in sections:
+            updates(player, commands, home)
+        if "recovery" in sections:
+            recovery(player, commands, home, arguments.runs)
+        if "memory" in sections:
+            memory(player, commands, first)
     finally:
         master.close()
+
+
+def places() -> List[Place]:
+    """The home first."""
+    worlds = (
+        ("home", load_world(str(ROOT / "map" / "home.world")), Pose2()),
+        ("hallway", world_from_picture("hallway", HALLWAY), Pose2(2.0, 3.75)),
+        ("office", world_from_picture("office", OFFICE), Pose2(1.0, 1.0)),
+    )
+    return [
+        Place(name, world, true_map(world, inside=(start.x, start.y)), start) for name, world, start in worlds
+    ]
+
+
+def accuracy(player: Player, commands: Dict[str, str], where: List[Place], seconds: float) -> None:
+    """Errors and CPU of each drive: every world, noise and set of parameters."""
+    print(
+        "world    noise      parameters  node       rmse m   95 % m   max m    heading rmse  CPU ms/scan  "
+        "rmse ratio"
+    )
+    drives = {
+        (place.name, noise): random_drive(
+            place.world, place.grid, seed, seconds, settings=settings, start=place.start
+        )
+        for seed, place in enumerate(where)
+        for noise, settings in NOISES.items()
+    }
+    errors_of_all: Dict[str, List[np.ndarray]] = {name: [] for name in commands}
+    cpu_of_all: Dict[str, List[float]] = {name: [] for name in commands}
+    for place in where:
+        player.use_map(place.grid)
+        for preset, parameters in PARAMETERS.items():
+            for noise in NOISES:
+                official_rmse = None
+                for name, command in commands.items():
+                    errors, cpu = _measure(player, command, parameters, drives[place.name, noise])
+                    rmse = float(np.sqrt(np.mean(errors[:, 0] ** 2)))
+                    official_rmse = rmse if name == "amcl" else official_rmse
+                    ratio = f"{rmse / official_rmse:.2f}" if official_rmse else ""
+                    label = f"{place.name:8} {noise:10} {preset:11} {name:10}"
+                    print(label, _figures(errors, cpu), ratio, flush=True)
+                    errors_of_all[name].append(errors)
+                    cpu_of_all[name].append(cpu)
+    for name in commands:
+        label = f"{'all':8} {'':10} {'':11} {name:10}"
+        print(label, _figures(np.concatenate(errors_of_all[name]), float(np.mean(cpu_of_all[name]))))
+
+
+def updates(player: Player, commands: Dict[str, str], place: Place) -> None:
+    """What an update takes with a fixed number of particles and 60 beams."""
+    print("particles  node       answer ms  CPU ms, of updates at every scan")
+    drive = random_drive(place.world, place.grid, 7, 30.0, start=place.start)
+    player.use_map(place.grid)
+    for count in (500, 2000, 5000):
+        for name, command in commands.items():
+            fixed = {"min_particles": count, "max_particles": count, "update_min_d": 0.0, "update_min_a": 0.0}
+            start = time.monotonic()
+            waiting: List[float] = []
+            _, cpu = _measure(player, command, {**TURTLEBOT, **fixed}, drive, waiting)
+            print(
+                f"{count:9}  {name:10} {1e3 * np.median(waiting):9.2f}  {1e3 * cpu:6.2f}"
+                f"   ({time.monotonic() - start:.0f} s)",
+                flush=True,
+            )
+
+
+def recovery(player: Player, commands: Dict[str, str], place: Place, runs: int) -> None:
+    """The share of runs in which the position is right within the deadline of driving."""
+    print("recovery               node       share of runs   median s")
+    length = SCANS_PER_SECOND * max(DEADLINES.values())
+    drives = [
+        random_drive(place.world, place.grid, 20 + i, 4 * length / SCANS_PER_SECOND, start=place.start)
+        for i in range(4)
+    ]
+    player.use_map(place.grid)
+    for kind, deadline in DEADLINES.items():
+        for name, command in commands.items():
+            took = []
+            node = player.start_node([command], TURTLEBOT)
+            try:
+                player.wake(drives[0][0])
+                for run in range(runs):
+                    rng = np.random.default_rng(run)
+                    took.append(_recover(player, kind, drives, deadline, rng))
+            finally:
+                node.close()
+            times = [seconds for seconds in took if seconds is not None]
+            median = f"{np.median(times):6.1f}" if times else "     -"
+            print(f"{kind:22} {name:10} {len(times):5} of {runs:<5} {median}", flush=True)
+
+
+def _recover(player: Player, kind: str, drives, deadline: int, rng) -> Optional[float]:
+    """Seconds until the position is right, and stays so; None if that takes longer than the deadline."""
+    sightings = _piece(drives, rng, deadline * SCANS_PER_SECOND)
+    if kind == "global":
+        player.show(sightings[0])
+        player.localize_globally()
+    elif kind == "kidnapped":
+        before = _piece(drives, rng, 5 * SCANS_PER_SECOND)
+        player.set_pose(before[0].base_in_map)
+        for sighting in before:
+            player.show(sighting)
+        # Odometry does not notice.
+        jump = before[-1].base_in_odom @ sightings[0].base_in_odom.inverse()
+        sightings = [Sighting(s.scan, jump @ s.base_in_odom, s.base_in_map) for s in sightings]
+    else:
+        bearing, side = rng.uniform(-np.pi, np.pi), rng.choice((-1.0, 1.0))
+        off = Pose2(np.cos(bearing), np.sin(bearing), side * np.radians(30.0))
+        player.show(sightings[0])
+        truth = sightings[0].base_in_map
+        player.set_pose(Pose2(truth.x + off.x, truth.y + off.y, truth.yaw + off.yaw))
+    right = 0
+    for i, sighting in enumerate(sightings):
+        odom_in_map = player.show(sighting)
+        is_right = (
+            odom_in_map is not None
+            and (odom_in_map @ sighting.base_in_odom).distance_to(sighting.base_in_map) < RECOVERED_WITHIN
+        )
+        right = right + 1 if is_right else 0
+        if right == RECOVERED_SCANS:
+            return (i + 1 - RECOVERED_SCANS) / SCANS_PER_SECOND
+    return None
+
+
+def _piece(drives: List[List[Sighting]], rng, length: int) -> List[Sighting]:
+    drive = drives[rng.integers(len(drives))]
+    first = int(rng.integers(len(drive) - length))
+    return drive[first : first + length]
+
+
+def memory(player: Player, commands: Dict[str, str], drive: List[Sighting]) -> None:
+    """Resident memory with a map of 2000 x 2000 cells."""
+    cells = np.full((2000, 2000), FREE, dtype=np.int8)
+    cells[::40, ::40] = OCCUPIED
+    player.use_map(OccupancyGrid(cells, 0.05, Pose2(-50.0, -50.0)))
+    print("node       MB with a map of 2000 x 2000 cells")
+    for name, command in commands.items():
+        node = player.start_node([command], TURTLEBOT)
+        try:
+            player.wake(drive[0])
+            for sighting in drive:
+                player.show(sighting)
+            print(f"{name:10} {node.resident_megabytes():5.0f}")
+        finally:
+            node.close()
+
+
+def _measure(player: Player, command: str, parameters: dict, drive: List[Sighting], waiting: list = None):
+    """Errors (N, 2) of position and heading, and CPU seconds a scan; ``waiting`` gets the wall seconds."""
+    node: Node = player.start_node([command], parameters)
+    try:
+        player.wake(drive[0])
+        player.set_pose(drive[0].base_in_map)
+        cpu_before, errors = node.cpu_seconds(), []
+        for sighting in drive:
+            shown = time.monotonic()
+            odom_in_map = player.show(sighting)
+            if odom_in_map is None:
+                continue
+            if waiting is not None:
+                waiting.append(time.monotonic() - shown)
+            found, truth = odom_in_map @ sighting.base_in_odom, sighting.base_in_map
+            errors.append((found.distance_to(truth), abs(wrap(found.yaw - truth.yaw))))
+        return np.array(errors), (node.cpu_seconds() - cpu_before) / len(drive)
+    finally:
+        node.close()
 
 
 def _executable(package: str) -> Optional[str]:
     """The program of a package's node, named as the package; None if there is none on ROS_PACKAGE_PATH."""
     found = subprocess.run(
-        ["catkin_find", "--first-only", package, package], stdout=subprocess.PIPE, check=False
+        ["catkin_find", "--first-only", package, package],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        check=False,
     ).stdout.decode()
     candidates = [found.strip(), str(ROOT / "src" / package / "nodes" / package)]
     return next((path for path in candidates if path and Path(path).is_file()), None)
 
 
-def _measure(player: Player, command: List[str], parameters: dict, drives: List[List[Sighting]]) -> Dict:
-    node = player.start_node(command, parameters)
-    try:
-        player.wake(drives[0][0])
-        cpu_before, errors = node.cpu_seconds(), []
-        for drive in drives:
-            player.set_pose(drive[0].base_in_map)
-            for sighting in drive:
-                odom_in_map = player.show(sighting)
-                if odom_in_map is not None:
-                    found, truth = odom_in_map @ sighting.base_in_odom, sighting.base_in_map
-                    errors.append((found.distance_to(truth), abs(wrap(found.yaw - truth.yaw))))
-        cpu = (node.cpu_seconds() - cpu_before) / sum(map(len, drives))
-        return {"errors": np.array(errors), "cpu": cpu, "memory": node.resident_megabytes()}
-    finally:
-        node.close()
-
-
-def _row(measured: Dict) -> str:
-    positions, headings = measured["errors"].T
-    figures = (
-        positions.mean(),
-        np.sqrt(np.mean(positions**2)),
-        np.percentile(positions, 95),
-        positions.max(),
-        np.sqrt(np.mean(headings**2)),
-        1e3 * measured["cpu"],
-        measured["memory"],
+def _figures(errors: np.ndarray, cpu: float) -> str:
+    positions, headings = errors.T
+    rmse, heading_rmse = np.sqrt(np.mean(positions**2)), np.sqrt(np.mean(headings**2))
+    return (
+        f"{rmse:7.4f}  {np.percentile(positions, 95):7.4f}  {positions.max():7.4f}  {heading_rmse:12.4f}"
+        f"  {1e3 * cpu:11.2f} "
     )
-    return "{:7.4f}  {:7.4f}  {:7.4f}  {:7.4f}  {:13.4f}  {:12.2f}  {:3.0f}".format(*figures)
 
 
 if __name__ == "__main__":

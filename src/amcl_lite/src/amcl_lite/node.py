@@ -59,7 +59,7 @@ class AmclNode:
         self._base_in_odom: Optional[Pose2] = None
         self._last_scan = rospy.Time(0)
         self._has_sent_transform = False
-        warm_up(self._settings)
+        _warm_up(self._settings)
         self._views = Views(self._settings)
         self._keeper = PoseKeeper()
         self._progress = Progress()
@@ -305,6 +305,14 @@ class AmclNode:
                 silence,
                 self._scans.topic,
             )
+
+
+def _warm_up(settings) -> None:
+    """Compiles or loads the kernels, before any scan comes; says so if that takes long."""
+    is_warm = threading.Event()
+    Waiting({"its kernels to be compiled, as after each installation": is_warm.is_set})
+    warm_up(settings)
+    is_warm.set()
 
 
 def _read_settings() -> NodeSettings:

@@ -17,8 +17,8 @@ _EXPLAINED_WITHIN = 0.1
 _THROUGH = 0.25
 _TINY = 1e-30  # so that the logarithm of a fit exists
 # Logistic regression of "the pose is right to 0.5 m" on 7200 poses of ten drives through map/home.world,
-# half of them wrong, with up to 40 % of the beams cut short by things that are not on the map: area under
-# the ROC curve 0.997. tests/benchmarks/localization_quality.py makes these numbers.
+# half of them wrong, with up to 40 % of the beams cut short by things that are not on the map. How well it
+# does elsewhere: tests/benchmarks/localization_quality.py (area under the ROC curve 0.998 over three worlds).
 _BIAS, _PER_EXPLAINED, _PER_THROUGH = -6.85, 17.2, -9.8
 
 # Smoothed over about this time, seconds, quality must fall below LOST_BELOW for the robot to be lost, and

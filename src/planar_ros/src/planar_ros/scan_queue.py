@@ -118,13 +118,13 @@ class ScanQueue:
     def _deal_with(self, message, is_late):
         """Hands on or skips a scan; False if it must wait on."""
         stamp, frame = message.header.stamp, frame_name(message.header.frame_id)
-        latest = self._transforms.latest_stamp(self._odom_frame, self._base_frame)
         base_in_odom = self._transforms.lookup(self._odom_frame, self._base_frame, stamp)
         mounting = self._mountings.get(frame) or self._transforms.mounting(self._base_frame, frame)
         if base_in_odom is not None and mounting is not None:
             self._mountings[frame] = mounting
             self._handle(message, scan_from_msg(message, *mounting), base_in_odom)
             return True
+        latest = self._transforms.latest_stamp(self._odom_frame, self._base_frame)
         if base_in_odom is None and latest is not None and latest > stamp:
             self._skip(message, f"{self._odom_frame} -> {self._base_frame} is not known for its stamp")
             return True
