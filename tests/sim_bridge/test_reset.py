@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+"""Resets in the middle of a goal: every node survives them and reaches the next goal."""
+
+import time
+import unittest
+
+import actionlib
+import rosnode
+import rospy
+import rostest
+from actionlib_msgs.msg import GoalStatus
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
+from nav_msgs.msg import Odometry
+from std_srvs.srv import Empty
+
+NODES = ("/sim_bridge", "/robot_state_publisher", "/map_server", "/amcl", "/move_base")
+PATIENCE_SECONDS = 60.0
+
+
+class TestReset(unittest.TestCase):
+    def setUp(self):
+        self.truth = []
+        rospy.Subscriber("base_pose_ground_truth", Odometry, self.truth.append, queue_size=1000)
+        self.initial_pose = rospy.Publisher("initialpose", PoseWithCovarianceStamped, queue_size=1)
+        self.wait_until(lambda: self.truth, "the simulation")
+
+    def test_reset_world_in_the_middle_of_a_goal(self):
+        self.start_goal(2.0, 3.0)
+        self.wait_until(lambda: self.distance_from(0.0, 0.0) > 0.7, "the robot to set off")
+        self.reset("/gazebo/reset_world")
+        self.assertLess(self.distance_from(0.0, 0.0), 0.5)
+        stamps = [message.header.stamp.to_sec() for message in self.truth]
+        self.assertEqual(stamps, sorted(stamps), "time goes on")
+        self.tell_initial_pose()
+        self.assert_nodes_work()
+
+    def test_reset_simulation_in_the_middle_of_a_goal(self):
+        self.start_goal(2.0, 3.0)
+        self.wait_until(lambda: self.distance_from(0.0, 0.0) > 0.7, "the robot to set off")
+        self.reset("/gazebo/reset_simulation")
+        self.wait_until(lambda: self.truth[-1].header.stamp.to_sec() < 5.0, "time to begin anew")
+        self.assertLess(self.distance_from(0.0, 0.0), 0.5)
+        self.tell_initial_pose()
+        self.assert_nodes_work()
+
+    def start_goal(self, x, y):
+        """A client of its own: one that has lived through a jump of time has forgotten nothing of it."""
+        client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
+        self.wait_until(lambda: client.wait_for_server(rospy.Duration(0.1)), "move_base")
+        goal = MoveBaseGoal()
+        goal.target_pose.header.frame_id = "map"
+        goal.target_pose.pose.position.x, goal.target_pose.pose.position.y = x, y
+        goal.target_pose.pose.orientation.w = 1.0
+        client.send_goal(goal)
+        return client
+
+    def reset(self, name):
+        rospy.wait_for_service(name, 20.0)
+        rospy.ServiceProxy(name, Empty)()
+        time.sleep(0.1)
+
+    def tell_initial_pose(self):
+        message = PoseWithCovarianceStamped()
+        message.header.frame_id = "map"
+        message.pose.pose.orientation.w = 1.0
+        message.pose.covariance[0] = message.pose.covariance[7] = 0.05
+        message.pose.covariance[35] = 0.03
+        self.wait_until(self.initial_pose.get_num_connections, "amcl")
+        self.initial_pose.publish(message)
+
+    def assert_nodes_work(self):
+        for name in NODES:
+            self.assertTrue(rosnode.rosnode_ping(name, max_count=1), f"{name} is gone")
+        client = self.start_goal(1.0, 0.3)
+        self.wait_until(lambda: client.get_state() not in (GoalStatus.PENDING, GoalStatus.ACTIVE), "the goal")
+        self.assertEqual(client.get_state(), GoalStatus.SUCCEEDED, client.get_goal_status_text())
+        self.assertLess(self.distance_from(1.0, 0.3), 0.3)
+
+    def distance_from(self, x, y):
+        position = self.truth[-1].pose.pose.position
+        return ((position.x - x) ** 2 + (position.y - y) ** 2) ** 0.5
+
+    def wait_until(self, is_met, what):
+        deadline = time.monotonic() + PATIENCE_SECONDS
+        while not is_met():
+            self.assertLess(time.monotonic(), deadline, f"waited in vain for {what}")
+            time.sleep(0.01)
+
+
+if __name__ == "__main__":
+    rospy.init_node("reset_test")
+    rostest.rosrun("home_service_tests", "reset", TestReset)
