@@ -1,0 +1,162 @@
+#!/usr/bin/env python3
+"""The node slam_gmapping of slam_lite keeps the contract of gmapping 1.4, and offers what is its own."""
+
+import math
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+import rospy
+import rostest
+from nav_msgs.msg import MapMetaData
+from nav_msgs.srv import LoadMap
+from std_msgs.msg import Float64
+from std_srvs.srv import SetBool
+
+from planar import OCCUPIED, OccupancyGrid, Pose2, load_map
+from planar.ray_casting import cast_rays
+from planar_ros.messages import GetMapArrays, LaserScanArrays, OccupancyGridArrays, frame_name, grid_from_msg
+from planar_ros.transforms import Transforms
+
+RESOLUTION, RANGE_MAX, BEAMS = 0.05, 10.0, 360
+WAIT_SECONDS = 20.0
+STEPS = 24
+
+
+def room() -> OccupancyGrid:
+    """6 m x 4 m with a pillar, its middle at (0, 0)."""
+    cells = np.zeros((82, 122), dtype=np.int8)
+    cells[[0, -1], :] = cells[:, [0, -1]] = cells[50:56, 80:90] = OCCUPIED
+    return OccupancyGrid(cells, RESOLUTION, Pose2(-3.05, -2.05, 0.0))
+
+
+class SlamContractTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node("test_slam_contract")
+        cls.folder = Path(tempfile.mkdtemp())
+        cls.truth = room()
+        cls.transforms = Transforms()
+        cls.scans = rospy.Publisher("scan", LaserScanArrays, queue_size=10)
+        cls.first_odom_in_map = cls.wait_for(lambda: cls.transforms.lookup("map", "odom"))
+        cls.early_map = cls.call_dynamic_map()
+        cls.wait_for(lambda: cls.scans.get_num_connections() > 0)
+        for step in range(STEPS):
+            cls.sense(step)
+        cls.followed = cls.transforms.lookup("map", "base_link").distance_to(cls.base_in_map)
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(str(cls.folder))
+
+    @staticmethod
+    def wait_for(condition):
+        end = rospy.get_time() + WAIT_SECONDS
+        while rospy.get_time() < end and not rospy.is_shutdown():
+            found = condition()
+            if found:
+                return found
+            rospy.sleep(0.05)
+        raise AssertionError("waited in vain")
+
+    @staticmethod
+    def call_dynamic_map():
+        rospy.wait_for_service("dynamic_map", WAIT_SECONDS)
+        try:
+            return rospy.ServiceProxy("dynamic_map", GetMapArrays)().map
+        except rospy.ServiceException:
+            return None
+
+    @classmethod
+    def sense(cls, step):
+        """The robot drives a circle; its odometry turns 2 % too little."""
+        cls.base_in_map = Pose2(0.8 * math.sin(0.15 * step), 0.8 - 0.8 * math.cos(0.15 * step), 0.15 * step)
+        base_in_odom = Pose2(cls.base_in_map.x, cls.base_in_map.y, 0.147 * step)
+        stamp = rospy.Time.now()
+        scan = LaserScanArrays()
+        scan.header.stamp, scan.header.frame_id = stamp, "laser"
+        scan.angle_min, scan.angle_increment = -math.pi, 2.0 * math.pi / BEAMS
+        scan.range_min, scan.range_max = 0.1, RANGE_MAX
+        angles = scan.angle_min + scan.angle_increment * np.arange(BEAMS)
+        scan.ranges = cast_rays(cls.truth, cls.base_in_map, angles, RANGE_MAX).astype(np.float32)
+        scan.ranges[10], scan.ranges[20], scan.ranges[30] = np.nan, np.inf, 0.0
+        scan.intensities = np.zeros(0, dtype=np.float32)
+        cls.transforms.send(Pose2(), "base_link", "laser", stamp)
+        cls.transforms.send(base_in_odom, "odom", "base_link", stamp)
+        cls.scans.publish(scan)
+        rospy.sleep(0.15)
+
+    def call(self, service, path):
+        return rospy.ServiceProxy("/slam_gmapping/" + service, LoadMap)(str(path))
+
+    def newest_map(self):
+        return rospy.wait_for_message("map", OccupancyGridArrays, WAIT_SECONDS)
+
+    def test_map_to_odom_is_identity_before_the_first_scan(self):
+        self.assertEqual(self.first_odom_in_map, Pose2())
+
+    def test_dynamic_map_fails_before_the_first_map_and_then_answers(self):
+        self.assertIsNone(self.early_map)
+        self.assertEqual(frame_name(self.call_dynamic_map().header.frame_id), "map")
+
+    def test_the_map_is_latched_three_valued_and_true(self):
+        message = self.newest_map()
+        self.assertEqual(set(np.unique(message.data)) - {-1, 0, 100}, set())
+        self.assertEqual(message.info.map_load_time, rospy.Time(0))
+        self.assertEqual((message.info.width % 32, message.info.height % 32), (0, 0))
+        grid = grid_from_msg(message)
+        walls_xy = self.truth.points_of(np.argwhere(self.truth.cells == OCCUPIED))
+        mapped_xy = grid.points_of(np.argwhere(grid.cells == OCCUPIED))
+        gaps = np.hypot(*(mapped_xy[:, None] - walls_xy[None]).transpose(2, 0, 1)).min(axis=1)
+        self.assertGreater(len(mapped_xy), 200)
+        self.assertLess(np.percentile(gaps, 95), 0.1)
+
+    def test_metadata_and_entropy_are_latched(self):
+        metadata = rospy.wait_for_message("map_metadata", MapMetaData, WAIT_SECONDS)
+        self.assertAlmostEqual(metadata.resolution, RESOLUTION, places=6)
+        self.assertGreater(rospy.wait_for_message("/slam_gmapping/entropy", Float64, WAIT_SECONDS).data, 0.0)
+
+    def test_the_transform_corrects_odometry_and_is_post_dated(self):
+        self.assertLess(self.followed, 0.06)
+        latest = self.transforms.latest_stamp("map", "odom")
+        self.assertGreater((latest - rospy.Time.now()).to_sec(), -0.15)
+
+    def test_a_map_is_saved_and_a_bad_path_is_an_error_with_a_reason(self):
+        self.call("save_map", self.folder / "room")
+        self.assertGreater((load_map(self.folder / "room.yaml").cells == OCCUPIED).sum(), 200)
+        with self.assertRaisesRegex(rospy.ServiceException, "cannot be written"):
+            self.call("save_map", self.folder / "nowhere" / "room")
+
+    def test_a_state_is_saved_and_loaded(self):
+        path = self.folder / "room.npz"
+        self.call("save_state", path)
+        self.call("load_state", path)
+        with self.assertRaisesRegex(rospy.ServiceException, "no such state file"):
+            self.call("load_state", self.folder / "none.npz")
+
+    def test_a_pause_leaves_scans_out(self):
+        pause = rospy.ServiceProxy("/slam_gmapping/pause", SetBool)
+        self.assertTrue(pause(True).success)
+        before = self.newest_map().header.stamp
+        for step in range(STEPS, STEPS + 10):
+            self.sense(step)
+        self.assertEqual(self.newest_map().header.stamp, before)
+        self.assertTrue(pause(False).success)
+
+    def test_a_senseless_parameter_ends_the_node_with_its_name(self):
+        run = subprocess.run(
+            ["rosrun", "slam_lite", "slam_gmapping", "__name:=other", "_delta:=0"],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            timeout=30.0,
+            check=False,
+        )
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("/other/delta must be", run.stdout.decode())
+
+
+if __name__ == "__main__":
+    rostest.rosrun("home_service_tests", "slam_contract", SlamContractTest)

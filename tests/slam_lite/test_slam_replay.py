@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+"""slam_lite_replay maps bags without a master, good ones and broken ones."""
+
+import math
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+import rosbag
+import rospy
+import rostest
+from sensor_msgs.msg import LaserScan
+from tf2_msgs.msg import TFMessage
+
+from planar import OCCUPIED, OccupancyGrid, Pose2, load_map
+from planar.ray_casting import cast_rays
+from planar_ros.messages import transform_msg
+
+SCANS, START, PERIOD = 120, 1000.0, 0.2
+LASER_IN_BASE = Pose2(0.1, 0.0, 0.0)
+
+
+def room() -> OccupancyGrid:
+    cells = np.zeros((82, 122), dtype=np.int8)
+    cells[[0, -1], :] = cells[:, [0, -1]] = cells[50:56, 80:90] = OCCUPIED
+    return OccupancyGrid(cells, 0.05, Pose2(-3.05, -2.05, 0.0))
+
+
+def base_at(i: int) -> Pose2:
+    return Pose2(0.8 * math.sin(0.05 * i), 0.8 - 0.8 * math.cos(0.05 * i), 0.05 * i)
+
+
+def write_bag(path, scans=True, transforms=True, back_at=None):
+    """A bag of a drive round the room; at scan ``back_at`` the stamps go back by 0.5 s for one scan."""
+    grid = room()
+    angles = np.linspace(-math.pi / 2.0, math.pi / 2.0, 181)
+    with rosbag.Bag(str(path), "w", chunk_threshold=20000) as bag:
+        for i in range(SCANS):
+            recorded = rospy.Time.from_sec(START + PERIOD * i)
+            if transforms:
+                odom = transform_msg(base_at(i), "odom", "base_link", recorded)
+                laser = transform_msg(LASER_IN_BASE, "base_link", "laser", recorded)
+                bag.write("/tf", TFMessage([odom, laser]), recorded)
+            if scans:
+                scan = LaserScan()
+                scan.header.frame_id = "laser"
+                scan.header.stamp = recorded - rospy.Duration(0.5 if i == back_at else 0.0)
+                scan.angle_min, scan.angle_increment = angles[0], angles[1] - angles[0]
+                scan.range_min, scan.range_max = 0.1, 20.0
+                scan.ranges = cast_rays(grid, base_at(i) @ LASER_IN_BASE, angles, 20.0).tolist()
+                bag.write("/scan", scan, recorded)
+    return path
+
+
+class SlamReplayTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, str(self.folder))
+        self.bag, self.map = self.folder / "drive.bag", self.folder / "map"
+        self.trajectory = self.folder / "drive.tum"
+
+    def replay(self, *arguments):
+        """Exit code and output; the master that it must not need is one that is not there."""
+        command = ["rosrun", "slam_lite", "slam_lite_replay", self.bag, "--map", self.map]
+        run = subprocess.run(
+            [*map(str, command), "--trajectory", str(self.trajectory), *arguments],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            timeout=60.0,
+            check=False,
+            env={**os.environ, "ROS_MASTER_URI": "http://127.0.0.1:1"},
+        )
+        return run.returncode, run.stdout.decode()
+
+    def poses(self):
+        rows = np.loadtxt(str(self.trajectory), ndmin=2)
+        return [Pose2(x, y, 2.0 * math.atan2(z, w)) for _, x, y, _, _, _, z, w in rows]
+
+    def assert_mapped(self):
+        self.assertGreater((load_map(self.map.with_suffix(".yaml")).cells == OCCUPIED).sum(), 150)
+
+    def test_a_bag_becomes_a_map_and_a_pose_for_every_scan(self):
+        write_bag(self.bag)
+        self.assertEqual(self.replay()[0], 0)
+        self.assert_mapped()
+        poses = self.poses()
+        self.assertEqual(len(poses), SCANS)
+        start = base_at(0).inverse()
+        for i, laser_in_map in enumerate(poses):
+            self.assertLess(laser_in_map.distance_to(start @ base_at(i) @ LASER_IN_BASE), 0.05)
+
+    def test_the_base_can_be_asked_for_instead_of_the_laser(self):
+        write_bag(self.bag)
+        self.replay("--pose-of", "base")
+        self.assertLess(self.poses()[0].distance_to(base_at(0)), 1e-3)
+
+    def test_the_same_bag_gives_the_same_files(self):
+        write_bag(self.bag)
+        self.replay()
+        first = self.trajectory.read_bytes(), self.map.with_suffix(".pgm").read_bytes()
+        self.replay()
+        self.assertEqual((self.trajectory.read_bytes(), self.map.with_suffix(".pgm").read_bytes()), first)
+
+    def test_a_bag_without_scans_is_an_error_that_names_its_topics(self):
+        write_bag(self.bag, scans=False)
+        code, text = self.replay()
+        self.assertEqual(code, 2)
+        self.assertRegex(text, "no scans on /scan; topics: /tf")
+
+    def test_a_bag_without_transforms_is_mapped_from_the_scans_with_a_warning(self):
+        write_bag(self.bag, transforms=False)
+        code, text = self.replay()
+        self.assertEqual(code, 0)
+        self.assertRegex(text, "warning: .*no transform odom -> base_link")
+        self.assertRegex(text, "warning: .*no transform base_link -> laser")
+        self.assert_mapped()
+
+    def test_time_that_goes_back_is_told_with_its_position(self):
+        write_bag(self.bag, back_at=60)
+        code, text = self.replay()
+        self.assertEqual(code, 0)
+        self.assertRegex(text, r"warning: .*time goes back by 0.300 s, at stamp 1011.500, 50 % into the bag")
+        self.assertEqual(len(self.poses()), SCANS - 1)
+
+    def test_a_bag_that_is_cut_off_is_mapped_up_to_there(self):
+        write_bag(self.bag)
+        whole = self.bag.read_bytes()
+        self.bag.write_bytes(whole[: int(0.7 * len(whole))])
+        code, text = self.replay()
+        self.assertEqual(code, 1)
+        self.assertRegex(text, r"warning: .*cut off \d+\.\d s after its start")
+        self.assertGreater(len(self.poses()), SCANS // 3)
+        self.assert_mapped()
+
+    def test_a_bag_that_is_broken_in_the_middle_is_mapped_up_to_there(self):
+        write_bag(self.bag)
+        whole = bytearray(self.bag.read_bytes())
+        middle = len(whole) // 2
+        whole[middle : middle + 8000] = b"\xff" * 8000
+        self.bag.write_bytes(bytes(whole))
+        code, text = self.replay()
+        self.assertEqual(code, 1)
+        self.assertRegex(text, r"warning: .*broken \d+\.\d s after its start")
+        self.assert_mapped()
+
+    def test_what_is_no_bag_is_an_error(self):
+        for content in (b"", b"not a bag\n", b"#ROSBAG V2.0\n"):
+            self.bag.write_bytes(content)
+            code, text = self.replay()
+            self.assertEqual(code, 2, content)
+            self.assertRegex(text, "^error: .*drive.bag: ")
+        self.bag.unlink()
+        self.assertRegex(self.replay()[1], "error: .*No such file")
+
+    def test_a_map_that_cannot_be_written_is_an_error(self):
+        write_bag(self.bag)
+        self.map = self.folder / "nowhere" / "map"
+        code, text = self.replay()
+        self.assertEqual(code, 2)
+        self.assertRegex(text, "error: .*cannot be written")
+
+
+if __name__ == "__main__":
+    rostest.rosrun("home_service_tests", "slam_replay", SlamReplayTest)
