@@ -216,14 +216,21 @@ def _open(path) -> Tuple[rosbag.Bag, bool]:
     try:
         return rosbag.Bag(str(path)), False
     except rosbag.ROSBagUnindexedException:
-        pass
+        return _without_end(path), True
     except (OSError, rosbag.ROSBagException) as error:
         raise BagError(f"{path}: not a readable bag ({error})") from None
-    bag = rosbag.Bag(str(path), allow_unindexed=True)
-    # rosbag wants to cut the broken end off the file, which is open for reading only.
-    with contextlib.suppress(io.UnsupportedOperation):
-        for _ in bag.reindex():
-            pass
-    if bag.get_message_count() == 0:
+
+
+def _without_end(path) -> rosbag.Bag:
+    try:
+        bag = rosbag.Bag(str(path), allow_unindexed=True)
+        # rosbag wants to cut the broken end off the file, which is open for reading only.
+        with contextlib.suppress(io.UnsupportedOperation):
+            for _ in bag.reindex():
+                pass
+        count = bag.get_message_count()
+    except Exception as error:  # rosbag lets pass whatever struct, bz2 and genpy raise
+        raise BagError(f"{path}: not a readable bag ({error or type(error).__name__})") from None
+    if count == 0:
         raise BagError(f"{path}: cut off before the first complete chunk of messages")
-    return bag, True
+    return bag
