@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+import numba
 import numpy as np
 
 from planar import FREE, OccupancyGrid, PlanarError, Pose2
@@ -47,14 +48,31 @@ class FreeSpace:
 
     def __init__(self, grid: OccupancyGrid):
         self._grid = grid
-        self._cells = np.flatnonzero(grid.cells == FREE)
-        if self._cells.size == 0:
+        # How many free cells there are up to the end of each row.
+        self._counts = np.cumsum(np.count_nonzero(grid.cells == FREE, axis=1))
+        if self._counts[-1] == 0:
             raise LocalizationError("the map has no free cell")
 
     def draw(self, count: int, rng: np.random.Generator) -> np.ndarray:
         """Poses (count, 3), uniform over the free area and all headings."""
-        drawn = rng.choice(self._cells, count)
-        row_col = np.column_stack(np.unravel_index(drawn, self._grid.cells.shape))
+        numbers = rng.integers(self._counts[-1], size=count)
+        row_col = _cells_numbered(numbers, self._counts, self._grid.cells, FREE)
         within_cell = rng.uniform(-0.5, 0.5, (count, 2))
         positions_xy = self._grid.points_of(row_col + within_cell)
         return np.column_stack((positions_xy, rng.uniform(-np.pi, np.pi, count)))
+
+
+@numba.njit(cache=True)
+def _cells_numbered(numbers, counts, cells, kind):
+    """The cells (N, 2) that have these numbers among the cells of a kind, counted row by row."""
+    row_col = np.empty((numbers.size, 2), dtype=np.int64)
+    for i in range(numbers.size):
+        row = np.searchsorted(counts, numbers[i], side="right")
+        left = counts[row] - numbers[i]
+        col = cells.shape[1]
+        while left > 0:
+            col -= 1
+            if cells[row, col] == kind:
+                left -= 1
+        row_col[i, 0], row_col[i, 1] = row, col
+    return row_col

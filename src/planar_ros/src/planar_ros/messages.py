@@ -71,8 +71,9 @@ def transform_msg(child_in_parent: Pose2, parent: str, child: str, stamp) -> Tra
 
 
 def grid_from_msg(message) -> OccupancyGrid:
+    """A grid with cells of its own: a message's may be read-only, and kernels would be compiled anew."""
     info = message.info
-    cells = np.asarray(message.data, dtype=np.int8).reshape(info.height, info.width)
+    cells = np.array(message.data, dtype=np.int8).reshape(info.height, info.width)
     return OccupancyGrid(cells, info.resolution, pose2_from_msg(info.origin))
 
 

@@ -37,12 +37,17 @@ def parameters_below(namespace: str) -> Dict[str, Any]:
     return values if isinstance(values, dict) else {}
 
 
-def write_parameters(values: Mapping[str, Any]) -> None:
-    """Sets several parameters in one call of the master."""
-    calls = xmlrpc.client.MultiCall(xmlrpc.client.ServerProxy(rosgraph.get_master_uri()))
-    for name, value in values.items():
-        calls.setParam(rospy.get_name(), rospy.resolve_name(name), value)
-    calls()
+class ParameterWriter:
+    """Sets several parameters in one call of the master, over a lasting connection; for one thread."""
+
+    def __init__(self):
+        self._master = xmlrpc.client.ServerProxy(rosgraph.get_master_uri())
+
+    def write(self, values: Mapping[str, Any]) -> None:
+        calls = xmlrpc.client.MultiCall(self._master)
+        for name, value in values.items():
+            calls.setParam(rospy.get_name(), rospy.resolve_name(name), value)
+        calls()
 
 
 def _report_unknown(name: str, nearest: str) -> None:

@@ -8,7 +8,7 @@ import rospy
 from amcl_lite.config import InitialPose, NodeSettings
 from planar import Pose2
 from planar.settings import official_names
-from planar_ros.parameters import read_settings, write_parameters
+from planar_ros.parameters import ParameterWriter, read_settings
 from planar_ros.reconfigure import RESTORE
 
 
@@ -28,6 +28,7 @@ class PoseKeeper:
 
     def __init__(self):
         self._kept_at = rospy.Time(0)
+        self._writer = ParameterWriter()
 
     def keep_if_due(self, rate: float, base_in_map: Optional[Pose2], covariance) -> None:
         """``rate``: Hz, 0 or less for never."""
@@ -41,4 +42,4 @@ class PoseKeeper:
         variances = (float(covariance[i, i]) for i in range(3))
         kept = InitialPose(base_in_map.x, base_in_map.y, base_in_map.yaw, *variances)
         names = official_names(InitialPose)
-        write_parameters({"~" + name: getattr(kept, field) for name, field in names.items()})
+        self._writer.write({"~" + name: getattr(kept, field) for name, field in names.items()})
