@@ -1,5 +1,7 @@
 """The manners of a node: how it starts, fails and ends."""
 
+import gc
+import os
 import queue
 import signal
 import sys
@@ -7,8 +9,12 @@ import threading
 from typing import Callable
 
 import rospy
+from rosgraph import get_master_uri
 
 from planar import PlanarError
+
+# Longer than any node needs to end in order.
+SHUTDOWN_SECONDS = 5.0
 
 
 def run(node_name: str, start: Callable[[], object]) -> None:
@@ -16,8 +22,12 @@ def run(node_name: str, start: Callable[[], object]) -> None:
 
     A PlanarError during the start is a user's mistake: one line on stderr, exit code 2.
     """
-    rospy.init_node(node_name, disable_signals=True)
     _shut_down_on_signals()
+    try:
+        rospy.init_node(node_name, disable_signals=True)
+    except OSError as error:
+        print(f"[{node_name}] error: no ROS master at {get_master_uri()} ({error})", file=sys.stderr)
+        sys.exit(2)
     is_ending, is_over = threading.Event(), threading.Event()
     rospy.on_shutdown(is_ending.set)
     # Called after rospy's own hooks: then the master and all peers have been told.
@@ -32,6 +42,9 @@ def run(node_name: str, start: Callable[[], object]) -> None:
         if not is_ending.is_set():  # else its topics were closed while it still worked
             raise
         is_over.wait()
+    finally:
+        # The interpreter would look for garbage among all of numba first, which takes a third of a second.
+        gc.freeze()
 
 
 def fail(text: str, exit_code: int = 2) -> None:
@@ -50,7 +63,12 @@ def _shut_down_on_signals() -> None:
     received = queue.SimpleQueue()
 
     def shut_down():
-        rospy.signal_shutdown(f"signal {received.get()}")
+        number = received.get()
+        # rospy waits for ever if the master goes away while a topic is being registered.
+        watchdog = threading.Timer(SHUTDOWN_SECONDS, os._exit, [128 + number])
+        watchdog.daemon = True
+        watchdog.start()
+        rospy.signal_shutdown(f"signal {number}")
 
     threading.Thread(target=shut_down, daemon=True).start()
     for number in (signal.SIGINT, signal.SIGTERM):
