@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+"""The simulator ends within a second of SIGINT or SIGTERM, whatever it is at, and leaves nothing behind.
+
+test_exit.py [STARTS]    starts and stops it so many times (default: once in each situation)
+"""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+import unittest
+from pathlib import Path
+from xmlrpc.client import ServerProxy
+
+import psutil
+import roslib.packages
+import rostest
+
+WORLD = Path(__file__).resolve().parents[2] / "map" / "home.world"
+START_SECONDS = 60.0
+EXIT_SECONDS = 1.0
+SITUATIONS = ("running", "paused", "without master", "terminated")
+
+
+class Started:
+    """A master and a simulator of its own; leaving ends both, and counts what is left over."""
+
+    def __enter__(self):
+        with socket.socket() as listener:
+            listener.bind(("127.0.0.1", 0))
+            port = listener.getsockname()[1]
+        self.uri = f"http://127.0.0.1:{port}"
+        environment = {**os.environ, "ROS_MASTER_URI": self.uri, "ROS_IP": "127.0.0.1"}
+        self.master = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], env=environment)
+        self._wait_for(lambda: ServerProxy(self.uri).getPid("/test")[0] == 1)
+        ServerProxy(self.uri).setParam("/test", "/use_sim_time", True)
+        (node,) = roslib.packages.find_node("sim_bridge", "sim_bridge")
+        self.simulator = subprocess.Popen([node, f"_world:={WORLD}", "_speed:=0"], env=environment)
+        self._wait_for(self._is_up)
+        self.environment = environment
+        return self
+
+    def __exit__(self, *_):
+        for process in (self.simulator, self.master):
+            if process.poll() is None:
+                process.kill()
+            process.wait()
+
+    def pause(self):
+        subprocess.run(["rosservice", "call", "/gazebo/pause_physics"], env=self.environment, check=True)
+
+    def end_master(self):
+        self.master.terminate()
+        self.master.wait()
+
+    def seconds_to_end(self, number):
+        """Sends the signal; how long the simulator takes to be gone."""
+        start = time.monotonic()
+        self.simulator.send_signal(number)
+        self.simulator.wait(20.0)
+        return time.monotonic() - start
+
+    def _is_up(self):
+        """Whether the simulator has registered the last of its topics."""
+        _, _, (_, subscribed, _) = ServerProxy(self.uri).getSystemState("/test")
+        return "/sim_bridge/add_box" in [topic for topic, _ in subscribed]
+
+    def _wait_for(self, is_there):
+        deadline = time.monotonic() + START_SECONDS
+        while True:
+            try:
+                if is_there():
+                    return
+            except OSError:
+                pass
+            if time.monotonic() > deadline:
+                raise TimeoutError("the simulator did not start")
+            time.sleep(0.05)
+
+
+def exit_in(situation):
+    """Seconds to the end, its exit code, and the processes it leaves behind."""
+    before = {process.pid for process in psutil.process_iter()}
+    with Started() as started:
+        if situation == "paused":
+            started.pause()
+        if situation == "without master":
+            started.end_master()
+        mine = {child.pid for child in psutil.Process(started.simulator.pid).children(recursive=True)}
+        seconds = started.seconds_to_end(signal.SIGTERM if situation == "terminated" else signal.SIGINT)
+    left = [pid for pid in mine - before if psutil.pid_exists(pid)]
+    return seconds, started.simulator.returncode, left
+
+
+class TestExit(unittest.TestCase):
+    def test_the_simulator_ends_at_once(self):
+        for situation in SITUATIONS:
+            seconds, code, left = exit_in(situation)
+            self.assertLess(seconds, EXIT_SECONDS, situation)
+            self.assertEqual((code, left), (0, []), situation)
+
+
+def main():
+    starts = int(sys.argv[1])
+    ended = [exit_in(SITUATIONS[number % len(SITUATIONS)]) for number in range(starts)]
+    times = sorted(seconds for seconds, _, _ in ended)
+    left = sum(len(one[2]) for one in ended)
+    failed = sum(one[1] != 0 for one in ended)
+    print(
+        f"{starts} starts: exit within {times[len(times) // 2]:.2f} s (median), {times[-1]:.2f} s (longest), "
+        f"{failed} with an error, {left} processes left"
+    )
+    return int(times[-1] > EXIT_SECONDS or failed or left)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) == 2 and sys.argv[1].isdigit():
+        sys.exit(main())
+    rostest.rosrun("home_service_tests", "exit", TestExit)
