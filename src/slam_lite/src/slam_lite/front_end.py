@@ -111,24 +111,23 @@ class FrontEnd:
 
     def track(self, base_in_odom: Pose2, surface: Surface) -> Tracked:
         """Follows one scan, taken where odometry believed ``base_in_odom``."""
-        if self._last_in_track is None:
-            self._last_in_track = base_in_odom
+        last_in_track = base_in_odom if self._last_in_track is None else self._last_in_track
         motion = Pose2() if self._last_in_odom is None else self._last_in_odom.inverse() @ base_in_odom
         variance = self._motion_variance(motion)
         if self.odometry_is_stuck and not moves(motion):
-            match = self._match(surface, self._matched_motion, _STEADY_MOTION_VARIANCE)
+            match = self._match(surface, last_in_track, self._matched_motion, _STEADY_MOTION_VARIANCE)
         else:
-            match = self._match(surface, motion, variance)
-        self._matched_motion = self._last_in_track.inverse() @ match.base_pose
+            match = self._match(surface, last_in_track, motion, variance)
+        self._matched_motion = last_in_track.inverse() @ match.base_pose
         deviation = (motion.inverse() @ self._matched_motion).as_array()
         surprise = float(np.sum(deviation**2 / variance))
         self.odometry_is_stuck = not moves(motion) and moves(self._matched_motion, _STUCK)
         self._last_in_odom, self._last_in_track = base_in_odom, match.base_pose
         return Tracked(match.base_pose, match.information, match.response, surprise)
 
-    def _match(self, surface: Surface, motion: Pose2, variance: np.ndarray) -> Match:
+    def _match(self, surface: Surface, last_in_track: Pose2, motion: Pose2, variance: np.ndarray) -> Match:
         prior = np.diag(1.0 / variance)
-        predicted = self._last_in_track @ motion
+        predicted = last_in_track @ motion
         self._scans.gather(predicted)
         local_map = self._scans.local_map
         if local_map.count == 0:
@@ -140,18 +139,18 @@ class FrontEnd:
         start = search_near(surface, local_map, predicted, window)
         match = refine(surface, local_map, start, predicted, prior)
         if match.response < _POOR_RESPONSE:
-            match = self._search_wide(surface, predicted, match)
+            match = self._search_wide(surface, (predicted, last_in_track), match)
         if match.response < self._settings.min_response:
             return Match(predicted, prior, match.response)
         return match
 
-    def _search_wide(self, surface: Surface, predicted: Pose2, match: Match) -> Match:
-        """A good and only match around the prediction or the last pose, if there is one; else ``match``.
+    def _search_wide(self, surface: Surface, centers: Tuple[Pose2, ...], match: Match) -> Match:
+        """A good and only match around one of ``centers``, if there is one; else ``match``.
 
         What is seen for the first time matches poorly too, and must not be taken for something else.
         """
         local_map = self._scans.local_map
-        for center in (predicted, self._last_in_track):
+        for center in centers:
             peak = search_far(surface, local_map, center, _WIDE_WINDOW, _SURE_RESPONSE - 0.1, apart=0.5)
             if peak is not None and peak.is_unique:
                 wide = refine(surface, local_map, peak.base_pose, peak.base_pose, _NO_BELIEF)
