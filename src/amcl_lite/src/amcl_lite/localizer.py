@@ -137,9 +137,7 @@ class Localizer:
     def _configure(self, settings: LocalizerSettings) -> None:
         self._settings = settings
         self._field = likelihood_field(self._grid, settings.sigma_hit, settings.likelihood_max_distance)
-        # amcl's rays end at anything that is not free.
-        opaque = np.where(self._grid.cells == FREE, FREE, OCCUPIED).astype(np.int8)
-        self._opaque_grid = OccupancyGrid(opaque, self._grid.resolution, self._grid.origin)
+        self._opaque_grid = _opaque(self._grid) if settings.sensor_model == "beam" else None
 
     def _start(self, particles: ParticleSet, is_lost: bool) -> None:
         self._filter = ParticleFilter(particles, self._rng)
@@ -189,7 +187,7 @@ class Localizer:
 
     def _log_likelihoods(self, beams: Beams) -> np.ndarray:
         poses, settings = self._filter.particles.poses, self._settings
-        if settings.sensor_model == "beam":
+        if self._opaque_grid is not None:
             return log_beam_model(poses, beams, self._opaque_grid, settings)
         if settings.sensor_model == "likelihood_field_prob":
             skip_beams = settings.beam_skip and self._filter.has_converged
@@ -219,6 +217,13 @@ class Localizer:
             return
         self._quality = quality_of(self._odom_in_map @ base_in_odom, beams, self._field, self._grid)
         self._detector.take(self._quality, stamp)
+
+
+def _opaque(grid: OccupancyGrid) -> OccupancyGrid:
+    """A grid on which amcl's rays end at anything that is not free."""
+    cells = np.full_like(grid.cells, OCCUPIED)
+    cells[grid.cells == FREE] = FREE
+    return OccupancyGrid(cells, grid.resolution, grid.origin)
 
 
 def warm_up(settings: LocalizerSettings) -> None:

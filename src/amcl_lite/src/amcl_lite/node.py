@@ -18,7 +18,6 @@ from std_srvs.srv import Empty, EmptyResponse
 
 from amcl_lite.config import MOTION_MODELS, SENSOR_MODELS, InitialPose, NodeSettings, advice, as_yaml
 from amcl_lite.localizer import Estimate, Localizer, warm_up
-from amcl_lite.nodes.bag_player import play_bag
 from amcl_lite.nodes.start_pose import PoseKeeper, read_start_pose
 from amcl_lite.nodes.views import Views
 from planar import PlanarError, Pose2, SettingsError
@@ -121,6 +120,8 @@ class AmclNode:
             time.sleep(MAP_RETRY_SECONDS)
         if localize_globally:
             self._on_global_localization(None)
+        from amcl_lite.nodes.bag_player import play_bag  # rosbag takes memory, and is rarely wanted
+
         start = time.monotonic()
         play_bag(path, self._transforms, self._scans, self._settings.bag_scan_period)
         rospy.loginfo("Bag complete, took %.1f seconds to process, shutting down", time.monotonic() - start)
