@@ -50,8 +50,9 @@ def test_an_unknown_robot_is_refused_with_the_nearest_name():
         robot_named("turtlebot_lidr")
 
 
-@pytest.mark.parametrize("robot", ROBOTS.values(), ids=list(ROBOTS))
-def test_lasers_look_where_costmaps_of_the_turtlebot_expect_them(robot):
+@pytest.mark.parametrize("name", ["turtlebot_lidar", "turtlebot_kinect"])
+def test_lasers_look_where_costmaps_of_the_turtlebot_expect_them(name):
+    robot = ROBOTS[name]
     assert 0.25 < robot.mounting(robot.laser.frame)[2, 3] < 0.35
 
 

@@ -97,6 +97,19 @@ _KINECT = LaserProfile(
     too_near=math.nan,
 )
 
+# LDS-01 as turtlebot3_gazebo has it.
+_LDS = LaserProfile(
+    frame="base_scan",
+    beams=360,
+    angle_min=0.0,
+    angle_increment=2.0 * math.pi / 359,
+    range_min=0.12,
+    range_max=3.5,
+    sight=3.5,
+    no_return=math.inf,
+    too_near=-math.inf,
+)
+
 # Hokuyo UST-10LX in front, as BARN's Jackal has it.
 _HOKUYO = LaserProfile(
     frame="front_laser",
@@ -119,11 +132,30 @@ _JACKAL_DRIVE = DriveProfile(
     max_turn_acceleration=12.0,
 )
 
+_BURGER_DRIVE = DriveProfile(
+    wheel_radius=0.033,
+    wheel_separation=0.160,
+    max_speed=0.22,
+    max_turn_rate=2.84,
+    max_acceleration=2.5,
+    max_turn_acceleration=3.2,
+)
+_WAFFLE_DRIVE = DriveProfile(
+    wheel_radius=0.033,
+    wheel_separation=0.288,
+    max_speed=0.26,
+    max_turn_rate=1.82,
+    max_acceleration=2.5,
+    max_turn_acceleration=3.2,
+)
+
 ROBOTS: Dict[str, RobotProfile] = {
     profile.name: profile
     for profile in (
         RobotProfile("turtlebot_lidar", ("turtlebot2.urdf", "lidar.urdf"), DriveProfile(), _LIDAR, 0.178),
         RobotProfile("turtlebot_kinect", ("turtlebot2.urdf", "kinect.urdf"), DriveProfile(), _KINECT, 0.178),
+        RobotProfile("turtlebot3_burger", ("turtlebot3_burger.urdf",), _BURGER_DRIVE, _LDS, 0.105),
+        RobotProfile("turtlebot3_waffle", ("turtlebot3_waffle.urdf",), _WAFFLE_DRIVE, _LDS, 0.220),
         RobotProfile("jackal", ("jackal.urdf",), _JACKAL_DRIVE, _HOKUYO, 0.267),
     )
 }
