@@ -64,10 +64,10 @@ def main() -> int:
 
 def _drive(pair: int, options, settings: NavigatorSettings, grid: OccupancyGrid, world: World) -> Run:
     rng = np.random.default_rng([options.seed, pair])
-    start, goal = _places(settings, grid, rng, 2)
+    start, goal = places(settings, grid, rng, 2)
     simulation = Simulation(world, seed=pair, base_in_world=start)
     for number in range(options.boxes):
-        _add_box(simulation, f"box_{number}", settings, grid, rng, keep_free=(start, goal))
+        add_box(simulation, f"box_{number}", settings, grid, rng, keep_free=(start, goal))
     try:
         run = _pursue(pair, options, simulation, Navigator(settings, grid), goal)
     finally:
@@ -128,7 +128,7 @@ def _pursue(pair: int, options, simulation: Simulation, navigator: Navigator, go
     )
 
 
-def _places(settings: NavigatorSettings, grid: OccupancyGrid, rng, count: int) -> List[Pose2]:
+def places(settings: NavigatorSettings, grid: OccupancyGrid, rng, count: int) -> List[Pose2]:
     """Random poses in the part of the map that the robot can reach from the map's origin."""
     costmap = LayeredCostmap(settings.global_costmap, grid)
     navigator = Navigator(settings, grid)
@@ -149,7 +149,7 @@ def _is_connected(navigator: Navigator, place: Pose2) -> bool:
         return False
 
 
-def _add_box(simulation, name, settings, grid, rng, keep_free) -> None:
+def add_box(simulation, name, settings, grid, rng, keep_free) -> None:
     """Puts a box that the map does not show somewhere off the ends of the way and off narrow places."""
     costmap = LayeredCostmap(settings.global_costmap, grid)
     open_cells = np.argwhere(costmap.costs_of_map == 0)

@@ -98,8 +98,9 @@ class Controller:
         error = self._tracking.heading_error(
             base_in_map.x, base_in_map.y, base_in_map.yaw, self._settings.heading_lookahead
         )
-        if self._should_turn(error):
-            return self._turn(error, base_in_local, twist, costmap, plan_xy)
+        turn = self._turn(error, base_in_local, twist, costmap, plan_xy) if self._should_turn(error) else None
+        if turn is not None:
+            return turn
         try:
             trajectory = self._follower.follow(
                 costmap, base_in_local, twist, plan_xy, self._within_limits(highest), self.distance_left
@@ -109,18 +110,17 @@ class Controller:
         return Control(trajectory.command, trajectory.poses, plan_xy)
 
     def _find_another_way(self, error, base_in_local, twist, costmap, plan_xy) -> Control:
-        """Where no arc is free: turns to the plan, or backs out of a contact."""
+        """Where no way on is free: turns to the plan, or backs out of a contact. Raises ControlError."""
+        turn = None
         if abs(error) > FOLLOWED_ANGLE:
-            return self._turn(error, base_in_local, twist, costmap, plan_xy)
-        return self._back_out(
-            base_in_local, costmap, plan_xy, "every velocity within reach leads into an obstacle"
-        )
+            turn = self._turn(error, base_in_local, twist, costmap, plan_xy)
+        return turn or self._back_out(base_in_local, costmap, plan_xy)
 
-    def _back_out(self, base_in_local, costmap, plan_xy, otherwise: str) -> Control:
-        """Leaves a contact the way that lessens it. Raises ControlError with the given text if it cannot."""
+    def _back_out(self, base_in_local, costmap, plan_xy) -> Control:
+        """Leaves a contact the way that lessens it. Raises ControlError if it cannot."""
         command = way_out(costmap, base_in_local) if costmap.contacts(base_in_local) else None
         if command is None:
-            raise ControlError(otherwise)
+            raise ControlError("every velocity within reach leads into an obstacle")
         return Control(command, base_in_local.as_array()[None, :], plan_xy)
 
     def _is_near(self, base_in_map: Pose2) -> bool:
@@ -143,15 +143,16 @@ class Controller:
         error = wrap(self._goal_in_map.yaw - base_in_map.yaw)
         if abs(error) <= settings.yaw_goal_tolerance or abs(twist.v) > settings.trans_stopped_vel:
             return Control(stopping(settings, twist, self._period), here, here[:, :2])
-        return self._turn(error, base_in_local, twist, costmap, here[:, :2])
+        turn = self._turn(error, base_in_local, twist, costmap, here[:, :2])
+        return turn or self._back_out(base_in_local, costmap, here[:, :2])
 
-    def _turn(self, error, base_in_local, twist, costmap, plan_xy) -> Control:
-        """Turns on the spot, the other way round if this one is obstructed."""
+    def _turn(self, error, base_in_local, twist, costmap, plan_xy) -> Optional[Control]:
+        """Turns on the spot, the other way round if this one is obstructed; None if there is no room."""
         for angle in (error, error - math.copysign(2.0 * math.pi, error)):
             if costmap.has_room_to_turn(base_in_local, angle):
                 command = rotation_towards(self._settings, angle, twist, self._period)
                 return Control(command, base_in_local.as_array()[None, :], plan_xy)
-        return self._back_out(base_in_local, costmap, plan_xy, "there is no room to turn")
+        return None
 
     def _within_limits(self, highest: Twist2) -> Twist2:
         """The highest speeds: those of the settings, lower where asked for and to stop at the plan's end."""

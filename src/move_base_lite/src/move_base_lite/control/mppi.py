@@ -185,7 +185,7 @@ def _drive(wanted, start, scene, limits, weights):
     """Cost, poses (N + 1, 3) and speeds (N, 2) of a robot that is asked for the speeds ``wanted`` (N, 2).
 
     The speeds are those it can reach, cut to what its clearance allows. The cost is inf if it hits something
-    before it could have stopped.
+    before it could have stopped. A robot in touch may move as long as it never touches at more points.
     """
     steps = wanted.shape[0]
     poses, speeds = np.empty((steps + 1, 3)), np.zeros((steps, 2))
@@ -220,7 +220,7 @@ def _drive(wanted, start, scene, limits, weights):
         poses[step + 1] = x, y, yaw
         speeds[step] = v, omega
         if room < weights.safe_distance:
-            nearness = 1.0 - room / weights.safe_distance
+            nearness = 1.0 - max(room, 0.0) / weights.safe_distance
             cost += weights.obstacle * nearness * nearness * (abs(v) + CREEPING) * dt
         to_go = _at(scene.to_go, scene, x, y)
         cost += dt * (weights.delay * to_go + weights.turn * omega * omega - weights.backward * min(v, 0.0))
@@ -245,28 +245,33 @@ def _speed_in(v, room, limits):
 
 @numba.njit(cache=True)
 def _room(scene, x, y, yaw):
-    """Metres from the outline to the nearest obstacle, at least; 0 outside the window."""
+    """Metres from the outline to the nearest obstacle, at least; if it touches, minus how many points do.
+
+    All that is outside the window counts as an obstacle.
+    """
     rows, cols = scene.clearance.shape
     base_col = (x - scene.origin_x) / scene.resolution
     base_row = (y - scene.origin_y) / scene.resolution
     row, col = math.floor(base_row), math.floor(base_col)
+    touching, nearest = 0, FAR
     if row < 0 or row >= rows or col < 0 or col >= cols:
-        return 0.0
-    around = scene.clearance[row, col]
-    if around > 2.0 * scene.circumscribed_radius:
-        return around - scene.circumscribed_radius
-    nearest = around - scene.inscribed_radius
-    if nearest < 0.0:
-        return 0.0
+        touching = 1
+    else:
+        around = scene.clearance[row, col]
+        if around > 2.0 * scene.circumscribed_radius:
+            return around - scene.circumscribed_radius
+        if around < scene.inscribed_radius:
+            touching = 1
     c, s = math.cos(yaw) / scene.resolution, math.sin(yaw) / scene.resolution
     for i in range(scene.outline_xy.shape[0]):
         along, across = scene.outline_xy[i]
         row = math.floor(base_row + s * along + c * across)
         col = math.floor(base_col + c * along - s * across)
-        if row < 0 or row >= rows or col < 0 or col >= cols:
-            return 0.0
-        nearest = min(nearest, scene.clearance[row, col])
-    return nearest
+        if row < 0 or row >= rows or col < 0 or col >= cols or scene.clearance[row, col] == 0.0:
+            touching += 1
+        else:
+            nearest = min(nearest, scene.clearance[row, col])
+    return nearest if touching == 0 else -float(touching)
 
 
 @numba.njit(cache=True)
