@@ -18,6 +18,9 @@ from planar import Pose2, Twist2, wrap
 
 ALIGNED_ANGLE = 0.3
 FOLLOWED_ANGLE = 0.1
+# Metres between the places checked on the way to a standstill, and how much longer that is taken to be.
+STOPPING_STEP = 0.05
+STOPPING_MARGIN = 1.3
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,12 +150,28 @@ class Controller:
         return turn or self._back_out(base_in_local, costmap, here[:, :2])
 
     def _turn(self, error, base_in_local, twist, costmap, plan_xy) -> Optional[Control]:
-        """Turns on the spot, the other way round if this one is obstructed; None if there is no room."""
+        """Turns on the spot, the other way round if this one is obstructed; None if there is no room.
+
+        A robot that drives has to come to a standstill first, and there must be room for that too.
+        """
+        if not self._can_stop(base_in_local, twist, costmap):
+            return None
         for angle in (error, error - math.copysign(2.0 * math.pi, error)):
             if costmap.has_room_to_turn(base_in_local, angle):
                 command = rotation_towards(self._settings, angle, twist, self._period)
                 return Control(command, base_in_local.as_array()[None, :], plan_xy)
         return None
+
+    def _can_stop(self, base_in_local: Pose2, twist: Twist2, costmap: LayeredCostmap) -> bool:
+        """Whether the robot touches nothing new where it would stand after braking."""
+        way = (
+            STOPPING_MARGIN * abs(twist.v) * (self._period + abs(twist.v) / (2.0 * self._settings.acc_lim_x))
+        )
+        if way < costmap.window.resolution:
+            return True
+        touching = costmap.contacts(base_in_local)
+        steps = math.copysign(way, twist.v) * np.linspace(0.0, 1.0, math.ceil(way / STOPPING_STEP) + 1)[1:]
+        return all(costmap.contacts(base_in_local @ Pose2(float(step), 0.0)) <= touching for step in steps)
 
     def _within_limits(self, highest: Twist2) -> Twist2:
         """The highest speeds: those of the settings, lower where asked for and to stop at the plan's end."""
