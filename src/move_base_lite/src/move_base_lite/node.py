@@ -25,6 +25,7 @@ from move_base_lite.parameters import settings_from_parameters
 from move_base_lite.planning import headings_along
 from move_base_lite.warming import warm_up
 from planar import Pose2, SettingsError, Twist2
+from planar_ros.clock import sleep_until
 from planar_ros.messages import OccupancyGridArrays, frame_name, grid_from_msg
 from planar_ros.parameters import parameters_below
 from planar_ros.progress import Progress
@@ -161,10 +162,9 @@ class MoveBaseNode:
         due = rospy.Time(0)
         while not rospy.is_shutdown():
             try:
-                now = rospy.Time.now()
-                if now == rospy.Time(0) or now < due:
-                    rospy.sleep(max(due - now, rospy.Duration(0, 1)))
-                    continue
+                if due - rospy.Time.now() > 2 * period:
+                    raise rospy.ROSTimeMovedBackwardsException((due - rospy.Time.now()).to_sec())
+                now = sleep_until(due)
                 self._tick(now)
                 self._progress.report(now)
                 due = max(due + period, now) if due != rospy.Time(0) else now + period
