@@ -1,0 +1,29 @@
+"""Waiting in ROS time, for nodes that a simulation in lock-step waits for in turn."""
+
+import rospy
+
+# So that a shutdown is noticed at once.
+LONGEST_WAIT_SECONDS = 0.2
+
+
+def sleep_until(due: rospy.Time) -> rospy.Time:
+    """Waits until ROS time has come to ``due``; returns the time then.
+
+    Unlike rospy.sleep it misses no message of the clock, and waits for a point in time, not for a span: when
+    the simulation waits for this node, the clock stands still, and one step too many would never come.
+    Raises ROSTimeMovedBackwardsException and ROSInterruptException as rospy.sleep does.
+    """
+    if rospy.rostime.is_wallclock():
+        rospy.sleep(due - rospy.Time.now())
+        return rospy.Time.now()
+    changed, start = rospy.rostime.get_rostime_cond(), rospy.Time.now()
+    with changed:
+        now = rospy.Time.now()
+        while now < due or now == rospy.Time(0):
+            if rospy.is_shutdown():
+                raise rospy.ROSInterruptException("shutdown while waiting for the clock")
+            changed.wait(LONGEST_WAIT_SECONDS)
+            now = rospy.Time.now()
+            if now < start:
+                raise rospy.ROSTimeMovedBackwardsException((start - now).to_sec())
+    return now
