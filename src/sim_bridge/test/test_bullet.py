@@ -1,5 +1,6 @@
 """PyBullet keeps quiet."""
 
+import os
 import subprocess
 import sys
 
@@ -12,16 +13,26 @@ floor = World("floor", (Body("floor::link", numpy.eye(4), (Collision(Plane(), nu
 print(Simulation(floor).step().stamp)
 """
 
+ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+
 
 def test_a_simulation_prints_nothing_of_its_own():
     ended = subprocess.run(
-        [sys.executable, "-c", SIMULATE], capture_output=True, text=True, timeout=120, check=False
+        [sys.executable, "-c", SIMULATE],
+        env=ENVIRONMENT,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
     )
     assert (ended.stdout, ended.stderr, ended.returncode) == ("0.02\n", "", 0)
 
 
 def test_it_can_be_imported_without_standard_streams():
     ended = subprocess.run(
-        ["/bin/sh", "-c", '"$0" -c "import sim_bridge" >&- 2>&-', sys.executable], timeout=120, check=False
+        ["/bin/sh", "-c", '"$0" -c "import sim_bridge" >&- 2>&-', sys.executable],
+        env=ENVIRONMENT,
+        timeout=120,
+        check=False,
     )
     assert ended.returncode == 0
