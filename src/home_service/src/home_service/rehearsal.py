@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import List, Optional, Tuple
 
 import numpy as np
-import yaml
 
 from add_markers import CarriedParcel
 from amcl_lite import Localizer, LocalizerSettings
@@ -19,7 +18,7 @@ from move_base_lite import Decision, Navigator, Status, load_settings
 from pick_objects import Errand, ErrandSettings, ErrandState, Finish, GoalReached, GoalRefused, GoTo
 from planar import OccupancyGrid, Pose2, Twist2
 from planar.places import Place
-from planar.settings import official_names, settings_from
+from planar.settings_file import settings_from_yaml
 from sim_bridge import Observation, RobotProfile, Simulation
 from sim_bridge.world import World
 
@@ -73,7 +72,8 @@ class Rehearsal:
         seed: int,
     ):
         self._simulation = Simulation(world, robot, seed=seed)
-        self._localizer = Localizer(grid, _localizer_settings(), np.random.default_rng(seed))
+        localization, _ = settings_from_yaml(LocalizerSettings, LOCALIZATION_CONFIG)
+        self._localizer = Localizer(grid, localization, np.random.default_rng(seed))
         navigation = load_settings(NAVIGATION_CONFIG)
         self._navigator = Navigator(navigation, grid)
         self._steps_per_tick = round(
@@ -148,11 +148,6 @@ class Rehearsal:
         event = f"shown at {shown[0]}" if shown else "hidden"
         if self._ledger.markers[-1:] != [event]:
             self._ledger.markers.append(event)
-
-
-def _localizer_settings() -> LocalizerSettings:
-    parameters = yaml.safe_load(LOCALIZATION_CONFIG.read_text(encoding="utf-8"))
-    return settings_from(LocalizerSettings, parameters, official_names(LocalizerSettings))[0]
 
 
 def _event_of(decision: Decision):
