@@ -3,9 +3,9 @@ import math
 import numpy as np
 import pytest
 
-from explore_lite.frontiers import Frontier
-from explore_lite.travel import travel_distances
-from explore_lite.viewpoints import viewpoint_of
+from explorer_lite.frontiers import Frontier
+from explorer_lite.travel import travel_distances
+from explorer_lite.viewpoints import viewpoint_of
 from planar import OCCUPIED, Pose2, grid_from_picture
 from planar.distance_field import distance_field
 

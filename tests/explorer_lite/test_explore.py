@@ -10,7 +10,7 @@ import rostest
 from actionlib_msgs.msg import GoalStatus
 from move_base_msgs.msg import MoveBaseAction
 
-from explore_lite.msg import ExploreAction, ExploreGoal
+from explorer_lite.msg import ExploreAction, ExploreGoal
 from planar import Pose2, grid_from_picture
 from planar_ros.actions import server_is_ready
 from planar_ros.messages import OccupancyGridArrays, grid_to_msg, pose2_from_msg

@@ -6,7 +6,7 @@ from geometry_msgs.msg import Point
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
-from explore_lite.frontiers import Frontier
+from explorer_lite.frontiers import Frontier
 
 POINT_SIZE = 0.05
 BLUE, RED = ColorRGBA(0.1, 0.3, 1.0, 1.0), ColorRGBA(1.0, 0.2, 0.1, 1.0)

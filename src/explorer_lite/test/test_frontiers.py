@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from explore_lite.frontiers import find_frontiers, known_part
+from explorer_lite.frontiers import find_frontiers, known_part
 from planar import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Pose2, grid_from_picture
 
 

@@ -1,6 +1,6 @@
 """Compiled kernels before they are needed."""
 
-from explore_lite.explorer import Explorer
+from explorer_lite.explorer import Explorer
 from planar import Pose2, grid_from_picture
 
 

@@ -3,8 +3,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from explore_lite import Explorer, ExplorerSettings, ExplorerState, Finish, GoalReached, GoalRefused, GoTo
-from explore_lite.config import NodeSettings
+from explorer_lite import Explorer, ExplorerSettings, ExplorerState, Finish, GoalReached, GoalRefused, GoTo
+from explorer_lite.config import NodeSettings
 from planar import Pose2, SettingsError, grid_from_picture
 
 SETTINGS = ExplorerSettings(
@@ -160,5 +160,5 @@ def test_senseless_settings_are_refused(name, value):
 
 
 def test_the_shipped_configuration_is_the_default_one():
-    shipped = yaml.safe_load((Path(__file__).parents[1] / "config/explore_lite.yaml").read_text())
+    shipped = yaml.safe_load((Path(__file__).parents[1] / "config/explorer_lite.yaml").read_text())
     assert shipped == {**vars(ExplorerSettings()), **vars(NodeSettings())}

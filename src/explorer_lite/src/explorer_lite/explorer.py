@@ -7,10 +7,10 @@ from typing import List, Optional, Union
 
 import numpy as np
 
-from explore_lite.config import ExplorerSettings
-from explore_lite.frontiers import Frontier, find_frontiers, known_part
-from explore_lite.travel import travel_distances
-from explore_lite.viewpoints import viewpoint_of
+from explorer_lite.config import ExplorerSettings
+from explorer_lite.frontiers import Frontier, find_frontiers, known_part
+from explorer_lite.travel import travel_distances
+from explorer_lite.viewpoints import viewpoint_of
 from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, wrap
 from planar.distance_field import distance_field
 

@@ -5,7 +5,7 @@ from typing import List, Optional
 
 import numpy as np
 
-from explore_lite.frontiers import Frontier
+from explorer_lite.frontiers import Frontier
 from planar import OccupancyGrid, Pose2
 from planar.ray_casting import cast_rays
 

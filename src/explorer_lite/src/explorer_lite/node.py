@@ -1,4 +1,4 @@
-"""The ROS node of explore_lite: the action ``explore``, carried out with move_base on the growing map."""
+"""The ROS node of explorer_lite: the action ``explore``, carried out with move_base on the growing map."""
 
 import time
 from typing import Optional
@@ -10,11 +10,11 @@ from geometry_msgs.msg import Point, PoseStamped
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from visualization_msgs.msg import MarkerArray
 
-from explore_lite.config import ExplorerSettings, NodeSettings
-from explore_lite.explorer import Explorer, ExplorerState, Finish, GoalReached, GoalRefused, GoTo
-from explore_lite.markers import frontier_markers
-from explore_lite.msg import ExploreAction, ExploreFeedback, ExploreResult
-from explore_lite.warming import warm_up
+from explorer_lite.config import ExplorerSettings, NodeSettings
+from explorer_lite.explorer import Explorer, ExplorerState, Finish, GoalReached, GoalRefused, GoTo
+from explorer_lite.markers import frontier_markers
+from explorer_lite.msg import ExploreAction, ExploreFeedback, ExploreResult
+from explorer_lite.warming import warm_up
 from planar import OccupancyGrid, Pose2
 from planar_ros.actions import server_is_ready
 from planar_ros.messages import OccupancyGridArrays, grid_from_msg, pose2_to_msg
