@@ -53,7 +53,7 @@ def test_an_ascii_image_is_read(tmp_path):
     [
         ("resolution: 0.05", "", "resolution is missing"),
         ("resolution: 0.05", "resolution: fine", "resolution must be a number"),
-        ("resolution: 0.05", "resolution: -1", "resolution must be positive"),
+        ("resolution: 0.05", "resolution: -1", "a.yaml:2: resolution must be positive"),
         ("[-1.0, -2.0, 0.0]", "[0, 0]", "origin must be"),
         ("negate: 0", "negate: true", "negate must be 0 or 1"),
         ("image: a.pgm", "image: b.pgm", "b.pgm: no such map image"),
@@ -62,7 +62,7 @@ def test_an_ascii_image_is_read(tmp_path):
         ("negate: 0", "negate: [", "not valid YAML"),
     ],
 )
-def test_a_malformed_map_is_refused_naming_file_and_key(tmp_path, before, after, complaint):
+def test_a_malformed_map_is_refused_naming_file_line_and_key(tmp_path, before, after, complaint):
     with pytest.raises(MapFileError, match=complaint) as caught:
         load_map(write(tmp_path, GOOD.replace(before, after)))
     assert str(tmp_path) in str(caught.value)

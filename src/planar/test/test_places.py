@@ -18,17 +18,17 @@ def test_places_are_read_with_defaults(tmp_path):
 @pytest.mark.parametrize(
     "text, complaint",
     [
-        ("a: {x: 1}", "place a: y is missing"),
-        ("a: {x: 1, y: north}", "place a: y must be a number"),
-        ("a: {x: 1, y: .nan}", "place a: y must be a number"),
-        ("a: {x: 1, y: 2, z: 3}", "place a has an unknown key z"),
-        ("a: {x: 1, y: 2, radius: 0}", "radius must be positive"),
-        ("a: 3", "place a must have keys"),
-        ("- 1", "expected named places"),
+        ("a: {x: 1}", "places.yaml:1: a.y is missing"),
+        ("a: {x: 1, y: north}", "places.yaml:1: a.y must be a number"),
+        ("a: {x: 1, y: .nan}", "places.yaml:1: a.y must be a number"),
+        ("a: {x: 1, y: 2, z: 3}", ":1: a.z is not known; known are x, y, yaw, radius"),
+        ("\na: {x: 1, y: 2, radius: 0}", ":2: a.radius must be positive"),
+        ("a: 3", ":1: a must be a table of keys and values, got 3"),
+        ("- 1", ":1: expected a table"),
         ("a: {", "not valid YAML"),
     ],
 )
-def test_a_malformed_file_is_refused_naming_file_place_and_key(tmp_path, text, complaint):
+def test_a_malformed_file_is_refused_naming_file_line_and_key(tmp_path, text, complaint):
     path = write(tmp_path, text)
     with pytest.raises(SettingsError, match=complaint) as caught:
         load_places(path)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Optional, Union
 
 from pick_objects.config import ErrandSettings
+from planar.driving import Finish, GoalReached, GoalRefused
 from planar.places import Place
 
 
@@ -25,26 +26,6 @@ class GoTo:
 
     place: Place
     attempt: int
-
-
-@dataclass(frozen=True)
-class Finish:
-    """Order: the errand is over, and why."""
-
-    success: bool
-    reason: str
-
-
-@dataclass(frozen=True)
-class GoalReached:
-    """Event: the robot has arrived where the last order sent it."""
-
-
-@dataclass(frozen=True)
-class GoalRefused:
-    """Event: the robot gave the last order up, and why."""
-
-    reason: str
 
 
 Order = Union[GoTo, Finish]

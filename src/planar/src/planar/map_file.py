@@ -1,17 +1,16 @@
 """Map files: the YAML and image pair of map_server (contract of ROS 1 navigation 1.17)."""
 
-import math
 import os
 import tempfile
 from pathlib import Path
 
 import numpy as np
-import yaml
 from PIL import Image, UnidentifiedImageError
 
 from planar.errors import PlanarError
 from planar.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 from planar.pose import Pose2
+from planar.yaml_table import read_table
 
 MODES = ("trinary", "scale", "raw")
 
@@ -35,25 +34,20 @@ class MapDescriptionError(MapFileError):
 def load_map(path) -> OccupancyGrid:
     """The grid described by a map_server YAML file. Raises MapFileError."""
     path = Path(path)
-    fields = _read_fields(path)
-    resolution = _number(path, fields, "resolution")
-    if resolution <= 0.0:
-        raise MapDescriptionError(f"{path}: resolution must be positive, got {resolution}")
-    mode = fields.get("mode", "trinary")
-    if mode not in MODES:
-        raise MapDescriptionError(f"{path}: mode must be one of {', '.join(MODES)}, got {mode!r}")
-    negate = fields.get("negate")
-    if isinstance(negate, bool) or negate not in (0, 1):
-        raise MapDescriptionError(f"{path}: negate must be 0 or 1, got {negate!r}")
-    image_path = path.parent / str(_required(path, fields, "image"))
+    table = read_table(path, error=MapDescriptionError, missing=MapMissingError)
+    resolution = table.number("resolution")
+    table.check(resolution > 0.0, "resolution", "positive")
+    mode = table.choice("mode", MODES, "trinary")
+    negate = table.value("negate")
+    table.check(negate in (0, 1) and not isinstance(negate, bool), "negate", "0 or 1")
     cells = cells_from_image(
-        image_path,
+        path.parent / table.text("image"),
         negate=bool(negate),
-        occupied_thresh=_number(path, fields, "occupied_thresh"),
-        free_thresh=_number(path, fields, "free_thresh"),
+        occupied_thresh=table.number("occupied_thresh"),
+        free_thresh=table.number("free_thresh"),
         mode=mode,
     )
-    return OccupancyGrid(cells, resolution, _origin(path, fields))
+    return OccupancyGrid(cells, resolution, Pose2(*table.numbers("origin", "x, y, yaw")))
 
 
 def cells_from_image(
@@ -122,44 +116,3 @@ def write_atomically(path, data: bytes) -> None:
             raise
     except OSError as error:
         raise MapFileError(f"{path}: cannot be written ({error.strerror})") from None
-
-
-def _read_fields(path: Path) -> dict:
-    try:
-        fields = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise MapMissingError(f"{path}: no such map file") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise MapDescriptionError(f"{path}: cannot be read ({error})") from None
-    except yaml.YAMLError as error:
-        raise MapDescriptionError(f"{path}: not valid YAML ({' '.join(str(error).split())})") from None
-    if not isinstance(fields, dict):
-        raise MapDescriptionError(f"{path}: not a map description (keys image, resolution, origin, ...)")
-    return fields
-
-
-def _required(path: Path, fields: dict, key: str):
-    if fields.get(key) is None:
-        raise MapDescriptionError(f"{path}: {key} is missing")
-    return fields[key]
-
-
-def _number(path: Path, fields: dict, key: str) -> float:
-    return _as_number(path, key, _required(path, fields, key))
-
-
-def _as_number(path: Path, key: str, value) -> float:
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        number = math.nan
-    if isinstance(value, bool) or not math.isfinite(number):
-        raise MapDescriptionError(f"{path}: {key} must be a number, got {value!r}")
-    return number
-
-
-def _origin(path: Path, fields: dict) -> Pose2:
-    origin = _required(path, fields, "origin")
-    if not isinstance(origin, list) or len(origin) != 3:
-        raise MapDescriptionError(f"{path}: origin must be [x, y, yaw], got {origin!r}")
-    return Pose2(*(_as_number(path, "origin", value) for value in origin))

@@ -1,15 +1,12 @@
 """Named places of a map, from YAML: where errands lead."""
 
-import math
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, Dict, Optional, Tuple
-
-import yaml
+from typing import Dict, Optional, Tuple
 
 from planar.errors import SettingsError
 from planar.grid import OCCUPIED, UNKNOWN, OccupancyGrid
 from planar.pose import Pose2
+from planar.yaml_table import Table, read_table
 
 DEFAULT_RADIUS = 0.35
 
@@ -29,20 +26,24 @@ class Place:
 def load_places(path) -> Dict[str, Place]:
     """The places of a YAML file ``name: {x: 1.0, y: 2.0, yaw: 0.0, radius: 0.35}`` by name.
 
-    ``yaw`` and ``radius`` may be left out. Raises SettingsError naming file, place and key.
+    ``yaw`` and ``radius`` may be left out. Raises SettingsError naming file, line and key.
     """
-    path = Path(path)
-    try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise SettingsError(f"{path}: no such file of places") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise SettingsError(f"{path}: cannot be read ({error})") from None
-    except yaml.YAMLError as error:
-        raise SettingsError(f"{path}: not valid YAML ({' '.join(str(error).split())})") from None
-    if not isinstance(content, dict):
-        raise SettingsError(f"{path}: expected named places, e.g. pickup: {{x: 2.0, y: 3.0, yaw: 0.0}}")
-    return {str(name): _place(path, str(name), fields) for name, fields in content.items()}
+    table = read_table(path)
+    return {name: place_from(table, name) for name in table}
+
+
+def place_from(table: Table, name: str) -> Place:
+    """The place below the key ``name`` of a table."""
+    fields = table.table(name)
+    fields.allow_only("x", "y", "yaw", "radius")
+    place = Place(name, pose_from(fields), fields.number("radius", DEFAULT_RADIUS))
+    fields.check(place.radius > 0.0, "radius", "positive")
+    return place
+
+
+def pose_from(table: Table) -> Pose2:
+    """The pose of a table's keys ``x``, ``y`` and, if it is there, ``yaw``."""
+    return Pose2(table.number("x"), table.number("y"), table.number("yaw", 0.0))
 
 
 def places_of_errand(path) -> Tuple[Place, Place]:
@@ -64,26 +65,3 @@ def why_unreachable(place: Place, grid: OccupancyGrid) -> Optional[str]:
     if value == UNKNOWN:
         return f"{where} lies where the map knows nothing"
     return f"{where} lies in an obstacle of the map" if value == OCCUPIED else None
-
-
-def _place(path: Path, name: str, fields: Any) -> Place:
-    if not isinstance(fields, dict):
-        raise SettingsError(f"{path}: place {name} must have keys x and y, got {fields!r}")
-    unknown = set(fields) - {"x", "y", "yaw", "radius"}
-    if unknown:
-        raise SettingsError(f"{path}: place {name} has an unknown key {sorted(map(str, unknown))[0]}")
-    x, y = _number(path, name, fields, "x"), _number(path, name, fields, "y")
-    yaw = _number(path, name, fields, "yaw", 0.0)
-    radius = _number(path, name, fields, "radius", DEFAULT_RADIUS)
-    if radius <= 0.0:
-        raise SettingsError(f"{path}: place {name}: radius must be positive, got {radius}")
-    return Place(name, Pose2(x, y, yaw), radius)
-
-
-def _number(path: Path, name: str, fields: dict, key: str, default: Optional[float] = None) -> float:
-    value = fields.get(key, default)
-    if value is None:
-        raise SettingsError(f"{path}: place {name}: {key} is missing")
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-        raise SettingsError(f"{path}: place {name}: {key} must be a number, got {value!r}")
-    return float(value)

@@ -4,7 +4,7 @@ import dataclasses
 import difflib
 import math
 import typing
-from typing import Any, Dict, List, Mapping, Sequence, Tuple, Type, TypeVar, Union
+from typing import Any, Callable, Dict, List, Mapping, Sequence, Tuple, Type, TypeVar, Union
 
 from planar.errors import SettingsError
 
@@ -12,15 +12,19 @@ T = TypeVar("T")
 
 
 def settings_from(
-    kind: Type[T], values: Mapping[str, Any], names: Mapping[str, str] = {}, where: str = ""
+    kind: Type[T],
+    values: Mapping[str, Any],
+    names: Mapping[str, str] = {},
+    where: Union[str, Callable[[str], str]] = "",
 ) -> Tuple[T, List[str]]:
     """The dataclass ``kind`` filled from ``values``; what ``values`` leaves out keeps its default.
 
     ``names`` maps a name in ``values`` to a field of ``kind`` (a field's own name needs no entry).
-    ``where`` is put before each name in error texts, e.g. ``/amcl/``.
+    ``where`` is put before each name in error texts, e.g. ``/amcl/``; it may depend on the name.
     Returns the settings and the names that ``kind`` does not know. Raises SettingsError for a value of a
     wrong type; ``kind.__post_init__`` may raise it for a senseless one.
     """
+    place_of = where if callable(where) else lambda _name: where
     types = typing.get_type_hints(kind)
     fields = {field.name for field in dataclasses.fields(kind) if field.init}  # type: ignore[arg-type]
     renamed = set(names.values())
@@ -29,7 +33,7 @@ def settings_from(
     unknown = []
     for name, value in values.items():
         if name in table:
-            known[table[name]] = _converted(types[table[name]], value, where + name)
+            known[table[name]] = _converted(types[table[name]], value, place_of(name) + name)
         else:
             unknown.append(name)
     try:
@@ -38,7 +42,8 @@ def settings_from(
         official = {field: name for name, field in table.items()}
         text = str(error)
         first = text.split(" ", 1)[0]
-        raise SettingsError(where + text.replace(first, official.get(first, first), 1)) from None
+        name = official.get(first, first)
+        raise SettingsError(place_of(name) + text.replace(first, name, 1)) from None
 
 
 def nearest_name(name: str, known: typing.Iterable[str]) -> str:

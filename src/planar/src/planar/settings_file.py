@@ -3,10 +3,8 @@
 from pathlib import Path
 from typing import List, Tuple, Type, TypeVar
 
-import yaml
-
-from planar.errors import SettingsError
 from planar.settings import official_names, settings_from
+from planar.yaml_table import read_table
 
 T = TypeVar("T")
 
@@ -16,10 +14,5 @@ def settings_from_yaml(kind: Type[T], path: Path) -> Tuple[T, List[str]]:
 
     Raises SettingsError.
     """
-    try:
-        values = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        raise SettingsError(f"{path}: {' '.join(str(error).split())}") from None
-    if not isinstance(values, dict):
-        raise SettingsError(f"{path}: not a table of parameters")
-    return settings_from(kind, values, official_names(kind), f"{path}: ")
+    table = read_table(path)
+    return settings_from(kind, table.values(), official_names(kind), table.place_of)

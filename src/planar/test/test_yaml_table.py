@@ -1,0 +1,95 @@
+import pytest
+
+from planar import PlanarError, SettingsError
+from planar.yaml_table import parse_table, read_table
+
+TEXT = """\
+name: tea
+count: 3
+share: 1e-3
+nested:
+  pose: [1, 2.5, -3]
+  tags: [a, b]
+items:
+  - {x: 1}
+  - {x: two}
+empty:
+"""
+
+
+@pytest.fixture
+def table():
+    return parse_table(TEXT, "tea.yaml")
+
+
+def test_values_are_read_with_their_kind(table):
+    assert (table.text("name"), table.count("count"), table.number("share")) == ("tea", 3, 0.001)
+    assert table.table("nested").numbers("pose", "x, y, yaw") == (1.0, 2.5, -3.0)
+    assert table.table("nested").texts("tags") == ["a", "b"]
+    assert [item.name for item in table.tables("items")] == ["items[1]", "items[2]"]
+
+
+def test_what_is_missing_or_empty_has_its_default(table):
+    assert table.number("empty", 7.0) == 7.0
+    assert table.text("nothing", "x") == "x"
+    assert table.tables("nothing") == table.texts("nothing") == []
+    assert "empty" not in table
+
+
+@pytest.mark.parametrize(
+    "read, complaint",
+    [
+        (lambda t: t.number("name"), "tea.yaml:1: name must be a number, got 'tea'"),
+        (lambda t: t.count("share"), "tea.yaml:3: share must be a whole number from 1"),
+        (lambda t: t.flag("count"), "tea.yaml:2: count must be true or false, got 3"),
+        (lambda t: t.text("nested"), "tea.yaml:4: nested must be a text"),
+        (lambda t: t.choice("name", ("milk", "ale")), "tea.yaml:1: name must be one of milk, ale, got 'tea'"),
+        (lambda t: t.table("count"), "tea.yaml:2: count must be a table"),
+        (lambda t: t.tables("nested"), "tea.yaml:4: nested must be a list of tables"),
+        (lambda t: t.table("nested").tables("tags"), r"tea.yaml:6: nested.tags\[1\] must be a table"),
+        (lambda t: t.table("nested").number("x"), "tea.yaml:5: nested.x is missing"),
+        (lambda t: t.table("nested").numbers("pose", "x, y"), r"tea.yaml:5: nested.pose must be \[x, y\]"),
+        (lambda t: t.tables("items")[1].number("x"), r"tea.yaml:9: items\[2\].x must be a number"),
+        (lambda t: t.text("empty"), "tea.yaml:10: empty is missing"),
+        (lambda t: t.allow_only("nam", "count"), "tea.yaml:1: name is not known; did you mean nam?"),
+    ],
+)
+def test_a_wrong_value_is_named_with_file_line_and_key(table, read, complaint):
+    with pytest.raises(SettingsError, match=complaint):
+        read(table)
+
+
+@pytest.mark.parametrize(
+    "text, complaint",
+    [
+        ("a: 1\nb: 2\na: 3", "x:3: a is given twice, first in line 1"),
+        ("a: {b: 1,\n b: 2}", "x:2: b is given twice"),
+        ("a: [", "x:1: not valid YAML"),
+        ("- 1", "x:1: expected a table"),
+        ("", "x:1: expected a table"),
+        ("? [1, 2]\n: 3", "x:1: a key must be a plain text"),
+        ("<<: 3", "x:1: '<<' merges no table"),
+        ("a: " + "[" * 5000, "not valid YAML"),
+        ("a: 2001-99-99", "x:1: a cannot be understood"),
+        ("a: !!python/name:os.system", "x:1: a cannot be understood"),
+    ],
+)
+def test_a_broken_text_is_refused(text, complaint):
+    with pytest.raises(SettingsError, match=complaint):
+        parse_table(text, "x").table("a")
+
+
+def test_merged_tables_are_one_and_own_keys_win():
+    table = parse_table("a: &a {x: 1, y: 2}\nb: {<<: *a, y: 3}", "x")
+    assert table.values() == {"a": {"x": 1, "y": 2}, "b": {"x": 1, "y": 3}}
+    assert table.table("b").number("y") == 3.0
+
+
+def test_the_caller_chooses_the_class_of_the_errors(tmp_path):
+    class MissingError(PlanarError):
+        pass
+
+    with pytest.raises(MissingError, match="none.yaml: no such file"):
+        read_table(tmp_path / "none.yaml", missing=MissingError)
+    with pytest.raises(SettingsError, match="cannot be read"):
+        read_table(tmp_path)
