@@ -13,6 +13,7 @@ from explorer_lite.travel import travel_distances
 from explorer_lite.viewpoints import viewpoint_of
 from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, wrap
 from planar.distance_field import distance_field
+from planar.driving import Finish, GoalReached, GoalRefused
 
 PROGRESS_DISTANCE = 0.1
 RESEND_DISTANCE = 0.5
@@ -37,26 +38,6 @@ class GoTo:
     """Order: drive there. It takes the place of any earlier order."""
 
     pose: Pose2
-
-
-@dataclass(frozen=True)
-class Finish:
-    """Order: the exploration is over, and why."""
-
-    success: bool
-    reason: str
-
-
-@dataclass(frozen=True)
-class GoalReached:
-    """Event: the robot has arrived where the last order sent it."""
-
-
-@dataclass(frozen=True)
-class GoalRefused:
-    """Event: the robot gave the last order up, and why."""
-
-    reason: str
 
 
 Order = Union[GoTo, Finish]
