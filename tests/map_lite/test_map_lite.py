@@ -103,14 +103,14 @@ class MapLiteTest(unittest.TestCase):
         self.yaml.write_text(self.yaml.read_text().replace("resolution: ", "resolution: x"))
         code, output, seconds = outcome("map_server", self.yaml)
         self.assertEqual(code, 2)
-        self.assertIn("home.yaml: resolution must be a number", output)
+        self.assertIn("home.yaml:2: resolution must be a number", output)
         self.assertNotIn("Traceback", output)
         self.assertLess(seconds, 5.0)
 
     def test_a_missing_map_ends_the_server_at_once(self):
         code, output, seconds = outcome("map_server", self.folder / "nowhere.yaml")
         self.assertEqual(code, 2)
-        self.assertIn("nowhere.yaml: no such map file", output)
+        self.assertIn("nowhere.yaml: no such file", output)
         self.assertLess(seconds, 5.0)
 
     def test_a_saved_map_loads_again_wherever_its_files_are_moved(self):
