@@ -15,7 +15,7 @@ from sim_bridge.urdf_reader import read_robot
 
 CONFIG = Path(__file__).resolve().parents[1] / "config" / "sim_bridge.yaml"
 # What the launch file's arguments set.
-ARGUMENTS = {"world", "robot", "seed", "speed", "x", "y", "yaw", "wait_for"}
+ARGUMENTS = {"world", "seed", "speed", "wait_for"}
 
 
 def test_the_shipped_configuration_holds_every_default():

@@ -40,12 +40,8 @@ class BridgeSettings:
     """``wait_for``: names of nodes, separated by spaces; rates in hertz must divide the odometry's."""
 
     world: str = ""
-    robot: str = "turtlebot_lidar"
     seed: int = 0
     speed: float = 1.0
-    x: float = 0.0
-    y: float = 0.0
-    yaw: float = 0.0
     wait_for: str = ""
     clock_rate: int = 50
     joint_state_rate: int = 10
@@ -56,6 +52,20 @@ class BridgeSettings:
         check(0.0 <= self.speed < float("inf"), "speed", "0 or a positive number", self.speed)
         check(self.clock_rate > 0, "clock_rate", "positive", self.clock_rate)
         check(self.joint_state_rate > 0, "joint_state_rate", "positive", self.joint_state_rate)
+
+
+@dataclass(frozen=True)
+class RobotSettings:
+    """``robot``: a profile's name (none: no robot). It starts at x, y, yaw in the world.
+
+    Its topics are below ``namespace``.
+    """
+
+    robot: str = "turtlebot_lidar"
+    x: float = 0.0
+    y: float = 0.0
+    yaw: float = 0.0
+    namespace: str = ""
 
 
 @dataclass(frozen=True)

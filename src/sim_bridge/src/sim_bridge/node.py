@@ -2,24 +2,24 @@
 
 import dataclasses
 import time
+from typing import Any, Dict, List
 
 import rospy
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Float64
-from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker
 
 from planar import Pose2
 from planar.settings import check
 from planar_ros.messages import pose2_from_msg, time_of
-from planar_ros.parameters import read_settings
+from planar_ros.parameters import parameters_below, read_settings
 from planar_ros.shell import run
 from sim_bridge.cli import model_folders
-from sim_bridge.config import BridgeSettings, SimulationSettings
+from sim_bridge.config import BridgeSettings, RobotSettings, SimulationSettings
 from sim_bridge.errors import WorldError
+from sim_bridge.nodes.fleet import Fleet
 from sim_bridge.nodes.gazebo import GazeboInterface
 from sim_bridge.nodes.orders import Orders
-from sim_bridge.nodes.robot_topics import RobotTopics
 from sim_bridge.nodes.time_control import TimeControl
 from sim_bridge.pacing import Pacer
 from sim_bridge.robots import robot_named
@@ -34,30 +34,25 @@ class Bridge:
     """Steps a scene as fast as it may, in one thread; callbacks of other threads leave it their orders."""
 
     def __init__(self):
-        of_simulation, of_bridge = (
-            {field.name for field in dataclasses.fields(kind)}
-            for kind in (SimulationSettings, BridgeSettings)
-        )
-        settings = read_settings(BridgeSettings, ignore=of_simulation)
-        simulation_settings = read_settings(SimulationSettings, ignore=of_bridge)
+        settings, simulation_settings, robot = _read_all(BridgeSettings, SimulationSettings, RobotSettings)
         rate = simulation_settings.odometry_rate
         self._clock_steps = _steps_between(settings.clock_rate, rate, "clock_rate")
         joint_steps = _steps_between(settings.joint_state_rate, rate, "joint_state_rate")
-        profile = robot_named(settings.robot)
+        robots = _robots_asked_for(robot)
         world = load_world(settings.world, model_folders())
         for warning in world.warnings:
             rospy.logwarn("%s", warning)
         self._scene = Scene(world, simulation_settings, settings.seed)
-        self._scene.add_robot(ROBOT_NAME, profile, Pose2(settings.x, settings.y, settings.yaw))
         self._orders = Orders()
         self._steps = 0
         pacer = Pacer(settings.speed, [name.lstrip("/") for name in settings.wait_for.split()])
         self._clock = rospy.Publisher("/clock", Clock, queue_size=10, latch=True, tcp_nodelay=True)
-        self._tf = rospy.Publisher("/tf", TFMessage, queue_size=100, tcp_nodelay=True)
         self._real_time_factor = rospy.Publisher("~real_time_factor", Float64, queue_size=10)
         self._time = TimeControl(self._scene, pacer, self._orders)
-        self._robots = {ROBOT_NAME: RobotTopics(self._scene, ROBOT_NAME, self._orders, joint_steps)}
-        self._gazebo = GazeboInterface(self._scene, self._time, self._orders, model_folders())
+        self._fleet = Fleet(self._scene, self._orders, joint_steps)
+        for name, one in robots.items():
+            self._fleet.add(name, robot_named(one.robot), Pose2(one.x, one.y, one.yaw), one.namespace)
+        self._gazebo = GazeboInterface(self._scene, self._fleet, self._time, self._orders, model_folders())
         rospy.Subscriber("~add_box", Marker, self._on_box, queue_size=10)
 
     def run(self) -> None:
@@ -79,12 +74,7 @@ class Bridge:
             self._scene.close()
 
     def _step(self):
-        commands = {name: topics.take_command() for name, topics in self._robots.items()}
-        seen = self._scene.step({name: command for name, command in commands.items() if command})
-        transforms = [
-            transform for name, topics in self._robots.items() for transform in topics.publish(seen[name])
-        ]
-        self._tf.publish(TFMessage(transforms))
+        self._fleet.step()
         self._gazebo.publish()
         # Last, so that what it wakes up finds the data of this moment.
         self._steps += 1
@@ -103,6 +93,20 @@ class Bridge:
             rospy.loginfo("%s added", name)
         except WorldError as error:
             rospy.logwarn("box not added: %s", error)
+
+
+def _read_all(*kinds: type) -> List[Any]:
+    """Settings of several kinds, all from the node's private parameters."""
+    fields = [{field.name for field in dataclasses.fields(kind)} for kind in kinds]
+    return [read_settings(kind, ignore=set().union(*fields)) for kind in kinds]
+
+
+def _robots_asked_for(robot: RobotSettings) -> Dict[str, RobotSettings]:
+    """The robots by their names: those below ~robots if there are any, else the one of ``robot``."""
+    names = parameters_below("~robots")
+    if names:
+        return {name: read_settings(RobotSettings, namespace=f"~robots/{name}") for name in sorted(names)}
+    return {ROBOT_NAME: robot} if robot.robot else {}
 
 
 def _steps_between(rate: int, step_rate: int, name: str) -> int:

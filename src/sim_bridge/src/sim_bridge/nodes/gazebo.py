@@ -13,6 +13,7 @@ from std_srvs.srv import Empty, EmptyResponse
 from planar import PlanarError
 from sim_bridge.engine import Motion
 from sim_bridge.errors import UnknownEntityError, WorldError
+from sim_bridge.nodes.fleet import Fleet
 from sim_bridge.nodes.messages import (
     motion_from_msgs,
     motion_to_msgs,
@@ -36,8 +37,9 @@ SCOPE_HINT = "did you forget to scope the link by model name?"
 class GazeboInterface:
     """Serves a scene as Gazebo does; ``model_folders`` are searched for the models of spawned ones."""
 
-    def __init__(self, scene: Scene, time_control: TimeControl, orders: Orders, model_folders):
+    def __init__(self, scene: Scene, fleet: Fleet, time_control: TimeControl, orders: Orders, model_folders):
         self._scene = scene
+        self._fleet = fleet
         self._time = time_control
         self._orders = orders
         self._model_folders = model_folders
@@ -165,7 +167,7 @@ class GazeboInterface:
 
     def _on_delete_model(self, request):
         try:
-            self._scene.remove_model(request.model_name)
+            self._fleet.remove(request.model_name)
         except UnknownEntityError:
             return srv.DeleteModelResponse(False, "DeleteModel: model does not exist")
         return srv.DeleteModelResponse(True, "DeleteModel: successfully deleted model")

@@ -1,6 +1,6 @@
 """A robot's topics and transforms."""
 
-from typing import List, Optional
+from typing import List, Optional, Union
 
 import numpy as np
 import rospy
@@ -46,6 +46,7 @@ class RobotTopics:
         self._steps = 0
         self._command: Optional[Twist2] = None
         self._contacts = None
+        self._connections: List[Union[rospy.Publisher, rospy.Subscriber]] = []
         self._odom = self._publisher("odom", Odometry, 100)
         self._scan = self._publisher("scan", LaserScanArrays)
         self._joints = self._publisher("joint_states", JointState)
@@ -81,13 +82,20 @@ class RobotTopics:
             self._touches.publish("\n".join(observation.contacts))
         return [transform_msg(odometry.base_in_odom, odom_frame, base_frame, stamp)]
 
+    def close(self) -> None:
+        """Ends the topics."""
+        for connection in self._connections:
+            connection.unregister()
+
     def _publisher(self, topic, kind, queue_size=10, latch=False):
         name = rospy.names.ns_join(self._namespace, topic)
-        return rospy.Publisher(name, kind, queue_size=queue_size, latch=latch, tcp_nodelay=True)
+        publisher = rospy.Publisher(name, kind, queue_size=queue_size, latch=latch, tcp_nodelay=True)
+        self._connections.append(publisher)
+        return publisher
 
     def _subscribe(self, topic, kind, callback):
         name = rospy.names.ns_join(self._namespace, topic)
-        rospy.Subscriber(name, kind, callback, queue_size=1, tcp_nodelay=True)
+        self._connections.append(rospy.Subscriber(name, kind, callback, queue_size=1, tcp_nodelay=True))
 
     def _frame(self, name: str) -> str:
         return self._tf_prefix + name

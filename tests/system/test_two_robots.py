@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+"""Two robots drive to two goals at once in one world, and do not hear each other."""
+
+import time
+import unittest
+
+import actionlib
+import rospy
+import rostest
+from actionlib_msgs.msg import GoalStatus
+from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
+from nav_msgs.msg import Odometry
+from std_msgs.msg import String
+
+from planar import Pose2
+from planar_ros.actions import server_is_ready
+from planar_ros.messages import LaserScanArrays, pose2_from_msg, pose2_to_msg
+
+ARRIVAL_TOLERANCE = 0.25
+WALL_DEADLINE = 120.0
+GOALS = {"alice": Pose2(-2.0, 1.0, 3.14), "bob": Pose2(2.0, 3.0, 0.0)}
+
+
+class Witness:
+    """What is truly known of one robot."""
+
+    def __init__(self, name):
+        self.truth, self.distance, self.frames, self.collisions = None, 0.0, set(), set()
+        self.client = actionlib.SimpleActionClient(f"{name}/move_base", MoveBaseAction)
+        rospy.Subscriber(f"{name}/base_pose_ground_truth", Odometry, self._on_truth, queue_size=100)
+        rospy.Subscriber(f"{name}/odom", Odometry, self._on_odometry, queue_size=100)
+        rospy.Subscriber(f"{name}/scan", LaserScanArrays, self._on_scan, queue_size=10)
+        rospy.Subscriber(f"{name}/contacts", String, self._on_contacts, queue_size=100)
+
+    def send(self, pose):
+        goal = MoveBaseGoal()
+        goal.target_pose.header.frame_id = "map"
+        goal.target_pose.pose = pose2_to_msg(pose)
+        self.client.send_goal(goal)
+
+    def is_active(self):
+        return self.client.get_state() in (GoalStatus.PENDING, GoalStatus.ACTIVE)
+
+    def _on_truth(self, message):
+        truth = pose2_from_msg(message.pose.pose)
+        if self.truth is not None:
+            self.distance += self.truth.distance_to(truth)
+        self.truth = truth
+
+    def _on_odometry(self, message):
+        self.frames.update((message.header.frame_id, message.child_frame_id))
+
+    def _on_scan(self, message):
+        self.frames.add(message.header.frame_id)
+
+    def _on_contacts(self, message):
+        self.collisions.update(message.data.split())
+
+
+class TwoRobotsTest(unittest.TestCase):
+    def test_both_arrive_where_they_were_sent(self):
+        robots = {name: Witness(name) for name in GOALS}
+        self._wait(
+            "two robots",
+            lambda: all(server_is_ready(one.client) and one.truth and one.frames for one in robots.values()),
+        )
+        for name, one in robots.items():
+            one.send(GOALS[name])
+        self._wait("both to drive", lambda: all(one.distance > 0.3 for one in robots.values()))
+        self.assertTrue(all(one.is_active() for one in robots.values()), "both drive at once")
+        self._wait("results", lambda: not any(one.is_active() for one in robots.values()))
+        for name, one in robots.items():
+            self.assertEqual(one.client.get_state(), GoalStatus.SUCCEEDED, one.client.get_goal_status_text())
+            error = one.truth.distance_to(GOALS[name])
+            print(f"{name}: truly {error:.3f} m off after {one.distance:.1f} m")
+            self.assertLess(error, ARRIVAL_TOLERANCE)
+            self.assertEqual(one.collisions, set())
+            self.assertEqual(one.frames, {f"{name}/{frame}" for frame in ("odom", "base_footprint", "laser")})
+
+    def _wait(self, what, is_there):
+        deadline = time.monotonic() + WALL_DEADLINE
+        while not is_there():
+            self.assertLess(time.monotonic(), deadline, f"no {what}")
+            time.sleep(0.02)
+
+
+if __name__ == "__main__":
+    rospy.init_node("test_two_robots")
+    rostest.rosrun("home_service_tests", "two_robots", TwoRobotsTest)
