@@ -68,7 +68,7 @@ requirement_stamp() { # FILE
 
 build_inputs() { # two lines: which packages there are, and what the build reads
     cd "$root" || return
-    find src -name package.xml | sort | cat - <(say "$root") | sha256sum
+    find src -name package.xml | sort | cat - <(say "$root") <(compat_packages_of_system) | sha256sum
     find -L src -mindepth 2 -type f \( -name package.xml -o -name CMakeLists.txt -o -name setup.py -o -path '*/nodes/*' \
         -o -name '*.msg' -o -name '*.srv' -o -name '*.action' -o -name '*.cfg' \
         -o -name '*.c' -o -name '*.cpp' -o -name '*.h' -o -name '*.hpp' \) ! -path '*/__pycache__/*' -print0 |
@@ -212,14 +212,16 @@ catkin_build() {
         set -u
     fi
     cd "$root" || return
-    catkin_make -DPYTHON_EXECUTABLE="$root/.venv/bin/python3" -DCATKIN_ENABLE_TESTING=OFF \
-        -DCATKIN_BLACKLIST_PACKAGES="$(system_messages | paste -sd ';')"
+    rm -f src/compat/*/CATKIN_IGNORE
+    (cd src/compat && compat_packages_of_system | xargs -I{} touch {}/CATKIN_IGNORE)
+    catkin_make -DPYTHON_EXECUTABLE="$root/.venv/bin/python3" -DCATKIN_ENABLE_TESTING=OFF
 }
 
-system_messages() { # the message packages of src/compat that the system has itself
-    local package
-    for package in gazebo_msgs kobuki_msgs; do
-        [[ ! -e $noetic/share/$package && ! -e /usr/share/$package ]] || say "$package"
+compat_packages_of_system() { # those of src/compat that the system has itself: they must not be shadowed
+    local folder package
+    for folder in "$root"/src/compat/*/; do
+        package=$(basename "$folder")
+        [[ ! -e $noetic/share/$package/package.xml && ! -e /usr/share/$package/package.xml ]] || say "$package"
     done
 }
 

@@ -1,0 +1,1 @@
+"""What launch files and scripts find in gazebo_ros, for sim_bridge."""

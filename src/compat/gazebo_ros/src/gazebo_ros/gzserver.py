@@ -1,0 +1,41 @@
+"""sim_bridge, started as gzserver is: the world named on the command line, the robots spawned later."""
+
+import os
+import sys
+from pathlib import Path
+from typing import List, Optional
+
+EMPTY_WORLD = Path(__file__).parent / "empty.world"
+# Options of gzserver that take a value.
+VALUED = ("-e", "-p", "-s", "-u", "--physics", "--play", "--server-plugin", "--seed", "--iters", "--profile")
+
+
+def world_of(arguments: List[str]) -> Optional[str]:
+    """The world among gzserver's arguments; None if there is none."""
+    words = iter(arguments)
+    for word in words:
+        if word in VALUED:
+            next(words, None)
+        elif not word.startswith(("-", "_")) and ":=" not in word:
+            return word
+    return None
+
+
+def found(world: str, folders: List[Path]) -> Path:
+    """The world's file: as named, or below one of the folders; the empty world if it is Gazebo's own."""
+    path = Path(world)
+    candidates = [path, *(folder / path for folder in folders)]
+    for candidate in candidates:
+        if candidate.is_file():
+            return candidate.resolve()
+    return EMPTY_WORLD if path.name == EMPTY_WORLD.name else path
+
+
+def main() -> None:
+    """Becomes sim_bridge without a robot."""
+    from sim_bridge.node import main as simulate
+
+    folders = [Path(folder) for folder in os.environ.get("GAZEBO_RESOURCE_PATH", "").split(":") if folder]
+    world = found(world_of(sys.argv[1:]) or EMPTY_WORLD.name, folders)
+    sys.argv[1:] = [word for word in sys.argv[1:] if ":=" in word] + [f"_world:={world}", "_robot:=none"]
+    simulate()

@@ -1,0 +1,124 @@
+"""The command spawn_model: puts a model from a file, a parameter or stdin into the running simulation."""
+
+import argparse
+import math
+import sys
+import time
+from pathlib import Path
+from typing import List, Tuple
+
+import rospy
+from gazebo_msgs.msg import ModelStates
+from geometry_msgs.msg import Point, Pose, Quaternion
+from std_srvs.srv import Empty
+
+from gazebo_ros.gazebo_interface import (
+    set_model_configuration_client,
+    spawn_sdf_model_client,
+    spawn_urdf_model_client,
+)
+
+PARAMETER_SECONDS = 30.0
+
+
+class SpawnError(Exception):
+    """The model cannot be had; the text says why."""
+
+
+def parse(arguments: List[str]) -> argparse.Namespace:
+    """The options of gazebo_ros' spawn_model."""
+    parser = argparse.ArgumentParser(prog="spawn_model", allow_abbrev=False)
+    kind = parser.add_mutually_exclusive_group(required=True)
+    kind.add_argument("-urdf", action="store_true", help="the model is URDF")
+    kind.add_argument("-sdf", action="store_true", help="the model is SDF")
+    source = parser.add_mutually_exclusive_group(required=True)
+    source.add_argument("-file", help="file with the model")
+    source.add_argument("-param", help="ROS parameter with the model")
+    source.add_argument("-database", help="model in a folder of GAZEBO_MODEL_PATH")
+    source.add_argument("-stdin", action="store_true", help="the model comes from standard input")
+    parser.add_argument("-model", required=True, help="name that it gets")
+    parser.add_argument("-reference_frame", default="", help="frame of the pose")
+    parser.add_argument("-gazebo_namespace", default="/gazebo", help="namespace of the simulator")
+    parser.add_argument("-robot_namespace", default=rospy.get_namespace(), help="namespace of its topics")
+    parser.add_argument("-unpause", action="store_true", help="let time pass once it is there")
+    parser.add_argument("-wait", metavar="MODEL", help="wait until that model is there")
+    for name, meaning in zip("xyzRPY", ("m", "m", "m", "roll, rad", "pitch, rad", "yaw, rad")):
+        parser.add_argument(f"-{name}", type=float, default=0.0, help=meaning)
+    parser.add_argument("-J", nargs=2, action="append", default=[], metavar=("JOINT", "POSITION"))
+    parser.add_argument("-package_to_model", action="store_true", help="accepted: package:// is understood")
+    parser.add_argument("-b", action="store_true", help="accepted: the simulator ends with its launch")
+    return parser.parse_args(arguments)
+
+
+def quaternion(roll: float, pitch: float, yaw: float) -> Tuple[float, float, float, float]:
+    """x, y, z, w of the rotation about the fixed axes x, y, z, in this order."""
+    (sr, cr), (sp, cp), (sy, cy) = ((math.sin(a / 2), math.cos(a / 2)) for a in (roll, pitch, yaw))
+    return (
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+        cr * cp * cy + sr * sp * sy,
+    )
+
+
+def spawn(options: argparse.Namespace) -> None:
+    """Spawns the model. Raises SpawnError."""
+    pose = Pose(
+        Point(options.x, options.y, options.z), Quaternion(*quaternion(options.R, options.P, options.Y))
+    )
+    xml = _model_xml(options)
+    if options.wait:
+        _wait_for_model(options.wait, options.gazebo_namespace)
+    client = spawn_urdf_model_client if options.urdf else spawn_sdf_model_client
+    success, text = client(
+        options.model, xml, options.robot_namespace, pose, options.reference_frame, options.gazebo_namespace
+    )
+    if not success:
+        raise SpawnError(text)
+    print(text)
+    if options.J:
+        names, positions = zip(*((name, float(position)) for name, position in options.J))
+        set_model_configuration_client(
+            options.model, options.param or "", names, positions, options.gazebo_namespace
+        )
+    if options.unpause:
+        rospy.ServiceProxy(f"{options.gazebo_namespace}/unpause_physics", Empty)()
+
+
+def _model_xml(options) -> str:
+    if options.stdin:
+        return sys.stdin.read()
+    if options.param:
+        return _parameter(options.param)
+    if options.database:
+        uri = f"<uri>model://{options.database}</uri>"
+        return f'<sdf version="1.5"><world name="default"><include>{uri}</include></world></sdf>'
+    try:
+        return Path(options.file).read_text()
+    except OSError as error:
+        raise SpawnError(f"cannot read {options.file}: {error.strerror}") from error
+
+
+def _parameter(name: str) -> str:
+    deadline = time.monotonic() + PARAMETER_SECONDS
+    while not rospy.has_param(name):
+        if time.monotonic() > deadline:
+            raise SpawnError(f"no parameter {name} within {PARAMETER_SECONDS:g} s")
+        time.sleep(0.1)
+    return rospy.get_param(name)
+
+
+def _wait_for_model(name: str, namespace: str) -> None:
+    while name not in rospy.wait_for_message(f"{namespace}/model_states", ModelStates, 60.0).name:
+        pass
+
+
+def main() -> None:
+    """Exit code 0 if the model is there, 1 if not."""
+    options = parse(rospy.myargv()[1:])
+    rospy.init_node("spawn_model", anonymous=True)
+    try:
+        spawn(options)
+    except (SpawnError, rospy.ROSException, rospy.ServiceException) as error:
+        print(f"[spawn_model] error: {error}", file=sys.stderr)
+        sys.exit(1)
