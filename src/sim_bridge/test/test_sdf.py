@@ -135,13 +135,13 @@ def test_an_include_that_includes_itself_is_an_error(load, tmp_path):
         ("<include><uri>model://unicorn</uri></include>", "model://unicorn"),
         (geometry("<mesh><uri>model://no/a.dae</uri></mesh>"), "model://no/a.dae"),
         (geometry("<heightmap><uri>a.png</uri></heightmap>"), "<heightmap>"),
-        (model("<joint name='hinge' type='revolute'/>"), "joint 'hinge'"),
         ("<population name='crowd'/>", "population 'crowd'"),
     ],
 )
 def test_what_is_left_out_is_named_and_the_rest_loads(load, content, named):
     world = load(content + model(name="rest"))
-    assert [body.name for body in world.bodies] == ["rest::l"]
+    assert world.bodies[-1].name == "rest::l"
+    assert not any(body.collisions for body in world.bodies[:-1])
     assert len(world.warnings) == 1
     assert named in world.warnings[0]
 
@@ -220,3 +220,115 @@ def test_a_single_model_can_be_read_from_text():
     (body,) = read_model(text, "mine", pose3(3.0)).bodies
     assert body.name == "mine::l"
     assert np.array_equal(body.pose_in_world, pose3(3.0))
+
+
+def in_world(world, name):
+    (body,) = (body for body in world.bodies if body.name == name)
+    return body.pose_in_world
+
+
+def test_poses_may_be_given_in_other_frames(load):
+    links = (
+        "<link name='a'><pose>1 0 0 0 0 1.5707963267948966</pose></link>"
+        "<link name='b'><pose relative_to='a'>1 0 0 0 0 0</pose></link>"
+        "<frame name='shelf' attached_to='b'><pose>0 0 2 0 0 0</pose></frame>"
+        "<link name='c'><pose relative_to='shelf'>0 0 1 0 0 0</pose></link>"
+        "<link name='d'><pose frame='__model__'>7 0 0 0 0 0</pose></link>"
+    )
+    world = load(model(f"<pose>10 0 0 0 0 0</pose>{links}"))
+    assert in_world(world, "m::b")[:3, 3] == pytest.approx([11.0, 1.0, 0.0])
+    assert in_world(world, "m::c")[:3, 3] == pytest.approx([11.0, 1.0, 3.0])
+    assert in_world(world, "m::d")[:3, 3] == pytest.approx([17.0, 0.0, 0.0])
+
+
+def test_models_stand_in_frames_of_the_world_and_of_each_other(load):
+    lone = "<link name='l'/>"
+    world = load(
+        "<frame name='corner'><pose>0 5 0 0 0 0</pose></frame>"
+        f"<model name='a'><static>1</static><pose relative_to='corner'>1 0 0 0 0 0</pose>{lone}</model>"
+        f"<model name='b'><static>1</static><pose relative_to='a::l'>0 1 0 0 0 0</pose>{lone}</model>"
+        "<model name='c' placement_frame='l'><static>1</static><pose>0 0 0 0 0 0</pose>"
+        "<link name='l'><pose>3 0 0 0 0 0</pose></link><link name='k'/></model>"
+    )
+    assert in_world(world, "a::l")[:3, 3] == pytest.approx([1.0, 5.0, 0.0])
+    assert in_world(world, "b::l")[:3, 3] == pytest.approx([1.0, 6.0, 0.0])
+    assert in_world(world, "c::k")[:3, 3] == pytest.approx([-3.0, 0.0, 0.0])
+
+
+@pytest.mark.parametrize(
+    ("links", "reason"),
+    [
+        ("<link name='a'><pose relative_to='b'/></link>", "there is no frame 'b'"),
+        (
+            "<link name='a'><pose relative_to='b'/></link><link name='b'><pose relative_to='a'/></link>",
+            "depends on itself",
+        ),
+    ],
+)
+def test_frames_that_are_not_there_or_go_in_circles_are_errors(load, links, reason):
+    with pytest.raises(WorldError, match="link '[ab]'") as caught:
+        load(model(links))
+    assert reason in str(caught.value)
+
+
+def test_state_stretches_the_shapes_of_a_model(load):
+    world = load(
+        geometry("<cylinder><radius>1</radius><length>1</length></cylinder>")
+        + "<state world_name='w'><model name='m'><pose>1 0 0 0 0 0</pose><scale>2 3 4</scale></model></state>"
+    )
+    assert world.bodies[0].collisions[0].shape == Cylinder(3.0, 4.0)
+
+
+POLYLINE = (
+    "<polyline><point>0 0</point><point>2 0</point><point>2 1</point><point>1 1</point><point>1 2</point>"
+)
+
+
+@pytest.mark.parametrize(("height", "top"), [("", 1.0), ("<height>2.5</height>", 2.5)])
+def test_polylines_are_raised_to_walls(load, height, top):
+    (body,) = load(geometry(f"{POLYLINE}<point>0 2</point>{height}</polyline>")).bodies
+    mesh = body.collisions[0].shape
+    corners = mesh.vertices[mesh.triangles]
+    areas = np.linalg.norm(np.cross(lid[:, 1] - lid[:, 0], lid[:, 2] - lid[:, 0]), axis=1) / 2.0
+    assert areas.sum() == pytest.approx(16.0 - 4.0)
+
+
+def test_what_is_ignored_is_named_once_with_how_often(load):
+    sensor = "<link name='l'><sensor name='s' type='camera'/></link>"
+    world = load(model(sensor, "a") + model(sensor, "b") + model("<gripper name='g'/>", "c"))
+    assert len(world.warnings) == 2
+    assert "gripper 'g'" in world.warnings[0]
+    assert "sensor 's': left out (and 1 more like it)" in world.warnings[1]
+
+
+def test_a_missing_mesh_is_told_once_and_is_an_error_if_strict(load):
+    text = geometry("<mesh><uri>model://no/a.dae</uri></mesh>")
+    assert len(load(text + text.replace("'m'", "'n'")).warnings) == 1
+    for missing in (text, "<include><uri>model://unicorn</uri></include>"):
+        with pytest.raises(WorldError, match=r"test\.world: .*not found"):
+            load(missing, strict=True)
+
+
+def test_colours_come_from_the_material_or_its_script(load):
+    def visual(material):
+        return f"<visual name='v'>{UNIT_BOX}<material>{material}</material></visual>"
+
+    world = load(
+        model(f"<link name='l'>{visual('<diffuse>1 0.5 0 1</diffuse>')}</link>")
+        + model(f"<link name='l'>{visual('<script><name>Gazebo/Blue</name></script>')}</link>", "n")
+        + model(f"<link name='l'><visual name='v'>{UNIT_BOX}</visual></link>", "o")
+    )
+    assert [body.visuals[0].colour for body in world.bodies] == [(1.0, 0.5, 0.0), (0.0, 0.0, 1.0), None]
+
+
+def test_inertia_is_turned_to_its_principal_axes(load):
+    matrix = "<ixx>2</ixx><ixy>1</ixy><iyy>2</iyy><izz>5</izz>"
+    inertial = f"<inertial><pose>0 0 1 0 0 0</pose><mass>3</mass><inertia>{matrix}</inertia></inertial>"
+    (body,) = load(f"<model name='m'><link name='l'>{inertial}</link></model>").bodies
+    axes = body.inertia.pose_in_body[:3, :3]
+    assert axes @ np.diag(body.inertia.moments) @ axes.T == pytest.approx(
+        np.array([[2.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 0.0, 5.0]])
+    )
+    assert body.inertia.pose_in_body[2, 3] == 1.0
+    with pytest.raises(WorldError, match="moments of inertia must be positive"):
+        load(f"<model name='m'><link name='l'>{inertial.replace('<izz>5', '<izz>-5')}</link></model>")

@@ -1,24 +1,29 @@
 """Rigid bodies in PyBullet: what stands and moves in a world, and what touches what."""
 
 from dataclasses import dataclass
-from typing import Any, Dict, Iterator, List, NamedTuple, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
+from scipy.spatial import ConvexHull
 
 from sim_bridge.bullet import BulletClient, pybullet
 from sim_bridge.errors import WorldError
-from sim_bridge.pose3 import cross, position, quaternion, transform_points
+from sim_bridge.multibody import Tree, grow
+from sim_bridge.pose3 import IDENTITY, cross, position, quaternion, transform_points
 from sim_bridge.shapes import Box, Cylinder, Mesh, Plane, Shape, Sphere
 from sim_bridge.urdf_reader import RobotModel
-from sim_bridge.world import Body, Collision
+from sim_bridge.world import Body, Collision, Joint
 
 # Bits of Bullet's collision groups: it puts what moves into 1 and what does not into 2.
 WORLD_GROUPS = 1 | 2
 ROBOT_GROUP = 4
 
 SOLVER_ITERATIONS = 50
-# Bullet's limit for the shapes of one compound.
+# Bullet's limits: shapes of one compound, and triangles of one mesh (of its 131072 vertices each has three).
 COMPOUND_SIZE = 16
+MESH_SIZE = 40000
+# N m/rad or N/m of what holds a joint within its limits.
+LIMIT_FORCE = 1e4
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,11 +49,27 @@ class Contact(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class _Link:
-    """A link in Bullet's numbers; ``centre`` (3,): of its mass in its own frame."""
+    """A link in Bullet's numbers; ``centre`` (4, 4): of its mass and principal axes in its own frame."""
 
     number: int
     index: int
     centre: np.ndarray
+
+
+class JointState(NamedTuple):
+    """``position`` in rad or m, ``speed`` in rad/s or m/s."""
+
+    position: float
+    speed: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Joint:
+    """A joint that moves, in Bullet's numbers."""
+
+    number: int
+    index: int
+    joint: Joint
 
 
 class Engine:
@@ -65,12 +86,18 @@ class Engine:
         self.set_rate(rate)
         self._bullet.setGravity(0.0, 0.0, -gravity)
         self._links: Dict[str, _Link] = {}
+        self._joints: Dict[str, _Joint] = {}
         self._names: Dict[Tuple[int, int], str] = {}
+        # Links that are not drawn down, and their masses.
+        self._weightless: Dict[str, float] = {}
+        self._gravity = gravity
 
     def close(self) -> None:
         self._bullet.disconnect()
 
     def step(self) -> None:
+        for name, mass in self._weightless.items():
+            self.push(name, (0.0, 0.0, mass * self._gravity), (0.0, 0.0, 0.0))
         self._bullet.stepSimulation()
 
     def set_rate(self, rate: int) -> None:
@@ -79,37 +106,39 @@ class Engine:
 
     def set_gravity(self, gravity: float) -> None:
         """``gravity``: downwards, m/s^2."""
+        self._gravity = gravity
         self._bullet.setGravity(0.0, 0.0, -gravity)
 
     def motion_of(self, name: str) -> Motion:
         link = self._links[name]
         if link.index < 0:
-            pose = _pose(*self._bullet.getBasePositionAndOrientation(link.number))
+            centre = _pose(*self._bullet.getBasePositionAndOrientation(link.number))
             linear, angular = map(np.array, self._bullet.getBaseVelocity(link.number))
         else:
-            state = self._bullet.getLinkState(link.number, link.index, computeLinkVelocity=1)
-            pose, (linear, angular) = _pose(*state[:2]), map(np.array, state[6:8])
-        arm = pose[:3, :3] @ link.centre
-        pose[:3, 3] -= arm
-        return Motion(pose, linear - cross(angular, arm), angular)
+            state = self._bullet.getLinkState(
+                link.number, link.index, computeLinkVelocity=1, computeForwardKinematics=1
+            )
+            centre, (linear, angular) = _pose(*state[:2]), map(np.array, state[6:8])
+        pose = centre @ np.linalg.inv(link.centre)
+        return Motion(pose, linear - cross(angular, centre[:3, 3] - pose[:3, 3]), angular)
 
     def pose_of(self, name: str) -> np.ndarray:
         """Where a link is, (4, 4) in the world."""
         link = self._links[name]
         if link.index >= 0:
             return self.motion_of(name).pose
-        pose = _pose(*self._bullet.getBasePositionAndOrientation(link.number))
-        pose[:3, 3] -= pose[:3, :3] @ link.centre
-        return pose
+        return _pose(*self._bullet.getBasePositionAndOrientation(link.number)) @ np.linalg.inv(link.centre)
 
     def set_motion(self, name: str, motion: Motion) -> None:
-        """Puts the base link of something to another place, and sets its velocity."""
+        """Puts a link to another place, with all that hangs together with it, and sets its velocity."""
         link = self._links[name]
-        arm = motion.pose[:3, :3] @ link.centre
-        centred = motion.pose.copy()
-        centred[:3, 3] += arm
-        self._bullet.resetBasePositionAndOrientation(link.number, position(centred), quaternion(centred))
-        linear = motion.linear + cross(motion.angular, arm)
+        centre = motion.pose @ link.centre
+        if link.index >= 0:
+            here = self._bullet.getLinkState(link.number, link.index, computeForwardKinematics=1)
+            root = _pose(*self._bullet.getBasePositionAndOrientation(link.number))
+            centre = centre @ np.linalg.inv(_pose(*here[:2])) @ root
+        self._bullet.resetBasePositionAndOrientation(link.number, position(centre), quaternion(centre))
+        linear = motion.linear + cross(motion.angular, centre[:3, 3] - motion.pose[:3, 3])
         self._bullet.resetBaseVelocity(link.number, linear.tolist(), motion.angular.tolist())
 
     def push(self, name: str, force: Sequence[float], torque: Sequence[float]) -> None:
@@ -121,29 +150,72 @@ class Engine:
         self._bullet.applyExternalForce(link.number, link.index, force, pose, pybullet.WORLD_FRAME)
         self._bullet.applyExternalTorque(link.number, link.index, torque, pybullet.WORLD_FRAME)
 
-    def add(self, body: Body) -> None:
-        """Puts a body into the world. Raises WorldError if one of its name is there already."""
-        if body.name in self._links:
-            raise WorldError(f"{body.name} is in the world already")
-        first, *others = self._compounds(body.collisions, moves=body.mass is not None) or [-1]
-        number = self._bullet.createMultiBody(
-            baseMass=body.mass or 0.0,
-            baseCollisionShapeIndex=first,
-            basePosition=position(body.pose_in_world),
-            baseOrientation=quaternion(body.pose_in_world),
-            **_links(others, [np.eye(4)] * len(others)),
-        )
-        for index in range(-1, len(others)):
-            self._bullet.changeDynamics(number, index, lateralFriction=body.friction, **_UNDAMPED)
-            self._names[number, index] = body.name
-        self._links[body.name] = _Link(number, -1, np.zeros(3))
+    def add(self, bodies: Sequence[Body], joints: Sequence[Joint] = ()) -> None:
+        """Puts bodies into the world. Raises WorldError if one of that name is there already."""
+        for body in bodies:
+            if body.name in self._links:
+                raise WorldError(f"{body.name} is in the world already")
+        for tree in grow(bodies, joints):
+            self._add_tree(tree)
 
     def remove(self, name: str) -> None:
-        """Takes away a link and all that hangs on it."""
+        """Takes away a link and all that hangs together with it."""
         number = self._links[name].number
         self._bullet.removeBody(number)
         self._links = {key: link for key, link in self._links.items() if link.number != number}
+        self._joints = {key: joint for key, joint in self._joints.items() if joint.number != number}
         self._names = {key: known for key, known in self._names.items() if key[0] != number}
+        self._weightless = {key: mass for key, mass in self._weightless.items() if key in self._links}
+
+    def has_link(self, name: str) -> bool:
+        return name in self._links
+
+    def joint_state(self, name: str) -> JointState:
+        joint = self._joints[name]
+        return JointState(*self._bullet.getJointState(joint.number, joint.index)[:2])
+
+    def set_joint(self, name: str, state: JointState) -> None:
+        """Puts a joint to a position, with all that hangs on it."""
+        joint = self._joints[name]
+        self._bullet.resetJointState(joint.number, joint.index, state.position, state.speed)
+
+    def push_joint(self, name: str, effort: float) -> None:
+        """``effort``: N m or N, at most what the joint bears; for the next step only."""
+        joint = self._joints[name]
+        limit = joint.joint.effort
+        self._bullet.setJointMotorControl2(
+            joint.number, joint.index, pybullet.TORQUE_CONTROL, force=max(-limit, min(effort, limit))
+        )
+
+    def set_mass(self, name: str, mass: float, moments: Sequence[float]) -> None:
+        """``mass`` in kg, ``moments`` (3,) of inertia about the link's centre of mass, kg m^2."""
+        link = self._links[name]
+        self._bullet.changeDynamics(link.number, link.index, mass=mass, localInertiaDiagonal=list(moments))
+        if name in self._weightless:
+            self._weightless[name] = mass
+
+    def mass_of(self, name: str) -> Tuple[float, Tuple[float, float, float]]:
+        """A link's mass, kg, and moments of inertia (3,), kg m^2."""
+        link = self._links[name]
+        mass, _, moments, *_ = self._bullet.getDynamicsInfo(link.number, link.index)
+        return mass, moments
+
+    def centre_of(self, name: str) -> np.ndarray:
+        """The pose (4, 4) of a link's centre of mass in the link."""
+        return self._links[name].centre
+
+    def set_weight(self, name: str, has_weight: bool) -> None:
+        """Whether a link is drawn down."""
+        self._weightless.pop(name, None)
+        if not has_weight:
+            self._weightless[name] = self.mass_of(name)[0]
+
+    def has_weight(self, name: str) -> bool:
+        return name not in self._weightless
+
+    def set_joint_damping(self, name: str, damping: float) -> None:
+        joint = self._joints[name]
+        self._bullet.changeDynamics(joint.number, joint.index, jointDamping=damping)
 
     def add_robot(
         self, name: str, model: RobotModel, joints: Sequence[str], base_in_space: np.ndarray
@@ -178,9 +250,7 @@ class Engine:
             )
             self._bullet.setCollisionFilterGroupMask(number, index, ROBOT_GROUP, WORLD_GROUPS | ROBOT_GROUP)
             self._names[number, index] = f"{name}::{part.name}"
-            self._links[f"{name}::{part.name}"] = _Link(
-                number, index, base.centre_of_mass if index < 0 else np.zeros(3)
-            )
+            self._links[f"{name}::{part.name}"] = _Link(number, index, centre if index < 0 else np.eye(4))
 
     def drive_wheels(self, base: str, speeds: Sequence[float], efforts: Sequence[float]) -> None:
         """The motors of a robot's wheels aim at ``speeds``, rad/s, with at most ``efforts``, N m."""
@@ -213,6 +283,84 @@ class Engine:
         ((_, _, share, _, _),) = self._bullet.rayTestBatch([start], [end], collisionFilterMask=WORLD_GROUPS)
         return share
 
+    def _add_tree(self, tree: Tree) -> None:
+        """Each body is a link on its parent's; the shapes that do not fit into one are fixed links on it."""
+        root = tree.bodies[0]
+        links: List[Dict[str, Any]] = []
+        indices = [-1]
+        root_shapes = self._compounds(root.collisions, root.mass is not None, root.inertia.pose_in_body) or [
+            -1
+        ]
+        for body, joint, parent, frame in list(zip(tree.bodies, tree.joints, tree.parents, tree.frames))[1:]:
+            assert joint is not None
+            to_joint = np.linalg.inv(frame)
+            shapes = self._compounds(body.collisions, True, frame) or [-1]
+            above = tree.bodies[parent]
+            above_frame = root.inertia.pose_in_body if parent == 0 else tree.frames[parent]
+            in_above = np.linalg.inv(above.pose_in_world @ above_frame) @ body.pose_in_world @ frame
+            links.append(
+                _link(
+                    shapes[0],
+                    in_above @ np.linalg.inv(_moved(joint, joint.start)),
+                    indices[parent] + 1,
+                    body.mass or 0.0,
+                    to_joint @ body.inertia.pose_in_body,
+                    joint,
+                )
+            )
+            indices.append(len(links) - 1)
+            links += [_link(shape, IDENTITY, indices[-1] + 1) for shape in shapes[1:]]
+        links += [_link(shape, IDENTITY, 0) for shape in root_shapes[1:]]
+        placed = root.pose_in_world @ root.inertia.pose_in_body
+        number = self._bullet.createMultiBody(
+            baseMass=root.mass or 0.0,
+            baseCollisionShapeIndex=root_shapes[0],
+            basePosition=position(placed),
+            baseOrientation=quaternion(placed),
+            **{key: [link[key] for link in links] for key in (links[0] if links else {})},
+        )
+        self._name_tree(tree, number, indices, links)
+
+    def _name_tree(self, tree: Tree, number: int, indices: List[int], links: List[Dict[str, Any]]) -> None:
+        """Tells Bullet what createMultiBody cannot take, and remembers which number is whose."""
+        owner = dict(zip(indices, tree.bodies))
+        for index, link in enumerate(links):
+            owner.setdefault(index, owner[link["linkParentIndices"] - 1])
+        for index, body in owner.items():
+            self._names[number, index] = body.name
+            self._bullet.changeDynamics(
+                number,
+                index,
+                lateralFriction=body.surface.friction,
+                restitution=body.surface.restitution,
+                linearDamping=body.damping[0],
+                angularDamping=body.damping[1],
+                jointDamping=0.0,
+            )
+        for index, body, joint in zip(indices, tree.bodies, tree.joints):
+            self._links[body.name] = _Link(number, index, body.inertia.pose_in_body)
+            if body.inertia.moments is not None and body.mass is not None:
+                self._bullet.changeDynamics(number, index, localInertiaDiagonal=body.inertia.moments.tolist())
+            if not body.has_weight and body.mass is not None:
+                self._weightless[body.name] = body.mass
+            if joint is not None and joint.kind != "fixed":
+                self._joints[joint.name] = _Joint(number, index, joint)
+                self._loosen(number, index, joint)
+
+    def _loosen(self, number: int, index: int, joint: Joint) -> None:
+        """Bullet brakes every joint with a motor; here it only has the joint's own friction."""
+        self._bullet.setJointMotorControl2(number, index, pybullet.VELOCITY_CONTROL, force=joint.friction)
+        self._bullet.changeDynamics(number, index, jointDamping=joint.damping)
+        if joint.upper - joint.lower < np.inf:
+            self._bullet.changeDynamics(
+                number,
+                index,
+                jointLowerLimit=joint.lower,
+                jointUpperLimit=joint.upper,
+                jointLimitForce=LIMIT_FORCE,
+            )
+        self._bullet.resetJointState(number, index, joint.start)
+
     def _compounds(self, collisions: Sequence[Collision], moves: bool, origin=np.eye(4)) -> List[int]:
         """Bullet's numbers of shapes that together are the collisions seen from ``origin``, (4, 4)."""
         to_origin = np.linalg.inv(origin)
@@ -220,7 +368,9 @@ class Engine:
         meshes = [(shape, pose) for shape, pose in placed if isinstance(shape, Mesh)]
         solids = [(shape, pose) for shape, pose in placed if not isinstance(shape, Mesh)]
         groups = [solids[at : at + COMPOUND_SIZE] for at in range(0, len(solids), COMPOUND_SIZE)]
-        return [self._solid(group) for group in groups] + [self._mesh(*mesh, moves) for mesh in meshes]
+        return [self._solid(group) for group in groups] + [
+            number for mesh in meshes for number in self._mesh(*mesh, moves)
+        ]
 
     def _solid(self, group: Sequence[Tuple[Shape, np.ndarray]]) -> int:
         if len(group) == 1:
@@ -241,19 +391,24 @@ class Engine:
             collisionFrameOrientations=[quaternion(pose) for _, pose in group],
         )
 
-    def _mesh(self, mesh: Mesh, pose: np.ndarray, moves: bool) -> int:
-        """A mesh as it is if it stands still, its convex hull if it moves."""
-        concave: Dict[str, Any] = (
-            {}
-            if moves
-            else {
-                "indices": mesh.triangles.ravel().tolist(),
-                "flags": pybullet.GEOM_FORCE_CONCAVE_TRIMESH,
-            }
-        )
-        return self._bullet.createCollisionShape(
-            pybullet.GEOM_MESH, vertices=transform_points(pose, mesh.vertices).tolist(), **concave
-        )
+    def _mesh(self, mesh: Mesh, pose: np.ndarray, moves: bool) -> List[int]:
+        """A mesh as it is, in pieces, if it stands still; its convex hull if it moves."""
+        vertices = transform_points(pose, mesh.vertices)
+        if moves:
+            hull = vertices[ConvexHull(vertices, qhull_options="QJ").vertices]
+            return [self._bullet.createCollisionShape(pybullet.GEOM_MESH, vertices=hull.tolist())]
+        pieces = []
+        for at in range(0, len(mesh.triangles), MESH_SIZE):
+            used, indices = np.unique(mesh.triangles[at : at + MESH_SIZE], return_inverse=True)
+            pieces.append(
+                self._bullet.createCollisionShape(
+                    pybullet.GEOM_MESH,
+                    vertices=vertices[used].tolist(),
+                    indices=indices.ravel().tolist(),
+                    flags=pybullet.GEOM_FORCE_CONCAVE_TRIMESH,
+                )
+            )
+        return pieces
 
 
 _UNDAMPED: Dict[str, float] = {"linearDamping": 0.0, "angularDamping": 0.0, "jointDamping": 0.0}
@@ -298,4 +453,41 @@ def _links(shapes: Sequence[int], poses: Sequence[np.ndarray], masses=None, axes
         "linkParentIndices": [0] * count,
         "linkJointTypes": [pybullet.JOINT_REVOLUTE if axes else pybullet.JOINT_FIXED] * count,
         "linkJointAxis": axes or [[0.0, 0.0, 1.0]] * count,
+    }
+
+
+def _moved(joint: Joint, by: float) -> np.ndarray:
+    """The pose (4, 4) of a joint's frame moved ``by`` rad or m along its axis, seen from where it was."""
+    pose = np.eye(4)
+    if joint.kind == "prismatic":
+        pose[:3, 3] = by * joint.axis
+    elif joint.kind == "revolute":
+        turn = pybullet.getQuaternionFromAxisAngle(joint.axis.tolist(), by)
+        pose[:3, :3] = np.reshape(pybullet.getMatrixFromQuaternion(turn), (3, 3))
+    return pose
+
+
+def _link(
+    shape: int,
+    pose: np.ndarray,
+    parent: int,
+    mass: float = 0.0,
+    centre: np.ndarray = IDENTITY,
+    joint: Optional[Joint] = None,
+) -> Dict[str, Any]:
+    """createMultiBody's arguments for one link; ``parent``: 0 for the base, else 1 + the index of a link."""
+    kinds = {"revolute": pybullet.JOINT_REVOLUTE, "prismatic": pybullet.JOINT_PRISMATIC}
+    return {
+        "linkMasses": mass,
+        "linkCollisionShapeIndices": shape,
+        "linkVisualShapeIndices": -1,
+        "linkPositions": position(pose),
+        "linkOrientations": quaternion(pose),
+        "linkInertialFramePositions": position(centre),
+        "linkInertialFrameOrientations": quaternion(centre),
+        "linkParentIndices": parent,
+        "linkJointTypes": pybullet.JOINT_FIXED
+        if joint is None
+        else kinds.get(joint.kind, pybullet.JOINT_FIXED),
+        "linkJointAxis": [0.0, 0.0, 1.0] if joint is None else joint.axis.tolist(),
     }

@@ -1,19 +1,19 @@
 """A world with robots in it, stepped: what Gazebo's server is, without its connections."""
 
 from dataclasses import dataclass, replace
-from typing import Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
 from planar import Pose2, Twist2
 from planar.settings import nearest_name
 from sim_bridge.config import SimulationSettings
-from sim_bridge.engine import Engine, Motion
+from sim_bridge.engine import Engine, JointState, Motion
 from sim_bridge.errors import UnknownEntityError, WorldError
 from sim_bridge.pose3 import cross, from_pose2
 from sim_bridge.robot import Observation, Robot
 from sim_bridge.robots import RobotProfile
-from sim_bridge.world import Body, World
+from sim_bridge.world import Body, Joint, World
 
 AT_REST = (np.zeros(3), np.zeros(3))
 
@@ -32,6 +32,16 @@ class Push:
     end: float
 
 
+@dataclass(frozen=True)
+class JointPush:
+    """An ``effort``, N m or N, on a joint from ``start`` to ``end``, s."""
+
+    joint: str
+    effort: float
+    start: float
+    end: float
+
+
 class Scene:
     """Models that stand and move, robots that are commanded. The same seed and calls give the same results.
 
@@ -44,14 +54,16 @@ class Scene:
         self.gravity = world.gravity
         self._seed = seed
         self._bodies: Dict[str, Body] = {}
+        self._joints: Dict[str, Joint] = {}
         self._starts: Dict[str, Tuple[RobotProfile, Pose2]] = {}
         self._robots: Dict[str, Robot] = {}
         self._pushes: List[Push] = []
+        self._joint_pushes: List[JointPush] = []
         self._physics_steps = 0
         # When the present rate of physics began.
         self._stamp_at_rate = 0.0
         self._engine = Engine(settings.physics_rate, world.gravity)
-        self.add(world.bodies)
+        self.add(world.bodies, world.joints)
 
     @property
     def stamp(self) -> float:
@@ -96,20 +108,22 @@ class Scene:
             self.remove_model(name)
             raise
 
-    def add(self, bodies: Sequence[Body]) -> None:
-        """Puts bodies into the world. Raises WorldError if a name is taken."""
-        for body in bodies:
-            self._engine.add(body)
-            self._bodies[body.name] = body
-            for robot in self._robots.values():
-                robot.look_at([body])
+    def add(self, bodies: Sequence[Body], joints: Sequence[Joint] = ()) -> None:
+        """Puts bodies into the world, held to each other by joints. Raises WorldError if a name is taken."""
+        self._engine.add(bodies, joints)
+        self._bodies.update((body.name, body) for body in bodies)
+        self._joints.update((joint.name, joint) for joint in joints)
+        for robot in self._robots.values():
+            robot.look_at(bodies)
 
     def remove_model(self, name: str) -> None:
         links = self.links_of(name)
         robot = self._robots.pop(name, None)
         self._starts.pop(name, None)
+        self._joints = {key: joint for key, joint in self._joints.items() if joint.model != name}
         for link in links[:1] if robot else links:
-            self._engine.remove(link)
+            if self._engine.has_link(link):
+                self._engine.remove(link)
             self._bodies.pop(link, None)
             for other in self._robots.values():
                 other.section.remove(link)
@@ -154,7 +168,7 @@ class Scene:
         """Puts a model with all its links to another place, and sets its velocity."""
         from_here = motion.pose @ np.linalg.inv(self.model_motion(name).pose)
         links = self.links_of(name)
-        for link in links[:1] if name in self._robots else links:
+        for link in links[:1] if name in self._robots else self._unheld(links):
             pose = from_here @ self._engine.pose_of(link)
             arm = pose[:3, 3] - motion.pose[:3, 3]
             self._set_motion(link, Motion(pose, motion.linear + cross(motion.angular, arm), motion.angular))
@@ -164,6 +178,34 @@ class Scene:
     def set_link_motion(self, link: str, motion: Motion) -> None:
         self.link_motion(link)
         self._set_motion(link, motion)
+
+    def joint_names(self, model: str) -> List[str]:
+        """The names of a model's joints that move, ``model::joint``."""
+        return [
+            joint.name for joint in self._joints.values() if joint.model == model and joint.kind != "fixed"
+        ]
+
+    def joint(self, name: str) -> Joint:
+        return _found(self._joints, name, "joint")
+
+    def joint_state(self, name: str) -> JointState:
+        """Of a joint that moves."""
+        return self._engine.joint_state(self.joint(name).name)
+
+    def set_joints(self, positions: Mapping[str, float]) -> None:
+        """Puts joints to positions, rad or m, at rest; those that are fixed stay so."""
+        for name, position in positions.items():
+            if self.joint(name).kind != "fixed":
+                self._engine.set_joint(name, JointState(position, 0.0))
+
+    def push_joint(self, push: JointPush) -> None:
+        """Applies an effort to a joint for a while."""
+        self.joint(push.joint)
+        self._joint_pushes.append(push)
+
+    def stop_pushing_joint(self, joint: str) -> None:
+        """Ends all efforts on a joint."""
+        self._joint_pushes = [push for push in self._joint_pushes if push.joint != joint]
 
     def push(self, push: Push) -> None:
         """Applies a force and torque for a while."""
@@ -190,23 +232,26 @@ class Scene:
 
     def reset_poses(self) -> None:
         """Puts every model and robot back to where it was first put, at rest. Time and odometry go on."""
-        for body in self._bodies.values():
-            self._set_motion(body.name, Motion(body.pose_in_world, *AT_REST))
+        self.set_joints({joint.name: joint.start for joint in self._joints.values()})
+        for name in self._unheld(self._bodies):
+            self._set_motion(name, Motion(self._bodies[name].pose_in_world, *AT_REST))
         for name, (_, base_in_world) in self._starts.items():
             robot = self._robots[name]
             self._set_motion(robot.vehicle.base, Motion(from_pose2(base_in_world), *AT_REST))
             robot.halt()
         self._pushes.clear()
+        self._joint_pushes.clear()
 
     def reset(self) -> None:
         """Starts again at time 0, with all models and robots where they were first put, to the same noise."""
-        starts, bodies = self._starts, list(self._bodies.values())
+        starts, bodies, joints = self._starts, list(self._bodies.values()), list(self._joints.values())
         self._engine.close()
         self._engine = Engine(self.settings.physics_rate, self.gravity)
-        self._starts, self._bodies, self._robots = {}, {}, {}
+        self._starts, self._bodies, self._joints, self._robots = {}, {}, {}, {}
         self._pushes.clear()
+        self._joint_pushes.clear()
         self._physics_steps, self._stamp_at_rate = 0, 0.0
-        self.add(bodies)
+        self.add(bodies, joints)
         for name, (profile, base_in_world) in starts.items():
             self._add_robot(name, profile, base_in_world)
 
@@ -230,7 +275,16 @@ class Scene:
         for push in self._pushes:
             if push.start <= self.stamp < push.end:
                 self._engine.push(push.link, push.force.tolist(), push.torque.tolist())
+        for effort in self._joint_pushes:
+            if effort.start <= self.stamp < effort.end:
+                self._engine.push_joint(effort.joint, effort.effort)
         self._pushes = [push for push in self._pushes if self.stamp < push.end]
+        self._joint_pushes = [effort for effort in self._joint_pushes if self.stamp < effort.end]
+
+    def _unheld(self, links: Iterable[str]) -> List[str]:
+        """Those links that no joint holds to another: what hangs on them moves with them."""
+        held = {joint.child for joint in self._joints.values() if joint.parent}
+        return [link for link in links if link not in held]
 
 
 def _seen_from(motion: Motion, offset: np.ndarray) -> Motion:

@@ -6,15 +6,46 @@ from typing import Optional, Tuple
 import numpy as np
 
 from sim_bridge.pose3 import IDENTITY
-from sim_bridge.shapes import Shape
+from sim_bridge.shapes import Look, Shape
+
+Colour = Tuple[float, float, float]
 
 
 @dataclass(frozen=True, eq=False)
 class Collision:
-    """A solid part of a body, ``pose_in_body``: (4, 4)."""
+    """A solid part of a body, ``pose_in_body``: (4, 4); ``retro``: how brightly it reflects a laser."""
 
     shape: Shape
     pose_in_body: np.ndarray
+    retro: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Visual:
+    """What a camera sees of a body, ``pose_in_body``: (4, 4); no ``colour`` (0 to 1): that of the mesh."""
+
+    shape: Look
+    pose_in_body: np.ndarray
+    colour: Optional[Colour] = None
+
+
+@dataclass(frozen=True, eq=False)
+class Inertia:
+    """``pose_in_body``: (4, 4), of the centre of mass and the principal axes; ``moments``: (3,), kg m^2.
+
+    Without ``moments`` they follow from the shapes.
+    """
+
+    pose_in_body: np.ndarray = field(default_factory=lambda: IDENTITY)
+    moments: Optional[np.ndarray] = None
+
+
+@dataclass(frozen=True)
+class Surface:
+    """Coulomb's coefficient of ``friction``, and of ``restitution``: how much a thing bounces."""
+
+    friction: float = 1.0
+    restitution: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,15 +53,47 @@ class Body:
     """A rigid thing; ``name`` is ``model::link``, ``pose_in_world``: (4, 4).
 
     ``pose_in_model``: (4, 4), of the link in the frame of the outermost model that it belongs to. ``mass`` in
-    kg, None if it never moves. ``friction``: Coulomb's coefficient.
+    kg, None if it never moves. ``damping``: of its linear and angular velocity, 1/s. Without
+    weight it is not drawn down.
     """
 
     name: str
     pose_in_world: np.ndarray
     collisions: Tuple[Collision, ...]
     mass: Optional[float] = None
-    friction: float = 1.0
+    surface: Surface = Surface()
     pose_in_model: np.ndarray = field(default_factory=lambda: IDENTITY)
+    visuals: Tuple[Visual, ...] = ()
+    inertia: Inertia = field(default_factory=Inertia)
+    damping: Tuple[float, float] = (0.0, 0.0)
+    has_weight: bool = True
+
+    @property
+    def model(self) -> str:
+        return self.name.split("::", 1)[0]
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """Holds the body ``child`` to the body ``parent``, or to the world if that is empty.
+
+    ``kind``: fixed, revolute or prismatic. ``pose_in_child``: (4, 4); ``axis``: (3,), of length 1, in the
+    joint's frame. Limits and ``start``, the position that it starts at, in rad or m; ``effort``: N m or N
+    that may be applied; ``friction``: N m or N; ``damping``: N m s/rad or N s/m.
+    """
+
+    name: str
+    kind: str
+    parent: str
+    child: str
+    pose_in_child: np.ndarray
+    axis: np.ndarray
+    lower: float = -np.inf
+    upper: float = np.inf
+    effort: float = np.inf
+    damping: float = 0.0
+    friction: float = 0.0
+    start: float = 0.0
 
     @property
     def model(self) -> str:
@@ -39,9 +102,10 @@ class Body:
 
 @dataclass(frozen=True)
 class World:
-    """Bodies, and in words what the world's file holds that was left out."""
+    """Bodies, joints between them, and in words what the world's file holds that was left out."""
 
     name: str
     bodies: Tuple[Body, ...]
     gravity: float = 9.8
     warnings: Tuple[str, ...] = ()
+    joints: Tuple[Joint, ...] = ()

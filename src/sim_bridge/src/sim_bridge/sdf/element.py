@@ -9,15 +9,16 @@ import numpy as np
 from defusedxml.common import DefusedXmlException
 
 from sim_bridge.errors import WorldError
-from sim_bridge.pose3 import IDENTITY, pose3
+from sim_bridge.pose3 import pose3
 
 
 class Element:
-    """A node of an SDF file: typed access to what is in it."""
+    """A node of an SDF file: typed access to what is in it. ``version``: that of the file, e.g. (1, 6)."""
 
-    def __init__(self, xml, file: str, place: str = ""):
+    def __init__(self, xml, file: str, place: str = "", version: Tuple[int, ...] = ()):
         self._xml = xml
         self.file = file
+        self.version = version or version_of(xml.get("version", ""))
         self.tag: str = xml.tag
         self.name: str = xml.get("name", "")
         label = f"{self.tag} '{self.name}'" if self.name else self.tag
@@ -32,7 +33,7 @@ class Element:
     def children(self, tag: Optional[str] = None) -> Iterator["Element"]:
         for xml in self._xml.iterfind(tag) if tag else self._xml:
             if isinstance(xml.tag, str):
-                yield Element(xml, self.file, self.place)
+                yield Element(xml, self.file, self.place, self.version)
 
     def child(self, *path: str) -> Optional["Element"]:
         """The first element below this one along a path of tags."""
@@ -74,10 +75,15 @@ class Element:
         element = self.child(tag)
         return element is not None and element.text.lower() in ("1", "true")
 
-    def pose(self) -> np.ndarray:
-        """The pose (4, 4) of this element in its parent; identity if none is given."""
+    def raw_pose(self) -> Optional[np.ndarray]:
+        """The pose (4, 4) written in this element, in whatever frame; None if none is written."""
         element = self.child("pose")
-        return pose3(*element.numbers(6)) if element is not None and element.text else IDENTITY
+        return pose3(*element.numbers(6)) if element is not None and element.text else None
+
+    def number(self, *path: str, default: float) -> float:
+        """The number along a path of tags; ``default`` if it is not there."""
+        element = self.child(*path)
+        return element.numbers(1)[0] if element is not None else default
 
 
 def parse(path: Path) -> Element:
@@ -99,3 +105,8 @@ def parse_text(text, file: str, roots: Sequence[str] = ("sdf", "gazebo")) -> Ele
     if root.tag not in roots:
         raise WorldError(f"{file}: its root is <{root.tag}>, expected <{roots[0]}>")
     return Element(root, file)
+
+
+def version_of(text: str) -> Tuple[int, ...]:
+    """A version as numbers, so that 1.10 comes after 1.9."""
+    return tuple(int(number) if number.isdigit() else 0 for number in text.split("."))

@@ -1,28 +1,45 @@
 """<geometry> elements as shapes."""
 
 from pathlib import Path
-from typing import Callable, Dict, Sequence
+from typing import Callable, Dict, List, Optional, Sequence
+
+import mapbox_earcut
+import numpy as np
 
 from sim_bridge.sdf.element import Element
 from sim_bridge.sdf.includes import resolve
-from sim_bridge.sdf.meshes import load_mesh
-from sim_bridge.shapes import Box, Cylinder, Plane, Shape, Sphere
+from sim_bridge.shapes import Box, Cylinder, Look, Mesh, MeshFile, Plane, Sphere
+
+# SDF's own default, metres.
+POLYLINE_HEIGHT = 1.0
 
 
 class LeftOutError(Exception):
     """A geometry that the rest of the world can do without; the text says why."""
 
 
-def read_shape(geometry: Element, folder: Path, model_folders: Sequence[Path]) -> Shape:
-    """The shape of a <geometry>. Raises WorldError, or LeftOutError for what is missing or not supported."""
+class MissingError(LeftOutError):
+    """A mesh whose file is not there."""
+
+
+def read_shape(geometry: Element, folder: Path, model_folders: Sequence[Path]) -> Optional[Look]:
+    """The shape of a <geometry>, None if it is empty; a mesh is only found, not read.
+
+    Raises WorldError, or LeftOutError for what is missing or not supported.
+    """
+    if geometry.child("empty") is not None:
+        return None
     kind = next((child for child in geometry.children() if child.tag in _READERS), None)
     if kind is not None:
         return _READERS[kind.tag](kind)
     mesh = geometry.child("mesh")
-    if mesh is None:
-        tags = ", ".join(f"<{child.tag}>" for child in geometry.children()) or "no shape"
-        raise LeftOutError(f"{tags} is not supported")
-    return _read_mesh(mesh, folder, model_folders)
+    if mesh is not None:
+        return _find_mesh(mesh, folder, model_folders)
+    polylines = list(geometry.children("polyline"))
+    if polylines:
+        return _extrude(polylines)
+    tags = ", ".join(f"<{child.tag}>" for child in geometry.children()) or "no shape"
+    raise LeftOutError(f"{tags} is not supported")
 
 
 def _read_box(box: Element) -> Box:
@@ -49,21 +66,53 @@ def _read_plane(plane: Element) -> Plane:
     return Plane((x, y, z))
 
 
-def _read_mesh(mesh: Element, folder: Path, model_folders: Sequence[Path]) -> Shape:
+def _find_mesh(mesh: Element, folder: Path, model_folders: Sequence[Path]) -> MeshFile:
     uri = mesh.required("uri").text
     path = resolve(uri, folder, model_folders)
     if path is None:
-        raise LeftOutError(f"mesh {uri} not found")
+        raise MissingError(f"mesh {uri} not found")
     scale, submesh = mesh.child("scale"), mesh.child("submesh")
-    return load_mesh(
+    x, y, z = scale.numbers(3) if scale is not None else (1.0, 1.0, 1.0)
+    if 0.0 in (x, y, z):
+        raise mesh.error("a scale must not be 0")
+    return MeshFile(
         path,
-        scale=scale.numbers(3) if scale is not None else (1.0, 1.0, 1.0),
-        submesh=submesh.required("name").text if submesh is not None else "",
-        centred=submesh is not None and submesh.flag("center"),
+        (x, y, z),
+        submesh.required("name").text if submesh is not None else "",
+        submesh is not None and submesh.flag("center"),
     )
 
 
-_READERS: Dict[str, Callable[[Element], Shape]] = {
+def _extrude(polylines: Sequence[Element]) -> Mesh:
+    """A prism from z = 0 upwards over the first outline, with the others as holes; closed at both ends."""
+    rings: List[np.ndarray] = []
+    for polyline in polylines:
+        points_xy = np.array([point.numbers(2) for point in polyline.children("point")]).reshape(-1, 2)
+        if len(points_xy) > 1 and np.array_equal(points_xy[0], points_xy[-1]):
+            points_xy = points_xy[:-1]
+        if len(points_xy) < 3:
+            raise polyline.error(f"an outline needs 3 points or more, got {len(points_xy)}")
+        rings.append(points_xy)
+    height = polylines[0].child("height")
+    top = height.lengths(1)[0] if height is not None else POLYLINE_HEIGHT
+    points_xy, ends = np.vstack(rings), np.cumsum([len(ring) for ring in rings])
+    lid = mapbox_earcut.triangulate_float64(points_xy, ends.astype(np.uint32)).reshape(-1, 3).astype(np.int64)
+    count = len(points_xy)
+    lower = np.arange(count)
+    following = np.concatenate(
+        [np.roll(np.arange(end - len(ring), end), -1) for ring, end in zip(rings, ends)]
+    )
+    sides = np.vstack(
+        (
+            np.column_stack((lower, following, following + count)),
+            np.column_stack((lower, following + count, lower + count)),
+        )
+    )
+    vertices = np.vstack([np.column_stack((points_xy, np.full(count, z))) for z in (0.0, top)])
+    return Mesh(vertices, np.vstack((lid, lid + count, sides)))
+
+
+_READERS: Dict[str, Callable[[Element], Look]] = {
     "box": _read_box,
     "cylinder": _read_cylinder,
     "sphere": _read_sphere,

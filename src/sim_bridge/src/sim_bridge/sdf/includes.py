@@ -5,7 +5,7 @@ from typing import Optional, Sequence
 from urllib.parse import unquote, urlparse
 
 from sim_bridge.errors import WorldError
-from sim_bridge.sdf.element import parse_text
+from sim_bridge.sdf.element import parse_text, version_of
 
 
 def resolve(uri: str, beside: Path, model_folders: Sequence[Path]) -> Optional[Path]:
@@ -34,11 +34,7 @@ def model_file(folder: Path) -> Path:
         config = parse_text(config_path.read_bytes(), str(config_path), roots=("model",))
     except OSError as error:
         raise WorldError(f"{config_path}: cannot be read ({error.strerror})") from None
-    versions = [(_version(sdf.attribute("version")), sdf.text) for sdf in config.children("sdf")]
+    versions = [(version_of(sdf.attribute("version")), sdf.text) for sdf in config.children("sdf")]
     if not versions:
         raise WorldError(f"{config_path}: names no <sdf> file")
     return folder / max(versions)[1]
-
-
-def _version(text: str):
-    return tuple(int(number) if number.isdigit() else 0 for number in text.split("."))

@@ -1,205 +1,217 @@
-"""From an SDF file to a World: includes, models, links, collisions and their poses."""
+"""From an SDF file to a World: models, links, collisions and their poses."""
 
 from pathlib import Path
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import List, Optional, Sequence, Tuple, cast
 
 import numpy as np
 
+from sim_bridge.meshes import load_mesh
+from sim_bridge.sdf.colours import read_colour
 from sim_bridge.sdf.element import Element, parse, parse_text
-from sim_bridge.sdf.geometry import LeftOutError, read_shape
-from sim_bridge.sdf.includes import model_file, resolve
+from sim_bridge.sdf.frames import Frames
+from sim_bridge.sdf.geometry import LeftOutError, MissingError, read_shape
+from sim_bridge.sdf.inertia import read_inertia, read_mass
+from sim_bridge.sdf.joints import read_joint, started, trees_of
+from sim_bridge.sdf.models import Model, ModelReader, declare_frames
 from sim_bridge.sdf.state import ModelState, read_states
-from sim_bridge.shapes import Plane
-from sim_bridge.world import Body, Collision, World
+from sim_bridge.sdf.warnings import Warnings
+from sim_bridge.shapes import Look, MeshFile, Plane, Shape, scaled
+from sim_bridge.world import Body, Collision, Joint, Surface, Visual, World
 
-MAX_INCLUDE_DEPTH = 20
 DEFAULT_GRAVITY = 9.8
-# Elements that have no bearing on what moves, collides or is measured.
-SCENERY = {"light", "scene", "gui", "physics", "spherical_coordinates", "magnetic_field", "atmosphere"}
-SCENERY |= {"wind", "audio", "gravity", "state", "model", "include"}
 
 
-def load_world(path, model_folders: Sequence[Path] = ()) -> World:
+def load_world(path, model_folders: Sequence[Path] = (), strict: bool = False) -> World:
     """The world of an SDF file. ``model_folders`` are searched for ``model://`` (GAZEBO_MODEL_PATH).
 
-    What cannot be honoured is named in the world's ``warnings``. Raises WorldError.
+    What cannot be honoured is named in the world's ``warnings``; if ``strict``, a mesh or model that is
+    missing is an error. Raises WorldError.
     """
     path = Path(path)
-    root = parse(path)
-    world = root.required("world")
-    reader = _Reader(tuple(Path(folder) for folder in model_folders))
-    states = list(world.children("state"))
-    insertions = [inserted for state in states for inserted in state.children("insertions")]
-    deleted = {
-        name.text
-        for state in states
-        for gone in state.children("deletions")
-        for name in gone.children("name")
-    }
-    overrides = read_states(states)
-    for part in [world, *insertions]:
-        for model in part.children("model"):
-            if model.name not in deleted:
-                reader.add_model(model, path.parent, overrides.get(model.name))
-        for include in part.children("include"):
-            reader.add_include(include, path.parent, overrides)
-    for element in world.children():
-        if element.tag not in SCENERY:
-            reader.leave_out(element)
-    return World(world.name, tuple(reader.bodies), _gravity(world), tuple(reader.warnings))
+    world = parse(path).required("world")
+    reader = _Reader(tuple(Path(folder) for folder in model_folders), Warnings(strict))
+    reader.read_world(world, path.parent)
+    return reader.world(world.name, _gravity(world))
 
 
-def read_model(xml, name: str, pose: np.ndarray, model_folders: Sequence[Path] = ()) -> World:
+def read_model(
+    xml, name: str, pose: np.ndarray, model_folders: Sequence[Path] = (), strict: bool = False
+) -> World:
     """A world of the one model described by SDF text, called ``name`` and placed at ``pose`` (4, 4)."""
-    model = parse_text(xml, name).required("model")
-    reader = _Reader(tuple(model_folders))
-    reader.add_model(model, Path(), ModelState(pose=pose), name=name)
-    return World(name, tuple(reader.bodies), warnings=tuple(reader.warnings))
+    reader = _Reader(tuple(model_folders), Warnings(strict))
+    reader.read_model(parse_text(xml, name).required("model"), name, pose)
+    return reader.world(name)
 
 
 class _Reader:
-    """Collects the bodies of models, and what was left out."""
+    """Collects the bodies and joints of models, and what was left out."""
 
-    def __init__(self, model_folders: Tuple[Path, ...]):
-        self.bodies: List[Body] = []
-        self.warnings: List[str] = []
+    def __init__(self, model_folders: Tuple[Path, ...], warnings: Warnings):
+        self._bodies: List[Body] = []
+        self._joints: List[Joint] = []
         self._model_folders = model_folders
+        self._warnings = warnings
+        self._models = ModelReader(model_folders, warnings)
 
-    def leave_out(self, element: Element, why: str = "left out") -> None:
-        library = element.attribute("filename")
-        self.warnings.append(f"{element.place}{f' ({library})' if library else ''}: {why}")
+    def world(self, name: str, gravity: float = DEFAULT_GRAVITY) -> World:
+        """All that has been read."""
+        joints = tuple(self._joints)
+        return World(name, tuple(self._bodies), gravity, tuple(self._warnings.lines()), joints)
 
-    def add_include(
+    def read_world(self, world: Element, folder: Path) -> None:
+        self._warnings.check_children(world)
+        for physics in world.children("physics"):
+            self._warnings.check_children(physics)
+        states = list(world.children("state"))
+        insertions = [inserted for state in states for inserted in state.children("insertions")]
+        gone = [
+            name.text for state in states for lost in state.children("deletions") for name in lost.children()
+        ]
+        overrides = read_states(states)
+        parts = [world, *insertions]
+        models = [model for part in parts for model in self._models.models_in(part, folder)]
+        frames = Frames({model.name: model.frames for model in models}.get)
+        declare_frames(frames, world)
+        for model in models:
+            frames.declare(model.name, model.placed_by, inside=model.placement())
+        for model in models:
+            if model.name not in gone:
+                self._place(model, frames.frame(model.name, model.element), overrides.get(model.name))
+
+    def read_model(self, element: Element, name: str, pose: np.ndarray) -> None:
+        self._place(self._models.model(element, element, Path(), name), pose, None)
+
+    def _place(
         self,
-        include: Element,
-        folder: Path,
-        overrides: Dict[str, ModelState],
-        parent_in_world: Optional[np.ndarray] = None,
-        scope: str = "",
-        static: bool = False,
-        depth: int = 0,
-        outermost: Optional[np.ndarray] = None,
-    ) -> None:
-        """Adds the model that an <include> names; its own <name>, <pose> and <static> win."""
-        if depth >= MAX_INCLUDE_DEPTH:
-            raise include.error("includes itself")
-        uri = include.required("uri").text
-        name_element = include.child("name")
-        name = name_element.text if name_element is not None else ""
-        built_in = uri.rstrip("/").rsplit("/", 1)[-1]
-        if uri.startswith("model://") and built_in == "sun":
-            return
-        pose = include.pose()
-        if uri.startswith("model://") and built_in == "ground_plane":
-            state = overrides.get(name or built_in)
-            pose = state.pose if state is not None and state.pose is not None else pose
-            self.bodies.append(Body(f"{name or built_in}::link", pose, (Collision(Plane(), np.eye(4)),)))
-            return
-        found = resolve(uri, folder, self._model_folders)
-        if found is None:
-            self.leave_out(include, f"model {uri} not found, left out")
-            return
-        file = model_file(found)
-        model = parse(file).required("model")
-        self.add_model(
-            model,
-            file.parent,
-            overrides.get(name or model.name),
-            name=name,
-            pose=pose if include.child("pose") is not None else None,
-            parent_in_world=parent_in_world,
-            scope=scope,
-            static=static or include.flag("static"),
-            depth=depth + 1,
-            outermost=outermost,
-        )
-
-    def add_model(
-        self,
-        model: Element,
-        folder: Path,
+        model: Model,
+        in_world: np.ndarray,
         state: Optional[ModelState],
-        name: str = "",
-        pose: Optional[np.ndarray] = None,
-        parent_in_world: Optional[np.ndarray] = None,
         scope: str = "",
-        static: bool = False,
-        depth: int = 0,
         outermost: Optional[np.ndarray] = None,
     ) -> None:
-        """Adds each link of a model, and of the models nested in it, as a body.
+        """Adds each link of a model at ``in_world``, and of the models nested in it, as a body.
 
         ``outermost``: (4, 4), pose in the world of the outermost model that this one is nested in, if any.
         """
         state = state or ModelState()
-        full_name = scope + (name or model.name)
-        in_parent = model.pose() if pose is None else pose
-        in_world = in_parent if parent_in_world is None else parent_in_world @ in_parent
-        if state.pose is not None:
-            in_world = state.pose
+        in_world = in_world if state.pose is None else state.pose
         outermost = in_world if outermost is None else outermost
-        joints = list(model.children("joint"))
-        static = static or model.flag("static")
-        for joint in joints:
-            self.leave_out(joint, "left out" if static else "left out, the model is held in place")
-        for plugin in model.children("plugin"):
-            self.leave_out(plugin)
-        for link in model.children("link"):
-            link_in_world = state.links.get(link.name, in_world @ link.pose())
-            name_of_link = f"{full_name}::{link.name}"
-            self._add_link(link, folder, name_of_link, link_in_world, static or bool(joints), outermost)
-        for nested in model.children("model"):
-            self.add_model(
-                nested,
-                folder,
-                state.models.get(nested.name),
-                parent_in_world=in_world,
-                scope=full_name + "::",
-                static=static,
-                depth=depth,
-                outermost=outermost,
-            )
-        for include in model.children("include"):
-            self.add_include(
-                include, folder, state.models, in_world, full_name + "::", static, depth, outermost
-            )
+        full_name = scope + model.name
+        for link in model.element.children("link"):
+            place = state.links.get(link.name, in_world @ model.frames.frame(link.name, link))
+            self._bodies.append(self._body(link, model, f"{full_name}::{link.name}", place, outermost, state))
+        for nested in model.nested:
+            place = in_world @ model.frames.frame(nested.name, nested.element)
+            self._place(nested, place, state.models.get(nested.name), full_name + "::", outermost)
+        if not model.is_static:
+            self._add_joints(model, full_name)
 
-    def _add_link(
+    def _add_joints(self, model: Model, name: str) -> None:
+        links = dict(_links_of(model))
+        elements = {joint.name: joint for joint in model.element.children("joint")}
+        joints = [read_joint(joint, model, name, links, self._warnings) for joint in elements.values()]
+
+        def leave_out(joint: Joint) -> None:
+            self._warnings.leave_out(elements[joint.name[len(name) + 2 :]], "closes a loop, left out")
+
+        placed = {body.name: body.pose_in_world for body in self._bodies}
+        in_model = {f"{name}::{link}": pose for link, pose in links.items()}
+        for joint in trees_of(joints, leave_out):
+            if joint.kind != "fixed" and joint.parent:
+                before, now = (
+                    np.linalg.inv(poses[joint.parent]) @ poses[joint.child] for poses in (in_model, placed)
+                )
+                joint = started(joint, before, now)
+            self._joints.append(joint)
+
+    def _body(
         self,
         link: Element,
-        folder: Path,
+        model: Model,
         name: str,
         in_world: np.ndarray,
-        static: bool,
         outermost: np.ndarray,
-    ) -> None:
-        for tag in ("sensor", "plugin"):
-            for element in link.children(tag):
-                self.leave_out(element)
+        state: ModelState,
+    ) -> Body:
+        self._warnings.check_children(link)
+        in_model = model.frames.frame(link.name, link)
         collisions = []
-        for collision in link.children("collision"):
-            try:
-                shape = read_shape(collision.required("geometry"), folder, self._model_folders)
-            except LeftOutError as missing:
-                self.leave_out(collision, f"{missing}, left out")
-                continue
-            collisions.append(Collision(shape, collision.pose()))
-        if collisions:
-            fixed = static or any(isinstance(part.shape, Plane) for part in collisions)
-            mass = None if fixed else _mass(link)
-            in_model = np.linalg.inv(outermost) @ in_world
-            self.bodies.append(Body(name, in_world, tuple(collisions), mass, _friction(link), in_model))
+        for part in link.children("collision"):
+            self._warnings.check_children(part)
+            shape = self._solid(part, model, state)
+            if shape is not None:
+                retro = part.number("laser_retro", default=0.0)
+                collisions.append(Collision(shape, _pose_in_link(part, link, model, in_model), retro))
+        visuals = []
+        for part in link.children("visual"):
+            self._warnings.check_children(part)
+            look = self._look(part, model, state)
+            if look is not None:
+                pose = _pose_in_link(part, link, model, in_model)
+                visuals.append(Visual(look, pose, read_colour(part)))
+        fixed = model.is_static or link.flag("kinematic")
+        fixed = fixed or any(isinstance(part.shape, Plane) for part in collisions)
+        gravity = link.child("gravity")
+        return Body(
+            name,
+            in_world,
+            tuple(collisions),
+            None if fixed else read_mass(link),
+            self._surface(link),
+            np.linalg.inv(outermost) @ in_world,
+            tuple(visuals),
+            read_inertia(link),
+            _damping(link),
+            gravity is None or link.flag("gravity"),
+        )
+
+    def _look(self, part: Element, model: Model, state: ModelState) -> Optional[Look]:
+        try:
+            shape = read_shape(part.required("geometry"), model.folder, self._model_folders)
+        except MissingError as missing:
+            self._warnings.missing(part, str(missing))
+            return None
+        except LeftOutError as left_out:
+            self._warnings.leave_out(part, f"{left_out}, left out", kind=("geometry", str(left_out)))
+            return None
+        x, y, z = state.scale
+        return None if shape is None else scaled(shape, (x, y, z))
+
+    def _solid(self, part: Element, model: Model, state: ModelState) -> Optional[Shape]:
+        look = self._look(part, model, state)
+        return load_mesh(look) if isinstance(look, MeshFile) else cast(Optional[Shape], look)
+
+    def _surface(self, link: Element) -> Surface:
+        """Of the link's first collision; friction at most 1: Gazebo's worlds say 100 for "grips"."""
+        surface = link.child("collision", "surface")
+        if surface is None:
+            return Surface()
+        self._warnings.check_children(surface)
+        mu = surface.number("friction", "ode", "mu", default=1.0)
+        bounce = surface.number("bounce", "restitution_coefficient", default=0.0)
+        return Surface(min(max(mu, 0.0), 1.0), min(max(bounce, 0.0), 1.0))
 
 
-def _mass(link: Element) -> float:
-    mass = link.child("inertial", "mass")
-    return mass.lengths(1)[0] if mass is not None else 1.0
+def _links_of(model: Model, scope: str = "") -> List[Tuple[str, np.ndarray]]:
+    """The links of a model and of those nested in it by their names there, with their poses (4, 4) in it."""
+    links = [
+        (scope + link.name, model.frames.frame(link.name, link)) for link in model.element.children("link")
+    ]
+    for nested in model.nested:
+        place = model.frames.frame(nested.name, nested.element)
+        links += [(scope + name, place @ pose) for name, pose in _links_of(nested, f"{nested.name}::")]
+    return links
 
 
-def _friction(link: Element) -> float:
-    """Coulomb's coefficient of the link's first collision, at most 1: Gazebo's worlds say 100 for "grips"."""
-    mu = link.child("collision", "surface", "friction", "ode", "mu")
-    return min(max(mu.numbers(1)[0], 0.0), 1.0) if mu is not None else 1.0
+def _pose_in_link(part: Element, link: Element, model: Model, link_in_model: np.ndarray) -> np.ndarray:
+    return np.linalg.inv(link_in_model) @ model.frames.pose_of(part, link.name)
+
+
+def _damping(link: Element) -> Tuple[float, float]:
+    return (
+        link.number("velocity_decay", "linear", default=0.0),
+        link.number("velocity_decay", "angular", default=0.0),
+    )
 
 
 def _gravity(world: Element) -> float:

@@ -1,7 +1,7 @@
-"""The <state> block: where Gazebo's models stood when the world was saved."""
+"""The <state> block: where Gazebo's models stood, and how they were stretched, when the world was saved."""
 
 from dataclasses import dataclass, field
-from typing import Dict, Iterable, Optional
+from typing import Dict, Iterable, Optional, Tuple
 
 import numpy as np
 
@@ -10,9 +10,13 @@ from sim_bridge.sdf.element import Element
 
 @dataclass
 class ModelState:
-    """Poses (4, 4) in the world that override those of a model, its links and nested models."""
+    """Poses (4, 4) in the world that override those of a model, its links and nested models.
+
+    ``scale``: factors of its shapes along their axes.
+    """
 
     pose: Optional[np.ndarray] = None
+    scale: Tuple[float, ...] = (1.0, 1.0, 1.0)
     links: Dict[str, np.ndarray] = field(default_factory=dict)
     models: Dict[str, "ModelState"] = field(default_factory=dict)
 
@@ -25,9 +29,12 @@ def read_states(parents: Iterable[Element]) -> Dict[str, ModelState]:
     states: Dict[str, ModelState] = {}
     for parent in parents:
         for model in parent.children("model"):
+            scale = model.child("scale")
+            links = ((link.name, link.raw_pose()) for link in model.children("link"))
             states[model.name] = ModelState(
-                pose=model.pose() if model.child("pose") else None,
-                links={link.name: link.pose() for link in model.children("link") if link.child("pose")},
+                pose=model.raw_pose(),
+                scale=scale.lengths(3) if scale is not None else (1.0, 1.0, 1.0),
+                links={name: pose for name, pose in links if pose is not None},
                 models=read_states([model]),
             )
     return states

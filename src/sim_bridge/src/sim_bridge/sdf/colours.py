@@ -1,0 +1,54 @@
+"""The colours of <material>."""
+
+from typing import Optional
+
+from sim_bridge.sdf.element import Element
+from sim_bridge.world import Colour
+
+DEFAULT: Colour = (0.7, 0.7, 0.7)
+# Gazebo's materials by name: their diffuse colour, or what their texture looks like from afar.
+NAMED = {
+    "Grey": (0.7, 0.7, 0.7),
+    "DarkGrey": (0.175, 0.175, 0.175),
+    "White": (1.0, 1.0, 1.0),
+    "FlatBlack": (0.1, 0.1, 0.1),
+    "Black": (0.0, 0.0, 0.0),
+    "Red": (1.0, 0.0, 0.0),
+    "RedBright": (0.87, 0.26, 0.07),
+    "Green": (0.0, 1.0, 0.0),
+    "Blue": (0.0, 0.0, 1.0),
+    "SkyBlue": (0.13, 0.44, 0.70),
+    "Yellow": (1.0, 1.0, 0.0),
+    "DarkYellow": (0.7, 0.7, 0.0),
+    "Purple": (1.0, 0.0, 1.0),
+    "Turquoise": (0.0, 1.0, 1.0),
+    "Orange": (1.0, 0.51, 0.05),
+    "DarkOrange": (0.83, 0.32, 0.08),
+    "Gold": (0.8, 0.65, 0.0),
+    "Indigo": (0.33, 0.0, 0.5),
+    "ZincYellow": (0.97, 0.95, 0.32),
+    "Wood": (0.60, 0.45, 0.30),
+    "WoodFloor": (0.60, 0.45, 0.30),
+    "WoodPallet": (0.65, 0.55, 0.40),
+    "LightWood": (0.75, 0.62, 0.45),
+    "Bricks": (0.55, 0.33, 0.27),
+    "CeilingTiled": (0.85, 0.85, 0.83),
+    "PaintedWall": (0.85, 0.83, 0.78),
+    "Residential": (0.75, 0.70, 0.62),
+    "Grass": (0.30, 0.45, 0.20),
+    "Road": (0.30, 0.30, 0.30),
+    "Asphalt": (0.30, 0.30, 0.30),
+    "Pioneer2Body": (0.6, 0.0, 0.0),
+}
+
+
+def read_colour(visual: Element) -> Optional[Colour]:
+    """The colour that a <visual> asks for: its diffuse one, else its script's; None if it asks for none."""
+    for tag in ("diffuse", "ambient"):
+        element = visual.child("material", tag)
+        if element is not None:
+            count = min(max(len(element.text.split()), 3), 4)
+            red, green, blue, *_ = (min(max(number, 0.0), 1.0) for number in element.numbers(count))
+            return (red, green, blue)
+    name = visual.child("material", "script", "name")
+    return NAMED.get(name.text.rsplit("/", 1)[-1], DEFAULT) if name is not None else None

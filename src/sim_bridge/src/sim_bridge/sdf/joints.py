@@ -1,0 +1,148 @@
+"""<joint> elements."""
+
+from dataclasses import replace
+from typing import Dict, List, Optional, Sequence
+
+import numpy as np
+
+from sim_bridge.sdf.element import Element
+from sim_bridge.sdf.frames import Frames
+from sim_bridge.sdf.models import Model
+from sim_bridge.sdf.warnings import Warnings
+from sim_bridge.world import Joint
+
+KINDS = ("fixed", "revolute", "prismatic")
+# Gazebo's largest number means no limit.
+UNLIMITED = 1e15
+
+
+def read_joint(
+    joint: Element, model: Model, name: str, links: Dict[str, np.ndarray], warnings: Warnings
+) -> Joint:
+    """A joint of the model ``name``; ``links``: where each link is in the model by its name, (4, 4).
+
+    A kind that is not known holds its child as it is. Raises WorldError.
+    """
+    warnings.check_children(joint)
+    kind = joint.attribute("type")
+    parent, child = (_link_named(joint, end, links) for end in ("parent", "child"))
+    if not child:
+        raise joint.error("the child must be a link of the model, not the world")
+    if kind not in KINDS:
+        warnings.leave_out(
+            joint, f"a {kind or 'nameless kind of'} joint is held as it is", kind=("joint", kind)
+        )
+        kind = "fixed"
+    in_model = model.frames.pose_of(joint, child)
+    full = _Scope(name)
+    axis = joint.child("axis")
+    fixed = Joint(
+        full.joint(joint.name),
+        "fixed",
+        full.link(parent),
+        full.link(child),
+        np.linalg.inv(links[child]) @ in_model,
+        np.array([0.0, 0.0, 1.0]),
+    )
+    return (
+        fixed
+        if kind == "fixed" or axis is None
+        else _moving(fixed, kind, axis, in_model, model.frames, warnings)
+    )
+
+
+class _Scope:
+    """Full names of what belongs to the model ``name``."""
+
+    def __init__(self, name: str):
+        self._name = name
+
+    def joint(self, name: str) -> str:
+        return f"{self._name}::{name}"
+
+    def link(self, name: str) -> str:
+        return f"{self._name}::{name}" if name else ""
+
+
+def _link_named(joint: Element, end: str, links: Dict[str, np.ndarray]) -> str:
+    """The link at an end of a joint; empty for the world."""
+    element = joint.required(end)
+    if element.text == "world":
+        return ""
+    if element.text not in links:
+        raise element.error(f"there is no link '{element.text}'")
+    return element.text
+
+
+def _moving(
+    fixed: Joint, kind: str, axis: Element, in_model: np.ndarray, frames: Frames, warnings: Warnings
+) -> Joint:
+    warnings.check_children(axis)
+    lower = axis.number("limit", "lower", default=-np.inf)
+    upper = axis.number("limit", "upper", default=np.inf)
+    lower, upper = (
+        bound if abs(bound) < UNLIMITED else np.copysign(np.inf, bound) for bound in (lower, upper)
+    )
+    if lower > upper:
+        raise axis.error(f"the lower limit {lower:g} is above the upper one {upper:g}")
+    effort = axis.number("limit", "effort", default=-1.0)
+    return Joint(
+        fixed.name,
+        kind,
+        fixed.parent,
+        fixed.child,
+        fixed.pose_in_child,
+        _direction(axis, in_model, frames),
+        lower,
+        upper,
+        effort if effort >= 0.0 else np.inf,
+        max(axis.number("dynamics", "damping", default=0.0), 0.0),
+        max(axis.number("dynamics", "friction", default=0.0), 0.0),
+    )
+
+
+def _direction(axis: Element, in_model: np.ndarray, frames: Frames) -> np.ndarray:
+    """The axis (3,) in the joint's frame; before SDF 1.5, or if it says so, it is given in the model's."""
+    xyz = axis.child("xyz")
+    direction = np.array(xyz.numbers(3) if xyz is not None else (0.0, 0.0, 1.0))
+    length = np.linalg.norm(direction)
+    if length == 0.0:
+        raise axis.error("an axis needs a direction, got 0 0 0")
+    expressed_in = xyz.attribute("expressed_in") if xyz is not None else ""
+    frame: Optional[np.ndarray] = None
+    if expressed_in:
+        frame = frames.frame(expressed_in, axis)
+    elif axis.flag("use_parent_model_frame") or axis.version < (1, 5):
+        frame = np.eye(4)
+    if frame is not None:
+        direction = in_model[:3, :3].T @ frame[:3, :3] @ direction
+    return direction / length
+
+
+def started(joint: Joint, before: np.ndarray, now: np.ndarray) -> Joint:
+    """The joint with its start where its child has been put.
+
+    ``before``, ``now``: (4, 4), its child seen from its parent at position 0 and at the start.
+    """
+    moved = np.linalg.inv(before @ joint.pose_in_child) @ now @ joint.pose_in_child
+    if joint.kind == "prismatic":
+        return replace(joint, start=float(moved[:3, 3] @ joint.axis))
+    skew = moved[:3, :3] - moved[:3, :3].T
+    sine = np.array([skew[2, 1], skew[0, 2], skew[1, 0]]) @ joint.axis / 2.0
+    return replace(joint, start=float(np.arctan2(sine, (np.trace(moved[:3, :3]) - 1.0) / 2.0)))
+
+
+def trees_of(joints: Sequence[Joint], warn) -> List[Joint]:
+    """The joints but for those that close a loop or give a link a second parent, which ``warn`` is told."""
+    parents: Dict[str, str] = {}
+    kept = []
+    for joint in joints:
+        above = joint.parent
+        while above and above != joint.child:
+            above = parents.get(above, "")
+        if joint.child in parents or above == joint.child:
+            warn(joint)
+            continue
+        parents[joint.child] = joint.parent
+        kept.append(joint)
+    return kept

@@ -1,0 +1,42 @@
+"""The elements of SDF that are honoured, and those that change nothing here, by the element they stand in.
+
+What is in neither table is named in a warning.
+"""
+
+from typing import Dict, FrozenSet
+
+
+def _tags(text: str) -> FrozenSet[str]:
+    return frozenset(text.split())
+
+
+HONOURED: Dict[str, FrozenSet[str]] = {
+    "world": _tags("model include frame state gravity physics"),
+    "insertions": _tags("model include"),
+    "physics": _tags("gravity"),
+    "model": _tags("pose static link joint frame model include"),
+    "link": _tags("pose inertial collision visual gravity kinematic velocity_decay"),
+    "inertial": _tags("pose mass inertia"),
+    "collision": _tags("pose geometry surface laser_retro"),
+    "surface": _tags("friction bounce"),
+    "visual": _tags("pose geometry material"),
+    "joint": _tags("pose parent child axis"),
+    "axis": _tags("xyz limit dynamics use_parent_model_frame"),
+    "include": _tags("uri name pose static placement_frame"),
+}
+
+# Light and other scenery, settings of Gazebo's own solver and editor, and a visual's finer looks.
+WITHOUT_BEARING: Dict[str, FrozenSet[str]] = {
+    "world": _tags("light scene gui spherical_coordinates magnetic_field atmosphere audio wind"),
+    "insertions": _tags("light"),
+    "physics": _tags(
+        "ode bullet simbody dart max_step_size real_time_factor real_time_update_rate max_contacts"
+    ),
+    "model": _tags("allow_auto_disable self_collide enable_wind"),
+    "link": _tags("light self_collide enable_wind must_be_base_link"),
+    "collision": _tags("max_contacts"),
+    "surface": _tags("contact"),
+    "visual": _tags("cast_shadows transparency laser_retro meta visibility_flags"),
+    "joint": _tags("physics"),
+    "axis": _tags("initial_position"),
+}

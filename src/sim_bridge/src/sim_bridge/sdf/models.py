@@ -1,0 +1,141 @@
+"""A world's models as a tree: includes found and read, names and poses not yet made absolute."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Dict, Iterator, List, Optional, Sequence
+
+import numpy as np
+
+from sim_bridge.sdf.element import Element, parse, parse_text
+from sim_bridge.sdf.frames import Frames
+from sim_bridge.sdf.includes import model_file, resolve
+from sim_bridge.sdf.warnings import Warnings
+
+MAX_INCLUDE_DEPTH = 20
+# Names of Gazebo's own models that need no folder.
+GROUND_PLANE, SUN = "ground_plane", "sun"
+_GROUND_PLANE_SDF = """<sdf version='1.6'><model name='ground_plane'><static>1</static><link name='link'>
+<collision name='collision'><geometry><plane><normal>0 0 1</normal></plane></geometry></collision>
+<visual name='visual'><geometry><plane><normal>0 0 1</normal></plane></geometry><material><script>
+<name>Gazebo/Grey</name></script></material></visual></link></model></sdf>"""
+
+
+@dataclass
+class Model:
+    """A <model>, or what an <include> names.
+
+    ``placed_by``: the element that says where it stands, the include if that has a pose. ``folder``: what
+    relative paths in it start from.
+    """
+
+    name: str
+    element: Element
+    placed_by: Element
+    folder: Path
+    is_static: bool
+    nested: List["Model"] = field(default_factory=list)
+
+    def __post_init__(self):
+        self._by_name: Dict[str, Model] = {}
+        self.frames = Frames(self._frames_of_nested)
+        for link in self.element.children("link"):
+            self.frames.declare(link.name, link)
+        for joint in self.element.children("joint"):
+            child = joint.child("child")
+            self.frames.declare(joint.name, joint, child.text if child is not None else "")
+        declare_frames(self.frames, self.element)
+
+    def add(self, model: "Model") -> None:
+        """``model`` is nested in this one."""
+        self.nested.append(model)
+        self._by_name[model.name] = model
+        self.frames.declare(model.name, model.placed_by, inside=model.placement())
+
+    def placement(self) -> np.ndarray:
+        """Of the frame in this model, (4, 4), that its pose is the pose of."""
+        placement = self.placed_by.child("placement_frame")
+        name = placement.text if placement is not None else self.element.attribute("placement_frame")
+        return self.frames.frame(name, self.element)
+
+    def _frames_of_nested(self, name: str) -> Optional[Frames]:
+        return self._by_name[name].frames if name in self._by_name else None
+
+
+def declare_frames(frames: Frames, parent: Element) -> None:
+    """Declares the <frame> elements of a world or model."""
+    for frame in parent.children("frame"):
+        frames.declare(frame.name, frame, frame.attribute("attached_to"))
+
+
+class ModelReader:
+    """Finds the models of a world, in ``model_folders`` those it includes; each file is read once."""
+
+    def __init__(self, model_folders: Sequence[Path], warnings: Warnings):
+        self._model_folders = model_folders
+        self._warnings = warnings
+        self._files: Dict[Path, Element] = {}
+
+    def models_in(
+        self, parent: Element, folder: Path, static: bool = False, depth: int = 0
+    ) -> Iterator[Model]:
+        """The models that stand in a <world>, or in a <model>, then ``static`` if that is."""
+        for element in parent.children("model"):
+            yield self.model(element, element, folder, element.name, static, depth)
+        for include in parent.children("include"):
+            model = self._included(include, folder, static, depth)
+            if model is not None:
+                yield model
+
+    def model(
+        self,
+        element: Element,
+        placed_by: Element,
+        folder: Path,
+        name: str,
+        static: bool = False,
+        depth: int = 0,
+    ) -> Model:
+        self._warnings.check_children(element)
+        static = static or element.flag("static")
+        model = Model(name, element, placed_by, folder, static)
+        for nested in self.models_in(element, folder, static, depth):
+            model.add(nested)
+        return model
+
+    def _included(self, include: Element, folder: Path, static: bool, depth: int) -> Optional[Model]:
+        """What an <include> names; its own <name>, <pose> and <static> win."""
+        if depth >= MAX_INCLUDE_DEPTH:
+            raise include.error("includes itself")
+        self._warnings.check_children(include)
+        uri = include.required("uri").text
+        built_in = uri.rstrip("/").rsplit("/", 1)[-1] if uri.startswith("model://") else ""
+        if built_in == SUN:
+            return None
+        if built_in == GROUND_PLANE:
+            model = _ground_plane()
+        else:
+            found = resolve(uri, folder, self._model_folders)
+            if found is None:
+                self._warnings.missing(include, f"model {uri} not found")
+                return None
+            file = model_file(found)
+            folder = file.parent
+            model = self._root_of(file).required("model")
+        name = include.child("name")
+        return self.model(
+            model,
+            include if include.child("pose") is not None else model,
+            folder,
+            name.text if name is not None and name.text else model.name,
+            static or include.flag("static"),
+            depth + 1,
+        )
+
+    def _root_of(self, file: Path) -> Element:
+        if file not in self._files:
+            self._files[file] = parse(file)
+        return self._files[file]
+
+
+def _ground_plane() -> Element:
+    return parse_text(_GROUND_PLANE_SDF, "model://ground_plane").required("model")
