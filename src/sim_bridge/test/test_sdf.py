@@ -288,9 +288,23 @@ POLYLINE = (
 def test_polylines_are_raised_to_walls(load, height, top):
     (body,) = load(geometry(f"{POLYLINE}<point>0 2</point>{height}</polyline>")).bodies
     mesh = body.collisions[0].shape
-    corners = mesh.vertices[mesh.triangles]
-    areas = np.linalg.norm(np.cross(lid[:, 1] - lid[:, 0], lid[:, 2] - lid[:, 0]), axis=1) / 2.0
-    assert areas.sum() == pytest.approx(16.0 - 4.0)
+    assert mesh.vertices[:, 2].max() == top
+    area = areas_of(mesh.vertices[mesh.triangles]).sum()
+    assert area == pytest.approx(2.0 * 3.0 + 8.0 * top), "an L of 3 m^2 with an outline of 8 m"
+
+
+def areas_of(triangles):
+    sides = triangles[:, 1:] - triangles[:, :1]
+    return np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1) / 2.0
+
+
+def test_further_polylines_are_holes(load):
+    square = "".join(f"<point>{x} {y}</point>" for x, y in ((-2, -2), (2, -2), (2, 2), (-2, 2)))
+    hole = "".join(f"<point>{x} {y}</point>" for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1)))
+    (body,) = load(geometry(f"<polyline>{square}</polyline><polyline>{hole}</polyline>")).bodies
+    triangles = body.collisions[0].shape.vertices[body.collisions[0].shape.triangles]
+    lid = triangles[(triangles[:, :, 2] == 1.0).all(axis=1)]
+    assert areas_of(lid).sum() == pytest.approx(16.0 - 4.0)
 
 
 def test_what_is_ignored_is_named_once_with_how_often(load):
