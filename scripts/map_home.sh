@@ -11,6 +11,7 @@
 #   --robot NAME     robot profile of sim_bridge (default: turtlebot_lidar)
 #   --seed N         seed of every noise (default: 0)
 #   --timeout N      the run fails after N seconds of wall time (default: 900)
+#   --gif            also leave run.gif, the run as an animation
 #   --output FOLDER  where the run folder is made (default: ./runs)
 #   --help           this text
 

@@ -1,18 +1,20 @@
 #!/usr/bin/env bash
-# Usage: ./scripts/setup.sh [--dev] [--rviz]
+# Usage: ./scripts/setup.sh [--dev] [--rviz] [--packages]
 #
 # Installs what the workspace needs and is missing: Debian packages (as root or with sudo), Python packages
 # in .venv, the catkin build in build/ and devel/. The other scripts do this themselves when they start.
 # Does nothing when all is there, and goes on where an interrupted set-up ended. Logs: logs/setup/.
 #
-#   --dev    also what the checks in .ci/run need: ruff, mypy, shellcheck, catkin_lint
-#   --rviz   also rviz
-#   --help   this text
+#   --dev        also what the checks in .ci/run and the benchmarks need: ruff, mypy, matplotlib ...
+#   --rviz       also rviz
+#   --packages   only the Debian and Python packages, as for a cached layer of an image
+#   --help       this text
 
 # shellcheck source=scripts/lib.sh
 . "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/lib.sh"
 
 readonly logs=$root/logs/setup
+packages_only=
 
 set_up() { # EXTRA...: brings the workspace up to date; extras are dev and rviz
     look_for_missing "$@"
@@ -24,33 +26,37 @@ set_up() { # EXTRA...: brings the workspace up to date; extras are dev and rviz
     announce
     [[ -z $packages ]] || install_packages
     [[ -z $requirements ]] || install_requirements
+    [[ -z $packages_only ]] || return 0
     [[ -z $build ]] || build_workspace
     [[ -z $kernels ]] || compile_kernels
 }
 
 # -- what is missing: each variable is empty when nothing is -------------------------------------------
 
-look_for_missing() {
-    local lists=() extra
-    if [[ -d $noetic ]]; then lists=(apt-packages-noetic.txt); else lists=(apt-packages.txt); fi
+look_for_missing() { # EXTRA...
     requirement_files=(requirements.txt)
+    local extra
     for extra; do
-        [[ ! -e $root/scripts/apt-packages-$extra.txt ]] || lists+=("apt-packages-$extra.txt")
         [[ ! -e $root/scripts/requirements-$extra.txt ]] || requirement_files+=("requirements-$extra.txt")
     done
-    packages=$(cd "$root/scripts" && missing_packages "${lists[@]}")
     requirements=$(cd "$root/scripts" && missing_requirements "${requirement_files[@]}")
     build=
     [[ -z $requirements ]] && has_stamp "$root/build/.set-up" "$(build_inputs)" || build=workspace
     kernels=
     [[ -z $build ]] && has_stamp "$root/build/.kernels" "$(kernel_inputs)" || kernels=kernels
+    packages=$(cd "$root/scripts" && missing_packages "$@" ${build:+build})
 }
 
 has_stamp() { [[ -e $1 && $(<"$1") == "$2" ]]; } # FILE TEXT
 
-missing_packages() { # LIST...: names, one a line
-    local wanted
-    mapfile -t wanted < <(sed 's/#.*//; s/ //g; /^$/d' "$@")
+missing_packages() { # EXTRA...: names, one a line
+    local base=apt-packages lists wanted extra
+    [[ ! -d $noetic ]] || base=apt-packages-noetic
+    lists=("$base.txt")
+    for extra; do
+        if [[ -e $base-$extra.txt ]]; then lists+=("$base-$extra.txt"); else lists+=("apt-packages-$extra.txt"); fi
+    done
+    mapfile -t wanted < <(sed 's/#.*//; s/ //g; /^$/d' "${lists[@]}")
     comm -13 <(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "${wanted[@]}" 2>/dev/null |
         sed -n 's/^installed //p' | sort) <(printf '%s\n' "${wanted[@]}" | sort)
 }
@@ -123,6 +129,7 @@ announce() {
     say "Setting up the workspace in $root (once; logs in logs/setup/):"
     [[ -z $packages ]] || say "  Debian packages, with apt-get: ${packages//$'\n'/ }"
     [[ -z $requirements ]] || say "  Python packages, into .venv: $(requirement_names)"
+    [[ -z $packages_only ]] || return 0
     [[ -z $build ]] || say "  catkin build, into build/ and devel/"
     [[ -z $kernels ]] || say "  compiled numerical kernels, into __pycache__ folders of src/"
 }
@@ -249,6 +256,7 @@ main() {
         case $option in
             --dev) extras+=(dev) ;;
             --rviz) extras+=(rviz) ;;
+            --packages) packages_only=yes ;;
             --help | -h)
                 usage
                 exit 0
@@ -261,7 +269,7 @@ main() {
         esac
     done
     set_up "${extras[@]}"
-    say "The workspace is set up."
+    say "The workspace is set up${packages_only:+, but for the build}."
 }
 
 if [[ ${BASH_SOURCE[0]} == "$0" ]]; then main "$@"; fi

@@ -7,7 +7,7 @@ from typing import List, Optional
 
 from home_service.display import complain
 from home_service.errors import LaunchError, RunInterruptedError
-from home_service.options import MAPPING_COMMANDS, ROS_COMMANDS, parse
+from home_service.options import MAPPING_COMMANDS, REPORT_COMMANDS, ROS_COMMANDS, parse
 from planar import PlanarError
 
 FAILURE, BAD_INPUT, INTERRUPTED = 1, 2, 130
@@ -19,6 +19,10 @@ def main(arguments: Optional[List[str]] = None) -> int:
     signal.signal(signal.SIGTERM, _interrupt)
     try:
         options = parse(arguments)
+        if options.command in REPORT_COMMANDS:
+            from home_service import reports
+
+            return getattr(reports, options.command)(options)
         read_inputs(options)
         if options.command in MAPPING_COMMANDS:
             from home_service import mapping

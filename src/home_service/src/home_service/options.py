@@ -15,10 +15,13 @@ COMMANDS = {
     "home_service": "Fetches the object at the pick-up zone and delivers it at the drop-off zone.",
     "test_slam": "Starts home and SLAM, driven with keys (terminal or pipe), or by itself; saves the map.",
     "map_home": "Lets the robot explore the world, saves its map, and scores it against the true one.",
+    "report": "Makes the report of a run anew, from what its folder holds.",
+    "compare": "Puts two runs side by side: a table here, and a page.",
     "rehearse": "Plays the home-service mission in one process, without ROS: fast and repeatable.",
 }
-ROS_COMMANDS = set(COMMANDS) - {"rehearse"}
 MAPPING_COMMANDS = {"test_slam", "map_home"}
+REPORT_COMMANDS = {"report", "compare"}
+ROS_COMMANDS = set(COMMANDS) - REPORT_COMMANDS - {"rehearse"}
 
 
 def parse(arguments: Optional[List[str]]) -> argparse.Namespace:
@@ -33,11 +36,24 @@ def parse(arguments: Optional[List[str]]) -> argparse.Namespace:
             help=text,
             formatter_class=argparse.ArgumentDefaultsHelpFormatter,
         )
+        if name in REPORT_COMMANDS:
+            _add_report_options(name, command)
+            continue
         _add_world_options(command)
         if name in ROS_COMMANDS:
             _add_graph_options(command)
         _add_own_options(name, command)
     return parser.parse_args(arguments)
+
+
+def _add_report_options(name: str, parser: argparse.ArgumentParser) -> None:
+    if name == "report":
+        parser.add_argument("run", type=Path, metavar="RUN", help="folder of a run")
+        parser.add_argument("--gif", action="store_true", help="also make run.gif, the run as an animation")
+    else:
+        parser.add_argument("first", type=Path, metavar="A", help="folder of a run")
+        parser.add_argument("second", type=Path, metavar="B", help="folder of another run")
+        parser.add_argument("--page", type=Path, metavar="FILE", help="where the page goes, not to B")
 
 
 def _add_world_options(parser: argparse.ArgumentParser) -> None:
@@ -55,6 +71,7 @@ def _add_graph_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--rviz", action="store_true", help="show the run in rviz, where there is a display")
     parser.add_argument("--timeout", type=seconds, default=900.0, help="wall-clock seconds a run may take")
+    parser.add_argument("--gif", action="store_true", help="also leave run.gif, the run as an animation")
     parser.add_argument("--output", type=Path, default=Path("runs"), help="where run folders are made")
 
 

@@ -1,10 +1,10 @@
 """One run: a graph brought up, watched, ended, and written down."""
 
 import os
+import threading
 import time
 from argparse import Namespace
-from pathlib import Path
-from typing import Callable, Optional
+from typing import Any, Callable, Dict, List, Optional
 
 import psutil
 import rosgraph
@@ -13,14 +13,17 @@ import rospy
 from home_service.display import Display
 from home_service.errors import LaunchError
 from home_service.graph import RosGraph
+from home_service.recorder import Recorder
 from home_service.referee import Referee
 from home_service.run_folder import create_run_folder, write_result
 from home_service.verdict import Verdict, judge
 from home_service.versions import versions
-from planar import PlanarError
+from planar import MapFileError, PlanarError
+from run_report import summary, write_report
 
 POLL_SECONDS = 0.05
 BRING_UP_SECONDS = 60.0
+REPORT_SECONDS = 20.0
 
 
 class Run:
@@ -43,7 +46,10 @@ class Run:
         self.folder = create_run_folder(options.output.resolve(), options.command)
         self.display = Display()
         self.referee: Optional[Referee] = None
+        self.missing: List[str] = []
+        self._recorder: Optional[Recorder] = None
         self._graph: Optional[RosGraph] = None
+        self._result: Dict[str, Any] = {}
 
     def __enter__(self) -> "Run":
         self.display.__enter__()
@@ -53,6 +59,7 @@ class Run:
             self._wait("the ROS master", rosgraph.is_master_online)
             rospy.init_node("referee", disable_signals=True, anonymous=True, log_level=rospy.ERROR)
             self.referee = Referee(self._options.places, self.display.say)
+            self._recorder = Recorder(self._options.places)
             self._wait("ground truth from the simulator", lambda: self.referee.truth is not None)
         except BaseException as error:
             self.__exit__(type(error), error, None)
@@ -62,10 +69,19 @@ class Run:
     def __exit__(self, _kind, error, _traceback) -> None:
         self.display.show("shutting down")
         if isinstance(error, PlanarError):
-            self.display.say(f"result in {self._write_result(Verdict(False, str(error)))}")
+            self._keep_result(Verdict(False, str(error)))
         rospy.signal_shutdown("the run is over")
+        # The report is made while the nodes end, so that it costs no time.
+        reporting = threading.Thread(target=self._report, daemon=True)
+        reporting.start()
         if self._graph is not None:
             self._graph.close()
+        reporting.join(REPORT_SECONDS)
+        if reporting.is_alive():
+            self.missing.append(f"report.html: not made within {REPORT_SECONDS:g} s")
+        for gap in self.missing:
+            self.display.say(f"warning: missing: {gap}")
+        self.display.say(f"result, report and logs in {self.folder}")
         self.display.__exit__()
 
     def watch(self, is_over: Callable[[], bool]) -> Optional[str]:
@@ -83,11 +99,10 @@ class Run:
         return None
 
     def conclude(self, verdict: Verdict, **findings) -> int:
-        """Writes result.json with the findings, prints the verdict, and returns the exit code it deserves."""
-        path = self._write_result(verdict, **findings)
+        """Keeps the findings for result.json, prints the verdict, and returns the exit code it deserves."""
+        self._keep_result(verdict, **findings)
         word = "SUCCESS" if verdict.success else "FAILURE"
         self.display.say(f"{word}: {verdict.reason}")
-        self.display.say(f"result in {path}")
         return 0 if verdict.success else 1
 
     def judge(self, expected) -> Verdict:
@@ -122,9 +137,9 @@ class Run:
             raise LaunchError(failure.text, is_bad_input=True)
         return failure.text
 
-    def _write_result(self, verdict: Verdict, **findings) -> Path:
+    def _keep_result(self, verdict: Verdict, **findings) -> None:
         options = self._options
-        result = {
+        self._result = {
             "command": options.command,
             "success": verdict.success,
             "reason": verdict.reason,
@@ -138,7 +153,22 @@ class Run:
             **findings,
             "versions": versions(),
         }
-        return write_result(self.folder, result)
+        self._write_result()
+
+    def _write_result(self) -> None:
+        try:
+            write_result(self.folder, {**self._result, "missing": self.missing})
+        except MapFileError as error:
+            self.missing.append(f"result.json: {str(error).rpartition(': ')[2]}")
+
+    def _report(self) -> None:
+        if self._recorder is None:
+            return
+        record = self._recorder.record()
+        self._result.update(summary(record))
+        result = {**self._result, "missing": self.missing}
+        self.missing = write_report(self.folder, result, record, self._options.gif)
+        self._write_result()
 
     def _observations(self) -> dict:
         referee, ledger = self.referee, self.referee.ledger

@@ -1,0 +1,152 @@
+"""Keeps what a report needs of a run; does next to nothing while the run goes on."""
+
+import time
+from typing import List, Mapping, Optional, Tuple
+
+import numpy as np
+import rospy
+from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import Odometry, Path
+from rosgraph_msgs.msg import Log
+from std_msgs.msg import String
+from tf2_msgs.msg import TFMessage
+from visualization_msgs.msg import Marker
+
+from home_service.referee import CONNECTION_CHATTER
+from planar import Pose2
+from planar.places import Place
+from planar_ros.messages import OccupancyGridArrays, frame_name, grid_from_msg, pose2_from_msg, yaw_of
+from run_report import Collision, Goal, Marking, RunRecord, State, Warned, Zone
+
+SAMPLES_PER_SECOND = 10.0
+ENOUGH_WARNINGS = 200
+MAP_FRAME, ODOM_FRAME = "map", "odom"
+
+
+class Recorder:
+    """Samples truth, estimate and odometry ten times a simulated second, and notes every event."""
+
+    def __init__(self, places: Mapping[str, Place]):
+        self._record = RunRecord(
+            zones=[Zone(place.name, *place.pose.as_array(), place.radius) for place in places.values()]
+        )
+        self._start_wall: Optional[float] = None
+        self._now = 0.0
+        self._truth: List[Tuple[float, ...]] = []
+        self._odometry: List[Tuple[float, ...]] = []
+        self._estimate: List[Tuple[float, ...]] = []
+        self._odom_in_map: Optional[Pose2] = None
+        self._map = None
+        self._plan = None
+        subscribe = rospy.Subscriber
+        subscribe("base_pose_ground_truth", Odometry, self._see_truth, queue_size=50, tcp_nodelay=True)
+        subscribe("/tf", TFMessage, self._see_transforms, queue_size=100, tcp_nodelay=True)
+        subscribe("map", OccupancyGridArrays, self._see_map, queue_size=1)
+        subscribe("pick_objects/state", String, self._see_state, queue_size=10)
+        subscribe("contacts", String, self._see_contact, queue_size=50)
+        subscribe("visualization_marker", Marker, self._see_marker, queue_size=10)
+        subscribe("move_base/current_goal", PoseStamped, self._see_goal, queue_size=10)
+        subscribe("move_base/NavfnROS/plan", Path, self._see_plan, queue_size=1)
+        subscribe("/rosout_agg", Log, self._hear, queue_size=50)
+
+    def record(self) -> RunRecord:
+        """All that has been seen so far."""
+        record = self._record
+        truth = np.array(self._truth).reshape(-1, 7)
+        record.truth, record.velocity, record.pace = truth[:, :4], truth[:, [0, 4, 5]], truth[:, [0, 6]]
+        record.estimate = np.array(self._estimate).reshape(-1, 4)
+        record.odometry = _from_start(np.array(self._odometry).reshape(-1, 4), record.truth)
+        record.grid = None if self._map is None else grid_from_msg(self._map)
+        return record
+
+    def _see_truth(self, message):
+        stamp = message.header.stamp.to_sec()
+        self._now = stamp
+        if not _is_due(stamp, self._truth):
+            return
+        wall = time.monotonic()
+        self._start_wall = self._start_wall or wall
+        pose, twist = message.pose.pose, message.twist.twist
+        self._truth.append(
+            (
+                stamp,
+                pose.position.x,
+                pose.position.y,
+                yaw_of(pose.orientation),
+                twist.linear.x,
+                twist.angular.z,
+                wall - self._start_wall,
+            )
+        )
+
+    def _see_transforms(self, message):
+        for transform in message.transforms:
+            parent = frame_name(transform.header.frame_id)
+            if parent == ODOM_FRAME:
+                self._see_odometry(transform)
+            elif parent == MAP_FRAME and frame_name(transform.child_frame_id) == ODOM_FRAME:
+                self._odom_in_map = _pose_of(transform)
+
+    def _see_odometry(self, transform):
+        stamp = transform.header.stamp.to_sec()
+        if not _is_due(stamp, self._odometry):
+            return
+        base_in_odom = _pose_of(transform)
+        self._odometry.append((stamp, base_in_odom.x, base_in_odom.y, base_in_odom.yaw))
+        if self._odom_in_map is not None:
+            base_in_map = self._odom_in_map @ base_in_odom
+            self._estimate.append((stamp, base_in_map.x, base_in_map.y, base_in_map.yaw))
+
+    def _see_map(self, message):
+        self._map = message
+
+    def _see_state(self, message):
+        self._record.states.append(State(self._now, message.data))
+
+    def _see_contact(self, message):
+        self._record.collisions.extend(Collision(self._now, name) for name in message.data.splitlines())
+
+    def _see_marker(self, message):
+        name = f"{message.ns} {message.id}"
+        at, is_shown = message.pose.position, message.action == Marker.ADD
+        self._record.markings.append(Marking(self._now, name, is_shown, at.x, at.y))
+
+    def _see_goal(self, message):
+        goal = pose2_from_msg(message.pose)
+        self._record.goals.append(Goal(self._now, goal.x, goal.y, goal.yaw))
+
+    def _see_plan(self, message):
+        """Keeps the first plan for each goal, of which the others are the rest."""
+        if len(self._record.plans) < len(self._record.goals):
+            points = [(pose.pose.position.x, pose.pose.position.y) for pose in message.poses]
+            self._record.plans.append(np.array(points).reshape(-1, 2))
+
+    def _hear(self, message):
+        if message.level < Log.WARN or message.file == CONNECTION_CHATTER:
+            return
+        if len(self._record.warnings) < ENOUGH_WARNINGS:
+            self._record.warnings.append(Warned(self._now, message.name.lstrip("/"), message.msg))
+
+
+def _is_due(stamp: float, samples: List[Tuple[float, ...]]) -> bool:
+    """Whether a sample of this stamp is one of those kept: the first of each tenth of a second."""
+    return not samples or int(stamp * SAMPLES_PER_SECOND + 1e-6) != int(
+        samples[-1][0] * SAMPLES_PER_SECOND + 1e-6
+    )
+
+
+def _pose_of(transform) -> Pose2:
+    at = transform.transform.translation
+    return Pose2(at.x, at.y, yaw_of(transform.transform.rotation))
+
+
+def _from_start(odometry: np.ndarray, truth: np.ndarray) -> np.ndarray:
+    """Odometry (N, 4) as if the robot had known by it where it truly started."""
+    if not len(odometry) or not len(truth):
+        return odometry
+    nearest = odometry[np.argmin(np.abs(odometry[:, 0] - truth[0, 0]))]
+    odom_in_map = Pose2.from_array(truth[0, 1:]) @ Pose2.from_array(nearest[1:]).inverse()
+    moved = odometry.copy()
+    moved[:, 1:3] = odom_in_map.transform_points(odometry[:, 1:3])
+    moved[:, 3] = odometry[:, 3] + odom_in_map.yaw
+    return moved

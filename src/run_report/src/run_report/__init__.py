@@ -1,0 +1,29 @@
+"""What a run leaves behind to look at: a page, a picture, an animation, trajectories. No ROS."""
+
+from run_report.figures import summary
+from run_report.record import (
+    Collision,
+    Goal,
+    Marking,
+    RecordError,
+    RunRecord,
+    State,
+    Warned,
+    Zone,
+    load_record,
+)
+from run_report.writing import write_report
+
+__all__ = [
+    "Collision",
+    "Goal",
+    "Marking",
+    "RecordError",
+    "RunRecord",
+    "State",
+    "Warned",
+    "Zone",
+    "load_record",
+    "summary",
+    "write_report",
+]

@@ -1,0 +1,95 @@
+"""Lines over time and the timeline of states, as HTML that follows the width of the page."""
+
+import math
+from html import escape
+from typing import List, NamedTuple, Sequence
+
+import numpy as np
+
+from run_report.map_view import thinned
+from run_report.record import State
+
+HEIGHT = 100.0
+
+
+class Line(NamedTuple):
+    """One line of a chart: ``rows`` (N, 2) stamp and value."""
+
+    name: str
+    kind: str
+    rows: np.ndarray
+
+
+def chart(title: str, unit: str, lines: Sequence[Line], end: float) -> str:
+    """A chart over 0..end seconds; nothing if there is nothing to show."""
+    lines = [line for line in lines if len(line.rows)]
+    if not lines or end <= 0.0:
+        return ""
+    values = np.concatenate([line.rows[:, 1] for line in lines])
+    ticks = nice_ticks(min(0.0, float(values.min())), float(values.max()))
+    low, high = ticks[0], ticks[-1]
+
+    def height_of(value):
+        return (1.0 - (value - low) / (high - low)) * HEIGHT
+
+    grid = "".join(
+        f'<line class="grid" x1="0" x2="100" y1="{height_of(tick):.2f}" y2="{height_of(tick):.2f}"/>'
+        for tick in ticks
+    )
+    drawn = "".join(
+        f'<polyline class="line {line.kind}" points="'
+        + " ".join(f"{100.0 * stamp / end:.3f},{height_of(value):.3f}" for stamp, value in thinned(line.rows))
+        + '"/>'
+        for line in lines
+    )
+    labels = "".join(f'<span class="y" style="top:{height_of(tick):.2f}%">{tick:g}</span>' for tick in ticks)
+    legend = "".join(
+        f'<span class="key {line.kind}">{escape(line.name)}</span>' for line in lines if line.name
+    )
+    return (
+        f"<figure><figcaption>{escape(title)} <small>{escape(unit)}</small>{legend}</figcaption>"
+        f'<div class="plot">{labels}<svg viewBox="0 0 100 {HEIGHT:g}" preserveAspectRatio="none">'
+        f"{grid}{drawn}</svg>{time_labels(end)}</div></figure>"
+    )
+
+
+def timeline(states: Sequence[State], end: float) -> str:
+    """A bar of states over 0..end seconds, and what its colours mean."""
+    if not states or end <= 0.0:
+        return ""
+    names = list(dict.fromkeys(state.name for state in states))
+    ends = [state.stamp for state in states[1:]] + [end]
+    bars, rows = [], []
+    for state, until in zip(states, ends):
+        tone = f"tone{names.index(state.name) % 8}"
+        left, width = 100.0 * state.stamp / end, max(100.0 * (until - state.stamp) / end, 0.3)
+        text = f"{state.name}: {state.stamp:.1f} to {until:.1f} s"
+        bars.append(
+            f'<i class="{tone}" style="left:{left:.2f}%;width:{width:.2f}%" title="{escape(text)}"></i>'
+        )
+        rows.append(
+            f'<li class="{tone}">{escape(state.name)} <small>{until - state.stamp:.1f} s</small></li>'
+        )
+    return (
+        f'<figure><figcaption>Mission</figcaption><div class="plot bar">{"".join(bars)}'
+        f'{time_labels(end)}</div><ul class="states">{"".join(rows)}</ul></figure>'
+    )
+
+
+def time_labels(end: float) -> str:
+    ticks = [tick for tick in nice_ticks(0.0, end, 6) if tick <= end]
+    return "".join(
+        f'<span class="x" style="left:{100.0 * tick / end:.2f}%">{tick:g}'
+        f"{' s' if tick == ticks[-1] else ''}</span>"
+        for tick in ticks
+    )
+
+
+def nice_ticks(low: float, high: float, most: int = 4) -> List[float]:
+    """Round numbers, evenly spaced, from at most ``low`` to at least ``high``."""
+    span = max(high - low, 1e-3)
+    rough = span / most
+    power = 10.0 ** math.floor(math.log10(rough))
+    step = next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= rough * (1.0 - 1e-9))
+    first, last = math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9)
+    return [round(number * step, 10) for number in range(first, max(last, first + 1) + 1)]

@@ -1,0 +1,101 @@
+"""Two runs side by side."""
+
+import json
+from html import escape
+from pathlib import Path
+from typing import Any, Dict, List, NamedTuple, Tuple
+
+from run_report.charts import Line, chart
+from run_report.figures import localization_errors, real_time_factors
+from run_report.map_view import map_svg
+from run_report.page import badge, document, figures
+from run_report.record import RecordError, RunRecord, load_record
+
+RESULT_FILE = "result.json"
+KINDS = ("a", "b")
+INPUTS = ("seed", "speed", "world", "map", "mission", "robot")
+
+
+class Run(NamedTuple):
+    """What a run left in its folder."""
+
+    folder: Path
+    result: Dict[str, Any]
+    record: RunRecord
+
+
+class Row(NamedTuple):
+    """A figure of both runs, as people read it; empty where a run has none."""
+
+    name: str
+    first: str
+    second: str
+
+
+def load_run(folder: Path) -> Run:
+    """The result and the record of a run folder. Raises RecordError."""
+    path = folder / RESULT_FILE
+    try:
+        result = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise RecordError(f"{folder}: not the folder of a run (no {RESULT_FILE} in it)") from None
+    except (OSError, ValueError) as error:
+        raise RecordError(f"{path}: cannot be read ({error})") from None
+    if not isinstance(result, dict):
+        raise RecordError(f"{path}: not the result of a run")
+    return Run(folder, result, load_record(folder))
+
+
+def compared_figures(first: Run, second: Run) -> List[Row]:
+    """The figures of both runs, and those inputs and versions that differ between them."""
+    rows = [Row("outcome", *(_outcome(run) for run in (first, second)))]
+    shown = [dict(figures(run.result)) for run in (first, second)]
+    rows += [Row(name, shown[0].get(name, ""), shown[1].get(name, "")) for name in {**shown[0], **shown[1]}]
+    made_from = [_made_from(run.result) for run in (first, second)]
+    for name in {**made_from[0], **made_from[1]}:
+        values = [made.get(name, "") for made in made_from]
+        if values[0] != values[1]:
+            rows.append(Row(name, *values))
+    return rows
+
+
+def comparison_html(first: Run, second: Run) -> str:
+    """A page like that of a single run, with both in every chart."""
+    runs = (first, second)
+    end = max(run.record.end for run in runs)
+    heads = "".join(f'<th><span class="key {kind}">{kind.upper()}</span></th>' for kind in KINDS)
+    cells = "".join(
+        f"<tr><td>{escape(row.name)}</td><td>{escape(row.first)}</td><td>{escape(row.second)}</td></tr>"
+        for row in compared_figures(first, second)
+    )
+    lines: List[Tuple[str, str, List[Line]]] = [
+        ("Localization error", "m", _lines(runs, lambda record: localization_errors(record)[:, :2])),
+        ("Forward speed", "m/s", _lines(runs, lambda record: record.velocity[:, :2])),
+        ("Real-time factor", "simulated s per s", _lines(runs, real_time_factors)),
+    ]
+    maps = "".join(
+        f'<div class="card"><h2>{badge(run.result)} {kind.upper()}: {escape(run.folder.name)}</h2>'
+        f"{map_svg(run.record)}</div>"
+        for kind, run in zip(KINDS, runs)
+    )
+    return document(
+        f"{first.folder.name} and {second.folder.name}",
+        f"<header><h1>Two runs</h1></header>"
+        f'<section class="even columns">{maps}</section>'
+        '<section class="even columns"><div class="card scroll"><table>'
+        f"<thead><tr><th></th>{heads}</tr></thead><tbody>{cells}</tbody></table></div>"
+        f'<div class="card charts">{"".join(chart(*line, end) for line in lines)}</div></section>',
+    )
+
+
+def _outcome(run: Run) -> str:
+    return "success" if run.result.get("success") else f"failure: {run.result.get('reason', '')}"
+
+
+def _made_from(result: Dict[str, Any]) -> Dict[str, str]:
+    made = {name: str(result[name]) for name in INPUTS if name in result}
+    return {**made, **{name: str(version) for name, version in result.get("versions", {}).items()}}
+
+
+def _lines(runs, rows_of) -> List[Line]:
+    return [Line(kind.upper(), kind, rows_of(run.record)) for kind, run in zip(KINDS, runs)]

@@ -1,0 +1,166 @@
+"""What was seen of a run, in simulated seconds and in the map frame."""
+
+import base64
+import io
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Callable, Dict, List, NamedTuple, Optional
+
+import numpy as np
+from PIL import Image
+
+from planar import OccupancyGrid, PlanarError, Pose2, write_atomically
+
+FILE_NAME = "record.json"
+DECIMALS = 4
+
+
+class RecordError(PlanarError):
+    """A record of a run is missing or cannot be read."""
+
+
+class State(NamedTuple):
+    """From ``stamp`` on the mission was in this state."""
+
+    stamp: float
+    name: str
+
+
+class Goal(NamedTuple):
+    """A pose that the robot was sent to."""
+
+    stamp: float
+    x: float
+    y: float
+    yaw: float
+
+
+class Marking(NamedTuple):
+    """From ``stamp`` on the marker ``name`` was shown at x, y, or hidden."""
+
+    stamp: float
+    name: str
+    is_shown: bool
+    x: float
+    y: float
+
+
+class Collision(NamedTuple):
+    """The robot touched ``name``."""
+
+    stamp: float
+    name: str
+
+
+class Warned(NamedTuple):
+    """A node logged a warning or an error."""
+
+    stamp: float
+    node: str
+    text: str
+
+
+class Zone(NamedTuple):
+    """A named place of the mission."""
+
+    name: str
+    x: float
+    y: float
+    yaw: float
+    radius: float
+
+
+EVENTS: Dict[str, Callable[..., Any]] = {
+    "states": State,
+    "goals": Goal,
+    "markings": Marking,
+    "collisions": Collision,
+    "warnings": Warned,
+    "zones": Zone,
+}
+
+
+def _rows(columns: int):
+    return field(default_factory=lambda: np.zeros((0, columns)))
+
+
+@dataclass(eq=False)
+class RunRecord:
+    """What was seen of a run, from outside the robot and from within.
+
+    ``truth``, ``estimate``, ``odometry``: (N, 4) stamp, x, y, yaw of the robot as it was, as localization
+    had it, and by wheels and gyro alone from the first true pose on. ``velocity``: (N, 3) stamp, m/s, rad/s,
+    true. ``pace``: (N, 2) stamp, wall-clock seconds since the start. ``plans``: each (N, 2) x, y, the first
+    plan for a goal. ``grid``: the map that the robot had last. Stamps are those of the simulation.
+    """
+
+    truth: np.ndarray = _rows(4)
+    estimate: np.ndarray = _rows(4)
+    odometry: np.ndarray = _rows(4)
+    velocity: np.ndarray = _rows(3)
+    pace: np.ndarray = _rows(2)
+    plans: List[np.ndarray] = field(default_factory=list)
+    states: List[State] = field(default_factory=list)
+    goals: List[Goal] = field(default_factory=list)
+    markings: List[Marking] = field(default_factory=list)
+    collisions: List[Collision] = field(default_factory=list)
+    warnings: List[Warned] = field(default_factory=list)
+    zones: List[Zone] = field(default_factory=list)
+    grid: Optional[OccupancyGrid] = None
+
+    @property
+    def end(self) -> float:
+        """The last stamp that was seen."""
+        return float(self.truth[-1, 0]) if len(self.truth) else 0.0
+
+
+SERIES = ("truth", "estimate", "odometry", "velocity", "pace")
+
+
+def save_record(folder: Path, record: RunRecord) -> Path:
+    """Writes record.json, whole or not at all."""
+    content: Dict[str, Any] = {name: _rounded(getattr(record, name)) for name in SERIES}
+    content["plans"] = [_rounded(plan) for plan in record.plans]
+    content.update({name: getattr(record, name) for name in EVENTS})
+    content["grid"] = None if record.grid is None else _packed(record.grid)
+    path = folder / FILE_NAME
+    write_atomically(path, json.dumps(content, separators=(",", ":")).encode("utf-8"))
+    return path
+
+
+def load_record(folder: Path) -> RunRecord:
+    """The record of a run folder. Raises RecordError."""
+    path = folder / FILE_NAME
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        record = RunRecord(plans=[np.array(plan, dtype=float).reshape(-1, 2) for plan in content["plans"]])
+        for name in SERIES:
+            columns = getattr(record, name).shape[1]
+            setattr(record, name, np.array(content[name], dtype=float).reshape(-1, columns))
+        for name, kind in EVENTS.items():
+            setattr(record, name, [kind(*event) for event in content[name]])
+        record.grid = None if content["grid"] is None else _unpacked(content["grid"])
+    except FileNotFoundError:
+        raise RecordError(f"{path}: no such file; a run that ended at once leaves none") from None
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise RecordError(f"{path}: not the record of a run ({error!r})") from None
+    return record
+
+
+def _rounded(rows: np.ndarray) -> list:
+    return np.round(rows, DECIMALS).tolist()
+
+
+def _packed(grid: OccupancyGrid) -> Dict[str, Any]:
+    """A grid as an 8-bit PNG of its values, unknown being 255, lowest row first."""
+    stream = io.BytesIO()
+    Image.fromarray(grid.cells.view(np.uint8)).save(stream, "PNG")
+    png = base64.b64encode(stream.getvalue()).decode("ascii")
+    return {"png": png, "resolution": grid.resolution, "origin": grid.origin.as_array().tolist()}
+
+
+def _unpacked(packed: Dict[str, Any]) -> OccupancyGrid:
+    with Image.open(io.BytesIO(base64.b64decode(packed["png"]))) as image:
+        cells = np.array(image).view(np.int8)
+    return OccupancyGrid(cells, float(packed["resolution"]), Pose2.from_array(packed["origin"]))
