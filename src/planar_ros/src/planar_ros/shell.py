@@ -10,6 +10,7 @@ from typing import Callable
 
 import rospy
 from rosgraph import get_master_uri
+from threadpoolctl import threadpool_limits
 
 from planar import PlanarError
 
@@ -23,6 +24,8 @@ def run(node_name: str, start: Callable[[], object]) -> None:
     A PlanarError during the start is a user's mistake: one line on stderr, exit code 2.
     """
     _shut_down_on_signals()
+    # A node's matrices are small: more threads of BLAS would only wait for work, in busy loops.
+    threadpool_limits(1, user_api="blas")
     try:
         rospy.init_node(node_name, disable_signals=True)
     except OSError as error:
