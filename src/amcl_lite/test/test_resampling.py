@@ -13,7 +13,7 @@ from amcl_lite.particles import (
     gaussian_particles,
 )
 from amcl_lite.resampling import particles_needed, resampled
-from amcl_lite.statistics import best_cluster, covariance, has_converged, mean_pose
+from amcl_lite.statistics import best_cluster, has_converged, mean_and_covariance
 from planar import Pose2, grid_from_picture
 
 ROOM = grid_from_picture("#####\n#..?#\n#####", resolution=0.5, origin=Pose2(10.0, 0.0, 0.0))
@@ -102,14 +102,14 @@ def test_clusters_reach_across_the_turn_of_the_circle():
 
 def test_the_mean_is_that_of_the_heaviest_cluster_not_between_two():
     poses = np.array([[0.1, 0.0, math.pi - 0.1], [0.3, 0.0, 0.1 - math.pi], [8.0, 0.0, 0.0]])
-    mean = mean_pose(best_cluster(ParticleSet(poses, np.array([0.3, 0.3, 0.4]))))
+    mean, _ = mean_and_covariance(best_cluster(ParticleSet(poses, np.array([0.3, 0.3, 0.4]))))
     assert (mean.x, mean.y) == pytest.approx((0.2, 0.0))
     assert abs(mean.yaw) == pytest.approx(math.pi)
 
 
 def test_the_covariance_is_that_of_the_whole_set():
     poses = np.array([[0.0, 0.0, 0.3], [2.0, 0.0, -0.3]])
-    found = covariance(equally_weighted(poses))
+    _, found = mean_and_covariance(equally_weighted(poses))
     assert found[:2, :2].tolist() == [[1.0, 0.0], [0.0, 0.0]]
     assert found[2, 2] == pytest.approx(-2.0 * math.log(math.cos(0.3)))
 

@@ -1,8 +1,10 @@
 """The beams of a scan that the sensor model looks at."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
+import numba
 import numpy as np
 
 from amcl_lite.config import LocalizerSettings
@@ -28,9 +30,7 @@ class Beams:
     @cached_property
     def ends_xy(self) -> np.ndarray:
         """Where the beams that met something end: (M, 2), in the base frame."""
-        met = self.ranges < self.max_range
-        ranges, directions = self.ranges[met], self.directions[met]
-        return self.start_xy + np.column_stack((ranges * np.cos(directions), ranges * np.sin(directions)))
+        return _ends(self.ranges, self.directions, self.max_range, self.start_xy)
 
 
 def all_beams(scan: Scan, settings: LocalizerSettings) -> Beams:
@@ -55,13 +55,11 @@ def _beams(scan: Scan, settings: LocalizerSettings, step: int) -> Beams:
         min_range = max(min_range, settings.laser_min_range)
     if not (max_range > 0.0 and min_range >= 0.0 and np.isfinite(max_range)):
         raise LocalizationError(f"a scan has senseless limits: range_min {min_range}, range_max {max_range}")
-    ranges = scan.ranges[::step].astype(np.float64)
-    directions = scan.angles_of(np.arange(0, len(scan.ranges), step)) + scan.laser_in_base.yaw
-    measured = ~np.isnan(ranges)
-    ranges, directions = ranges[measured], directions[measured]
-    ranges = np.where((ranges <= min_range) | (ranges > max_range), max_range, ranges)
-    start_xy = np.array([scan.laser_in_base.x, scan.laser_in_base.y])
-    return Beams(ranges, directions, max_range, start_xy)
+    angles = scan.angles_of(np.arange(0, len(scan.ranges), step))
+    ranges, directions = _measured(
+        scan.ranges[::step].astype(np.float64), angles + scan.laser_in_base.yaw, min_range, max_range
+    )
+    return Beams(ranges, directions, max_range, np.array([scan.laser_in_base.x, scan.laser_in_base.y]))
 
 
 def _step(count: int, settings: LocalizerSettings) -> int:
@@ -69,3 +67,27 @@ def _step(count: int, settings: LocalizerSettings) -> int:
     if settings.sensor_model == "likelihood_field_prob":
         return max(1, -(-count // max(1, settings.beams)))
     return max(1, (count - 1) // max(1, settings.beams - 1))
+
+
+@numba.njit(cache=True)
+def _measured(ranges, directions, min_range, max_range):
+    """Those that are not NaN; ``max_range`` for those out of limits."""
+    count = 0
+    for i in range(ranges.size):
+        if not math.isnan(ranges[i]):
+            is_within = min_range < ranges[i] <= max_range
+            ranges[count], directions[count] = ranges[i] if is_within else max_range, directions[i]
+            count += 1
+    return ranges[:count], directions[:count]
+
+
+@numba.njit(cache=True)
+def _ends(ranges, directions, max_range, start_xy):
+    """Where those shorter than ``max_range`` end: (M, 2)."""
+    ends_xy, count = np.empty((ranges.size, 2)), 0
+    for i in range(ranges.size):
+        if ranges[i] < max_range:
+            ends_xy[count, 0] = start_xy[0] + ranges[i] * math.cos(directions[i])
+            ends_xy[count, 1] = start_xy[1] + ranges[i] * math.sin(directions[i])
+            count += 1
+    return ends_xy[:count]

@@ -2,25 +2,53 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
 
+import numba
 import numpy as np
 
 from planar import OCCUPIED, OccupancyGrid, Pose2
 from planar.distance_field import distance_field
 
 
+class IntoCells(NamedTuple):
+    """How poses in the map become columns, rows and headings of a field, for kernels.
+
+    ``col``, ``row``, ``yaw``: where the map's origin lies; ``cos``, ``sin``: of ``yaw``, in cells per metre;
+    ``scale``: cells per metre.
+    """
+
+    col: float
+    row: float
+    yaw: float
+    cos: float
+    sin: float
+    scale: float
+
+
 @dataclass(frozen=True, eq=False)
 class LikelihoodField:
     """exp(-d^2 / 2 sigma^2) for each cell, d being its distance to the nearest obstacle (table 6.3).
 
-    ``fit``: float32 (rows, cols), 1 on an obstacle. ``fit_outside``: the value off the map.
+    ``fit``: float32 (rows + 2, cols + 2), 1 on an obstacle; its outermost cells stand for all that is off the
+    map. ``resolution``: metres. ``origin``: that of the map.
     """
 
     fit: np.ndarray
-    fit_outside: float
     sigma: float
     resolution: float
     origin: Pose2
+
+    @cached_property
+    def into_cells(self) -> IntoCells:
+        map_in_grid, scale = self.origin.inverse(), 1.0 / self.resolution
+        col, row, yaw = 1.0 + scale * map_in_grid.x, 1.0 + scale * map_in_grid.y, map_in_grid.yaw
+        return IntoCells(col, row, yaw, scale * math.cos(yaw), scale * math.sin(yaw), scale)
+
+    def from_cells(self, col: float, row: float, yaw: float) -> Pose2:
+        """A pose given in cells of ``fit``, in the map."""
+        return self.origin @ Pose2((col - 1.0) * self.resolution, (row - 1.0) * self.resolution, yaw)
 
     def fit_at_distance(self, distance: float) -> float:
         """The field's value at this distance, metres, from the nearest obstacle."""
@@ -30,6 +58,26 @@ class LikelihoodField:
 def likelihood_field(grid: OccupancyGrid, sigma: float, max_distance: float) -> LikelihoodField:
     """The field of a map's occupied cells; distances are told apart up to ``max_distance``, metres."""
     distances = distance_field(grid.cells == OCCUPIED, grid.resolution, max_distance)
-    fit = np.exp(-0.5 * (distances / np.float32(sigma)) ** 2)
-    outside = math.exp(-0.5 * (max_distance / sigma) ** 2)
-    return LikelihoodField(fit, outside, sigma, grid.resolution, grid.origin)
+    fit = np.full((grid.rows + 2, grid.cols + 2), math.exp(-0.5 * (max_distance / sigma) ** 2), np.float32)
+    np.exp(-0.5 * (distances / np.float32(sigma)) ** 2, out=fit[1:-1, 1:-1])
+    return LikelihoodField(fit, sigma, grid.resolution, grid.origin)
+
+
+@numba.njit(cache=True, inline="always")
+def placed(x, y, yaw, into_cells):
+    """A pose in the map as column, row, and the cosine and sine of its heading in cells per metre."""
+    heading = yaw + into_cells.yaw
+    return (
+        into_cells.col + into_cells.cos * x - into_cells.sin * y,
+        into_cells.row + into_cells.sin * x + into_cells.cos * y,
+        into_cells.scale * math.cos(heading),
+        into_cells.scale * math.sin(heading),
+    )
+
+
+@numba.njit(cache=True, inline="always")
+def fit_at(fit, col, row):
+    """The field's value at a place in cells, which may be off the map. Free of branches, to be vectorized."""
+    i = np.int32(min(max(row, 0.0), fit.shape[0] - 1.0))
+    j = np.int32(min(max(col, 0.0), fit.shape[1] - 1.0))
+    return fit[i, j]

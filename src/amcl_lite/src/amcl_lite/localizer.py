@@ -20,7 +20,7 @@ from amcl_lite.quality import LostDetector, Quality, quality_of
 from amcl_lite.recovery import find_hypotheses
 from amcl_lite.scan_matching import matched
 from amcl_lite.sensor_model import log_beam_model, log_likelihood_field, log_likelihood_field_prob
-from amcl_lite.statistics import best_cluster, covariance, mean_pose
+from amcl_lite.statistics import best_cluster, mean_and_covariance
 from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, Scan, grid_from_picture, wrap
 
 # Of the particles of a lost robot, this share is put where the scan fits the map.
@@ -93,7 +93,7 @@ class Localizer:
     @property
     def fit_grid(self) -> OccupancyGrid:
         """The likelihood field as a grid of 0 (far from any obstacle) to 100 (on one), to look at."""
-        fits = np.rint(100.0 * self._field.fit).astype(np.int8)
+        fits = np.rint(100.0 * self._field.fit[1:-1, 1:-1]).astype(np.int8)
         return OccupancyGrid(fits, self._grid.resolution, self._grid.origin)
 
     def reconfigure(self, settings: LocalizerSettings) -> None:
@@ -204,12 +204,14 @@ class Localizer:
 
     def _estimate(self, base_in_odom: Pose2, scan: Scan) -> Estimate:
         cluster = best_cluster(self.particles)
-        base_in_map = mean_pose(cluster)
+        base_in_map, covariance = mean_and_covariance(cluster)
         if self._settings.refine_pose:
             ends_xy = all_beams(scan, self._settings).ends_xy
-            base_in_map = matched(base_in_map, covariance(cluster), ends_xy, self._field)
+            base_in_map = matched(base_in_map, covariance, ends_xy, self._field)
+        if cluster is not self.particles:
+            _, covariance = mean_and_covariance(self.particles)
         self._odom_in_map = base_in_map @ base_in_odom.inverse()
-        self._covariance = covariance(self.particles)
+        self._covariance = covariance
         return Estimate(base_in_map, self._covariance)
 
     def _judge(self, base_in_odom: Pose2, beams: Beams, stamp: float) -> None:

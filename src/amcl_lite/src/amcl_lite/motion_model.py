@@ -8,6 +8,7 @@
 import math
 from typing import Tuple
 
+import numba
 import numpy as np
 
 from amcl_lite.config import LocalizerSettings
@@ -48,15 +49,7 @@ def _moved_diff(poses, base_before, base_now, settings, noise):
         a3 * translation**2 + a4 * (turn_1**2 + turn_2**2),
         a1 * turn_2**2 + a2 * translation**2,
     )
-    drawn_1, drawn_translation, drawn_2 = (noise * spreads + (rotation_1, translation, rotation_2)).T
-    directions = poses[:, 2] + drawn_1
-    return np.column_stack(
-        (
-            poses[:, 0] + drawn_translation * np.cos(directions),
-            poses[:, 1] + drawn_translation * np.sin(directions),
-            wrap(directions + drawn_2),
-        )
-    )
+    return _turned_driven_turned(poses, noise * spreads + (rotation_1, translation, rotation_2))
 
 
 def _moved_omni(poses, base_before, base_now, settings, noise):
@@ -77,16 +70,38 @@ def _moved_omni(poses, base_before, base_now, settings, noise):
         a1 * rotation**2 + a2 * translation**2,
         a4 * rotation**2 + a5 * translation**2,
     )
-    forward, turn, strafe = (noise * spreads + (translation, rotation, 0.0)).T
-    bearings = wrap(math.atan2(dy, dx) - base_before.yaw) + poses[:, 2]
-    c, s = np.cos(bearings), np.sin(bearings)
-    return np.column_stack(
-        (
-            poses[:, 0] + forward * c + strafe * s,
-            poses[:, 1] + forward * s - strafe * c,
-            wrap(poses[:, 2] + turn),
-        )
-    )
+    bearing = math.atan2(dy, dx) - base_before.yaw
+    return _shifted(poses, bearing, noise * spreads + (translation, rotation, 0.0))
+
+
+@numba.njit(cache=True)
+def _turned_driven_turned(poses, motions):
+    """Poses (N, 3) moved on by a rotation, a translation and a rotation each, (N, 3)."""
+    moved_poses = np.empty_like(poses)
+    for i in range(poses.shape[0]):
+        direction = poses[i, 2] + motions[i, 0]
+        moved_poses[i, 0] = poses[i, 0] + motions[i, 1] * math.cos(direction)
+        moved_poses[i, 1] = poses[i, 1] + motions[i, 1] * math.sin(direction)
+        moved_poses[i, 2] = _wrapped(direction + motions[i, 2])
+    return moved_poses
+
+
+@numba.njit(cache=True)
+def _shifted(poses, bearing, motions):
+    """Poses (N, 3) moved on by a way along ``bearing``, a turn and a way to the right of it each, (N, 3)."""
+    moved_poses = np.empty_like(poses)
+    for i in range(poses.shape[0]):
+        forward, turn, strafe = motions[i]
+        c, s = math.cos(poses[i, 2] + bearing), math.sin(poses[i, 2] + bearing)
+        moved_poses[i, 0] = poses[i, 0] + forward * c + strafe * s
+        moved_poses[i, 1] = poses[i, 1] + forward * s - strafe * c
+        moved_poses[i, 2] = _wrapped(poses[i, 2] + turn)
+    return moved_poses
+
+
+@numba.njit(cache=True, inline="always")
+def _wrapped(angle):
+    return (angle + math.pi) % (2.0 * math.pi) - math.pi
 
 
 def rotations_and_translation(base_before: Pose2, base_now: Pose2) -> Tuple[float, float, float]:

@@ -2,6 +2,7 @@
 
 import math
 
+import numba
 import numpy as np
 
 from amcl_lite.config import LocalizerSettings
@@ -10,8 +11,6 @@ from amcl_lite.particles import ParticleSet
 from amcl_lite.resampling import DrawPoses, resampled
 from amcl_lite.statistics import has_converged
 from planar import Pose2
-
-_TINY = 1e-300  # so that the logarithm of a weight exists
 
 
 class ParticleFilter:
@@ -30,12 +29,9 @@ class ParticleFilter:
 
     def weigh(self, log_likelihoods: np.ndarray, settings: LocalizerSettings) -> None:
         """Multiplies the weights by likelihoods, given as logarithms (N,)."""
-        log_weights = log_likelihoods + np.log(np.maximum(self.particles.weights, _TINY))
-        largest = float(log_weights.max())
-        weights = np.exp(log_weights - largest)
-        total = float(weights.sum())
-        self.particles = ParticleSet(self.particles.poses, weights / total)
-        self._likelihood.take(math.exp(largest) * total, settings)
+        weights, likelihood = _weighted(self.particles.weights, log_likelihoods)
+        self.particles = ParticleSet(self.particles.poses, weights)
+        self._likelihood.take(likelihood, settings)
 
     def resample(
         self,
@@ -81,3 +77,14 @@ class _LikelihoodTrend:
 def _decayed(average: float, value: float, alpha: float) -> float:
     """An exponential average; 0 means that there is none yet."""
     return value if average == 0.0 else average + alpha * (value - average)
+
+
+@numba.njit(cache=True)
+def _weighted(weights, log_likelihoods):
+    """Weights times likelihoods, made to sum to 1, and what they summed to; no exponential underflows."""
+    largest = log_likelihoods.max()
+    products, total = np.empty(weights.size), 0.0
+    for i in range(weights.size):
+        products[i] = weights[i] * math.exp(log_likelihoods[i] - largest)
+        total += products[i]
+    return products / total, math.exp(largest) * total

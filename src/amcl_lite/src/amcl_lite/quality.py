@@ -7,7 +7,7 @@ import numba
 import numpy as np
 
 from amcl_lite.beams import Beams
-from amcl_lite.likelihood_field import LikelihoodField
+from amcl_lite.likelihood_field import LikelihoodField, fit_at, placed
 from planar import OccupancyGrid, Pose2
 from planar.ray_casting import cast_rays
 
@@ -46,14 +46,9 @@ def quality_of(base_in_map: Pose2, beams: Beams, field: LikelihoodField, grid: O
     """Judges a pose by a scan's beams; the probability is 0 if no beam met anything."""
     laser_in_map = base_in_map @ Pose2(beams.start_xy[0], beams.start_xy[1], 0.0)
     expected = cast_rays(grid, laser_in_map, beams.directions, beams.max_range)
-    laser_in_grid = field.origin.inverse() @ laser_in_map
+    x, y, yaw = base_in_map.x, base_in_map.y, base_in_map.yaw
     explained, through, mean_distance = _judged(
-        laser_in_grid.as_array(),
-        beams.ranges,
-        beams.directions,
-        beams.max_range,
-        expected,
-        (field.fit, field.fit_outside, field.sigma, field.resolution),
+        x, y, yaw, beams.ends_xy, beams.ranges, expected, field.into_cells, field.fit, field.sigma
     )
     if math.isinf(mean_distance):
         return Quality(0.0, explained, through, mean_distance)
@@ -62,28 +57,22 @@ def quality_of(base_in_map: Pose2, beams: Beams, field: LikelihoodField, grid: O
 
 
 @numba.njit(cache=True)
-def _judged(laser, ranges, directions, max_range, expected, field):
+def _judged(x, y, yaw, ends_xy, ranges, expected, into_cells, fit, sigma):
     """How well beams are explained, the share through walls, the mean distance (inf: no beam met)."""
-    fit, fit_outside, sigma, resolution = field
-    explained, distance, through, met = 0.0, 0.0, 0, 0
+    through = 0
     for i in range(ranges.size):
-        if ranges[i] > expected[i] + _THROUGH:
-            through += 1
-        if ranges[i] >= max_range:
-            continue
-        met += 1
-        angle = laser[2] + directions[i]
-        col = (laser[0] + ranges[i] * math.cos(angle)) / resolution
-        row = (laser[1] + ranges[i] * math.sin(angle)) / resolution
-        value = fit_outside
-        if col >= 0.0 and row >= 0.0 and col < fit.shape[1] and row < fit.shape[0]:
-            value = max(fit[int(row), int(col)], fit_outside)
-        squared = -2.0 * sigma**2 * math.log(max(value, _TINY))
-        distance += math.sqrt(max(squared, 0.0))
-        explained += math.exp(-0.5 * squared / _EXPLAINED_WITHIN**2)
-    share_through = through / max(ranges.size, 1)
+        through += ranges[i] > expected[i] + _THROUGH
+    share_through, met = through / max(ranges.size, 1), ends_xy.shape[0]
     if met == 0:
         return 0.0, share_through, np.inf
+    col, row, c, s = placed(x, y, yaw, into_cells)
+    explained, distance = 0.0, 0.0
+    for i in range(met):
+        end_x, end_y = ends_xy[i, 0], ends_xy[i, 1]
+        value = fit_at(fit, col + c * end_x - s * end_y, row + s * end_x + c * end_y)
+        squared = max(-2.0 * sigma**2 * math.log(max(value, _TINY)), 0.0)
+        distance += math.sqrt(squared)
+        explained += math.exp(-0.5 * squared / _EXPLAINED_WITHIN**2)
     return explained / met, share_through, distance / met
 
 

@@ -42,10 +42,17 @@ def particles_needed(occupied_bins: int, minimum: int, maximum: int, error: floa
     return _particles_needed(occupied_bins, minimum, maximum, error, z)
 
 
-def _drawn_systematically(cumulative: np.ndarray, count: int, chance: float) -> np.ndarray:
+@numba.njit(cache=True)
+def _drawn_systematically(cumulative, count, chance):
     """Indices (count,) of particles drawn by weight with one random number for all (table 4.4)."""
-    shares = (np.arange(count) + chance) / max(count, 1) * cumulative[-1]
-    return np.minimum(np.searchsorted(cumulative, shares, side="right"), len(cumulative) - 1)
+    drawn, last = np.empty(count, dtype=np.int64), cumulative.size - 1
+    j = 0
+    for i in range(count):
+        share = (i + chance) / count * cumulative[last]
+        while j < last and cumulative[j] <= share:
+            j += 1
+        drawn[i] = j
+    return drawn
 
 
 @numba.njit(cache=True)

@@ -10,93 +10,117 @@ import math
 import numba
 import numpy as np
 
-from amcl_lite.likelihood_field import LikelihoodField
+from amcl_lite.likelihood_field import LikelihoodField, placed
 from planar import Pose2
 
 # Standard deviation of a beam's misfit (1 - fit) at the right pose; what a typical lidar and map leave over.
 _MISFIT_SPREAD = 0.25
-_ITERATIONS = 10
 # The field to this power is one of half the sigma: what stands before a wall does not pull at the pose any
 # more.
 _SHARPNESS = 4
+# The descent ends after so many steps, or with one shorter than this: cells, and radians.
+_STEPS, _SMALL_STEP, _SMALL_TURN = 10, 0.01, 1e-4
+# Two descents that end this near to each other, in cells, have found the same place.
+_SAME_PLACE = 0.5
 
 
 def matched(guess: Pose2, covariance: np.ndarray, points_xy: np.ndarray, field: LikelihoodField) -> Pose2:
     """The most probable pose near a guess with ``covariance`` (3, 3); beam ends (N, 2) in the base frame."""
-    origin = field.origin
-    in_grid = origin.inverse() @ guess
-    start = np.array((in_grid.x / field.resolution, in_grid.y / field.resolution, in_grid.yaw))
-    c, s = math.cos(origin.yaw), math.sin(origin.yaw)
-    into_grid = np.array(((c, s, 0.0), (-s, c, 0.0), (0.0, 0.0, field.resolution))) / field.resolution
-    spread = into_grid @ covariance @ into_grid.T
-    information = np.linalg.inv(spread + np.diag((1e-3, 1e-3, 1e-6)))
-    found = _matched(start, information, points_xy / field.resolution, field.fit, field.fit_outside)
-    found[:2] *= field.resolution
-    return origin @ Pose2.from_array(found)
+    into = field.into_cells
+    jacobian = np.array(((into.cos, -into.sin, 0.0), (into.sin, into.cos, 0.0), (0.0, 0.0, 1.0)))
+    spread = jacobian @ covariance @ jacobian.T + np.diag((1e-3, 1e-3, 1e-6))
+    return field.from_cells(*_matched(guess.x, guess.y, guess.yaw, spread, points_xy, into, field.fit))
 
 
 @numba.njit(cache=True)
-def _matched(start, prior, points, fit, outside):
-    """The better of two sharp matches: one from the start itself, one from where a blunt match leads."""
-    blunt, _ = _descended(start, start, prior, points, fit, outside, 1)
-    near, near_cost = _descended(start, start, prior, points, fit, outside, _SHARPNESS)
-    far, far_cost = _descended(blunt, start, prior, points, fit, outside, _SHARPNESS)
+def _matched(x, y, yaw, spread, points_xy, into_cells, fit):
+    """The better of two sharp matches: one from the guess itself, one from where a blunt match leads."""
+    col, row, _, _ = placed(x, y, yaw, into_cells)
+    start, prior, points = (col, row, yaw + into_cells.yaw), _inverse(spread), points_xy * into_cells.scale
+    near, near_cost = _descended(start, start, prior, points, fit, _SHARPNESS)
+    blunt, _ = _descended(start, start, prior, points, fit, 1)
+    if abs(blunt[0] - near[0]) + abs(blunt[1] - near[1]) < _SAME_PLACE:
+        return near
+    far, far_cost = _descended(blunt, start, prior, points, fit, _SHARPNESS)
     return near if near_cost <= far_cost else far
 
 
 @numba.njit(cache=True)
-def _descended(first, start, prior, points, fit, outside, sharpness):
+def _descended(first, start, prior, points, fit, sharpness):
     """The best pose on the way down from ``first``, and its cost."""
-    pose = first.copy()
-    best, best_cost = pose.copy(), np.inf
-    for _ in range(_ITERATIONS):
-        cost, gradient, hessian = _linearized(pose, start, prior, points, fit, outside, sharpness)
+    pose = best = first
+    best_cost = np.inf
+    for _ in range(_STEPS):
+        cost, gradient, hessian = _linearized(pose, start, prior, points, fit, sharpness)
         if cost >= best_cost:
             break
-        best, best_cost = pose.copy(), cost
-        step = np.linalg.solve(hessian, gradient)
-        pose = pose - step
-        if abs(step[0]) + abs(step[1]) < 1e-3 and abs(step[2]) < 1e-5:
+        best, best_cost = pose, cost
+        step = _product(_inverse(hessian), gradient)
+        pose = (pose[0] - step[0], pose[1] - step[1], pose[2] - step[2])
+        if abs(step[0]) + abs(step[1]) < _SMALL_STEP and abs(step[2]) < _SMALL_TURN:
             break
     return best, best_cost
 
 
-@numba.njit(cache=True)
-def _linearized(pose, start, prior, points, fit, outside, sharpness):
+@numba.njit(cache=True, fastmath=True)
+def _linearized(pose, start, prior, points, fit, sharpness):
     """Cost, gradient (3,) and Gauss-Newton Hessian (3, 3) of misfits and prior at a pose in cells."""
-    weight = 1.0 / _MISFIT_SPREAD**2
-    gradient, hessian, cost = np.zeros(3), prior.copy(), 0.0
-    for j in range(3):
-        for k in range(3):
-            gradient[j] += prior[j, k] * (pose[k] - start[k])
-        cost += 0.5 * gradient[j] * (pose[j] - start[j])
     c, s = math.cos(pose[2]), math.sin(pose[2])
-    jacobian = np.empty(3)
+    misfits, g0, g1, g2 = 0.0, 0.0, 0.0, 0.0
+    h00, h01, h02, h11, h12, h22 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(points.shape[0]):
         x, y = c * points[i, 0] - s * points[i, 1], s * points[i, 0] + c * points[i, 1]
-        value, slope_x, slope_y = _interpolated(fit, outside, pose[0] + x - 0.5, pose[1] + y - 0.5)
+        value, slope_x, slope_y = _interpolated(fit, pose[0] + x - 0.5, pose[1] + y - 0.5)
         power = 1.0
         for _ in range(sharpness - 1):
             power *= value
-        steepness, misfit = sharpness * power, 1.0 - power * value
-        jacobian[0] = -steepness * slope_x
-        jacobian[1] = -steepness * slope_y
-        jacobian[2] = steepness * (slope_x * y - slope_y * x)
-        cost += 0.5 * weight * misfit * misfit
-        for j in range(3):
-            gradient[j] += weight * jacobian[j] * misfit
-            for k in range(3):
-                hessian[j, k] += weight * jacobian[j] * jacobian[k]
+        misfit = 1.0 - power * value
+        j0, j1 = -sharpness * power * slope_x, -sharpness * power * slope_y
+        j2 = j1 * x - j0 * y
+        misfits += misfit * misfit
+        g0, g1, g2 = g0 + j0 * misfit, g1 + j1 * misfit, g2 + j2 * misfit
+        h00, h01, h02 = h00 + j0 * j0, h01 + j0 * j1, h02 + j0 * j2
+        h11, h12, h22 = h11 + j1 * j1, h12 + j1 * j2, h22 + j2 * j2
+    weight = 1.0 / _MISFIT_SPREAD**2
+    off = np.array((pose[0] - start[0], pose[1] - start[1], pose[2] - start[2]))
+    pull = _product(prior, off)
+    cost = 0.5 * (weight * misfits + off[0] * pull[0] + off[1] * pull[1] + off[2] * pull[2])
+    gradient = weight * np.array((g0, g1, g2)) + pull
+    hessian = weight * np.array(((h00, h01, h02), (h01, h11, h12), (h02, h12, h22))) + prior
     return cost, gradient, hessian
 
 
 @numba.njit(cache=True, inline="always")
-def _interpolated(fit, outside, col, row):
+def _interpolated(fit, col, row):
     """Value of the field between four cell centres, and its slopes per cell along columns and rows."""
     if col < 0.0 or row < 0.0 or col >= fit.shape[1] - 1 or row >= fit.shape[0] - 1:
-        return outside, 0.0, 0.0
+        return np.float64(fit[0, 0]), 0.0, 0.0
     i, j = int(row), int(col)
     u, v = col - j, row - i
     left, right = (1.0 - v) * fit[i, j] + v * fit[i + 1, j], (1.0 - v) * fit[i, j + 1] + v * fit[i + 1, j + 1]
     low, high = (1.0 - u) * fit[i, j] + u * fit[i, j + 1], (1.0 - u) * fit[i + 1, j] + u * fit[i + 1, j + 1]
     return (1.0 - u) * left + u * right, right - left, high - low
+
+
+@numba.njit(cache=True)
+def _inverse(matrix):
+    """The inverse of a (3, 3); LAPACK would wake all processors for it."""
+    cofactors = np.empty((3, 3))
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        for m in range(3):
+            n, o = (m + 1) % 3, (m + 2) % 3
+            cofactors[m, i] = matrix[j, n] * matrix[k, o] - matrix[j, o] * matrix[k, n]
+    determinant = 0.0
+    for m in range(3):
+        determinant += matrix[0, m] * cofactors[m, 0]
+    return cofactors / determinant
+
+
+@numba.njit(cache=True)
+def _product(matrix, vector):
+    product = np.zeros(3)
+    for i in range(3):
+        for j in range(3):
+            product[i] += matrix[i, j] * vector[j]
+    return product

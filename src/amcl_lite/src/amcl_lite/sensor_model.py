@@ -10,7 +10,7 @@ import numpy as np
 
 from amcl_lite.beams import Beams
 from amcl_lite.config import LocalizerSettings
-from amcl_lite.likelihood_field import LikelihoodField
+from amcl_lite.likelihood_field import LikelihoodField, fit_at, placed
 from planar import OccupancyGrid
 from planar.ray_casting import cast_rays_from_many
 
@@ -22,15 +22,10 @@ def log_likelihood_field(
 
     The sum forgives: a beam that the map does not explain cannot rule out a pose.
     """
-    return np.log1p(
-        _sums_of_cubes(
-            *_in_cells(poses, beams.ends_xy, field),
-            field.fit,
-            field.fit_outside,
-            settings.z_hit,
-            _random(beams, settings),
-        )
+    sums = _sums_of_cubes(
+        poses, beams.ends_xy, field.into_cells, field.fit, settings.z_hit, _random(beams, settings)
     )
+    return np.log1p(sums)
 
 
 def log_likelihood_field_prob(
@@ -41,14 +36,16 @@ def log_likelihood_field_prob(
     With ``skip_beams``, those that too few particles can explain are left out: people and moved furniture;
     unless that would leave almost none, when it is the particles that are wrong.
     """
-    starts, ends = _in_cells(poses, beams.ends_xy, field)
+    ends_xy = beams.ends_xy
     if skip_beams:
         explained = field.fit_at_distance(settings.beam_skip_distance)
-        shares = _shares_explaining(starts, ends, field.fit, explained)
+        shares = _shares_explaining(poses, ends_xy, field.into_cells, field.fit, explained)
         used = shares > settings.beam_skip_threshold
-        if np.count_nonzero(~used) < settings.beam_skip_error_threshold * len(ends):
-            ends = ends[used]
-    return _sums_of_logs(starts, ends, field.fit, field.fit_outside, settings.z_hit, _random(beams, settings))
+        if np.count_nonzero(~used) < settings.beam_skip_error_threshold * len(ends_xy):
+            ends_xy = ends_xy[used]
+    return _sums_of_logs(
+        poses, ends_xy, field.into_cells, field.fit, settings.z_hit, _random(beams, settings)
+    )
 
 
 def log_beam_model(
@@ -74,68 +71,67 @@ def log_beam_model(
 
 def mean_fits(poses: np.ndarray, ends_xy: np.ndarray, field: LikelihoodField) -> np.ndarray:
     """How well (N,), 0 to 1, beams that end at ``ends_xy`` (M, 2) fit the map on average; no probability."""
-    starts, ends = _in_cells(poses, ends_xy, field)
-    return _sums_of_fits(starts, ends, field.fit) / max(len(ends), 1)
+    return _sums_of_fits(poses, ends_xy, field.into_cells, field.fit) / max(len(ends_xy), 1)
 
 
 def _random(beams: Beams, settings: LocalizerSettings) -> float:
     return settings.z_rand / beams.max_range
 
 
-def _in_cells(poses, ends_xy, field):
-    """Particles as (N, 4) col, row, cos, sin and beam ends as (M, 2), in cells of the field."""
-    positions_xy = field.origin.inverse().transform_points(poses[:, :2]) / field.resolution
-    yaws = poses[:, 2] - field.origin.yaw
-    return np.column_stack((positions_xy, np.cos(yaws), np.sin(yaws))), ends_xy / field.resolution
+# Sums over beams may be taken in any order, for speed: no two orders differ by anything that matters.
 
 
-@numba.njit(cache=True, inline="always")
-def _fit_at(fit, outside, start, x, y):
-    col = start[0] + start[2] * x - start[3] * y
-    row = start[1] + start[3] * x + start[2] * y
-    if col >= 0.0 and row >= 0.0 and col < fit.shape[1] and row < fit.shape[0]:
-        return fit[int(row), int(col)]
-    return outside
+@numba.njit(cache=True, fastmath=True)
+def _sums_of_fits(poses, ends_xy, into_cells, fit):
+    sums = np.empty(poses.shape[0])
+    for i in range(poses.shape[0]):
+        col, row, c, s = placed(poses[i, 0], poses[i, 1], poses[i, 2], into_cells)
+        total = 0.0
+        for j in range(ends_xy.shape[0]):
+            x, y = ends_xy[j, 0], ends_xy[j, 1]
+            total += fit_at(fit, col + c * x - s * y, row + s * x + c * y)
+        sums[i] = total
+    return sums
 
 
-@numba.njit(cache=True)
-def _sums_of_fits(starts, ends, fit):
-    sums = np.zeros(starts.shape[0])
-    for i in range(starts.shape[0]):
-        for j in range(ends.shape[0]):
-            sums[i] += _fit_at(fit, 0.0, starts[i], ends[j, 0], ends[j, 1])
+@numba.njit(cache=True, fastmath=True)
+def _sums_of_cubes(poses, ends_xy, into_cells, fit, z_hit, random):
+    sums = np.empty(poses.shape[0])
+    for i in range(poses.shape[0]):
+        col, row, c, s = placed(poses[i, 0], poses[i, 1], poses[i, 2], into_cells)
+        total = 0.0
+        for j in range(ends_xy.shape[0]):
+            x, y = ends_xy[j, 0], ends_xy[j, 1]
+            p = z_hit * fit_at(fit, col + c * x - s * y, row + s * x + c * y) + random
+            total += p * p * p
+        sums[i] = total
     return sums
 
 
 @numba.njit(cache=True)
-def _sums_of_cubes(starts, ends, fit, outside, z_hit, random):
-    sums = np.zeros(starts.shape[0])
-    for i in range(starts.shape[0]):
-        for j in range(ends.shape[0]):
-            p = z_hit * _fit_at(fit, outside, starts[i], ends[j, 0], ends[j, 1]) + random
-            sums[i] += p * p * p
-    return sums
-
-
-@numba.njit(cache=True)
-def _sums_of_logs(starts, ends, fit, outside, z_hit, random):
-    sums = np.zeros(starts.shape[0])
+def _sums_of_logs(poses, ends_xy, into_cells, fit, z_hit, random):
+    sums = np.empty(poses.shape[0])
     tiny = 1e-300  # z_rand may be 0
-    for i in range(starts.shape[0]):
-        for j in range(ends.shape[0]):
-            p = z_hit * _fit_at(fit, outside, starts[i], ends[j, 0], ends[j, 1]) + random
-            sums[i] += math.log(max(p, tiny))
+    for i in range(poses.shape[0]):
+        col, row, c, s = placed(poses[i, 0], poses[i, 1], poses[i, 2], into_cells)
+        total = 0.0
+        for j in range(ends_xy.shape[0]):
+            x, y = ends_xy[j, 0], ends_xy[j, 1]
+            p = z_hit * fit_at(fit, col + c * x - s * y, row + s * x + c * y) + random
+            total += math.log(max(p, tiny))
+        sums[i] = total
     return sums
 
 
 @numba.njit(cache=True)
-def _shares_explaining(starts, ends, fit, explained):
-    counts = np.zeros(ends.shape[0])
-    for i in range(starts.shape[0]):
-        for j in range(ends.shape[0]):
-            if _fit_at(fit, 0.0, starts[i], ends[j, 0], ends[j, 1]) > explained:
-                counts[j] += 1.0
-    return counts / starts.shape[0]
+def _shares_explaining(poses, ends_xy, into_cells, fit, explained):
+    counts = np.zeros(ends_xy.shape[0])
+    for i in range(poses.shape[0]):
+        col, row, c, s = placed(poses[i, 0], poses[i, 1], poses[i, 2], into_cells)
+        for j in range(ends_xy.shape[0]):
+            x, y = ends_xy[j, 0], ends_xy[j, 1]
+            counts[j] += fit_at(fit, col + c * x - s * y, row + s * x + c * y) > explained
+    return counts / poses.shape[0]
 
 
 @numba.njit(cache=True)

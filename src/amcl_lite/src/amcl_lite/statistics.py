@@ -1,6 +1,7 @@
 """What a particle set says about where the robot is."""
 
 import math
+from typing import Tuple
 
 import numba
 import numpy as np
@@ -16,48 +17,59 @@ _CONVERGED_WITHIN = 0.5
 def best_cluster(particles: ParticleSet) -> ParticleSet:
     """The heaviest group of particles: one of several hypotheses, never something between two."""
     labels = cluster_labels(particles.poses)
+    if not labels.any():
+        return particles
     chosen = labels == int(np.argmax(np.bincount(labels, particles.weights)))
     weights = particles.weights[chosen]
     return ParticleSet(particles.poses[chosen], weights / weights.sum())
 
 
-def mean_pose(particles: ParticleSet) -> Pose2:
-    """The weighted mean of a set; headings are averaged on the circle."""
-    x, y, c, s = _weighted_sums(particles.poses, particles.weights)
-    return Pose2(float(x), float(y), math.atan2(s, c))
+def mean_and_covariance(particles: ParticleSet) -> Tuple[Pose2, np.ndarray]:
+    """The weighted mean of a set, and its covariance (3, 3) in m^2 and rad^2.
 
-
-def covariance(particles: ParticleSet) -> np.ndarray:
-    """The covariance (3, 3) of the whole set, in m^2 and rad^2; heading is not correlated with position.
-
-    The variance of heading is that of circular statistics, -2 ln R.
+    Headings are averaged on the circle, their variance is that of circular statistics, -2 ln R; they are not
+    correlated with positions.
     """
-    poses, weights = particles.poses, particles.weights
-    x, y, c, s = _weighted_sums(poses, weights)
-    dx, dy = poses[:, 0] - x, poses[:, 1] - y
-    result = np.zeros((3, 3))
-    result[0, 0], result[1, 1] = (weights * dx * dx).sum(), (weights * dy * dy).sum()
-    result[0, 1] = result[1, 0] = (weights * dx * dy).sum()
-    result[2, 2] = -2.0 * math.log(min(max(math.hypot(c, s), 1e-12), 1.0))
-    return result
-
-
-@numba.njit(cache=True)
-def _weighted_sums(poses, weights):
-    """Weighted sums (4,) of x, y, cos(yaw), sin(yaw).
-
-    Added up in order: numpy's last bit depends on where in memory its arrays lie.
-    """
-    sums = np.zeros(4)
-    for i in range(weights.size):
-        sums[0] += weights[i] * poses[i, 0]
-        sums[1] += weights[i] * poses[i, 1]
-        sums[2] += weights[i] * math.cos(poses[i, 2])
-        sums[3] += weights[i] * math.sin(poses[i, 2])
-    return sums
+    x, y, c, s, xx, xy, yy = _moments(particles.poses, particles.weights)
+    length = min(max(math.hypot(c, s), 1e-12), 1.0)
+    covariance = np.array(((xx, xy, 0.0), (xy, yy, 0.0), (0.0, 0.0, -2.0 * math.log(length))))
+    return Pose2(x, y, math.atan2(s, c)), covariance
 
 
 def has_converged(particles: ParticleSet) -> bool:
     """Whether every particle is near the unweighted mean, along x and along y."""
-    positions_xy = particles.poses[:, :2]
-    return bool(np.all(np.abs(positions_xy - positions_xy.mean(axis=0)) <= _CONVERGED_WITHIN))
+    return _are_all_near_mean(particles.poses, _CONVERGED_WITHIN)
+
+
+@numba.njit(cache=True)
+def _moments(poses, weights):
+    """Weighted means of x, y, cos(yaw) and sin(yaw); variance of x, covariance, variance of y.
+
+    Added up in order: numpy's last bit depends on where in memory its arrays lie.
+    """
+    x, y, c, s = 0.0, 0.0, 0.0, 0.0
+    for i in range(weights.size):
+        x += weights[i] * poses[i, 0]
+        y += weights[i] * poses[i, 1]
+        c += weights[i] * math.cos(poses[i, 2])
+        s += weights[i] * math.sin(poses[i, 2])
+    xx, xy, yy = 0.0, 0.0, 0.0
+    for i in range(weights.size):
+        dx, dy = poses[i, 0] - x, poses[i, 1] - y
+        xx += weights[i] * dx * dx
+        xy += weights[i] * dx * dy
+        yy += weights[i] * dy * dy
+    return x, y, c, s, xx, xy, yy
+
+
+@numba.njit(cache=True)
+def _are_all_near_mean(poses, distance):
+    x, y = 0.0, 0.0
+    for i in range(poses.shape[0]):
+        x += poses[i, 0]
+        y += poses[i, 1]
+    x, y = x / poses.shape[0], y / poses.shape[0]
+    for i in range(poses.shape[0]):
+        if abs(poses[i, 0] - x) > distance or abs(poses[i, 1] - y) > distance:
+            return False
+    return True
