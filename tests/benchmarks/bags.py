@@ -50,8 +50,11 @@ def write_bag(
         bag.write("/tf_static", mountings, time_of(START))
         for sighting in sightings:
             stamp = time_of(START + sighting.scan.stamp)
-            base = transform_msg(sighting.base_in_odom, "odom", BASE_FRAME, stamp)
-            bag.write("/tf", TFMessage([base]), stamp)
+            for then, base_in_odom in (
+                *sighting.odometry_before,
+                (sighting.scan.stamp, sighting.base_in_odom),
+            ):
+                _write_odometry(bag, time_of(START + then), base_in_odom)
             truth = Odometry()
             truth.header.stamp, truth.header.frame_id = stamp, "world"
             truth.pose.pose = pose2_to_msg(sighting.base_in_map)
@@ -60,6 +63,10 @@ def write_bag(
                 bag.write("/" + scan_topic, _own_scan(sighting, own, stamp), stamp)
             for laser in lasers:
                 bag.write("/" + scan_topic, _measured(grid, sighting.base_in_map, laser, stamp, rng), stamp)
+
+
+def _write_odometry(bag: rosbag.Bag, stamp: rospy.Time, base_in_odom: Pose2) -> None:
+    bag.write("/tf", TFMessage([transform_msg(base_in_odom, "odom", BASE_FRAME, stamp)]), stamp)
 
 
 def _mounting(laser: Laser) -> TransformStamped:

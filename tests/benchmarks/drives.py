@@ -4,7 +4,7 @@ import heapq
 import itertools
 import math
 from dataclasses import dataclass
-from typing import List, Optional
+from typing import List, Optional, Tuple
 
 import numpy as np
 
@@ -21,11 +21,15 @@ CRAZY_TURN_SPEED = 2.5
 
 @dataclass(frozen=True, eq=False)
 class Sighting:
-    """One scan of a drive, with odometry and truth at its stamp."""
+    """One scan of a drive, with odometry and truth at its stamp.
+
+    ``odometry_before``: stamps and poses of the odometry between the scan before and this one.
+    """
 
     scan: Scan
     base_in_odom: Pose2
     base_in_map: Pose2
+    odometry_before: Tuple[Tuple[float, Pose2], ...] = ()
 
 
 class RandomDriver:
@@ -121,15 +125,16 @@ def drive(
 ) -> List[Sighting]:
     """Drives for some simulated seconds as ``driver.command`` says; the map frame is the world frame."""
     simulation = Simulation(world, robot_named(robot), settings, seed, start or Pose2())
-    sightings, command = [], None
+    sightings, before, command = [], [], None
     try:
         for _ in range(round(seconds / simulation.step_seconds)):
             seen = simulation.step(command)
-            if seen.scan is not None:
-                sightings.append(Sighting(seen.scan, seen.odometry.base_in_odom, seen.base_in_world))
-                command = driver.command(seen.base_in_world)
+            base_in_odom, command = seen.odometry.base_in_odom, None
+            if seen.scan is None:
+                before.append((seen.stamp, base_in_odom))
             else:
-                command = None
+                sightings.append(Sighting(seen.scan, base_in_odom, seen.base_in_world, tuple(before)))
+                before, command = [], driver.command(seen.base_in_world)
     finally:
         simulation.close()
     return sightings

@@ -5,6 +5,7 @@ Both nodes get the same scans, odometry and parameters, scan by scan. Errors are
 scan, against the truth; CPU is that of the whole process.
 
     tests/benchmarks/localization.py [accuracy] [updates] [recovery] [memory] [--seconds 100] [--runs 100]
+        [--seed 0]
 """
 
 import argparse
@@ -12,7 +13,7 @@ import subprocess
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Optional
+from typing import Dict, List, Optional, Tuple
 
 import numpy as np
 import yaml
@@ -43,6 +44,8 @@ FRAMES = {"base_frame_id": "base_footprint"}
 TURTLEBOT = yaml.safe_load((ROOT / "src/amcl_lite/config/turtlebot.yaml").read_text())
 PARAMETERS = {"turtlebot": TURTLEBOT, "default": FRAMES}
 SCANS_PER_SECOND = 10
+# A distance, metres, that no robot drives.
+NEVER = 1000.0
 # A recovery has succeeded when the position has been right for so long, metres and scans; in time, seconds.
 RECOVERED_WITHIN, RECOVERED_SCANS = 0.25, 20
 DEADLINES = {"global": 30, "kidnapped": 30, "wrong by 1 m, 30 deg": 10}
@@ -68,26 +71,24 @@ def main():
     )
     parser.add_argument("--seconds", type=float, default=100.0, help="length of each drive (%(default)s)")
     parser.add_argument("--runs", type=int, default=100, help="of each kind of recovery (%(default)s)")
+    parser.add_argument("--seed", type=int, default=0, help="of the drives (%(default)s)")
     arguments = parser.parse_args()
     sections = arguments.sections or SECTIONS
     unknown = set(sections) - set(SECTIONS)
     if unknown:
         parser.error(f"no such section: {', '.join(sorted(unknown))}")
     home, *others = places()
-    commands = {name: _executable(name) for name in NODES}
-    for name in [name for name, command in commands.items() if command is None]:
-        print(f"{name} is not installed")
-        del commands[name]
+    commands = installed_nodes()
     master = Master(PORT)
     try:
         first = random_drive(home.world, home.grid, 0, 10.0, start=home.start)
         player = Player(home.grid, first[0].scan.laser_in_base)
         if "accuracy" in sections:
-            accuracy(player, commands, [home, *others], arguments.seconds)
+            accuracy(player, commands, [home, *others], arguments.seconds, arguments.seed)
         if "updates" in sections:
             updates(player, commands, home)
         if "recovery" in sections:
-            recovery(player, commands, home, arguments.runs)
+            recovery(player, commands, home, arguments.runs, arguments.seed)
         if "memory" in sections:
             memory(player, commands, first)
     finally:
@@ -106,7 +107,9 @@ def places() -> List[Place]:
     ]
 
 
-def accuracy(player: Player, commands: Dict[str, str], where: List[Place], seconds: float) -> None:
+def accuracy(
+    player: Player, commands: Dict[str, str], where: List[Place], seconds: float, first_seed: int
+) -> None:
     """Errors and CPU of each drive: every world, noise and set of parameters."""
     print(
         "world    noise      parameters  node       rmse m   95 % m   max m    heading rmse  CPU ms/scan  "
@@ -116,7 +119,7 @@ def accuracy(player: Player, commands: Dict[str, str], where: List[Place], secon
         (place.name, noise): random_drive(
             place.world, place.grid, seed, seconds, settings=settings, start=place.start
         )
-        for seed, place in enumerate(where)
+        for seed, place in enumerate(where, first_seed)
         for noise, settings in NOISES.items()
     }
     errors_of_all: Dict[str, List[np.ndarray]] = {name: [] for name in commands}
@@ -141,29 +144,47 @@ def accuracy(player: Player, commands: Dict[str, str], where: List[Place], secon
 
 
 def updates(player: Player, commands: Dict[str, str], place: Place) -> None:
-    """What an update takes with a fixed number of particles and 60 beams."""
-    print("particles  node       answer ms  CPU ms, of updates at every scan")
+    """What an update takes with a fixed number of particles and 60 beams.
+
+    That is what a scan takes which causes one, less what a scan takes which causes none.
+    """
     drive = random_drive(place.world, place.grid, 7, 30.0, start=place.start)
     player.use_map(place.grid)
+    print("particles  node       update ms: answer, CPU    whole scan ms: answer, CPU")
     for count in (500, 2000, 5000):
         for name, command in commands.items():
-            fixed = {"min_particles": count, "max_particles": count, "update_min_d": 0.0, "update_min_a": 0.0}
-            start = time.monotonic()
-            waiting: List[float] = []
-            _, cpu = _measure(player, command, {**TURTLEBOT, **fixed}, drive, waiting)
-            print(
-                f"{count:9}  {name:10} {1e3 * np.median(waiting):9.2f}  {1e3 * cpu:6.2f}"
-                f"   ({time.monotonic() - start:.0f} s)",
-                flush=True,
+            working, idle = (
+                _costs(player, command, {**TURTLEBOT, **_fixed(count, after)}, drive)
+                for after in (0.0, NEVER)
             )
+            difference = [work - rest for work, rest in zip(working, idle)]
+            figures = "  ".join(f"{1e3 * seconds:10.2f}" for seconds in (*difference, *working))
+            print(f"{count:9}  {name:10}   {figures}", flush=True)
 
 
-def recovery(player: Player, commands: Dict[str, str], place: Place, runs: int) -> None:
+def _fixed(count: int, distance: float) -> Dict[str, float]:
+    """Parameters for a fixed number of particles and an update after ``distance``, metres or radians."""
+    return {
+        "min_particles": count,
+        "max_particles": count,
+        "update_min_d": distance,
+        "update_min_a": min(distance, 2.0 * np.pi),
+    }
+
+
+def _costs(player: Player, command: str, parameters: dict, drive: List[Sighting]) -> Tuple[float, float]:
+    """Mean seconds a scan: from publishing it to the answer, and of CPU."""
+    waiting: List[float] = []
+    _, cpu = _measure(player, command, parameters, drive, waiting)
+    return float(np.mean(waiting)), cpu
+
+
+def recovery(player: Player, commands: Dict[str, str], place: Place, runs: int, seed: int) -> None:
     """The share of runs in which the position is right within the deadline of driving."""
     print("recovery               node       share of runs   median s")
     length = SCANS_PER_SECOND * max(DEADLINES.values())
     drives = [
-        random_drive(place.world, place.grid, 20 + i, 4 * length / SCANS_PER_SECOND, start=place.start)
+        random_drive(place.world, place.grid, seed + 20 + i, 4 * length / SCANS_PER_SECOND, start=place.start)
         for i in range(4)
     ]
     player.use_map(place.grid)
@@ -174,7 +195,7 @@ def recovery(player: Player, commands: Dict[str, str], place: Place, runs: int) 
             try:
                 player.wake(drives[0][0])
                 for run in range(runs):
-                    rng = np.random.default_rng(run)
+                    rng = np.random.default_rng(seed + run)
                     took.append(_recover(player, kind, drives, deadline, rng))
             finally:
                 node.close()
@@ -258,6 +279,15 @@ def _measure(player: Player, command: str, parameters: dict, drive: List[Sightin
         return np.array(errors), (node.cpu_seconds() - cpu_before) / len(drive)
     finally:
         node.close()
+
+
+def installed_nodes() -> Dict[str, str]:
+    """The programs of the nodes to compare, by package; says which are missing."""
+    found = {name: _executable(name) for name in NODES}
+    for name, command in found.items():
+        if command is None:
+            print(f"{name} is not installed")
+    return {name: command for name, command in found.items() if command is not None}
 
 
 def _executable(package: str) -> Optional[str]:

@@ -5,7 +5,7 @@ import subprocess
 import threading
 import time
 from pathlib import Path
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Dict, List, Mapping, Optional, Sequence
 
 import numpy as np
 import psutil
@@ -137,8 +137,14 @@ class Player:
 class Node:
     """A running process."""
 
-    def __init__(self, command: List[str]):
-        self._process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    def __init__(self, command: List[str], environment: Optional[Mapping[str, str]] = None):
+        self._process = subprocess.Popen(
+            command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment
+        )
+
+    def wait(self, seconds: float) -> int:
+        """Waits for its end; returns its exit code. Raises subprocess.TimeoutExpired."""
+        return self._process.wait(seconds)
 
     def cpu_seconds(self) -> float:
         """CPU time used so far by all threads, to the nanosecond."""
