@@ -221,7 +221,8 @@ catkin_build() {
     cd "$root" || return
     rm -f src/compat/*/CATKIN_IGNORE
     (cd src/compat && compat_packages_of_system | xargs -I{} touch {}/CATKIN_IGNORE)
-    catkin_make -DPYTHON_EXECUTABLE="$root/.venv/bin/python3" -DCATKIN_ENABLE_TESTING=OFF
+    # Without -j it would pass -l as well, and on a loaded machine make would wait for the load to sink.
+    catkin_make -j"$(nproc)" -DPYTHON_EXECUTABLE="$root/.venv/bin/python3" -DCATKIN_ENABLE_TESTING=OFF
 }
 
 compat_packages_of_system() { # those of src/compat that the system has itself: they must not be shadowed
