@@ -344,5 +344,11 @@ def test_inertia_is_turned_to_its_principal_axes(load):
         np.array([[2.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 0.0, 5.0]])
     )
     assert body.inertia.pose_in_body[2, 3] == 1.0
-    with pytest.raises(WorldError, match="moments of inertia must be positive"):
-        load(f"<model name='m'><link name='l'>{inertial.replace('<izz>5', '<izz>-5')}</link></model>")
+
+
+@pytest.mark.parametrize("senseless", ["<ixx>0</ixx>", "<ixx>nan</ixx>", "<ixx>-1</ixx>"])
+def test_moments_that_no_body_has_are_named_and_left_out(load, senseless):
+    inertial = f"<inertial><mass>3</mass><inertia>{senseless}</inertia></inertial>"
+    world = load(f"<model name='m'><link name='l'>{inertial}</link></model>")
+    assert world.bodies[0].inertia.moments is None
+    assert "link 'l' > inertial > inertia: left out" in world.warnings[0]

@@ -1,12 +1,18 @@
 """Command lines that need no ROS master."""
 
 import argparse
+import io
 import os
 import sys
 from pathlib import Path
 from typing import List
 
+import numpy as np
+from PIL import Image
+
 from planar import PlanarError, save_map
+from planar.map_file import write_atomically
+from sim_bridge.picture import picture_from_above
 from sim_bridge.robots import ROBOTS, robot_named
 from sim_bridge.sdf import load_world
 from sim_bridge.true_map import true_map
@@ -19,7 +25,7 @@ def model_folders() -> List[Path]:
 
 
 def render_map() -> None:
-    """Writes the true map of a world file."""
+    """Writes the true map of a world file, and a picture of it."""
     parser = argparse.ArgumentParser(
         prog="render_map",
         description="Renders the occupancy grid of a world file, as a perfect mapper would.",
@@ -36,17 +42,30 @@ def render_map() -> None:
         metavar=("X", "Y"),
         help="a point of free space; what can be reached from it is free (default: 0 0)",
     )
+    parser.add_argument("--picture", metavar="PNG", help="writes a picture of the world from above there too")
+    parser.add_argument(
+        "--below", type=float, default=2.0, help="what the picture leaves out is higher, metres (default: 2)"
+    )
+    parser.add_argument("--strict", action="store_true", help="a mesh or model that is missing is an error")
     arguments = parser.parse_args()
     if not arguments.resolution > 0.0:
         parser.error(f"--resolution must be positive, got {arguments.resolution:g}")
     try:
-        world = load_world(arguments.world, model_folders())
+        world = load_world(arguments.world, model_folders(), arguments.strict)
         for warning in world.warnings:
             print(f"warning: {warning}", file=sys.stderr)
+        if arguments.picture:
+            _save_picture(picture_from_above(world, arguments.below), Path(arguments.picture))
         grid = true_map(world, arguments.height, arguments.resolution, tuple(arguments.inside))
         print(f"{save_map(grid, arguments.stem)}: {grid.cols} x {grid.rows} cells of {grid.resolution:g} m")
     except PlanarError as error:
         parser.exit(2, f"render_map: error: {error}\n")
+
+
+def _save_picture(picture: np.ndarray, path: Path) -> None:
+    content = io.BytesIO()
+    Image.fromarray(picture).save(content, "PNG")
+    write_atomically(path, content.getvalue())
 
 
 def robot_description() -> None:

@@ -2,7 +2,9 @@
 
 import numpy as np
 
+from sim_bridge.errors import WorldError
 from sim_bridge.sdf.element import Element
+from sim_bridge.sdf.warnings import Warnings
 from sim_bridge.world import Inertia
 
 # SDF's own default, kg.
@@ -14,21 +16,37 @@ def read_mass(link: Element) -> float:
     return mass.lengths(1)[0] if mass is not None else DEFAULT_MASS
 
 
-def read_inertia(link: Element) -> Inertia:
-    """The centre of mass and the principal moments of a link. Raises WorldError if no body can have them."""
+def read_inertia(link: Element, warnings: Warnings) -> Inertia:
+    """The centre of mass and the principal moments of a link.
+
+    Moments that no body can have, as many worlds hold for what they never move, are left out with a warning.
+    """
     inertial = link.child("inertial")
-    pose = inertial.raw_pose() if inertial is not None else None
-    pose = np.eye(4) if pose is None else pose
-    matrix = inertial.child("inertia") if inertial is not None else None
+    if inertial is None:
+        return Inertia()
+    warnings.check_children(inertial)
+    raw = inertial.raw_pose()
+    pose = np.eye(4) if raw is None else raw
+    matrix = inertial.child("inertia")
     if matrix is None:
         return Inertia(pose)
-    xx, xy, xz, yy, yz, zz = (
-        matrix.number(f"i{axes}", default=1.0 if axes[0] == axes[1] else 0.0)
-        for axes in ("xx", "xy", "xz", "yy", "yz", "zz")
-    )
-    moments, axes_xyz = np.linalg.eigh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    try:
+        moments, axes_xyz = np.linalg.eigh(_matrix(matrix))
+    except WorldError as error:
+        warnings.leave_out(matrix, f"left out: {error}", kind="inertia")
+        return Inertia(pose)
     if moments[0] <= 0.0:
-        raise matrix.error(f"moments of inertia must be positive, got {', '.join(f'{m:g}' for m in moments)}")
+        warnings.leave_out(matrix, "left out: its moments are not positive", kind="inertia")
+        return Inertia(pose)
     turned = pose.copy()
     turned[:3, :3] = pose[:3, :3] @ (axes_xyz * np.sign(np.linalg.det(axes_xyz)))
     return Inertia(turned, moments)
+
+
+def _matrix(inertia: Element) -> np.ndarray:
+    """Moments and products (3, 3) of inertia. Raises WorldError if one is no number."""
+    xx, xy, xz, yy, yz, zz = (
+        inertia.number(f"i{axes}", default=1.0 if axes[0] == axes[1] else 0.0)
+        for axes in ("xx", "xy", "xz", "yy", "yz", "zz")
+    )
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])

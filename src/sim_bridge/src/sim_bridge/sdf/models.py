@@ -108,11 +108,11 @@ class ModelReader:
             raise include.error("includes itself")
         self._warnings.check_children(include)
         uri = include.required("uri").text
-        built_in = uri.rstrip("/").rsplit("/", 1)[-1] if uri.startswith("model://") else ""
+        built_in = _built_in(uri)
         if built_in == SUN:
             return None
         if built_in == GROUND_PLANE:
-            model = _ground_plane()
+            model = parse_text(_GROUND_PLANE_SDF, uri).required("model")
         else:
             found = resolve(uri, folder, self._model_folders)
             if found is None:
@@ -137,5 +137,10 @@ class ModelReader:
         return self._files[file]
 
 
-def _ground_plane() -> Element:
-    return parse_text(_GROUND_PLANE_SDF, "model://ground_plane").required("model")
+def _built_in(uri: str) -> str:
+    """The name of a model that may be Gazebo's own: ``model://ground_plane``, or Ground Plane of Fuel."""
+    scheme, _, path = uri.partition("://")
+    if scheme == "model":
+        return path.strip("/")
+    is_of_fuel = scheme in ("http", "https") and "/openrobotics/models/" in path.lower()
+    return path.rstrip("/").rsplit("/", 1)[-1].lower().replace(" ", "_") if is_of_fuel else ""

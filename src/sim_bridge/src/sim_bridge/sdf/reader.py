@@ -16,7 +16,7 @@ from sim_bridge.sdf.models import Model, ModelReader, declare_frames
 from sim_bridge.sdf.state import ModelState, read_states
 from sim_bridge.sdf.warnings import Warnings
 from sim_bridge.shapes import Look, MeshFile, Plane, Shape, scaled
-from sim_bridge.world import Body, Collision, Joint, Surface, Visual, World
+from sim_bridge.world import Body, Collision, Inertia, Joint, Surface, Visual, World
 
 DEFAULT_GRAVITY = 9.8
 
@@ -160,7 +160,7 @@ class _Reader:
             self._surface(link),
             np.linalg.inv(outermost) @ in_world,
             tuple(visuals),
-            read_inertia(link),
+            Inertia() if fixed else read_inertia(link, self._warnings),
             _damping(link),
             gravity is None or link.flag("gravity"),
         )

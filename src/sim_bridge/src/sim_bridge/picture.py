@@ -1,0 +1,67 @@
+"""Pictures of worlds for people."""
+
+from typing import Tuple
+
+import numpy as np
+
+from sim_bridge.drawing import Drawing, visible_parts
+from sim_bridge.errors import WorldError
+from sim_bridge.sensors.rasterizer import Projection, draw
+from sim_bridge.shapes import Plane
+from sim_bridge.slicing import cut
+from sim_bridge.world import World
+
+# Pixels of the longer side, and metres around what there is.
+SIZE, MARGIN = 1200, 0.5
+CUT = 70
+
+
+def picture_from_above(world: World, below: float = 2.0, size: int = SIZE) -> np.ndarray:
+    """The world seen from above without perspective, y upwards, without what is higher than ``below``.
+
+    Solids that reach higher show where they are cut, in dark grey. Returns (H, W, 3), uint8. Raises WorldError
+    if there is nothing but endless planes.
+    """
+    low, high = _extent(world)
+    scale = (size - 1) / float((high - low).max())
+    width, height = (int(round(float(length) * scale)) + 1 for length in high - low)
+    triangles, shades = _drawn(world, planes=True)
+    caps = _caps(world, below)
+    triangles = np.concatenate((triangles, caps))
+    shades = np.concatenate((shades, np.full((len(caps), 3), CUT, dtype=np.uint8)))
+    projection = Projection(
+        width, height, scale, (-low[0] * scale, high[1] * scale), near=-1e-6, far=np.inf, perspective=False
+    )
+    picture, _ = draw(triangles * (1.0, -1.0, -1.0) + (0.0, 0.0, below), shades, projection)
+    return picture
+
+
+def _extent(world: World) -> Tuple[np.ndarray, np.ndarray]:
+    """The lower left and upper right corner (2,) of all that is no endless plane."""
+    triangles, _ = _drawn(world, planes=False)
+    if not len(triangles):
+        raise WorldError(f"world '{world.name}': there is nothing to be seen")
+    points_xy = triangles[..., :2].reshape(-1, 2)
+    return points_xy.min(axis=0) - MARGIN, points_xy.max(axis=0) + MARGIN
+
+
+def _caps(world: World, height: float) -> np.ndarray:
+    """Triangles (T, 3, 3) that close the solids cut at a height."""
+    fans = [
+        np.stack((np.repeat(outline[:1], len(outline) - 2, axis=0), outline[1:-1], outline[2:]), axis=1)
+        for body in world.bodies
+        for part in body.collisions
+        for outline in cut(part.shape, body.pose_in_world @ part.pose_in_body, height, height)
+        if len(outline) > 2
+    ]
+    flat = np.concatenate([np.empty((0, 3, 2)), *fans])
+    return np.concatenate((flat, np.full((*flat.shape[:2], 1), height)), axis=2)
+
+
+def _drawn(world: World, planes: bool) -> Tuple[np.ndarray, np.ndarray]:
+    poses = {body.name: body.pose_in_world for body in world.bodies}
+    drawing = Drawing()
+    for body in world.bodies:
+        if planes or not any(isinstance(part.shape, Plane) for part in visible_parts(body)):
+            drawing.add(body)
+    return drawing.triangles(poses.__getitem__)

@@ -1,0 +1,1 @@
+"""What a robot senses: each sensor has frozen settings, one verb, and a generator of its noise."""
