@@ -19,8 +19,8 @@ CUT = 70
 def picture_from_above(world: World, below: float = 2.0, size: int = SIZE) -> np.ndarray:
     """The world seen from above without perspective, y upwards, without what is higher than ``below``.
 
-    Solids that reach higher show where they are cut, in dark grey. Returns (H, W, 3), uint8. Raises WorldError
-    if there is nothing but endless planes.
+    Solids that reach higher show where they are cut, in dark grey. Returns (H, W, 3), uint8. Raises
+    WorldError if there is nothing but endless planes.
     """
     low, high = _extent(world)
     scale = (size - 1) / float((high - low).max())

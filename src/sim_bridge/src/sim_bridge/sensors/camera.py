@@ -17,7 +17,7 @@ OPTICAL_IN_CAMERA = np.array(
 
 @dataclass(frozen=True)
 class CameraSettings:
-    """``horizontal_fov`` in rad, ``near`` and ``far`` in m, ``noise``: standard deviation of colour, 0 to 1."""
+    """``horizontal_fov`` in rad, ``near``, ``far`` in m, ``noise``: standard deviation of colour, 0 to 1."""
 
     width: int = 640
     height: int = 480
