@@ -23,23 +23,14 @@ from worlds import HALLWAY, OFFICE, world_from_picture
 
 from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, wrap
 from sim_bridge import SimulationSettings, load_world
+from sim_bridge.noise import noise_named
 from sim_bridge.true_map import true_map
 from sim_bridge.world import World
 
 ROOT = Path(__file__).resolve().parents[2]
 PORT = 11399
 NODES = ("amcl", "amcl_lite")
-NOISES = {
-    "turtlebot": SimulationSettings(),
-    "bad": SimulationSettings(
-        range_noise=0.03,
-        encoder_scale=0.06,
-        wheel_slip=0.03,
-        gyro_scale=0.03,
-        gyro_bias=0.005,
-        gyro_noise=0.002,
-    ),
-}
+NOISES = {name: SimulationSettings(**noise_named(name)) for name in ("turtlebot", "bad")}
 FRAMES = {"base_frame_id": "base_footprint"}
 TURTLEBOT = yaml.safe_load((ROOT / "src/amcl_lite/config/turtlebot.yaml").read_text())
 PARAMETERS = {"turtlebot": TURTLEBOT, "default": FRAMES}

@@ -20,24 +20,24 @@ def body(shape, pose, mass=None, name="m::l"):
 
 
 def ranges_at(section, count=4, sight=10.0, pose_of=None):
-    return cast_beams(section.segments(pose_of), 0.0, 0.0, 0.0, 2.0 * math.pi / count, count, sight)
+    return cast_beams(section.segments(pose_of), 0.0, 0.0, 0.0, 2.0 * math.pi / count, count, sight)[0]
 
 
 def test_the_walls_of_a_square_are_met_at_their_distance():
-    ranges = cast_beams(SQUARE, 0.25, 0.0, -math.pi, math.pi / 2.0, 4, 10.0)
+    ranges, _ = cast_beams(SQUARE, 0.25, 0.0, -math.pi, math.pi / 2.0, 4, 10.0)
     assert ranges == pytest.approx([1.25, 1.0, 0.75, 1.0])
 
 
 @pytest.mark.parametrize("yaw", np.linspace(-7.0, 7.0, 8))
 def test_every_beam_meets_a_closed_room_whatever_the_heading(yaw):
-    ranges = cast_beams(SQUARE, 0.3, -0.4, yaw, 2.0 * math.pi / 360, 360, 10.0)
+    ranges, _ = cast_beams(SQUARE, 0.3, -0.4, yaw, 2.0 * math.pi / 360, 360, 10.0)
     angles = yaw + 2.0 * math.pi / 360 * np.arange(360)
     ends = np.array([[0.3], [-0.4]]) + ranges * np.array([np.cos(angles), np.sin(angles)])
     assert np.abs(ends).max(axis=0) == pytest.approx(np.ones(360))
 
 
 def test_nothing_is_seen_beyond_sight():
-    assert np.isinf(cast_beams(SQUARE, 0.0, 0.0, 0.0, 0.1, 10, 0.9)).all()
+    assert np.isinf(cast_beams(SQUARE, 0.0, 0.0, 0.0, 0.1, 10, 0.9)[0]).all()
 
 
 def test_beams_agree_with_those_cast_through_a_fine_grid():
@@ -48,7 +48,7 @@ def test_beams_agree_with_those_cast_through_a_fine_grid():
         middle = pose3((col + 0.5) * 0.5, (row + 0.5) * 0.5, 0.5)
         section.add(body(Box((0.5, 0.5, 1.0)), middle, name=f"{index}::l"))
     at = Pose2(1.1, 0.83, 0.4)
-    beams = cast_beams(section.segments(None), at.x, at.y, at.yaw, math.radians(1.0), 360, 10.0)
+    beams, _ = cast_beams(section.segments(None), at.x, at.y, at.yaw, math.radians(1.0), 360, 10.0)
     assert beams == pytest.approx(cast_rays(grid, at, np.radians(np.arange(360.0)), 10.0), abs=1e-6)
 
 

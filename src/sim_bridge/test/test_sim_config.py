@@ -10,18 +10,36 @@ import yaml
 from planar import SettingsError
 from sim_bridge.config import BridgeSettings, SimulationSettings
 from sim_bridge.errors import RobotError
+from sim_bridge.noise import NOISES, noise_named
 from sim_bridge.robots import ROBOTS, robot_named
 from sim_bridge.urdf_reader import read_robot
 
-CONFIG = Path(__file__).resolve().parents[1] / "config" / "sim_bridge.yaml"
+FOLDER = Path(__file__).resolve().parents[1] / "config"
+CONFIG = FOLDER / "sim_bridge.yaml"
 # What the launch file's arguments set.
 ARGUMENTS = {"world", "seed", "speed", "wait_for"}
 
 
 def test_the_shipped_configuration_holds_every_default():
     defaults = {**dataclasses.asdict(SimulationSettings()), **dataclasses.asdict(BridgeSettings(world="w"))}
-    expected = {name: value for name, value in defaults.items() if name not in ARGUMENTS}
+    left_out = ARGUMENTS | set(NOISES["ideal"].__dict__)
+    expected = {name: value for name, value in defaults.items() if name not in left_out}
     assert yaml.safe_load(CONFIG.read_text()) == expected
+
+
+def test_the_shipped_noise_profiles_are_those_of_the_code():
+    shipped = yaml.safe_load((FOLDER / "noise.yaml").read_text())
+    assert shipped == {name: dataclasses.asdict(noise) for name, noise in NOISES.items()}
+
+
+def test_the_default_noise_is_that_of_the_turtlebot():
+    assert SimulationSettings() == SimulationSettings(**noise_named("turtlebot"))
+    assert BridgeSettings(world="w").noise == "turtlebot"
+
+
+def test_an_unknown_noise_is_refused_with_the_nearest_name():
+    with pytest.raises(SettingsError, match=r"one of ideal, turtlebot, bad.* did you mean ideal\?"):
+        noise_named("idea")
 
 
 @pytest.mark.parametrize(
@@ -32,6 +50,7 @@ def test_the_shipped_configuration_holds_every_default():
         ({"odometry_rate": 0}, "odometry_rate"),
         ({"command_timeout": 0.0}, "command_timeout"),
         ({"range_noise": -0.1}, "range_noise must be not negative"),
+        ({"range_dropouts": 0.6, "range_max_readings": 0.5}, "range_dropouts must be with"),
     ],
 )
 def test_senseless_settings_are_named(values, named):

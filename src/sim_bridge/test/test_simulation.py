@@ -147,7 +147,7 @@ def test_a_scan_equals_ray_casting_within_its_noise(robot):
     for _ in range(5):
         observation = simulation.step()
     scan, laser = observation.scan, observation.base_in_world @ observation.scan.laser_in_base
-    expected = cast_beams(
+    expected, _ = cast_beams(
         section.segments(None), laser.x, laser.y, laser.yaw + scan.angle_min, scan.angle_increment,
         len(scan.ranges), robot.laser.sight,
     )  # fmt: skip

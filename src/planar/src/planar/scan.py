@@ -14,6 +14,7 @@ class Scan:
     ``ranges``: float32 or float64 (N,), metres; +inf is "nothing within range_max", NaN "no measurement".
     ``stamp``: seconds, of the first ray. ``laser_in_base``: where the laser is mounted;
     ``upside_down``: the laser's z axis points down, so its angles count clockwise in the base frame.
+    ``intensities``: float32 (N,), how much light came back, in any unit; empty if it cannot tell.
     """
 
     stamp: float
@@ -24,6 +25,7 @@ class Scan:
     range_max: float
     laser_in_base: Pose2 = field(default_factory=Pose2)
     upside_down: bool = False
+    intensities: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=np.float32))
 
     @property
     def angles(self) -> np.ndarray:

@@ -13,17 +13,22 @@ T = TypeVar("T")
 
 
 def read_settings(
-    kind: Type[T], names: Mapping[str, str] = {}, namespace: str = "~", ignore: Iterable[str] = ()
+    kind: Type[T],
+    names: Mapping[str, str] = {},
+    namespace: str = "~",
+    ignore: Iterable[str] = (),
+    defaults: Mapping[str, Any] = {},
 ) -> T:
     """The dataclass ``kind`` filled from the parameters below ``namespace`` (see planar.settings).
 
+    ``defaults`` hold for the parameters that are not set, before those of ``kind``.
     Names that neither ``kind`` nor ``ignore`` knows are warned of, with the nearest known one; with
     ``~strict_params`` they are an error. Nested namespaces are other components' matter and left alone.
     Raises SettingsError with the full name of the parameter.
     """
     where = rospy.resolve_name(namespace).rstrip("/") + "/"
     values = {name: value for name, value in parameters_below(where).items() if not isinstance(value, dict)}
-    settings, unknown = settings_from(kind, values, names, where)
+    settings, unknown = settings_from(kind, {**defaults, **values}, names, where)
     known = {*names, *kind.__dataclass_fields__, *ignore, "strict_params"}  # type: ignore[attr-defined]
     for name in unknown:
         if name not in known:

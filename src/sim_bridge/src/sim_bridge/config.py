@@ -3,45 +3,39 @@
 from dataclasses import dataclass
 
 from planar.settings import check, check_parameters, parameter
+from sim_bridge.noise import NoiseSettings
 
 
 @dataclass(frozen=True)
-class SimulationSettings:
-    """Rates are in hertz of simulated time and must divide ``physics_rate``.
-
-    The errors of odometry and gyro named ``*_scale``, ``gyro_bias`` are standard deviations of what is drawn
-    once a run; ``*_noise`` and ``wheel_slip`` are drawn anew all the time.
-    """
+class SimulationSettings(NoiseSettings):
+    """Rates are in hertz of simulated time and must divide ``physics_rate``."""
 
     physics_rate: int = 200
     odometry_rate: int = 50
     scan_rate: int = 10
     command_timeout: float = 0.6
-    range_noise: float = 0.01
-    encoder_scale: float = 0.02
-    wheel_slip: float = 0.01
-    gyro_scale: float = 0.01
-    gyro_bias: float = 0.001
-    gyro_noise: float = 0.0005
 
     def __post_init__(self):
+        super().__post_init__()
         check(self.physics_rate > 0, "physics_rate", "positive", self.physics_rate)
         for name in ("odometry_rate", "scan_rate"):
             rate = getattr(self, name)
             divides = rate > 0 and self.physics_rate % rate == 0
             check(divides, name, f"a divisor of physics_rate ({self.physics_rate})", rate)
         check(self.command_timeout > 0.0, "command_timeout", "positive", self.command_timeout)
-        for name in ("range_noise", "encoder_scale", "wheel_slip", "gyro_scale", "gyro_bias", "gyro_noise"):
-            check(getattr(self, name) >= 0.0, name, "not negative", getattr(self, name))
 
 
 @dataclass(frozen=True)
 class BridgeSettings:
-    """``wait_for``: names of nodes, separated by spaces; rates in hertz must divide the odometry's."""
+    """``noise``: a profile of sim_bridge.noise; single values of it may be set beside it.
+
+    ``wait_for``: names of nodes, separated by spaces; rates in hertz must divide the odometry's.
+    """
 
     world: str = ""
     seed: int = 0
     speed: float = 1.0
+    noise: str = "turtlebot"
     wait_for: str = ""
     clock_rate: int = 50
     joint_state_rate: int = 10

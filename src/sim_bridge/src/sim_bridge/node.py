@@ -2,7 +2,7 @@
 
 import dataclasses
 import time
-from typing import Any, Dict, List
+from typing import Any, Dict, Mapping
 
 import rospy
 from rosgraph_msgs.msg import Clock
@@ -21,6 +21,7 @@ from sim_bridge.nodes.fleet import Fleet
 from sim_bridge.nodes.gazebo import GazeboInterface
 from sim_bridge.nodes.orders import Orders
 from sim_bridge.nodes.time_control import TimeControl
+from sim_bridge.noise import noise_named
 from sim_bridge.pacing import Pacer
 from sim_bridge.robots import robot_named
 from sim_bridge.scene import Scene
@@ -34,7 +35,8 @@ class Bridge:
     """Steps a scene as fast as it may, in one thread; callbacks of other threads leave it their orders."""
 
     def __init__(self):
-        settings, simulation_settings, robot = _read_all(BridgeSettings, SimulationSettings, RobotSettings)
+        settings, robot = (_read(kind) for kind in (BridgeSettings, RobotSettings))
+        simulation_settings = _read(SimulationSettings, noise_named(settings.noise))
         rate = simulation_settings.odometry_rate
         self._clock_steps = _steps_between(settings.clock_rate, rate, "clock_rate")
         joint_steps = _steps_between(settings.joint_state_rate, rate, "joint_state_rate")
@@ -95,10 +97,11 @@ class Bridge:
             rospy.logwarn("box not added: %s", error)
 
 
-def _read_all(*kinds: type) -> List[Any]:
-    """Settings of several kinds, all from the node's private parameters."""
-    fields = [{field.name for field in dataclasses.fields(kind)} for kind in kinds]
-    return [read_settings(kind, ignore=set().union(*fields)) for kind in kinds]
+def _read(kind: type, defaults: Mapping[str, Any] = {}) -> Any:
+    """Settings of one of the kinds that are all among the node's private parameters."""
+    kinds = (BridgeSettings, SimulationSettings, RobotSettings)
+    known = {field.name for each in kinds for field in dataclasses.fields(each)}
+    return read_settings(kind, ignore=known, defaults=defaults)
 
 
 def _robots_asked_for(robot: RobotSettings) -> Dict[str, RobotSettings]:

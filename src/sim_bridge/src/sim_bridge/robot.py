@@ -10,11 +10,11 @@ from planar import Pose2, Scan, Twist2
 from sim_bridge.config import SimulationSettings
 from sim_bridge.drive import Drive
 from sim_bridge.engine import Engine
-from sim_bridge.lidar import Lidar
 from sim_bridge.odometry import DeadReckoning, Odometry
 from sim_bridge.pose3 import from_pose2, to_pose2
 from sim_bridge.robots import RobotProfile
 from sim_bridge.section import Section
+from sim_bridge.sensors.lidar import Lidar
 from sim_bridge.vehicle import Vehicle, twist_in_base
 from sim_bridge.world import Body
 
@@ -61,7 +61,7 @@ class Robot:
         self.settings = settings
         self._drive = Drive(profile.drive, settings.command_timeout)
         self._dead_reckoning = DeadReckoning(profile.drive, settings, odometry_rng)
-        self._lidar = Lidar(profile.laser, laser_in_base, settings.range_noise, lidar_rng)
+        self._lidar = Lidar(profile.laser, laser_in_base, settings, lidar_rng)
         self._touched: Set[str] = set()
         self._scan: Optional[Scan] = None
 
@@ -96,6 +96,7 @@ class Robot:
             self._scan = self._lidar.sweep(
                 stamp,
                 self.section.segments(self._engine.pose_of),
+                self.section.retros(),
                 to_pose2(self._engine.pose_of(self.vehicle.base)),
             )
 

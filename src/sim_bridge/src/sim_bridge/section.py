@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Callable, Dict, Optional
+from typing import Callable, Dict, Optional, Tuple
 
 import numba
 import numpy as np
@@ -16,11 +16,12 @@ STILL = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class _Outline:
-    """The sides (N, 4) of a body's cut, drawn where it was at ``drawn_at``, (4, 4)."""
+    """The sides (N, 4) of a body's cut, and how brightly they reflect (N,), drawn with it at ``drawn_at``."""
 
     body: Body
     drawn_at: np.ndarray
     segments: np.ndarray
+    retros: np.ndarray
 
 
 class Section:
@@ -56,30 +57,38 @@ class Section:
                 self._place(outline.body, pose)
         return np.vstack([self._still_segments, *(outline.segments for outline in self._moving.values())])
 
+    def retros(self) -> np.ndarray:
+        """How brightly each of the sides last told by ``segments`` reflects a laser, (N,)."""
+        outlines = [*self._still.values(), *self._moving.values()]
+        return np.concatenate([np.empty(0), *(outline.retros for outline in outlines)])
+
     def _place(self, body: Body, pose: np.ndarray) -> None:
-        outline = _Outline(body, pose, self._segments_of(body, pose))
+        outline = _Outline(body, pose, *self._cut(body, pose))
         if body.mass is None:
             self._still[body.name] = outline
             self._still_segments = None
         else:
             self._moving[body.name] = outline
 
-    def _segments_of(self, body: Body, pose: np.ndarray) -> np.ndarray:
-        sides = [
-            np.hstack((outline, np.roll(outline, -1, axis=0)))
+    def _cut(self, body: Body, pose: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+        """Sides (N, 4) of a body's outlines, and how brightly each reflects, (N,)."""
+        cuts = [
+            (outline, part.retro)
             for part in body.collisions
             for outline in cut(part.shape, pose @ part.pose_in_body, self._height, self._height)
         ]
-        return np.vstack(sides) if sides else np.empty((0, 4))
+        sides = [np.hstack((outline, np.roll(outline, -1, axis=0))) for outline, _ in cuts]
+        retros = [np.full(len(outline), retro) for outline, retro in cuts]
+        return np.vstack([np.empty((0, 4)), *sides]), np.concatenate([np.empty(0), *retros])
 
 
 def cast_beams(
     segments: np.ndarray, x: float, y: float, first: float, increment: float, count: int, sight: float
-) -> np.ndarray:
-    """Distance, metres, from (x, y) to the nearest segment along each of ``count`` beams.
+) -> Tuple[np.ndarray, np.ndarray]:
+    """Distance, metres, from (x, y) to the nearest segment along each of ``count`` beams, and which that is.
 
     ``segments``: (N, 4) as x, y, x, y. Beam i points along ``first + i * increment``, radians, increment
-    positive. Returns (count,); infinite where nothing lies within ``sight`` metres.
+    positive. Returns (count,) infinite and (count,) -1 where nothing lies within ``sight`` metres.
     """
     return _cast(np.ascontiguousarray(segments), x, y, first, increment, count, sight)
 
@@ -88,7 +97,7 @@ def cast_beams(
 def _cast(segments, x, y, first, increment, count, sight):
     """Walks through the segments and gives each to the beams between the bearings of its two ends."""
     turn = 2.0 * math.pi
-    ranges = np.full(count, np.inf)
+    ranges, nearest = np.full(count, np.inf), np.full(count, -1)
     for i in range(segments.shape[0]):
         ax, ay = segments[i, 0] - x, segments[i, 1] - y
         bx, by = segments[i, 2] - x, segments[i, 3] - y
@@ -109,5 +118,5 @@ def _cast(segments, x, y, first, increment, count, sight):
                 if across != 0.0:
                     distance = area / across
                     if 0.0 <= distance <= sight and distance < ranges[beam]:
-                        ranges[beam] = distance
-    return ranges
+                        ranges[beam], nearest[beam] = distance, i
+    return ranges, nearest

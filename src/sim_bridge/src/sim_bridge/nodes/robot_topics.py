@@ -140,5 +140,5 @@ def _scan_msg(scan: Scan, frame: str) -> LaserScanArrays:
     message.angle_max = scan.angle_min + scan.angle_increment * (len(scan.ranges) - 1)
     message.range_min, message.range_max = scan.range_min, scan.range_max
     message.ranges = scan.ranges
-    message.intensities = np.empty(0, dtype=np.float32)
+    message.intensities = scan.intensities
     return message
