@@ -8,6 +8,7 @@ import numpy as np
 from planar import Pose2, Twist2
 from planar.settings import nearest_name
 from sim_bridge.config import SimulationSettings
+from sim_bridge.drawing import Drawing
 from sim_bridge.engine import Engine, JointState, Motion
 from sim_bridge.errors import UnknownEntityError, WorldError
 from sim_bridge.pose3 import cross, from_pose2
@@ -60,6 +61,8 @@ class Scene:
         self._pushes: List[Push] = []
         self._joint_pushes: List[JointPush] = []
         self._physics_steps = 0
+        # Made when it is first looked at: meshes may take seconds.
+        self._drawing: Optional[Drawing] = None
         # When the present rate of physics began.
         self._stamp_at_rate = 0.0
         self._engine = Engine(settings.physics_rate, world.gravity)
@@ -115,6 +118,7 @@ class Scene:
         self._joints.update((joint.name, joint) for joint in joints)
         for robot in self._robots.values():
             robot.look_at(bodies)
+        self._draw(bodies)
 
     def remove_model(self, name: str) -> None:
         links = self.links_of(name)
@@ -125,11 +129,20 @@ class Scene:
             if self._engine.has_link(link):
                 self._engine.remove(link)
             self._bodies.pop(link, None)
+            if self._drawing is not None:
+                self._drawing.remove(link)
             for other in self._robots.values():
                 other.section.remove(link)
 
     def robot(self, name: str) -> Robot:
         return _found(self._robots, name, "robot")
+
+    def drawing(self, but: str = "") -> Tuple[np.ndarray, np.ndarray]:
+        """What cameras see: triangles (T, 3, 3) and their shades (T, 3), uint8; not the model ``but``."""
+        if self._drawing is None:
+            self._drawing = Drawing()
+            self._draw([*self._bodies.values(), *(robot.body() for robot in self._robots.values())])
+        return self._drawing.triangles(self._engine.pose_of, but)
 
     def model_names(self) -> List[str]:
         return list(dict.fromkeys([*(body.model for body in self._bodies.values()), *self._robots]))
@@ -250,7 +263,7 @@ class Scene:
         self._starts, self._bodies, self._joints, self._robots = {}, {}, {}, {}
         self._pushes.clear()
         self._joint_pushes.clear()
-        self._physics_steps, self._stamp_at_rate = 0, 0.0
+        self._physics_steps, self._stamp_at_rate, self._drawing = 0, 0.0, None
         self.add(bodies, joints)
         for name, (profile, base_in_world) in starts.items():
             self._add_robot(name, profile, base_in_world)
@@ -264,10 +277,18 @@ class Scene:
             other.look_at([robot.body()])
             robot.look_at([other.body()])
         self._robots[name] = robot
+        self._draw([robot.body()])
         self._starts[name] = (profile, base_in_world)
+
+    def _draw(self, bodies: Sequence[Body]) -> None:
+        if self._drawing is not None:
+            for body in bodies:
+                self._drawing.add(body)
 
     def _set_motion(self, link: str, motion: Motion) -> None:
         self._engine.set_motion(link, motion)
+        if self._drawing is not None:
+            self._drawing.move(link, motion.pose)
         for robot in self._robots.values():
             robot.section.move(link, motion.pose)
 

@@ -1,0 +1,204 @@
+"""Cameras, inertial sensors and bumpers."""
+
+import math
+
+import numpy as np
+import pytest
+
+from planar import SettingsError
+from sim_bridge import ROBOTS, Simulation, SimulationSettings
+from sim_bridge.drawing import Drawing
+from sim_bridge.engine import Motion
+from sim_bridge.noise import noise_named
+from sim_bridge.pose3 import pose3, transform_points
+from sim_bridge.sensors.bumper import CENTRE, LEFT, RIGHT, pressed
+from sim_bridge.sensors.camera import Camera, CameraSettings, DepthCameraSettings, points_of
+from sim_bridge.sensors.imu import Imu, ImuSettings
+from sim_bridge.shapes import Box, Cylinder, Plane, Sphere
+from sim_bridge.world import Body, Collision, Visual, World
+
+SMALL = CameraSettings(width=160, height=120)
+KINECT = DepthCameraSettings()
+EXACT = SimulationSettings(**noise_named("ideal"))
+
+
+def drawing_of(*shapes):
+    """Shapes with their poses and colours, drawn."""
+    drawing = Drawing()
+    for number, (shape, pose, colour) in enumerate(shapes):
+        drawing.add(Body(f"m{number}::l", pose, (), visuals=(Visual(shape, np.eye(4), colour),)))
+    return drawing.triangles(lambda name: np.eye(4))
+
+
+def picture(settings, *shapes, at=None, seed=0):
+    return Camera(settings, np.random.default_rng(seed)).measure(
+        *drawing_of(*shapes), pose3(z=1.0) if at is None else at
+    )
+
+
+WALL = (Box((0.2, 10.0, 10.0)), pose3(3.1), (1.0, 0.0, 0.0))
+FLOOR = (Plane(), np.eye(4), (0.5, 0.5, 0.5))
+
+
+def test_a_wall_ahead_is_as_deep_everywhere_as_it_is_far():
+    seen = picture(SMALL, WALL)
+    assert seen.depth == pytest.approx(np.full((120, 160), 3.0), abs=1e-5)
+    assert (seen.rgb[..., 0] > 100).all()
+    assert (seen.rgb[..., 1:] == 0).all()
+
+
+def test_the_floor_is_seen_where_geometry_says():
+    seen = picture(SMALL, FLOOR)
+    _, centre_y = SMALL.centre
+    rows = np.arange(120)
+    expected = SMALL.focal_length * 1.0 / (rows[70:] - centre_y)
+    assert seen.depth[70:, 80] == pytest.approx(expected, rel=1e-5)
+    assert np.isinf(seen.depth[:55]).all(), "above the horizon there is nothing"
+
+
+def test_what_is_nearer_hides_what_is_behind():
+    seen = picture(SMALL, WALL, (Sphere(0.5), pose3(2.0, 0.0, 1.0), (0.0, 0.0, 1.0)))
+    assert seen.depth[60, 80] == pytest.approx(1.5, abs=0.01)
+    assert seen.rgb[60, 80, 2] > 0
+    assert seen.depth[5, 5] == pytest.approx(3.0, abs=1e-5)
+
+
+def test_left_is_left_and_up_is_up():
+    seen = picture(SMALL, (Box((0.2, 0.2, 0.2)), pose3(3.0, 1.0, 1.5), (0.0, 1.0, 0.0)))
+    rows, columns = np.nonzero(np.isfinite(seen.depth))
+    assert columns.max() < 80
+    assert rows.max() < 60
+
+
+def test_points_lie_on_what_is_seen():
+    at = pose3(0.3, -0.2, 0.8, 0.05, 0.2, 0.4)
+    seen = picture(SMALL, (Cylinder(0.6, 2.0), pose3(2.5, 1.0, 1.0), (1.0, 1.0, 1.0)), at=at)
+    points = points_of(seen.depth, SMALL)[np.isfinite(seen.depth)]
+    camera = np.column_stack((points[:, 2], -points[:, 0], -points[:, 1]))
+    in_world = transform_points(at, camera)
+    distances = np.hypot(in_world[:, 0] - 2.5, in_world[:, 1] - 1.0)
+    on_side = in_world[:, 2] < 1.999
+    assert len(points) > 500
+    assert np.abs(distances[on_side] - 0.6).max() < 0.6 * (1.0 - math.cos(math.pi / 24)) + 1e-4, "24 corners"
+
+
+def test_depths_out_of_reach_are_not_numbers():
+    near = (Box((0.1, 4.0, 4.0)), pose3(0.35, 0.0, 1.0), None)
+    assert np.isnan(picture(KINECT, near).depth).all()
+    assert np.isnan(picture(KINECT, (Box((0.1, 90.0, 90.0)), pose3(6.0), None)).depth).all()
+    assert np.isfinite(picture(KINECT, WALL).depth).all()
+
+
+def test_depth_noise_grows_with_the_square_of_the_depth_and_follows_the_seed():
+    noisy = DepthCameraSettings(depth_noise=0.002)
+    errors = picture(noisy, WALL).depth - 3.0
+    assert errors.std() == pytest.approx(0.002 * 9.0, rel=0.02)
+    assert np.array_equal(picture(noisy, WALL, seed=1).depth, picture(noisy, WALL, seed=1).depth)
+    assert not np.array_equal(picture(noisy, WALL, seed=1).depth, picture(noisy, WALL, seed=2).depth)
+
+
+def test_bodies_that_move_are_drawn_where_they_are_and_the_robot_itself_is_left_out():
+    drawing = Drawing()
+    part = Collision(Box((0.5, 0.5, 0.5)), np.eye(4))
+    drawing.add(Body("ball::l", np.eye(4), (part,), mass=1.0))
+    drawing.add(Body("robot::base", np.eye(4), (part,), mass=1.0))
+    triangles, shades = drawing.triangles(lambda name: pose3(5.0), but="robot")
+    assert len(triangles) == len(shades) == 12
+    assert triangles[..., 0].mean() == pytest.approx(5.0)
+    drawing.remove("ball::l")
+    assert len(drawing.triangles(lambda name: pose3(), but="robot")[0]) == 0
+
+
+@pytest.mark.parametrize(
+    ("values", "named"),
+    [
+        ({"width": 0}, "width"),
+        ({"horizontal_fov": 4.0}, "horizontal_fov"),
+        ({"near": 0.0}, "near"),
+        ({"near": 200.0}, "near"),
+        ({"noise": -1.0}, "noise"),
+    ],
+)
+def test_senseless_cameras_are_refused(values, named):
+    with pytest.raises(SettingsError, match=f"^{named} must be"):
+        CameraSettings(**values)
+
+
+def at_rest(pose):
+    return Motion(pose, np.zeros(3), np.zeros(3))
+
+
+def test_an_imu_at_rest_feels_what_keeps_it_from_falling():
+    imu = Imu(ImuSettings(), np.random.default_rng(0))
+    reading = imu.measure(at_rest(pose3(pitch=0.1)), 0.02, 9.8)
+    assert reading.acceleration == pytest.approx([-9.8 * math.sin(0.1), 0.0, 9.8 * math.cos(0.1)])
+    assert reading.turn_rates == pytest.approx(np.zeros(3))
+
+
+def test_an_imu_feels_turning_and_speeding_up_in_its_own_frame():
+    imu = Imu(ImuSettings(), np.random.default_rng(0))
+    turned = pose3(yaw=math.pi / 2.0)
+    imu.measure(Motion(turned, np.zeros(3), np.zeros(3)), 0.1, 9.8)
+    reading = imu.measure(Motion(turned, np.array([0.0, 0.2, 0.0]), np.array([0.0, 0.0, 0.7])), 0.1, 9.8)
+    assert reading.acceleration == pytest.approx([2.0, 0.0, 9.8])
+    assert reading.turn_rates == pytest.approx([0.0, 0.0, 0.7])
+
+
+def test_an_imu_errs_as_asked_for():
+    def readings(seed):
+        imu = Imu(ImuSettings(turn_noise=0.01, acceleration_noise=0.1), np.random.default_rng(seed))
+        return [imu.measure(at_rest(np.eye(4)), 0.02, 9.8) for _ in range(2000)]
+
+    assert np.std([reading.turn_rates for reading in readings(0)]) == pytest.approx(0.01, rel=0.05)
+    accelerations = [reading.acceleration - (0.0, 0.0, 9.8) for reading in readings(0)]
+    assert np.std(accelerations) == pytest.approx(0.1, rel=0.05)
+    assert np.array_equal(readings(3)[0].turn_rates, readings(3)[0].turn_rates)
+
+
+@pytest.mark.parametrize(
+    ("bearing", "height", "expected"),
+    [
+        (0.0, 0.05, {CENTRE}),
+        (60.0, 0.05, {LEFT}),
+        (-60.0, 0.05, {RIGHT}),
+        (30.0, 0.05, {LEFT, CENTRE}),
+        (120.0, 0.05, set()),
+        (0.0, 0.2, set()),
+        (0.0, 0.005, set()),
+    ],
+)
+def test_a_bumper_tells_which_side_is_touched(bearing, height, expected):
+    angle = math.radians(bearing)
+    assert pressed(np.array([[0.178 * math.cos(angle), 0.178 * math.sin(angle), height]])) == expected
+
+
+def test_nothing_presses_a_bumper_that_touches_nothing():
+    assert pressed(np.empty((0, 3))) == frozenset()
+
+
+def test_the_depth_camera_and_the_laser_made_of_it_agree():
+    room = World("room", (Body("floor::l", np.eye(4), (Collision(Plane(), np.eye(4)),)), *_furniture()))
+    robot = ROBOTS["turtlebot_kinect"]
+    simulation = Simulation(room, robot, EXACT)
+    scan = next(filter(None, (simulation.step().scan for _ in range(20))))
+    laser = simulation.scene.model_motion("mobile_base").pose @ robot.mounting(robot.laser.frame)
+    settings = DepthCameraSettings(min_depth=robot.laser.range_min, max_depth=robot.laser.sight)
+    seen = Camera(settings, np.random.default_rng(0)).measure(
+        *simulation.scene.drawing(but="mobile_base"), laser
+    )
+    middle = points_of(seen.depth, settings)[240]
+    bearings, ranges = np.arctan2(-middle[:, 0], middle[:, 2]), np.hypot(middle[:, 0], middle[:, 2])
+    at_bearings = np.interp(bearings[::-1], scan.angles, scan.ranges)[::-1]
+    errors = np.abs(ranges - at_bearings)
+    print(f"depth camera against laser: median {np.nanmedian(errors):.4f} m")
+    assert np.nanmedian(errors) < 0.002
+    assert (errors[np.isfinite(errors)] < 0.02).mean() > 0.95, "all but the edges of things"
+    simulation.close()
+
+
+def _furniture():
+    for number, (x, y, yaw) in enumerate([(2.0, 0.3, 0.4), (3.0, -0.8, 0.0), (4.2, 1.0, 1.0)]):
+        yield Body(
+            f"box_{number}::l", pose3(x, y, 0.5, yaw=yaw), (Collision(Box((0.6, 0.8, 1.0)), np.eye(4)),)
+        )
+    yield Body("wall::l", pose3(4.6, 0.0, 1.0), (Collision(Box((0.1, 9.0, 2.0)), np.eye(4)),))
