@@ -8,6 +8,7 @@ import pytest
 
 from planar import Pose2
 from sim_bridge.noise import NOISES
+from sim_bridge.pose3 import pose3
 from sim_bridge.robots import ROBOTS
 from sim_bridge.sensors.lidar import Lidar
 
@@ -19,9 +20,8 @@ NOTHING = np.empty((0, 4))
 
 
 def sweep(profile=LIDAR, seed=0, segments=ROOM, **noise):
-    lidar = Lidar(
-        profile, np.eye(4), dataclasses.replace(NOISES["ideal"], **noise), np.random.default_rng(seed)
-    )
+    here = dataclasses.replace(profile, pose_in_base=np.eye(4))
+    lidar = Lidar(here, dataclasses.replace(NOISES["ideal"], **noise), np.random.default_rng(seed))
     return lidar.sweep(1.5, segments, RETROS[: len(segments)], Pose2())
 
 
@@ -73,3 +73,13 @@ def test_the_same_seed_makes_the_same_errors():
     noise = {"range_noise": 0.01, "range_dropouts": 0.1}
     assert np.array_equal(sweep(seed=3, **noise).ranges, sweep(seed=3, **noise).ranges)
     assert not np.array_equal(sweep(seed=3, **noise).ranges, sweep(seed=4, **noise).ranges)
+
+
+def test_a_laser_mounted_upside_down_sweeps_the_other_way_round():
+    profile = dataclasses.replace(LIDAR, pose_in_base=pose3(roll=math.pi))
+    lidar = Lidar(profile, NOISES["ideal"], np.random.default_rng(0))
+    wall_on_the_left = np.array([[-5.0, 2.0, 5.0, 2.0]])
+    scan = lidar.sweep(0.0, wall_on_the_left, np.zeros(1), Pose2())
+    assert scan.upside_down
+    assert scan.ranges[90] == pytest.approx(2.0), "what is on the left is at -90 degrees for it"
+    assert np.isposinf(scan.ranges[270])

@@ -181,7 +181,7 @@ def test_the_depth_camera_and_the_laser_made_of_it_agree():
     robot = ROBOTS["turtlebot_kinect"]
     simulation = Simulation(room, robot, EXACT)
     scan = next(filter(None, (simulation.step().scan for _ in range(20))))
-    laser = simulation.scene.model_motion("mobile_base").pose @ robot.mounting(robot.laser.frame)
+    laser = simulation.scene.model_motion("mobile_base").pose @ robot.laser.pose_in_base
     settings = DepthCameraSettings(min_depth=robot.laser.range_min, max_depth=robot.laser.sight)
     seen = Camera(settings, np.random.default_rng(0)).measure(
         *simulation.scene.drawing(but="mobile_base"), laser

@@ -3,7 +3,6 @@
 import dataclasses
 from pathlib import Path
 
-import numpy as np
 import pytest
 import yaml
 
@@ -12,7 +11,6 @@ from sim_bridge.config import BridgeSettings, SimulationSettings
 from sim_bridge.errors import RobotError
 from sim_bridge.noise import NOISES, noise_named
 from sim_bridge.robots import ROBOTS, robot_named
-from sim_bridge.urdf_reader import read_robot
 
 FOLDER = Path(__file__).resolve().parents[1] / "config"
 CONFIG = FOLDER / "sim_bridge.yaml"
@@ -48,7 +46,7 @@ def test_an_unknown_noise_is_refused_with_the_nearest_name():
         ({"physics_rate": 0}, "physics_rate must be positive"),
         ({"scan_rate": 30}, "scan_rate must be a divisor of physics_rate"),
         ({"odometry_rate": 0}, "odometry_rate"),
-        ({"command_timeout": 0.0}, "command_timeout"),
+        ({"alpha1": -1.0}, "alpha1"),
         ({"range_noise": -0.1}, "range_noise must be not negative"),
         ({"range_dropouts": 0.6, "range_max_readings": 0.5}, "range_dropouts must be with"),
     ],
@@ -71,34 +69,4 @@ def test_an_unknown_robot_is_refused_with_the_nearest_name():
 
 @pytest.mark.parametrize("name", ["turtlebot_lidar", "turtlebot_kinect"])
 def test_lasers_look_where_costmaps_of_the_turtlebot_expect_them(name):
-    robot = ROBOTS[name]
-    assert 0.25 < robot.mounting(robot.laser.frame)[2, 3] < 0.35
-
-
-@pytest.mark.parametrize("robot", ROBOTS.values(), ids=list(ROBOTS))
-def test_the_drive_agrees_with_the_description(robot):
-    wheels = read_robot(robot.description()).wheels
-    left, right = wheels[robot.drive.left_joint], wheels[robot.drive.right_joint]
-    apart = left.origin_in_base[:3, 3] - right.origin_in_base[:3, 3]
-    assert apart == pytest.approx([0.0, robot.drive.wheel_separation, 0.0])
-    assert left.part.collisions[0].shape.radius == robot.drive.wheel_radius
-
-
-def test_fixed_parts_are_merged_into_the_base():
-    base = read_robot(robot_named("turtlebot_lidar").description()).base
-    assert base.mass == pytest.approx(2.4 + 0.01 + 0.01 + 1.0 + 0.2)
-    assert np.abs(base.centre_of_mass[:2]).max() < 0.02
-    assert len(base.collisions) == 5
-
-
-@pytest.mark.parametrize(
-    ("text", "named"),
-    [
-        ("<robot", "not well-formed"),
-        ("<robot name='r'><link name='a'/><link name='b'/></robot>", "one root link, got a, b"),
-        ("<robot name='r'><link name='a'/></robot>", "needs a mass"),
-    ],
-)
-def test_a_description_that_is_no_robot_is_refused(text, named):
-    with pytest.raises(RobotError, match=named):
-        read_robot(text)
+    assert 0.25 < ROBOTS[name].laser.pose_in_base[2, 3] < 0.35

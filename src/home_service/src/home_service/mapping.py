@@ -99,7 +99,7 @@ def _save_map(run: Run, options: Namespace) -> Path:
 def _score(path: Path, options: Namespace) -> MapScore:
     """The saved map against what the robot's laser could have seen of the world."""
     robot = options.loaded_robot
-    height = float(robot.mounting(robot.laser.frame)[2, 3])
+    height = float(robot.laser.pose_in_base[2, 3])
     truth = true_map(options.loaded_world, height)
     return score_map(load_map(path), truth, robot_radius=robot.radius, sight=robot.laser.sight)
 

@@ -5,16 +5,19 @@ import io
 import os
 import sys
 from pathlib import Path
-from typing import List
+from typing import List, Optional
+from urllib.parse import unquote, urlparse
 
 import numpy as np
 from PIL import Image
+from rospkg import ResourceNotFound, RosPack
 
 from planar import PlanarError, save_map
 from planar.map_file import write_atomically
 from sim_bridge.picture import picture_from_above
 from sim_bridge.robots import ROBOTS, robot_named
 from sim_bridge.sdf import load_world
+from sim_bridge.sdf.includes import resolve
 from sim_bridge.true_map import true_map
 
 
@@ -22,6 +25,18 @@ def model_folders() -> List[Path]:
     """Where Gazebo looks for models: the folders of GAZEBO_MODEL_PATH, then the user's own."""
     listed = [Path(folder) for folder in os.environ.get("GAZEBO_MODEL_PATH", "").split(":") if folder]
     return [*listed, Path("~/.gazebo/models").expanduser()]
+
+
+def find_file(uri: str) -> Optional[Path]:
+    """The file that a robot's description names: ``package://``, ``model://``, ``file://`` or a path."""
+    parts = urlparse(uri)
+    if parts.scheme != "package":
+        return resolve(uri, Path.cwd(), model_folders())
+    try:
+        path = Path(RosPack().get_path(parts.netloc)) / unquote(parts.path).lstrip("/")
+    except ResourceNotFound:
+        return None
+    return path if path.exists() else None
 
 
 def render_map() -> None:
@@ -73,8 +88,8 @@ def robot_description() -> None:
     parser = argparse.ArgumentParser(
         prog="robot_description", description="Prints the URDF of a robot that sim_bridge simulates."
     )
-    parser.add_argument("robot", metavar="ROBOT", help=", ".join(ROBOTS))
+    parser.add_argument("robot", metavar="ROBOT", help=", ".join(ROBOTS) + "; or a .urdf or .xacro file")
     try:
-        print(robot_named(parser.parse_args().robot).description())
+        print(robot_named(parser.parse_args().robot, find_file).description())
     except PlanarError as error:
         parser.exit(2, f"robot_description: error: {error}\n")

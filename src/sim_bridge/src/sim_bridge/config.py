@@ -13,7 +13,6 @@ class SimulationSettings(NoiseSettings):
     physics_rate: int = 200
     odometry_rate: int = 50
     scan_rate: int = 10
-    command_timeout: float = 0.6
 
     def __post_init__(self):
         super().__post_init__()
@@ -22,7 +21,6 @@ class SimulationSettings(NoiseSettings):
             rate = getattr(self, name)
             divides = rate > 0 and self.physics_rate % rate == 0
             check(divides, name, f"a divisor of physics_rate ({self.physics_rate})", rate)
-        check(self.command_timeout > 0.0, "command_timeout", "positive", self.command_timeout)
 
 
 @dataclass(frozen=True)

@@ -3,15 +3,14 @@
 from typing import Tuple
 
 from planar import Twist2
-from sim_bridge.robots import DriveProfile
+from sim_bridge.description import DriveProfile
 
 
 class Drive:
     """Turns the last command into speeds of the wheels, as the base's own controller does."""
 
-    def __init__(self, profile: DriveProfile, timeout: float):
+    def __init__(self, profile: DriveProfile):
         self._profile = profile
-        self._timeout = timeout
         self._target = Twist2()
         self._set = Twist2()
         self._age = 0.0
@@ -32,7 +31,7 @@ class Drive:
         """Speeds of the left and right wheel, rad/s, after ``seconds`` more."""
         limits = self._profile
         self._age += seconds
-        if self._age > self._timeout + 1e-9:
+        if self._age > limits.command_timeout + 1e-9:
             self._target = Twist2()
         self._set = Twist2(
             _approach(self._set.v, self._target.v, limits.max_acceleration * seconds),

@@ -7,11 +7,11 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from sim_bridge.bullet import BulletClient, pybullet
+from sim_bridge.description.structure import RobotModel
 from sim_bridge.errors import WorldError
 from sim_bridge.multibody import Tree, grow
 from sim_bridge.pose3 import IDENTITY, cross, position, quaternion, transform_points
 from sim_bridge.shapes import Box, Cylinder, Mesh, Plane, Shape, Sphere
-from sim_bridge.urdf_reader import RobotModel
 from sim_bridge.world import Body, Collision, Joint
 
 # Bits of Bullet's collision groups: it puts what moves into 1 and what does not into 2.
@@ -24,6 +24,8 @@ COMPOUND_SIZE = 16
 MESH_SIZE = 40000
 # N m/rad or N/m of what holds a joint within its limits.
 LIMIT_FORCE = 1e4
+# How far down a floor is looked for, metres.
+DEEPEST_FLOOR = 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,15 +219,13 @@ class Engine:
         joint = self._joints[name]
         self._bullet.changeDynamics(joint.number, joint.index, jointDamping=damping)
 
-    def add_robot(
-        self, name: str, model: RobotModel, joints: Sequence[str], base_in_space: np.ndarray
-    ) -> None:
-        """Puts a robot into the world, its wheels those on ``joints``; its links are ``name::link``."""
-        base, wheels = model.base, [model.wheels[joint] for joint in joints]
+    def add_robot(self, name: str, model: RobotModel, base_in_space: np.ndarray) -> None:
+        """Puts a robot into the world; its links are ``name::link``. The mass of a wheel is at its hub."""
+        base, wheels = model.base, list(model.wheels.values())
         centre = np.eye(4)
         centre[:3, 3] = base.centre_of_mass
-        (base_shape,) = self._compounds(base.collisions, moves=True, origin=centre)
-        wheel_shapes = [self._compounds(wheel.part.collisions, moves=True)[0] for wheel in wheels]
+        base_shape, *more = self._compounds(base.collisions, moves=True, origin=centre) or [-1]
+        wheel_shapes = [(self._compounds(wheel.part.collisions, moves=True) or [-1])[0] for wheel in wheels]
         placed = base_in_space @ centre
         number = self._bullet.createMultiBody(
             baseMass=base.mass,
@@ -233,24 +233,22 @@ class Engine:
             basePosition=position(placed),
             baseOrientation=quaternion(placed),
             **_links(
-                wheel_shapes,
-                [np.linalg.inv(centre) @ wheel.origin_in_base for wheel in wheels],
+                wheel_shapes + more,
+                [np.linalg.inv(centre) @ wheel.origin_in_base for wheel in wheels] + [np.eye(4)] * len(more),
                 masses=[wheel.part.mass for wheel in wheels],
                 axes=[wheel.axis.tolist() for wheel in wheels],
             ),
         )
+        parts = [(base, 0.0), *((wheel.part, 1.0) for wheel in wheels), *((base, 0.0) for _ in more)]
         # The base slides: its casters roll any way, and its sides must not climb walls.
-        for index, (part, friction) in enumerate([(base, 0.0)] + [(wheel.part, 1.0) for wheel in wheels], -1):
-            self._bullet.changeDynamics(
-                number,
-                index,
-                lateralFriction=friction,
-                localInertiaDiagonal=part.inertia.tolist(),
-                **_UNDAMPED,
-            )
+        for index, (part, friction) in enumerate(parts, -1):
+            inertia = {} if index >= len(wheels) else {"localInertiaDiagonal": part.inertia.tolist()}
+            self._bullet.changeDynamics(number, index, lateralFriction=friction, **inertia, **_UNDAMPED)
             self._bullet.setCollisionFilterGroupMask(number, index, ROBOT_GROUP, WORLD_GROUPS | ROBOT_GROUP)
             self._names[number, index] = f"{name}::{part.name}"
-            self._links[f"{name}::{part.name}"] = _Link(number, index, centre if index < 0 else np.eye(4))
+        self._links[f"{name}::{base.name}"] = _Link(number, -1, centre)
+        for index, wheel in enumerate(wheels):
+            self._links[f"{name}::{wheel.part.name}"] = _Link(number, index, IDENTITY)
 
     def drive_wheels(self, base: str, speeds: Sequence[float], efforts: Sequence[float]) -> None:
         """The motors of a robot's wheels aim at ``speeds``, rad/s, with at most ``efforts``, N m."""
@@ -278,10 +276,12 @@ class Engine:
         """Looks for contacts without a step."""
         self._bullet.performCollisionDetection()
 
-    def hit_share(self, start: Sequence[float], end: Sequence[float]) -> float:
-        """How much of the way between two points is free of the world's bodies: 1 if all of it."""
-        ((_, _, share, _, _),) = self._bullet.rayTestBatch([start], [end], collisionFilterMask=WORLD_GROUPS)
-        return share
+    def floor_below(self, x: float, y: float, z: float) -> Optional[float]:
+        """The height of the first of the world's bodies below a point, None if there is none."""
+        ((number, _, _, hit, _),) = self._bullet.rayTestBatch(
+            [(x, y, z)], [(x, y, z - DEEPEST_FLOOR)], collisionFilterMask=WORLD_GROUPS
+        )
+        return hit[2] if number >= 0 else None
 
     def _add_tree(self, tree: Tree) -> None:
         """Each body is a link on its parent's; the shapes that do not fit into one are fixed links on it."""
@@ -439,11 +439,16 @@ def _arguments(shape: Shape) -> Dict[str, Any]:
     raise TypeError(f"not a primitive shape: {shape}")
 
 
-def _links(shapes: Sequence[int], poses: Sequence[np.ndarray], masses=None, axes=None) -> Dict[str, Any]:
-    """Arguments of createMultiBody for links on the base: fixed, or turning about ``axes``."""
-    count = len(shapes)
+def _links(
+    shapes: Sequence[int],
+    poses: Sequence[np.ndarray],
+    masses: Sequence[float] = (),
+    axes: Sequence[Sequence[float]] = (),
+) -> Dict[str, Any]:
+    """Arguments of createMultiBody for links on the base: the first turn about ``axes``, others are fixed."""
+    count, fixed = len(shapes), len(shapes) - len(axes)
     return {
-        "linkMasses": masses or [0.0] * count,
+        "linkMasses": [*masses, *[0.0] * fixed],
         "linkCollisionShapeIndices": list(shapes),
         "linkVisualShapeIndices": [-1] * count,
         "linkPositions": [position(pose) for pose in poses],
@@ -451,8 +456,8 @@ def _links(shapes: Sequence[int], poses: Sequence[np.ndarray], masses=None, axes
         "linkInertialFramePositions": [[0.0, 0.0, 0.0]] * count,
         "linkInertialFrameOrientations": [[0.0, 0.0, 0.0, 1.0]] * count,
         "linkParentIndices": [0] * count,
-        "linkJointTypes": [pybullet.JOINT_REVOLUTE if axes else pybullet.JOINT_FIXED] * count,
-        "linkJointAxis": axes or [[0.0, 0.0, 1.0]] * count,
+        "linkJointTypes": [pybullet.JOINT_REVOLUTE] * len(axes) + [pybullet.JOINT_FIXED] * fixed,
+        "linkJointAxis": [*axes, *[[0.0, 0.0, 1.0]] * fixed],
     }
 
 

@@ -13,3 +13,7 @@ class UnknownEntityError(WorldError):
 
 class RobotError(PlanarError):
     """A robot is unknown or its description cannot be used."""
+
+
+class NoDriveError(RobotError):
+    """A description is of something that nothing drives."""

@@ -14,8 +14,9 @@ from planar.settings import check
 from planar_ros.messages import pose2_from_msg, time_of
 from planar_ros.parameters import parameters_below, read_settings
 from planar_ros.shell import run
-from sim_bridge.cli import model_folders
+from sim_bridge.cli import find_file, model_folders
 from sim_bridge.config import BridgeSettings, RobotSettings, SimulationSettings
+from sim_bridge.description import read_sdf_robot
 from sim_bridge.errors import WorldError
 from sim_bridge.nodes.fleet import Fleet
 from sim_bridge.nodes.gazebo import GazeboInterface
@@ -23,6 +24,7 @@ from sim_bridge.nodes.orders import Orders
 from sim_bridge.nodes.time_control import TimeControl
 from sim_bridge.noise import noise_named
 from sim_bridge.pacing import Pacer
+from sim_bridge.pose3 import to_pose2
 from sim_bridge.robots import robot_named
 from sim_bridge.scene import Scene
 from sim_bridge.sdf import load_world
@@ -53,7 +55,11 @@ class Bridge:
         self._time = TimeControl(self._scene, pacer, self._orders)
         self._fleet = Fleet(self._scene, self._orders, joint_steps)
         for name, one in robots.items():
-            self._fleet.add(name, robot_named(one.robot), Pose2(one.x, one.y, one.yaw), one.namespace)
+            profile, start = robot_named(one.robot, find_file), Pose2(one.x, one.y, one.yaw)
+            self._fleet.add(name, profile, start, namespace=one.namespace)
+        for model in world.robots:
+            profile, pose = read_sdf_robot(model)
+            self._fleet.add(model.name, profile, to_pose2(pose), float(pose[2, 3]))
         self._gazebo = GazeboInterface(self._scene, self._fleet, self._time, self._orders, model_folders())
         rospy.Subscriber("~add_box", Marker, self._on_box, queue_size=10)
 

@@ -9,13 +9,15 @@ from planar.settings import check, nearest_name
 
 @dataclass(frozen=True)
 class NoiseSettings:
-    """Standard deviations, but for the two shares.
+    """Standard deviations, but for two shares and four variances.
 
     ``range_noise``: of a laser's range, m; ``range_dropouts``, ``range_max_readings``: the shares of beams
     that measure nothing, and that read the greatest range, whatever there is.
     ``encoder_scale``, ``gyro_scale`` and ``gyro_bias`` (rad/s): of the relative error of each wheel's radius,
     and of the gyro's errors, all drawn once a run. ``wheel_slip``: of the distance measured over 1 m, m;
     grows with the root of the distance. ``gyro_noise``: density of the white noise, rad/sqrt(s).
+    ``alpha1`` to ``alpha4``: variances of odometry's heading, rad^2, for each rad turned and m driven, and of
+    its distance, m^2, for each m driven and rad turned (Probabilistic Robotics, table 5.6).
     ``acceleration_noise``: of the IMU, m/s^2; ``colour_noise``: of a camera, 0 to 1; ``depth_noise``: of a
     depth camera at 1 m, m, growing with the square of the depth.
     """
@@ -28,6 +30,10 @@ class NoiseSettings:
     gyro_scale: float = 0.01
     gyro_bias: float = 0.001
     gyro_noise: float = 0.0005
+    alpha1: float = 0.0
+    alpha2: float = 0.0
+    alpha3: float = 0.0
+    alpha4: float = 0.0
     acceleration_noise: float = 0.02
     colour_noise: float = 0.007
     depth_noise: float = 0.002

@@ -1,4 +1,4 @@
-"""Dead reckoning from wheel encoders and a gyro, with the errors both have."""
+"""How a robot measures where it is: from its wheels and a gyro, with the errors both have, or truly."""
 
 import math
 from dataclasses import dataclass, field
@@ -8,7 +8,7 @@ import numpy as np
 
 from planar import Pose2, Twist2
 from sim_bridge.config import SimulationSettings
-from sim_bridge.robots import DriveProfile
+from sim_bridge.description import DriveProfile
 
 
 @dataclass(frozen=True)
@@ -19,19 +19,47 @@ class Odometry:
     twist: Twist2 = field(default_factory=Twist2)
 
 
-class DeadReckoning:
-    """Distance from the encoders, heading from the gyro, as Kobuki does.
+@dataclass(frozen=True)
+class Moved:
+    """The truth after a period: where the robot is, how it moves, and its wheels' angles, left ones first."""
 
-    Encoder error: a scale for each wheel, drawn once. Wheels slip: what they turn and what the robot travels
-    differ by noise that grows with the root of the distance. Gyro error: scale and bias, drawn once, and
-    white noise.
+    base_in_world: Pose2
+    twist: Twist2
+    wheel_angles: Tuple[float, ...]
+    seconds: float
+
+
+class TrueOdometry:
+    """The truth, in the frame of the world, as Gazebo's plugins tell it with the source ``world``."""
+
+    def reset(self) -> None:
+        """The frame of the world stays where it is."""
+
+    def update(self, moved: Moved) -> Odometry:
+        return Odometry(moved.base_in_world, moved.twist)
+
+
+class DeadReckoning:
+    """Distance from the encoders, heading from the encoders too or, as Kobuki does, from a gyro.
+
+    Encoder error: a scale for each side, drawn once; without a gyro one for both, as an unequal pair would
+    only ever be used after calibration. Wheels slip: what they turn and what the robot travels differ by
+    noise that grows with the root of the distance. Gyro error: scale and bias, drawn once, and white noise.
+    Besides, the noise of odometry of Probabilistic Robotics (table 5.6), alpha 1 to 4.
     """
 
-    def __init__(self, drive: DriveProfile, settings: SimulationSettings, rng: np.random.Generator):
-        self._radii = drive.wheel_radius * (1.0 + rng.normal(0.0, settings.encoder_scale, 2))
+    def __init__(
+        self, drive: DriveProfile, has_gyro: bool, settings: SimulationSettings, rng: np.random.Generator
+    ):
+        scales = 1.0 + rng.normal(0.0, settings.encoder_scale, 2)
+        self._radii = drive.wheel_radius * (scales if has_gyro else scales[:1].repeat(2))
         self._gyro_scale = 1.0 + rng.normal(0.0, settings.gyro_scale)
         self._gyro_bias = rng.normal(0.0, settings.gyro_bias)
+        self._left_count = len(drive.left_joints)
+        self._separation = drive.wheel_separation
+        self._has_gyro = has_gyro
         self._settings = settings
+        self._alphas = _Alphas(settings, rng)
         self._rng = rng
         self._angles = np.zeros(2)
         self._pose = Pose2()
@@ -40,16 +68,48 @@ class DeadReckoning:
         """The robot's present place becomes the origin of odometry."""
         self._pose = Pose2()
 
-    def update(self, wheel_angles: Tuple[float, float], turn_rate: float, seconds: float) -> Odometry:
-        """Moves on by ``seconds`` to ``wheel_angles``, rad; ``turn_rate``, rad/s, is the true one."""
-        turned = np.asarray(wheel_angles) - self._angles
-        self._angles = np.asarray(wheel_angles)
-        distance = float((turned * self._radii).mean())
+    def update(self, moved: Moved) -> Odometry:
+        """Moves on by one period."""
+        angles = np.asarray(moved.wheel_angles)
+        sides = np.array([angles[: self._left_count].mean(), angles[self._left_count :].mean()])
+        rolled = (sides - self._angles) * self._radii
+        self._angles = sides
+        distance = float(rolled.mean())
         slip = self._settings.wheel_slip * math.sqrt(abs(distance)) * self._rng.standard_normal()
-        noise = self._settings.gyro_noise / math.sqrt(seconds) * self._rng.standard_normal()
-        measured_rate = self._gyro_scale * turn_rate + self._gyro_bias + noise
-        self._pose = self._pose @ _arc(distance + slip, measured_rate * seconds)
-        return Odometry(self._pose, Twist2(distance / seconds, measured_rate))
+        rate = self._measured_rate(moved, rolled)
+        self._pose = self._pose @ self._alphas.disturbed(_arc(distance + slip, rate * moved.seconds))
+        return Odometry(self._pose, Twist2(distance / moved.seconds, rate))
+
+    def _measured_rate(self, moved: Moved, rolled: np.ndarray) -> float:
+        """The turn rate, rad/s, by the gyro or by the distances (2,) that the sides have rolled."""
+        draw = self._rng.standard_normal()
+        if self._has_gyro:
+            noise = self._settings.gyro_noise / math.sqrt(moved.seconds) * draw
+            return self._gyro_scale * moved.twist.omega + self._gyro_bias + noise
+        slip = self._settings.wheel_slip * math.sqrt(np.abs(rolled).mean()) * draw
+        return float((rolled[1] - rolled[0] + slip) / self._separation / moved.seconds)
+
+
+class _Alphas:
+    """Noise of heading and distance that grows with both, by the four alphas.
+
+    Over a metre or a radian the variances are those of the table, of two metres twice that: so the noise does
+    not depend on the length of the steps.
+    """
+
+    def __init__(self, settings: SimulationSettings, rng: np.random.Generator):
+        self._alphas = (settings.alpha1, settings.alpha2, settings.alpha3, settings.alpha4)
+        self._rng = rng
+
+    def disturbed(self, step: Pose2) -> Pose2:
+        """A motion of one period with noise added."""
+        if not any(self._alphas):
+            return step
+        turn_by_turn, turn_by_way, way_by_way, way_by_turn = self._alphas
+        distance, angle = math.hypot(step.x, step.y), abs(step.yaw)
+        turn = math.sqrt(turn_by_turn * angle + turn_by_way * distance) * self._rng.standard_normal()
+        way = math.sqrt(way_by_way * distance + way_by_turn * angle) * self._rng.standard_normal()
+        return step @ Pose2(way, 0.0, turn)
 
 
 def _arc(distance: float, angle: float) -> Pose2:

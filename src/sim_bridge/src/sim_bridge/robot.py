@@ -1,18 +1,18 @@
 """A robot in its scene: it is commanded, it moves, it measures."""
 
 import math
-from dataclasses import dataclass
-from typing import Iterable, Optional, Sequence, Set, Tuple
+from dataclasses import dataclass, replace
+from typing import Callable, Iterable, Optional, Sequence, Set, Tuple, Union
 
 import numpy as np
 
 from planar import Pose2, Scan, Twist2
 from sim_bridge.config import SimulationSettings
+from sim_bridge.description import LaserProfile, RobotProfile
 from sim_bridge.drive import Drive
 from sim_bridge.engine import Engine
-from sim_bridge.odometry import DeadReckoning, Odometry
-from sim_bridge.pose3 import from_pose2, to_pose2
-from sim_bridge.robots import RobotProfile
+from sim_bridge.odometry import DeadReckoning, Moved, Odometry, TrueOdometry
+from sim_bridge.pose3 import to_pose2
 from sim_bridge.section import Section
 from sim_bridge.sensors.lidar import Lidar
 from sim_bridge.vehicle import Vehicle, twist_in_base
@@ -24,46 +24,54 @@ class Observation:
     """What there is to know after a step.
 
     ``stamp``: simulated seconds since the start. ``base_in_world`` and ``twist`` are the truth, ``odometry``
-    and ``scan`` (None if none is due) what the robot measures. ``wheel_angles``, ``wheel_speeds``: left and
-    right, rad and rad/s. ``contacts``: names (``model::link``) of what the robot has bumped into since the
-    last step. ``tilt``: between the robot's axis and the vertical, rad.
+    and ``scans`` (one of each range finder, None if none is due) what the robot measures. ``wheel_angles``,
+    ``wheel_speeds``: of the driven wheels, those on the left first, rad and rad/s. ``contacts``: names
+    (``model::link``) of what the robot has bumped into since the last step. ``tilt``: between the robot's
+    axis and the vertical, rad.
     """
 
     stamp: float
     base_in_world: Pose2
     twist: Twist2
     odometry: Odometry
-    scan: Optional[Scan]
+    scans: Tuple[Optional[Scan], ...]
     contacts: Tuple[str, ...]
-    wheel_angles: Tuple[float, float]
-    wheel_speeds: Tuple[float, float]
+    wheel_angles: Tuple[float, ...]
+    wheel_speeds: Tuple[float, ...]
     tilt: float
+
+    @property
+    def scan(self) -> Optional[Scan]:
+        """Of the first range finder."""
+        return self.scans[0] if self.scans else None
 
 
 class Robot:
-    """The robot ``name`` at ``base_in_world`` on the floor z = 0; ``seed``: of its sensors' noise."""
+    """The robot ``name`` with its base at ``base_in_space``, (4, 4); ``seed``: of its sensors' noise."""
 
     def __init__(
         self,
         engine: Engine,
         name: str,
         profile: RobotProfile,
-        base_in_world: Pose2,
+        base_in_space: np.ndarray,
         settings: SimulationSettings,
         seed: Sequence[int],
     ):
-        odometry_rng, lidar_rng = (np.random.default_rng([*seed, stream]) for stream in range(2))
-        laser_in_base = profile.mounting(profile.laser.frame)
+        odometry_rng, *laser_rngs = (
+            np.random.default_rng([*seed, stream]) for stream in range(1 + len(profile.lasers))
+        )
         self.profile = profile
-        self.vehicle = Vehicle(engine, name, profile, from_pose2(base_in_world))
-        self.section = Section(height=float(laser_in_base[2, 3]))
-        self._engine = engine
+        self.vehicle = Vehicle(engine, name, profile, base_in_space)
         self.settings = settings
-        self._drive = Drive(profile.drive, settings.command_timeout)
-        self._dead_reckoning = DeadReckoning(profile.drive, settings, odometry_rng)
-        self._lidar = Lidar(profile.laser, laser_in_base, settings, lidar_rng)
+        self._engine = engine
+        self._drive = Drive(profile.drive)
+        self._odometer = _odometer(profile, settings, odometry_rng)
+        self._lookouts = [
+            Lookout(laser, float(base_in_space[2, 3]), settings, rng)
+            for laser, rng in zip(profile.lasers, laser_rngs)
+        ]
         self._touched: Set[str] = set()
-        self._scan: Optional[Scan] = None
 
     @property
     def name(self) -> str:
@@ -83,38 +91,32 @@ class Robot:
         self._drive.halt()
 
     def reset_odometry(self) -> None:
-        self._dead_reckoning.reset()
+        self._odometer.reset()
 
     def begin_step(self) -> None:
         """Before a step of physics: sets the motors."""
-        self.vehicle.drive(self._drive.wheel_speeds(1.0 / self.settings.physics_rate))
+        self.vehicle.drive(*self._drive.wheel_speeds(1.0 / self.settings.physics_rate))
 
     def end_step(self, steps: int, stamp: float) -> None:
         """After the step of physics number ``steps``, at the time ``stamp``: feels and looks around."""
         self._touched.update(self.vehicle.touched())
-        if steps % (self.settings.physics_rate // self.settings.scan_rate) == 0:
-            self._scan = self._lidar.sweep(
-                stamp,
-                self.section.segments(self._engine.pose_of),
-                self.section.retros(),
-                to_pose2(self._engine.pose_of(self.vehicle.base)),
-            )
+        for lookout in self._lookouts:
+            if lookout.is_due(steps, self.settings):
+                lookout.look(stamp, self._engine.pose_of, self.vehicle.base)
 
     def observe(self, stamp: float) -> Observation:
         """What has been measured since the last call."""
         motion = self.vehicle.motion()
-        twist = twist_in_base(motion)
+        base_in_world, twist = to_pose2(motion.pose), twist_in_base(motion)
         wheel_angles, wheel_speeds = self.vehicle.wheels()
         contacts, self._touched = tuple(sorted(self._touched)), set()
-        scan, self._scan = self._scan, None
+        moved = Moved(base_in_world, twist, wheel_angles, 1.0 / self.settings.odometry_rate)
         return Observation(
             stamp=stamp,
-            base_in_world=to_pose2(motion.pose),
+            base_in_world=base_in_world,
             twist=twist,
-            odometry=self._dead_reckoning.update(
-                wheel_angles, twist.omega, 1.0 / self.settings.odometry_rate
-            ),
-            scan=scan,
+            odometry=self._odometer.update(moved),
+            scans=tuple(lookout.take_scan() for lookout in self._lookouts),
             contacts=contacts,
             wheel_angles=wheel_angles,
             wheel_speeds=wheel_speeds,
@@ -122,6 +124,54 @@ class Robot:
         )
 
     def look_at(self, bodies: Iterable[Body]) -> None:
-        """Adds bodies to what the laser can see."""
-        for body in bodies:
-            self.section.add(body)
+        """Adds bodies to what the range finders can see."""
+        for lookout in self._lookouts:
+            for body in bodies:
+                lookout.section.add(body)
+
+    def lose_sight(self, link: str) -> None:
+        """A link of the world is gone."""
+        for lookout in self._lookouts:
+            lookout.section.remove(link)
+
+    def see_moved(self, link: str, pose: np.ndarray) -> None:
+        """A link of the world has been put to another place, (4, 4)."""
+        for lookout in self._lookouts:
+            lookout.section.move(link, pose)
+
+
+class Lookout:
+    """A range finder, the level section of the world that it sees, and its latest scan."""
+
+    def __init__(
+        self, laser: LaserProfile, base_height: float, settings: SimulationSettings, rng: np.random.Generator
+    ):
+        self.section = Section(height=base_height + float(laser.pose_in_base[2, 3]))
+        self._laser = laser
+        noise = settings
+        if laser.noise is not None and settings.range_noise > 0.0:  # else sensors are meant to be ideal
+            noise = replace(settings, range_noise=laser.noise)
+        self._lidar = Lidar(laser, noise, rng)
+        self._scan: Optional[Scan] = None
+
+    def is_due(self, steps: int, settings: SimulationSettings) -> bool:
+        """Whether a scan ends with the step of physics number ``steps``."""
+        rate = self._laser.rate or settings.scan_rate
+        return steps % max(round(settings.physics_rate / rate), 1) == 0
+
+    def look(self, stamp: float, pose_of: Callable[[str], np.ndarray], base: str) -> None:
+        segments, retros = self.section.segments(pose_of), self.section.retros()
+        self._scan = self._lidar.sweep(stamp, segments, retros, to_pose2(pose_of(base)))
+
+    def take_scan(self) -> Optional[Scan]:
+        """The scan since the last call, if any."""
+        scan, self._scan = self._scan, None
+        return scan
+
+
+def _odometer(
+    profile: RobotProfile, settings: SimulationSettings, rng: np.random.Generator
+) -> Union[TrueOdometry, DeadReckoning]:
+    if profile.odometry.source == "world":
+        return TrueOdometry()
+    return DeadReckoning(profile.drive, profile.odometry.source == "gyro", settings, rng)

@@ -8,14 +8,16 @@ import numpy as np
 from planar import Pose2, Twist2
 from planar.settings import nearest_name
 from sim_bridge.config import SimulationSettings
+from sim_bridge.description import RobotProfile
 from sim_bridge.drawing import Drawing
 from sim_bridge.engine import Engine, JointState, Motion
 from sim_bridge.errors import UnknownEntityError, WorldError
 from sim_bridge.pose3 import cross, from_pose2
 from sim_bridge.robot import Observation, Robot
-from sim_bridge.robots import RobotProfile
 from sim_bridge.world import Body, Joint, World
 
+# Metres above a robot's start from which on a floor is looked for.
+FLOOR_SEARCH = 0.1
 AT_REST = (np.zeros(3), np.zeros(3))
 
 
@@ -56,7 +58,7 @@ class Scene:
         self._seed = seed
         self._bodies: Dict[str, Body] = {}
         self._joints: Dict[str, Joint] = {}
-        self._starts: Dict[str, Tuple[RobotProfile, Pose2]] = {}
+        self._starts: Dict[str, Tuple[RobotProfile, np.ndarray]] = {}
         self._robots: Dict[str, Robot] = {}
         self._pushes: List[Push] = []
         self._joint_pushes: List[JointPush] = []
@@ -100,11 +102,20 @@ class Scene:
         """Frees the physics engine."""
         self._engine.close()
 
-    def add_robot(self, name: str, profile: RobotProfile, base_in_world: Pose2 = Pose2()) -> None:
-        """Puts a robot on the floor. Raises WorldError if it cannot stand there or the name is taken."""
+    def add_robot(
+        self, name: str, profile: RobotProfile, base_in_world: Pose2 = Pose2(), z: float = 0.0
+    ) -> None:
+        """Puts a robot on the floor at, or below, the height ``z``.
+
+        Raises WorldError if it cannot stand there or the name is taken.
+        """
         if name in self.model_names():
             raise WorldError(f"{name} is in the world already")
-        self._add_robot(name, profile, base_in_world)
+        floor = self._engine.floor_below(base_in_world.x, base_in_world.y, z + FLOOR_SEARCH)
+        if floor is None:
+            where = f"({base_in_world.x:g}, {base_in_world.y:g})"
+            raise WorldError(f"the robot would start at {where}, where there is no floor")
+        self._add_robot(name, profile, from_pose2(base_in_world, z=floor - profile.model.lowest))
         try:
             self._robots[name].vehicle.check_start()
         except WorldError:
@@ -132,7 +143,7 @@ class Scene:
             if self._drawing is not None:
                 self._drawing.remove(link)
             for other in self._robots.values():
-                other.section.remove(link)
+                other.lose_sight(link)
 
     def robot(self, name: str) -> Robot:
         return _found(self._robots, name, "robot")
@@ -248,9 +259,9 @@ class Scene:
         self.set_joints({joint.name: joint.start for joint in self._joints.values()})
         for name in self._unheld(self._bodies):
             self._set_motion(name, Motion(self._bodies[name].pose_in_world, *AT_REST))
-        for name, (_, base_in_world) in self._starts.items():
+        for name, (_, base_in_space) in self._starts.items():
             robot = self._robots[name]
-            self._set_motion(robot.vehicle.base, Motion(from_pose2(base_in_world), *AT_REST))
+            self._set_motion(robot.vehicle.base, Motion(base_in_space, *AT_REST))
             robot.halt()
         self._pushes.clear()
         self._joint_pushes.clear()
@@ -265,20 +276,20 @@ class Scene:
         self._joint_pushes.clear()
         self._physics_steps, self._stamp_at_rate, self._drawing = 0, 0.0, None
         self.add(bodies, joints)
-        for name, (profile, base_in_world) in starts.items():
-            self._add_robot(name, profile, base_in_world)
+        for name, (profile, base_in_space) in starts.items():
+            self._add_robot(name, profile, base_in_space)
 
-    def _add_robot(self, name: str, profile: RobotProfile, base_in_world: Pose2) -> None:
+    def _add_robot(self, name: str, profile: RobotProfile, base_in_space: np.ndarray) -> None:
         index = len(self._robots)
         seed = [self._seed] if index == 0 else [self._seed, index]
-        robot = Robot(self._engine, name, profile, base_in_world, self.settings, seed)
+        robot = Robot(self._engine, name, profile, base_in_space, self.settings, seed)
         robot.look_at(self._bodies.values())
         for other in self._robots.values():
             other.look_at([robot.body()])
             robot.look_at([other.body()])
         self._robots[name] = robot
         self._draw([robot.body()])
-        self._starts[name] = (profile, base_in_world)
+        self._starts[name] = (profile, base_in_space)
 
     def _draw(self, bodies: Sequence[Body]) -> None:
         if self._drawing is not None:
@@ -290,7 +301,7 @@ class Scene:
         if self._drawing is not None:
             self._drawing.move(link, motion.pose)
         for robot in self._robots.values():
-            robot.section.move(link, motion.pose)
+            robot.see_moved(link, motion.pose)
 
     def _push(self) -> None:
         for push in self._pushes:

@@ -75,3 +75,22 @@ def scaled(shape: Look, scale: Tuple[float, float, float]) -> Look:
     if isinstance(shape, Mesh):
         return Mesh(shape.vertices * scale, shape.triangles, shape.colours)
     return shape
+
+
+def outline(shape: Shape) -> np.ndarray:
+    """The outermost points (N, 3) of a solid, on a circle every 15 degrees; none of what has no end."""
+    if isinstance(shape, Mesh):
+        return shape.vertices
+    if isinstance(shape, Box):
+        signs = np.array(np.meshgrid(*[(-0.5, 0.5)] * 3)).reshape(3, -1).T
+        return signs * np.asarray(shape.size)
+    if isinstance(shape, Cylinder):
+        rim = shape.radius * _CIRCLE
+        return np.vstack([rim + [0.0, 0.0, height] for height in (-shape.length / 2.0, shape.length / 2.0)])
+    if isinstance(shape, Sphere):
+        return shape.radius * np.vstack([_CIRCLE, np.roll(_CIRCLE, 1, axis=1), np.roll(_CIRCLE, 2, axis=1)])
+    return np.empty((0, 3))
+
+
+_ANGLES = np.radians(np.arange(0.0, 360.0, 15.0))
+_CIRCLE = np.column_stack([np.cos(_ANGLES), np.sin(_ANGLES), np.zeros(len(_ANGLES))])

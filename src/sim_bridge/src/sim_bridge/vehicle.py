@@ -1,20 +1,17 @@
 """A wheeled robot among the bodies of an engine."""
 
-from typing import Sequence, Set, Tuple
+from typing import Set, Tuple
 
 import numpy as np
 
 from planar import Twist2
+from sim_bridge.description import RobotProfile
 from sim_bridge.engine import Engine, Motion
-from sim_bridge.errors import RobotError, WorldError
+from sim_bridge.errors import WorldError
 from sim_bridge.pose3 import position
-from sim_bridge.robots import RobotProfile
-from sim_bridge.urdf_reader import read_robot
 
 # Metres that a robot at its start may reach into what it stands on.
 START_DEPTH = 0.01
-# Metres above and below the robot's start within which there must be a floor.
-FLOOR_SEARCH = 0.1
 # A contact whose normal rises more steeply than this carries the robot; it is no collision.
 SUPPORTING_NORMAL_Z = 0.7
 
@@ -23,30 +20,29 @@ class Vehicle:
     """The robot ``name``; it starts with its base frame at ``base_in_space``, (4, 4)."""
 
     def __init__(self, engine: Engine, name: str, robot: RobotProfile, base_in_space: np.ndarray):
-        model = read_robot(robot.description())
-        joints = (robot.drive.left_joint, robot.drive.right_joint)
-        for joint in joints:
-            if joint not in model.wheels:
-                raise RobotError(f"robot {robot.name}: no wheel on a joint named {joint!r}")
-        engine.add_robot(name, model, joints, base_in_space)
+        model, drive = robot.model, robot.drive
+        engine.add_robot(name, model, base_in_space)
         self.name = name
         self.base = f"{name}::{model.base.name}"
-        self.links = (self.base, *(f"{name}::{model.wheels[joint].part.name}" for joint in joints))
+        self.links = (self.base, *(f"{name}::{wheel.part.name}" for wheel in model.wheels.values()))
         self.collisions = model.base.collisions
-        self._efforts = [model.wheels[joint].effort for joint in joints]
+        self.left_count = len(drive.left_joints)
+        self._efforts = [drive.torque] * len(drive.joints)
         self._engine = engine
 
-    def drive(self, wheel_speeds: Sequence[float]) -> None:
-        """The motors aim at these speeds of the left and right wheel, rad/s."""
-        self._engine.drive_wheels(self.base, wheel_speeds, self._efforts)
+    def drive(self, left_speed: float, right_speed: float) -> None:
+        """The motors aim at these speeds of the wheels on the left and the right, rad/s."""
+        right_count = len(self._efforts) - self.left_count
+        speeds = [left_speed] * self.left_count + [right_speed] * right_count
+        self._engine.drive_wheels(self.base, speeds, self._efforts)
 
     def motion(self) -> Motion:
         """Of the base frame."""
         return self._engine.motion_of(self.base)
 
-    def wheels(self) -> Tuple[Tuple[float, float], Tuple[float, float]]:
-        """Angles, rad, and speeds, rad/s, of the left and right wheel."""
-        return self._engine.wheels(self.base, len(self._efforts))  # type: ignore[return-value]
+    def wheels(self) -> Tuple[Tuple[float, ...], Tuple[float, ...]]:
+        """Angles, rad, and speeds, rad/s, of the wheels, those on the left first."""
+        return self._engine.wheels(self.base, len(self._efforts))
 
     def touched(self) -> Set[str]:
         """Names of the links the robot bumps into; what it stands on is not among them."""
@@ -57,15 +53,13 @@ class Vehicle:
         }
 
     def check_start(self) -> None:
-        """Raises WorldError if the robot has no floor to stand on or stands in something."""
+        """Raises WorldError if the robot stands in something."""
         self._engine.find_contacts()
-        x, y, z = position(self._engine.pose_of(self.base))
+        x, y, _ = position(self._engine.pose_of(self.base))
         contacts = self._engine.contacts(self.base)
         inside = {contact.link for contact in contacts if contact.depth > START_DEPTH} | self.touched()
         if inside:
             raise WorldError(f"the robot would start at ({x:g}, {y:g}), inside {', '.join(sorted(inside))}")
-        if self._engine.hit_share((x, y, z + FLOOR_SEARCH), (x, y, z - FLOOR_SEARCH)) >= 1.0:
-            raise WorldError(f"the robot would start at ({x:g}, {y:g}), where there is no floor")
 
 
 def twist_in_base(motion: Motion) -> Twist2:

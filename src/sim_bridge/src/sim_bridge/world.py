@@ -1,7 +1,7 @@
 """What a simulated world consists of."""
 
 from dataclasses import dataclass, field
-from typing import Optional, Tuple
+from typing import Any, Optional, Tuple
 
 import numpy as np
 
@@ -100,12 +100,23 @@ class Joint:
         return self.name.split("::", 1)[0]
 
 
+@dataclass(frozen=True, eq=False)
+class DrivenModel:
+    """A model with a plugin that drives it: a robot, to be read from its ``element`` of SDF."""
+
+    name: str
+    element: Any
+    bodies: Tuple[Body, ...]
+    joints: Tuple[Joint, ...]
+
+
 @dataclass(frozen=True)
 class World:
-    """Bodies, joints between them, and in words what the world's file holds that was left out."""
+    """Bodies, joints between them, robots, and in words what the world's file holds that was left out."""
 
     name: str
     bodies: Tuple[Body, ...]
     gravity: float = 9.8
     warnings: Tuple[str, ...] = ()
     joints: Tuple[Joint, ...] = ()
+    robots: Tuple[DrivenModel, ...] = ()

@@ -6,9 +6,9 @@ import rospy
 from tf2_msgs.msg import TFMessage
 
 from planar import Pose2
+from sim_bridge.description import RobotProfile
 from sim_bridge.nodes.orders import Orders
 from sim_bridge.nodes.robot_topics import RobotTopics
-from sim_bridge.robots import RobotProfile
 from sim_bridge.scene import Scene
 
 
@@ -22,9 +22,17 @@ class Fleet:
         self._robots: Dict[str, RobotTopics] = {}
         self._tf = rospy.Publisher("/tf", TFMessage, queue_size=100, tcp_nodelay=True)
 
-    def add(self, name: str, profile: RobotProfile, base_in_world: Pose2, namespace: str = "") -> None:
-        """Puts a robot on the floor, with its topics below ``namespace``. Raises WorldError, RobotError."""
-        self._scene.add_robot(name, profile, base_in_world)
+    def add(
+        self, name: str, profile: RobotProfile, base_in_world: Pose2, z: float = 0.0, namespace: str = ""
+    ) -> None:
+        """Puts a robot on the floor at, or below, the height ``z``.
+
+        Its topics are where its description says, else below ``namespace``. Raises WorldError, RobotError.
+        """
+        for warning in profile.warnings:
+            rospy.logwarn("%s", warning)
+        self._scene.add_robot(name, profile, base_in_world, z)
+        namespace = "/" + (profile.namespace or namespace.strip("/"))
         self._robots[name] = RobotTopics(
             self._scene, name, self._orders, self._joint_steps, namespace, _tf_prefix(namespace)
         )
@@ -49,7 +57,7 @@ class Fleet:
 
 def _tf_prefix(namespace: str) -> str:
     """The parameter tf_prefix of a namespace, or of the nearest around it, as in Gazebo."""
-    where = rospy.resolve_name(namespace).strip("/").split("/")
+    where = namespace.strip("/").split("/")
     for depth in range(len(where), -1, -1):
         name = "/".join(["", *where[:depth], "tf_prefix"])
         if rospy.has_param(name):

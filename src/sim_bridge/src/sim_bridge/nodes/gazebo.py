@@ -11,8 +11,10 @@ from geometry_msgs.msg import Vector3
 from std_srvs.srv import Empty, EmptyResponse
 
 from planar import PlanarError
+from sim_bridge.cli import find_file
+from sim_bridge.description import RobotProfile, read_prop, read_sdf_robot, read_urdf_robot
 from sim_bridge.engine import Motion
-from sim_bridge.errors import UnknownEntityError, WorldError
+from sim_bridge.errors import NoDriveError, UnknownEntityError, WorldError
 from sim_bridge.nodes.fleet import Fleet
 from sim_bridge.nodes.messages import (
     motion_from_msgs,
@@ -22,10 +24,9 @@ from sim_bridge.nodes.messages import (
 )
 from sim_bridge.nodes.orders import Orders
 from sim_bridge.nodes.time_control import TimeControl
-from sim_bridge.pose3 import cross
+from sim_bridge.pose3 import cross, to_pose2
 from sim_bridge.scene import Push, Scene
 from sim_bridge.sdf import read_model
-from sim_bridge.urdf_reader import read_prop
 from sim_bridge.world import World
 
 NAMESPACE = "/gazebo/"
@@ -142,12 +143,24 @@ class GazeboInterface:
         return srv.SetPhysicsPropertiesResponse(True, "physics engine updated")
 
     def _on_spawn_sdf(self, request):
-        return self._spawn(request, read_model)
+        def spawn(pose):
+            model = read_model(request.model_xml, request.model_name, pose, self._model_folders)
+            self._add(model, request)
+
+        return self._spawn(request, spawn)
 
     def _on_spawn_urdf(self, request):
-        return self._spawn(request, read_prop)
+        def spawn(pose):
+            try:
+                robot = read_urdf_robot(request.model_xml, request.model_name, find_file)
+            except NoDriveError:
+                self._add(read_prop(request.model_xml, request.model_name, pose, find_file), request)
+            else:
+                self._add_robot(request, robot, pose)
 
-    def _spawn(self, request, read: Callable[..., World]):
+        return self._spawn(request, spawn)
+
+    def _spawn(self, request, spawn: Callable[[np.ndarray], None]):
         name, frame = request.model_name, request.reference_frame
         if name in self._scene.model_names():
             return srv.SpawnModelResponse(False, "SpawnModel: Failure - entity already exists.")
@@ -156,14 +169,20 @@ class GazeboInterface:
             text = f"SpawnModel: reference reference_frame not found, {SCOPE_HINT}"
             return srv.SpawnModelResponse(False, text)
         try:
-            pose = in_world.pose @ pose3_from_msg(request.initial_pose)
-            model = read(request.model_xml, name, pose, self._model_folders)
-            for warning in model.warnings:
-                rospy.logwarn("%s", warning)
-            self._scene.add(model.bodies)
+            spawn(in_world.pose @ pose3_from_msg(request.initial_pose))
         except PlanarError as error:
             return srv.SpawnModelResponse(False, f"SpawnModel: Failure - {error}")
         return srv.SpawnModelResponse(True, "SpawnModel: Successfully spawned entity")
+
+    def _add(self, model: World, request) -> None:
+        for warning in model.warnings:
+            rospy.logwarn("%s", warning)
+        self._scene.add(model.bodies)
+        for robot in model.robots:
+            self._add_robot(request, *read_sdf_robot(robot))
+
+    def _add_robot(self, request, robot: RobotProfile, pose: np.ndarray) -> None:
+        self._fleet.add(request.model_name, robot, to_pose2(pose), float(pose[2, 3]), request.robot_namespace)
 
     def _on_delete_model(self, request):
         try:

@@ -16,7 +16,7 @@ class Element:
     """A node of an SDF file: typed access to what is in it. ``version``: that of the file, e.g. (1, 6)."""
 
     def __init__(self, xml, file: str, place: str = "", version: Tuple[int, ...] = ()):
-        self._xml = xml
+        self.xml = xml
         self.file = file
         self.version = version or version_of(xml.get("version", ""))
         self.tag: str = xml.tag
@@ -28,10 +28,10 @@ class Element:
         return WorldError(f"{self.file}: {self.place}: {text}")
 
     def attribute(self, name: str) -> str:
-        return self._xml.get(name, "")
+        return self.xml.get(name, "")
 
     def children(self, tag: Optional[str] = None) -> Iterator["Element"]:
-        for xml in self._xml.iterfind(tag) if tag else self._xml:
+        for xml in self.xml.iterfind(tag) if tag else self.xml:
             if isinstance(xml.tag, str):
                 yield Element(xml, self.file, self.place, self.version)
 
@@ -50,7 +50,7 @@ class Element:
 
     @property
     def text(self) -> str:
-        return (self._xml.text or "").strip()
+        return (self.xml.text or "").strip()
 
     def numbers(self, count: int) -> List[float]:
         """The text as exactly ``count`` finite numbers."""
@@ -69,6 +69,28 @@ class Element:
         if min(values) <= 0.0:
             raise self.error(f"must be positive, got {self.text!r}")
         return tuple(values)
+
+    def attribute_numbers(
+        self, name: str, count: int, default: Optional[Sequence[float]] = None
+    ) -> Tuple[float, ...]:
+        """An attribute as exactly ``count`` finite numbers; without a ``default`` it must be there."""
+        text = self.xml.get(name)
+        if text is None and default is not None:
+            return tuple(default)
+        try:
+            values = tuple(float(word) for word in (text or "").split())
+        except ValueError:
+            values = ()
+        if len(values) != count or not all(math.isfinite(value) for value in values):
+            raise self.error(f"{name}: expected {count} finite numbers, got {text!r}")
+        return values
+
+    def attribute_lengths(self, name: str, count: int) -> Tuple[float, ...]:
+        """An attribute as ``count`` positive numbers."""
+        values = self.attribute_numbers(name, count)
+        if min(values) <= 0.0:
+            raise self.error(f"{name} must be positive, got {self.attribute(name)!r}")
+        return values
 
     def flag(self, tag: str) -> bool:
         """Whether the child ``tag`` says true; false if it is not there."""

@@ -9,6 +9,7 @@ import numpy as np
 from sim_bridge.sdf.element import Element, parse, parse_text
 from sim_bridge.sdf.frames import Frames
 from sim_bridge.sdf.includes import model_file, resolve
+from sim_bridge.sdf.plugins import DRIVES, plugin_name
 from sim_bridge.sdf.warnings import Warnings
 
 MAX_INCLUDE_DEPTH = 20
@@ -44,6 +45,13 @@ class Model:
             child = joint.child("child")
             self.frames.declare(joint.name, joint, child.text if child is not None else "")
         declare_frames(self.frames, self.element)
+
+    @property
+    def is_driven(self) -> bool:
+        """Whether it is a robot: then its plugins and sensors are no matter of the world's."""
+        return not self.is_static and any(
+            plugin_name(plugin) in DRIVES for plugin in self.element.children("plugin")
+        )
 
     def add(self, model: "Model") -> None:
         """``model`` is nested in this one."""
@@ -95,9 +103,10 @@ class ModelReader:
         static: bool = False,
         depth: int = 0,
     ) -> Model:
-        self._warnings.check_children(element)
         static = static or element.flag("static")
         model = Model(name, element, placed_by, folder, static)
+        if not model.is_driven:
+            self._warnings.check_children(element)
         for nested in self.models_in(element, folder, static, depth):
             model.add(nested)
         return model

@@ -16,7 +16,7 @@ from sim_bridge.sdf.models import Model, ModelReader, declare_frames
 from sim_bridge.sdf.state import ModelState, read_states
 from sim_bridge.sdf.warnings import Warnings
 from sim_bridge.shapes import Look, MeshFile, Plane, Shape, scaled
-from sim_bridge.world import Body, Collision, Inertia, Joint, Surface, Visual, World
+from sim_bridge.world import Body, Collision, DrivenModel, Inertia, Joint, Surface, Visual, World
 
 DEFAULT_GRAVITY = 9.8
 
@@ -49,14 +49,21 @@ class _Reader:
     def __init__(self, model_folders: Tuple[Path, ...], warnings: Warnings):
         self._bodies: List[Body] = []
         self._joints: List[Joint] = []
+        self._robots: List[DrivenModel] = []
         self._model_folders = model_folders
         self._warnings = warnings
         self._models = ModelReader(model_folders, warnings)
 
     def world(self, name: str, gravity: float = DEFAULT_GRAVITY) -> World:
         """All that has been read."""
-        joints = tuple(self._joints)
-        return World(name, tuple(self._bodies), gravity, tuple(self._warnings.lines()), joints)
+        return World(
+            name,
+            tuple(self._bodies),
+            gravity,
+            tuple(self._warnings.lines()),
+            tuple(self._joints),
+            tuple(self._robots),
+        )
 
     def read_world(self, world: Element, folder: Path) -> None:
         self._warnings.check_children(world)
@@ -76,10 +83,21 @@ class _Reader:
             frames.declare(model.name, model.placed_by, inside=model.placement())
         for model in models:
             if model.name not in gone:
-                self._place(model, frames.frame(model.name, model.element), overrides.get(model.name))
+                self._put(model, frames.frame(model.name, model.element), overrides.get(model.name))
 
     def read_model(self, element: Element, name: str, pose: np.ndarray) -> None:
-        self._place(self._models.model(element, element, Path(), name), pose, None)
+        self._put(self._models.model(element, element, Path(), name), pose, None)
+
+    def _put(self, model: Model, in_world: np.ndarray, state: Optional[ModelState]) -> None:
+        """Adds a model of the world, if it is driven as a robot."""
+        bodies, joints = len(self._bodies), len(self._joints)
+        self._place(model, in_world, state)
+        if model.is_driven:
+            robot = DrivenModel(
+                model.name, model.element, tuple(self._bodies[bodies:]), tuple(self._joints[joints:])
+            )
+            self._robots.append(robot)
+            del self._bodies[bodies:], self._joints[joints:]
 
     def _place(
         self,
@@ -133,7 +151,8 @@ class _Reader:
         outermost: np.ndarray,
         state: ModelState,
     ) -> Body:
-        self._warnings.check_children(link)
+        if not model.is_driven:
+            self._warnings.check_children(link)
         in_model = model.frames.frame(link.name, link)
         collisions = []
         for part in link.children("collision"):

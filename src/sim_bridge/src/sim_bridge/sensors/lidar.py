@@ -3,27 +3,22 @@
 import numpy as np
 
 from planar import Pose2, Scan
+from sim_bridge.description import LaserProfile
 from sim_bridge.noise import NoiseSettings
 from sim_bridge.pose3 import to_pose2
-from sim_bridge.robots import LaserProfile
 from sim_bridge.section import cast_beams
 
 
 class Lidar:
-    """Sweeps a level section of the world; mounted at ``laser_in_base`` (4, 4).
+    """Sweeps a level section of the world; ``noise``: standard deviation of a range, metres.
 
     Its beams stay level: on a floor the robot tilts by less than a fifth of a degree.
     """
 
-    def __init__(
-        self,
-        profile: LaserProfile,
-        laser_in_base: np.ndarray,
-        noise: NoiseSettings,
-        rng: np.random.Generator,
-    ):
+    def __init__(self, profile: LaserProfile, noise: NoiseSettings, rng: np.random.Generator):
         self._profile = profile
-        self._laser_in_base = to_pose2(laser_in_base)
+        self._laser_in_base = to_pose2(profile.pose_in_base)
+        self._is_upside_down = profile.pose_in_base[2, 2] < 0.0
         self._noise = noise
         self._rng = rng
 
@@ -34,15 +29,20 @@ class Lidar:
         """
         profile = self._profile
         laser = base_in_world @ self._laser_in_base
+        first = profile.angle_min
+        if self._is_upside_down:  # the sweep goes the other way round, so its last beam is the first here
+            first = -profile.angle_min - profile.angle_increment * (profile.beams - 1)
         true_ranges, nearest = cast_beams(
             segments,
             laser.x,
             laser.y,
-            laser.yaw + profile.angle_min,
+            laser.yaw + first,
             profile.angle_increment,
             profile.beams,
             profile.sight,
         )
+        if self._is_upside_down:
+            true_ranges, nearest = true_ranges[::-1], nearest[::-1]
         ranges = true_ranges + self._rng.normal(0.0, self._noise.range_noise, profile.beams)
         ranges[ranges < profile.range_min] = profile.too_near
         ranges[ranges > profile.sight] = profile.no_return
@@ -56,6 +56,7 @@ class Lidar:
             range_min=profile.range_min,
             range_max=profile.range_max,
             laser_in_base=self._laser_in_base,
+            upside_down=self._is_upside_down,
             intensities=np.where(np.isfinite(ranges), brightness, 0.0).astype(np.float32),
         )
 

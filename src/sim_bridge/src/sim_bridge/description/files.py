@@ -1,0 +1,35 @@
+"""Robots in files: URDF, or xacro that becomes URDF."""
+
+from pathlib import Path
+from typing import Dict
+
+from sim_bridge.description.profile import RobotProfile
+from sim_bridge.description.robot import read_urdf_robot
+from sim_bridge.description.urdf import FindFile
+from sim_bridge.errors import RobotError
+
+
+def read_robot_file(path: Path, find_file: FindFile, arguments: Dict[str, str] = {}) -> RobotProfile:
+    """The robot of a URDF or xacro file; ``arguments``: of the xacro. Raises RobotError naming the file."""
+    return read_urdf_robot(read_description(path, arguments), str(path), find_file)
+
+
+def read_description(path: Path, arguments: Dict[str, str] = {}) -> str:
+    """The URDF text of a file. Raises RobotError naming it."""
+    if path.suffix == ".xacro":
+        return _expanded(path, arguments)
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise RobotError(f"{path}: cannot be read ({error})") from None
+
+
+def _expanded(path: Path, arguments: Dict[str, str]) -> str:
+    import xacro
+
+    if not path.is_file():
+        raise RobotError(f"{path}: cannot be read (no such file)")
+    try:
+        return xacro.process_file(str(path), mappings=dict(arguments)).toxml()
+    except Exception as error:  # what xacro raises has no common class, and its text is of several lines
+        raise RobotError(f"{path}: not readable xacro ({' '.join(str(error).split())})") from None

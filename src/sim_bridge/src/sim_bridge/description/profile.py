@@ -1,0 +1,123 @@
+"""What a robot is made of and can do, as data."""
+
+import math
+from dataclasses import dataclass, field
+from typing import Optional, Tuple
+
+import numpy as np
+
+from sim_bridge.description.structure import RobotModel
+
+
+@dataclass(frozen=True, eq=False)
+class LaserProfile:
+    """A planar range finder, fixed at ``pose_in_base`` (4, 4); its readings are told in ``frame``.
+
+    A beam that meets nothing within ``sight`` metres reads ``no_return``, one that meets something nearer
+    than ``range_min`` reads ``too_near`` (REP 117). ``rate`` in hertz and ``noise``, the standard deviation
+    of a range in metres, are None where the simulation's settings decide.
+    """
+
+    frame: str
+    topic: str
+    pose_in_base: np.ndarray
+    beams: int
+    angle_min: float
+    angle_increment: float
+    range_min: float
+    range_max: float
+    sight: float
+    no_return: float = math.inf
+    too_near: float = -math.inf
+    rate: Optional[float] = None
+    noise: Optional[float] = None
+
+
+@dataclass(frozen=True)
+class DriveProfile:
+    """Driven wheels on both sides: radius and separation in metres, torque in N m, limits in SI units.
+
+    The robot stops when no command has come for ``command_timeout`` seconds.
+    """
+
+    left_joints: Tuple[str, ...]
+    right_joints: Tuple[str, ...]
+    wheel_radius: float
+    wheel_separation: float
+    torque: float
+    command_topics: Tuple[str, ...] = ("cmd_vel",)
+    max_speed: float = math.inf
+    max_turn_rate: float = math.inf
+    max_acceleration: float = math.inf
+    max_turn_acceleration: float = math.inf
+    command_timeout: float = math.inf
+
+    @property
+    def joints(self) -> Tuple[str, ...]:
+        """Of all driven wheels, those on the left first."""
+        return self.left_joints + self.right_joints
+
+
+@dataclass(frozen=True)
+class OdometryProfile:
+    """How a robot measures where it is.
+
+    ``source``: ``gyro`` (distance from the wheels, heading from a gyro), ``encoder`` (both from the wheels)
+    or ``world`` (the truth, in the frame of the world). ``rate`` in hertz, None for the simulation's.
+    """
+
+    source: str = "encoder"
+    topic: str = "odom"
+    frame: str = "odom"
+    base_frame: str = "base_footprint"
+    sends_transform: bool = True
+    rate: Optional[float] = None
+
+
+@dataclass(frozen=True)
+class JointStateProfile:
+    """Joints that are told; ``rate`` in hertz, None for the simulation's."""
+
+    joints: Tuple[str, ...]
+    rate: Optional[float] = None
+    topic: str = "joint_states"
+
+
+@dataclass(frozen=True)
+class KobukiProfile:
+    """What a Kobuki base has besides its drive. ``cliff_threshold``: of the range to the floor, metres."""
+
+    cliff_threshold: float = 0.04
+
+
+@dataclass(frozen=True, eq=False)
+class RobotProfile:
+    """A robot: its parts, its drive and its sensors.
+
+    ``namespace``: that its description asks for. ``warnings``: what the description holds that is left out.
+    """
+
+    name: str
+    text: str
+    model: RobotModel
+    drive: DriveProfile
+    odometry: OdometryProfile = OdometryProfile()
+    lasers: Tuple[LaserProfile, ...] = ()
+    joint_states: Optional[JointStateProfile] = None
+    kobuki: Optional[KobukiProfile] = None
+    namespace: str = ""
+    warnings: Tuple[str, ...] = field(default=())
+
+    def description(self) -> str:
+        """The text, URDF or SDF, that the robot was read from."""
+        return self.text
+
+    @property
+    def laser(self) -> LaserProfile:
+        """The first range finder."""
+        return self.lasers[0]
+
+    @property
+    def radius(self) -> float:
+        """Of the circle about the base's origin that holds the robot, metres."""
+        return self.model.radius

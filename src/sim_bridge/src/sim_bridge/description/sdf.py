@@ -1,0 +1,59 @@
+"""A driven model of a world as links, joints and blocks."""
+
+from typing import List, Tuple
+
+import numpy as np
+
+from sim_bridge.description.blocks import Blocks
+from sim_bridge.description.structure import Joint, Link, Structure
+from sim_bridge.pose3 import transform_points
+from sim_bridge.shapes import outline
+from sim_bridge.world import Body, DrivenModel
+
+
+def read_sdf(model: DrivenModel) -> Tuple[Structure, Blocks, np.ndarray]:
+    """The structure of a robot, its blocks, and where its root link stands in the world, (4, 4).
+
+    Raises RobotError.
+    """
+    blocks = Blocks()
+    blocks.add(model.element, "")
+    for link in model.element.children("link"):
+        blocks.add(link, link.name)
+    poses = {body.name: body.pose_in_world for body in model.bodies}
+    joints = [
+        Joint(
+            _inner(joint.name),
+            _inner(joint.parent),
+            _inner(joint.child),
+            np.linalg.inv(poses[joint.parent]) @ poses[joint.child],
+            joint.pose_in_child[:3, :3] @ joint.axis,
+        )
+        for joint in model.joints
+        if joint.parent
+    ]
+    structure = Structure(model.name, [_link(body) for body in model.bodies], joints)
+    return structure, blocks, poses[f"{model.name}::{structure.root}"]
+
+
+def _inner(name: str) -> str:
+    """A name within its model."""
+    return name.split("::", 1)[1]
+
+
+def _link(body: Body) -> Link:
+    pose, mass = body.inertia.pose_in_body, body.mass or 0.0
+    moments = _moments_of_a_box(body, mass) if body.inertia.moments is None else body.inertia.moments
+    inertia = pose[:3, :3] @ np.diag(moments) @ pose[:3, :3].T
+    return Link(_inner(body.name), mass, pose[:3, 3], inertia, body.collisions)
+
+
+def _moments_of_a_box(body: Body, mass: float) -> np.ndarray:
+    """Of a box as large as the link's solid parts, kg m^2."""
+    points: List[np.ndarray] = [
+        transform_points(part.pose_in_body, outline(part.shape)) for part in body.collisions
+    ]
+    if not points:
+        return np.zeros(3)
+    x, y, z = np.ptp(np.vstack(points), axis=0) ** 2
+    return mass / 12.0 * np.array([y + z, x + z, x + y])

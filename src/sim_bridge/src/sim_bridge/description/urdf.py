@@ -1,0 +1,135 @@
+"""URDF text as links, joints and <gazebo> blocks."""
+
+from pathlib import Path
+from typing import Callable, List, Optional, Tuple
+
+import defusedxml.ElementTree
+import numpy as np
+from defusedxml.common import DefusedXmlException
+
+from sim_bridge.description.blocks import Blocks
+from sim_bridge.description.structure import Joint, Link, Structure
+from sim_bridge.errors import RobotError, WorldError
+from sim_bridge.meshes import load_mesh
+from sim_bridge.pose3 import IDENTITY, pose3
+from sim_bridge.sdf.element import Element
+from sim_bridge.shapes import Box, Cylinder, MeshFile, Shape, Sphere
+from sim_bridge.world import Collision
+
+FindFile = Callable[[str], Optional[Path]]
+
+
+def read_urdf(text: str, where: str, find_file: FindFile) -> Tuple[Structure, Blocks, List[str]]:
+    """The structure of a robot, its <gazebo> blocks, and in words what had to be left out.
+
+    ``where`` names the text in errors; ``find_file`` finds the files of package:// and model:// names.
+    Raises RobotError.
+    """
+    robot = _parse(text, where)
+    reader = _Reader(find_file)
+    try:
+        links = [reader.link(link) for link in robot.children("link")]
+        joints = [_joint(joint) for joint in robot.children("joint")]
+        structure = Structure(robot.name or where, links, joints)
+        blocks = Blocks()
+        for gazebo in robot.children("gazebo"):
+            blocks.add(gazebo, gazebo.attribute("reference"))
+    except WorldError as error:
+        raise RobotError(str(error)) from None
+    return structure, blocks, reader.warnings
+
+
+def _parse(text: str, where: str) -> Element:
+    try:
+        xml = defusedxml.ElementTree.fromstring(text, forbid_dtd=False)
+    except DefusedXmlException as error:
+        raise RobotError(f"{where}: refused, defines entities ({type(error).__name__})") from None
+    except (defusedxml.ElementTree.ParseError, ValueError) as error:
+        raise RobotError(f"{where}: not well-formed XML ({error})") from None
+    if xml.tag != "robot":
+        raise RobotError(f"{where}: its root is <{xml.tag}>, expected <robot>")
+    return Element(xml, where)
+
+
+class _Reader:
+    """Reads links; remembers what they name that is not there."""
+
+    def __init__(self, find_file: FindFile):
+        self.warnings: List[str] = []
+        self._find_file = find_file
+
+    def link(self, link: Element) -> Link:
+        collisions = []
+        for collision in link.children("collision"):
+            shape = self._shape(collision.required("geometry"))
+            if shape is not None:
+                collisions.append(Collision(shape, _origin(collision)))
+        inertial = link.child("inertial")
+        if inertial is None:
+            return Link(link.name, 0.0, np.zeros(3), np.zeros((3, 3)), tuple(collisions))
+        origin = _origin(inertial)
+        inertia = origin[:3, :3] @ _inertia(inertial.required("inertia")) @ origin[:3, :3].T
+        (mass,) = inertial.required("mass").attribute_numbers("value", 1)
+        if mass < 0.0:
+            raise inertial.error(f"a mass must not be negative, got {mass:g}")
+        return Link(link.name, mass, origin[:3, 3], inertia, tuple(collisions))
+
+    def _shape(self, geometry: Element) -> Optional[Shape]:
+        for kind in geometry.children():
+            if kind.tag == "box":
+                x, y, z = kind.attribute_lengths("size", 3)
+                return Box((x, y, z))
+            if kind.tag == "cylinder":
+                return Cylinder(*kind.attribute_lengths("radius", 1), *kind.attribute_lengths("length", 1))
+            if kind.tag == "sphere":
+                return Sphere(*kind.attribute_lengths("radius", 1))
+            if kind.tag == "mesh":
+                return self._mesh(kind)
+            raise kind.error("not a geometry of URDF")
+        raise geometry.error("names no shape")
+
+    def _mesh(self, mesh: Element) -> Optional[Shape]:
+        name = mesh.attribute("filename")
+        path = self._find_file(name)
+        if path is None:
+            self.warnings.append(f"{mesh.place}: {name} not found, left out")
+            return None
+        x, y, z = mesh.attribute_numbers("scale", 3, (1.0, 1.0, 1.0))
+        return load_mesh(MeshFile(path, (x, y, z)))
+
+
+def _joint(joint: Element) -> Joint:
+    axis = joint.child("axis")
+    direction = axis.attribute_numbers("xyz", 3, (1.0, 0.0, 0.0)) if axis is not None else (1.0, 0.0, 0.0)
+    length = float(np.linalg.norm(direction))
+    if length == 0.0:
+        raise joint.error("an axis needs a direction, got 0 0 0")
+    return Joint(
+        joint.name,
+        joint.required("parent").attribute("link"),
+        joint.required("child").attribute("link"),
+        _origin(joint),
+        np.array(direction) / length,
+    )
+
+
+def _origin(element: Element) -> np.ndarray:
+    """The pose (4, 4) of an element's <origin>; identity if it has none."""
+    origin = element.child("origin")
+    if origin is None:
+        return IDENTITY
+    zeros = (0.0, 0.0, 0.0)
+    return pose3(*origin.attribute_numbers("xyz", 3, zeros), *origin.attribute_numbers("rpy", 3, zeros))
+
+
+def _inertia(element: Element) -> np.ndarray:
+    def value(name: str) -> float:
+        return element.attribute_numbers(name, 1, (0.0,))[0]
+
+    xx, xy, xz, yy, yz, zz = (value(name) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
+def no_file(_name: str) -> Optional[Path]:
+    """Finds no file at all."""
+    return None
