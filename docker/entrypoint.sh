@@ -27,7 +27,7 @@ use_cache() { # temporary files and compiled kernels go to /tmp or, where even t
     fi
     mkdir -p "$cache/tmp"
     cp -ru "$root/build/kernels" "$cache"
-    export HOME=$cache TMPDIR=$cache/tmp ROS_HOME=$cache/ros NUMBA_CACHE_DIR=$cache/kernels
+    export USER=${USER:-robot} HOME=$cache TMPDIR=$cache/tmp ROS_HOME=$cache/ros NUMBA_CACHE_DIR=$cache/kernels
 }
 
 require_runs() {

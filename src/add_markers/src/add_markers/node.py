@@ -6,10 +6,11 @@ import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 from std_msgs.msg import String
-from visualization_msgs.msg import Marker
+from visualization_msgs.msg import Marker, MarkerArray
 
 from add_markers.config import MarkerSettings
 from add_markers.parcel import CarriedParcel, TimedParcel
+from add_markers.zones import zone_markers
 from planar.places import places_of_errand
 from planar_ros.messages import pose2_from_msg, pose2_to_msg
 from planar_ros.parameters import read_settings
@@ -32,6 +33,8 @@ class AddMarkers:
         self._robot = None
         self._shown_at = NOWHERE_YET
         self._publisher = rospy.Publisher("visualization_marker", Marker, queue_size=10, latch=True)
+        self._zones = rospy.Publisher("zones", MarkerArray, queue_size=1, latch=True)
+        self._zones.publish(zone_markers(places, settings.frame_id))
         if settings.mode == "demo":
             self._parcel = TimedParcel(*places, settings.show_seconds, settings.hide_seconds)
             self._locate = lambda: None

@@ -23,6 +23,10 @@ def main(arguments: Optional[List[str]] = None) -> int:
             from home_service import reports
 
             return getattr(reports, options.command)(options)
+        if options.command == "doctor":
+            from home_service.doctor import doctor
+
+            return doctor(options)
         read_inputs(options)
         if options.command in MAPPING_COMMANDS:
             from home_service import mapping

@@ -11,7 +11,7 @@ import threading
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Mapping, Optional
+from typing import IO, Dict, List, Mapping, Optional
 
 import psutil
 
@@ -42,6 +42,7 @@ class RosGraph:
     def __init__(self, package: str, launch_file: str, arguments: Mapping[str, object], log_folder: Path):
         self._complaints: Dict[str, str] = {}
         self._failure: Optional[NodeFailure] = None
+        self.log_gap: Optional[str] = None
         self._log_folder = log_folder
         adopt_orphans()
         port = free_port()
@@ -88,11 +89,18 @@ class RosGraph:
             self._roslaunch.terminate()
 
     def _read_output(self) -> None:
-        with (self._log_folder / "roslaunch.log").open("w", encoding="utf-8") as log:
-            for line in self._roslaunch.stdout:  # type: ignore[union-attr]
-                log.write(line)
-                log.flush()
-                self._notice(line)
+        """Reads on whatever happens to the log, since roslaunch stands still when nobody reads."""
+        log: Optional[IO[str]] = None
+        with contextlib.suppress(OSError):
+            log = (self._log_folder / "roslaunch.log").open("w", encoding="utf-8", buffering=1)
+        for line in self._roslaunch.stdout:  # type: ignore[union-attr]
+            self._notice(line)
+            if log is not None:
+                try:
+                    log.write(line)
+                except OSError as error:
+                    self.log_gap = f"log/roslaunch.log: {error.strerror}"
+                    log = None
 
     def _notice(self, line: str) -> None:
         complaint, death = COMPLAINT.match(line), DIED.search(line)

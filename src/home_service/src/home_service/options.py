@@ -17,11 +17,12 @@ COMMANDS = {
     "map_home": "Lets the robot explore the world, saves its map, and scores it against the true one.",
     "report": "Makes the report of a run anew, from what its folder holds.",
     "compare": "Puts two runs side by side: a table here, and a page.",
+    "doctor": "Says what is running, what each node waits for, and what is wrong.",
     "rehearse": "Plays the home-service mission in one process, without ROS: fast and repeatable.",
 }
 MAPPING_COMMANDS = {"test_slam", "map_home"}
 REPORT_COMMANDS = {"report", "compare"}
-ROS_COMMANDS = set(COMMANDS) - REPORT_COMMANDS - {"rehearse"}
+ROS_COMMANDS = set(COMMANDS) - REPORT_COMMANDS - {"rehearse", "doctor"}
 
 
 def parse(arguments: Optional[List[str]]) -> argparse.Namespace:
@@ -39,6 +40,9 @@ def parse(arguments: Optional[List[str]]) -> argparse.Namespace:
         if name in REPORT_COMMANDS:
             _add_report_options(name, command)
             continue
+        if name == "doctor":
+            _add_doctor_options(command)
+            continue
         _add_world_options(command)
         if name in ROS_COMMANDS:
             _add_graph_options(command)
@@ -54,6 +58,12 @@ def _add_report_options(name: str, parser: argparse.ArgumentParser) -> None:
         parser.add_argument("first", type=Path, metavar="A", help="folder of a run")
         parser.add_argument("second", type=Path, metavar="B", help="folder of another run")
         parser.add_argument("--page", type=Path, metavar="FILE", help="where the page goes, not to B")
+
+
+def _add_doctor_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--json", action="store_true", help="print for programs")
+    parser.add_argument("--master", metavar="URI", help="of the graph to look at, if there are several")
+    parser.add_argument("--seconds", type=seconds, default=2.0, help="how long rates are measured")
 
 
 def _add_world_options(parser: argparse.ArgumentParser) -> None:

@@ -164,6 +164,8 @@ class Run:
     def _report(self) -> None:
         if self._recorder is None:
             return
+        if self._graph.log_gap:
+            self.missing.append(self._graph.log_gap)
         record = self._recorder.record()
         self._result.update(summary(record))
         result = {**self._result, "missing": self.missing}

@@ -6,7 +6,10 @@ from typing import Callable, Mapping
 
 import rosgraph
 import rospy
+from std_msgs.msg import String
 
+# Private topic, latched: what the node waits for, one a line; empty once it has everything.
+TOPIC = "waiting_for"
 PATIENCE_SECONDS = 2.0
 POLL_SECONDS = 0.2
 
@@ -14,19 +17,25 @@ POLL_SECONDS = 0.2
 class Waiting:
     """Watches the conditions a node needs before it can work, and names once each that stays unmet.
 
+    On ``~waiting_for`` it tells at any time which they are.
+
     ``conditions`` maps what is waited for ("a scan on /scan") to a function that says whether it is there.
     Counted in wall time, since simulated time may be what is missing.
     """
 
     def __init__(self, conditions: Mapping[str, Callable[[], bool]]):
         self._conditions = conditions
+        self._publisher = rospy.Publisher(f"~{TOPIC}", String, queue_size=1, latch=True)
         threading.Thread(target=self._watch, daemon=True).start()
 
     def _watch(self):
         start = time.monotonic()
-        told = False
+        told, latest = False, None
         while not rospy.is_shutdown():
             missing = [name for name, is_met in self._conditions.items() if not is_met()]
+            if missing != latest:
+                latest = missing
+                self._publisher.publish("\n".join(missing))
             if not missing:
                 if told:
                     rospy.loginfo("nothing to wait for any more")

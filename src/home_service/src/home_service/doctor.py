@@ -1,0 +1,139 @@
+"""The command that says what is running and what it lacks."""
+
+import json
+import os
+import socket
+import time
+import xmlrpc.client
+from argparse import Namespace
+from typing import Callable, Dict, List
+
+import psutil
+import rosgraph
+import rospy
+from rosgraph_msgs.msg import Clock
+from std_msgs.msg import String
+from tf2_msgs.msg import TFMessage
+
+from home_service.diagnosis import Findings, Node, Topic, as_json, as_text, problems
+from home_service.versions import versions
+from planar_ros.messages import frame_name
+from planar_ros.waiting import TOPIC as WAITING_TOPIC
+
+HEALTHY, ILL, NOTHING_RUNS = 0, 1, 3
+ANSWER_SECONDS = 1.0
+MEASURED_TOPICS = ("/clock", "/scan", "/odom", "/joint_states", "/tf", "/cmd_vel")
+SILENT_WHILE_IDLE = ("/cmd_vel",)
+
+
+def doctor(options: Namespace) -> int:
+    """Prints what was found within ``options.seconds``; returns whether it is healthy as an exit code."""
+    findings = Findings(versions=versions())
+    masters = [options.master] if options.master else running_masters()
+    if masters:
+        findings.master, findings.other_masters = masters[0], masters[1:]
+        _examine(findings, options.seconds)
+    if options.json:
+        print(json.dumps(as_json(findings), indent=2))
+    else:
+        print("\n".join(as_text(findings)))
+    if findings.master is None:
+        return NOTHING_RUNS
+    return ILL if problems(findings) else HEALTHY
+
+
+def running_masters() -> List[str]:
+    """The masters that answer: the one of ROS_MASTER_URI first, then those of this machine, newest first."""
+    found = [os.environ.get("ROS_MASTER_URI", "")]
+    for process in sorted(
+        psutil.process_iter(["cmdline", "create_time"]), key=lambda p: -p.info["create_time"]
+    ):
+        command = process.info["cmdline"] or []
+        if any(part.endswith("rosmaster") for part in command) and "-p" in command:
+            found.append(f"http://127.0.0.1:{command[command.index('-p') + 1]}")
+    return [uri for uri in dict.fromkeys(found) if uri and _answers(uri)]
+
+
+class _TimedTransport(xmlrpc.client.Transport):
+    """A transport that gives up on a node that hangs."""
+
+    def make_connection(self, host):
+        connection = super().make_connection(host)
+        connection.timeout = ANSWER_SECONDS
+        return connection
+
+
+def _answers(uri: str) -> bool:
+    try:
+        proxy = xmlrpc.client.ServerProxy(uri, transport=_TimedTransport())
+        return proxy.getPid("/doctor")[0] == 1
+    except (OSError, xmlrpc.client.Error, socket.timeout):
+        return False
+
+
+def _examine(findings: Findings, seconds: float) -> None:
+    os.environ["ROS_MASTER_URI"] = findings.master
+    rospy.init_node("doctor", anonymous=True, disable_signals=True, log_level=rospy.FATAL)
+    myself, master = rospy.get_name(), rosgraph.Master(rospy.get_name(), findings.master)
+    findings.uses_simulated_time = bool(rospy.get_param("/use_sim_time", False))
+    publishers, subscribers, services = map(dict, master.getSystemState())
+    everybody = [
+        name for part in (publishers, subscribers, services) for names in part.values() for name in names
+    ]
+    findings.nodes = [
+        Node(name, is_alive=_answers(master.lookupNode(name))) for name in sorted({*everybody} - {myself})
+    ]
+    findings.topics = [
+        Topic(name, sorted(publishers.get(name, [])), sorted({*subscribers.get(name, [])} - {myself}))
+        for name in sorted({*publishers, *subscribers})
+    ]
+    Listener(findings).listen(seconds)
+    rospy.signal_shutdown("examined")
+
+
+class Listener:
+    """Completes findings with rates, time, frames and waiting, by listening for a while."""
+
+    def __init__(self, findings: Findings):
+        self._findings = findings
+        self._counts: Dict[str, int] = {}
+        self._stamps: List[float] = []
+        self._typed = {"/clock": (Clock, self._see_clock), "/tf": (TFMessage, self._see_frames)}
+
+    def listen(self, seconds: float) -> None:
+        findings = self._findings
+        measured = [topic for topic in findings.topics if topic.name in MEASURED_TOPICS]
+        for topic in measured:
+            kind, see = self._typed.get(topic.name, (rospy.AnyMsg, lambda _message: None))
+            rospy.Subscriber(topic.name, kind, self._counted(topic.name, see), tcp_nodelay=True)
+        rospy.Subscriber("/tf_static", TFMessage, self._see_frames)
+        for node in findings.nodes:
+            rospy.Subscriber(f"{node.name}/{WAITING_TOPIC}", String, self._see_waiting, node)
+        time.sleep(seconds)
+        simulated = self._stamps[-1] - self._stamps[0] if len(self._stamps) > 1 else 0.0
+        clock = findings.topic("/clock")
+        if clock is not None and clock.publishers:
+            findings.real_time_factor = simulated / seconds
+        elapsed = simulated if findings.uses_simulated_time and simulated else seconds
+        for topic in measured:
+            rate = self._counts.get(topic.name, 0) / elapsed
+            topic.rate = None if not rate and topic.name in SILENT_WHILE_IDLE else rate
+
+    def _counted(self, name: str, see: Callable[[object], None]) -> Callable[[object], None]:
+        def callback(message):
+            self._counts[name] = self._counts.get(name, 0) + 1
+            see(message)
+
+        return callback
+
+    def _see_clock(self, message):
+        self._stamps.append(message.clock.to_sec())
+
+    def _see_frames(self, message):
+        for transform in message.transforms:
+            child, parent = frame_name(transform.child_frame_id), frame_name(transform.header.frame_id)
+            self._findings.parents.setdefault(child, set()).add(parent)
+
+    @staticmethod
+    def _see_waiting(message, node):
+        node.waits_for = message.data.splitlines()

@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+"""What a run leaves in its folder, and that a full disk neither stops it nor stays untold."""
+
+import json
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import fastjsonschema
+import numpy as np
+import rostest
+
+from run_report import load_record
+
+ROOT = Path(__file__).resolve().parents[2]
+SCHEMA = ROOT / "src/home_service/config/result.schema.json"
+FILES = {"report.html", "run.png", "record.json", "result.json", "log"}
+FILES |= {f"trajectory_{name}.tum" for name in ("true", "estimated", "odometry")}
+FULL = 100 * 1024  # room for logs and little more, bytes
+
+
+class ReportTest(unittest.TestCase):
+    def test_a_run_leaves_a_result_as_documented_and_a_report(self):
+        with tempfile.TemporaryDirectory() as parent:
+            code, folder, output = _run(parent, "--goals", "1.0 0.5 0.0")
+            self.assertEqual(code, 0, output)
+            self.assertEqual({path.name for path in folder.iterdir()}, FILES)
+            result = _checked_result(folder)
+            self.assertEqual(result["missing"], [])
+            record = load_record(folder)
+            true, estimated = (
+                np.loadtxt(folder / f"trajectory_{name}.tum") for name in ("true", "estimated")
+            )
+        print(f"localization error {result['localization_error']}, {len(record.truth)} true poses")
+        self.assertLess(result["localization_error"]["max"], 0.25)
+        self.assertGreater(len(record.goals), 0)
+        self.assertGreater(len(record.plans), 0)
+        self.assertIsNotNone(record.grid)
+        moments = set(true[:, 0])
+        self.assertGreater(np.mean([stamp in moments for stamp in estimated[:, 0]]), 0.9)
+
+    def test_a_run_that_fails_leaves_a_result_as_documented_too(self):
+        with tempfile.TemporaryDirectory() as parent:
+            code, folder, output = _run(parent, "--timeout", "0.5", "--goals", "1.0 0.5 0.0")
+            self.assertEqual(code, 1, output)
+            self.assertFalse(_checked_result(folder)["success"])
+
+    def test_with_a_full_disk_the_run_goes_on_and_says_what_is_missing(self):
+        with tempfile.TemporaryDirectory() as parent:
+            script = f"ulimit -f {FULL // 1024}; exec '{ROOT}/scripts/test_navigation.sh' \"$@\""
+            code, folder, output = _run(parent, "--goals", "1.0 0.5 0.0", "--gif", script=script)
+            self.assertEqual(code, 0, output)
+            gaps = _checked_result(folder)["missing"]
+        print(f"missing: {gaps}")
+        self.assertTrue([gap for gap in gaps if gap.startswith("run.gif: ")], gaps)
+        self.assertIn("warning: missing: run.gif", output)
+
+
+def _run(parent, *options, script=f"exec '{ROOT}/scripts/test_navigation.sh' \"$@\""):
+    """Exit code, run folder and output of a run whose folder is made in ``parent``."""
+    process = subprocess.run(
+        ["bash", "-c", script, "bash", "--output", parent, *options],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=100.0,
+        check=False,
+    )
+    return process.returncode, next(Path(parent).iterdir()), process.stdout
+
+
+def _checked_result(folder):
+    result = json.loads((folder / "result.json").read_text())
+    fastjsonschema.compile(json.loads(SCHEMA.read_text()))(result)
+    return result
+
+
+if __name__ == "__main__":
+    rostest.rosrun("home_service_tests", "report", ReportTest)
