@@ -38,6 +38,7 @@ def write_bag(
     scan_topic: str = "scan",
     grid: OccupancyGrid = None,
     lasers: Sequence[Laser] = (),
+    base_frame: str = BASE_FRAME,
 ) -> None:
     """Writes what a robot with a laser measured, beside the truth.
 
@@ -46,7 +47,7 @@ def write_bag(
     rng = np.random.default_rng(0)
     own = Laser("laser", sightings[0].scan.laser_in_base)
     with rosbag.Bag(str(path), "w") as bag:
-        mountings = TFMessage([_mounting(laser) for laser in (lasers or [own])])
+        mountings = TFMessage([_mounting(laser, base_frame) for laser in (lasers or [own])])
         bag.write("/tf_static", mountings, time_of(START))
         for sighting in sightings:
             stamp = time_of(START + sighting.scan.stamp)
@@ -54,7 +55,8 @@ def write_bag(
                 *sighting.odometry_before,
                 (sighting.scan.stamp, sighting.base_in_odom),
             ):
-                _write_odometry(bag, time_of(START + then), base_in_odom)
+                odom = transform_msg(base_in_odom, "odom", base_frame, time_of(START + then))
+                bag.write("/tf", TFMessage([odom]), time_of(START + then))
             truth = Odometry()
             truth.header.stamp, truth.header.frame_id = stamp, "world"
             truth.pose.pose = pose2_to_msg(sighting.base_in_map)
@@ -65,12 +67,8 @@ def write_bag(
                 bag.write("/" + scan_topic, _measured(grid, sighting.base_in_map, laser, stamp, rng), stamp)
 
 
-def _write_odometry(bag: rosbag.Bag, stamp: rospy.Time, base_in_odom: Pose2) -> None:
-    bag.write("/tf", TFMessage([transform_msg(base_in_odom, "odom", BASE_FRAME, stamp)]), stamp)
-
-
-def _mounting(laser: Laser) -> TransformStamped:
-    transform = transform_msg(laser.in_base, BASE_FRAME, laser.frame, rospy.Time(0))
+def _mounting(laser: Laser, base_frame: str) -> TransformStamped:
+    transform = transform_msg(laser.in_base, base_frame, laser.frame, rospy.Time(0))
     if laser.upside_down:  # turned by pi about its own x axis, then by its yaw
         half = laser.in_base.yaw / 2.0
         transform.transform.rotation = Quaternion(math.cos(half), math.sin(half), 0.0, 0.0)

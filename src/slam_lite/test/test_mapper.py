@@ -4,10 +4,11 @@ import math
 import numpy as np
 import pytest
 
-from planar import OCCUPIED, Pose2, wrap
+from planar import OCCUPIED, OccupancyGrid, Pose2, wrap
 from planar.map_score import score_map
 from slam_lite.config import MapperSettings
 from slam_lite.mapper import Follower, Mapper
+from slam_lite.rendering import MapRenderer, beams_of
 
 # half a cell of the true grid, from which ranges are cast, plus what the front end drifts in a lap
 FOLLOWED = 0.15
@@ -44,9 +45,16 @@ def test_the_robot_is_followed_although_odometry_drifts(drive):
     assert worst_error(drive, mapped(drive)[1]) < FOLLOWED
 
 
-def test_the_map_is_the_true_one(office, mapper):
-    score = score_map(mapper.grid(), office.truth, start_in_truth=Pose2(2.0, 2.0, 0.0))
-    assert score.recall > 0.95
+def test_the_map_is_as_good_as_one_drawn_from_the_true_poses(office, drive, mapper):
+    renderer = MapRenderer(resolution=0.05, occupied_threshold=0.25)
+    beams = [beams_of(s.scan, s.scan.range_max, s.scan.range_max) for s in drive]
+    renderer.update(beams, np.array([s.base_in_map.as_array() for s in drive]))
+    best, score = (
+        score_map(grid, office.truth, start_in_truth=Pose2(2.0, 2.0, 0.0))
+        for grid in (renderer.grid(), mapper.grid())
+    )
+    # the robot does not look into every niche, so that even the best misses some walls
+    assert score.recall > 0.99 * best.recall
     assert score.precision > 0.95
     assert score.doubled_walls == 0
 
@@ -93,6 +101,21 @@ def test_a_slip_of_the_wheels_is_noticed_and_survived(office):
     assert worst_error(slipped, updates) < FOLLOWED
 
 
+def test_somebody_who_walks_ahead_in_a_smooth_corridor_does_not_hold_the_robot_back(office, drive):
+    cells = np.zeros((60, 500), dtype=np.int8)
+    cells[[0, -1], :] = cells[:, [0, -1]] = OCCUPIED
+    corridor = office._replace(truth=OccupancyGrid(cells, 0.05))
+    walk = []
+    for i in range(100):
+        base_in_map = Pose2(2.0 + 0.1 * i, 1.5, 0.0)
+        scan = corridor.scan(base_in_map, 0.2 * i, range_max=40.0)
+        scan.ranges[86:95] = np.minimum(scan.ranges[86:95], 2.0)
+        base_in_odom = Pose2(2.0 + 0.101 * i, 1.5, 0.0)
+        walk.append(drive[0]._replace(scan=scan, base_in_odom=base_in_odom, base_in_map=base_in_map))
+    # but for odometry, the robot would seem to stand still; a tenth of the way is what the person may take
+    assert worst_error(walk, mapped(walk)[1]) < 0.1 * 9.9
+
+
 @pytest.mark.parametrize(
     "laser",
     [
@@ -111,7 +134,7 @@ def test_other_lasers_map_as_well(office, laser):
 
 def test_a_beam_count_may_change_on_the_way(office):
     full, half = office.drive(laps=0.5), office.drive(laps=0.5, beams=91)
-    drive = [pair[i % 2] for i, pair in enumerate(zip(full, half))]
+    drive = [s._replace(scan=pair[i % 2].scan) for i, (s, pair) in enumerate(zip(full, zip(full, half)))]
     assert worst_error(drive, mapped(drive)[1]) < FOLLOWED
 
 

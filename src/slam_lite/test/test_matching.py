@@ -70,7 +70,8 @@ def test_belief_decides_where_nothing_is_seen():
 
 def test_a_near_search_brings_refinement_within_reach(office):
     local_map = local_map_at(office, HERE)
-    start = search_near(surface_at(office, HERE), local_map, HERE @ Pose2(0.25, -0.2, 0.25), Window(0.3, 0.3))
+    guess, variance = HERE @ Pose2(0.25, -0.2, 0.25), np.array([0.1, 0.1, 0.1]) ** 2
+    start = search_near(surface_at(office, HERE), local_map, guess, Window(0.3, 0.3), variance)
     distance, angle = error(start, HERE)
     assert distance < 0.15 and angle < 0.03
 

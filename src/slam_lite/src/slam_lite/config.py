@@ -49,10 +49,10 @@ class MapperSettings:
         "readings above this, m, clear the way so far and mark nothing; 0: as maxRange",
         0.0,
     )
-    odom_xy_per_distance: float = parameter("srr", 0.1, "odometry's position error, m per sqrt(m)", 0.0)
-    odom_yaw_per_distance: float = parameter("srt", 0.2, "odometry's heading error, rad per sqrt(m)", 0.0)
-    odom_xy_per_turn: float = parameter("str", 0.1, "odometry's position error, m per sqrt(rad)", 0.0)
-    odom_yaw_per_turn: float = parameter("stt", 0.2, "odometry's heading error, rad per sqrt(rad)", 0.0)
+    odom_xy_per_distance: float = parameter("srr", 0.1, "odometry's position error, m per m", 0.0)
+    odom_yaw_per_distance: float = parameter("srt", 0.2, "odometry's heading error, rad per m", 0.0)
+    odom_xy_per_turn: float = parameter("str", 0.1, "odometry's position error, m per rad", 0.0)
+    odom_yaw_per_turn: float = parameter("stt", 0.2, "odometry's heading error, rad per rad", 0.0)
     key_distance: float = parameter("key_distance", 0.2, "way after which a scan is kept, m", 0.01)
     key_angle: float = parameter("key_angle", 0.2, "turn after which a scan is kept, rad", 0.01)
     still_interval: float = parameter(

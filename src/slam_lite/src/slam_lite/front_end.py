@@ -25,6 +25,8 @@ _NO_BELIEF = np.zeros((3, 3))
 
 # Odometry of less than this, metres or radians, counts as standing still; scans err by less than that.
 _STILL, _STUCK = 1e-3, 0.03
+# How far odometry goes, metres and radians, until it errs in another way, and its error at rest.
+_LEG_WAY, _LEG_TURN, _ODOM_FLOOR = 0.3, 0.3, 0.005
 # Variance of a robot's motion from one scan to the next, if it moves on as it did: (3,), m^2, m^2, rad^2.
 _STEADY_MOTION_VARIANCE = np.array([0.1**2, 0.1**2, 0.15**2])
 
@@ -136,7 +138,8 @@ class FrontEnd:
             float(np.clip(3.0 * math.sqrt(variance[0]), 0.1, 0.4)),
             float(np.clip(3.0 * math.sqrt(variance[2]), 0.1, 0.5)),
         )
-        start = search_near(surface, local_map, predicted, window)
+        doubt = variance if moves(motion) else _STEADY_MOTION_VARIANCE
+        start = search_near(surface, local_map, predicted, window, doubt)
         match = refine(surface, local_map, start, predicted, prior)
         if match.response < _POOR_RESPONSE:
             match = self._search_wide(surface, (predicted, last_in_track), match)
@@ -159,9 +162,10 @@ class FrontEnd:
         return match
 
     def _motion_variance(self, motion: Pose2) -> np.ndarray:
-        """Variances (3,) of odometry over a motion, growing linearly with it as those of a random walk do."""
+        """Variances (3,) of odometry over a motion: in proportion on one leg, at random between them."""
         settings = self._settings
         distance, turn = math.hypot(motion.x, motion.y), abs(motion.yaw)
-        xy = settings.odom_xy_per_distance**2 * distance + settings.odom_xy_per_turn**2 * turn
-        yaw = settings.odom_yaw_per_distance**2 * distance + settings.odom_yaw_per_turn**2 * turn
-        return np.array([xy + 0.005**2, xy + 0.005**2, yaw + 0.005**2])
+        way, turning = distance * max(distance, _LEG_WAY), turn * max(turn, _LEG_TURN)
+        xy = settings.odom_xy_per_distance**2 * way + settings.odom_xy_per_turn**2 * turning
+        yaw = settings.odom_yaw_per_distance**2 * way + settings.odom_yaw_per_turn**2 * turning
+        return np.array([xy, xy, yaw]) + _ODOM_FLOOR**2

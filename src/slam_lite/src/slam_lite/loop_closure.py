@@ -17,8 +17,8 @@ from scipy.sparse.csgraph import dijkstra
 
 from planar import Pose2
 from slam_lite.config import MapperSettings
-from slam_lite.matching.correlative import Window, search_far
-from slam_lite.matching.local_map import LocalMap
+from slam_lite.matching.correlative import Window, scores, search_far
+from slam_lite.matching.local_map import LocalMap, Match
 from slam_lite.matching.refinement import refine
 from slam_lite.pose_graph import Edge, Edges
 from slam_lite.surface import Surface
@@ -35,6 +35,9 @@ _GUESS_WAY = 5.0
 # How far from each other two closures are made that share no scan and yet speak of the same stretch, metres.
 _MAX_WITNESS_WAY = 15.0
 _MAX_POINTS = 500
+# A match may slide by these ways, metres, if the score there is this share of its own.
+_SLIDES = np.concatenate((-np.arange(0.2, 1.05, 0.1), np.arange(0.2, 1.05, 0.1)))
+_SLIDE_SHARE = 0.9
 _MAX_CANDIDATES = 3
 
 
@@ -125,8 +128,28 @@ def find_closure(
     moved = peak.base_pose.inverse() @ match.base_pose
     if math.hypot(moved.x, moved.y) > 0.3 or abs(moved.yaw) > 0.1:
         return None
-    edge = Edge(place, recent, match.base_pose, match.information, is_loop=True)
+    information = _without_slides(match, recent_surface, local_map)
+    edge = Edge(place, recent, match.base_pose, information, is_loop=True)
     return Closure(edge, candidate.window)
+
+
+def _without_slides(match: Match, surface: Surface, local_map: LocalMap) -> np.ndarray:
+    """The match's information, without what it pretends to know of a direction in which it could well slide.
+
+    Along a smooth wall, a few points of noise hold a match in place, and its information takes them for
+    features.
+    """
+    _, directions = np.linalg.eigh(match.information[:2, :2])
+    weakest = directions[:, 0]
+    pose = match.base_pose
+    slid = [Pose2(pose.x + way * weakest[0], pose.y + way * weakest[1], pose.yaw) for way in _SLIDES]
+    fits = scores(surface, local_map, [pose, *slid])
+    possible = np.abs(_SLIDES[fits[1:] >= _SLIDE_SHARE * fits[0]])
+    if len(possible) == 0:
+        return match.information
+    direction = np.append(weakest, 0.0)
+    covariance = np.linalg.inv(match.information + 1e-3 * np.eye(3))
+    return np.linalg.inv(covariance + possible.max() ** 2 * np.outer(direction, direction))
 
 
 def agree(one: Closure, other: Closure, poses: np.ndarray) -> bool:

@@ -8,7 +8,7 @@ LIDAR SLAM", ICRA 2016.
 
 import math
 from dataclasses import dataclass
-from typing import Optional, Tuple
+from typing import Optional, Sequence, Tuple
 
 import numba
 import numpy as np
@@ -38,8 +38,14 @@ class Peak:
     is_unique: bool
 
 
-def search_near(surface: Surface, local_map: LocalMap, guess: Pose2, window: Window) -> Pose2:
-    """The best pose of a small window, in steps of two cells; deviation from the guess costs a little."""
+def search_near(
+    surface: Surface, local_map: LocalMap, guess: Pose2, window: Window, variance: np.ndarray
+) -> Pose2:
+    """The best pose of a small window, in steps of two cells.
+
+    ``variance``: (3,) of the guess, m^2, m^2, rad^2. To overrule it takes a share of the scan: somebody who
+    walks ahead of the robot is but a few beams, wheels that slip are seen by all.
+    """
     best = _search_near(
         local_map.likelihood,
         local_map.resolution,
@@ -47,15 +53,35 @@ def search_near(surface: Surface, local_map: LocalMap, guess: Pose2, window: Win
         local_map.to_grid(guess),
         max(1, round(window.distance / (2.0 * local_map.resolution))),
         max(1, round(window.angle / _NEAR_ANGLE_STEP)),
+        (2.0 * local_map.resolution) ** 2 / variance[0],
+        _NEAR_ANGLE_STEP**2 / variance[2],
     )
     return local_map.from_grid(best)
 
 
 _NEAR_ANGLE_STEP = 0.02
+# The share of a scan that overrules the guess, and the chi-square at which half of it is needed.
+_OVERRULING_SHARE, _HALF_CHI_SQUARE = 0.15, 9.0
+
+
+def scores(surface: Surface, local_map: LocalMap, poses: Sequence[Pose2]) -> np.ndarray:
+    """Mean likelihood (N,), 0 to 1, of the surface's points at each pose of the base."""
+    in_grid = np.array([local_map.to_grid(pose) for pose in poses])
+    return _scores(local_map.likelihood, local_map.resolution, surface.points_xy, in_grid)
 
 
 @numba.njit(cache=True, nogil=True)
-def _search_near(likelihood, resolution, points, guess, steps, angle_steps):
+def _scores(likelihood, resolution, points, poses):
+    cols, rows = np.empty(len(points), dtype=np.int64), np.empty(len(points), dtype=np.int64)
+    found = np.empty(len(poses))
+    for i in range(len(poses)):
+        _project(points, poses[i, 0], poses[i, 1], poses[i, 2], resolution, cols, rows)
+        found[i] = _score(likelihood, cols, rows, 0, 0)
+    return found
+
+
+@numba.njit(cache=True, nogil=True)
+def _search_near(likelihood, resolution, points, guess, steps, angle_steps, step_chi, angle_chi):
     rows, cols = likelihood.shape
     n = len(points)
     best_score, best = -np.inf, guess.copy()
@@ -70,7 +96,8 @@ def _search_near(likelihood, resolution, points, guess, steps, angle_steps):
                     q, r = col[p] + 2 * i, row[p] + 2 * j
                     if 0 <= q < cols and 0 <= r < rows:
                         total += likelihood[r, q]
-                penalty = 0.002 * (i * i + j * j) + 0.0001 * k * k
+                chi = step_chi * (i * i + j * j) + angle_chi * k * k
+                penalty = _OVERRULING_SHARE * chi / (chi + _HALF_CHI_SQUARE)
                 score = total / (255.0 * max(n, 1)) - penalty
                 if score > best_score:
                     best_score = score
