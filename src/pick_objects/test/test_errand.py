@@ -3,7 +3,22 @@ from pathlib import Path
 import pytest
 import yaml
 
-from pick_objects import Errand, ErrandSettings, ErrandState, Finish, GoalReached, GoalRefused, GoTo
+from pick_objects import (
+    Delivery,
+    Errand,
+    ErrandSettings,
+    ErrandState,
+    Finish,
+    GoalReached,
+    GoalRefused,
+    GoTo,
+    MeasureWays,
+    Mission,
+    MissionError,
+    Stage,
+    WaysMeasured,
+    errand_mission,
+)
 from pick_objects.config import NodeSettings
 from planar import Pose2, SettingsError
 from planar.places import Place
@@ -12,7 +27,7 @@ PICKUP, DROPOFF = Place("pickup", Pose2(2.0, 3.0)), Place("dropoff", Pose2(-2.0,
 
 
 def errand(**settings):
-    return Errand(PICKUP, DROPOFF, ErrandSettings(**settings))
+    return Errand(errand_mission(PICKUP, DROPOFF, ErrandSettings(**settings)))
 
 
 def test_the_robot_is_sent_to_pickup_and_after_five_seconds_there_to_dropoff():
@@ -70,3 +85,154 @@ def test_the_shipped_configuration_is_the_default_one():
     defaults = {**vars(ErrandSettings()), **vars(NodeSettings(zones_file="x"))}
     del defaults["zones_file"]
     assert shipped == defaults
+
+
+KITCHEN = Place("kitchen", Pose2(0.0, 0.0), approaches=(Pose2(0.0, 1.0), Pose2(1.0, 0.0)))
+PLACES = {place.name: place for place in (KITCHEN, PICKUP, DROPOFF)}
+TEA = Delivery("tea", "cup", "kitchen", "pickup")
+POST = Delivery("post", "letter", "dropoff", "kitchen")
+BACK = Delivery("back", "cup", "pickup", "dropoff")
+
+
+def mission(*deliveries, **settings):
+    quick = {"pickup_seconds": 0.0, "retry_seconds": 0.0, "attempts": 1, **settings}
+    return Errand(Mission("test", PLACES, deliveries, settings=ErrandSettings(**quick)))
+
+
+def play(task, blocked=(), event=None, limit=100):
+    """Advances second by second; goals at ``blocked`` poses are refused."""
+    orders = []
+    for now in range(limit):
+        order = task.advance(float(now), event)
+        event = None
+        if order is not None:
+            orders.append(order)
+        if isinstance(order, Finish):
+            return orders
+        if isinstance(order, GoTo):
+            event = GoalRefused("blocked") if order.pose in blocked else GoalReached()
+    raise AssertionError(f"not finished: {orders}")
+
+
+def stages(task):
+    return {job.delivery.name: job.stage for job in task.jobs}
+
+
+def test_deliveries_are_made_one_after_the_other():
+    task = mission(TEA, POST)
+    orders = play(task)
+    assert [order.place.name for order in orders[:-1]] == ["kitchen", "pickup", "dropoff", "kitchen"]
+    assert orders[-1] == Finish(True, "2 of 2 delivered")
+    assert task.whereabouts["cup"].place == "pickup"
+    assert task.progress == 1.0
+
+
+def test_each_attempt_goes_to_the_next_pose_of_the_place():
+    task = mission(TEA, attempts=4)
+    orders = play(task, blocked=[KITCHEN.pose, KITCHEN.approaches[0]])
+    assert [order.pose for order in orders[:3]] == list(KITCHEN.poses)
+    assert orders[-1].success
+    assert task.jobs[0].attempts == 4
+
+
+def test_a_failure_stops_the_mission_or_does_not():
+    blocked = [PICKUP.pose]
+    stopping, going_on = mission(TEA, POST), mission(TEA, POST, on_failure="continue")
+    assert play(stopping, blocked)[-1].reason.startswith("0 of 2 delivered, 1 failed; tea: place pickup not")
+    assert stages(stopping) == {"tea": Stage.FAILED, "post": Stage.WAITING}
+    assert play(going_on, blocked)[-1].reason.startswith("1 of 2 delivered, 1 failed; tea: place pickup not")
+    assert stages(going_on) == {"tea": Stage.FAILED, "post": Stage.DELIVERED}
+    assert going_on.state is ErrandState.FAILED
+
+
+def test_an_object_that_could_not_be_delivered_is_left_and_not_fetched_where_it_is_not():
+    task = mission(TEA, BACK, on_failure="continue")
+    play(task, [PICKUP.pose])
+    where = task.whereabouts["cup"]
+    assert where.place is None
+    assert not where.is_carried
+    assert task.jobs[1].reason == "cup is not at pickup"
+
+
+def test_what_waits_for_a_failed_delivery_fails_too():
+    late = Delivery("late", "letter", "dropoff", "kitchen", after=("tea",))
+    task = mission(late, TEA, on_failure="continue")
+    play(task, [PICKUP.pose])
+    assert [job.reason for job in task.jobs if job.delivery is late] == ["tea was not delivered"]
+
+
+def test_the_shortest_order_is_found_by_measured_ways_and_keeps_what_must_come_first():
+    task = mission(TEA, POST, BACK, order="shortest")
+    order = task.advance(0.0)
+    assert isinstance(order, MeasureWays)
+    assert order.ways[:3] == ((None, KITCHEN.pose), (None, DROPOFF.pose), (None, PICKUP.pose))
+    far_tea = [9.0, 1.0, 1.0, *[5.0] * 9]
+    first = task.advance(1.0, WaysMeasured(tuple(far_tea)))
+    assert first == GoTo(DROPOFF, 1)
+    assert [job.delivery.name for job in task.jobs] == ["post", "tea", "back"]
+
+
+def test_a_cancelled_delivery_is_left_out_and_the_rest_is_made():
+    task = mission(TEA, POST)
+    task.advance(0.0)
+    task.advance(1.0, GoalReached())
+    task.advance(2.0)
+    assert task.whereabouts["cup"].is_carried
+    task.cancel("tea")
+    assert task.advance(3.0) == GoTo(DROPOFF, 1)
+    assert not task.whereabouts["cup"].is_carried
+    assert play(task, event=GoalReached())[-1] == Finish(True, "1 of 2 delivered, 1 cancelled")
+
+
+@pytest.mark.parametrize("steps", range(8))
+def test_a_mission_can_be_cancelled_in_every_state(steps):
+    task = mission(TEA, POST, order="shortest", pickup_seconds=1.0, dropoff_seconds=1.0)
+    events = [None, WaysMeasured((1.0,) * 6), GoalReached(), None, GoalReached(), None, GoalReached(), None]
+    for now, event in enumerate(events[:steps]):
+        task.advance(float(now), event)
+    task.cancel()
+    order = task.advance(float(steps))
+    assert isinstance(order, Finish)
+    assert not order.success
+    assert task.state is ErrandState.CANCELLED
+    assert not any(where.is_carried for where in task.whereabouts.values())
+    with pytest.raises(MissionError, match="the mission is over"):
+        task.cancel()
+
+
+def test_a_delivery_can_be_added_and_senseless_ones_are_refused():
+    task = mission(TEA)
+    task.advance(0.0)
+    assert task.add(Delivery("", "letter", "dropoff", "kitchen")).name == "delivery 2"
+    for wrong, complaint in (
+        (TEA, "there is a delivery tea already"),
+        (Delivery("x", "cup", "kitchen", "moon"), "there is no place 'moon'"),
+        (Delivery("x", "cup", "kitchen", "kitchen"), "cup is at kitchen already"),
+        (Delivery("x", "", "kitchen", "pickup"), "no object is named"),
+    ):
+        with pytest.raises(MissionError, match=complaint):
+            task.add(wrong)
+    with pytest.raises(MissionError, match="there is no delivery milk"):
+        task.cancel("milk")
+    assert play(task, event=GoalReached())[-1] == Finish(True, "2 of 2 delivered")
+
+
+def test_a_delivery_has_its_own_time_out():
+    hasty = Delivery("tea", "cup", "kitchen", "pickup", goal_timeout=5.0)
+    task = mission(hasty)
+    task.advance(0.0)
+    assert task.advance(5.0) is None
+    assert "not reached within 5 s" in task.advance(5.1).reason
+
+
+def test_the_time_left_shrinks_to_nothing():
+    task = mission(TEA, POST)
+    left = [task.time_left(0.0)]
+    task.advance(0.0)
+    for now in (1.0, 2.0, 3.0, 4.0):
+        task.advance(now, GoalReached())
+        task.advance(now)
+        left.append(task.time_left(now))
+    assert left == sorted(left, reverse=True)
+    assert left[0] > 10.0
+    assert left[-1] == 0.0

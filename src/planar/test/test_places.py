@@ -21,8 +21,9 @@ def test_places_are_read_with_defaults(tmp_path):
         ("a: {x: 1}", "places.yaml:1: a.y is missing"),
         ("a: {x: 1, y: north}", "places.yaml:1: a.y must be a number"),
         ("a: {x: 1, y: .nan}", "places.yaml:1: a.y must be a number"),
-        ("a: {x: 1, y: 2, z: 3}", ":1: a.z is not known; known are x, y, yaw, radius"),
+        ("a: {x: 1, y: 2, z: 3}", ":1: a.z is not known; known are x, y, yaw, radius, approaches"),
         ("\na: {x: 1, y: 2, radius: 0}", ":2: a.radius must be positive"),
+        ("a: {x: 1, y: 2, approaches: [{x: 1}]}", r":1: a.approaches\[1\].y is missing"),
         ("a: 3", ":1: a must be a table of keys and values, got 3"),
         ("- 1", ":1: expected a table"),
         ("a: {", "not valid YAML"),
@@ -54,3 +55,17 @@ def test_a_robot_within_the_radius_is_there():
     place = Place("a", Pose2(1.0, 1.0), 0.5)
     assert place.holds(Pose2(1.3, 1.3, 2.0))
     assert not place.holds(Pose2(1.4, 1.4, 0.0))
+
+
+def test_each_pose_of_a_place_serves():
+    place = Place("a", Pose2(1.0, 1.0), 0.5, (Pose2(3.0, 1.0),))
+    assert place.holds(Pose2(3.2, 1.0))
+    assert not place.holds(Pose2(2.0, 1.0))
+
+
+def test_an_approach_in_an_obstacle_is_found():
+    place = Place("shelf", Pose2(1.5, 0.5), approaches=(Pose2(0.5, 0.5),))
+    assert (
+        why_unreachable(place, grid_from_picture("#.?"))
+        == "place shelf (0.5, 0.5) lies in an obstacle of the map"
+    )

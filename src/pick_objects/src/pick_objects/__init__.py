@@ -1,6 +1,31 @@
-"""Fetch and deliver: the errand as a pure state machine, and the node that sends its orders to move_base."""
+"""Missions of deliveries between named places; pure but for node.py and nodes."""
 
+from pick_objects.approach import GoTo
 from pick_objects.config import ErrandSettings
-from pick_objects.errand import Errand, ErrandState, Finish, GoalReached, GoalRefused, GoTo
+from pick_objects.errand import Errand, MeasureWays, WaysMeasured
+from pick_objects.job import ErrandState, Job, Stage, Whereabouts
+from pick_objects.mission import Delivery, Mission, MissionError, Thing, errand_mission
+from pick_objects.mission_file import load_mission, parse_mission
+from planar.driving import Finish, GoalReached, GoalRefused
 
-__all__ = ["Errand", "ErrandSettings", "ErrandState", "Finish", "GoTo", "GoalReached", "GoalRefused"]
+__all__ = [
+    "Delivery",
+    "Errand",
+    "ErrandSettings",
+    "ErrandState",
+    "Finish",
+    "GoTo",
+    "GoalReached",
+    "GoalRefused",
+    "Job",
+    "MeasureWays",
+    "Mission",
+    "MissionError",
+    "Stage",
+    "Thing",
+    "WaysMeasured",
+    "Whereabouts",
+    "errand_mission",
+    "load_mission",
+    "parse_mission",
+]

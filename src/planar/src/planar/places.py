@@ -13,20 +13,33 @@ DEFAULT_RADIUS = 0.35
 
 @dataclass(frozen=True)
 class Place:
-    """A named pose in the map; a robot within ``radius`` metres of it is there."""
+    """A named pose in the map, and others that serve as well; within ``radius`` metres a robot is there.
+
+    ``approaches``: the other poses, in the order in which they are worth trying.
+    """
 
     name: str
     pose: Pose2
     radius: float = DEFAULT_RADIUS
+    approaches: Tuple[Pose2, ...] = ()
+
+    @property
+    def poses(self) -> Tuple[Pose2, ...]:
+        return (self.pose, *self.approaches)
+
+    def distance_to(self, robot_in_map: Pose2) -> float:
+        """Metres to the nearest of its poses."""
+        return min(pose.distance_to(robot_in_map) for pose in self.poses)
 
     def holds(self, robot_in_map: Pose2) -> bool:
-        return self.pose.distance_to(robot_in_map) <= self.radius
+        return self.distance_to(robot_in_map) <= self.radius
 
 
 def load_places(path) -> Dict[str, Place]:
     """The places of a YAML file ``name: {x: 1.0, y: 2.0, yaw: 0.0, radius: 0.35}`` by name.
 
-    ``yaw`` and ``radius`` may be left out. Raises SettingsError naming file, line and key.
+    ``yaw`` and ``radius`` may be left out; ``approaches: [{x: 1.0, y: 1.5, yaw: 1.57}]`` may be added.
+    Raises SettingsError naming file, line and key.
     """
     table = read_table(path)
     return {name: place_from(table, name) for name in table}
@@ -35,10 +48,13 @@ def load_places(path) -> Dict[str, Place]:
 def place_from(table: Table, name: str) -> Place:
     """The place below the key ``name`` of a table."""
     fields = table.table(name)
-    fields.allow_only("x", "y", "yaw", "radius")
-    place = Place(name, pose_from(fields), fields.number("radius", DEFAULT_RADIUS))
-    fields.check(place.radius > 0.0, "radius", "positive")
-    return place
+    fields.allow_only("x", "y", "yaw", "radius", "approaches")
+    approaches = fields.tables("approaches")
+    for approach in approaches:
+        approach.allow_only("x", "y", "yaw")
+    radius = fields.number("radius", DEFAULT_RADIUS)
+    fields.check(radius > 0.0, "radius", "positive")
+    return Place(name, pose_from(fields), radius, tuple(map(pose_from, approaches)))
 
 
 def pose_from(table: Table) -> Pose2:
@@ -56,12 +72,20 @@ def places_of_errand(path) -> Tuple[Place, Place]:
 
 
 def why_unreachable(place: Place, grid: OccupancyGrid) -> Optional[str]:
-    """Why no robot can ever stand at ``place`` on this map, or None if it seems free."""
-    where = f"place {place.name} ({place.pose.x:g}, {place.pose.y:g})"
-    cell = grid.cells_of([[place.pose.x, place.pose.y]])
+    """Why no robot can ever stand at a pose of ``place`` on this map, or None if all seem free."""
+    for pose in place.poses:
+        obstruction = obstruction_at(pose, grid)
+        if obstruction:
+            return f"place {place.name} ({pose.x:g}, {pose.y:g}) {obstruction}"
+    return None
+
+
+def obstruction_at(pose: Pose2, grid: OccupancyGrid) -> Optional[str]:
+    """Why no robot can ever stand there on this map, or None if it seems free."""
+    cell = grid.cells_of([[pose.x, pose.y]])
     if not grid.contains(cell)[0]:
-        return f"{where} lies outside the map"
+        return "lies outside the map"
     value = grid.cells[tuple(cell[0])]
     if value == UNKNOWN:
-        return f"{where} lies where the map knows nothing"
-    return f"{where} lies in an obstacle of the map" if value == OCCUPIED else None
+        return "lies where the map knows nothing"
+    return "lies in an obstacle of the map" if value == OCCUPIED else None

@@ -183,8 +183,8 @@ class Table:
         return self._document.complaint(self._node_of(key), f"{self._full(key)} {text}")
 
     def place_of(self, key: str) -> str:
-        """What stands before a complaint about ``key``: file and line."""
-        return self._document.place_of(self._node_of(key))
+        """What stands before ``key`` in a complaint: file, line, and the keys that lead to it."""
+        return self._document.place_of(self._node_of(key)) + self._full("")
 
     def _node_of(self, key: str) -> yaml.Node:
         return self._entries[key][0] if key in self._entries else self._node

@@ -1,0 +1,74 @@
+"""One drive to a place: its poses in turn, with time-outs and pauses, until it is reached or given up."""
+
+from dataclasses import dataclass
+from typing import Optional, Union
+
+from pick_objects.config import ErrandSettings
+from planar import Pose2
+from planar.driving import GoalReached, GoalRefused
+from planar.places import Place
+
+
+@dataclass(frozen=True)
+class GoTo:
+    """Order: drive to this place. It takes the place of any earlier order."""
+
+    place: Place
+    attempt: int
+
+    @property
+    def pose(self) -> Pose2:
+        """The one of the place's poses whose turn it is."""
+        return self.place.poses[(self.attempt - 1) % len(self.place.poses)]
+
+
+@dataclass(frozen=True)
+class Arrived:
+    """The place is reached."""
+
+
+@dataclass(frozen=True)
+class GivenUp:
+    """The place cannot be reached, and why."""
+
+    reason: str
+
+
+class Approach:
+    """Answers, told the time and what came of the last goal, what to do to get to ``place``."""
+
+    def __init__(self, place: Place, settings: ErrandSettings, goal_timeout: Optional[float] = None):
+        self.place = place
+        self.attempt = 0
+        self._settings = settings
+        self._timeout = settings.goal_timeout if goal_timeout is None else goal_timeout
+        self._sent_at = 0.0
+        self._retry_at: Optional[float] = None
+
+    def start(self, now: float) -> GoTo:
+        """The next attempt."""
+        self.attempt += 1
+        self._sent_at = now
+        self._retry_at = None
+        return GoTo(self.place, self.attempt)
+
+    def advance(
+        self, now: float, event: Union[None, GoalReached, GoalRefused]
+    ) -> Union[None, GoTo, Arrived, GivenUp]:
+        """What has come of it, the next goal, or None to carry on. ``now``: seconds."""
+        if isinstance(event, GoalReached):
+            return Arrived()
+        if isinstance(event, GoalRefused):
+            return self._give_up_or_pause(now, event.reason)
+        if self._retry_at is not None:
+            return self.start(now) if now >= self._retry_at else None
+        if now - self._sent_at > self._timeout:
+            return self._give_up_or_pause(now, f"not reached within {self._timeout:g} s")
+        return None
+
+    def _give_up_or_pause(self, now: float, reason: str) -> Optional[GivenUp]:
+        if self.attempt < self._settings.attempts:
+            self._retry_at = now + self._settings.retry_seconds
+            return None
+        tries = "1 attempt" if self.attempt == 1 else f"{self.attempt} attempts"
+        return GivenUp(f"place {self.place.name} not reached after {tries}: {reason}")

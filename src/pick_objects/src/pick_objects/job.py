@@ -1,0 +1,63 @@
+"""How a mission and its deliveries stand."""
+
+import enum
+from dataclasses import dataclass
+from typing import Optional
+
+from pick_objects.mission import Delivery
+from planar import Pose2
+
+
+class ErrandState(enum.Enum):
+    """What the robot is about; the values are what ``~state`` publishes."""
+
+    READY = "ready"
+    ORDERING = "choosing the order"
+    GOING_TO_PICKUP = "going to pickup"
+    PICKING_UP = "picking up"
+    GOING_TO_DROPOFF = "going to dropoff"
+    SETTING_DOWN = "setting down"
+    DELIVERED = "delivered"
+    FAILED = "failed"
+    CANCELLED = "cancelled"
+
+
+FINAL_STATES = (ErrandState.DELIVERED, ErrandState.FAILED, ErrandState.CANCELLED)
+
+
+class Stage(enum.Enum):
+    """How far a delivery has come; the values are those of home_service_msgs/DeliveryState."""
+
+    WAITING = 0
+    FETCHING = 1
+    PICKING_UP = 2
+    CARRYING = 3
+    SETTING_DOWN = 4
+    DELIVERED = 5
+    FAILED = 6
+    CANCELLED = 7
+
+
+ENDED = (Stage.DELIVERED, Stage.FAILED, Stage.CANCELLED)
+
+
+@dataclass
+class Job:
+    """A delivery and what has become of it. ``attempts``: goals sent for it so far."""
+
+    delivery: Delivery
+    stage: Stage = Stage.WAITING
+    attempts: int = 0
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class Whereabouts:
+    """Where an object is: at a place, with the robot, or (neither) where the robot had to leave it.
+
+    ``pose``: where it stands or stood last, in the map.
+    """
+
+    place: Optional[str]
+    pose: Pose2
+    is_carried: bool = False

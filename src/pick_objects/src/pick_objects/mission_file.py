@@ -1,0 +1,165 @@
+"""Mission files: YAML, of which every mistake is told with file, line and key before anything moves."""
+
+from dataclasses import fields
+from typing import Dict, List, Mapping, Optional, Set, Tuple
+
+from pick_objects.config import ErrandSettings
+from pick_objects.mission import ORANGE, Delivery, Mission, Thing
+from planar.grid import OccupancyGrid
+from planar.places import Place, obstruction_at, place_from
+from planar.settings import nearest_name, settings_from
+from planar.yaml_table import Table, parse_table, read_table
+
+Places = Mapping[str, Place]
+
+
+def load_mission(
+    path,
+    known_places: Places = {},
+    defaults: ErrandSettings = ErrandSettings(),
+    grid: Optional[OccupancyGrid] = None,
+) -> Mission:
+    """The mission of a file, between places of its own and ``known_places``.
+
+    ``defaults``: the settings that it leaves out. ``grid``: a map in which all its places must be free.
+    Raises SettingsError naming file, line and key.
+    """
+    return _mission(read_table(path), str(path), known_places, defaults, grid)
+
+
+def parse_mission(
+    text: str,
+    known_places: Places = {},
+    defaults: ErrandSettings = ErrandSettings(),
+    grid: Optional[OccupancyGrid] = None,
+) -> Mission:
+    """The mission of a text, as load_mission of a file."""
+    return _mission(parse_table(text, "mission"), "mission", known_places, defaults, grid)
+
+
+def _mission(
+    table: Table,
+    source: str,
+    known_places: Places,
+    defaults: ErrandSettings,
+    grid: Optional[OccupancyGrid],
+) -> Mission:
+    table.allow_only("name", "places", "objects", "settings", "deliveries")
+    name = table.text("name", source)
+    places = {**known_places, **_places(table, grid)}
+    things = _things(table)
+    settings = _settings(table, defaults)
+    deliveries = _deliveries(table, places, things)
+    return Mission(name, places, deliveries, things, settings)
+
+
+def _places(table: Table, grid: Optional[OccupancyGrid]) -> Dict[str, Place]:
+    if "places" not in table:
+        return {}
+    places_table = table.table("places")
+    places = {name: place_from(places_table, name) for name in places_table}
+    if grid is not None:
+        for place in places.values():
+            _check_free(place, places_table.table(place.name), grid)
+    return places
+
+
+def _check_free(place: Place, entry: Table, grid: OccupancyGrid) -> None:
+    for part, pose in zip([entry, *entry.tables("approaches")], place.poses):
+        obstruction = obstruction_at(pose, grid)
+        if obstruction:
+            raise part.complaint("x", f"and y: ({pose.x:g}, {pose.y:g}) {obstruction}")
+
+
+def _things(table: Table) -> Dict[str, Thing]:
+    if "objects" not in table:
+        return {}
+    objects, things = table.table("objects"), {}
+    for name in objects:
+        entry = objects.table(name)
+        entry.allow_only("size", "color")
+        size = entry.number("size", Thing(name).size)
+        entry.check(size > 0.0, "size", "positive")
+        color = entry.numbers("color", "red, green, blue") if "color" in entry else ORANGE
+        entry.check(all(0.0 <= share <= 1.0 for share in color), "color", "three numbers from 0 to 1")
+        things[name] = Thing(name, size, color)  # type: ignore[arg-type]
+    return things
+
+
+def _settings(table: Table, defaults: ErrandSettings) -> ErrandSettings:
+    if "settings" not in table:
+        return defaults
+    entry = table.table("settings")
+    entry.allow_only(*(field.name for field in fields(ErrandSettings)))
+    settings, _ = settings_from(ErrandSettings, {**vars(defaults), **entry.values()}, where=entry.place_of)
+    return settings
+
+
+def _deliveries(table: Table, places: Places, things: Mapping[str, Thing]) -> Tuple[Delivery, ...]:
+    entries = table.tables("deliveries")
+    if not entries:
+        raise table.complaint("deliveries", "are missing: [{object: ..., from: ..., to: ...}]")
+    deliveries: List[Delivery] = []
+    lines: Dict[str, Table] = {}
+    for number, entry in enumerate(entries, 1):
+        delivery = _delivery(entry, number, places, things)
+        if delivery.name in lines:
+            raise entry.complaint("name", f"{delivery.name} is that of another delivery already")
+        lines[delivery.name] = entry
+        deliveries.append(delivery)
+    for delivery in deliveries:
+        _check_name(lines[delivery.name], "after", delivery.after, lines, "delivery")
+    _check_cycles(deliveries, lines)
+    _check_whereabouts(deliveries, lines)
+    return tuple(deliveries)
+
+
+def _delivery(entry: Table, number: int, places: Places, things: Mapping[str, Thing]) -> Delivery:
+    entry.allow_only("name", "object", "from", "to", "after", "goal_timeout")
+    thing, source, destination = (entry.text(key) for key in ("object", "from", "to"))
+    _check_name(entry, "from", [source], places, "place")
+    _check_name(entry, "to", [destination], places, "place")
+    if things:
+        _check_name(entry, "object", [thing], things, "object")
+    entry.check(source != destination, "to", f"another place than {source}")
+    timeout = entry.number("goal_timeout") if "goal_timeout" in entry else None
+    entry.check(timeout is None or timeout > 0.0, "goal_timeout", "positive")
+    name = entry.text("name", f"delivery {number}")
+    return Delivery(name, thing, source, destination, tuple(entry.texts("after")), timeout)
+
+
+def _check_name(entry: Table, key: str, names, known, kind: str) -> None:
+    for name in names:
+        if name not in known:
+            nearest = nearest_name(name, known)
+            hint = f"did you mean {nearest}?" if nearest else f"known are {', '.join(known)}"
+            raise entry.complaint(key, f"names no {kind}: {name}; {hint}")
+
+
+def _check_cycles(deliveries: List[Delivery], lines: Mapping[str, Table]) -> None:
+    """Deliveries that wait for each other, also since an object is carried on from where one left it."""
+    waits_for: Dict[str, Set[str]] = {}
+    latest_of_thing: Dict[str, str] = {}
+    for delivery in deliveries:
+        waits_for[delivery.name] = set(delivery.after)
+        if delivery.thing in latest_of_thing:
+            waits_for[delivery.name].add(latest_of_thing[delivery.thing])
+        latest_of_thing[delivery.thing] = delivery.name
+    while waits_for:
+        free = [name for name, others in waits_for.items() if not others & set(waits_for)]
+        if not free:
+            name = next(name for name in waits_for if set(lines[name].texts("after")) & set(waits_for))
+            raise lines[name].complaint("after", f"makes a cycle: {', '.join(waits_for)} wait for each other")
+        for name in free:
+            del waits_for[name]
+
+
+def _check_whereabouts(deliveries: List[Delivery], lines: Mapping[str, Table]) -> None:
+    """An object is carried on from where it was left."""
+    left_at: Dict[str, Delivery] = {}
+    for delivery in deliveries:
+        last = left_at.get(delivery.thing)
+        if last is not None and last.destination != delivery.source:
+            where = f"{last.destination}, where {last.name} leaves {delivery.thing}"
+            lines[delivery.name].check(False, "from", where)
+        left_at[delivery.thing] = delivery

@@ -1,0 +1,1 @@
+"""The parts of the node ``pick_objects`` that speak ROS."""

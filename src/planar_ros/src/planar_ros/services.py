@@ -1,0 +1,33 @@
+"""Calls of services that cannot hang."""
+
+import queue
+import threading
+
+import rospy
+
+from planar import PlanarError
+
+
+class ServiceError(PlanarError):
+    """A service is not there, does not answer in time, or refuses; the text names it and says which."""
+
+
+def call_service(name: str, kind, request, seconds: float):
+    """The response of the service; waits at most ``seconds`` of wall-clock time. Raises ServiceError."""
+    answers: queue.Queue = queue.Queue()
+
+    def call():
+        try:
+            answers.put((rospy.ServiceProxy(name, kind)(request), None))
+        except (rospy.ServiceException, rospy.ROSException, OSError) as error:
+            answers.put((None, error))
+
+    threading.Thread(target=call, daemon=True).start()
+    resolved = rospy.resolve_name(name)
+    try:
+        response, error = answers.get(timeout=seconds)
+    except queue.Empty:
+        raise ServiceError(f"no answer of the service {resolved} within {seconds:g} s") from None
+    if error is not None:
+        raise ServiceError(f"service {resolved}: {error}") from None
+    return response
