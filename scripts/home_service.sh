@@ -1,10 +1,13 @@
 #!/usr/bin/env bash
 # Usage: ./scripts/home_service.sh [options]
 #
-# Fetches the object at the pick-up zone and delivers it at the drop-off zone, in the simulated home.
+# Fetches the object at the pick-up zone and delivers it at the drop-off zone, in the simulated home,
+# or carries out another mission.
 # Sets everything up first if need be, names the run folder with the logs and result.json, prints a verdict.
 # Exit code: 0 success, 1 failure, 2 bad input, 130 interrupted.
 #
+#   --mission FILE   carry out the deliveries of this file instead (docs/missions.md; map/mission.yaml is one)
+#   --serve          wait for missions sent to the action deliver, until Ctrl-C
 #   --zones FILE     YAML of the zones (default: map/zones.yaml)
 #   --marker-source tf|amcl_pose|odom|state
 #                    what tells the marker where the robot is (default: tf)

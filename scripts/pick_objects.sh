@@ -4,6 +4,7 @@
 # Drives to the pick-up zone, waits there, and on to the drop-off zone. Sets everything up first if need be.
 # Exit code: 0 success, 1 failure, 2 bad input, 130 interrupted.
 #
+#   --mission FILE   carry out the deliveries of this file instead (docs/missions.md)
 #   --zones FILE     YAML of the zones (default: map/zones.yaml)
 #   --rviz           show it in rviz, where there is a display
 #   --speed N        1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz 1)

@@ -7,6 +7,7 @@
 # Exit code: 0 success, 1 failure, 2 bad input, 130 interrupted.
 #
 #   --runs N         how many runs, each with the next seed (default: 1)
+#   --mission FILE   carry out the deliveries of this file instead (docs/missions.md)
 #   --zones FILE     YAML of the zones (default: map/zones.yaml)
 #   --world FILE     SDF world (default: map/home.world)
 #   --map FILE       map of that world (default: map/home.yaml)

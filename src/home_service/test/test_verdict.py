@@ -1,12 +1,17 @@
 import pytest
 
-from home_service.verdict import DEMO, ERRAND, MARKERS, Ledger, judge
+from home_service.verdict import DEMO, ERRAND, MARKERS, OBJECTS, DeliveryRecord, Ledger, judge
 
 STORY = ["shown at pickup", "hidden", "shown at dropoff"]
 
 
+def record(**changes):
+    fields = {"state": "delivered", "pickup_error": 0.1, "dropoff_error": 0.2, **changes}
+    return DeliveryRecord("errand", "parcel", "pickup", "dropoff", **fields)
+
+
 def good_ledger():
-    return Ledger({"pickup": 0.1, "dropoff": 0.2}, [], list(STORY), "delivered")
+    return Ledger([record()], [], list(STORY), "delivered")
 
 
 def test_a_proven_delivery_is_a_success():
@@ -19,8 +24,11 @@ def test_a_proven_delivery_is_a_success():
     "change, reason",
     [
         ({"final_state": "going to dropoff"}, "state 'going to dropoff'"),
-        ({"errors": {"pickup": 0.1}}, "never said that it arrived at dropoff"),
-        ({"errors": {"pickup": 0.3, "dropoff": 0.1}}, "at pickup the robot truly stood 0.30 m off"),
+        ({"deliveries": [record(dropoff_error=None)]}, "never said that it arrived at dropoff"),
+        ({"deliveries": [record(pickup_error=0.3)]}, "at pickup the robot truly stood 0.30 m off"),
+        ({"deliveries": []}, "nothing was delivered"),
+        ({"deliveries": [record(state="failed", reason="blocked")]}, "errand is failed: blocked"),
+        ({"final_state": "failed", "reason": "0 of 2 delivered"}, "0 of 2 delivered"),
         ({"collisions": ["sofa", "sofa"]}, "collided with sofa"),
         ({"markers": STORY[:1]}, "the marker was shown at pickup, not"),
         ({"failure": "roslaunch ended"}, "roslaunch ended"),
@@ -44,3 +52,17 @@ def test_a_run_is_complete_when_all_that_is_expected_was_seen():
     assert not Ledger(final_state="delivered", markers=STORY[:2]).is_complete({ERRAND, MARKERS})
     assert Ledger(final_state="failed").is_complete({ERRAND, MARKERS})
     assert not Ledger().is_complete({ERRAND})
+
+
+def test_the_markers_of_a_mission_go_with_their_objects():
+    ledger = Ledger([record()], [], ["parcel at pickup", "cup at desk", "parcel carried"], "delivered")
+    assert not ledger.is_complete({ERRAND, OBJECTS})
+    assert "markers of parcel" in judge(ledger, {ERRAND, OBJECTS}).reason
+    ledger.markers.append("parcel at dropoff")
+    assert ledger.is_complete({ERRAND, OBJECTS})
+    assert judge(ledger, {ERRAND, OBJECTS}).success
+
+
+def test_a_cancelled_delivery_is_not_held_against_the_others():
+    ledger = Ledger([record(), record(state="cancelled")], final_state="delivered")
+    assert judge(ledger, {ERRAND}).success

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from planar.settings import check
 
-MODES = ("service", "demo")
+MODES = ("service", "mission", "demo")
 SOURCES = ("tf", "amcl_pose", "odom", "state")
 
 

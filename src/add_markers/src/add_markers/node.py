@@ -1,4 +1,4 @@
-"""The ROS node of add_markers: shows the parcel as an rviz cube."""
+"""The ROS node of add_markers: shows the objects of an errand or a mission as cubes in rviz."""
 
 import time
 
@@ -9,6 +9,7 @@ from std_msgs.msg import String
 from visualization_msgs.msg import Marker, MarkerArray
 
 from add_markers.config import MarkerSettings
+from add_markers.nodes.mission_markers import MissionMarkers
 from add_markers.parcel import CarriedParcel, TimedParcel
 from add_markers.zones import zone_markers
 from planar.places import places_of_errand
@@ -27,8 +28,8 @@ PICKING_UP, DELIVERED = "picking up", "delivered"
 class AddMarkers:
     """Publishes the marker whenever it appears, moves or disappears; latched, it waits for nobody."""
 
-    def __init__(self):
-        self._settings = settings = read_settings(MarkerSettings)
+    def __init__(self, settings: MarkerSettings):
+        self._settings = settings
         self._pickup, self._dropoff = places = places_of_errand(settings.zones_file)
         self._robot = None
         self._shown_at = NOWHERE_YET
@@ -104,4 +105,10 @@ class AddMarkers:
 
 
 def main():
-    run("add_markers", lambda: AddMarkers().work())
+    def start():
+        settings = read_settings(MarkerSettings)
+        if settings.mode == "mission":
+            return MissionMarkers(settings)
+        return AddMarkers(settings).work()
+
+    run("add_markers", start)

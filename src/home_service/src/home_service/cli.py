@@ -52,16 +52,20 @@ def main(arguments: Optional[List[str]] = None) -> int:
 
 def read_inputs(options) -> None:
     """Reads everything that was named, so that a mistake is told before anything is started."""
+    from pick_objects import errand_mission, load_mission
     from planar import load_map
-    from planar.places import places_of_errand
+    from planar.places import load_places, places_of_errand
     from sim_bridge import load_world, robot_named
 
     options.loaded_world = load_world(options.world)
     options.loaded_map = load_map(options.map) if "map" in options else None
     options.loaded_robot = robot_named(options.robot)
-    options.places = {}
-    if "zones" in options:
-        options.places = {place.name: place for place in places_of_errand(options.zones)}
+    options.places = load_places(options.zones) if "zones" in options else {}
+    if getattr(options, "mission", None):
+        options.loaded_mission = load_mission(options.mission, options.places, grid=options.loaded_map)
+        options.places = options.loaded_mission.places
+    elif "zones" in options:
+        options.loaded_mission = errand_mission(*places_of_errand(options.zones))
 
 
 def _interrupt(number, _frame):

@@ -1,7 +1,9 @@
 """The commands behind the scripts; each runs a graph to its end and returns an exit code."""
 
+import os
 from argparse import Namespace
-from typing import Set
+from pathlib import Path
+from typing import Dict, Set
 
 import actionlib
 import rospy
@@ -9,7 +11,7 @@ from actionlib_msgs.msg import GoalStatus
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 
 from home_service.run import Run
-from home_service.verdict import ARRIVAL_TOLERANCE, DEMO, ERRAND, MARKERS, Verdict
+from home_service.verdict import ARRIVAL_TOLERANCE, DEMO, ERRAND, MARKERS, OBJECTS, Verdict
 from planar import Pose2
 from planar_ros.actions import server_is_ready
 from planar_ros.messages import pose2_to_msg
@@ -38,15 +40,31 @@ def add_marker(options: Namespace) -> int:
 
 
 def home_service(options: Namespace) -> int:
-    return _errand(options, "home_service.launch", {ERRAND, MARKERS}, marker_source=options.marker_source)
+    expected = {ERRAND, OBJECTS} if options.mission else {ERRAND, MARKERS}
+    arguments = {
+        "marker_source": options.marker_source,
+        "marker_mode": "mission" if options.mission or options.serve else "service",
+        "serve": str(options.serve).lower(),
+    }
+    if not options.serve:
+        return _errand(options, "home_service.launch", expected, **arguments)
+    with Run(options, "home_service.launch", **_files(options), **arguments) as run:
+        master = os.environ["ROS_MASTER_URI"]
+        run.display.say(f"send missions to the action deliver at ROS_MASTER_URI={master}; Ctrl-C ends")
+        return _until_it_ends(run)
 
 
 def _errand(options: Namespace, launch_file: str, expected: Set[str], **arguments) -> int:
-    files = {"map_file": options.map.resolve(), "zones_file": options.zones.resolve()}
-    with Run(options, launch_file, **files, **arguments) as run:
+    with Run(options, launch_file, **_files(options), **arguments) as run:
         failure = run.watch(lambda: run.referee.ledger.is_complete(expected))
         run.referee.ledger.failure = failure or run.referee.ledger.failure
         return run.conclude(run.judge(expected))
+
+
+def _files(options: Namespace) -> Dict[str, Path]:
+    mission = getattr(options, "mission", None)
+    files = {"map_file": options.map, "zones_file": options.zones, "mission_file": mission}
+    return {name: path.resolve() for name, path in files.items() if path}
 
 
 def _until_it_ends(run: Run) -> int:

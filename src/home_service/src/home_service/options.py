@@ -10,7 +10,7 @@ MAX_SPEED = 1000.0
 COMMANDS = {
     "launch": "Starts the simulated home with the robot in it, until Ctrl-C.",
     "test_navigation": "Starts home, localization and navigation; goals by hand or from --goals.",
-    "pick_objects": "Drives to the pick-up zone, waits there, and on to the drop-off zone.",
+    "pick_objects": "Carries out a mission, by default from the pick-up to the drop-off zone.",
     "add_marker": "Shows the object at pick-up, hides it, and shows it at drop-off, by the clock.",
     "home_service": "Fetches the object at the pick-up zone and delivers it at the drop-off zone.",
     "test_slam": "Starts home and SLAM, driven with keys (terminal or pipe), or by itself; saves the map.",
@@ -96,6 +96,12 @@ def _add_own_options(name: str, parser: argparse.ArgumentParser) -> None:
         parser.add_argument("--drive", choices=("keys", "auto"), default="keys", help="who drives the robot")
     if name in ("home_service", "pick_objects", "add_marker", "rehearse"):
         parser.add_argument("--zones", type=Path, default=ROOT / "map/zones.yaml", help="YAML of zones")
+    if name in ("home_service", "pick_objects", "rehearse"):
+        parser.add_argument("--mission", type=Path, metavar="FILE", help="YAML of deliveries")
+    if name == "home_service":
+        parser.add_argument(
+            "--serve", action="store_true", help="wait for missions sent to the action deliver, until Ctrl-C"
+        )
     if name == "test_navigation":
         parser.add_argument(
             "--goals", type=goal_list, metavar='"X Y YAW; X Y YAW"', help="drive to these poses, then end"

@@ -3,21 +3,29 @@
 import math
 import threading
 import time
-from typing import Callable, Mapping, Optional
+from collections import deque
+from typing import Callable, Deque, Iterable, Mapping, Optional, Tuple
 
 import rospy
+from home_service_msgs.msg import MissionState
 from nav_msgs.msg import Odometry, Path
 from rosgraph_msgs.msg import Log
 from std_msgs.msg import String
 from visualization_msgs.msg import Marker
 
+from home_service.delivery_watch import DeliveryWatch
 from home_service.verdict import Ledger
+from pick_objects import Delivery, Stage
 from planar import Pose2
 from planar.places import Place
 from planar_ros.messages import pose2_from_msg
 
 MOTION_DISTANCE = 0.02
+# Name space of the errand's marker; those of a mission have their objects' names.
+PARCEL = "parcel"
 CONNECTION_CHATTER = "tcpros_base.py"
+# Ground truth is remembered for so many messages, to look up where the robot stood at a stamp.
+REMEMBERED = 500
 SPOKEN_NODES = ("/pick_objects", "/add_markers")
 
 
@@ -40,10 +48,13 @@ class Referee:
         self._start_time = 0.0
         self._places = places
         self._say = say
+        self._recent: Deque[Tuple[float, Pose2]] = deque(maxlen=REMEMBERED)
+        self._deliveries = DeliveryWatch(places, self.ledger.deliveries, say)
         self._lock = threading.Lock()
         rospy.Subscriber("base_pose_ground_truth", Odometry, self._see_truth, queue_size=50, tcp_nodelay=True)
         rospy.Subscriber("contacts", String, self._see_contact, queue_size=50)
         rospy.Subscriber("pick_objects/state", String, self._see_state, queue_size=10)
+        rospy.Subscriber("pick_objects/mission_state", MissionState, self._see_mission, queue_size=50)
         rospy.Subscriber("visualization_marker", Marker, self._see_marker, queue_size=10)
         rospy.Subscriber("move_base/NavfnROS/plan", Path, self._see_plan, queue_size=1)
         rospy.Subscriber("/rosout_agg", Log, self._hear, queue_size=50)
@@ -68,18 +79,28 @@ class Referee:
             else:
                 self.distance_driven += self.truth.distance_to(truth)
             self.truth, self.simulated_time = truth, stamp
+            self._recent.append((stamp, truth))
             has_moved = self._start_truth.distance_to(truth) > MOTION_DISTANCE
             if self.first_motion_wall is None and has_moved:
                 self.first_motion_wall = time.time()
 
     def _see_state(self, message):
         with self._lock:
-            self.state = self.ledger.final_state = message.data
-            arrived_at = {"picking up": "pickup", "delivered": "dropoff"}.get(message.data)
-            if arrived_at in self._places and self.truth is not None:
-                error = self.truth.distance_to(self._places[arrived_at].pose)
-                self.ledger.errors[arrived_at] = error
-                self._say(f"at {arrived_at}: truly {error:.3f} m from the zone's centre")
+            self.state = message.data
+
+    def _see_mission(self, message):
+        with self._lock:
+            truth = self._truth_at(message.header.stamp.to_sec())
+            for state in message.deliveries:
+                told = state.delivery
+                delivery = Delivery(told.name, told.object, told.source, told.destination)
+                self._deliveries.see(delivery, Stage(state.state), state.attempts, state.reason, truth)
+            self.ledger.reason, self.ledger.final_state = message.reason, message.state
+
+    def _truth_at(self, stamp: float) -> Optional[Pose2]:
+        if not self._recent:
+            return None
+        return min(self._recent, key=lambda entry: abs(entry[0] - stamp))[1]
 
     def _see_contact(self, message):
         for name in message.data.splitlines():
@@ -89,14 +110,21 @@ class Referee:
     def _see_marker(self, message):
         if not self._places:
             return
-        if message.action == Marker.DELETE:
-            event = "hidden"
+        if message.ns == PARCEL:
+            is_hidden = message.action == Marker.DELETE
+            event = "hidden" if is_hidden else f"shown at {self._nearest_place(message, self._places)}"
+        elif message.frame_locked:
+            event = f"{message.ns} carried"
         else:
-            shown = pose2_from_msg(message.pose)
-            nearest = min(self._places.values(), key=lambda place: place.pose.distance_to(shown))
-            event = f"shown at {nearest.name}"
+            records = [record for record in self.ledger.deliveries if record.object == message.ns]
+            names = [name for record in records for name in (record.source, record.destination)]
+            event = f"{message.ns} at {self._nearest_place(message, names or self._places)}"
         if not self.ledger.markers or self.ledger.markers[-1] != event:
             self.ledger.markers.append(event)
+
+    def _nearest_place(self, marker, names: Iterable[str]) -> str:
+        shown = pose2_from_msg(marker.pose)
+        return min(names, key=lambda name: self._places[name].distance_to(shown))
 
     def _see_plan(self, message):
         points = [(pose.pose.position.x, pose.pose.position.y) for pose in message.poses]

@@ -13,11 +13,11 @@ import numpy as np
 
 from add_markers import CarriedParcel
 from amcl_lite import Localizer, LocalizerSettings
+from home_service.delivery_watch import DeliveryWatch
 from home_service.verdict import ERRAND, MARKERS, Ledger, Verdict, judge
-from move_base_lite import Decision, Navigator, Status, load_settings
-from pick_objects import Errand, ErrandSettings, ErrandState, Finish, GoalReached, GoalRefused, GoTo
+from move_base_lite import Decision, NavigationError, Navigator, Status, load_settings
+from pick_objects import Errand, Finish, GoalReached, GoalRefused, GoTo, MeasureWays, Mission, WaysMeasured
 from planar import OccupancyGrid, Pose2, Twist2
-from planar.places import Place
 from planar.settings_file import settings_from_yaml
 from sim_bridge import Observation, RobotProfile, Simulation
 from sim_bridge.world import World
@@ -67,10 +67,11 @@ class Rehearsal:
         world: World,
         robot: RobotProfile,
         grid: OccupancyGrid,
-        pickup: Place,
-        dropoff: Place,
+        mission: Mission,
         seed: int,
+        parcel: Optional[CarriedParcel] = None,
     ):
+        """``parcel``: the marker of an errand that is rehearsed with it."""
         self._simulation = Simulation(world, robot, seed=seed)
         localization, _ = settings_from_yaml(LocalizerSettings, LOCALIZATION_CONFIG)
         self._localizer = Localizer(grid, localization, np.random.default_rng(seed))
@@ -79,10 +80,11 @@ class Rehearsal:
         self._steps_per_tick = round(
             1.0 / (navigation.move_base.controller_frequency * self._simulation.step_seconds)
         )
-        self._errand = Errand(pickup, dropoff)
-        self._parcel = CarriedParcel(pickup, dropoff, ErrandSettings().pickup_seconds)
-        self._arrivals = {ErrandState.PICKING_UP: pickup, ErrandState.DELIVERED: dropoff}
+        self._errand = Errand(mission)
+        self._parcel = parcel
+        self._places = mission.places
         self._ledger = Ledger()
+        self._deliveries = DeliveryWatch(mission.places, self._ledger.deliveries, say=lambda line: None)
         self._trajectory: List[Tuple[float, float, float, float]] = []
         self._errors: List[float] = []
 
@@ -100,18 +102,21 @@ class Rehearsal:
             order = self._errand.advance(now, event)
             self._note_state(observation.base_in_world)
             if isinstance(order, GoTo):
-                self._navigator.set_goal(order.place.pose)
+                self._navigator.set_goal(order.pose)
             decision = self._navigator.tick(now, base_in_map, odometry.base_in_odom, odometry.twist, scan)
             command, event = decision.command or Twist2(), _event_of(decision)
+            if isinstance(order, MeasureWays):
+                event = self._measure(order, base_in_map)
             if isinstance(order, Finish):
                 outcome = order
             elif now > simulated_timeout:
                 outcome = Finish(False, f"not done within {simulated_timeout:g} simulated seconds")
         if not outcome.success:
             self._ledger.failure = outcome.reason
+        self._ledger.reason = outcome.reason
         self._simulation.close()
         return Rehearsed(
-            judge(self._ledger, {ERRAND, MARKERS}),
+            judge(self._ledger, {ERRAND, MARKERS} if self._parcel else {ERRAND}),
             self._ledger,
             np.array(self._trajectory),
             np.array(self._errors),
@@ -133,18 +138,26 @@ class Rehearsal:
         truth = observation.base_in_world
         self._trajectory.append((observation.stamp, truth.x, truth.y, truth.yaw))
         self._errors.append(truth.distance_to(base_in_map))
-        self._note_marker(self._parcel.update(observation.stamp, base_in_map))
+        if self._parcel is not None:
+            self._note_marker(self._parcel.update(observation.stamp, base_in_map))
 
     def _note_state(self, truth: Pose2) -> None:
-        state = self._errand.state
-        if state.value != self._ledger.final_state:
-            self._ledger.final_state = state.value
-            if state in self._arrivals:
-                place = self._arrivals[state]
-                self._ledger.errors[place.name] = truth.distance_to(place.pose)
+        self._ledger.final_state = self._errand.state.value
+        for job in self._errand.jobs:
+            self._deliveries.see(job.delivery, job.stage, job.attempts, job.reason, truth)
+
+    def _measure(self, order: MeasureWays, base_in_map: Pose2) -> WaysMeasured:
+        lengths: List[Optional[float]] = []
+        for start, end in order.ways:
+            try:
+                corners = self._navigator.make_plan(start or base_in_map, end)
+                lengths.append(float(np.hypot(*np.diff(corners, axis=0).T).sum()))
+            except NavigationError:
+                lengths.append(None)
+        return WaysMeasured(tuple(lengths))
 
     def _note_marker(self, shown_at: Optional[Pose2]) -> None:
-        shown = [place.name for place in self._arrivals.values() if place.pose == shown_at]
+        shown = [place.name for place in self._places.values() if place.pose == shown_at]
         event = f"shown at {shown[0]}" if shown else "hidden"
         if self._ledger.markers[-1:] != [event]:
             self._ledger.markers.append(event)

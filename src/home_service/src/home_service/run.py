@@ -16,7 +16,7 @@ from home_service.graph import RosGraph
 from home_service.recorder import Recorder
 from home_service.referee import Referee
 from home_service.run_folder import create_run_folder, write_result
-from home_service.verdict import Verdict, judge
+from home_service.verdict import DeliveryRecord, Verdict, judge
 from home_service.versions import versions
 from planar import MapFileError, PlanarError
 from run_report import summary, write_report
@@ -147,6 +147,7 @@ class Run:
             "speed": self._speed,
             "world": str(options.world),
             **({"map": str(options.map)} if "map" in options else {}),
+            **({"mission": str(options.mission)} if getattr(options, "mission", None) else {}),
             "robot": options.robot,
             "wall_seconds": round(time.time() - self._start_wall, 3),
             **(self._observations() if self.referee else {}),
@@ -180,11 +181,19 @@ class Run:
             "simulated_seconds": round(referee.simulated_seconds, 3),
             "real_time_factor": round(referee.real_time_factor, 3),
             "distance_driven": round(referee.distance_driven, 3),
-            "position_error": {zone: round(error, 4) for zone, error in ledger.errors.items()},
+            "position_error": {place: round(error, 4) for place, error in ledger.position_errors.items()},
+            "deliveries": [_delivery_of(record) for record in ledger.deliveries],
             "collisions": ledger.collisions,
             "markers": ledger.markers,
             "final_state": ledger.final_state,
         }
+
+
+def _delivery_of(record: DeliveryRecord) -> dict:
+    """A delivery as it stands in result.json; errors in metres."""
+    fields = {**vars(record), "from": record.source, "to": record.destination}
+    order = ("name", "object", "from", "to", "state", "attempts", "reason", "pickup_error", "dropoff_error")
+    return {key: round(fields[key], 4) if isinstance(fields[key], float) else fields[key] for key in order}
 
 
 def _wants_rviz(options: Namespace) -> bool:

@@ -1,31 +1,85 @@
-"""Was the errand really done? Judged by ground truth, not by what the robot believes."""
+"""Was the mission really done? Judged by ground truth, not by what the robot believes."""
 
 from dataclasses import dataclass, field
 from typing import Dict, List, Optional, Set
 
 ARRIVAL_TOLERANCE = 0.25
-ERRAND, MARKERS, DEMO = "errand", "markers", "demo"
+ERRAND, MARKERS, OBJECTS, DEMO = "errand", "markers", "objects", "demo"
 MARKER_STORY = ["shown at pickup", "hidden", "shown at dropoff"]
-FINAL_STATES = ("delivered", "failed")
+FINAL_STATES = ("delivered", "failed", "cancelled")
+
+
+@dataclass
+class DeliveryRecord:
+    """What was seen of a delivery. Errors: how far from a pose of the place the robot truly stood, metres."""
+
+    name: str
+    object: str
+    source: str
+    destination: str
+    state: str = "waiting"
+    attempts: int = 0
+    reason: str = ""
+    pickup_error: Optional[float] = None
+    dropoff_error: Optional[float] = None
+
+    @property
+    def complaint(self) -> Optional[str]:
+        """Why this delivery is not proven; None if it is."""
+        if self.state != "delivered":
+            return f"{self.name} is {self.state}" + (f": {self.reason}" if self.reason else "")
+        for place, error in ((self.source, self.pickup_error), (self.destination, self.dropoff_error)):
+            if error is None:
+                return f"the robot never said that it arrived at {place}"
+            if error > ARRIVAL_TOLERANCE:
+                return f"at {place} the robot truly stood {error:.2f} m off, more than {ARRIVAL_TOLERANCE} m"
+        return None
+
+    @property
+    def story(self) -> List[str]:
+        """What its object's marker must have shown, in this order."""
+        places = (self.source, self.destination)
+        return [f"{self.object} at {places[0]}", f"{self.object} carried", f"{self.object} at {places[1]}"]
 
 
 @dataclass
 class Ledger:
-    """What was seen of a run. Errors in metres, against the true pose at the moment of arrival."""
+    """What was seen of a run. ``reason``: the robot's own words for how its mission ended."""
 
-    errors: Dict[str, float] = field(default_factory=dict)
+    deliveries: List[DeliveryRecord] = field(default_factory=list)
     collisions: List[str] = field(default_factory=list)
     markers: List[str] = field(default_factory=list)
     final_state: str = ""
+    reason: str = ""
     failure: str = ""
+
+    @property
+    def position_errors(self) -> Dict[str, float]:
+        """The error at each place that the robot came to."""
+        errors = {}
+        for record in self.deliveries:
+            errors[record.source], errors[record.destination] = record.pickup_error, record.dropoff_error
+        return {place: error for place, error in errors.items() if error is not None}
 
     def is_complete(self, expected: Set[str]) -> bool:
         """Whether everything expected has been seen, or can no longer come."""
-        if self.failure or self.final_state == "failed":
+        if self.failure or self.final_state in ("failed", "cancelled"):
             return True
-        errand_is_over = ERRAND not in expected or self.final_state in FINAL_STATES
-        marker_is_done = not expected & {MARKERS, DEMO} or self.markers[-1:] == MARKER_STORY[-1:]
-        return errand_is_over and marker_is_done
+        if ERRAND in expected and self.final_state not in FINAL_STATES:
+            return False
+        if OBJECTS in expected and self.untold_objects:
+            return False
+        return not expected & {MARKERS, DEMO} or self.markers[-1:] == MARKER_STORY[-1:]
+
+    @property
+    def untold_objects(self) -> List[str]:
+        """The delivered objects whose markers have not told the whole story."""
+        untold = []
+        for record in self.deliveries:
+            told = iter(self.markers)
+            if record.state == "delivered" and not all(event in told for event in record.story):
+                untold.append(record.object)
+        return untold
 
 
 @dataclass(frozen=True)
@@ -41,6 +95,8 @@ def judge(ledger: Ledger, expected: Set[str]) -> Verdict:
     complaint = ledger.failure or None
     if complaint is None and ERRAND in expected:
         complaint = _complaint_about_errand(ledger)
+    if complaint is None and OBJECTS in expected and ledger.untold_objects:
+        complaint = f"the markers of {', '.join(ledger.untold_objects)} did not go with the objects"
     if complaint is None and expected & {MARKERS, DEMO} and ledger.markers != MARKER_STORY:
         complaint = (
             f"the marker was {', '.join(ledger.markers) or 'never shown'}, not {', '.join(MARKER_STORY)}"
@@ -52,18 +108,14 @@ def judge(ledger: Ledger, expected: Set[str]) -> Verdict:
 
 def _complaint_about_errand(ledger: Ledger) -> Optional[str]:
     if ledger.final_state != "delivered":
-        return f"the errand ended in the state '{ledger.final_state or 'not started'}'"
-    for zone in ("pickup", "dropoff"):
-        error = ledger.errors.get(zone)
-        if error is None:
-            return f"the robot never said that it arrived at {zone}"
-        if error > ARRIVAL_TOLERANCE:
-            return f"at {zone} the robot truly stood {error:.2f} m off, more than {ARRIVAL_TOLERANCE} m"
-    return None
+        return ledger.reason or f"the mission ended in the state '{ledger.final_state or 'not started'}'"
+    complaints = [record.complaint for record in ledger.deliveries if record.state != "cancelled"]
+    return next((text for text in complaints if text), None if complaints else "nothing was delivered")
 
 
 def _praise(ledger: Ledger, expected: Set[str]) -> str:
     if ERRAND not in expected:
         return f"the marker was {', '.join(ledger.markers)}"
-    worst = max(ledger.errors.values())
-    return f"picked up and delivered, at most {worst:.2f} m off the zones, no collision"
+    worst = max(ledger.position_errors.values())
+    what = ledger.reason if len(ledger.deliveries) > 1 else "picked up and delivered"
+    return f"{what}, at most {worst:.2f} m off, no collision"

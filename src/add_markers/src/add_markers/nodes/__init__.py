@@ -1,0 +1,1 @@
+"""The parts of the node ``add_markers`` that speak ROS."""
