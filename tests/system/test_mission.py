@@ -25,7 +25,7 @@ class MissionTest(unittest.TestCase):
             self.assertLess(referee.simulated_seconds, SIMULATED_DEADLINE, f"state '{referee.state}'")
             self.assertLess(time.monotonic(), wall_deadline, f"state '{referee.state}'")
             time.sleep(0.05)
-        print(f"errors {referee.ledger.errors}, {referee.simulated_seconds:.1f} s simulated")
+        print(f"errors {referee.ledger.position_errors}, {referee.simulated_seconds:.1f} s simulated")
         verdict = judge(referee.ledger, EXPECTED)
         self.assertTrue(verdict.success, verdict.reason)
 
