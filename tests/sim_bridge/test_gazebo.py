@@ -110,7 +110,7 @@ class TestGazebo(unittest.TestCase):
         self.assertTrue(world.success)
         self.assertIn("mobile_base", world.model_names)
         self.assertIn("ground_plane", world.model_names)
-        self.assertFalse(world.rendering_enabled)
+        self.assertTrue(world.rendering_enabled)
 
     def test_a_spawned_model_is_listed_told_and_deleted(self):
         self.assertEqual(self.spawn(1.0).status_message, "SpawnModel: Successfully spawned entity")

@@ -58,6 +58,19 @@ class _Link:
     centre: np.ndarray
 
 
+@dataclass(frozen=True, eq=False)
+class MassProperties:
+    """``mass`` in kg, ``moments`` (3,) in kg m^2; ``centre``: (4, 4) of mass and principal axes in the link.
+
+    Without weight a link is not drawn down.
+    """
+
+    mass: float
+    centre: np.ndarray
+    moments: np.ndarray
+    has_weight: bool
+
+
 class JointState(NamedTuple):
     """``position`` in rad or m, ``speed`` in rad/s or m/s."""
 
@@ -189,34 +202,23 @@ class Engine:
             joint.number, joint.index, pybullet.TORQUE_CONTROL, force=max(-limit, min(effort, limit))
         )
 
-    def set_mass(self, name: str, mass: float, moments: Sequence[float]) -> None:
-        """``mass`` in kg, ``moments`` (3,) of inertia about the link's centre of mass, kg m^2."""
-        link = self._links[name]
-        self._bullet.changeDynamics(link.number, link.index, mass=mass, localInertiaDiagonal=list(moments))
-        if name in self._weightless:
-            self._weightless[name] = mass
-
-    def mass_of(self, name: str) -> Tuple[float, Tuple[float, float, float]]:
-        """A link's mass, kg, and moments of inertia (3,), kg m^2."""
+    def mass_properties(self, name: str) -> MassProperties:
         link = self._links[name]
         mass, _, moments, *_ = self._bullet.getDynamicsInfo(link.number, link.index)
-        return mass, moments
+        return MassProperties(mass, link.centre, np.array(moments), name not in self._weightless)
 
-    def centre_of(self, name: str) -> np.ndarray:
-        """The pose (4, 4) of a link's centre of mass in the link."""
-        return self._links[name].centre
-
-    def set_weight(self, name: str, has_weight: bool) -> None:
-        """Whether a link is drawn down."""
+    def set_mass(self, name: str, mass: float, moments: Sequence[float], has_weight: bool) -> None:
+        """``mass`` in kg, ``moments`` (3,) about the principal axes, kg m^2."""
+        link = self._links[name]
+        self._bullet.changeDynamics(link.number, link.index, mass=mass, localInertiaDiagonal=list(moments))
         self._weightless.pop(name, None)
         if not has_weight:
-            self._weightless[name] = self.mass_of(name)[0]
+            self._weightless[name] = mass
 
-    def has_weight(self, name: str) -> bool:
-        return name not in self._weightless
-
-    def set_joint_damping(self, name: str, damping: float) -> None:
+    def set_joint_limits(self, name: str, lower: float, upper: float, damping: float) -> None:
+        """Limits in rad or m, ``damping`` in N m s/rad or N s/m."""
         joint = self._joints[name]
+        self._limit(joint.number, joint.index, lower, upper)
         self._bullet.changeDynamics(joint.number, joint.index, jointDamping=damping)
 
     def add_robot(self, name: str, model: RobotModel, base_in_space: np.ndarray) -> None:
@@ -351,15 +353,14 @@ class Engine:
         """Bullet brakes every joint with a motor; here it only has the joint's own friction."""
         self._bullet.setJointMotorControl2(number, index, pybullet.VELOCITY_CONTROL, force=joint.friction)
         self._bullet.changeDynamics(number, index, jointDamping=joint.damping)
-        if joint.upper - joint.lower < np.inf:
-            self._bullet.changeDynamics(
-                number,
-                index,
-                jointLowerLimit=joint.lower,
-                jointUpperLimit=joint.upper,
-                jointLimitForce=LIMIT_FORCE,
-            )
+        self._limit(number, index, joint.lower, joint.upper)
         self._bullet.resetJointState(number, index, joint.start)
+
+    def _limit(self, number: int, index: int, lower: float, upper: float) -> None:
+        if upper - lower < np.inf:
+            self._bullet.changeDynamics(
+                number, index, jointLowerLimit=lower, jointUpperLimit=upper, jointLimitForce=LIMIT_FORCE
+            )
 
     def _compounds(self, collisions: Sequence[Collision], moves: bool, origin=np.eye(4)) -> List[int]:
         """Bullet's numbers of shapes that together are the collisions seen from ``origin``, (4, 4)."""

@@ -10,7 +10,7 @@ from planar.settings import nearest_name
 from sim_bridge.config import SimulationSettings
 from sim_bridge.description import RobotProfile
 from sim_bridge.drawing import Drawing
-from sim_bridge.engine import Engine, JointState, Motion
+from sim_bridge.engine import Engine, JointState, MassProperties, Motion
 from sim_bridge.errors import UnknownEntityError, WorldError
 from sim_bridge.pose3 import cross, from_pose2
 from sim_bridge.robot import Observation, Robot
@@ -60,6 +60,7 @@ class Scene:
         self._joints: Dict[str, Joint] = {}
         self._starts: Dict[str, Tuple[RobotProfile, np.ndarray]] = {}
         self._robots: Dict[str, Robot] = {}
+        self.lights = {light.name: light for light in world.lights}
         self._pushes: List[Push] = []
         self._joint_pushes: List[JointPush] = []
         self._physics_steps = 0
@@ -208,6 +209,33 @@ class Scene:
         return [
             joint.name for joint in self._joints.values() if joint.model == model and joint.kind != "fixed"
         ]
+
+    def solids_of(self, model: str) -> List[str]:
+        """The names of the collisions of a model."""
+        bodies = (body for body in self._bodies.values() if body.model == model)
+        return [part.name for body in bodies for part in body.collisions]
+
+    def mass_properties(self, link: str) -> MassProperties:
+        self.link_motion(link)
+        return self._engine.mass_properties(link)
+
+    def set_mass(self, link: str, mass: float, moments: Sequence[float], has_weight: bool) -> None:
+        """``mass`` in kg, ``moments`` (3,) about the link's principal axes, kg m^2, and whether it falls."""
+        self.link_motion(link)
+        self._engine.set_mass(link, mass, moments, has_weight)
+
+    def full_joint_name(self, name: str) -> str:
+        """The name ``model::joint`` of the first joint that is called so, with its model or without."""
+        for known in self._joints:
+            if known == name or known.endswith("::" + name):
+                return known
+        raise UnknownEntityError(_unknown("joint", name, self._joints))
+
+    def set_joint_limits(self, name: str, lower: float, upper: float, damping: float) -> None:
+        """Limits in rad or m, ``damping`` in N m s/rad or N s/m; a joint that is fixed stays so."""
+        self._joints[name] = replace(self.joint(name), lower=lower, upper=upper, damping=damping)
+        if self._joints[name].kind != "fixed":
+            self._engine.set_joint_limits(name, lower, upper, damping)
 
     def joint(self, name: str) -> Joint:
         return _found(self._joints, name, "joint")

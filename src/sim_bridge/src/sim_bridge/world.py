@@ -18,6 +18,7 @@ class Collision:
     shape: Shape
     pose_in_body: np.ndarray
     retro: float = 0.0
+    name: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,6 +112,15 @@ class DrivenModel:
 
 
 @dataclass(frozen=True)
+class Light:
+    """``diffuse``: red, green, blue, alpha, 0 to 1; ``attenuation``: constant, linear, quadratic."""
+
+    name: str
+    diffuse: Tuple[float, float, float, float]
+    attenuation: Tuple[float, float, float]
+
+
+@dataclass(frozen=True)
 class World:
     """Bodies, joints between them, robots, and in words what the world's file holds that was left out."""
 
@@ -120,3 +130,4 @@ class World:
     warnings: Tuple[str, ...] = ()
     joints: Tuple[Joint, ...] = ()
     robots: Tuple[DrivenModel, ...] = ()
+    lights: Tuple[Light, ...] = ()

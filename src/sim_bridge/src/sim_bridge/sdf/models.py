@@ -117,10 +117,10 @@ class ModelReader:
             raise include.error("includes itself")
         self._warnings.check_children(include)
         uri = include.required("uri").text
-        built_in = _built_in(uri)
-        if built_in == SUN:
+        own = built_in(uri)
+        if own == SUN:
             return None
-        if built_in == GROUND_PLANE:
+        if own == GROUND_PLANE:
             model = parse_text(_GROUND_PLANE_SDF, uri).required("model")
         else:
             found = resolve(uri, folder, self._model_folders)
@@ -146,7 +146,7 @@ class ModelReader:
         return self._files[file]
 
 
-def _built_in(uri: str) -> str:
+def built_in(uri: str) -> str:
     """The name of a model that may be Gazebo's own: ``model://ground_plane``, or Ground Plane of Fuel."""
     scheme, _, path = uri.partition("://")
     if scheme == "model":

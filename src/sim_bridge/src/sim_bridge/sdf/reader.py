@@ -12,11 +12,12 @@ from sim_bridge.sdf.frames import Frames
 from sim_bridge.sdf.geometry import LeftOutError, MissingError, read_shape
 from sim_bridge.sdf.inertia import read_inertia, read_mass
 from sim_bridge.sdf.joints import read_joint, started, trees_of
+from sim_bridge.sdf.lights import read_lights
 from sim_bridge.sdf.models import Model, ModelReader, declare_frames
 from sim_bridge.sdf.state import ModelState, read_states
 from sim_bridge.sdf.warnings import Warnings
 from sim_bridge.shapes import Look, MeshFile, Plane, Shape, scaled
-from sim_bridge.world import Body, Collision, DrivenModel, Inertia, Joint, Surface, Visual, World
+from sim_bridge.world import Body, Collision, DrivenModel, Inertia, Joint, Light, Surface, Visual, World
 
 DEFAULT_GRAVITY = 9.8
 
@@ -50,6 +51,7 @@ class _Reader:
         self._bodies: List[Body] = []
         self._joints: List[Joint] = []
         self._robots: List[DrivenModel] = []
+        self._lights: List[Light] = []
         self._model_folders = model_folders
         self._warnings = warnings
         self._models = ModelReader(model_folders, warnings)
@@ -63,12 +65,14 @@ class _Reader:
             tuple(self._warnings.lines()),
             tuple(self._joints),
             tuple(self._robots),
+            tuple(self._lights),
         )
 
     def read_world(self, world: Element, folder: Path) -> None:
         self._warnings.check_children(world)
         for physics in world.children("physics"):
             self._warnings.check_children(physics)
+        self._lights.extend(read_lights(world))
         states = list(world.children("state"))
         insertions = [inserted for state in states for inserted in state.children("insertions")]
         gone = [
@@ -160,7 +164,9 @@ class _Reader:
             shape = self._solid(part, model, state)
             if shape is not None:
                 retro = part.number("laser_retro", default=0.0)
-                collisions.append(Collision(shape, _pose_in_link(part, link, model, in_model), retro))
+                collisions.append(
+                    Collision(shape, _pose_in_link(part, link, model, in_model), retro, part.name)
+                )
         visuals = []
         for part in link.children("visual"):
             self._warnings.check_children(part)

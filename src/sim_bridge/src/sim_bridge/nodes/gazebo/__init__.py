@@ -1,0 +1,34 @@
+"""Gazebo's services and topics below /gazebo (gazebo_ros 2.9), with its status texts."""
+
+from sim_bridge.nodes.fleet import Fleet
+from sim_bridge.nodes.gazebo.forces import ForceServices
+from sim_bridge.nodes.gazebo.joints import JointServices
+from sim_bridge.nodes.gazebo.lights import LightServices
+from sim_bridge.nodes.gazebo.physics import PhysicsServices
+from sim_bridge.nodes.gazebo.properties import PropertyServices
+from sim_bridge.nodes.gazebo.server import Server
+from sim_bridge.nodes.gazebo.spawning import SpawnServices
+from sim_bridge.nodes.gazebo.states import StateServices
+from sim_bridge.nodes.orders import Orders
+from sim_bridge.nodes.time_control import TimeControl
+from sim_bridge.scene import Scene
+
+__all__ = ["GazeboInterface"]
+
+
+class GazeboInterface:
+    """Serves a scene as Gazebo does; ``model_folders`` are searched for the models of spawned ones."""
+
+    def __init__(self, scene: Scene, fleet: Fleet, time_control: TimeControl, orders: Orders, model_folders):
+        server = Server(orders)
+        self._states = StateServices(scene, server)
+        PhysicsServices(scene, time_control, server)
+        SpawnServices(scene, fleet, server, model_folders)
+        PropertyServices(scene, server)
+        JointServices(scene, server)
+        ForceServices(scene, server)
+        LightServices(scene, server)
+
+    def publish(self) -> None:
+        """Where all models and links are, for those who have subscribed."""
+        self._states.publish()

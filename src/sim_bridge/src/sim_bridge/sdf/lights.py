@@ -1,0 +1,30 @@
+"""<light> elements of a world."""
+
+from sim_bridge.sdf.element import Element
+from sim_bridge.sdf.models import built_in
+from sim_bridge.world import Light
+
+# What Gazebo's model://sun is.
+SUN = Light("sun", (0.8, 0.8, 0.8, 1.0), (0.9, 0.01, 0.001))
+
+
+def read_lights(world: Element):
+    """The lights of a world, those of included suns too."""
+    for light in world.children("light"):
+        yield _light(light)
+    for include in world.children("include"):
+        if built_in(include.required("uri").text) == SUN.name:
+            yield SUN
+
+
+def _light(light: Element) -> Light:
+    diffuse = light.child("diffuse")
+    words = len(diffuse.text.split()) if diffuse is not None else 0
+    red, green, blue, alpha = (
+        [*diffuse.numbers(words), 1.0][:4] if diffuse is not None and words in (3, 4) else (1.0,) * 4
+    )
+    constant, linear, quadratic = (
+        light.number("attenuation", name, default=default)
+        for name, default in (("constant", 1.0), ("linear", 1.0), ("quadratic", 0.0))
+    )
+    return Light(light.name, (red, green, blue, alpha), (constant, linear, quadratic))
