@@ -5,6 +5,7 @@ setup(
     **generate_distutils_setup(
         packages=[
             "sim_bridge",
+            "sim_bridge.description",
             "sim_bridge.nodes",
             "sim_bridge.nodes.gazebo",
             "sim_bridge.sdf",

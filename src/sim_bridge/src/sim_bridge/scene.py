@@ -14,6 +14,9 @@ from sim_bridge.engine import Engine, JointState, MassProperties, Motion
 from sim_bridge.errors import UnknownEntityError, WorldError
 from sim_bridge.pose3 import cross, from_pose2
 from sim_bridge.robot import Observation, Robot
+from sim_bridge.sensors.camera import Picture
+from sim_bridge.sensors.imu import ImuReading
+from sim_bridge.sensors.mounted import MountedSensors
 from sim_bridge.world import Body, Joint, World
 
 # Metres above a robot's start from which on a floor is looked for.
@@ -60,6 +63,7 @@ class Scene:
         self._joints: Dict[str, Joint] = {}
         self._starts: Dict[str, Tuple[RobotProfile, np.ndarray]] = {}
         self._robots: Dict[str, Robot] = {}
+        self._sensors: Dict[str, MountedSensors] = {}
         self.lights = {light.name: light for light in world.lights}
         self._pushes: List[Push] = []
         self._joint_pushes: List[JointPush] = []
@@ -135,6 +139,7 @@ class Scene:
     def remove_model(self, name: str) -> None:
         links = self.links_of(name)
         robot = self._robots.pop(name, None)
+        self._sensors.pop(name, None)
         self._starts.pop(name, None)
         self._joints = {key: joint for key, joint in self._joints.items() if joint.model != name}
         for link in links[:1] if robot else links:
@@ -155,6 +160,17 @@ class Scene:
             self._drawing = Drawing()
             self._draw([*self._bodies.values(), *(robot.body() for robot in self._robots.values())])
         return self._drawing.triangles(self._engine.pose_of, but)
+
+    def picture(self, robot: str, number: int = 0) -> Picture:
+        """What the camera of that number of a robot sees now; the robot itself is not in it."""
+        pose = self._engine.pose_of(self.robot(robot).vehicle.base)
+        return self._mounted(robot).picture(number, *self.drawing(but=robot), pose)
+
+    def inertia(self, robot: str, number: int, seconds: float) -> ImuReading:
+        """What a robot's inertial sensor of that number feels, ``seconds`` after it was last asked."""
+        base, imu = self.robot(robot).vehicle.motion(), self.robot(robot).profile.imus[number]
+        sensor = _seen_from(base, imu.pose_in_base)
+        return self._mounted(robot).inertia(number, sensor, seconds, self.gravity)
 
     def model_names(self) -> List[str]:
         return list(dict.fromkeys([*(body.model for body in self._bodies.values()), *self._robots]))
@@ -299,7 +315,7 @@ class Scene:
         starts, bodies, joints = self._starts, list(self._bodies.values()), list(self._joints.values())
         self._engine.close()
         self._engine = Engine(self.settings.physics_rate, self.gravity)
-        self._starts, self._bodies, self._joints, self._robots = {}, {}, {}, {}
+        self._starts, self._bodies, self._joints, self._robots, self._sensors = {}, {}, {}, {}, {}
         self._pushes.clear()
         self._joint_pushes.clear()
         self._physics_steps, self._stamp_at_rate, self._drawing = 0, 0.0, None
@@ -318,6 +334,13 @@ class Scene:
         self._robots[name] = robot
         self._draw([robot.body()])
         self._starts[name] = (profile, base_in_space)
+
+    def _mounted(self, robot: str) -> MountedSensors:
+        """Cameras and inertial sensors of a robot, made when they are first asked."""
+        if robot not in self._sensors:
+            seed = [self._seed, list(self._robots).index(robot)]
+            self._sensors[robot] = MountedSensors(self.robot(robot).profile, self.settings, seed)
+        return self._sensors[robot]
 
     def _draw(self, bodies: Sequence[Body]) -> None:
         if self._drawing is not None:

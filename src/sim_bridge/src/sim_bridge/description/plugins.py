@@ -6,13 +6,23 @@ from typing import Callable, Dict, List, Optional
 
 from sim_bridge.description.blocks import Blocks
 from sim_bridge.description.profile import (
+    CameraProfile,
     DriveProfile,
+    ImuProfile,
     JointStateProfile,
     KobukiProfile,
     LaserProfile,
     OdometryProfile,
 )
+from sim_bridge.description.sensors import (
+    CAMERA_PLUGINS,
+    DEPTH_CAMERA_PLUGINS,
+    IMU_PLUGINS,
+    read_camera,
+    read_imu,
+)
 from sim_bridge.description.structure import Structure
+from sim_bridge.description.values import flag, length, number, text
 from sim_bridge.pose3 import IDENTITY
 from sim_bridge.sdf.element import Element
 from sim_bridge.sdf.plugins import plugin_name
@@ -30,6 +40,8 @@ class Equipment:
     drive: Optional[DriveProfile] = None
     odometry: OdometryProfile = OdometryProfile()
     lasers: List[LaserProfile] = field(default_factory=list)
+    cameras: List[CameraProfile] = field(default_factory=list)
+    imus: List[ImuProfile] = field(default_factory=list)
     joint_states: Optional[JointStateProfile] = None
     kobuki: Optional[KobukiProfile] = None
     namespace: str = ""
@@ -48,8 +60,14 @@ def read_equipment(structure: Structure, blocks: Blocks) -> Equipment:
             left_out.append(plugin)
     for link, sensor in blocks.sensors:
         for plugin in sensor.children("plugin"):
-            if plugin_name(plugin) in LASER_PLUGINS:
+            name = plugin_name(plugin)
+            if name in LASER_PLUGINS:
                 equipment.lasers.append(_read_laser(sensor, plugin, link, structure, equipment))
+            elif name in CAMERA_PLUGINS + DEPTH_CAMERA_PLUGINS:
+                is_depth = name in DEPTH_CAMERA_PLUGINS
+                equipment.cameras.append(read_camera(sensor, plugin, link, structure, is_depth))
+            elif name in IMU_PLUGINS:
+                equipment.imus.append(read_imu(sensor, plugin, link, structure))
             else:
                 left_out.append(plugin)
     names = dict.fromkeys(plugin.attribute("filename") for plugin in left_out)
@@ -58,33 +76,33 @@ def read_equipment(structure: Structure, blocks: Blocks) -> Equipment:
 
 
 def _read_diff_drive(plugin: Element, structure: Structure, equipment: Equipment) -> None:
-    source = _text(plugin, "odometrySource", "world")
+    source = text(plugin, "odometrySource", "world")
     if source not in ODOMETRY_SOURCES:
         raise plugin.error(f"<odometrySource> must be one of {', '.join(ODOMETRY_SOURCES)}, got {source!r}")
-    separation = _length(plugin, "wheelSeparation", 0.34)
-    acceleration = _number(plugin, "wheelAcceleration", 0.0)
-    joints = [_text(plugin, "leftJoint", "left_joint"), _text(plugin, "rightJoint", "right_joint")]
+    separation = length(plugin, "wheelSeparation", 0.34)
+    acceleration = number(plugin, "wheelAcceleration", 0.0)
+    joints = [text(plugin, "leftJoint", "left_joint"), text(plugin, "rightJoint", "right_joint")]
     equipment.namespace = _namespace(plugin)
     equipment.drive = _drive(
         plugin,
         structure,
         joints,
-        wheel_radius=_length(plugin, "wheelDiameter", 0.15) / 2.0,
+        wheel_radius=length(plugin, "wheelDiameter", 0.15) / 2.0,
         wheel_separation=separation,
-        torque=_length(plugin, "wheelTorque", 5.0),
-        command_topics=(_text(plugin, "commandTopic", "cmd_vel"),),
+        torque=length(plugin, "wheelTorque", 5.0),
+        command_topics=(text(plugin, "commandTopic", "cmd_vel"),),
         max_acceleration=acceleration or math.inf,
         max_turn_acceleration=2.0 * acceleration / separation or math.inf,
     )
     equipment.odometry = OdometryProfile(
         source,
-        _text(plugin, "odometryTopic", "odom"),
-        _text(plugin, "odometryFrame", "odom"),
-        _text(plugin, "robotBaseFrame", "base_footprint"),
-        sends_transform=_flag(plugin, "publishTf", True) and _flag(plugin, "publishOdomTF", True),
-        rate=_number(plugin, "updateRate", 100.0) or None,
+        text(plugin, "odometryTopic", "odom"),
+        text(plugin, "odometryFrame", "odom"),
+        text(plugin, "robotBaseFrame", "base_footprint"),
+        sends_transform=flag(plugin, "publishTf", True) and flag(plugin, "publishOdomTF", True),
+        rate=number(plugin, "updateRate", 100.0) or None,
     )
-    if _flag(plugin, "publishWheelJointState", False):
+    if flag(plugin, "publishWheelJointState", False):
         equipment.joint_states = JointStateProfile(equipment.drive.joints, equipment.odometry.rate)
 
 
@@ -95,19 +113,19 @@ def _read_skid_steer(plugin: Element, structure: Structure, equipment: Equipment
     equipment.drive = _drive(
         plugin,
         structure,
-        [_text(plugin, f"{side}Joint", f"{name}_joint") for side, name in zip(sides, defaults)],
-        wheel_radius=_length(plugin, "wheelDiameter", 0.15) / 2.0,
-        wheel_separation=_length(plugin, "wheelSeparation", 0.4),
-        torque=_length(plugin, "torque", 5.0),
-        command_topics=(_text(plugin, "commandTopic", "cmd_vel"),),
+        [text(plugin, f"{side}Joint", f"{name}_joint") for side, name in zip(sides, defaults)],
+        wheel_radius=length(plugin, "wheelDiameter", 0.15) / 2.0,
+        wheel_separation=length(plugin, "wheelSeparation", 0.4),
+        torque=length(plugin, "torque", 5.0),
+        command_topics=(text(plugin, "commandTopic", "cmd_vel"),),
     )
     equipment.odometry = OdometryProfile(
         "world",
-        _text(plugin, "odometryTopic", "odom"),
-        _text(plugin, "odometryFrame", "odom"),
-        _text(plugin, "robotBaseFrame", "base_footprint"),
-        sends_transform=_flag(plugin, "broadcastTF", False),
-        rate=_number(plugin, "updateRate", 100.0) or None,
+        text(plugin, "odometryTopic", "odom"),
+        text(plugin, "odometryFrame", "odom"),
+        text(plugin, "robotBaseFrame", "base_footprint"),
+        sends_transform=flag(plugin, "broadcastTF", False),
+        rate=number(plugin, "updateRate", 100.0) or None,
     )
 
 
@@ -126,7 +144,8 @@ def _read_kobuki(plugin: Element, structure: Structure, equipment: Equipment) ->
     )
     equipment.odometry = OdometryProfile("gyro", sends_transform=plugin.flag("publish_tf"))
     equipment.joint_states = JointStateProfile(equipment.drive.joints)
-    equipment.kobuki = KobukiProfile(_length(plugin, "cliff_detection_threshold", 0.04))
+    equipment.imus.append(ImuProfile("mobile_base/sensors/imu_data", "base_link", IDENTITY))
+    equipment.kobuki = KobukiProfile(length(plugin, "cliff_detection_threshold", 0.04))
 
 
 def _read_joint_states(plugin: Element, structure: Structure, equipment: Equipment) -> None:
@@ -135,7 +154,7 @@ def _read_joint_states(plugin: Element, structure: Structure, equipment: Equipme
     for name in names:
         if name not in structure.joints:
             raise plugin.error(f"<jointName>: the robot has no joint {name!r}")
-    rate = _number(plugin, "updateRate", 100.0) or None
+    rate = number(plugin, "updateRate", 100.0) or None
     equipment.joint_states = JointStateProfile(tuple(names), rate)
 
 
@@ -152,9 +171,9 @@ def _read_laser(
     if beams < 2 or last <= first or not 0.0 <= nearest < farthest:
         raise sensor.error("a range finder needs two samples, min_angle < max_angle and 0 <= min < max range")
     deviation = ray.child("noise", "stddev")
-    rate = _number(sensor, "update_rate", 0.0)
+    rate = number(sensor, "update_rate", 0.0)
     return LaserProfile(
-        frame=_text(plugin, "frameName", link),
+        frame=text(plugin, "frameName", link),
         topic=_topic(plugin, "topicName", "scan", equipment.namespace),
         pose_in_base=structure.pose_in_base(link) @ (IDENTITY if pose is None else pose),
         beams=beams,
@@ -162,12 +181,17 @@ def _read_laser(
         angle_increment=(last - first) / (beams - 1),
         range_min=nearest,
         range_max=farthest,
-        sight=_number(plugin, "sight", farthest),
-        no_return=math.nan if _text(plugin, "noReturn", "inf") == "nan" else math.inf,
-        too_near=math.nan if _text(plugin, "noReturn", "inf") == "nan" else -math.inf,
+        sight=number(plugin, "sight", farthest),
+        no_return=math.nan if text(plugin, "noReturn", "inf") == "nan" else math.inf,
+        too_near=math.nan if text(plugin, "noReturn", "inf") == "nan" else -math.inf,
         rate=rate or None,
         noise=deviation.numbers(1)[0] if deviation is not None else None,
     )
+
+
+def _read_imu(plugin: Element, structure: Structure, equipment: Equipment) -> None:
+    """A plugin below the model that names its link."""
+    equipment.imus.append(read_imu(None, plugin, plugin.required("bodyName").text, structure))
 
 
 _PLUGINS: Dict[str, Callable[[Element, Structure, Equipment], None]] = {
@@ -175,6 +199,7 @@ _PLUGINS: Dict[str, Callable[[Element, Structure, Equipment], None]] = {
     "gazebo_ros_skid_steer_drive": _read_skid_steer,
     "gazebo_ros_kobuki": _read_kobuki,
     "gazebo_ros_joint_state_publisher": _read_joint_states,
+    **{name: _read_imu for name in IMU_PLUGINS},
     **{name: lambda *_: None for name in NEEDLESS_PLUGINS},
 }
 
@@ -196,36 +221,17 @@ def _drive(plugin: Element, structure: Structure, joints: List[str], **values) -
         ("commandTimeout", "command_timeout"),
     ):
         if plugin.child(tag) is not None:
-            values[key] = _length(plugin, tag, math.inf)
+            values[key] = length(plugin, tag, math.inf)
     return DriveProfile(tuple(left), tuple(name for name in joints if name not in left), **values)
 
 
 def _namespace(plugin: Element) -> str:
-    return _text(plugin, "robotNamespace", "").strip("/")
+    return text(plugin, "robotNamespace", "").strip("/")
 
 
 def _topic(plugin: Element, tag: str, default: str, robots_namespace: str) -> str:
     """A topic; absolute if the plugin has another namespace than its robot."""
-    topic, namespace = _text(plugin, tag, default), _namespace(plugin)
+    topic, namespace = text(plugin, tag, default), _namespace(plugin)
     if topic.startswith("/") or namespace in ("", robots_namespace):
         return topic
     return f"/{namespace}/{topic}"
-
-
-def _text(element: Element, tag: str, default: str) -> str:
-    child = element.child(tag)
-    return child.text if child is not None and child.text else default
-
-
-def _number(element: Element, tag: str, default: float) -> float:
-    child = element.child(tag)
-    return child.numbers(1)[0] if child is not None else default
-
-
-def _length(element: Element, tag: str, default: float) -> float:
-    child = element.child(tag)
-    return child.lengths(1)[0] if child is not None else default
-
-
-def _flag(element: Element, tag: str, default: bool) -> bool:
-    return element.flag(tag) if element.child(tag) is not None else default

@@ -7,6 +7,7 @@ from typing import Optional, Tuple
 import numpy as np
 
 from sim_bridge.description.structure import RobotModel
+from sim_bridge.sensors.camera import CameraSettings
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,6 +84,40 @@ class JointStateProfile:
     topic: str = "joint_states"
 
 
+@dataclass(frozen=True, eq=False)
+class CameraProfile:
+    """A camera that looks along x of ``pose_in_base`` (4, 4), ``rate`` times a second.
+
+    ``frame`` is the optical one. Topics of the colour picture and, if it measures depth, of the depth picture
+    and the points; a topic that is empty is not there.
+    """
+
+    frame: str
+    pose_in_base: np.ndarray
+    settings: CameraSettings
+    rate: float
+    image_topic: str
+    info_topic: str
+    depth_topic: str = ""
+    depth_info_topic: str = ""
+    points_topic: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class ImuProfile:
+    """An inertial sensor at ``pose_in_base`` (4, 4).
+
+    ``rate`` in hertz and ``noise``, the standard deviation of what it measures in SI units, are None where
+    the simulation's settings decide.
+    """
+
+    topic: str
+    frame: str
+    pose_in_base: np.ndarray
+    rate: Optional[float] = None
+    noise: Optional[float] = None
+
+
 @dataclass(frozen=True)
 class KobukiProfile:
     """What a Kobuki base has besides its drive. ``cliff_threshold``: of the range to the floor, metres."""
@@ -103,6 +138,8 @@ class RobotProfile:
     drive: DriveProfile
     odometry: OdometryProfile = OdometryProfile()
     lasers: Tuple[LaserProfile, ...] = ()
+    cameras: Tuple[CameraProfile, ...] = ()
+    imus: Tuple[ImuProfile, ...] = ()
     joint_states: Optional[JointStateProfile] = None
     kobuki: Optional[KobukiProfile] = None
     namespace: str = ""

@@ -60,6 +60,8 @@ def _profile(
         drive=equipment.drive,
         odometry=equipment.odometry,
         lasers=tuple(equipment.lasers),
+        cameras=tuple(equipment.cameras),
+        imus=tuple(equipment.imus),
         joint_states=equipment.joint_states,
         kobuki=equipment.kobuki,
         namespace=equipment.namespace,

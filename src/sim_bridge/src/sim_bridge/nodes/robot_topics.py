@@ -12,6 +12,7 @@ from std_msgs.msg import Empty, String
 from planar import Pose2, Scan, Twist2
 from planar_ros.messages import LaserScanArrays, pose2_to_msg, time_of, transform_msg
 from sim_bridge.nodes.orders import Orders
+from sim_bridge.nodes.sensor_topics import SensorTopics
 from sim_bridge.robot import Observation
 from sim_bridge.scene import Scene
 
@@ -45,6 +46,7 @@ class RobotTopics:
         self._odom = self._publisher(profile.odometry.topic, Odometry, 100)
         self._truth = self._publisher("base_pose_ground_truth", Odometry, 100)
         self._scans = [self._publisher(laser.topic, LaserScanArrays) for laser in profile.lasers]
+        self._sensors = SensorTopics(scene, name, self._publisher, self._frame)
         self._touches = self._publisher("contacts", String, latch=True)
         if profile.joint_states is not None:
             self._joints = self._publisher(profile.joint_states.topic, JointState)
@@ -71,6 +73,7 @@ class RobotTopics:
         if observation.contacts != self._contacts:
             self._contacts = observation.contacts
             self._touches.publish("\n".join(observation.contacts))
+        self._sensors.publish(self._steps, stamp)
         if self._steps % self._odom_steps:
             return []
         return self._publish_motion(observation, stamp)

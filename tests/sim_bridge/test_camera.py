@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+"""The TurtleBot's Kinect and inertial sensor, as gazebo_plugins tell of them."""
+
+import math
+import time
+import unittest
+
+import numpy as np
+import rospy
+import rostest
+from sensor_msgs.msg import CameraInfo, Image, Imu, LaserScan, PointCloud2
+
+
+def wait_for(topic, kind):
+    return rospy.wait_for_message(topic, kind, 30.0)
+
+
+class TestCamera(unittest.TestCase):
+    def test_colour_pictures_come_with_their_calibration(self):
+        picture, info = (
+            wait_for("camera/rgb/image_raw", Image),
+            wait_for("camera/rgb/camera_info", CameraInfo),
+        )
+        self.assertEqual((picture.width, picture.height, picture.encoding), (640, 480, "rgb8"))
+        self.assertEqual((len(picture.data), picture.step), (640 * 480 * 3, 640 * 3))
+        self.assertEqual(picture.header.frame_id, "camera_depth_optical_frame")
+        self.assertAlmostEqual(info.K[0], 320.0 / math.tan(math.radians(30.0)), places=6)
+        self.assertEqual((info.width, info.height, info.distortion_model), (640, 480, "plumb_bob"))
+        pixels = np.frombuffer(picture.data, np.uint8).reshape(480, 640, 3)
+        self.assertGreater(len(np.unique(pixels.reshape(-1, 3), axis=0)), 5, "more than one colour")
+
+    def test_depth_pictures_points_and_scans_agree(self):
+        depth, cloud = wait_for("camera/depth/image_raw", Image), wait_for("camera/depth/points", PointCloud2)
+        scan = wait_for("scan", LaserScan)
+        self.assertEqual((depth.encoding, depth.step), ("32FC1", 640 * 4))
+        self.assertEqual((cloud.width, cloud.height, cloud.point_step), (640, 480, 32))
+        metres = np.frombuffer(depth.data, np.float32).reshape(480, 640)
+        points = np.frombuffer(cloud.data, np.float32).reshape(480, 640, 8)
+        self.assertLessEqual(np.nanmax(metres), 5.0)
+        self.assertGreaterEqual(np.nanmin(metres), 0.4)
+        self.assertLess(np.nanmedian(np.abs(points[..., 2] - metres)), 1e-3, "the robot may have settled")
+        middle = points[240]
+        ranges = np.hypot(middle[:, 0], middle[:, 2])[::-1]
+        bearings = np.arctan2(-middle[:, 0], middle[:, 2])[::-1]
+        angles = scan.angle_min + scan.angle_increment * np.arange(len(scan.ranges))
+        seen = np.isfinite(ranges)
+        errors = np.abs(np.interp(bearings[seen], angles, scan.ranges) - ranges[seen])
+        self.assertLess(np.nanmedian(errors), 0.01)
+
+    def test_the_inertial_sensor_feels_gravity(self):
+        imu = wait_for("mobile_base/sensors/imu_data", Imu)
+        self.assertEqual(imu.header.frame_id, "base_link")
+        self.assertAlmostEqual(imu.linear_acceleration.z, 9.8, delta=0.2)
+        self.assertAlmostEqual(imu.angular_velocity.z, 0.0, delta=0.01)
+
+    def test_nothing_is_drawn_that_nobody_has_subscribed_to(self):
+        """Time passes faster without pictures: they are not taken."""
+        with_pictures = rospy.Subscriber("camera/depth/points", PointCloud2, lambda message: None)
+        wait_for("camera/depth/points", PointCloud2)
+        slow = simulated_in(2.0)
+        with_pictures.unregister()
+        rospy.sleep(0.5)
+        self.assertGreater(simulated_in(2.0), 1.5 * slow)
+
+
+def simulated_in(wall_seconds):
+    start = rospy.get_time()
+    time.sleep(wall_seconds)
+    return rospy.get_time() - start
+
+
+if __name__ == "__main__":
+    rospy.init_node("camera_test")
+    rostest.rosrun("home_service_tests", "camera", TestCamera)
