@@ -29,7 +29,6 @@ from sim_bridge.world import World
 
 ROOT = Path(__file__).resolve().parents[2]
 PORT = 11399
-NODES = ("amcl", "amcl_lite")
 NOISES = {name: SimulationSettings(**noise_named(name)) for name in ("turtlebot", "bad")}
 FRAMES = {"base_frame_id": "base_footprint"}
 TURTLEBOT = yaml.safe_load((ROOT / "src/amcl_lite/config/turtlebot.yaml").read_text())
@@ -273,24 +272,16 @@ def _measure(player: Player, command: str, parameters: dict, drive: List[Sightin
 
 
 def installed_nodes() -> Dict[str, str]:
-    """The programs of the nodes to compare, by package; says which are missing."""
-    found = {name: _executable(name) for name in NODES}
-    for name, command in found.items():
-        if command is None:
-            print(f"{name} is not installed")
-    return {name: command for name, command in found.items() if command is not None}
-
-
-def _executable(package: str) -> Optional[str]:
-    """The program of a package's node, named as the package; None if there is none on ROS_PACKAGE_PATH."""
-    found = subprocess.run(
-        ["catkin_find", "--first-only", package, package],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        check=False,
-    ).stdout.decode()
-    candidates = [found.strip(), str(ROOT / "src" / package / "nodes" / package)]
-    return next((path for path in candidates if path and Path(path).is_file()), None)
+    """The programs of the nodes to compare; says so if the official one is not installed."""
+    lite = {"amcl_lite": str(ROOT / "src" / "amcl_lite" / "nodes" / "amcl_lite")}
+    found = subprocess.run(["catkin_find", "amcl", "amcl"], stdout=subprocess.PIPE, check=False)
+    # This workspace has a package amcl too, an alias of amcl_lite.
+    programs = [path for path in found.stdout.decode().split() if ROOT not in Path(path).resolve().parents]
+    official = [path for path in programs if Path(path).is_file()]
+    if not official:
+        print("amcl is not installed")
+        return lite
+    return {"amcl": official[0], **lite}
 
 
 def _figures(errors: np.ndarray, cpu: float) -> str:

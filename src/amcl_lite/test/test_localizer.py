@@ -188,6 +188,35 @@ def test_furniture_that_is_not_on_the_map_does_no_harm():
     assert not localizer.is_lost
 
 
+def test_a_start_that_is_wrong_by_metres_is_found_out():
+    toy = Toy(START)
+    localizer = Localizer(toy.grid, TURTLEBOT, np.random.default_rng(0))
+    localizer.set_pose(toy.base_in_map @ Pose2(-2.5, 1.5, 1.0), np.diag((0.25, 0.25, 0.07)))
+    localizer.update(toy.base_in_odom, toy.scan())
+    forth_and_back = way((1.5, 3.14), (3.0, 3.14), (3.0, 3.14))
+    assert tracking_errors(toy, localizer, forth_and_back)[-20:, 0].max() < 0.1
+    assert not localizer.is_lost
+
+
+def test_a_map_that_is_warped_and_lies_elsewhere_will_do():
+    toy = Toy(START)
+    stretch, corner = 1.01, Pose2(-7.0, 12.0, 0.0)
+    map_of_home = OccupancyGrid(toy.grid.cells, stretch * toy.grid.resolution, corner)
+
+    def in_map(pose):
+        return corner @ Pose2(stretch * pose.x, stretch * pose.y, pose.yaw)
+
+    localizer = Localizer(map_of_home, TURTLEBOT, np.random.default_rng(0))
+    localizer.set_pose(in_map(toy.base_in_map), np.diag((0.04, 0.04, 0.02)))
+    for step in THROUGH_ALL_ROOMS:
+        toy.move(step)
+        localizer.update(toy.base_in_odom, toy.scan())
+        found = localizer.odom_in_map @ toy.base_in_odom
+        # A hundredth of the longest beam, and what odometry drifts between two updates.
+        assert found.distance_to(in_map(toy.base_in_map)) < 0.2
+        assert not localizer.is_lost
+
+
 def test_nothing_is_done_while_the_robot_stands():
     toy = Toy(START)
     localizer = started(toy)
