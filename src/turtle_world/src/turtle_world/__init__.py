@@ -1,0 +1,6 @@
+"""The world of turtlesim on PyBullet, without ROS; the node is in ``turtle_world.node``."""
+
+from turtle_world.canvas import Pen
+from turtle_world.world import Command, TurtleError, TurtleState, TurtleWorld
+
+__all__ = ["Command", "Pen", "TurtleError", "TurtleState", "TurtleWorld"]

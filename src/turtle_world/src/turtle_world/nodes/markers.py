@@ -1,0 +1,64 @@
+"""The turtles and their strokes for rviz, in the frame world."""
+
+import math
+
+import rospy
+from geometry_msgs.msg import Point, Quaternion
+from std_msgs.msg import ColorRGBA
+from visualization_msgs.msg import Marker, MarkerArray
+
+from turtle_world.canvas import PIXELS_PER_METRE, Color
+from turtle_world.physics import HEIGHT, RADIUS
+from turtle_world.world import TurtleWorld
+
+FRAME = "world"
+BODY_COLOR: Color = (0x2E, 0x2E, 0x2E)
+# Strokes lie a little above the floor.
+STROKE_HEIGHT = 0.01
+
+
+class Markers:
+    """Publishes all that is to be seen, if anybody looks."""
+
+    def __init__(self):
+        self._publisher = rospy.Publisher("~markers", MarkerArray, queue_size=1)
+
+    def show(self, world: TurtleWorld) -> None:
+        if self._publisher.get_num_connections() == 0:
+            return
+        everything = [Marker(action=Marker.DELETEALL)]
+        for number, name in enumerate(world.names):
+            everything += [_body(number, world.place_of(name)), _nose(number, world.place_of(name))]
+        everything += [_line(number, stroke) for number, stroke in enumerate(world.canvas.strokes)]
+        self._publisher.publish(everything)
+
+
+def _body(number, place):
+    marker = _marker("turtles", number, Marker.CYLINDER, BODY_COLOR)
+    marker.scale.x = marker.scale.y = 2.0 * RADIUS
+    marker.scale.z = HEIGHT
+    marker.pose.position = Point(place.x, place.y, 0.5 * HEIGHT)
+    return marker
+
+
+def _nose(number, place):
+    marker = _marker("noses", number, Marker.ARROW, (255, 255, 255))
+    marker.scale.x, marker.scale.y, marker.scale.z = 2.0 * RADIUS, 0.05, 0.05
+    marker.pose.position = Point(place.x, place.y, HEIGHT)
+    marker.pose.orientation = Quaternion(0.0, 0.0, math.sin(0.5 * place.theta), math.cos(0.5 * place.theta))
+    return marker
+
+
+def _line(number, stroke):
+    marker = _marker("strokes", number, Marker.LINE_STRIP, stroke.pen.color)
+    marker.scale.x = stroke.pen.width / PIXELS_PER_METRE
+    marker.points = [Point(x, y, STROKE_HEIGHT) for x, y in stroke.points]
+    return marker
+
+
+def _marker(namespace, number, kind, color):
+    marker = Marker(ns=namespace, id=number, type=kind, action=Marker.ADD)
+    marker.header.stamp, marker.header.frame_id = rospy.Time.now(), FRAME
+    marker.pose.orientation.w = 1.0
+    marker.color = ColorRGBA(*(value / 255.0 for value in color), 1.0)
+    return marker

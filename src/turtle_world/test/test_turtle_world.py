@@ -1,0 +1,168 @@
+"""Turtles move, draw and answer as turtlesim's do."""
+
+import io
+import math
+
+import pytest
+from PIL import Image
+
+from turtle_world import Command, Pen, TurtleError, TurtleWorld
+from turtle_world.canvas import BACKGROUND, SIDE
+from turtle_world.physics import PERIOD
+
+MIDDLE = 0.5 * SIDE
+
+
+def run(world, steps, name="turtle1", command=None):
+    """Steps with the command told again and again; the last state."""
+    for _ in range(steps):
+        if command is not None:
+            world.command(name, command)
+        state = world.step()[name]
+    return state
+
+
+def turtlesim(steps, command, x=MIDDLE, y=MIDDLE, theta=0.0):
+    """turtlesim's own formulas."""
+    for _ in range(steps):
+        theta += command.turn * PERIOD
+        x += (math.cos(theta) * command.forward - math.sin(theta) * command.leftward) * PERIOD
+        y += (math.sin(theta) * command.forward + math.cos(theta) * command.leftward) * PERIOD
+    return x, y, math.remainder(theta, 2.0 * math.pi)
+
+
+def test_a_turtle_waits_in_the_middle():
+    world = TurtleWorld()
+    assert world.names == ["turtle1"]
+    assert world.step()["turtle1"].place == pytest.approx((MIDDLE, MIDDLE, 0.0))
+    assert abs(SIDE - 11.088889) < 1e-6
+
+
+@pytest.mark.parametrize(
+    "command", [Command(2.0, 0.0, 1.8), Command(-1.0, 0.5, -0.7), Command(0.0, 0.0, 2.0)]
+)
+def test_a_turtle_moves_as_turtlesims_does(command):
+    state = run(TurtleWorld(), 120, command=command)
+    x, y, theta = turtlesim(120, command)
+    assert state.place[:2] == pytest.approx((x, y), abs=1e-4)
+    assert math.remainder(state.place.theta - theta, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-4)
+    assert state.speed == pytest.approx(math.hypot(command.forward, command.leftward))
+
+
+def test_a_command_times_out_after_a_second():
+    world = TurtleWorld()
+    world.command("turtle1", Command(1.0))
+    state = run(world, 200)
+    assert state.place.x - MIDDLE == pytest.approx(1.0, abs=PERIOD) and state.speed == 0.0
+
+
+@pytest.mark.parametrize("theta, edge", [(0.0, (SIDE, MIDDLE)), (-math.pi / 2, (MIDDLE, 0.0))])
+def test_a_wall_stops_a_turtle_at_the_edge_and_it_is_told_where_it_wanted_to(theta, edge):
+    world = TurtleWorld()
+    world.teleport("turtle1", MIDDLE, MIDDLE, theta)
+    state = run(world, 300, command=Command(2.0))
+    assert state.place[:2] == pytest.approx(edge, abs=0.01)
+    assert 0.0 <= state.place.x <= SIDE and 0.0 <= state.place.y <= SIDE
+    assert not (0.0 <= state.stopped_at[0] <= SIDE and 0.0 <= state.stopped_at[1] <= SIDE)
+
+
+def test_a_turtle_slides_along_a_wall():
+    world = TurtleWorld()
+    world.teleport("turtle1", SIDE - 0.2, 2.0, math.pi / 4)
+    state = run(world, 100, command=Command(2.0))
+    assert state.place.x == pytest.approx(SIDE, abs=0.01)
+    assert state.place.y == pytest.approx(2.0 + 100 * PERIOD * 2.0 * math.sin(math.pi / 4), abs=0.05)
+
+
+def test_turtles_pass_through_each_other():
+    world = TurtleWorld()
+    world.spawn("other", MIDDLE + 1.0, MIDDLE, 0.0)
+    assert run(world, 100, command=Command(2.0)).place.x == pytest.approx(MIDDLE + 3.2, abs=0.01)
+    assert world.place_of("other").x == pytest.approx(MIDDLE + 1.0)
+
+
+def test_names_are_made_up_and_taken_once():
+    world = TurtleWorld()
+    assert world.spawn("", 1.0, 2.0, 0.5) == "turtle2"
+    assert world.place_of("turtle2") == pytest.approx((1.0, 2.0, 0.5))
+    with pytest.raises(TurtleError, match="already exists"):
+        world.spawn("turtle2", 1.0, 1.0, 0.0)
+    assert world.names == ["turtle1", "turtle2"]
+
+
+@pytest.mark.parametrize(
+    "request_something",
+    [
+        lambda world: world.kill("nobody"),
+        lambda world: world.command("nobody", Command()),
+        lambda world: world.set_pen("nobody", Pen()),
+        lambda world: world.teleport("nobody", 1.0, 1.0, 0.0),
+    ],
+)
+def test_an_unknown_turtle_is_an_error(request_something):
+    with pytest.raises(TurtleError, match="nobody"):
+        request_something(TurtleWorld())
+
+
+def test_speeds_that_are_not_finite_are_refused_and_the_turtle_stays_whole():
+    world = TurtleWorld()
+    for value in (math.nan, math.inf):
+        with pytest.raises(TurtleError, match="finite"):
+            world.command("turtle1", Command(value))
+    assert world.step()["turtle1"].place == pytest.approx((MIDDLE, MIDDLE, 0.0))
+
+
+def test_a_turtle_spawned_beyond_the_edge_stands_on_it():
+    world = TurtleWorld()
+    world.spawn("far", 30.0, -2.0, 0.0)
+    assert world.place_of("far")[:2] == pytest.approx((SIDE, 0.0))
+
+
+def test_teleporting_draws_a_line_and_the_turtle_sees_its_colour():
+    world = TurtleWorld()
+    assert world.step()["turtle1"].color == BACKGROUND
+    world.set_pen("turtle1", Pen((200, 10, 20), 5))
+    world.teleport_by("turtle1", 2.0, math.pi / 2)
+    assert world.place_of("turtle1") == pytest.approx((MIDDLE, MIDDLE + 2.0, math.pi / 2))
+    assert world.step()["turtle1"].color == (200, 10, 20)
+    assert world.canvas.color_at(MIDDLE, MIDDLE + 1.0) == (200, 10, 20)
+
+
+def test_a_lifted_pen_draws_nothing():
+    world = TurtleWorld()
+    world.set_pen("turtle1", Pen(is_on=False))
+    run(world, 50, command=Command(2.0))
+    assert world.canvas.strokes == []
+
+
+def test_a_way_is_one_stroke_until_the_pen_changes():
+    world = TurtleWorld()
+    run(world, 50, command=Command(1.0, 0.0, 1.0))
+    world.set_pen("turtle1", Pen((1, 2, 3)))
+    run(world, 50, command=Command(1.0, 0.0, 1.0))
+    first, second = world.canvas.strokes
+    assert len(first.points) == 51 and second.pen.color == (1, 2, 3)
+    assert second.points[0] == first.points[-1]
+
+
+def test_killing_keeps_the_drawing_and_a_reset_leaves_one_turtle_on_an_empty_floor():
+    world = TurtleWorld()
+    world.spawn("artist", 1.0, 1.0, 0.0)
+    world.teleport("artist", 3.0, 1.0, 0.0)
+    world.kill("artist")
+    assert world.names == ["turtle1"] and len(world.canvas.strokes) == 1
+    run(world, 20, command=Command(1.0))
+    world.reset((9, 9, 9))
+    assert world.names == ["turtle1"] and world.canvas.strokes == []
+    assert world.step()["turtle1"].place == pytest.approx((MIDDLE, MIDDLE, 0.0))
+    assert world.step()["turtle1"].color == (9, 9, 9)
+
+
+def test_the_picture_shows_floor_trail_and_turtle():
+    world = TurtleWorld()
+    world.set_pen("turtle1", Pen((250, 0, 0), 4))
+    world.teleport("turtle1", 9.0, MIDDLE, 0.0)
+    picture = Image.open(io.BytesIO(world.picture()))
+    assert picture.size == (500, 500)
+    colors = {color for _, color in picture.getcolors(100)}
+    assert BACKGROUND in colors and (250, 0, 0) in colors and len(colors) >= 4

@@ -1,0 +1,24 @@
+#!/usr/bin/env python3
+"""Asks the server /int_plus for a sum.
+
+int_plus_client.py A B
+"""
+
+import sys
+
+import rospy
+from learning_server.srv import IntPlus
+
+
+def plus(a, b):
+    rospy.wait_for_service("/int_plus", timeout=10.0)
+    return rospy.ServiceProxy("/int_plus", IntPlus)(a, b).result
+
+
+if __name__ == "__main__":
+    rospy.init_node("int_plus_client")
+    try:
+        a, b = map(int, rospy.myargv()[1:] or (5, 6))
+        rospy.loginfo("%d + %d = %d", a, b, plus(a, b))
+    except (rospy.ServiceException, rospy.ROSException, ValueError) as error:
+        sys.exit(f"no sum: {error}")

@@ -1,0 +1,17 @@
+#!/usr/bin/env python3
+"""Adds two integers: a server of this package's own type, learning_server/IntPlus."""
+
+import rospy
+from learning_server.srv import IntPlus, IntPlusResponse
+
+
+def on_call(request):
+    rospy.loginfo("asked for %d + %d", request.a, request.b)
+    return IntPlusResponse(request.a + request.b)
+
+
+if __name__ == "__main__":
+    rospy.init_node("int_plus_server")
+    rospy.Service("/int_plus", IntPlus, on_call)
+    rospy.loginfo("ready to add")
+    rospy.spin()

@@ -1,0 +1,16 @@
+#!/usr/bin/env python3
+"""Prints where the turtle is: subscribes to /turtle1/pose."""
+
+import rospy
+from turtlesim.msg import Pose
+
+
+def on_pose(pose):
+    """Called in a thread of rospy's for each message."""
+    rospy.loginfo_throttle(1.0, "turtle pose: x %.2f, y %.2f, theta %.2f", pose.x, pose.y, pose.theta)
+
+
+if __name__ == "__main__":
+    rospy.init_node("pose_subscriber", anonymous=True)
+    rospy.Subscriber("/turtle1/pose", Pose, on_pose)
+    rospy.spin()

@@ -1,0 +1,149 @@
+#!/usr/bin/env python3
+"""The nodes of the course do what their lessons say."""
+
+import contextlib
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import numpy as np
+import rospkg
+import rospy
+import rostest
+from learning_server.srv import IntPlus
+from roslaunch.config import load_config_default
+from std_srvs.srv import Empty, Trigger
+from turtlesim.msg import Pose
+
+RADIUS = 0.5 / 0.2  # metres: of the circle that velocity_publisher drives
+
+
+@contextlib.contextmanager
+def running(package, node, *arguments):
+    """A node while it runs; yields a function that returns what it has printed so far."""
+    with tempfile.TemporaryFile() as output:
+        process = subprocess.Popen(
+            ["rosrun", package, node, *arguments], stdout=output, stderr=subprocess.STDOUT
+        )
+
+        def printed():
+            output.seek(0)
+            return output.read().decode()
+
+        try:
+            yield printed
+        finally:
+            process.terminate()
+            process.wait(15.0)
+
+
+def run(package, node, *arguments):
+    """Exit code and output of a node that ends by itself."""
+    done = subprocess.run(
+        ["rosrun", package, node, *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        timeout=40.0,
+        check=False,
+    )
+    return done.returncode, done.stdout.decode()
+
+
+class CourseTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node("test_course")
+        rospy.wait_for_service("/reset", 30.0)
+
+    def setUp(self):
+        rospy.ServiceProxy("/reset", Empty)()
+
+    def wait_until(self, is_so, what, seconds=20.0):
+        deadline = time.monotonic() + seconds
+        while not is_so():
+            self.assertLess(time.monotonic(), deadline, what)
+            time.sleep(0.05)
+
+    def pose(self):
+        return rospy.wait_for_message("/turtle1/pose", Pose, 5.0)
+
+    def test_the_velocity_publisher_drives_a_circle(self):
+        places_xy = []
+        with running("learning_topic", "velocity_publisher.py"):
+            self.wait_until(lambda: self.pose().linear_velocity > 0.0, "the turtle does not move")
+            subscriber = rospy.Subscriber(
+                "/turtle1/pose", Pose, lambda pose: places_xy.append((pose.x, pose.y))
+            )
+            self.wait_until(lambda: len(places_xy) > 300, "no poses")
+            subscriber.unregister()
+        x, y = np.array(places_xy).T
+        # The circle through all places, by least squares: x^2 + y^2 = 2 a x + 2 b y + c.
+        a, b, c = np.linalg.lstsq(np.column_stack((2 * x, 2 * y, np.ones_like(x))), x**2 + y**2, rcond=None)[
+            0
+        ]
+        distances = np.hypot(x - a, y - b)
+        print(f"radius {np.sqrt(c + a * a + b * b):.3f} m, largest deviation {np.ptp(distances):.4f} m")
+        self.assertLess(np.abs(distances - RADIUS).max(), 0.05)
+
+    def test_the_pose_subscriber_prints_where_the_turtle_is(self):
+        with running("learning_topic", "pose_subscriber.py") as printed:
+            self.wait_until(lambda: "turtle pose: x 5.54, y 5.54" in printed(), "no pose is printed")
+
+    def test_company_info_is_published_and_received(self):
+        with running("learning_topic", "information_subscriber.py") as printed, running(
+            "learning_topic", "information_publisher.py"
+        ):
+            self.wait_until(lambda: "company info: Home Service" in printed(), "nothing is received")
+
+    def test_a_turtle_is_spawned_once(self):
+        code, output = run("learning_server", "turtle_spawn.py")
+        self.assertEqual(code, 0, output)
+        self.assertIn("spawned: turtle2", output)
+        code, output = run("learning_server", "turtle_spawn.py")
+        self.assertEqual(code, 1)
+        self.assertIn("no turtle", output)
+
+    def test_each_call_of_turtle_command_toggles_whether_the_turtle_drives(self):
+        with running("learning_server", "turtle_command_server.py"):
+            rospy.wait_for_service("/turtle_command", 20.0)
+            toggle = rospy.ServiceProxy("/turtle_command", Trigger)
+            for message, drives in (("driving", True), ("standing", False), ("driving", True)):
+                answer = toggle()
+                self.assertEqual((answer.success, answer.message), (True, message))
+                self.wait_until(lambda: (self.pose().linear_velocity > 0.0) == drives, message)  # noqa: B023
+
+    def test_5_and_6_are_11(self):
+        with running("learning_server", "int_plus_server.py"):
+            rospy.wait_for_service("/int_plus", 20.0)
+            self.assertEqual(rospy.ServiceProxy("/int_plus", IntPlus)(-3, 7).result, 4)
+            code, output = run("learning_server", "int_plus_client.py", "5", "6")
+        self.assertEqual(code, 0, output)
+        self.assertIn("5 + 6 = 11", output)
+
+    def test_a_polygon_is_drawn_and_a_senseless_one_refused(self):
+        with running("learning_action", "draw_polygon_server.py"):
+            code, output = run("learning_action", "draw_polygon_client.py", "4", "1.5")
+            self.assertEqual(code, 0, output)
+            self.assertIn("side 4", output)
+            self.assertIn("6.0 m drawn", output)
+            code, output = run("learning_action", "draw_polygon_client.py", "2")
+            self.assertEqual(code, 1)
+            self.assertIn("at least 3 sides", output)
+        pose = self.pose()
+        self.assertAlmostEqual(pose.x, 5.544, delta=0.01)
+        self.assertAlmostEqual(pose.y, 5.544, delta=0.01)
+
+    def test_the_launch_files_name_nodes_that_exist(self):
+        packages = rospkg.RosPack()
+        for path in sorted(Path(packages.get_path("learning_launch"), "launch").glob("*.launch")):
+            config = load_config_default([str(path)], None, verbose=False)
+            self.assertFalse(config.config_errors, path)
+            for node in config.nodes:
+                found = Path(packages.get_path(node.package), "nodes", node.type)
+                self.assertTrue(found.is_file(), f"{path}: {node.package} {node.type}")
+
+
+if __name__ == "__main__":
+    rostest.rosrun("home_service_tests", "course", CourseTest)
