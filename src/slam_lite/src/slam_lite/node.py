@@ -67,6 +67,7 @@ class SlamNode:
         self._is_paused = False
         self._scan_count = 0
         self._map_stamp = -math.inf
+        self._transform_stamp = None
         self._map_message = None
         self._surprise = 0.0
         self._uncertainty = None
@@ -200,12 +201,12 @@ class SlamNode:
     def _send_transform(self, event=None):
         settings = self._settings
         delay = settings.tf_delay if settings.tf_delay >= 0.0 else settings.transform_publish_period
-        self._transforms.send(
-            self._odom_in_map,
-            frame_name(settings.map_frame),
-            frame_name(settings.odom_frame),
-            rospy.Time.now() + rospy.Duration(delay),
-        )
+        stamp = rospy.Time.now() + rospy.Duration(delay)
+        if stamp == self._transform_stamp:
+            return  # a simulated clock may stand still, and tf complains of what it has been told before
+        self._transform_stamp = stamp
+        map_frame, odom_frame = frame_name(settings.map_frame), frame_name(settings.odom_frame)
+        self._transforms.send(self._odom_in_map, map_frame, odom_frame, stamp)
 
     def _on_dynamic_map(self, request):
         if self._map_message is None:

@@ -1,0 +1,161 @@
+#!/usr/bin/env python3
+"""How soon slam_lite's node has a scan in its graph, and its map drawn anew, while a robot drives about.
+
+A made-up office of 20 m x 20 m, a lidar of 360 beams ten times a second, wall time. What is measured is what
+another node sees: from publishing a scan to the node's report that it is done with it, and from the scan that
+a map is due at to the map's arrival.
+
+    python3 tests/benchmarks/slam_live.py --seconds 120 --json runs/slam_live.json
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Dict, List
+
+import numpy as np
+import psutil
+import rosgraph
+import rospy
+from drives import Sighting, random_drive
+from rich.console import Console
+from rich.table import Table
+from rosgraph_msgs.msg import Clock
+from roslib.packages import find_node
+from std_msgs.msg import Header
+from tf2_ros import StaticTransformBroadcaster
+from worlds import OFFICE, world_from_picture
+
+from planar import Pose2
+from planar_ros.messages import LaserScanArrays, OccupancyGridArrays, transform_msg
+from planar_ros.progress import TOPIC as PROGRESS
+from planar_ros.transforms import Transforms
+from sim_bridge.true_map import true_map
+
+START = Pose2(1.0, 1.0, 0.0)
+MAP_INTERVAL, BEGIN, START_SECONDS = 2.0, 10.0, 60.0
+PARAMETERS = {"base_frame": "base_footprint", "map_update_interval": MAP_INTERVAL}
+PARAMETERS.update({"xmin": -10.0, "ymin": -10.0, "xmax": 10.0, "ymax": 10.0})
+
+
+def big_office() -> str:
+    """OFFICE two and a half times over: 20 m x 20 m."""
+    top, *inside, bottom = OFFICE.strip().splitlines()
+    return "\n".join([top, *(3 * inside)[:38], bottom])
+
+
+class LiveTest:
+    """Plays a drive to the node, and notes when it answers, in seconds after the scan was published."""
+
+    def __init__(self):
+        self._published: Dict[int, float] = {}
+        self._map_due_at: List[float] = []
+        self.inserted: List[float] = []
+        self.redrawn: List[float] = []
+        self._clock = rospy.Publisher("/clock", Clock, queue_size=10, tcp_nodelay=True)
+        self._scans = rospy.Publisher("scan", LaserScanArrays, queue_size=10, tcp_nodelay=True)
+        self._transforms = Transforms()
+        self._static = StaticTransformBroadcaster()
+        rospy.Subscriber(PROGRESS, Header, self._on_progress, tcp_nodelay=True)
+        rospy.Subscriber("map", OccupancyGridArrays, self._on_map, tcp_nodelay=True)
+
+    def wait_for_node(self) -> None:
+        until = time.monotonic() + START_SECONDS
+        while self._scans.get_num_connections() == 0:
+            if time.monotonic() > until:
+                raise SystemExit("error: the node does not start")
+            time.sleep(0.1)
+
+    def play(self, drive: List[Sighting]) -> None:
+        laser = drive[0].scan.laser_in_base
+        self._static.sendTransform(transform_msg(laser, "base_footprint", "laser", rospy.Time(BEGIN)))
+        began, last_map = time.monotonic(), -np.inf
+        for sighting in drive:
+            time.sleep(max(0.0, began + sighting.scan.stamp - time.monotonic()))
+            stamp = rospy.Time.from_sec(BEGIN + sighting.scan.stamp)
+            self._clock.publish(Clock(stamp))
+            self._transforms.send(sighting.base_in_odom, "odom", "base_footprint", stamp)
+            now = time.monotonic()
+            if stamp.to_sec() - last_map >= MAP_INTERVAL:
+                last_map = stamp.to_sec()
+                self._map_due_at.append(now)
+            self._published[stamp.to_nsec()] = now
+            self._scans.publish(_message_of(sighting.scan, stamp))
+        time.sleep(1.0)
+
+    def _on_progress(self, message):
+        self.inserted.append(time.monotonic() - self._published[message.stamp.to_nsec()])
+
+    def _on_map(self, message):
+        self.redrawn.append(time.monotonic() - self._map_due_at[-1])
+
+
+def _message_of(scan, stamp) -> LaserScanArrays:
+    message = LaserScanArrays()
+    message.header.stamp, message.header.frame_id = stamp, "laser"
+    message.angle_min, message.angle_increment = scan.angle_min, scan.angle_increment
+    message.range_min, message.range_max = scan.range_min, scan.range_max
+    message.ranges, message.intensities = scan.ranges, np.empty(0, dtype=np.float32)
+    return message
+
+
+def main() -> int:
+    options = _options()
+    world = world_from_picture("office", big_office())
+    grid = true_map(world, inside=(START.x, START.y))
+    drive = random_drive(world, grid, options.seed, options.seconds, start=START)
+    os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{options.port}"
+    master = subprocess.Popen(["rosmaster", "--core", "-p", str(options.port)], stdout=subprocess.DEVNULL)
+    node = None
+    try:
+        while not rosgraph.is_master_online():
+            time.sleep(0.1)
+        rospy.set_param("/use_sim_time", True)
+        rospy.set_param("/slam_gmapping", PARAMETERS)
+        node = subprocess.Popen([find_node("slam_lite", "slam_gmapping")[0]], stdout=sys.stderr)
+        rospy.init_node("benchmark", disable_signals=True)
+        test = LiveTest()
+        test.wait_for_node()
+        process = psutil.Process(node.pid)
+        cpu = sum(process.cpu_times()[:2])
+        test.play(drive)
+        cpu = sum(process.cpu_times()[:2]) - cpu
+        _tell(test, drive, cpu, process.memory_info().rss / 2**20, options.json)
+    finally:
+        for child in (node, master):
+            if child is not None:
+                child.terminate()
+                child.wait()
+    return 0
+
+
+def _tell(test: LiveTest, drive: List[Sighting], cpu: float, memory_mb: float, path: Path) -> None:
+    table = Table(title=f"{len(drive)} scans of {len(drive[0].scan.ranges)} beams, ms")
+    for heading in ("", "count", "median", "p99", "max"):
+        table.add_column(heading, justify="right")
+    figures = {"cpu_share": cpu / drive[-1].scan.stamp, "memory_mb": memory_mb}
+    for name, delays in (("scan inserted", test.inserted), ("map redrawn", test.redrawn)):
+        spread = [1e3 * float(np.percentile(delays, share)) for share in (50, 99, 100)]
+        table.add_row(name, str(len(delays)), *(f"{value:.1f}" for value in spread))
+        figures[name] = {"count": len(delays), **dict(zip(("median_ms", "p99_ms", "max_ms"), spread))}
+    Console().print(table)
+    print(f"CPU share of the node {figures['cpu_share']:.2f}, memory {memory_mb:.0f} MB")
+    if path:
+        path.write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
+
+
+def _options():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seconds", type=float, default=120.0, help="length of the drive (default: 120)")
+    parser.add_argument("--seed", type=int, default=0, help="of the drive and all noise (default: 0)")
+    parser.add_argument("--json", type=Path, help="write the figures here")
+    parser.add_argument("--port", type=int, default=11412, help="of the ROS master that is started")
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
