@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Usage: ./scripts/setup.sh [--dev] [--rviz] [--packages]
+# Usage: ./scripts/setup.sh [--dev] [--projects] [--rviz] [--packages]
 #
 # Installs what the workspace needs and is missing: Debian packages (as root or with sudo), Python packages
 # in .venv, the catkin build in build/ and devel/. The other scripts do this themselves when they start.
 # Does nothing when all is there, and goes on where an interrupted set-up ended. Logs: logs/setup/.
 #
 #   --dev        also what the checks in .ci/run and the benchmarks need: ruff, mypy, matplotlib ...
+#   --projects   also what run_project.sh needs: libraries for projects in C++
 #   --rviz       also rviz
 #   --packages   only the Debian and Python packages, as for a cached layer of an image
 #   --help       this text
@@ -256,6 +257,7 @@ main() {
     for option; do
         case $option in
             --dev) extras+=(dev) ;;
+            --projects) extras+=(projects) ;;
             --rviz) extras+=(rviz) ;;
             --packages) packages_only=yes ;;
             --help | -h)

@@ -37,5 +37,5 @@ def main() -> None:
 
     folders = [Path(folder) for folder in os.environ.get("GAZEBO_RESOURCE_PATH", "").split(":") if folder]
     world = found(world_of(sys.argv[1:]) or EMPTY_WORLD.name, folders)
-    sys.argv[1:] = [word for word in sys.argv[1:] if ":=" in word] + [f"_world:={world}", "_robot:=none"]
+    sys.argv[1:] = [word for word in sys.argv[1:] if ":=" in word] + [f"_world:={world}", "_robot:=''"]
     simulate()

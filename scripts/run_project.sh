@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# Usage: ./scripts/run_project.sh PATH [SCRIPT] [options] [-- ARGUMENT...]
+#
+# Runs somebody's home-service project for the TurtleBot 2, Kinetic and Gazebo 7, unmodified and headless: PATH is its
+# checkout (a workspace, the content of src, or one package), SCRIPT its shell script (default: home_service.sh).
+# Works on a copy, with stand-ins for xterm, Gazebo and rviz; the checkout is only read.
+# Tells goals and markers as they happen, then a verdict; result.json and a log of each window are in the run folder.
+# Exit code: 0 all goals reached, 1 failure, 2 bad input, 130 interrupted. More in docs/projects.md.
+#
+#   --speed N        1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz 1)
+#   --seed N         seed of every noise (default: 0)
+#   --timeout N      the run fails after N seconds of wall time (default: 600)
+#   --rviz           show it in the real rviz, with the project's configuration
+#   --record         record a bag into the run folder
+#   --build-only     end after the build
+#   --output FOLDER  where the run folder is made (default: ./runs)
+#   --help           this text
+
+# shellcheck source=scripts/setup.sh
+. "$(dirname -- "$(readlink -f -- "$0")")/setup.sh"
+answer_help "$@"
+extras=(projects)
+if is_among --rviz "$@"; then extras+=(rviz); fi
+set_up "${extras[@]}"
+ros_environment
+exec python3 -m run_project.cli "$@"

@@ -1,0 +1,11 @@
+# Read after project() of every package of somebody else's project, in a copy of it: what clones lack.
+
+# git keeps no empty folders.
+file(MAKE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/include")
+
+# Where every package of the author's machine had been found before, a missing dependency went unnoticed.
+file(READ "${CMAKE_CURRENT_SOURCE_DIR}/CMakeLists.txt" _text)
+string(REGEX REPLACE "#[^\n]*" "" _text "${_text}")
+if(_text MATCHES "generate_messages" AND NOT _text MATCHES "message_generation")
+  find_package(message_generation QUIET)
+endif()

@@ -1,0 +1,1 @@
+"""Runs other people's home-service projects on this workspace, without changing them."""

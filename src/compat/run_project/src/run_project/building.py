@@ -1,0 +1,172 @@
+"""A workspace for the project on top of ours: copied, completed and built in a work folder."""
+
+import os
+import re
+import shutil
+import subprocess
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Callable, Dict, Set
+
+from run_project.errors import BuildError
+from run_project.layout import LEFTOVERS, Checkout
+from run_project.placement import Placement
+from run_project.selection import left_out
+
+PACKAGE_FOLDER = Path(__file__).resolve().parents[2]
+STAND_INS = PACKAGE_FOLDER / "stand_ins"
+FRESH_CLONE = PACKAGE_FOLDER / "cmake" / "fresh_clone.cmake"
+# A bound on how many packages may turn out one after the other not to be configurable.
+CONFIGURATIONS = 20
+
+_BROKEN_CONFIGURATION = re.compile(r"CMake Error at (\S+?)/CMakeLists\.txt:\d+[^\n]*\n\s*([^\n]+)")
+_MISSING_CONFIG = re.compile(r'provided by\s+"(\S+?)"')
+_BROKEN_SOURCE = re.compile(r"^(/\S+?):\d+(?::\d+)?: (?:fatal )?error: (.*)", re.MULTILINE)
+_BROKEN_LINK = re.compile(r"CMakeFiles/(\S+?)\.dir/\S+: (?:in function .*?: )?(undefined reference .*)")
+
+
+@dataclass
+class Workspace:
+    """A project's copy. ``missing``: packages left out or not built, with the reason."""
+
+    folder: Path
+    checkout: Path
+    packages: Dict[str, Path]
+    missing: Dict[str, str] = field(default_factory=dict)
+
+
+def copy_checkout(checkout: Checkout, placement: Placement, work: Path) -> Workspace:
+    """Copies the project afresh below ``work``/tree.
+
+    What was built before is kept beside it; as times of files are kept, only what has changed is built again.
+    """
+    tree = work / "tree"
+    if tree.exists():
+        shutil.rmtree(tree)
+    target, workspace = tree / placement.checkout, tree / placement.workspace
+    shutil.copytree(
+        checkout.root,
+        target,
+        symlinks=True,
+        dirs_exist_ok=True,
+        ignore=lambda _, names: LEFTOVERS & set(names),
+    )
+    for script in checkout.scripts():
+        (target / script).chmod(0o755)
+    for name in ("build", "devel"):
+        (work / name).mkdir(exist_ok=True)
+        (workspace / name).symlink_to(work / name)
+    (workspace / "src" / "CMakeLists.txt").unlink(missing_ok=True)  # often a link to the author's ROS
+    packages = {name: target / folder for name, folder in checkout.packages.items()}
+    return Workspace(workspace, target, packages)
+
+
+def build(workspace: Workspace, log: Path, say: Callable[[str], None]) -> None:
+    """Builds all that can be built. Raises BuildError if the workspace cannot even be configured.
+
+    A package that cannot be is ignored from then on: by catkin, and by everything that looks for packages.
+    """
+    stand_ins = {
+        folder.name for folder in PACKAGE_FOLDER.parent.iterdir() if (folder / "package.xml").exists()
+    }
+    for name, reason in sorted(left_out(workspace.packages, stand_ins, _is_there).items()):
+        _ignore(workspace, name, reason, say)
+    for _ in range(CONFIGURATIONS):
+        output = _catkin_make(workspace, log)
+        broken = _broken_configurations(workspace, output)
+        if not broken:
+            break
+        for name, reason in broken.items():
+            _ignore(workspace, name, reason, say)
+    if not (workspace.folder / "devel" / "setup.bash").exists():
+        raise BuildError(f"the project's workspace could not be configured, see {log}")
+    if _failed(output):
+        output = _catkin_make(workspace, log)  # messages may be generated later than their users are compiled
+    for name, reason in _broken_sources(workspace, output).items():
+        workspace.missing[name] = f"does not compile: {reason}"
+        say(f"package {name} does not compile: {reason}")
+
+
+def environment(workspace: Workspace) -> Dict[str, str]:
+    """The environment that sourcing the workspace gives."""
+    script = 'source "$1/devel/setup.bash" >&2; exec env -0'
+    kept = {name: value for name, value in os.environ.items() if not name.startswith("TURTLEBOT_")}
+    output = subprocess.run(
+        ["bash", "-c", script, "bash", str(workspace.folder)], env=kept, stdout=subprocess.PIPE, check=True
+    ).stdout
+    pairs = (entry.partition("=") for entry in output.decode(errors="surrogateescape").split("\0") if entry)
+    return {name: value for name, _, value in pairs}
+
+
+def _is_there(package: str) -> bool:
+    prefixes = [*os.environ.get("CMAKE_PREFIX_PATH", "").split(":"), "/usr"]
+    return any((Path(prefix) / "share" / package / "cmake").is_dir() for prefix in prefixes if prefix)
+
+
+def _ignore(workspace: Workspace, name: str, reason: str, say: Callable[[str], None]) -> None:
+    (workspace.packages[name] / "CATKIN_IGNORE").touch()
+    workspace.missing[name] = reason
+    say(f"package {name} is left out: {reason}")
+
+
+def _catkin_make(workspace: Workspace, log: Path) -> str:
+    """Runs it and returns what it printed; a failed target does not keep others from being built."""
+    command = [
+        "catkin_make",
+        f"-DCMAKE_PROJECT_INCLUDE={FRESH_CLONE}",
+        "-DCATKIN_ENABLE_TESTING=OFF",
+        "-Wno-dev",
+    ]
+    command += [f"-DPYTHON_EXECUTABLE={shutil.which('python3')}", "--force-cmake"]
+    command += ["--make-args", "-k"]
+    variables = {
+        "CMAKE_PREFIX_PATH": f"{STAND_INS}:{os.environ['CMAKE_PREFIX_PATH']}",
+        "LC_ALL": "C",
+        "PWD": str(workspace.folder),  # catkin_make goes by it
+        "ROS_PARALLEL_JOBS": f"-j{os.cpu_count()}",  # its own default waits while the machine is busy
+    }
+    run = subprocess.run(
+        command,
+        cwd=str(workspace.folder),
+        env={**os.environ, **variables},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+    )
+    with log.open("a", encoding="utf-8") as file:
+        file.write(run.stdout)
+    return run.stdout
+
+
+def _failed(output: str) -> bool:
+    return bool(re.search(r"^make.*\*\*\*|Invoking .* failed", output, re.MULTILINE))
+
+
+def _broken_configurations(workspace: Workspace, output: str) -> Dict[str, str]:
+    if "Configuring incomplete" not in output:
+        return {}
+    broken: Dict[str, str] = {}
+    for match in _BROKEN_CONFIGURATION.finditer(output):
+        missing = _MISSING_CONFIG.search(output, match.start())
+        reason = f"needs {missing.group(1)}, which is not there" if missing else match.group(2).strip()
+        for name in _packages_at(workspace, match.group(1)) - set(workspace.missing):
+            broken.setdefault(name, reason)
+    return broken
+
+
+def _broken_sources(workspace: Workspace, output: str) -> Dict[str, str]:
+    broken: Dict[str, str] = {}
+    for file, error in _BROKEN_SOURCE.findall(output):
+        for name in _packages_at(workspace, file):
+            broken.setdefault(name, f"{Path(file).name}: {error}")
+    for target, error in _BROKEN_LINK.findall(output):
+        broken.setdefault(target, error)
+    return broken
+
+
+def _packages_at(workspace: Workspace, path: str) -> Set[str]:
+    """The package that a file or folder belongs to; CMake names it relative to src, compilers absolutely."""
+    place = Path(path) if path.startswith("/") else workspace.folder / "src" / path
+    return {name for name, folder in workspace.packages.items() if place == folder or folder in place.parents}

@@ -1,0 +1,204 @@
+"""The way in: look at the project, build it, run it, say what it did."""
+
+import fcntl
+import hashlib
+import os
+import re
+import signal
+import sys
+import time
+from pathlib import Path
+from typing import Dict, List, Optional
+
+from home_service.display import Display, complain
+from home_service.errors import LaunchError, RunInterruptedError
+from home_service.run_folder import create_run_folder, write_result
+from home_service.versions import versions
+from planar import PlanarError
+from run_project.building import PACKAGE_FOLDER, Workspace, build, copy_checkout, environment
+from run_project.complaints import complaints_in
+from run_project.errors import BuildError, ProjectError
+from run_project.headless_rviz import SHOWN
+from run_project.layout import Checkout, choose_script, read_checkout
+from run_project.options import parse
+from run_project.placement import READ_SUFFIXES, Placement, place
+from run_project.private_root import prefix
+from run_project.running import Job, ProjectRun
+from run_project.terminal import LOGS
+from run_project.verdict import Ledger, Verdict, judge
+
+FAILURE, BAD_INPUT, INTERRUPTED = 1, 2, 130
+WORK = PACKAGE_FOLDER.parents[2] / "build" / "projects"
+LARGEST_TEXT = 3_000_000
+ROS_FOLDER = re.compile(r"/opt/ros/[a-z]+")
+# What the simulation does not leave behind at speed 0, and how often it publishes odometry: as Gazebo does.
+WAIT_FOR = "amcl move_base"
+ODOMETRY_RATE = 200
+
+
+def main(arguments: Optional[List[str]] = None) -> int:
+    """Runs a project; returns the exit code: 0 success, 1 failure, 2 bad input, 130 interrupted."""
+    signal.signal(signal.SIGINT, _interrupt)
+    signal.signal(signal.SIGTERM, _interrupt)
+    try:
+        return run(parse(sys.argv[1:] if arguments is None else arguments))
+    except RunInterruptedError:
+        complain("interrupted")
+        return INTERRUPTED
+    except (BuildError, LaunchError) as error:
+        complain(str(error))
+        return FAILURE
+    except PlanarError as error:
+        complain(str(error))
+        return BAD_INPUT
+
+
+def run(options) -> int:
+    """Builds and runs the project that the options name."""
+    if options.rviz and not os.environ.get("DISPLAY"):
+        raise ProjectError("--rviz: there is no display (the variable DISPLAY is not set)")
+    started = time.time()
+    checkout = read_checkout(options.path)
+    script = str(choose_script(checkout, options.script))
+    texts = read_texts(checkout, script)
+    placement = place(checkout, script, texts, str(Path.home()), os.environ.get("USER", "root"))
+    folder = create_run_folder(options.output.resolve(), "run_project")
+    logs = folder / "log"
+    with Display() as display:
+        display.say(f"{checkout.root}: {checkout.kind.value}, script {script}")
+        display.say(f"run folder {folder}")
+        with _WorkFolder(checkout.root) as work:
+            workspace = copy_checkout(checkout, placement, work.path)
+            display.show("building the project")
+            build(workspace, logs / "build.log", display.say)
+            display.say(f"built in {time.time() - started:.0f} s")
+            if options.build_only:
+                return 0
+            job = _job(options, workspace, placement, texts, script, work.path, logs)
+            return _run_job(
+                options, job, folder, workspace, display, {"project": str(checkout.root), "script": script}
+            )
+
+
+def read_texts(checkout: Checkout, script: str) -> Dict[str, str]:
+    """The contents of the files that may name paths."""
+    texts = {}
+    for file in {*checkout.files, script}:
+        path = checkout.root / file
+        is_text = path.suffix in READ_SUFFIXES or file == script
+        if is_text and path.is_file() and path.stat().st_size < LARGEST_TEXT:
+            texts[file] = path.read_text(errors="replace")
+    return texts
+
+
+def _job(
+    options, workspace: Workspace, placement: Placement, texts, script: str, work: Path, logs: Path
+) -> Job:
+    tree = work / "tree"
+    mounts = {Path(target): tree / source for target, source in placement.mounts.items()}
+    for ros in sorted({found for text in texts.values() for found in ROS_FOLDER.findall(text)}):
+        if not Path(ros).exists():
+            mounts[Path(ros)] = _stand_in_for_ros(work / Path(ros).name, workspace)
+    root = work / "root"
+    root.mkdir(exist_ok=True)
+    file = workspace.checkout / script
+    shell = [] if file.read_bytes()[:2] == b"#!" else ["bash"]
+    command = [*prefix(mounts, root), *shell, str(file), *options.script_arguments]
+    variables = {**environment(workspace), LOGS: str(logs), **({SHOWN: "1"} if options.rviz else {})}
+    return Job(command, tree / placement.start, variables, work)
+
+
+def _stand_in_for_ros(folder: Path, workspace: Workspace) -> Path:
+    """What is seen as /opt/ros/<distribution>: setting it up sets up the project's workspace."""
+    folder.mkdir(exist_ok=True)
+    for shell in ("bash", "sh", "zsh"):
+        (folder / f"setup.{shell}").write_text(f'. "{workspace.folder}/devel/setup.{shell}"\n')
+    return folder
+
+
+def _run_job(options, job: Job, folder: Path, workspace: Workspace, display: Display, about: dict) -> int:
+    parameters = {
+        "/use_sim_time": True,
+        "/gazebo/speed": options.speed,
+        "/gazebo/seed": options.seed,
+        "/gazebo/wait_for": WAIT_FOR,
+        "/gazebo/odometry_rate": ODOMETRY_RATE,
+    }
+    started, failure, run, is_interrupted = time.monotonic(), None, None, False
+    try:
+        with ProjectRun(job, folder / "log", parameters, display.say) as run:
+            if options.record:
+                run.record(folder / "run.bag")
+            failure = run.watch(options.timeout)
+    except RunInterruptedError:
+        failure, is_interrupted = "interrupted", True
+    observer = run.observer if run is not None else None
+    ledger = observer.ledger if observer is not None else Ledger()
+    verdict = judge(ledger, failure)
+    complaints = complaints_in(folder / "log")
+    path = write_result(
+        folder,
+        {
+            "command": "run_project",
+            **about,
+            "success": verdict.success,
+            "reason": verdict.reason,
+            "goals": [vars(goal) for goal in ledger.goals.values()],
+            "markers": ledger.markers,
+            "distance_driven": round(ledger.distance_driven, 2),
+            "collisions": ledger.collisions,
+            "simulated_seconds": round(observer.simulated_time, 1) if observer else 0.0,
+            "wall_seconds": round(time.monotonic() - started, 1),
+            "speed": options.speed,
+            "seed": options.seed,
+            "left_out": workspace.missing,
+            "complaints": complaints,
+            "versions": versions(),
+        },
+    )
+    _report(display, verdict, ledger, complaints)
+    display.say(f"result in {path}")
+    return INTERRUPTED if is_interrupted else 0 if verdict.success else FAILURE
+
+
+def _report(display: Display, verdict: Verdict, ledger: Ledger, complaints: List[str]) -> None:
+    if not verdict.success:
+        for complaint in complaints:
+            display.say(f"  | {complaint}")
+    display.say(f"drove {ledger.distance_driven:.1f} m, {len(ledger.collisions)} collisions")
+    display.say(f"{'SUCCESS' if verdict.success else 'FAILURE'}: {verdict.reason}")
+
+
+class _WorkFolder:
+    """The work folder of a checkout, for one run at a time."""
+
+    def __init__(self, root: Path):
+        name = re.sub(r"[^\w-]", "_", root.name)
+        self.path = WORK / f"{name}-{hashlib.sha256(str(root).encode()).hexdigest()[:8]}"
+
+    def __enter__(self):
+        self.path.mkdir(parents=True, exist_ok=True)
+        self._lock = (self.path / "lock").open("w")
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise ProjectError(
+                f"another run of this project is under way (it works in {self.path})"
+            ) from None
+        return self
+
+    def __exit__(self, *_):
+        self._lock.close()
+
+
+def _interrupt(number, _frame):
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    raise RunInterruptedError(signal.Signals(number).name)
+
+
+if __name__ == "__main__":
+    code = main()
+    sys.stdout.flush()
+    # Without waiting for threads of ROS that still listen to a master that is gone.
+    os._exit(code)

@@ -1,0 +1,25 @@
+"""What went wrong by the words of those it went wrong for: the errors in the logs of a run's windows."""
+
+import re
+from pathlib import Path
+from typing import List
+
+MOST = 20
+_COLOUR = re.compile(r"\x1b\[[0-9;]*m")
+_COMPLAINT = re.compile(
+    r"^\[ *(?:ERROR|FATAL)\]|\berror:|process has died|Segmentation fault|RLException|ResourceNotFound|"
+    r"Resource not found|cannot launch node|command not found|No such file|Couldn't find|Traceback",
+    re.IGNORECASE,
+)
+
+
+def complaints_in(folder: Path) -> List[str]:
+    """The first lines that tell of errors, each once, with the log's name before it."""
+    found: List[str] = []
+    for log in sorted(folder.glob("*.log")):
+        for line in log.read_text(errors="replace").splitlines():
+            line = _COLOUR.sub("", line).strip()
+            entry = f"{log.stem}: {line}"
+            if _COMPLAINT.search(line) and entry not in found:
+                found.append(entry)
+    return found[:MOST]

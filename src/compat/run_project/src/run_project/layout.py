@@ -1,0 +1,115 @@
+"""Which kind of checkout a project is: a workspace, the content of its src, or one package."""
+
+import enum
+import os
+import xml.etree.ElementTree as ElementTree
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Dict, Iterator, List, Optional, Tuple
+
+from run_project.errors import ProjectError
+
+# What a build or a version control leaves in a checkout; never read, never copied.
+LEFTOVERS = frozenset((".git", ".hg", ".svn", "build", "devel", "install", "logs"))
+WORD = "home_service"
+
+
+class Kind(enum.Enum):
+    """What the top folder of a checkout is."""
+
+    WORKSPACE = "a workspace"
+    SOURCES = "the content of src"
+    PACKAGE = "one package"
+
+
+@dataclass(frozen=True)
+class Checkout:
+    """A project as it lies on the disk. All other paths are relative to ``root``.
+
+    ``workspace`` is the folder that holds ``src``; None unless the kind is WORKSPACE.
+    ``packages`` maps names to folders.
+    """
+
+    root: Path
+    kind: Kind
+    workspace: Optional[Path]
+    packages: Dict[str, Path]
+    files: Tuple[str, ...]
+
+    def scripts(self) -> List[Path]:
+        """All shell scripts."""
+        return [Path(file) for file in self.files if file.endswith((".sh", ".bash"))]
+
+
+def read_checkout(root: Path) -> Checkout:
+    """Looks at the folder ``root``. Raises ProjectError if there is no package in it."""
+    root = root.resolve()
+    if not root.is_dir():
+        raise ProjectError(f"{root}: no such folder")
+    files = tuple(_files(root))
+    packages = _packages(root, files)
+    if not packages:
+        raise ProjectError(f"{root}: no package.xml in it or below")
+    workspace = None
+    if Path() in packages.values():
+        kind = Kind.PACKAGE
+    else:
+        workspace = _workspace(packages)
+        kind = Kind.SOURCES if workspace is None else Kind.WORKSPACE
+    return Checkout(root, kind, workspace, packages, files)
+
+
+def choose_script(checkout: Checkout, wanted: Optional[str]) -> Path:
+    """The script to run: the one ``wanted``, by path or by name, or home_service.sh.
+
+    Raises ProjectError that names the scripts there are.
+    """
+    scripts = checkout.scripts()
+    if wanted is None:
+        chosen = [script for script in scripts if script.stem == WORD] or [
+            script for script in scripts if _letters(WORD) in _letters(script.stem)
+        ]
+    else:
+        chosen = [Path(file) for file in checkout.files if file == os.path.normpath(wanted)] or [
+            Path(file) for file in checkout.files if Path(file).name in (wanted, f"{wanted}.sh")
+        ]
+    if chosen:
+        return min(chosen, key=lambda script: (len(script.parts), str(script)))
+    names = ", ".join(str(script) for script in scripts) or "none"
+    raise ProjectError(f"{checkout.root}: no script {wanted or WORD + '.sh'} in it; its scripts: {names}")
+
+
+def _letters(text: str) -> str:
+    return "".join(letter for letter in text.lower() if letter.isalpha())
+
+
+def _files(root: Path) -> Iterator[str]:
+    for folder, folders, names in os.walk(root):
+        folders[:] = sorted(name for name in folders if name not in LEFTOVERS)
+        for name in sorted(names):
+            yield os.path.relpath(f"{folder}/{name}", root)
+
+
+def _packages(root: Path, files) -> Dict[str, Path]:
+    packages: Dict[str, Path] = {}
+    for file in files:
+        path = Path(file)
+        if path.name != "package.xml" or any(
+            path.parent != p and p in path.parents for p in packages.values()
+        ):
+            continue
+        try:
+            name = ElementTree.parse(root / path).getroot().findtext("name", "").strip()
+        except ElementTree.ParseError as error:
+            raise ProjectError(f"{root / path}: {error}") from None
+        if name and name not in packages:
+            packages[name] = path.parent
+    return packages
+
+
+def _workspace(packages: Dict[str, Path]) -> Optional[Path]:
+    """The folder above the ``src`` that holds most packages."""
+    above = [
+        parent.parent for folder in packages.values() for parent in folder.parents if parent.name == "src"
+    ]
+    return max(above, key=lambda folder: (above.count(folder), -len(folder.parts))) if above else None

@@ -1,0 +1,125 @@
+"""Sees what a project does, from outside: goals and how they end, markers, the true robot."""
+
+import struct
+import threading
+from typing import Callable, Dict, Optional, Set
+
+import rosgraph
+import rospy
+from actionlib_msgs.msg import GoalStatusArray
+from move_base_msgs.msg import MoveBaseActionGoal, MoveBaseActionResult
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
+from std_msgs.msg import String
+from visualization_msgs.msg import Marker, MarkerArray
+
+from run_project.verdict import Ledger
+
+# seq and stamp at the start of a message with a header: what changes when nothing else does.
+CHANGING_BYTES = struct.calcsize("<III")
+# Their markers are about themselves, not about the project's story.
+NODES_OF_ROBOT = frozenset(("/amcl", "/explore", "/gazebo", "/map_server", "/move_base", "/slam_gmapping"))
+
+
+class Observer:
+    """Fills a ledger from the topics that appear on a master; ``say`` is told each piece of news."""
+
+    def __init__(self, say: Callable[[str], None]):
+        self.ledger = Ledger()
+        self.simulated_time = 0.0
+        self._say = say
+        self._lock = threading.Lock()
+        self._latest: Dict[str, bytes] = {}
+        self._seen: Set[str] = set()
+        self._subscribers = [
+            rospy.Subscriber("/clock", Clock, self._see_clock, queue_size=1),
+            rospy.Subscriber("/contacts", String, self._see_contacts, queue_size=50),
+            rospy.Subscriber("/base_pose_ground_truth", Odometry, self._see_truth, queue_size=50),
+        ]
+
+    def look_around(self) -> None:
+        """Subscribes to the topics of interest that are new on the master."""
+        master = rosgraph.Master("/run_project")
+        publishers, _, _ = master.getSystemState()
+        of_project = {topic for topic, nodes in publishers if not NODES_OF_ROBOT.issuperset(nodes)}
+        for topic, kind in master.getTopicTypes():
+            follow = {
+                "move_base_msgs/MoveBaseActionGoal": self._follow_goals,
+                "move_base_msgs/MoveBaseActionResult": self._follow_results,
+                "visualization_msgs/Marker": self._follow_markers,
+                "visualization_msgs/MarkerArray": self._follow_markers,
+            }.get(kind)
+            is_theirs = follow != self._follow_markers or topic in of_project
+            if follow is not None and is_theirs and topic not in self._seen:
+                self._seen.add(topic)
+                follow(topic, kind)
+
+    def _follow_goals(self, topic, _kind):
+        self._subscribe(topic, MoveBaseActionGoal, self._see_goal)
+        self._subscribe(topic.rsplit("/", 1)[0] + "/status", GoalStatusArray, self._see_status)
+
+    def _follow_results(self, topic, _kind):
+        self._subscribe(topic, MoveBaseActionResult, self._see_result)
+
+    def _follow_markers(self, topic, kind):
+        is_array = kind.endswith("Array")
+        self._subscribe(topic, rospy.AnyMsg, lambda raw: self._see_raw_marker(topic, is_array, raw._buff))
+
+    def _subscribe(self, topic, kind, callback):
+        self._subscribers.append(rospy.Subscriber(topic, kind, callback, queue_size=100, tcp_nodelay=True))
+
+    def _see_clock(self, message):
+        self.simulated_time = message.clock.to_sec()
+
+    def _see_goal(self, message):
+        position = message.goal.target_pose.pose.position
+        self._note(
+            lambda: self.ledger.see_goal(self.simulated_time, message.goal_id.id, (position.x, position.y))
+        )
+
+    def _see_status(self, message):
+        for status in message.status_list:
+            self._note_status(status)
+
+    def _see_result(self, message):
+        self._note_status(message.status)
+
+    def _note_status(self, status):
+        name, number, text = status.goal_id.id, status.status, status.text
+        self._note(lambda: self.ledger.see_status(self.simulated_time, name, number, text))
+
+    def _see_raw_marker(self, topic: str, is_array: bool, data: bytes):
+        """Some publish the same marker a thousand times a second: only what differs is looked into."""
+        content = data if is_array else data[CHANGING_BYTES:]
+        if self._latest.get(topic) == content:
+            return
+        self._latest[topic] = content
+        for marker in MarkerArray().deserialize(data).markers if is_array else [Marker().deserialize(data)]:
+            self._note(lambda marker=marker: self._see_marker(marker))
+
+    def _see_marker(self, marker: Marker) -> Optional[str]:
+        now = self.simulated_time
+        if marker.action == Marker.DELETEALL:
+            return self.ledger.hide_all(now)
+        scale = marker.scale
+        is_visible = marker.color.a > 0.0 or bool(marker.colors)
+        is_shown = marker.action == Marker.ADD and is_visible and max(scale.x, scale.y, scale.z) > 0.0
+        position = marker.pose.position
+        return self.ledger.see_marker(
+            now, (marker.ns, marker.id), (position.x, position.y) if is_shown else None
+        )
+
+    def _see_truth(self, message):
+        position = message.pose.pose.position
+        with self._lock:
+            self.ledger.see_position((position.x, position.y))
+
+    def _see_contacts(self, message):
+        for name in message.data.splitlines():
+            self._note(lambda name=name: self.ledger.see_collision(name))
+
+    def _note(self, see: Callable[[], Optional[str]]):
+        with self._lock:
+            news = see()
+        if news:
+            self._say(f"{self.simulated_time:7.1f} s  {news}")

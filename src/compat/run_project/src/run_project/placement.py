@@ -1,0 +1,193 @@
+"""Where a checkout has to lie, and where its script has to start, for the paths it names to be right.
+
+Authors run their scripts from the workspace, from the script's folder or from the repository, cloned as the
+``src`` of a workspace or into it, in a home that is not ours. Each possibility is tried on paper; the one
+under which most of the named files exist is taken.
+"""
+
+import os
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Pattern, Set, Tuple
+
+from run_project.layout import Checkout, Kind
+
+# Where the system's own files are, and what is rather the tail of a path: nothing is put there.
+SYSTEM = frozenset("bin boot dev etc lib lib64 opt proc run sbin src sys usr var".split())
+SETUPS = ("devel/setup.bash", "devel/setup.sh", "devel/setup.zsh", "build", "install/setup.bash")
+READ_SUFFIXES = frozenset(
+    ".bash .cpp .h .launch .py .rviz .sdf .sh .urdf .world .xacro .xml .yaml .yml".split()
+)
+
+# Stands for the folder in which the workspace is made, while paths are tried.
+ROOT = "/@"
+
+_NAME = r"[\w@%+.-]+"
+_ABSOLUTE = re.compile(rf"(?<![\w}})~.:/-])((?:~|\$HOME|\$\{{HOME\}})?(?:/(?:{_NAME}|\$USER|\$\{{USER\}}))+)")
+_ASSIGNMENT = re.compile(r"^\s*(?:export\s+|readonly\s+)?(\w+)=(\"[^\"]*\"|'[^']*'|[^\s;&]*)", re.MULTILINE)
+_SCRIPT_FOLDER = re.compile(r"[$`(]+\s*dirname\s+[\"']?\$\{?(?:0|BASH_SOURCE(?:\[0\])?)\}?[\"']?\s*[)`]")
+_CD_PWD = re.compile(
+    r"\$\(\s*cd\s+(?:-P\s+)?(?:--\s+)?[\"']?([^\"'\s;&>]+)[\"']?[^()]*&&\s*pwd(?:\s+-P)?\s*\)"
+)
+_WORKING_FOLDER = re.compile(r"\$\(\s*pwd\s*\)|`\s*pwd\s*`|\$PWD\b|\$\{PWD\}")
+_ROSPACK = re.compile(r"(?:\$\(\s*rospack\s+find\s+([\w-]+)\s*\)|`\s*rospack\s+find\s+([\w-]+)\s*`)")
+_CD = re.compile(r"(?:^|[;&(\"'\s])cd\s+[\"']?([^\s;&\"')]+)")
+_PATH = re.compile(r"[^\s\"'`;&|()<>=,]*/[^\s\"'`;&|()<>=,]*|(?<=:=)[^\s\"';&]+")
+
+
+@dataclass(frozen=True)
+class Placement:
+    """All paths are relative to the folder in which the workspace is made.
+
+    ``mounts``: absolute folders that the project's files name, and what must be seen there.
+    """
+
+    checkout: Path
+    workspace: Path
+    start: Path
+    mounts: Dict[str, Path]
+
+
+def place(checkout: Checkout, script: str, texts: Mapping[str, str], home: str, user: str) -> Placement:
+    """The best placement for running ``script``; ``texts`` are the contents of the files by relative path."""
+    named = sorted({path for text in texts.values() for path in absolute_paths(text, home, user)})
+    files = _with_folders(checkout.files)
+    prefixes = sorted({prefix for prefix in (_prefix(path, files) for path in named) if prefix is not None})
+    best: Optional[Tuple[Tuple[int, int], Placement]] = None
+    for at, workspace in _positions(checkout, [prefix for prefix, _ in prefixes]):
+        mounts = dict(_mounts(prefixes, at, workspace))
+        there = _there(checkout, at, workspace)
+        packages = {name: _tried(at / folder) for name, folder in checkout.packages.items()}
+        for start in _starts(at, workspace, Path(script).parent):
+            found = set(paths_named(texts[script], _tried(start), _tried(at / Path(script).parent), packages))
+            found |= {_tried(mounts_to(path, mounts)) for path in absolute_paths(texts[script], home, user)}
+            score = len(found & there), sum(source == workspace for source in mounts.values())
+            if best is None or score > best[0]:
+                best = score, Placement(at, workspace, start, mounts)
+    assert best is not None
+    return best[1]
+
+
+def absolute_paths(text: str, home: str, user: str) -> Set[str]:
+    """Absolute paths of files that may be the project's: not the system's, not the names of topics."""
+    found = set()
+    for match in _ABSOLUTE.finditer(text.replace("file://", "")):
+        path = re.sub(r"^(~|\$HOME|\$\{HOME\})", home, match.group(1)).replace("${USER}", user)
+        path = path.replace("$USER", user).rstrip(".")
+        parts = path.split("/")[1:]
+        is_file = "." in parts[-1] or "src" in parts or "devel" in parts
+        if len(parts) >= 3 and parts[0] not in SYSTEM and is_file and not path.startswith("/opt/ros"):
+            found.add(os.path.normpath(path))
+    return found
+
+
+def paths_named(text: str, start: str, script_folder: str, packages: Mapping[str, str]) -> Iterator[str]:
+    """The relative paths that a shell script names, resolved as if it was started in the folder ``start``.
+
+    Not a shell: knows ``cd``, assignments, ``$(pwd)``, the script's own folder and ``rospack find``.
+    All folders, also those of the packages, are given absolute.
+    """
+    text = _replaced(_SCRIPT_FOLDER, script_folder, text)
+    text = _CD_PWD.sub(lambda match: _joined(start, match.group(1)), text)
+    text = _ROSPACK.sub(lambda match: packages.get(match.group(1) or match.group(2), "?"), text)
+    text = _with_values(text, start)
+    folder = start
+    for line in text.splitlines():
+        line = _replaced(_WORKING_FOLDER, folder, line.split("#", 1)[0])
+        here, at = folder, 0
+        for change in _CD.finditer(line):
+            yield from _paths_in(line[at : change.start()], here)
+            here, at = _joined(here, change.group(1)), change.end()
+        yield from _paths_in(line[at:], here)
+        if line.lstrip().startswith("cd "):
+            folder = here
+
+
+def mounts_to(path: str, mounts: Mapping[str, Path]) -> Optional[Path]:
+    """Where an absolute path is found once the mounts are made; None if under none of them."""
+    for target, source in mounts.items():
+        if path == target or path.startswith(target + "/"):
+            return source / path[len(target) :].lstrip("/")
+    return None
+
+
+def _tried(path: Optional[Path]) -> str:
+    return os.path.normpath(f"{ROOT}/{path}")
+
+
+def _with_values(text: str, start: str) -> str:
+    """The text with the variables replaced that it assigns itself."""
+    for name, value in _ASSIGNMENT.findall(text):
+        value = _replaced(_WORKING_FOLDER, start, value.strip("\"'"))
+        text = _replaced(re.compile(rf"\$(?:{name}\b|\{{{name}\}})"), value, text)
+    return text
+
+
+def _replaced(pattern: Pattern[str], value: str, text: str) -> str:
+    return pattern.sub(lambda _: value, text)
+
+
+def _joined(folder: str, path: str) -> str:
+    return os.path.normpath(path if path.startswith("/") else f"{folder}/{path}")
+
+
+def _paths_in(text: str, folder: str) -> Iterator[str]:
+    for word in _PATH.findall(text):
+        word = word.rpartition(":=")[2]
+        if "$" not in word and "://" not in word:
+            yield _joined(folder, word)
+
+
+def _prefix(path: str, files: FrozenSet[str]) -> Optional[Tuple[str, bool]]:
+    """The folder that stands for the checkout (True) or its workspace (False), by the path's longest tail."""
+    parts = path.split("/")
+    for at in range(2, len(parts)):
+        if "/".join(parts[at:]) in files:
+            return "/".join(parts[:at]), True
+    for name in ("src", "devel"):
+        if name in parts[2:]:
+            return "/".join(parts[: parts.index(name, 2)]), False
+    return None
+
+
+def _positions(checkout: Checkout, prefixes: Iterable[str]) -> List[Tuple[Path, Path]]:
+    """Where checkout and workspace may lie: pairs relative to the folder in which they are made."""
+    if checkout.kind is Kind.WORKSPACE:
+        assert checkout.workspace is not None
+        return [(Path(), Path(checkout.workspace))]
+    names = {Path(prefix).name for prefix in prefixes if Path(prefix).parent.name == "src"}
+    inside = [(Path("src") / name, Path()) for name in sorted(names | {checkout.root.name})]
+    return inside if checkout.kind is Kind.PACKAGE else [(Path("src"), Path()), *inside]
+
+
+def _mounts(prefixes: List[Tuple[str, bool]], at: Path, workspace: Path) -> Iterator[Tuple[str, Path]]:
+    for prefix, is_checkout in prefixes:
+        if not is_checkout:
+            yield prefix, workspace
+        elif at != Path() and prefix.endswith(f"/{at}"):
+            yield prefix[: -len(str(at)) - 1], Path()
+        else:
+            yield prefix, at
+
+
+def _starts(at: Path, workspace: Path, script_folder: Path) -> List[Path]:
+    """Where people stand when they start a script; the likeliest first."""
+    return list(
+        dict.fromkeys([workspace, at / script_folder, at, workspace / "src", at / script_folder.parent])
+    )
+
+
+def _with_folders(files: Iterable[str]) -> FrozenSet[str]:
+    return frozenset(
+        part
+        for file in files
+        for part in (file, *(str(folder) for folder in Path(file).parents))
+        if part != "."
+    )
+
+
+def _there(checkout: Checkout, at: Path, workspace: Path) -> FrozenSet[str]:
+    made = [str(workspace / name) for name in SETUPS]
+    files = _with_folders([*(str(at / file) for file in checkout.files), *made])
+    return frozenset(map(_tried, map(Path, files)))

@@ -1,0 +1,39 @@
+"""The terminal emulator without a screen: each window is a process of its own, with a log of its own."""
+
+import os
+import subprocess
+from pathlib import Path
+from typing import List
+
+from run_project.windows import commands_of, returns_at_once, title_of
+
+LOGS = "RUN_PROJECT_LOGS"
+
+
+def main(terminal: str, arguments: List[str]) -> None:
+    """Opens the windows that were asked for, and stays as long as the terminal would."""
+    folder = Path(os.environ[LOGS])
+    windows = [open_window(command, folder) for command in commands_of(terminal, arguments)]
+    if not returns_at_once(terminal):
+        for window in windows:
+            window.wait()
+
+
+def open_window(command: List[str], folder: Path) -> subprocess.Popen:
+    """Starts a command that outlives whoever asked for it. Its output goes to a file named after it."""
+    with _new_file(folder, title_of(command)) as log:
+        log.write((" ".join(command) + "\n").encode("utf-8", "surrogateescape"))
+        log.flush()
+        return subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT, start_new_session=True
+        )
+
+
+def _new_file(folder: Path, title: str):
+    number = 1
+    while True:
+        path = folder / f"{title}{f'-{number}' if number > 1 else ''}.log"
+        try:
+            return path.open("xb")
+        except FileExistsError:
+            number += 1

@@ -1,0 +1,146 @@
+"""What a project did, and whether that was what it set out to do."""
+
+import math
+from dataclasses import dataclass, field
+from typing import Dict, List, Optional, Tuple
+
+STATUS = (
+    "pending",
+    "active",
+    "preempted",
+    "succeeded",
+    "aborted",
+    "rejected",
+    "preempting",
+    "recalling",
+    "recalled",
+    "lost",
+)
+FINAL = frozenset(("preempted", "succeeded", "aborted", "rejected", "recalled", "lost"))
+# Metres: a marker that moves by less stays; a robot that moves by more at once has been put there.
+SAME_PLACE = 0.1
+JUMP = 0.5
+
+
+@dataclass
+class Goal:
+    """A goal, its place in metres if known, and how it ended."""
+
+    status: str = "pending"
+    text: str = ""
+    place: Optional[Tuple[float, float]] = None
+    sent: float = 0.0
+    ended: Optional[float] = None
+
+
+@dataclass
+class Ledger:
+    """What has been seen of a run, by simulated time. Each ``see`` returns the news in words, or None."""
+
+    goals: Dict[str, Goal] = field(default_factory=dict)
+    markers: List[str] = field(default_factory=list)
+    collisions: List[str] = field(default_factory=list)
+    distance_driven: float = 0.0
+    latest_news: float = 0.0
+    _position: Optional[Tuple[float, float]] = None
+    _shown: Dict[Tuple[str, int], Tuple[float, float]] = field(default_factory=dict)
+
+    def see_goal(self, now: float, name: str, place: Tuple[float, float]) -> None:
+        """A goal was sent."""
+        self._goal(now, name).place = place
+
+    def see_status(self, now: float, name: str, number: int, text: str) -> Optional[str]:
+        """The server said how a goal stands."""
+        goal = self._goal(now, name)
+        status = STATUS[number] if 0 <= number < len(STATUS) else "lost"
+        if status == goal.status or goal.status in FINAL:
+            return None
+        goal.status, goal.text = status, text
+        self.latest_news = now
+        if status in FINAL:
+            goal.ended = now
+        said = f": {text}" if text and status not in ("active", "succeeded") else ""
+        return f"goal {list(self.goals).index(name) + 1}{_at(goal.place)} {status}{said}"
+
+    def see_marker(
+        self, now: float, marker: Tuple[str, int], place: Optional[Tuple[float, float]]
+    ) -> Optional[str]:
+        """A marker was shown at a place, or hidden (None)."""
+        before = self._shown.get(marker)
+        if place is None:
+            if before is None:
+                return None
+            del self._shown[marker]
+            news = "hidden"
+        elif before is not None and math.dist(before, place) < SAME_PLACE:
+            return None
+        else:
+            self._shown[marker] = place
+            news = f"shown{_at(place)}"
+        self.latest_news = now
+        self.markers.append(news)
+        return f"marker {news}"
+
+    def hide_all(self, now: float) -> Optional[str]:
+        """All markers were deleted."""
+        news = [self.see_marker(now, marker, None) for marker in list(self._shown)]
+        return news[0] if news else None
+
+    def see_position(self, position: Tuple[float, float]) -> None:
+        """Where the robot truly is; a jump, as by a service of the simulator, is not driven."""
+        if self._position is not None:
+            step = math.dist(self._position, position)
+            self.distance_driven += step if step < JUMP else 0.0
+        self._position = position
+
+    def see_collision(self, name: str) -> Optional[str]:
+        """The robot touches something."""
+        self.collisions.append(name)
+        return f"collision with {name}"
+
+    @property
+    def is_quiet(self) -> bool:
+        """Whether a goal has been sent and none is under way."""
+        return bool(self.goals) and all(goal.status in FINAL for goal in self.goals.values())
+
+    def _goal(self, now: float, name: str) -> Goal:
+        if name not in self.goals:
+            self.goals[name] = Goal(sent=now)
+            self.latest_news = now
+        return self.goals[name]
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Whether a run succeeded, and why."""
+
+    success: bool
+    reason: str
+
+
+def judge(ledger: Ledger, failure: Optional[str] = None) -> Verdict:
+    """Success if all goals that the project sent were reached; without goals, if it showed a marker.
+
+    ``failure``: why the run was cut short, if it was.
+    """
+    goals = list(ledger.goals.values())
+    reached = sum(goal.status == "succeeded" for goal in goals)
+    failed = [
+        f"goal {number}{_at(goal.place)} {goal.status}{f' ({goal.text})' if goal.text else ''}"
+        for number, goal in enumerate(goals, 1)
+        if goal.status != "succeeded"
+    ]
+    if failure:
+        return Verdict(False, f"{failure}; {reached} of {len(goals)} goals reached")
+    if failed:
+        return Verdict(False, f"{reached} of {len(goals)} goals reached; {'; '.join(failed)}")
+    story = f"markers: {', '.join(ledger.markers)}" if ledger.markers else "no marker shown"
+    if goals:
+        return Verdict(True, f"{reached} of {len(goals)} goals reached; {story}")
+    if ledger.markers:
+        return Verdict(True, f"no goal sent; {story}")
+    return Verdict(False, "the project sent no goal and showed no marker")
+
+
+def _at(place: Optional[Tuple[float, float]]) -> str:
+    return "" if place is None else f" at ({place[0]:.2f}, {place[1]:.2f})"

@@ -1,0 +1,90 @@
+from pathlib import Path
+
+import pytest
+
+from run_project.layout import Checkout, Kind
+from run_project.placement import absolute_paths, mounts_to, paths_named, place
+
+
+def sources(*files):
+    return Checkout(Path("/somewhere/repo"), Kind.SOURCES, None, {"pick": Path("pick")}, files)
+
+
+def workspace(folder, *files):
+    return Checkout(Path("/somewhere/repo"), Kind.WORKSPACE, Path(folder), {}, files)
+
+
+def placed(checkout, script, text):
+    return place(checkout, script, {script: text}, home="/home/me", user="me")
+
+
+FILES = ("pick/package.xml", "world/home.world", "scripts/home_service.sh")
+
+
+def test_a_checkout_that_was_the_src_of_a_workspace_is_put_there():
+    text = "roslaunch a b world_file:=/home/author/catkin_ws/src/world/home.world"
+    placement = placed(sources(*FILES), "scripts/home_service.sh", text)
+    assert placement.checkout == Path("src")
+    assert placement.mounts == {"/home/author/catkin_ws": Path()}
+
+
+def test_a_checkout_that_was_cloned_into_src_is_put_there_by_its_name():
+    text = "roslaunch a b world_file:=/home/author/catkin_ws/src/robot/world/home.world"
+    placement = placed(sources(*FILES), "scripts/home_service.sh", text)
+    assert placement.checkout == Path("src/robot")
+    assert placement.mounts == {"/home/author/catkin_ws": Path()}
+
+
+def test_the_scripts_own_folder_tells_how_deep_the_checkout_lay():
+    own = 'WS="$( cd "$( dirname "${BASH_SOURCE[0]}" )/../../.." >/dev/null && pwd )"'
+    text = f"{own}\nsource $WS/devel/setup.bash\n"
+    assert placed(sources(*FILES), "scripts/home_service.sh", text).checkout == Path("src/repo")
+
+
+def test_a_home_is_meant_whoever_lives_there():
+    text = "source ~/catkin_ws/devel/setup.bash; cat /home/$USER/ws2/src/world/home.world"
+    mounts = placed(sources(*FILES), "scripts/home_service.sh", text).mounts
+    assert mounts == {"/home/me/catkin_ws": Path(), "/home/me/ws2": Path()}
+
+
+def test_the_workspace_below_a_repository_stays_below_it():
+    checkout = workspace("catkin_ws", "catkin_ws/src/world/home.world", "catkin_ws/src/go.sh")
+    placement = placed(checkout, "catkin_ws/src/go.sh", "cat /home/workspace/catkin_ws/src/world/home.world")
+    assert placement.workspace == Path("catkin_ws")
+    assert placement.mounts == {"/home/workspace": Path()}
+
+
+@pytest.mark.parametrize(
+    ("text", "start"),
+    [
+        ('xterm -e "source devel/setup.bash && rosrun a b" &', "."),
+        ("SRC=`pwd`\nWORLD=${SRC}/src/world/home.world", "."),
+        ('xterm -e "cd $(pwd)/../.. ; source devel/setup.bash" &', "src/scripts"),
+        ("cd ../..\nxterm -e 'roslaunch a b world_file:=$(pwd)/src/world/home.world'", "src/scripts"),
+        ("rosparam load scripts/../world/home.world", "src"),
+    ],
+)
+def test_a_script_starts_where_the_files_it_names_are_found(text, start):
+    assert placed(sources(*FILES), "scripts/home_service.sh", text).start == Path(start)
+
+
+def test_packages_are_found_as_rospack_does():
+    named = set(paths_named("cat $(rospack find pick)/../world/x", "/@", "/@", {"pick": "/@/src/pick"}))
+    assert named == {"/@/src/world/x"}
+
+
+def test_comments_name_nothing():
+    assert not list(paths_named("# cd x/y; cat a/b", "/@", "/@", {}))
+
+
+@pytest.mark.parametrize(
+    "path", ["/gazebo/set_model_state", "/opt/ros/kinetic/setup.bash", "/usr/lib/ros/a.sh"]
+)
+def test_topics_and_the_systems_own_files_are_no_paths_of_the_project(path):
+    assert absolute_paths(f"cat {path}; curl http://a/b/c.d", "/home/me", "me") == set()
+
+
+def test_a_path_below_a_mount_is_found_in_its_source():
+    mounts = {"/home/author/ws": Path()}
+    assert mounts_to("/home/author/ws/src/a", mounts) == Path("src/a")
+    assert mounts_to("/home/author/ws2/src/a", mounts) is None

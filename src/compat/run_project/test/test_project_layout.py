@@ -1,0 +1,74 @@
+import pytest
+
+from run_project.errors import ProjectError
+from run_project.layout import Kind, choose_script, read_checkout
+
+
+def checkout(folder, *files):
+    for file in files:
+        path = folder / file
+        path.parent.mkdir(parents=True, exist_ok=True)
+        name = path.parent.name
+        path.write_text(f"<package><name>{name}</name></package>" if path.name == "package.xml" else "")
+    return read_checkout(folder)
+
+
+def test_a_folder_with_src_is_a_workspace(tmp_path):
+    project = checkout(tmp_path, "src/pick/package.xml", "src/scripts/home_service.sh")
+    assert project.kind is Kind.WORKSPACE
+    assert str(project.workspace) == "."
+    assert {name: str(folder) for name, folder in project.packages.items()} == {"pick": "src/pick"}
+
+
+def test_a_workspace_is_found_in_a_folder_of_the_repository(tmp_path):
+    project = checkout(
+        tmp_path, "catkin_ws/src/pick/package.xml", "catkin_ws/src/mark/package.xml", "README.md"
+    )
+    assert project.kind is Kind.WORKSPACE
+    assert str(project.workspace) == "catkin_ws"
+
+
+def test_packages_without_src_above_them_are_the_content_of_src(tmp_path):
+    project = checkout(tmp_path, "pick/package.xml", "pick/src/pick.cpp", "mark/package.xml")
+    assert project.kind is Kind.SOURCES
+    assert project.workspace is None
+
+
+def test_a_package_xml_at_the_top_is_one_package(tmp_path):
+    assert checkout(tmp_path, "package.xml", "src/pick.cpp").kind is Kind.PACKAGE
+
+
+def test_what_a_build_left_behind_is_not_read(tmp_path):
+    project = checkout(tmp_path, "src/pick/package.xml", "devel/share/old/package.xml", ".git/x/package.xml")
+    assert sorted(project.packages) == ["pick"]
+
+
+def test_a_folder_without_packages_is_refused_by_name(tmp_path):
+    with pytest.raises(ProjectError, match=r"no package\.xml"):
+        read_checkout(tmp_path)
+
+
+def test_a_broken_package_xml_is_named(tmp_path):
+    (tmp_path / "package.xml").write_text("<package>")
+    with pytest.raises(ProjectError, match=r"package\.xml: no element found"):
+        read_checkout(tmp_path)
+
+
+@pytest.mark.parametrize("name", ["home_service.sh", "HomeService.sh", "test_home_service.sh"])
+def test_the_home_service_script_is_found_wherever_it_is(tmp_path, name):
+    project = checkout(tmp_path, "src/pick/package.xml", "src/scripts/pick.sh", f"src/scripts/{name}")
+    assert choose_script(project, None).name == name
+
+
+@pytest.mark.parametrize("wanted", ["pick", "pick.sh", "src/scripts/pick.sh"])
+def test_another_script_is_named_by_stem_name_or_path(tmp_path, wanted):
+    project = checkout(tmp_path, "src/pick/package.xml", "src/scripts/pick.sh", "src/scripts/home_service.sh")
+    assert str(choose_script(project, wanted)) == "src/scripts/pick.sh"
+
+
+def test_a_script_that_is_not_there_is_answered_with_those_that_are(tmp_path):
+    project = checkout(tmp_path, "src/pick/package.xml", "src/scripts/pick.sh")
+    with pytest.raises(
+        ProjectError, match=r"no script home_service\.sh in it; its scripts: src/scripts/pick\.sh"
+    ):
+        choose_script(project, None)

@@ -1,0 +1,95 @@
+import pytest
+
+from run_project.complaints import complaints_in
+from run_project.nodelet import command_for
+from run_project.rviz_topics import ALWAYS, topics_of
+from run_project.verdict import Ledger, judge
+
+ACTIVE, PREEMPTED, SUCCEEDED, ABORTED = 1, 2, 3, 4
+
+
+def ledger_of(*endings):
+    ledger = Ledger()
+    for number, ending in enumerate(endings):
+        ledger.see_goal(float(number), f"goal-{number}", (1.0, 2.0))
+        ledger.see_status(float(number), f"goal-{number}", ending, "text")
+    return ledger
+
+
+def test_all_goals_reached_is_success():
+    verdict = judge(ledger_of(SUCCEEDED, SUCCEEDED))
+    assert verdict.success
+    assert verdict.reason.startswith("2 of 2 goals reached")
+
+
+@pytest.mark.parametrize("ending", [PREEMPTED, ABORTED, ACTIVE])
+def test_a_goal_that_ended_otherwise_is_a_failure_with_the_reason(ending):
+    verdict = judge(ledger_of(SUCCEEDED, ending))
+    assert not verdict.success
+    assert "1 of 2 goals reached; goal 2 at (1.00, 2.00)" in verdict.reason
+
+
+def test_a_run_that_was_cut_short_is_a_failure():
+    assert not judge(ledger_of(SUCCEEDED), "interrupted").success
+
+
+def test_a_project_that_did_nothing_failed():
+    assert not judge(Ledger()).success
+
+
+def test_a_status_is_told_once():
+    ledger = Ledger()
+    assert ledger.see_status(1.0, "a", ACTIVE, "") == "goal 1 active"
+    assert ledger.see_status(1.2, "a", ACTIVE, "") is None
+    assert not ledger.is_quiet
+    ledger.see_status(1.4, "a", SUCCEEDED, "Goal reached.")
+    assert ledger.is_quiet
+
+
+def test_a_marker_tells_where_it_is_shown_and_when_it_is_hidden():
+    ledger = Ledger()
+    for place in ((1.0, 2.0), (1.0, 2.01), None, None, (3.0, 4.0)):
+        ledger.see_marker(0.0, ("shapes", 0), place)
+    assert ledger.markers == ["shown at (1.00, 2.00)", "hidden", "shown at (3.00, 4.00)"]
+    ledger.hide_all(1.0)
+    assert ledger.markers[-1] == "hidden"
+
+
+def test_distance_leaves_out_where_the_robot_was_put():
+    ledger = Ledger()
+    for position in ((0.0, 0.0), (0.3, 0.2), (9.0, 9.0), (9.1, 9.0)):
+        ledger.see_position(position)
+    assert ledger.distance_driven == pytest.approx(0.1 + 0.13**0.5)
+
+
+def test_rviz_displays_what_its_configuration_enables():
+    config = """
+Visualization Manager:
+  Displays:
+    - {Class: rviz/Marker, Enabled: true, Marker Topic: visualization_marker_2}
+    - Class: rviz/Group
+      Enabled: true
+      Displays:
+        - {Class: rviz/Path, Enabled: true, Topic: /move_base/NavfnROS/plan}
+        - {Class: rviz/Map, Enabled: false, Topic: /hidden}
+    - {Class: rviz/Image, Enabled: true, Image Topic: /camera/rgb/image_raw}
+    - {Class: rviz/PointCloud2, Enabled: true, Topic: /camera/depth/points}
+"""
+    assert topics_of(config) == {ALWAYS, "/visualization_marker_2", "/move_base/NavfnROS/plan"}
+
+
+@pytest.mark.parametrize("config", ["", "a: [", "- 1", "Visualization Manager: 3"])
+def test_markers_are_displayed_whatever_the_configuration_is(config):
+    assert topics_of(config) == {ALWAYS}
+
+
+def test_the_velocity_smoother_passes_velocities_on():
+    arguments = "load yocs_velocity_smoother/VelocitySmootherNodelet manager __name:=smoother".split()
+    arguments.append("smoother/smooth_cmd_vel:=mux/input/navi")
+    assert command_for(arguments)[3:5] == ["smoother/raw_cmd_vel", "mux/input/navi"]
+    assert command_for(["manager"])[0] == "sleep"
+
+
+def test_complaints_are_errors_told_once_with_the_windows_name(tmp_path):
+    (tmp_path / "rosrun-pick.log").write_text("fine\n\x1b[31m[ERROR] [1]: lost\n[ERROR] [1]: lost\n")
+    assert complaints_in(tmp_path) == ["rosrun-pick: [ERROR] [1]: lost"]

@@ -1,0 +1,47 @@
+import pytest
+
+from run_project.windows import commands_of, returns_at_once, title_of
+
+
+@pytest.mark.parametrize(
+    ("terminal", "arguments", "commands"),
+    [
+        ("xterm", ["-e", " roslaunch a b.launch "], [["bash", "-c", " roslaunch a b.launch "]]),
+        ("xterm", ["-T", "My -e world", "-hold", "-e", "roscore"], [["bash", "-c", "roscore"]]),
+        ("xterm", ["-xrm", "XTerm*x: y", "-name", "a", "-e", "rosrun", "a", "b"], [["rosrun", "a", "b"]]),
+        ("xterm", ["-hold"], []),
+        ("uxterm", ["-e", "roscore"], [["bash", "-c", "roscore"]]),
+        ("terminator", ["-T", "a", "-e", "roscore"], [["bash", "-c", "roscore"]]),
+        ("terminator", ["--new-tab", "-x", "rosrun", "a", "b"], [["rosrun", "a", "b"]]),
+        ("gnome-terminal", ["--", "bash", "-c", "roscore"], [["bash", "-c", "roscore"]]),
+        ("gnome-terminal", ["-x", "bash", "-c", "roscore"], [["bash", "-c", "roscore"]]),
+        (
+            "gnome-terminal",
+            ["--tab", "-e", "roscore", "--tab", "--title=x", "--command=rosrun a b"],
+            [["bash", "-c", "roscore"], ["bash", "-c", "rosrun a b"]],
+        ),
+    ],
+)
+def test_a_terminal_runs_what_its_window_would(terminal, arguments, commands):
+    assert commands_of(terminal, arguments) == commands
+
+
+@pytest.mark.parametrize(
+    ("command", "title"),
+    [
+        (
+            ["bash", "-c", " source x.bash; roslaunch turtlebot_gazebo a_world.launch a:=b"],
+            "roslaunch-a_world",
+        ),
+        (["rosrun", "pick_objects", "pick_objects"], "rosrun-pick_objects"),
+        (["bash", "-c", "roscore"], "roscore"),
+        (["bash", "-c", "echo 'unbalanced"], "echo"),
+    ],
+)
+def test_a_window_is_named_after_what_runs_in_it(command, title):
+    assert title_of(command) == title
+
+
+def test_only_a_server_of_windows_returns_at_once():
+    assert returns_at_once("gnome-terminal")
+    assert not returns_at_once("xterm")

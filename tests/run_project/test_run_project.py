@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+"""Somebody's project, C++ and xterm, runs as it is: the real actionlib client is served by our move_base."""
+
+import hashlib
+import json
+import os
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+import uuid
+from pathlib import Path
+
+import psutil
+import rostest
+
+SCRIPT = Path(__file__).resolve().parents[2] / "scripts/run_project.sh"
+SAMPLE = Path(__file__).resolve().parent / "sample_project"
+RUN_SECONDS = 240.0
+EXIT_SECONDS = 30.0
+
+
+class RunProjectTest(unittest.TestCase):
+    def setUp(self):
+        self._folder = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self._folder)
+        self._checkout = self._folder / "somebodys_project"
+        shutil.copytree(SAMPLE, self._checkout)
+        self._mark = uuid.uuid4().hex
+
+    def test_a_project_is_built_run_and_judged_without_a_trace(self):
+        hash_before, mounts_before = _hash_of(self._checkout), Path("/proc/self/mounts").read_text()
+        run = self._start(self._checkout)
+        output, _ = run.communicate(timeout=RUN_SECONDS)
+        print(output)
+        self.assertEqual(run.returncode, 0)
+        result = json.loads(next(self._folder.glob("runs/*/result.json")).read_text())
+        self.assertEqual([goal["status"] for goal in result["goals"]], ["succeeded", "succeeded"])
+        self.assertEqual(result["markers"], ["shown at (1.00, 0.50)", "hidden", "shown at (-0.50, 0.50)"])
+        self.assertEqual(result["collisions"], [])
+        self.assertGreater(result["distance_driven"], 2.0)
+        self.assertEqual(_hash_of(self._checkout), hash_before)
+        self.assertEqual(_processes_with(self._mark), [])
+        self.assertEqual(Path("/proc/self/mounts").read_text(), mounts_before)
+
+    def test_an_interrupted_run_leaves_nothing_behind(self):
+        run = self._start(self._checkout, "--speed", "1")
+        while "shown at" not in run.stdout.readline() and run.poll() is None:
+            pass
+        run.send_signal(signal.SIGINT)
+        started = time.monotonic()
+        run.communicate(timeout=EXIT_SECONDS)
+        print(f"ended {time.monotonic() - started:.1f} s after the interrupt")
+        self.assertEqual(run.returncode, 130)
+        self.assertEqual(_processes_with(self._mark), [])
+
+    def test_what_is_no_project_is_refused_in_one_line(self):
+        for path, words in ((self._folder / "nowhere", "no such folder"), (self._folder, "")):
+            with self.subTest(path=path):
+                shutil.rmtree(self._checkout, ignore_errors=True)
+                run = self._start(path)
+                output, _ = run.communicate(timeout=EXIT_SECONDS)
+                self.assertEqual(run.returncode, 2)
+                self.assertRegex(output, rf"(?m)^error: .*{words}")
+                self.assertNotIn("Traceback", output)
+
+    def _start(self, path, *options):
+        return subprocess.Popen(
+            [str(SCRIPT), str(path), "--output", str(self._folder / "runs"), *options],
+            env={**os.environ, "RUN_PROJECT_TEST": self._mark},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+
+
+def _hash_of(folder):
+    """Of all names, modes, times and contents."""
+    digest = hashlib.sha256()
+    for path in sorted(folder.rglob("*")):
+        status = path.lstat()
+        digest.update(f"{path.relative_to(folder)} {status.st_mode} {status.st_mtime_ns}\n".encode())
+        if path.is_file():
+            digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+def _processes_with(mark):
+    """Living processes whose environment holds ``mark``."""
+    found = []
+    for process in psutil.process_iter():
+        try:
+            if mark.encode() in Path(f"/proc/{process.pid}/environ").read_bytes():
+                found.append(" ".join(process.cmdline()))
+        except (OSError, psutil.Error):
+            continue
+    return found
+
+
+if __name__ == "__main__":
+    rostest.rosrun("home_service_tests", "run_project", RunProjectTest)
