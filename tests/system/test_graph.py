@@ -3,6 +3,7 @@
 
 import time
 import unittest
+from pathlib import Path
 
 import rosgraph
 import rospy
@@ -34,6 +35,20 @@ TOPICS = {
 }
 SERVICES = {"/static_map", "/global_localization", "/request_nomotion_update", "/set_map"}
 SERVICES |= {"/move_base/make_plan", "/move_base/clear_costmaps"}
+NAMES_PAGE = Path(__file__).resolve().parents[2] / "docs/names.md"
+# Of every node, and of dynamic_reconfigure and actions; and what tests and tools bring along.
+UNSPOKEN = ("get_loggers", "set_logger_level", "waiting_for", "parameter_descriptions", "parameter_updates")
+UNSPOKEN += (
+    "goal",
+    "cancel",
+    "status",
+    "feedback",
+    "result",
+    "rosout",
+    "rosout_agg",
+    "costmap_updates",
+    "tf_static",
+)
 CHAIN = ["map", "odom", "base_footprint", "base_link"]
 
 
@@ -49,6 +64,15 @@ class GraphTest(unittest.TestCase):
 
     def test_the_services_have_the_official_names(self):
         self._wait_for(SERVICES, lambda: {name for name, _ in self.master.getSystemState()[2]})
+
+    def test_the_page_of_names_knows_every_topic_and_service(self):
+        self._wait_for(NODES, self._nodes)
+        page = NAMES_PAGE.read_text(encoding="utf-8")
+        publishers, _, services = self.master.getSystemState()
+        mine = {rospy.get_name()}
+        names = {name for name, nodes in [*publishers, *services] if set(nodes) - mine}
+        unknown = {name for name in names if f"`{name}`" not in page and not name.endswith(UNSPOKEN)}
+        self.assertEqual(unknown, set(), "not in docs/names.md")
 
     def test_there_is_one_tree_of_frames_from_map_to_base_link_and_laser(self):
         buffer = tf2_ros.Buffer()

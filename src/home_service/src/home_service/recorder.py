@@ -1,7 +1,7 @@
 """Keeps what a report needs of a run; does next to nothing while the run goes on."""
 
 import time
-from typing import List, Mapping, Optional, Tuple
+from typing import Dict, List, Mapping, Optional, Tuple
 
 import numpy as np
 import rospy
@@ -37,7 +37,7 @@ class Recorder:
         self._estimate: List[Tuple[float, ...]] = []
         self._odom_in_map: Optional[Pose2] = None
         self._map = None
-        self._plan = None
+        self._latest_markings: Dict[str, Marking] = {}
         subscribe = rospy.Subscriber
         subscribe("base_pose_ground_truth", Odometry, self._see_truth, queue_size=50, tcp_nodelay=True)
         subscribe("/tf", TFMessage, self._see_transforms, queue_size=100, tcp_nodelay=True)
@@ -109,7 +109,11 @@ class Recorder:
     def _see_marker(self, message):
         name = f"{message.ns} {message.id}"
         at, is_shown = message.pose.position, message.action == Marker.ADD
-        self._record.markings.append(Marking(self._now, name, is_shown, at.x, at.y))
+        marking = Marking(self._now, name, is_shown, at.x, at.y)
+        latest = self._latest_markings.get(name)
+        if latest is None or latest[2:] != marking[2:]:
+            self._latest_markings[name] = marking
+            self._record.markings.append(marking)
 
     def _see_goal(self, message):
         goal = pose2_from_msg(message.pose)

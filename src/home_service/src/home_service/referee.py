@@ -1,10 +1,11 @@
 """Watches a run from outside the robot: ground truth, contacts, the state of the errand, the marker."""
 
 import math
+import re
 import threading
 import time
 from collections import deque
-from typing import Callable, Deque, Iterable, Mapping, Optional, Tuple
+from typing import Callable, Deque, Iterable, Mapping, Optional, Set, Tuple
 
 import rospy
 from home_service_msgs.msg import MissionState
@@ -21,6 +22,7 @@ from planar.places import Place
 from planar_ros.messages import pose2_from_msg
 
 MOTION_DISTANCE = 0.02
+NUMBER = re.compile(r"\d[\d.]*")
 # Name space of the errand's marker; those of a mission have their objects' names.
 PARCEL = "parcel"
 CONNECTION_CHATTER = "tcpros_base.py"
@@ -50,6 +52,7 @@ class Referee:
         self._say = say
         self._recent: Deque[Tuple[float, Pose2]] = deque(maxlen=REMEMBERED)
         self._deliveries = DeliveryWatch(places, self.ledger.deliveries, say)
+        self._told: Set[str] = set()
         self._lock = threading.Lock()
         rospy.Subscriber("base_pose_ground_truth", Odometry, self._see_truth, queue_size=50, tcp_nodelay=True)
         rospy.Subscriber("contacts", String, self._see_contact, queue_size=50)
@@ -133,6 +136,15 @@ class Referee:
     def _hear(self, message):
         if message.file == CONNECTION_CHATTER:
             return
-        if message.level >= Log.WARN or message.name in SPOKEN_NODES:
-            mark = "warning: " if message.level >= Log.WARN else ""
-            self._say(f"{message.name.lstrip('/')}: {mark}{message.msg}")
+        node = message.name.lstrip("/")
+        if message.level >= Log.WARN:
+            if self._is_news(f"{node}: {NUMBER.sub('', message.msg)}"):
+                self._say(f"{node}: warning: {message.msg}")
+        elif message.name in SPOKEN_NODES:
+            self._say(f"{node}: {message.msg}")
+
+    def _is_news(self, gist):
+        """Whether this was not told before, be it with other numbers; the report counts them all."""
+        is_news = gist not in self._told
+        self._told.add(gist)
+        return is_news

@@ -10,7 +10,7 @@ from std_msgs.msg import String
 
 # Private topic, latched: what the node waits for, one a line; empty once it has everything.
 TOPIC = "waiting_for"
-PATIENCE_SECONDS = 2.0
+PATIENCE_SECONDS = 4.0
 POLL_SECONDS = 0.2
 
 

@@ -30,6 +30,7 @@ def map_svg(record: RunRecord) -> str:
         *_goals(record, unit),
         *_collisions(record, unit),
         _robot(record, unit),
+        *_objects(record, unit),
     ]
     view = f"{x_min:.3f} {-y_max:.3f} {x_max - x_min:.3f} {y_max - y_min:.3f}"
     style = f"font-size:{2.6 * unit:.3f}px"
@@ -113,11 +114,20 @@ def _collisions(record: RunRecord, unit: float) -> List[str]:
 
 
 def _robot(record: RunRecord, unit: float) -> str:
-    """Robot and object at the end of the run; the script moves them."""
+    """The robot where it was last; the script moves it."""
     if not len(record.truth):
         return ""
     _, x, y, yaw = record.truth[-1]
-    return _arrow("robot", x, y, yaw, 2.6 * unit, "robot") + (
-        f'<rect class="object" x="{-unit:.3f}" y="{-unit:.3f}" width="{2 * unit:.3f}" '
-        f'height="{2 * unit:.3f}" rx="{unit / 3:.3f}" visibility="hidden"/>'
-    )
+    return _arrow("robot", x, y, yaw, 2.6 * unit, "robot")
+
+
+def _objects(record: RunRecord, unit: float) -> List[str]:
+    """Every object that a marker ever showed, where it was last; the script moves them."""
+    latest = {marking.name: marking for marking in record.markings}
+    return [
+        f'<rect class="object" data-name="{escape(marking.name)}" x="{-unit:.3f}" y="{-unit:.3f}" '
+        f'width="{2 * unit:.3f}" height="{2 * unit:.3f}" rx="{unit / 3:.3f}" '
+        f'transform="translate({marking.x:.3f} {-marking.y:.3f})" '
+        f'visibility="{"visible" if marking.is_shown else "hidden"}"/>'
+        for marking in latest.values()
+    ]

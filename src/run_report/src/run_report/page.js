@@ -3,7 +3,8 @@
   const run = JSON.parse(document.getElementById("run").textContent);
   const slider = document.getElementById("time"), button = document.getElementById("play");
   const now = document.getElementById("now"), robot = document.querySelector(".robot");
-  const object = document.querySelector(".object");
+  const objects = [...document.querySelectorAll(".object")].map((object) => (
+    [object, run.markings.filter((marking) => marking[1] === object.dataset.name)]));
   const cursors = [...document.querySelectorAll(".plot")].map((plot) => {
     const cursor = document.createElement("div");
     cursor.className = "cursor";
@@ -29,9 +30,11 @@
     slider.value = time;
     const [, x, y, yaw] = run.truth[Math.max(0, before(run.truth, time))];
     robot.setAttribute("transform", `translate(${x} ${-y}) rotate(${-yaw * 180 / Math.PI})`);
-    const marking = run.markings[before(run.markings, time)];
-    object.setAttribute("visibility", marking && marking[2] ? "visible" : "hidden");
-    if (marking) object.setAttribute("transform", `translate(${marking[3]} ${-marking[4]})`);
+    for (const [object, markings] of objects) {
+      const marking = markings[before(markings, time)];
+      object.setAttribute("visibility", marking && marking[2] ? "visible" : "hidden");
+      if (marking) object.setAttribute("transform", `translate(${marking[3]} ${-marking[4]})`);
+    }
     const error = run.errors[before(run.errors, time)];
     const state = run.states[before(run.states, time)];
     now.textContent = `${time.toFixed(1)} s` + (error ? `, off ${error[1].toFixed(3)} m` : "");
