@@ -1,0 +1,28 @@
+"""Links between the pages of the project lead somewhere."""
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+LINK = re.compile(r"\]\((?!https?:|#)([^)#\s]+)")
+SCRIPT = re.compile(r"\./(?:scripts|docs|docker)/[\w.-]+")
+PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")])
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_link_and_every_script_of_a_page_is_there(page):
+    text = page.read_text(encoding="utf-8")
+    missing = [link for link in LINK.findall(text) if not (page.parent / link).exists()]
+    missing += [script for script in SCRIPT.findall(text) if not (ROOT / script).exists()]
+    assert not missing
+
+
+def test_every_script_of_the_readme_explains_itself():
+    for script in sorted(
+        set(re.findall(r"\./scripts/\w+\.sh", (ROOT / "README.md").read_text(encoding="utf-8")))
+    ):
+        usage = subprocess.run([ROOT / script, "--help"], check=True, capture_output=True, text=True).stdout
+        assert usage.startswith("Usage: "), script
