@@ -222,6 +222,7 @@ catkin_build() {
     cd "$root" || return
     rm -f src/compat/*/CATKIN_IGNORE
     (cd src/compat && compat_packages_of_system | xargs -I{} touch {}/CATKIN_IGNORE)
+    export ROS_LANG_DISABLE=genlisp:geneus:gennodejs # bindings of the messages that nobody asks for
     # Without -j it would pass -l as well, and on a loaded machine make would wait for the load to sink.
     catkin_make -j"$(nproc)" -DPYTHON_EXECUTABLE="$root/.venv/bin/python3" -DCATKIN_ENABLE_TESTING=OFF
 }
