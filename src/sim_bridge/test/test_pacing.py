@@ -31,10 +31,16 @@ def test_a_delay_is_not_made_up_for():
     assert pacer.delay(0.06, 60.0) == pytest.approx(0.02)
 
 
+def reported(pacer, name, until, period=0.1):
+    """Reports of a node up to a time, one a period."""
+    for stamp in (until - 2.0 * period, until - period, until):
+        pacer.report(name, stamp)
+
+
 def test_until_all_nodes_have_reported_time_passes_as_on_the_wall():
     pacer = Pacer(0.0, ["amcl", "move_base"])
-    pacer.report("amcl", 0.0)
-    pacer.report("stranger", 0.0)
+    reported(pacer, "amcl", 0.0)
+    reported(pacer, "stranger", 0.0)
     assert pacer.is_missing("move_base")
     assert not pacer.is_missing("amcl")
     assert pacer.delay(0.02, 0.0) == 0.0
@@ -42,9 +48,9 @@ def test_until_all_nodes_have_reported_time_passes_as_on_the_wall():
 
 
 def test_in_lock_step_the_slowest_node_sets_the_pace():
-    pacer = Pacer(0.0, ["amcl", "move_base"], period=0.1)
-    pacer.report("amcl", 5.0)
-    pacer.report("move_base", 1.0)
+    pacer = Pacer(0.0, ["amcl", "move_base"])
+    reported(pacer, "amcl", 5.0)
+    reported(pacer, "move_base", 1.0)
     assert pacer.delay(1.1, 0.0) == 0.0
     assert pacer.delay(1.12, 0.0) > 0.0
     assert pacer.behind(1.12) == ["move_base"]
@@ -52,13 +58,39 @@ def test_in_lock_step_the_slowest_node_sets_the_pace():
     assert pacer.delay(1.12, 0.0) == 0.0
 
 
+@pytest.mark.parametrize(("period", "ahead"), [(0.02, 0.1), (0.1, 0.1), (0.2, 0.2), (0.5, 0.5)])
+def test_time_passes_one_of_a_nodes_own_periods_ahead_of_it(period, ahead):
+    pacer = Pacer(0.0, ["move_base"])
+    reported(pacer, "move_base", 3.0, period)
+    assert pacer.delay(3.0 + ahead, 0.0) == 0.0
+    assert pacer.delay(3.0 + ahead + 0.01, 0.0) > 0.0
+
+
+def test_a_node_that_becomes_slower_is_waited_for_again_at_its_new_pace():
+    pacer = Pacer(0.0, ["move_base"], patience=5.0)
+    reported(pacer, "move_base", 1.0, 0.1)
+    assert pacer.delay(1.2, 0.0) > 0.0
+    assert pacer.give_up(1.2, 5.1) == ["move_base"]
+    reported(pacer, "move_base", 2.0, 0.4)
+    assert not pacer.is_missing("move_base")
+    assert pacer.delay(2.4, 6.0) == 0.0
+    assert pacer.delay(2.42, 6.0) > 0.0
+
+
+def test_a_pause_between_two_reports_is_no_period():
+    pacer = Pacer(0.0, ["amcl"])
+    pacer.report("amcl", 0.0)
+    pacer.report("amcl", 20.0)
+    assert pacer.is_missing("amcl")
+
+
 def test_a_node_that_falls_silent_is_given_up_once_until_it_reports_again():
     pacer = Pacer(0.0, ["amcl"], patience=5.0)
-    pacer.report("amcl", 1.0)
+    reported(pacer, "amcl", 1.0)
     assert pacer.delay(2.0, 10.0) > 0.0
     assert pacer.give_up(2.0, 14.0) == []
     assert pacer.give_up(2.0, 15.1) == ["amcl"]
     assert pacer.delay(2.0, 15.2) == 0.0
     assert pacer.give_up(2.02, 99.0) == []
-    pacer.report("amcl", 2.0)
+    reported(pacer, "amcl", 2.0)
     assert not pacer.is_missing("amcl")
