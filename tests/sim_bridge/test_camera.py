@@ -8,6 +8,7 @@ import unittest
 import numpy as np
 import rospy
 import rostest
+from diagnostic_msgs.msg import DiagnosticArray
 from sensor_msgs.msg import CameraInfo, Image, Imu, LaserScan, PointCloud2
 
 
@@ -53,6 +54,16 @@ class TestCamera(unittest.TestCase):
         self.assertAlmostEqual(imu.linear_acceleration.z, 9.8, delta=0.2)
         self.assertAlmostEqual(imu.angular_velocity.z, 0.0, delta=0.01)
 
+    def test_messages_that_a_slow_subscriber_loses_are_counted(self):
+        slow = rospy.Subscriber(
+            "camera/depth/points", PointCloud2, lambda message: time.sleep(1.0), queue_size=1
+        )
+        deadline, lost = time.monotonic() + 20.0, 0
+        while not lost and time.monotonic() < deadline:
+            lost = int(dropped_messages())
+        slow.unregister()
+        self.assertGreater(lost, 0)
+
     def test_nothing_is_drawn_that_nobody_has_subscribed_to(self):
         """Time passes faster without pictures: they are not taken."""
         with_pictures = rospy.Subscriber("camera/depth/points", PointCloud2, lambda message: None)
@@ -61,6 +72,11 @@ class TestCamera(unittest.TestCase):
         with_pictures.unregister()
         rospy.sleep(0.5)
         self.assertGreater(simulated_in(2.0), 1.5 * slow)
+
+
+def dropped_messages():
+    (status,) = wait_for("/diagnostics", DiagnosticArray).status
+    return {value.key: value.value for value in status.values}["dropped_messages"]
 
 
 def simulated_in(wall_seconds):

@@ -9,9 +9,10 @@ import gazebo_msgs.srv as srv
 import rospy
 import rostest
 from dynamic_reconfigure.client import Client
-from gazebo_msgs.msg import LinkState, LinkStates, ModelState, ModelStates
+from gazebo_msgs.msg import LinkState, LinkStates, ModelState, ModelStates, PerformanceMetrics
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3, Wrench
 from nav_msgs.msg import Odometry
+from sensor_msgs.msg import LaserScan
 from sim_bridge_msgs.srv import Step
 from std_msgs.msg import Float64
 from std_srvs.srv import Empty
@@ -76,6 +77,16 @@ class TestGazebo(unittest.TestCase):
         factor = rospy.wait_for_message("sim_bridge/real_time_factor", Float64, 10.0).data
         client.update_configuration({"speed": 0.0})
         self.assertAlmostEqual(factor, 2.0, delta=0.4)
+
+    def test_how_fast_time_passes_is_told(self):
+        scans = rospy.Subscriber("scan", LaserScan, lambda message: None)
+        deadline, told = time.monotonic() + 20.0, None
+        while (told is None or not told.sim_update_rate) and time.monotonic() < deadline:
+            metrics = rospy.wait_for_message("/gazebo/performance_metrics", PerformanceMetrics, 10.0)
+            told = next((sensor for sensor in metrics.sensors if sensor.name == "/scan"), None)
+        scans.unregister()
+        self.assertGreater(metrics.real_time_factor, 0.0)
+        self.assertAlmostEqual(told.sim_update_rate, 10.0, delta=1.5)
 
     def test_reset_world_puts_models_back_and_time_goes_on(self):
         self.spawn(1.0)

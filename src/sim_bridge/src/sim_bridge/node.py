@@ -1,12 +1,10 @@
 """The node ``sim_bridge``: a Scene with Gazebo's topics and services, and simulated time."""
 
 import dataclasses
-import time
 from typing import Any, Dict, Mapping
 
 import rospy
 from rosgraph_msgs.msg import Clock
-from std_msgs.msg import Float64
 from visualization_msgs.msg import Marker
 
 from planar import Pose2
@@ -21,6 +19,7 @@ from sim_bridge.errors import WorldError
 from sim_bridge.nodes.fleet import Fleet
 from sim_bridge.nodes.gazebo import GazeboInterface
 from sim_bridge.nodes.orders import Orders
+from sim_bridge.nodes.performance import Performance
 from sim_bridge.nodes.time_control import TimeControl
 from sim_bridge.noise import noise_named
 from sim_bridge.pacing import Pacer
@@ -29,8 +28,6 @@ from sim_bridge.robots import robot_named
 from sim_bridge.scene import Scene
 from sim_bridge.sdf import load_world
 from sim_bridge.simulation import ROBOT_NAME, box_on_floor
-
-RATE_PERIOD_SECONDS = 1.0
 
 
 class Bridge:
@@ -51,7 +48,7 @@ class Bridge:
         self._steps = 0
         pacer = Pacer(settings.speed, [name.lstrip("/") for name in settings.wait_for.split()])
         self._clock = rospy.Publisher("/clock", Clock, queue_size=10, latch=True, tcp_nodelay=True)
-        self._real_time_factor = rospy.Publisher("~real_time_factor", Float64, queue_size=10)
+        self._performance = Performance()
         self._time = TimeControl(self._scene, pacer, self._orders)
         self._fleet = Fleet(self._scene, self._orders, joint_steps)
         for name, one in robots.items():
@@ -65,17 +62,13 @@ class Bridge:
 
     def run(self) -> None:
         """Steps until shutdown."""
-        period_start, stamp_at_start = time.monotonic(), 0.0
         try:
             while not rospy.is_shutdown():
                 self._orders.carry_out()
                 if not self._time.wait_for_turn():
                     continue
                 self._step()
-                stamp, elapsed = self._scene.stamp, time.monotonic() - period_start
-                if elapsed >= RATE_PERIOD_SECONDS:
-                    self._real_time_factor.publish(max(stamp - stamp_at_start, 0.0) / elapsed)
-                    period_start, stamp_at_start = time.monotonic(), stamp
+                self._performance.report(self._scene.stamp, self._fleet.publishers)
         finally:
             self._time.close()
             self._orders.close()

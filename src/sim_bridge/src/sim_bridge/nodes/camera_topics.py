@@ -18,16 +18,20 @@ POINT = np.dtype(
         "itemsize": 32,
     }
 )
+# Ten clouds of points would be 100 MB.
+QUEUE_SIZE = 2
 POINT_FIELDS = [PointField(name, POINT.fields[name][1], PointField.FLOAT32, 1) for name in POINT.names]
 
 
 class CameraTopics:
     """Publishes of a camera's pictures what somebody has subscribed to; ``frame``: the optical one.
 
-    ``publisher`` makes a publisher of a topic and a type.
+    ``publisher`` makes a publisher of a topic, a type and a queue's length.
     """
 
-    def __init__(self, profile: CameraProfile, frame: str, publisher: Callable[[str, type], rospy.Publisher]):
+    def __init__(
+        self, profile: CameraProfile, frame: str, publisher: Callable[[str, type, int], rospy.Publisher]
+    ):
         self._settings = profile.settings
         self._frame = frame
         kinds = (
@@ -38,7 +42,7 @@ class CameraTopics:
             (profile.points_topic, PointCloud2, _points_msg),
         )
         self._topics: List[Tuple[rospy.Publisher, Callable]] = [
-            (publisher(topic, kind), message_of) for topic, kind, message_of in kinds if topic
+            (publisher(topic, kind, QUEUE_SIZE), message_of) for topic, kind, message_of in kinds if topic
         ]
 
     def are_wanted(self) -> bool:

@@ -1,6 +1,6 @@
 """The robots of a scene and their topics."""
 
-from typing import Dict
+from typing import Dict, List
 
 import rospy
 from tf2_msgs.msg import TFMessage
@@ -8,6 +8,7 @@ from tf2_msgs.msg import TFMessage
 from planar import Pose2
 from sim_bridge.description import RobotProfile
 from sim_bridge.nodes.orders import Orders
+from sim_bridge.nodes.performance import CountingPublisher
 from sim_bridge.nodes.robot_topics import RobotTopics
 from sim_bridge.scene import Scene
 
@@ -43,6 +44,10 @@ class Fleet:
         topics = self._robots.pop(name, None)
         if topics is not None:
             topics.close()
+
+    def publishers(self) -> List[CountingPublisher]:
+        """Of all topics of the robots."""
+        return [publisher for topics in self._robots.values() for publisher in topics.publishers()]
 
     def step(self) -> None:
         """Moves on by one period of the odometry."""

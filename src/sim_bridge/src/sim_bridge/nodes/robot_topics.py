@@ -12,6 +12,7 @@ from std_msgs.msg import Empty, String
 from planar import Pose2, Scan, Twist2
 from planar_ros.messages import LaserScanArrays, pose2_to_msg, time_of, transform_msg
 from sim_bridge.nodes.orders import Orders
+from sim_bridge.nodes.performance import CountingPublisher
 from sim_bridge.nodes.sensor_topics import SensorTopics
 from sim_bridge.robot import Observation
 from sim_bridge.scene import Scene
@@ -78,6 +79,10 @@ class RobotTopics:
             return []
         return self._publish_motion(observation, stamp)
 
+    def publishers(self) -> List[CountingPublisher]:
+        """Of all topics of the robot."""
+        return [topic for topic in self._connections if isinstance(topic, CountingPublisher)]
+
     def close(self) -> None:
         """Ends the topics."""
         for connection in self._connections:
@@ -102,7 +107,7 @@ class RobotTopics:
 
     def _publisher(self, topic, kind, queue_size=10, latch=False):
         name = rospy.names.ns_join(self._namespace, topic)
-        publisher = rospy.Publisher(name, kind, queue_size=queue_size, latch=latch, tcp_nodelay=True)
+        publisher = CountingPublisher(name, kind, queue_size=queue_size, latch=latch, tcp_nodelay=True)
         self._connections.append(publisher)
         return publisher
 

@@ -12,15 +12,17 @@ from sim_bridge.pose3 import quaternion
 from sim_bridge.scene import Scene
 from sim_bridge.sensors.imu import ImuReading
 
+QUEUE_SIZE = 100
+
 
 class SensorTopics:
-    """``publisher`` makes a publisher of a topic and a type, ``frame_of`` the full name of a frame."""
+    """``publisher`` makes one of a topic, a type and a queue length; ``frame_of`` prefixes a frame's name."""
 
     def __init__(
         self,
         scene: Scene,
         name: str,
-        publisher: Callable[[str, type], rospy.Publisher],
+        publisher: Callable[[str, type, int], rospy.Publisher],
         frame_of: Callable[[str], str],
     ):
         self._scene = scene
@@ -31,7 +33,7 @@ class SensorTopics:
             for camera in profile.cameras
         ]
         self._imus = [
-            (publisher(imu.topic, Imu), frame_of(imu.frame), self._steps_of(_rate_of(imu, scene)))
+            (publisher(imu.topic, Imu, QUEUE_SIZE), frame_of(imu.frame), self._steps_of(_rate_of(imu, scene)))
             for imu in profile.imus
         ]
 

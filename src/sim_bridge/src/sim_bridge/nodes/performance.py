@@ -1,0 +1,82 @@
+"""How fast the simulation is, and which messages get lost."""
+
+import time
+from typing import Callable, Dict, Iterable
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from gazebo_msgs.msg import PerformanceMetrics, SensorPerformanceMetric
+from rospy.impl.tcpros_pubsub import QueuedConnection
+from std_msgs.msg import Float64
+
+# Wall seconds between two reports.
+REPORT_PERIOD = 1.0
+
+
+class CountingPublisher(rospy.Publisher):
+    """Counts its messages, and those that are lost because a subscriber is too slow for its queue."""
+
+    def __init__(self, *arguments, **named):
+        super().__init__(*arguments, **named)
+        self.published = self.dropped = 0
+
+    def publish(self, *arguments, **named):
+        self.published += 1
+        self.dropped += sum(_is_full(connection) for connection in self.impl.connections)
+        super().publish(*arguments, **named)
+
+
+class Performance:
+    """Reports once a second of the wall clock, by /gazebo/performance_metrics and /diagnostics too."""
+
+    def __init__(self):
+        self._factor = rospy.Publisher("~real_time_factor", Float64, queue_size=10)
+        self._metrics = rospy.Publisher("/gazebo/performance_metrics", PerformanceMetrics, queue_size=10)
+        self._diagnostics = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=10)
+        self._wall, self._stamp = time.monotonic(), 0.0
+        self._published: Dict[str, int] = {}
+
+    def report(self, stamp: float, publishers_of: Callable[[], Iterable[CountingPublisher]]) -> None:
+        """To be called after every step, at the time ``stamp``; ``publishers_of`` gives all there are."""
+        elapsed = time.monotonic() - self._wall
+        if elapsed < REPORT_PERIOD:
+            return
+        simulated = max(stamp - self._stamp, 0.0)
+        self._wall, self._stamp = time.monotonic(), stamp
+        publishers = list(publishers_of())
+        self._factor.publish(simulated / elapsed)
+        self._diagnostics.publish(_diagnostics(stamp, simulated / elapsed, publishers))
+        message = PerformanceMetrics(real_time_factor=simulated / elapsed)
+        message.header.stamp = rospy.Time.from_sec(stamp)
+        for publisher in publishers:
+            count = publisher.published - self._published.get(publisher.name, 0)
+            self._published[publisher.name] = publisher.published
+            if publisher.get_num_connections():
+                rate = count / simulated if simulated else 0.0
+                message.sensors.append(SensorPerformanceMetric(publisher.name, rate, count / elapsed, 0.0))
+        self._metrics.publish(message)
+
+
+def _diagnostics(stamp: float, factor: float, publishers) -> DiagnosticArray:
+    lost = {publisher.name: publisher.dropped for publisher in publishers if publisher.dropped}
+    status = DiagnosticStatus(
+        level=DiagnosticStatus.WARN if lost else DiagnosticStatus.OK,
+        name="sim_bridge: simulation",
+        message=f"messages lost on {', '.join(sorted(lost))}" if lost else f"{factor:.1f} times real time",
+        hardware_id="None",
+        values=[
+            KeyValue("real_time_factor", f"{factor:.3f}"),
+            KeyValue("dropped_messages", str(sum(lost.values()))),
+            *(KeyValue(f"dropped {name}", str(count)) for name, count in sorted(lost.items())),
+        ],
+    )
+    message = DiagnosticArray(status=[status])
+    message.header.stamp = rospy.Time.from_sec(stamp)
+    return message
+
+
+def _is_full(connection) -> bool:
+    """Whether the oldest message of a connection's queue is about to be thrown away."""
+    if not isinstance(connection, QueuedConnection):
+        return False
+    return 0 < connection._queue_size <= len(connection._queue)
