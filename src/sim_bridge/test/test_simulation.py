@@ -11,6 +11,8 @@ from planar import Pose2, Twist2, wrap
 from sim_bridge import ROBOTS, Simulation, SimulationSettings, WorldError, load_world
 from sim_bridge.pose3 import pose3
 from sim_bridge.section import Section, cast_beams
+from sim_bridge.sensors.bumper import CENTRE
+from sim_bridge.sensors.kobuki import KobukiReading
 from sim_bridge.shapes import Box, Plane
 from sim_bridge.world import Body, Collision, World
 
@@ -216,3 +218,34 @@ def test_the_robot_must_have_room_and_a_floor_to_start():
         Simulation(load_world(HOME), base_in_world=Pose2(-2.6, 4.99))
     with pytest.raises(WorldError, match="there is no floor"):
         Simulation(World("empty", (WALL,)))
+
+
+def test_a_kobuki_feels_a_wall_ahead_with_the_centre_of_its_bumper():
+    simulation = Simulation(WALLED, settings=EXACT)
+    assert simulation.step().kobuki == KobukiReading()
+    felt = set()
+    for _ in range(200):
+        felt |= simulation.step(Twist2(0.5, 0.0)).kobuki.bumpers
+    assert felt == {CENTRE}
+
+
+def test_a_kobuki_feels_the_edge_of_its_floor_and_its_wheels_hang_beyond():
+    table = body("table::link", Box((2.0, 2.0, 0.1)), pose3(0.0, 0.0, -0.05))
+    simulation = Simulation(World("table", (table,)), settings=EXACT)
+    first_cliff = None
+    for _ in range(200):
+        seen = simulation.step(Twist2(0.5, 0.0))
+        if first_cliff is None and seen.kobuki.cliffs:
+            first_cliff = seen
+    assert first_cliff.kobuki.cliffs == {CENTRE}
+    assert first_cliff.base_in_world.x == pytest.approx(1.0 - 0.156, abs=0.02)
+    assert seen.kobuki.dropped == {0, 1}
+
+
+def test_without_motor_power_no_command_is_heard():
+    simulation = Simulation(FLOOR)
+    robot = simulation.scene.robot("mobile_base")
+    robot.switch_motors(False)
+    assert abs(drive(simulation, Twist2(0.3, 0.0), 1.0).twist.v) < 1e-3
+    robot.switch_motors(True)
+    assert drive(simulation, Twist2(0.3, 0.0), 1.0).twist.v == pytest.approx(0.3, rel=0.02)

@@ -14,13 +14,20 @@ class Drive:
         self._target = Twist2()
         self._set = Twist2()
         self._age = 0.0
+        self._has_power = True
+
+    def switch(self, on: bool) -> None:
+        """Without power the motors brake and no command is heard."""
+        self._has_power = on
+        if not on:
+            self._target = Twist2()
 
     def command(self, twist: Twist2) -> None:
         """Takes a new command; one that is not finite stops the robot."""
         limits = self._profile
         self._age = 0.0
         self._target = Twist2()
-        if twist.is_finite():
+        if self._has_power and twist.is_finite():
             self._target = Twist2(_clip(twist.v, limits.max_speed), _clip(twist.omega, limits.max_turn_rate))
 
     def halt(self) -> None:

@@ -280,10 +280,17 @@ class Engine:
 
     def floor_below(self, x: float, y: float, z: float) -> Optional[float]:
         """The height of the first of the world's bodies below a point, None if there is none."""
-        ((number, _, _, hit, _),) = self._bullet.rayTestBatch(
-            [(x, y, z)], [(x, y, z - DEEPEST_FLOOR)], collisionFilterMask=WORLD_GROUPS
+        (floor,) = self.floors_below(np.array([[x, y, z]]))
+        return floor if floor > -np.inf else None
+
+    def floors_below(self, points_xyz: np.ndarray) -> np.ndarray:
+        """The heights (N,) of what is below points (N, 3), -inf where there is nothing."""
+        hits = self._bullet.rayTestBatch(
+            points_xyz.tolist(),
+            (points_xyz - [0.0, 0.0, DEEPEST_FLOOR]).tolist(),
+            collisionFilterMask=WORLD_GROUPS,
         )
-        return hit[2] if number >= 0 else None
+        return np.array([point[2] if number >= 0 else -np.inf for number, _, _, point, _ in hits])
 
     def _add_tree(self, tree: Tree) -> None:
         """Each body is a link on its parent's; the shapes that do not fit into one are fixed links on it."""

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Callable, Iterable, Optional, Sequence, Set, Tuple, Union
+from typing import Callable, Dict, Iterable, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -10,10 +10,11 @@ from planar import Pose2, Scan, Twist2
 from sim_bridge.config import SimulationSettings
 from sim_bridge.description import LaserProfile, RobotProfile
 from sim_bridge.drive import Drive
-from sim_bridge.engine import Engine
+from sim_bridge.engine import Contact, Engine
 from sim_bridge.odometry import DeadReckoning, Moved, Odometry, TrueOdometry
 from sim_bridge.pose3 import to_pose2
 from sim_bridge.section import Section
+from sim_bridge.sensors.kobuki import KobukiReading, KobukiSensors
 from sim_bridge.sensors.lidar import Lidar
 from sim_bridge.vehicle import Vehicle, twist_in_base
 from sim_bridge.world import Body
@@ -27,7 +28,7 @@ class Observation:
     and ``scans`` (one of each range finder, None if none is due) what the robot measures. ``wheel_angles``,
     ``wheel_speeds``: of the driven wheels, those on the left first, rad and rad/s. ``contacts``: names
     (``model::link``) of what the robot has bumped into since the last step. ``tilt``: between the robot's
-    axis and the vertical, rad.
+    axis and the vertical, rad. ``kobuki``: what a Kobuki base feels, None of other robots.
     """
 
     stamp: float
@@ -39,6 +40,7 @@ class Observation:
     wheel_angles: Tuple[float, ...]
     wheel_speeds: Tuple[float, ...]
     tilt: float
+    kobuki: Optional[KobukiReading] = None
 
     @property
     def scan(self) -> Optional[Scan]:
@@ -71,7 +73,8 @@ class Robot:
             Lookout(laser, float(base_in_space[2, 3]), settings, rng)
             for laser, rng in zip(profile.lasers, laser_rngs)
         ]
-        self._touched: Set[str] = set()
+        self._bumps: Dict[str, Contact] = {}
+        self._kobuki = _kobuki_sensors(engine, profile)
 
     @property
     def name(self) -> str:
@@ -90,6 +93,9 @@ class Robot:
         """Stands still at once, as if switched on anew."""
         self._drive.halt()
 
+    def switch_motors(self, on: bool) -> None:
+        self._drive.switch(on)
+
     def reset_odometry(self) -> None:
         self._odometer.reset()
 
@@ -99,7 +105,7 @@ class Robot:
 
     def end_step(self, steps: int, stamp: float) -> None:
         """After the step of physics number ``steps``, at the time ``stamp``: feels and looks around."""
-        self._touched.update(self.vehicle.touched())
+        self._bumps.update((bump.link, bump) for bump in self.vehicle.bumps())
         for lookout in self._lookouts:
             if lookout.is_due(steps, self.settings):
                 lookout.look(stamp, self._engine.pose_of, self.vehicle.base)
@@ -109,7 +115,10 @@ class Robot:
         motion = self.vehicle.motion()
         base_in_world, twist = to_pose2(motion.pose), twist_in_base(motion)
         wheel_angles, wheel_speeds = self.vehicle.wheels()
-        contacts, self._touched = tuple(sorted(self._touched)), set()
+        bumps, self._bumps = self._bumps, {}
+        kobuki = None
+        if self._kobuki is not None:
+            kobuki = self._kobuki.read(motion.pose, [bump.point for bump in bumps.values()])
         moved = Moved(base_in_world, twist, wheel_angles, 1.0 / self.settings.odometry_rate)
         return Observation(
             stamp=stamp,
@@ -117,10 +126,11 @@ class Robot:
             twist=twist,
             odometry=self._odometer.update(moved),
             scans=tuple(lookout.take_scan() for lookout in self._lookouts),
-            contacts=contacts,
+            contacts=tuple(sorted(bumps)),
             wheel_angles=wheel_angles,
             wheel_speeds=wheel_speeds,
             tilt=math.acos(min(motion.pose[2, 2], 1.0)),
+            kobuki=kobuki,
         )
 
     def look_at(self, bodies: Iterable[Body]) -> None:
@@ -175,3 +185,10 @@ def _odometer(
     if profile.odometry.source == "world":
         return TrueOdometry()
     return DeadReckoning(profile.drive, profile.odometry.source == "gyro", settings, rng)
+
+
+def _kobuki_sensors(engine: Engine, profile: RobotProfile) -> Optional[KobukiSensors]:
+    if profile.kobuki is None:
+        return None
+    hubs = np.array([profile.model.wheels[joint].origin_in_base[:3, 3] for joint in profile.drive.joints])
+    return KobukiSensors(engine, profile.kobuki.cliff_threshold, hubs, profile.drive.wheel_radius)

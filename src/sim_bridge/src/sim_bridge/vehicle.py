@@ -1,12 +1,12 @@
 """A wheeled robot among the bodies of an engine."""
 
-from typing import Set, Tuple
+from typing import List, Tuple
 
 import numpy as np
 
 from planar import Twist2
 from sim_bridge.description import RobotProfile
-from sim_bridge.engine import Engine, Motion
+from sim_bridge.engine import Contact, Engine, Motion
 from sim_bridge.errors import WorldError
 from sim_bridge.pose3 import position
 
@@ -44,20 +44,20 @@ class Vehicle:
         """Angles, rad, and speeds, rad/s, of the wheels, those on the left first."""
         return self._engine.wheels(self.base, len(self._efforts))
 
-    def touched(self) -> Set[str]:
-        """Names of the links the robot bumps into; what it stands on is not among them."""
-        return {
-            contact.link
+    def bumps(self) -> List[Contact]:
+        """Where the robot touches things; what it stands on is not among them."""
+        return [
+            contact
             for contact in self._engine.contacts(self.base)
             if contact.depth >= 0.0 and abs(contact.normal_z) < SUPPORTING_NORMAL_Z
-        }
+        ]
 
     def check_start(self) -> None:
         """Raises WorldError if the robot stands in something."""
         self._engine.find_contacts()
         x, y, _ = position(self._engine.pose_of(self.base))
-        contacts = self._engine.contacts(self.base)
-        inside = {contact.link for contact in contacts if contact.depth > START_DEPTH} | self.touched()
+        sunk = [contact for contact in self._engine.contacts(self.base) if contact.depth > START_DEPTH]
+        inside = {contact.link for contact in sunk + self.bumps()}
         if inside:
             raise WorldError(f"the robot would start at ({x:g}, {y:g}), inside {', '.join(sorted(inside))}")
 

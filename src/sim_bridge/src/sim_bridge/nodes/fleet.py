@@ -7,6 +7,7 @@ from tf2_msgs.msg import TFMessage
 
 from planar import Pose2
 from sim_bridge.description import RobotProfile
+from sim_bridge.nodes.motion_messages import TransformsMsg
 from sim_bridge.nodes.orders import Orders
 from sim_bridge.nodes.performance import CountingPublisher
 from sim_bridge.nodes.robot_topics import RobotTopics
@@ -57,7 +58,7 @@ class Fleet:
             transform for name, topics in self._robots.items() for transform in topics.publish(seen[name])
         ]
         if transforms:
-            self._tf.publish(TFMessage(transforms))
+            self._tf.publish(TransformsMsg(transforms))
 
 
 def _tf_prefix(namespace: str) -> str:

@@ -1,16 +1,18 @@
 """A robot's topics and transforms."""
 
-from typing import List, Optional, Union
+from typing import List, Optional
 
 import numpy as np
 import rospy
-from geometry_msgs.msg import TransformStamped, Twist
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Empty, String
+from std_msgs.msg import String
 
-from planar import Pose2, Scan, Twist2
-from planar_ros.messages import LaserScanArrays, pose2_to_msg, time_of, transform_msg
+from planar import Scan, Twist2
+from planar_ros.messages import LaserScanArrays, time_of
+from sim_bridge.nodes.command_topics import CommandTopics, MuxTopics
+from sim_bridge.nodes.kobuki_topics import KobukiTopics
+from sim_bridge.nodes.motion_messages import OdometryMsg, TransformMsg
 from sim_bridge.nodes.orders import Orders
 from sim_bridge.nodes.performance import CountingPublisher
 from sim_bridge.nodes.sensor_topics import SensorTopics
@@ -34,72 +36,79 @@ class RobotTopics:
         self, scene: Scene, name: str, orders: Orders, joint_steps: int, namespace: str, tf_prefix: str
     ):
         self._scene = scene
-        self._name = name
         self._profile = profile = scene.robot(name).profile
-        self._orders = orders
         self._namespace = namespace
         self._tf_prefix = f"{tf_prefix}/" if tf_prefix else ""
         self._steps = 0
         self._odom_steps = self._steps_of(profile.odometry.rate, 1)
-        self._command: Optional[Twist2] = None
         self._contacts = None
-        self._connections: List[Union[rospy.Publisher, rospy.Subscriber]] = []
+        self._publishers: List[CountingPublisher] = []
         self._odom = self._publisher(profile.odometry.topic, Odometry, 100)
         self._truth = self._publisher("base_pose_ground_truth", Odometry, 100)
+        base_frame, odom_frame = self._frame(profile.odometry.base_frame), self._frame(profile.odometry.frame)
+        self._odom_msg = OdometryMsg(odom_frame, base_frame, ODOMETRY_COVARIANCE)
+        self._truth_msg = OdometryMsg(WORLD_FRAME, base_frame, [0.0] * 36)
+        self._transform = TransformMsg(odom_frame, base_frame)
         self._scans = [self._publisher(laser.topic, LaserScanArrays) for laser in profile.lasers]
         self._sensors = SensorTopics(scene, name, self._publisher, self._frame)
         self._touches = self._publisher("contacts", String, latch=True)
         if profile.joint_states is not None:
             self._joints = self._publisher(profile.joint_states.topic, JointState)
             self._joint_steps = self._steps_of(profile.joint_states.rate, joint_steps)
-        for topic in profile.drive.command_topics:
-            self._subscribe(topic, Twist, self._on_command)
-        if profile.kobuki is not None:
-            self._subscribe("mobile_base/commands/reset_odometry", Empty, self._on_reset_odometry)
+        is_kobuki = profile.kobuki is not None
+        commands = MuxTopics if is_kobuki else CommandTopics
+        self._commands = commands(name, namespace, profile.drive.command_topics)
+        self._kobuki = KobukiTopics(scene, name, namespace, orders) if is_kobuki else None
 
     def take_command(self) -> Optional[Twist2]:
         """The command that has come since the last call, if any."""
-        command, self._command = self._command, None
-        return command
+        return self._commands.take(self._scene.stamp)
 
-    def publish(self, observation: Observation) -> List[TransformStamped]:
+    def publish(self, observation: Observation) -> List[TransformMsg]:
         """Tells what was observed, but for the transforms, which it returns."""
         self._steps += 1
         stamp = time_of(observation.stamp)
         for publisher, laser, scan in zip(self._scans, self._profile.lasers, observation.scans):
-            if scan is not None:
+            if scan is not None and publisher.get_num_connections():
                 publisher.publish(_scan_msg(scan, self._frame(laser.frame)))
-        if self._profile.joint_states is not None and self._steps % self._joint_steps == 0:
+        joints_are_due = self._profile.joint_states is not None and self._steps % self._joint_steps == 0
+        if joints_are_due and self._joints.get_num_connections():
             self._joints.publish(self._joint_state_msg(observation, stamp))
         if observation.contacts != self._contacts:
             self._contacts = observation.contacts
             self._touches.publish("\n".join(observation.contacts))
         self._sensors.publish(self._steps, stamp)
+        if self._kobuki is not None and observation.kobuki is not None:
+            self._kobuki.publish(observation.kobuki, stamp)
         if self._steps % self._odom_steps:
             return []
         return self._publish_motion(observation, stamp)
 
     def publishers(self) -> List[CountingPublisher]:
         """Of all topics of the robot."""
-        return [topic for topic in self._connections if isinstance(topic, CountingPublisher)]
+        return self._publishers
 
     def close(self) -> None:
         """Ends the topics."""
-        for connection in self._connections:
-            connection.unregister()
+        for publisher in self._publishers:
+            publisher.unregister()
+        self._commands.close()
+        if self._kobuki is not None:
+            self._kobuki.close()
 
-    def _publish_motion(self, observation: Observation, stamp) -> List[TransformStamped]:
-        profile, odometry = self._profile.odometry, observation.odometry
-        base_frame, odom_frame = self._frame(profile.base_frame), self._frame(profile.frame)
-        message = _odometry_msg(odometry.base_in_odom, odometry.twist, stamp, odom_frame, base_frame)
-        message.pose.covariance = message.twist.covariance = ODOMETRY_COVARIANCE
-        self._odom.publish(message)
-        self._truth.publish(
-            _odometry_msg(observation.base_in_world, observation.twist, stamp, WORLD_FRAME, base_frame)
-        )
-        if not profile.sends_transform:
+    def _publish_motion(self, observation: Observation, stamp) -> List[TransformMsg]:
+        odometry = observation.odometry
+        for publisher, message, base, twist in (
+            (self._odom, self._odom_msg, odometry.base_in_odom, odometry.twist),
+            (self._truth, self._truth_msg, observation.base_in_world, observation.twist),
+        ):
+            if publisher.get_num_connections():
+                message.fill(base, twist, stamp)
+                publisher.publish(message)
+        if not self._profile.odometry.sends_transform:
             return []
-        return [transform_msg(odometry.base_in_odom, odom_frame, base_frame, stamp)]
+        self._transform.fill(odometry.base_in_odom, stamp)
+        return [self._transform]
 
     def _steps_of(self, rate: Optional[float], default: int) -> int:
         """Steps of the scene between two messages that come ``rate`` times a second."""
@@ -108,24 +117,11 @@ class RobotTopics:
     def _publisher(self, topic, kind, queue_size=10, latch=False):
         name = rospy.names.ns_join(self._namespace, topic)
         publisher = CountingPublisher(name, kind, queue_size=queue_size, latch=latch, tcp_nodelay=True)
-        self._connections.append(publisher)
+        self._publishers.append(publisher)
         return publisher
-
-    def _subscribe(self, topic, kind, callback):
-        name = rospy.names.ns_join(self._namespace, topic)
-        self._connections.append(rospy.Subscriber(name, kind, callback, queue_size=1, tcp_nodelay=True))
 
     def _frame(self, name: str) -> str:
         return self._tf_prefix + name.lstrip("/")
-
-    def _on_command(self, message):
-        command = Twist2(message.linear.x, message.angular.z)
-        if not command.is_finite():
-            rospy.logwarn_throttle(1.0, f"{self._name}: velocity command is not finite: the robot stops")
-        self._command = command
-
-    def _on_reset_odometry(self, _message):
-        self._orders.leave(lambda: self._scene.robot(self._name).reset_odometry())
 
     def _joint_state_msg(self, observation: Observation, stamp) -> JointState:
         """Joints that do not move are at zero."""
@@ -139,17 +135,6 @@ class RobotTopics:
         message.position = [angles.get(joint, 0.0) for joint in message.name]
         message.velocity = [speeds.get(joint, 0.0) for joint in message.name]
         return message
-
-
-def _odometry_msg(base: Pose2, twist: Twist2, stamp, frame: str, base_frame: str) -> Odometry:
-    message = Odometry()
-    message.header.stamp = stamp
-    message.header.frame_id = frame
-    message.child_frame_id = base_frame
-    message.pose.pose = pose2_to_msg(base)
-    message.twist.twist.linear.x = twist.v
-    message.twist.twist.angular.z = twist.omega
-    return message
 
 
 def _scan_msg(scan: Scan, frame: str) -> LaserScanArrays:

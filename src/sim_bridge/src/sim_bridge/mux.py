@@ -1,0 +1,102 @@
+"""Which of several sources of velocity drives a robot (yocs_cmd_vel_mux), and how fast it may change."""
+
+from dataclasses import dataclass
+from typing import Dict, Mapping, Optional, Sequence, Tuple
+
+from planar import SettingsError, Twist2
+from planar.yaml_table import read_table
+
+IDLE = "idle"
+
+
+@dataclass(frozen=True)
+class MuxInput:
+    """A source; the one with the highest ``priority`` drives, until it is silent for ``timeout`` seconds."""
+
+    name: str
+    topic: str
+    timeout: float
+    priority: int
+
+
+# turtlebot_bringup's mux.yaml.
+TURTLEBOT_INPUTS: Tuple[MuxInput, ...] = (
+    MuxInput("Safe reactive controller", "input/safety_controller", 0.2, 10),
+    MuxInput("Teleoperation", "input/teleop", 1.0, 7),
+    MuxInput("Switch", "input/switch", 1.0, 6),
+    MuxInput("Navigation", "input/navi", 1.0, 5),
+)
+
+
+def read_inputs(path) -> Tuple[MuxInput, ...]:
+    """The inputs of a file in the format of yocs_cmd_vel_mux. Raises SettingsError naming file and line."""
+    table = read_table(path)
+    inputs = tuple(
+        MuxInput(one.text("name"), one.text("topic"), one.number("timeout"), round(one.number("priority")))
+        for one in table.tables("subscribers")
+    )
+    if not inputs:
+        raise SettingsError(f"{path}: subscribers is missing or empty")
+    if len({one.priority for one in inputs}) < len(inputs):
+        raise SettingsError(f"{path}: subscribers: two have the same priority")
+    return inputs
+
+
+class Mux:
+    """Passes on what the most important source says that is not silent."""
+
+    def __init__(self, inputs: Sequence[MuxInput]):
+        self.inputs = tuple(sorted(inputs, key=lambda one: -one.priority))
+        self._heard: Dict[str, float] = {}
+
+    def choose(self, now: float, arrived: Mapping[str, Twist2]) -> Optional[Twist2]:
+        """``arrived``: the newest command of each source by its name, since the last call."""
+        self._heard.update(dict.fromkeys(arrived, now))
+        return arrived.get(self.active(now))
+
+    def active(self, now: float) -> str:
+        """The name of the source that drives, or ``idle``."""
+        for one in self.inputs:
+            heard = self._heard.get(one.name)
+            if heard is not None and 0.0 <= now - heard < one.timeout:
+                return one.name
+        return IDLE
+
+
+@dataclass(frozen=True)
+class SmootherLimits:
+    """Of speeds, m/s and rad/s, and accelerations; to brake, ``decel_factor`` times as much is allowed.
+
+    The defaults are those of turtlebot_bringup.
+    """
+
+    speed_lim_v: float = 0.8
+    speed_lim_w: float = 5.4
+    accel_lim_v: float = 1.0
+    accel_lim_w: float = 2.0
+    decel_factor: float = 1.5
+
+
+class Smoother:
+    """Keeps a stream of commands within limits (yocs_velocity_smoother)."""
+
+    def __init__(self, limits: SmootherLimits = SmootherLimits()):
+        self._limits = limits
+        self._last = Twist2()
+
+    def smooth(self, command: Twist2, seconds: float) -> Twist2:
+        """What may be commanded now; ``seconds`` since the last call."""
+        limits = self._limits
+        if not command.is_finite():
+            return command
+        self._last = Twist2(
+            self._approach(self._last.v, command.v, limits.speed_lim_v, limits.accel_lim_v * seconds),
+            self._approach(self._last.omega, command.omega, limits.speed_lim_w, limits.accel_lim_w * seconds),
+        )
+        return self._last
+
+    def _approach(self, last: float, target: float, limit: float, step: float) -> float:
+        target = max(-limit, min(limit, target))
+        if abs(target) < abs(last) or target * last < 0.0:
+            step *= self._limits.decel_factor
+        return last + max(-step, min(step, target - last))

@@ -1,0 +1,63 @@
+"""Sources of velocity: the most important one that is not silent drives."""
+
+import math
+
+import pytest
+
+from planar import SettingsError, Twist2
+from sim_bridge.mux import TURTLEBOT_INPUTS, Mux, Smoother, read_inputs
+
+SLOW, FAST = Twist2(0.1, 0.0), Twist2(0.5, 0.0)
+
+
+@pytest.fixture
+def mux():
+    return Mux(TURTLEBOT_INPUTS)
+
+
+def test_nobody_drives_when_all_are_silent(mux):
+    assert mux.choose(0.0, {}) is None
+    assert mux.active(0.0) == "idle"
+
+
+def test_the_more_important_source_drives_until_it_falls_silent(mux):
+    assert mux.choose(0.0, {"Navigation": FAST}) == FAST
+    assert mux.choose(0.1, {"Navigation": FAST, "Teleoperation": SLOW}) == SLOW
+    assert mux.choose(1.0, {"Navigation": FAST}) is None, "not while the other may still speak"
+    assert mux.active(1.0) == "Teleoperation"
+    assert mux.choose(1.11, {"Navigation": FAST}) == FAST
+    assert mux.active(3.0) == "idle"
+
+
+def test_after_time_has_begun_anew_nothing_old_counts(mux):
+    mux.choose(100.0, {"Teleoperation": SLOW})
+    assert mux.choose(0.0, {"Navigation": FAST}) == FAST
+
+
+def test_inputs_are_read_from_a_file_of_the_official_format(tmp_path):
+    path = tmp_path / "mux.yaml"
+    path.write_text(
+        "subscribers:\n"
+        "  - {name: A, topic: input/a, timeout: 0.5, priority: 1, short_desc: first}\n"
+        "  - {name: B, topic: input/b, timeout: 0.2, priority: 2}\n"
+        "publisher: output/cmd_vel\n"
+    )
+    assert [(one.name, one.topic, one.timeout) for one in Mux(read_inputs(path)).inputs] == [
+        ("B", "input/b", 0.2),
+        ("A", "input/a", 0.5),
+    ]
+    path.write_text("subscribers:\n  - {name: A, topic: a, timeout: soon, priority: 1}\n")
+    with pytest.raises(SettingsError, match="mux.yaml:2: .*timeout"):
+        read_inputs(path)
+
+
+def test_a_smoothed_command_grows_by_its_acceleration_and_brakes_faster():
+    smoother = Smoother()
+    assert smoother.smooth(Twist2(0.5, 1.0), 0.1) == Twist2(pytest.approx(0.1), pytest.approx(0.2))
+    assert smoother.smooth(Twist2(0.5, 1.0), 1.0) == Twist2(pytest.approx(0.5), pytest.approx(1.0))
+    assert smoother.smooth(Twist2(), 0.1) == Twist2(pytest.approx(0.35), pytest.approx(0.7))
+    assert smoother.smooth(Twist2(9.0, 0.0), 9.0).v == pytest.approx(0.8)
+
+
+def test_a_command_that_is_not_finite_is_passed_on_to_be_refused():
+    assert not Smoother().smooth(Twist2(math.nan, 0.0), 0.1).is_finite()

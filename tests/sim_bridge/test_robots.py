@@ -1,0 +1,193 @@
+#!/usr/bin/env python3
+"""Robots spawned while time passes: a TurtleBot with its mux, and one of the user's own in a namespace."""
+
+import math
+import time
+import unittest
+
+import rospy
+import rostest
+from gazebo_msgs.srv import DeleteModel, SpawnModel
+from geometry_msgs.msg import Pose, Twist
+from kobuki_msgs.msg import BumperEvent, MotorPower
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Empty, String
+from tf2_msgs.msg import TFMessage
+
+from planar_ros.messages import LaserScanArrays, quaternion_of
+from sim_bridge import robot_named
+
+PATIENCE_SECONDS = 20.0
+WHEEL = """<link name="{side}"><inertial><mass value="0.5"/>
+<inertia ixx="0.001" iyy="0.001" izz="0.001"/></inertial>
+<collision><origin rpy="1.5707963 0 0"/><geometry><cylinder radius="0.1" length="0.04"/></geometry>
+</collision></link>
+<joint name="{side}_hinge" type="continuous"><parent link="chassis"/><child link="{side}"/>
+<origin xyz="0 {y} 0"/><axis xyz="0 1 0"/></joint>"""
+# As projects write it: the base at the height of the axle, the wheels' names from an older Gazebo.
+ROVER = f"""<robot name="rover">
+<link name="chassis">
+<inertial><mass value="6"/><inertia ixx="0.1" iyy="0.1" izz="0.1"/></inertial>
+<collision><geometry><box size="0.4 0.2 0.1"/></geometry></collision>
+<collision><origin xyz="-0.15 0 -0.05"/><geometry><sphere radius="0.05"/></geometry></collision>
+<collision><origin xyz="0.15 0 -0.05"/><geometry><sphere radius="0.05"/></geometry></collision></link>
+{WHEEL.format(side="left", y="0.15")}{WHEEL.format(side="right", y="-0.15")}
+<link name="hokuyo"/>
+<joint name="mount" type="fixed"><parent link="chassis"/><child link="hokuyo"/>
+<origin xyz="0.1 0 0.2"/></joint>
+<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so">
+<leftJoint>right_hinge</leftJoint><rightJoint>left_hinge</rightJoint><legacyMode>true</legacyMode>
+<wheelSeparation>0.3</wheelSeparation><wheelDiameter>0.2</wheelDiameter><robotBaseFrame>chassis</robotBaseFrame>
+<publishWheelJointState>true</publishWheelJointState><odometrySource>world</odometrySource>
+<updateRate>25</updateRate></plugin></gazebo>
+<gazebo reference="hokuyo"><sensor type="ray" name="s"><update_rate>20</update_rate><ray><scan><horizontal>
+<samples>181</samples><min_angle>-1.57</min_angle><max_angle>1.57</max_angle></horizontal></scan>
+<range><min>0.1</min><max>10</max></range></ray>
+<plugin name="l" filename="libgazebo_ros_laser.so"><topicName>laser/scan</topicName>
+<frameName>hokuyo</frameName></plugin></sensor></gazebo></robot>"""
+
+
+def wait_until(what, is_met):
+    deadline = time.monotonic() + PATIENCE_SECONDS
+    while not is_met():
+        assert time.monotonic() < deadline, f"waited in vain for {what}"
+        time.sleep(0.005)
+
+
+class Latest:
+    """The latest message of a topic, and all of them."""
+
+    def __init__(self, topic, kind):
+        self.messages = []
+        rospy.Subscriber(topic, kind, self.messages.append, queue_size=1000)
+
+    def next(self):
+        count = len(self.messages)
+        wait_until("a message", lambda: len(self.messages) > count)
+        return self.messages[-1]
+
+
+def spawn(name, text, x, y, yaw, namespace=""):
+    rospy.wait_for_service("/gazebo/spawn_urdf_model", PATIENCE_SECONDS)
+    pose = Pose()
+    pose.position.x, pose.position.y, pose.orientation = x, y, quaternion_of(yaw)
+    return rospy.ServiceProxy("/gazebo/spawn_urdf_model", SpawnModel)(name, text, namespace, pose, "world")
+
+
+class TestRobots(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.turtlebot = spawn("mobile_base", robot_named("turtlebot_lidar").description(), 0.0, 0.0, 0.0)
+        cls.rover = spawn("rover", ROVER, 3.0, 0.0, 3.14, "/rover")
+        cls.odom, cls.rover_odom = Latest("/odom", Odometry), Latest("/rover/odom", Odometry)
+        cls.truth = Latest("/base_pose_ground_truth", Odometry)
+        cls.scan, cls.rover_scan = (
+            Latest(topic, LaserScanArrays) for topic in ("/scan", "/rover/laser/scan")
+        )
+        cls.joints, cls.active = (
+            Latest("/rover/joint_states", JointState),
+            Latest("/cmd_vel_mux/active", String),
+        )
+        cls.tf, cls.bumper = Latest("/tf", TFMessage), Latest("/mobile_base/events/bumper", BumperEvent)
+        topics = ("navi", "teleop")
+        cls.inputs = {
+            one: rospy.Publisher(f"/cmd_vel_mux/input/{one}", Twist, queue_size=1) for one in topics
+        }
+        cls.raw = rospy.Publisher("/navigation_velocity_smoother/raw_cmd_vel", Twist, queue_size=1)
+        cls.rover_command = rospy.Publisher("/rover/cmd_vel", Twist, queue_size=1)
+        cls.motors = rospy.Publisher("/mobile_base/commands/motor_power", MotorPower, queue_size=1)
+        cls.reset = rospy.Publisher("/mobile_base/commands/reset_odometry", Empty, queue_size=1)
+        publishers = (*cls.inputs.values(), cls.raw, cls.rover_command, cls.motors, cls.reset)
+        wait_until("subscribers", lambda: all(one.get_num_connections() for one in publishers))
+        cls.scan.next()
+
+    def command(self, publishers, v, omega, periods=30):
+        """Commands the same on several topics for some periods of the odometry."""
+        command = Twist()
+        command.linear.x, command.angular.z = v, omega
+        for _ in range(periods):
+            for publisher in publishers:
+                publisher.publish(command)
+            odometry = self.odom.next()
+        return odometry
+
+    def test_1_both_are_spawned_and_a_name_is_not_taken_twice(self):
+        self.assertTrue(self.turtlebot.success, self.turtlebot.status_message)
+        self.assertTrue(self.rover.success, self.rover.status_message)
+        again = spawn("rover", ROVER, -1.0, 0.0, 0.0)
+        self.assertEqual(again.status_message, "SpawnModel: Failure - entity already exists.")
+        broken = spawn("other", ROVER.replace(">left_hinge<", ">hinge<"), -1.0, 0.0, 0.0)
+        self.assertIn("no joint 'hinge'", broken.status_message)
+
+    def test_2_each_has_its_own_topics_and_frames(self):
+        odometry, scan = self.rover_odom.next(), self.rover_scan.next()
+        self.assertEqual((odometry.header.frame_id, odometry.child_frame_id), ("rover/odom", "rover/chassis"))
+        self.assertEqual((scan.header.frame_id, len(scan.ranges)), ("rover/hokuyo", 181))
+        self.assertAlmostEqual(odometry.pose.pose.position.x, 3.0, delta=0.02, msg="the source is the world")
+        self.assertAlmostEqual(self.odom.next().pose.pose.position.x, 0.0, delta=0.1)
+        sent = {
+            (one.header.frame_id, one.child_frame_id)
+            for one in sum((m.transforms for m in self.tf.messages), [])
+        }
+        self.assertEqual(sent, {("odom", "base_footprint"), ("rover/odom", "rover/chassis")})
+        self.assertEqual(sorted(self.joints.next().name), ["left_hinge", "right_hinge"])
+
+    def test_3_a_command_turns_one_robot_only_and_to_the_left(self):
+        command = Twist()
+        command.angular.z = 0.5
+        self.rover_command.publish(command)
+        wait_until("a turn", lambda: self.rover_odom.next().twist.twist.angular.z > 0.45)
+        self.assertAlmostEqual(self.odom.next().twist.twist.angular.z, 0.0, delta=0.05)
+        for _ in range(60):
+            self.odom.next()
+        self.assertGreater(self.rover_odom.next().twist.twist.angular.z, 0.45, "it keeps its last command")
+        self.rover_command.publish(Twist())
+        wait_until("a stop", lambda: abs(self.rover_odom.next().twist.twist.angular.z) < 0.01)
+
+    def test_4_the_mux_prefers_teleoperation_and_tells_who_drives(self):
+        self.command([self.inputs["navi"]], 0.0, 0.5)
+        self.assertEqual(self.active.messages[-1].data, "Navigation")
+        teleop = Twist()
+        teleop.angular.z = -0.5
+        for _ in range(30):
+            self.inputs["teleop"].publish(teleop)
+            odometry = self.command([self.inputs["navi"]], 0.0, 0.5, periods=1)
+        self.assertAlmostEqual(odometry.twist.twist.angular.z, -0.5, delta=0.1)
+        self.assertEqual(self.active.messages[-1].data, "Teleoperation")
+        wait_until("silence", lambda: self.active.messages[-1].data == "idle")
+
+    def test_5_raw_commands_are_smoothed(self):
+        first = len(self.odom.messages)
+        self.command([self.raw], 0.0, 2.0, periods=80)
+        seen = [(one.header.stamp.to_sec(), one.twist.twist.angular.z) for one in self.odom.messages[first:]]
+        start, end = (next(stamp for stamp, rate in seen if rate > limit) for limit in (0.2, 1.8))
+        self.assertGreater(end - start, 0.7, "at 2 rad/s^2; the robot itself could do it in 0.27 s")
+        self.assertLess(end - start, 1.2)
+        self.command([self.raw], 0.0, 0.0, periods=60)
+
+    def test_6_kobuki_hears_its_commands_and_tells_of_bumps(self):
+        self.motors.publish(MotorPower(MotorPower.OFF))
+        time.sleep(0.3)
+        self.assertAlmostEqual(
+            self.command([self.inputs["navi"]], 0.0, 0.5).twist.twist.angular.z, 0.0, delta=0.05
+        )
+        self.motors.publish(MotorPower(MotorPower.ON))
+        self.reset.publish()
+        wait_until("odometry at zero", lambda: abs(self.odom.next().pose.pose.orientation.z) < 0.01)
+        deadline = time.monotonic() + PATIENCE_SECONDS
+        while not self.bumper.messages and time.monotonic() < deadline:
+            self.command([self.inputs["navi"]], 0.6, 0.0, periods=10)
+        self.assertEqual(self.bumper.messages[0].state, BumperEvent.PRESSED)
+        self.assertFalse(math.isnan(self.truth.next().pose.pose.position.x))
+
+    def test_7_a_deleted_robot_takes_its_topics_along(self):
+        rospy.ServiceProxy("/gazebo/delete_model", DeleteModel)("rover")
+        topics = lambda: {topic for topic, _ in rospy.get_published_topics()}  # noqa: E731
+        wait_until("the topics to go", lambda: "/rover/odom" not in topics())
+        self.odom.next()
+
+
+if __name__ == "__main__":
+    rospy.init_node("robots")
+    rostest.rosrun("home_service_tests", "robots", TestRobots)
