@@ -1,6 +1,6 @@
 """Rigid bodies in PyBullet: what stands and moves in a world, and what touches what."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
@@ -10,7 +10,7 @@ from sim_bridge.bullet import BulletClient, pybullet
 from sim_bridge.description.structure import RobotModel
 from sim_bridge.errors import WorldError
 from sim_bridge.multibody import Tree, grow
-from sim_bridge.pose3 import IDENTITY, cross, position, quaternion, transform_points
+from sim_bridge.pose3 import IDENTITY, cross, inverse, position, quaternion, transform_points
 from sim_bridge.shapes import Box, Cylinder, Mesh, Plane, Shape, Sphere
 from sim_bridge.world import Body, Collision, Joint
 
@@ -56,6 +56,10 @@ class _Link:
     number: int
     index: int
     centre: np.ndarray
+    from_centre: np.ndarray = field(init=False)
+
+    def __post_init__(self):
+        object.__setattr__(self, "from_centre", inverse(self.centre))
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +138,7 @@ class Engine:
                 link.number, link.index, computeLinkVelocity=1, computeForwardKinematics=1
             )
             centre, (linear, angular) = _pose(*state[:2]), map(np.array, state[6:8])
-        pose = centre @ np.linalg.inv(link.centre)
+        pose = centre @ link.from_centre
         return Motion(pose, linear - cross(angular, centre[:3, 3] - pose[:3, 3]), angular)
 
     def pose_of(self, name: str) -> np.ndarray:
@@ -142,7 +146,7 @@ class Engine:
         link = self._links[name]
         if link.index >= 0:
             return self.motion_of(name).pose
-        return _pose(*self._bullet.getBasePositionAndOrientation(link.number)) @ np.linalg.inv(link.centre)
+        return _pose(*self._bullet.getBasePositionAndOrientation(link.number)) @ link.from_centre
 
     def set_motion(self, name: str, motion: Motion) -> None:
         """Puts a link to another place, with all that hangs together with it, and sets its velocity."""
@@ -151,7 +155,7 @@ class Engine:
         if link.index >= 0:
             here = self._bullet.getLinkState(link.number, link.index, computeForwardKinematics=1)
             root = _pose(*self._bullet.getBasePositionAndOrientation(link.number))
-            centre = centre @ np.linalg.inv(_pose(*here[:2])) @ root
+            centre = centre @ inverse(_pose(*here[:2])) @ root
         self._bullet.resetBasePositionAndOrientation(link.number, position(centre), quaternion(centre))
         linear = motion.linear + cross(motion.angular, centre[:3, 3] - motion.pose[:3, 3])
         self._bullet.resetBaseVelocity(link.number, linear.tolist(), motion.angular.tolist())
@@ -236,7 +240,7 @@ class Engine:
             baseOrientation=quaternion(placed),
             **_links(
                 wheel_shapes + more,
-                [np.linalg.inv(centre) @ wheel.origin_in_base for wheel in wheels] + [np.eye(4)] * len(more),
+                [inverse(centre) @ wheel.origin_in_base for wheel in wheels] + [np.eye(4)] * len(more),
                 masses=[wheel.part.mass for wheel in wheels],
                 axes=[wheel.axis.tolist() for wheel in wheels],
             ),
@@ -302,15 +306,15 @@ class Engine:
         ]
         for body, joint, parent, frame in list(zip(tree.bodies, tree.joints, tree.parents, tree.frames))[1:]:
             assert joint is not None
-            to_joint = np.linalg.inv(frame)
+            to_joint = inverse(frame)
             shapes = self._compounds(body.collisions, True, frame) or [-1]
             above = tree.bodies[parent]
             above_frame = root.inertia.pose_in_body if parent == 0 else tree.frames[parent]
-            in_above = np.linalg.inv(above.pose_in_world @ above_frame) @ body.pose_in_world @ frame
+            in_above = inverse(above.pose_in_world @ above_frame) @ body.pose_in_world @ frame
             links.append(
                 _link(
                     shapes[0],
-                    in_above @ np.linalg.inv(_moved(joint, joint.start)),
+                    in_above @ inverse(_moved(joint, joint.start)),
                     indices[parent] + 1,
                     body.mass or 0.0,
                     to_joint @ body.inertia.pose_in_body,
@@ -371,7 +375,7 @@ class Engine:
 
     def _compounds(self, collisions: Sequence[Collision], moves: bool, origin=np.eye(4)) -> List[int]:
         """Bullet's numbers of shapes that together are the collisions seen from ``origin``, (4, 4)."""
-        to_origin = np.linalg.inv(origin)
+        to_origin = inverse(origin)
         placed = [(part.shape, to_origin @ part.pose_in_body) for part in collisions]
         meshes = [(shape, pose) for shape, pose in placed if isinstance(shape, Mesh)]
         solids = [(shape, pose) for shape, pose in placed if not isinstance(shape, Mesh)]

@@ -58,6 +58,14 @@ def from_quaternion(q: Sequence[float]) -> np.ndarray:
     return pose
 
 
+def inverse(pose: np.ndarray) -> np.ndarray:
+    """Of a rigid pose; numpy's general inverse wakes up BLAS's threads for so little."""
+    inverted = np.eye(4)
+    inverted[:3, :3] = pose[:3, :3].T
+    inverted[:3, 3] = -(pose[:3, :3].T @ pose[:3, 3])
+    return inverted
+
+
 def transform_points(pose: np.ndarray, points_xyz: np.ndarray) -> np.ndarray:
     """Points (N, 3) given in the pose's frame, seen from outside."""
     return points_xyz @ pose[:3, :3].T + pose[:3, 3]

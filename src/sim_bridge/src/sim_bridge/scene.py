@@ -12,7 +12,7 @@ from sim_bridge.description import RobotProfile
 from sim_bridge.drawing import Drawing
 from sim_bridge.engine import Engine, JointState, MassProperties, Motion
 from sim_bridge.errors import UnknownEntityError, WorldError
-from sim_bridge.pose3 import cross, from_pose2
+from sim_bridge.pose3 import cross, from_pose2, inverse
 from sim_bridge.robot import Observation, Robot
 from sim_bridge.sensors.camera import Picture
 from sim_bridge.sensors.imu import ImuReading
@@ -196,7 +196,7 @@ class Scene:
         motion = self._engine.motion_of(link)
         if link not in self._bodies:
             return motion
-        return _seen_from(motion, np.linalg.inv(self._bodies[link].pose_in_model))
+        return _seen_from(motion, inverse(self._bodies[link].pose_in_model))
 
     def link_motion(self, link: str) -> Motion:
         model = link.split("::", 1)[0]
@@ -207,7 +207,7 @@ class Scene:
 
     def set_model_motion(self, name: str, motion: Motion) -> None:
         """Puts a model with all its links to another place, and sets its velocity."""
-        from_here = motion.pose @ np.linalg.inv(self.model_motion(name).pose)
+        from_here = motion.pose @ inverse(self.model_motion(name).pose)
         links = self.links_of(name)
         for link in links[:1] if name in self._robots else self._unheld(links):
             pose = from_here @ self._engine.pose_of(link)

@@ -6,7 +6,7 @@ import numpy as np
 
 from sim_bridge.description.blocks import Blocks
 from sim_bridge.description.structure import Joint, Link, Structure
-from sim_bridge.pose3 import transform_points
+from sim_bridge.pose3 import inverse, transform_points
 from sim_bridge.shapes import outline
 from sim_bridge.world import Body, DrivenModel
 
@@ -26,7 +26,7 @@ def read_sdf(model: DrivenModel) -> Tuple[Structure, Blocks, np.ndarray]:
             _inner(joint.name),
             _inner(joint.parent),
             _inner(joint.child),
-            np.linalg.inv(poses[joint.parent]) @ poses[joint.child],
+            inverse(poses[joint.parent]) @ poses[joint.child],
             joint.pose_in_child[:3, :3] @ joint.axis,
         )
         for joint in model.joints

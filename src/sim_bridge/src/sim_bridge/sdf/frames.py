@@ -4,7 +4,7 @@ from typing import Callable, Dict, Optional, Set, Tuple
 
 import numpy as np
 
-from sim_bridge.pose3 import IDENTITY
+from sim_bridge.pose3 import IDENTITY, inverse
 from sim_bridge.sdf.element import Element
 
 ROOT_NAMES = ("", "__model__", "world")
@@ -26,7 +26,7 @@ class Frames:
 
         ``inside``: (4, 4), what the pose places, seen from the frame declared.
         """
-        self._declared[name] = (element, parent, np.linalg.inv(inside))
+        self._declared[name] = (element, parent, inverse(inside))
 
     def pose_of(self, element: Element, parent: str = "") -> np.ndarray:
         """Of what ``element`` describes, (4, 4) in the root. Raises WorldError for an unknown frame."""

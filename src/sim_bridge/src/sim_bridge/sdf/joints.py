@@ -5,6 +5,7 @@ from typing import Dict, List, Optional, Sequence
 
 import numpy as np
 
+from sim_bridge.pose3 import inverse
 from sim_bridge.sdf.element import Element
 from sim_bridge.sdf.frames import Frames
 from sim_bridge.sdf.models import Model
@@ -41,7 +42,7 @@ def read_joint(
         "fixed",
         full.link(parent),
         full.link(child),
-        np.linalg.inv(links[child]) @ in_model,
+        inverse(links[child]) @ in_model,
         np.array([0.0, 0.0, 1.0]),
     )
     return (
@@ -124,7 +125,7 @@ def started(joint: Joint, before: np.ndarray, now: np.ndarray) -> Joint:
 
     ``before``, ``now``: (4, 4), its child seen from its parent at position 0 and at the start.
     """
-    moved = np.linalg.inv(before @ joint.pose_in_child) @ now @ joint.pose_in_child
+    moved = inverse(before @ joint.pose_in_child) @ now @ joint.pose_in_child
     if joint.kind == "prismatic":
         return replace(joint, start=float(moved[:3, 3] @ joint.axis))
     skew = moved[:3, :3] - moved[:3, :3].T

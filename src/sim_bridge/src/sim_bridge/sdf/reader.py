@@ -6,6 +6,7 @@ from typing import List, Optional, Sequence, Tuple, cast
 import numpy as np
 
 from sim_bridge.meshes import load_mesh
+from sim_bridge.pose3 import inverse
 from sim_bridge.sdf.colours import read_colour
 from sim_bridge.sdf.element import Element, parse, parse_text
 from sim_bridge.sdf.frames import Frames
@@ -141,7 +142,7 @@ class _Reader:
         for joint in trees_of(joints, leave_out):
             if joint.kind != "fixed" and joint.parent:
                 before, now = (
-                    np.linalg.inv(poses[joint.parent]) @ poses[joint.child] for poses in (in_model, placed)
+                    inverse(poses[joint.parent]) @ poses[joint.child] for poses in (in_model, placed)
                 )
                 joint = started(joint, before, now)
             self._joints.append(joint)
@@ -183,7 +184,7 @@ class _Reader:
             tuple(collisions),
             None if fixed else read_mass(link),
             self._surface(link),
-            np.linalg.inv(outermost) @ in_world,
+            inverse(outermost) @ in_world,
             tuple(visuals),
             Inertia() if fixed else read_inertia(link, self._warnings),
             _damping(link),
@@ -229,7 +230,7 @@ def _links_of(model: Model, scope: str = "") -> List[Tuple[str, np.ndarray]]:
 
 
 def _pose_in_link(part: Element, link: Element, model: Model, link_in_model: np.ndarray) -> np.ndarray:
-    return np.linalg.inv(link_in_model) @ model.frames.pose_of(part, link.name)
+    return inverse(link_in_model) @ model.frames.pose_of(part, link.name)
 
 
 def _damping(link: Element) -> Tuple[float, float]:

@@ -7,6 +7,7 @@ from typing import Tuple
 import numpy as np
 
 from planar.settings import check
+from sim_bridge.pose3 import inverse
 from sim_bridge.sensors.rasterizer import Projection, draw
 
 # From the frame that a camera looks along x of to the optical frame (REP 103): z ahead, x right, y down.
@@ -87,7 +88,7 @@ class Camera:
 
     def measure(self, triangles_xyz: np.ndarray, shades: np.ndarray, camera_in_world: np.ndarray) -> Picture:
         """What is seen from ``camera_in_world``, (4, 4), along its x axis (see sim_bridge.drawing)."""
-        world_in_optical = np.linalg.inv(camera_in_world @ OPTICAL_IN_CAMERA)
+        world_in_optical = inverse(camera_in_world @ OPTICAL_IN_CAMERA)
         seen = triangles_xyz @ world_in_optical[:3, :3].T + world_in_optical[:3, 3]
         rgb, depth = draw(seen, shades, self.settings.projection())
         if self.settings.noise > 0.0:

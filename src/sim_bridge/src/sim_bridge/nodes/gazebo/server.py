@@ -8,6 +8,7 @@ import rospy
 from sim_bridge.engine import Motion
 from sim_bridge.errors import UnknownEntityError
 from sim_bridge.nodes.orders import Orders
+from sim_bridge.pose3 import inverse
 from sim_bridge.scene import Scene
 
 NAMESPACE = "/gazebo/"
@@ -49,7 +50,7 @@ def relative(motion: Motion, frame: Motion) -> Motion:
     """A motion in the world as seen from a frame."""
     turned_back = frame.pose[:3, :3].T
     return Motion(
-        np.linalg.inv(frame.pose) @ motion.pose,
+        inverse(frame.pose) @ motion.pose,
         turned_back @ (motion.linear - frame.linear),
         turned_back @ (motion.angular - frame.angular),
     )
