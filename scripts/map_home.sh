@@ -10,6 +10,8 @@
 #   --world FILE     SDF world (default: map/home.world)
 #   --robot NAME     robot profile of sim_bridge (default: turtlebot_lidar)
 #   --seed N         seed of every noise (default: 0)
+#   --record inputs|all
+#                    record bags: scans, odometry and truth, or everything (docs/bags.md)
 #   --timeout N      the run fails after N seconds of wall time (default: 900)
 #   --gif            also leave run.gif, the run as an animation
 #   --output FOLDER  where the run folder is made (default: ./runs)

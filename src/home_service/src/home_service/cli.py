@@ -27,6 +27,10 @@ def main(arguments: Optional[List[str]] = None) -> int:
             from home_service.doctor import doctor
 
             return doctor(options)
+        if options.command == "replay":
+            from home_service.replaying import replay
+
+            return replay(options)
         read_inputs(options)
         if options.command in MAPPING_COMMANDS:
             from home_service import mapping

@@ -19,6 +19,7 @@ from planar_ros.messages import pose2_to_msg
 
 def launch(options: Namespace) -> int:
     with Run(options, "world.launch") as run:
+        _tell_master(run)
         run.display.say("the home is open; Ctrl-C closes it")
         return _until_it_ends(run)
 
@@ -26,6 +27,7 @@ def launch(options: Namespace) -> int:
 def test_navigation(options: Namespace) -> int:
     with Run(options, "navigation.launch", map_file=options.map.resolve()) as run:
         if options.goals is None:
+            _tell_master(run)
             run.display.say("send goals to /move_base_simple/goal or to the action /move_base; Ctrl-C ends")
             return _until_it_ends(run)
         return run.conclude(_drive_through(run, [Pose2(*goal) for goal in options.goals]))
@@ -49,8 +51,8 @@ def home_service(options: Namespace) -> int:
     if not options.serve:
         return _errand(options, "home_service.launch", expected, **arguments)
     with Run(options, "home_service.launch", **_files(options), **arguments) as run:
-        master = os.environ["ROS_MASTER_URI"]
-        run.display.say(f"send missions to the action deliver at ROS_MASTER_URI={master}; Ctrl-C ends")
+        _tell_master(run)
+        run.display.say("send missions to the action deliver; Ctrl-C ends")
         return _until_it_ends(run)
 
 
@@ -65,6 +67,11 @@ def _files(options: Namespace) -> Dict[str, Path]:
     mission = getattr(options, "mission", None)
     files = {"map_file": options.map, "zones_file": options.zones, "mission_file": mission}
     return {name: path.resolve() for name, path in files.items() if path}
+
+
+def _tell_master(run: Run) -> None:
+    """What other terminals need to know."""
+    run.display.say(f"ROS_MASTER_URI={os.environ['ROS_MASTER_URI']}")
 
 
 def _until_it_ends(run: Run) -> int:

@@ -30,7 +30,7 @@ def test_slam(options: Namespace) -> int:
     _check_place_to_save(options)
     with Run(options, "mapping.launch" if by_itself else "slam.launch") as run:
         failure = _explore(run) if by_itself else _drive_by_keys(run)
-        path = _save_map(run, options)
+        path = save_map(run, options.save)
         return run.conclude(Verdict(failure is None, failure or f"map saved in {path}"))
 
 
@@ -38,7 +38,7 @@ def map_home(options: Namespace) -> int:
     _check_place_to_save(options)
     with Run(options, "mapping.launch") as run:
         failure = _explore(run)
-        path = _save_map(run, options)
+        path = save_map(run, options.save)
         way_home = run.referee.truth.distance_to(Pose2())
         score = _score(path, options)
         run.display.say(f"map saved in {path}")
@@ -80,8 +80,9 @@ def _check_place_to_save(options: Namespace) -> None:
         raise SettingsError(f"{options.save.resolve().parent}: no such folder to save the map in")
 
 
-def _save_map(run: Run, options: Namespace) -> Path:
-    stem = (options.save or run.folder / "map").resolve()
+def save_map(run: Run, stem: Optional[Path]) -> Path:
+    """Saves the map that is published, into the run folder if no ``stem`` is given; returns its YAML."""
+    stem = (stem or run.folder / "map").resolve()
     saver = subprocess.run(
         ["rosrun", "map_lite", "map_saver", "-f", str(stem)],
         stdin=subprocess.DEVNULL,

@@ -18,11 +18,12 @@ COMMANDS = {
     "report": "Makes the report of a run anew, from what its folder holds.",
     "compare": "Puts two runs side by side: a table here, and a page.",
     "doctor": "Says what is running, what each node waits for, and what is wrong.",
+    "replay": "Plays recorded bags to localization or mapping, and measures what they make of them.",
     "rehearse": "Plays the home-service mission in one process, without ROS: fast and repeatable.",
 }
 MAPPING_COMMANDS = {"test_slam", "map_home"}
 REPORT_COMMANDS = {"report", "compare"}
-ROS_COMMANDS = set(COMMANDS) - REPORT_COMMANDS - {"rehearse", "doctor"}
+ROS_COMMANDS = set(COMMANDS) - REPORT_COMMANDS - {"rehearse", "doctor", "replay"}
 
 
 def parse(arguments: Optional[List[str]]) -> argparse.Namespace:
@@ -39,6 +40,9 @@ def parse(arguments: Optional[List[str]]) -> argparse.Namespace:
         )
         if name in REPORT_COMMANDS:
             _add_report_options(name, command)
+            continue
+        if name == "replay":
+            _add_replay_options(command)
             continue
         if name == "doctor":
             _add_doctor_options(command)
@@ -60,6 +64,31 @@ def _add_report_options(name: str, parser: argparse.ArgumentParser) -> None:
         parser.add_argument("--page", type=Path, metavar="FILE", help="where the page goes, not to B")
 
 
+def _add_replay_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "bags", type=Path, nargs="+", metavar="BAG", help="bags, or folders of them or of runs"
+    )
+    parser.add_argument(
+        "--with",
+        dest="estimator",
+        choices=("amcl", "slam", "recorded"),
+        default="amcl",
+        help="localize, map, or only show what was recorded",
+    )
+    parser.add_argument("--map", type=Path, default=ROOT / "map/home.yaml", help="for amcl: the map")
+    parser.add_argument(
+        "--start",
+        type=float,
+        nargs=3,
+        default=(0.0, 0.0, 0.0),
+        metavar=("X", "Y", "YAW"),
+        help="for amcl: where the robot starts in the map",
+    )
+    parser.add_argument("--seed", type=seed, default=0, help="of every particle")
+    parser.add_argument("--save", type=Path, metavar="STEM", help="for slam: where to save the map")
+    _add_run_options(parser)
+
+
 def _add_doctor_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="print for programs")
     parser.add_argument("--master", metavar="URI", help="of the graph to look at, if there are several")
@@ -73,6 +102,13 @@ def _add_world_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_graph_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--record", choices=("inputs", "all"), help="record bags: scans, odometry and truth, or everything"
+    )
+    _add_run_options(parser)
+
+
+def _add_run_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--speed",
         type=speed_factor,

@@ -10,6 +10,7 @@ import psutil
 import rosgraph
 import rospy
 
+from home_service.bag_recorder import BagRecorder
 from home_service.display import Display
 from home_service.errors import LaunchError
 from home_service.graph import RosGraph
@@ -34,8 +35,7 @@ class Run:
         self._launch_file = launch_file
         self._speed = getattr(options, "speed", float(options.rviz))
         self._arguments = {
-            "world_file": options.world.resolve(),
-            "robot": options.robot,
+            **({"world_file": options.world.resolve(), "robot": options.robot} if "world" in options else {}),
             "speed": self._speed,
             "seed": options.seed,
             "rviz": str(_wants_rviz(options)).lower(),
@@ -48,6 +48,7 @@ class Run:
         self.referee: Optional[Referee] = None
         self.missing: List[str] = []
         self._recorder: Optional[Recorder] = None
+        self._bags: Optional[BagRecorder] = None
         self._graph: Optional[RosGraph] = None
         self._result: Dict[str, Any] = {}
 
@@ -58,9 +59,13 @@ class Run:
             self._graph = RosGraph("home_service", self._launch_file, self._arguments, self.folder / "log")
             self._wait("the ROS master", rosgraph.is_master_online)
             rospy.init_node("referee", disable_signals=True, anonymous=True, log_level=rospy.ERROR)
+            if getattr(self._options, "record", None):
+                self._wait("simulated time", lambda: rospy.has_param("/use_sim_time"))
+                self._bags = BagRecorder(self._options.record, self.folder / "bag")
             self.referee = Referee(self._options.places, self.display.say)
             self._recorder = Recorder(self._options.places)
-            self._wait("ground truth from the simulator", lambda: self.referee.truth is not None)
+            if "world" in self._options:
+                self._wait("ground truth from the simulator", lambda: self.referee.truth is not None)
         except BaseException as error:
             self.__exit__(type(error), error, None)
             raise
@@ -70,6 +75,8 @@ class Run:
         self.display.show("shutting down")
         if isinstance(error, PlanarError):
             self._keep_result(Verdict(False, str(error)))
+        if self._bags is not None:
+            self.missing += self._bags.close()
         rospy.signal_shutdown("the run is over")
         # The report is made while the nodes end, so that it costs no time.
         reporting = threading.Thread(target=self._report, daemon=True)
@@ -145,10 +152,9 @@ class Run:
             "reason": verdict.reason,
             "seed": options.seed,
             "speed": self._speed,
-            "world": str(options.world),
+            **({"world": str(options.world), "robot": options.robot} if "world" in options else {}),
             **({"map": str(options.map)} if "map" in options else {}),
             **({"mission": str(options.mission)} if getattr(options, "mission", None) else {}),
-            "robot": options.robot,
             "wall_seconds": round(time.time() - self._start_wall, 3),
             **(self._observations() if self.referee else {}),
             **findings,

@@ -1,10 +1,11 @@
 """Scans, odometry and the truth out of a bag, without a master."""
 
-import contextlib
-import io
 import math
+import shutil
+import tempfile
 from collections import deque
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Callable, Deque, Dict, Iterator, List, Optional, Set, Tuple
 
 import numpy as np
@@ -48,7 +49,7 @@ class ScanLog:
     def __init__(self, path, scan_topic: str, base_frame: str, odom_frame: str, warn: Callable[[str], None]):
         self._path, self._warn = path, warn
         self._scan_topic, self._base, self._odom = scan_topic, frame_name(base_frame), frame_name(odom_frame)
-        self._bag, self._is_cut_off = _open(path)
+        self._bag, self._is_cut_off = open_bag(path)
         topics = self._bag.get_type_and_topic_info().topics
         if scan_topic not in topics:
             there = ", ".join(sorted(topics)) or "none"
@@ -211,7 +212,7 @@ def _typed(logged) -> TransformStamped:
     )
 
 
-def _open(path) -> Tuple[rosbag.Bag, bool]:
+def open_bag(path) -> Tuple[rosbag.Bag, bool]:
     """The bag, and whether its end is missing."""
     try:
         return rosbag.Bag(str(path)), False
@@ -222,12 +223,15 @@ def _open(path) -> Tuple[rosbag.Bag, bool]:
 
 
 def _without_end(path) -> rosbag.Bag:
+    """The complete part of a bag, from a copy: rosbag repairs the file itself."""
     try:
-        bag = rosbag.Bag(str(path), allow_unindexed=True)
-        # rosbag wants to cut the broken end off the file, which is open for reading only.
-        with contextlib.suppress(io.UnsupportedOperation):
-            for _ in bag.reindex():
-                pass
+        with tempfile.TemporaryDirectory() as folder:
+            copy = str(Path(folder) / "copy.bag")
+            shutil.copyfile(path, copy)
+            with rosbag.Bag(copy, "a", allow_unindexed=True) as broken:
+                for _ in broken.reindex():
+                    pass
+            bag = rosbag.Bag(copy)  # which stays open when the folder has gone
         count = bag.get_message_count()
     except Exception as error:  # rosbag lets pass whatever struct, bz2 and genpy raise
         raise BagError(f"{path}: not a readable bag ({error or type(error).__name__})") from None

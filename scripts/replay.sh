@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# Usage: ./scripts/replay.sh [options] BAG...
+#
+# Plays recorded bags (of --record, or any with scans, odometry and /tf) to localization or mapping, without the
+# estimate that was recorded, and measures what they make of it against the truth, if that was recorded too.
+# The bags are only read; one that is cut off is played as far as it goes, and the result says so.
+# Leaves a run folder with report, trajectories (TUM) and result.json. BAG may be a folder of bags or of a run.
+# Exit code: 0 success, 1 failure, 2 bad input, 130 interrupted.
+#
+#   --with amcl|slam|recorded
+#                    localize in the map, make a map, or only show what was recorded (default: amcl)
+#   --map FILE       for amcl: the map (default: map/home.yaml)
+#   --start X Y YAW  for amcl: where the robot starts in the map (default: 0 0 0)
+#   --save STEM      for slam: write STEM.pgm and STEM.yaml, not to the run folder
+#   --rviz           show it in rviz, where there is a display
+#   --speed N        1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz 1)
+#   --seed N         seed of every particle (default: 0)
+#   --timeout N      the replay fails after N seconds of wall time (default: 900)
+#   --gif            also leave run.gif, the run as an animation
+#   --output FOLDER  where the run folder is made (default: ./runs)
+#   --help           this text
+
+# shellcheck source=scripts/setup.sh
+. "$(dirname -- "$(readlink -f -- "$0")")/setup.sh"
+run_command replay "$@"

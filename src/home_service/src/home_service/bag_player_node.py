@@ -1,0 +1,141 @@
+"""The node ``bag_player``: plays what was recorded, in step with the nodes that work on it.
+
+What was estimated during the recording, the transforms below the map, is left out, so that another estimate
+can take its place.
+"""
+
+import os
+import threading
+import time
+from pathlib import Path
+from typing import List, Set
+
+import rospy
+from rosgraph_msgs.msg import Clock
+from roslib.message import get_message_class
+from std_msgs.msg import Header, String
+from tf2_msgs.msg import TFMessage
+
+from home_service.bag_files import INPUT_TYPES, LASER_SCAN, Recording
+from planar import SettingsError
+from planar_ros.messages import frame_name, time_of
+from planar_ros.progress import TOPIC as PROGRESS_TOPIC
+from planar_ros.scan_log import BagError
+from planar_ros.shell import run
+from sim_bridge.pacing import Pacer
+
+PLAYING, ENDED, BROKEN = "playing", "ended", "broken: "
+LISTENER_SECONDS = 30.0
+CLOCK_SECONDS = 0.01
+STATIC = "/tf_static"
+MAP_FRAME = "map"
+
+
+class BagPlayer:
+    """Publishes a recording's messages and its clock; ``~state`` says when it has ended."""
+
+    def __init__(self):
+        self._recording = Recording(_paths(rospy.get_param("~bags")))
+        self._has_all = bool(rospy.get_param("~all", False))
+        self._pacer = Pacer(float(rospy.get_param("~speed", 1.0)), rospy.get_param("~wait_for", "").split())
+        self._changed = threading.Condition()
+        self._state = rospy.Publisher("~state", String, queue_size=10, latch=True)
+        self._clock = rospy.Publisher("/clock", Clock, queue_size=10, tcp_nodelay=True)
+        self._clock_stamp = 0.0
+        rospy.Subscriber(PROGRESS_TOPIC, Header, self._keep_progress, queue_size=50, tcp_nodelay=True)
+        types = self._recording.types
+        inputs = {topic for topic, kind in types.items() if self._has_all or kind in INPUT_TYPES}
+        self._topics: Set[str] = inputs - {"/clock"}
+        if not self._has_all and LASER_SCAN not in types.values():
+            there = ", ".join(sorted(types)) or "none"
+            raise BagError(f"{self._recording.paths[0]}: no laser scans; topics: {there}")
+        self._publishers = {
+            topic: rospy.Publisher(
+                topic,
+                get_message_class(types[topic]),
+                queue_size=100,
+                latch=topic == STATIC,
+                tcp_nodelay=True,
+            )
+            for topic in self._topics
+        }
+
+    def work(self) -> None:
+        """Plays everything; then stays, so that what was latched stays."""
+        self._state.publish(PLAYING)
+        self._tell_static()
+        self._wait_for_listeners()
+        try:
+            for topic, message, stamp in self._recording.messages(self._topics - {STATIC}):
+                if rospy.is_shutdown():
+                    return
+                self._wait_until_due(stamp)
+                self._tell_time(stamp)
+                self._publish(topic, message)
+        except BagError as error:
+            self._state.publish(BROKEN + str(error))
+            return
+        self._wait_until_due(self._recording.end + 2.0 * CLOCK_SECONDS)
+        self._state.publish("; ".join([ENDED, *self._recording.gaps]))
+
+    def _publish(self, topic: str, message) -> None:
+        if topic == "/tf" and not self._has_all:
+            message.transforms = [
+                transform
+                for transform in message.transforms
+                if frame_name(transform.header.frame_id) != MAP_FRAME
+            ]
+            if not message.transforms:
+                return
+        self._publishers[topic].publish(message)
+
+    def _tell_static(self) -> None:
+        """All at once: a latched topic keeps only its last message."""
+        if STATIC not in self._publishers:
+            return
+        together = {
+            transform.child_frame_id: transform
+            for played in self._recording.messages({STATIC})
+            for transform in played.message.transforms
+        }
+        self._publishers[STATIC].publish(TFMessage(list(together.values())))
+
+    def _wait_for_listeners(self) -> None:
+        """Until somebody listens to the scans, or for half a minute."""
+        scans = [self._publishers[topic] for topic in self._recording.topics_of(LASER_SCAN)]
+        deadline = time.monotonic() + LISTENER_SECONDS
+        while not self._has_all and time.monotonic() < deadline and not rospy.is_shutdown():
+            self._tell_time(self._recording.start)
+            if any(publisher.get_num_connections() > 0 for publisher in scans):
+                return
+            time.sleep(5.0 * CLOCK_SECONDS)
+
+    def _wait_until_due(self, stamp: float) -> None:
+        while not rospy.is_shutdown():
+            with self._changed:
+                delay = self._pacer.delay(stamp, time.monotonic())
+                if delay <= 0.0:
+                    return
+                self._changed.wait(delay)
+                for node in self._pacer.give_up(stamp, time.monotonic()):
+                    rospy.logwarn("%s does not keep up: it is not waited for until it reports again", node)
+
+    def _tell_time(self, stamp: float) -> None:
+        if stamp >= self._clock_stamp + CLOCK_SECONDS or self._clock_stamp == 0.0:
+            self._clock_stamp = stamp
+        self._clock.publish(Clock(time_of(self._clock_stamp)))
+
+    def _keep_progress(self, message) -> None:
+        with self._changed:
+            self._pacer.report(message.frame_id, message.stamp.to_sec())
+            self._changed.notify_all()
+
+
+def _paths(text: str) -> List[Path]:
+    if not text:
+        raise SettingsError(f"~bags must name bags, separated by '{os.pathsep}'")
+    return [Path(name) for name in text.split(os.pathsep)]
+
+
+def main():
+    run("bag_player", lambda: BagPlayer().work())

@@ -1,0 +1,208 @@
+"""Commands for a robot that move_base drives, ours or the official one, from a few lines of Python.
+
+    robot = Commander()
+    if not robot.is_ready(timeout=30.0):
+        raise SystemExit(f"waiting for {', '.join(robot.waiting_for)}")
+    robot.go_to(2.0, 3.0)
+    outcome = robot.wait()
+    print(outcome.result, outcome.reason)
+
+A command returns at once. A new one cancels the one before. Nothing waits for ever: each command ends by its
+time-out, and earlier if the clock, the odometry or move_base is gone.
+"""
+
+import threading
+import time
+from pathlib import Path
+from typing import Callable, Dict, Iterable, List, Optional, Sequence
+
+import actionlib
+import rospy
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from move_base_msgs.msg import MoveBaseAction
+from nav_msgs.srv import LoadMap, LoadMapResponse
+from std_srvs.srv import Empty
+
+from home_service.command_tasks import Drive, Feedback, Motion, Outcome, Result, Task, Waypoints
+from planar import PlanarError, Pose2
+from planar_ros.actions import server_is_ready
+from planar_ros.messages import pose2_to_msg
+from planar_ros.services import call_service
+from planar_ros.transforms import Transforms
+
+__all__ = ["Commander", "CommanderError", "Feedback", "Outcome", "Result"]
+
+POLL_SECONDS = 0.05
+# Variances of a pose given by hand: m^2, m^2, rad^2 (as rviz gives them).
+BY_HAND = (0.25, 0.25, 0.0685)
+BELIEVED_DISTANCE = 0.5
+MAP_ERRORS = {
+    LoadMapResponse.RESULT_MAP_DOES_NOT_EXIST: "there is no such map",
+    LoadMapResponse.RESULT_INVALID_MAP_DATA: "its image cannot be read",
+    LoadMapResponse.RESULT_INVALID_MAP_METADATA: "its description cannot be read",
+}
+
+
+class CommanderError(PlanarError):
+    """A command could not even be given, and why."""
+
+
+class Commander:
+    """A client of move_base. Poses are metres and radians in ``frame_id``; time-outs of commands ROS time.
+
+    It makes the process a node of the given name unless it is one already.
+    """
+
+    def __init__(self, name: str = "commander", frame_id: str = "map", base_frame_id: str = "base_footprint"):
+        if not rospy.core.is_initialized():
+            rospy.init_node(name, anonymous=True)
+        self.waiting_for: List[str] = []
+        self._frame_id, self._base_frame_id = frame_id, base_frame_id
+        self._task: Optional[Task] = None
+        self._worker: Optional[threading.Thread] = None
+        self._outcome: Optional[Outcome] = None
+        self._client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
+        self._transforms = Transforms()
+        self._initial_pose = rospy.Publisher("initialpose", PoseWithCovarianceStamped, queue_size=1)
+        self._motion = Motion()
+
+    def is_ready(self, timeout: float = 30.0) -> bool:
+        """Whether commands can be given; waits so many wall-clock seconds for that.
+
+        ``waiting_for`` then names what was still missing.
+        """
+        conditions: Dict[str, Callable[[], bool]] = {
+            "a node that has started after /use_sim_time was set": _has_right_clock,
+            "the clock": lambda: not rospy.Time.now().is_zero(),
+            f"the action {rospy.resolve_name('move_base')}": lambda: server_is_ready(self._client),
+            f"the transform {self._frame_id} to {self._base_frame_id}": lambda: self.pose is not None,
+        }
+        deadline = time.monotonic() + timeout
+        while True:
+            self.waiting_for = [name for name, is_met in conditions.items() if not is_met()]
+            if not self.waiting_for or rospy.is_shutdown() or time.monotonic() > deadline:
+                return not self.waiting_for
+            time.sleep(POLL_SECONDS)
+
+    @property
+    def pose(self) -> Optional[Pose2]:
+        """Where the robot believes to be; None if it does not know."""
+        return self._transforms.lookup(self._frame_id, self._base_frame_id)
+
+    def go_to(self, x: float, y: float, yaw: float = 0.0, timeout: float = 180.0) -> None:
+        """Drives to a pose."""
+        self._begin(Drive(self._client, self._frame_id, Pose2(x, y, yaw), timeout))
+
+    def follow_waypoints(
+        self, poses: Iterable[Sequence[float]], stop_on_failure: bool = False, timeout: float = 180.0
+    ) -> None:
+        """Drives to poses ``(x, y, yaw)`` one after the other, ``timeout`` seconds for each.
+
+        The outcome's ``missed`` are the numbers, from 0, of those that were not reached.
+        """
+        drives = [Drive(self._client, self._frame_id, Pose2(*pose), timeout) for pose in poses]
+        if not drives:
+            raise CommanderError("there are no waypoints to follow")
+        self._begin(Waypoints(drives, stop_on_failure))
+
+    def spin(self, angle: float, speed: float = 0.8, timeout: float = 60.0) -> None:
+        """Turns on the spot, by odometry, counter-clockwise if ``angle`` is positive; radians, rad/s."""
+        self._begin(self._motion.turn(angle, speed, timeout))
+
+    def back_up(self, distance: float, speed: float = 0.15, timeout: float = 60.0) -> None:
+        """Drives straight back, by odometry, unless move_base's local costmap shows an obstacle there."""
+        self._begin(self._motion.back(distance, speed, timeout))
+
+    def cancel(self) -> None:
+        """Ends the command in progress; its outcome is then CANCELLED."""
+        if self._task is not None:
+            self._task.cancel()
+
+    def is_done(self) -> bool:
+        """Whether the latest command has come to an end."""
+        return self._worker is None or not self._worker.is_alive()
+
+    def wait(self, timeout: Optional[float] = None) -> Outcome:
+        """The outcome of the latest command, waited for.
+
+        ``timeout``: wall-clock seconds after which the command is cancelled; it ends by its own otherwise.
+        """
+        deadline = None if timeout is None else time.monotonic() + timeout
+        while not self.is_done():
+            if rospy.is_shutdown() or (deadline is not None and time.monotonic() > deadline):
+                self.cancel()
+                deadline = None
+            time.sleep(POLL_SECONDS)
+        return self.outcome()
+
+    def feedback(self) -> Feedback:
+        """How far the latest command has come."""
+        if self._task is None:
+            raise CommanderError("no command was given yet")
+        return self._task.feedback()
+
+    def outcome(self) -> Outcome:
+        """How the latest command ended. Raises CommanderError while it has not."""
+        if self._task is None:
+            raise CommanderError("no command was given yet")
+        if self._outcome is None or not self.is_done():
+            raise CommanderError("the command has not ended yet")
+        return self._outcome
+
+    def set_initial_pose(self, x: float, y: float, yaw: float = 0.0, timeout: float = 10.0) -> None:
+        """Tells the localization where the robot is, and waits until it believes it.
+
+        Raises CommanderError if it does not within ``timeout`` wall-clock seconds.
+        """
+        message = PoseWithCovarianceStamped()
+        message.header.frame_id, message.header.stamp = self._frame_id, rospy.Time.now()
+        message.pose.pose = pose2_to_msg(Pose2(x, y, yaw))
+        covariance = [0.0] * 36
+        covariance[0], covariance[7], covariance[35] = BY_HAND
+        message.pose.covariance = covariance
+        deadline = time.monotonic() + timeout
+        topic = rospy.resolve_name("initialpose")
+        self._wait_until(
+            lambda: self._initial_pose.get_num_connections() > 0, deadline, f"nobody hears {topic}"
+        )
+        self._initial_pose.publish(message)
+        told = f"the localization does not take up the pose told on {topic}"
+        self._wait_until(lambda: self._believes(Pose2(x, y, yaw)), deadline, told)
+
+    def clear_costmaps(self, timeout: float = 10.0) -> None:
+        """Has move_base forget the obstacles it has seen. Raises ServiceError."""
+        call_service("move_base/clear_costmaps", Empty, Empty._request_class(), timeout)
+
+    def change_map(self, path, timeout: float = 20.0) -> None:
+        """Has map_server serve another map. Raises ServiceError or CommanderError."""
+        request = LoadMap._request_class(map_url=str(Path(path).resolve()))
+        response = call_service("change_map", LoadMap, request, timeout)
+        if response.result != LoadMapResponse.RESULT_SUCCESS:
+            raise CommanderError(f"{path}: {MAP_ERRORS.get(response.result, 'map_server refuses it')}")
+
+    def _believes(self, pose: Pose2) -> bool:
+        believed = self.pose
+        return believed is not None and believed.distance_to(pose) < BELIEVED_DISTANCE
+
+    @staticmethod
+    def _wait_until(is_so: Callable[[], bool], deadline: float, complaint: str) -> None:
+        while not is_so():
+            if time.monotonic() > deadline or rospy.is_shutdown():
+                raise CommanderError(complaint)
+            time.sleep(POLL_SECONDS)
+
+    def _begin(self, task: Task) -> None:
+        if not self.is_done():
+            self.cancel()
+            self.wait()
+        self._task, self._outcome = task, None
+        self._worker = threading.Thread(target=self._work, args=(task,), daemon=True)
+        self._worker.start()
+
+    def _work(self, task: Task) -> None:
+        self._outcome = task.run()
+
+
+def _has_right_clock() -> bool:
+    """Whether this node goes by the clock of the others: rospy decides once, at its start."""
+    return not (rospy.rostime.is_wallclock() and rospy.get_param("/use_sim_time", False))

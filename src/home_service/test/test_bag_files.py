@@ -1,0 +1,57 @@
+import pytest
+import rosbag
+import rospy
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import LaserScan
+
+from home_service.bag_files import LASER_SCAN, Recording, bag_paths
+from planar_ros.scan_log import BagError
+
+
+def write_bag(path, start, count):
+    with rosbag.Bag(str(path), "w", chunk_threshold=4000) as bag:
+        for i in range(count):
+            stamp = rospy.Time.from_sec(start + 0.1 * i)
+            bag.write("/scan", LaserScan(ranges=[1.0] * 100), stamp)
+            bag.write("/odom", Odometry(), stamp)
+    return path
+
+
+def test_the_parts_of_a_recording_are_played_in_the_order_of_time(tmp_path):
+    write_bag(tmp_path / "b.bag", 1.0, 5)
+    write_bag(tmp_path / "a.bag", 11.0, 5)
+    recording = Recording([tmp_path])
+    stamps = [played.stamp for played in recording.messages({"/scan", "/odom"})]
+    assert stamps == sorted(stamps)
+    assert len(stamps) == 20
+    assert (recording.start, recording.end) == (1.0, 11.4)
+    assert recording.topics_of(LASER_SCAN) == ["/scan"]
+    assert recording.gaps == []
+
+
+def test_a_recording_that_was_cut_off_is_played_as_far_as_it_goes_and_left_as_it_is(tmp_path):
+    path = write_bag(tmp_path / "cut.bag.active", 1.0, 200)
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    before = path.read_bytes()
+    recording = Recording([tmp_path])
+    played = list(recording.messages({"/scan"}))
+    print(f"{len(played)} of 200 scans, {recording.gaps}")
+    assert 50 < len(played) < 150
+    assert recording.gaps[0].startswith("cut.bag.active: cut off ")
+    assert path.read_bytes() == before
+
+
+def test_what_holds_nothing_to_play_is_refused_by_name(tmp_path):
+    with pytest.raises(BagError, match="none.bag: no such bag"):
+        bag_paths([tmp_path / "none.bag"])
+    with pytest.raises(BagError, match="no bag in this folder"):
+        bag_paths([tmp_path])
+    with pytest.raises(BagError, match="empty.bag: there is no message in it"):
+        Recording([write_bag(tmp_path / "empty.bag", 0.0, 0)])
+    (tmp_path / "text.bag").write_text("no bag")
+    with pytest.raises(BagError, match="text.bag: not a readable bag"):
+        Recording([tmp_path / "text.bag"])
+    cut = write_bag(tmp_path / "cut.bag", 1.0, 100)
+    cut.write_bytes(cut.read_bytes()[:4200])
+    with pytest.raises(BagError, match="cut.bag: cut off before the first complete chunk"):
+        Recording([cut])

@@ -1,0 +1,98 @@
+"""The command ``deliver``: sends a mission file to the action of a running robot and follows it."""
+
+import argparse
+import signal
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import List, Optional
+
+import actionlib
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from home_service_msgs.msg import DeliverAction, DeliverGoal
+
+from planar_ros.actions import server_is_ready
+
+OPEN = (GoalStatus.PENDING, GoalStatus.ACTIVE)
+POLL_SECONDS, TELL_SECONDS, CANCEL_SECONDS = 0.1, 2.0, 10.0
+SUCCESS, FAILURE, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+
+
+def main(arguments: Optional[List[str]] = None) -> int:
+    """Returns 0 if all was delivered, 1 if not, 2 for bad input, 130 if Ctrl-C has cancelled it."""
+    options = _parser().parse_args(rospy.myargv(arguments)[1:])
+    try:
+        mission = options.mission.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        return _complain(f"{options.mission}: cannot be read ({getattr(error, 'strerror', None) or error})")
+    interrupted = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda _number, _frame: interrupted.set())
+    try:
+        rospy.init_node("deliver", anonymous=True, disable_signals=True)
+    except OSError as error:
+        return _complain(f"no ROS master ({error})")
+    client = actionlib.SimpleActionClient("deliver", DeliverAction)
+    deadline = time.monotonic() + options.server_timeout
+    while not server_is_ready(client):
+        if time.monotonic() > deadline or interrupted.is_set():
+            return _complain(f"no action {rospy.resolve_name('deliver')} within {options.server_timeout:g} s")
+        time.sleep(POLL_SECONDS)
+    return _follow(client, DeliverGoal(mission=mission), interrupted, time.monotonic() + options.timeout)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="deliver", description="Send a mission to a running robot and follow it; Ctrl-C cancels it."
+    )
+    parser.add_argument("mission", type=Path, metavar="FILE", help="YAML of deliveries (docs/missions.md)")
+    parser.add_argument(
+        "--server_timeout", type=float, default=10.0, help="wall-clock s to wait for the robot"
+    )
+    parser.add_argument("--timeout", type=float, default=3600.0, help="wall-clock s for the mission")
+    return parser
+
+
+def _follow(client, goal: DeliverGoal, interrupted: threading.Event, deadline: float) -> int:
+    latest = [0.0]
+
+    def tell(feedback):
+        state = feedback.state
+        if time.monotonic() - latest[0] >= TELL_SECONDS:
+            latest[0] = time.monotonic()
+            where = f"{state.delivery}: {state.state} ({state.place})"
+            print(f"{100.0 * state.progress:3.0f} %  {where}, about {state.time_left:.0f} s left", flush=True)
+
+    client.send_goal(goal, feedback_cb=tell)
+    while client.get_state() in OPEN:
+        if interrupted.is_set() or time.monotonic() > deadline or not server_is_ready(client):
+            client.cancel_goal()
+            if not _wait_for_end(client, time.monotonic() + CANCEL_SECONDS):
+                return _complain("the robot does not answer", FAILURE)
+            break
+        time.sleep(POLL_SECONDS)
+    result = client.get_result()
+    for state in result.deliveries if result else ():
+        told = state.delivery
+        outcome = {state.DELIVERED: "delivered", state.CANCELLED: "cancelled"}.get(
+            state.state, "not delivered"
+        )
+        reason = f" ({state.reason})" if state.reason and state.state == state.FAILED else ""
+        print(f"{told.name}: {told.object} from {told.source} to {told.destination}: {outcome}{reason}")
+    print(client.get_goal_status_text(), flush=True)
+    if interrupted.is_set():
+        return INTERRUPTED
+    return SUCCESS if client.get_state() == GoalStatus.SUCCEEDED else FAILURE
+
+
+def _wait_for_end(client, deadline: float) -> bool:
+    while client.get_state() in OPEN and time.monotonic() < deadline:
+        time.sleep(POLL_SECONDS)
+    return client.get_state() not in OPEN
+
+
+def _complain(text: str, code: int = BAD_INPUT) -> int:
+    print(f"error: {text}", file=sys.stderr, flush=True)
+    return code

@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+"""Missions sent to a running robot, judged against ground truth: a blocked place, cancellation, bad input."""
+
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import actionlib
+import rospy
+import rostest
+from actionlib_msgs.msg import GoalStatus
+from home_service_msgs.msg import DeliverAction, DeliverGoal, Delivery, DeliveryState
+from home_service_msgs.srv import AddDelivery, CancelDelivery
+from visualization_msgs.msg import Marker
+
+from home_service.referee import Referee
+from home_service.verdict import ERRAND, OBJECTS, judge
+from pick_objects import parse_mission
+from planar import Pose2
+from planar_ros.actions import server_is_ready
+from planar_ros.messages import pose2_to_msg
+
+WALL_DEADLINE = 240.0
+MISSION = """\
+places:
+  hall: {x: 1.2, y: 0.2}
+  door: {x: 2.6, y: 0.2}
+  sofa: {x: 4.0, y: 0.4, approaches: [{x: 3.3, y: -0.1}]}
+settings: {pickup_seconds: 1.0, dropoff_seconds: 0.5, retry_seconds: 0.5, attempts: 2, order: shortest}
+deliveries:
+  - {name: first, object: cup, from: hall, to: door}
+  - {name: blocked, object: book, from: door, to: sofa}
+  - {name: third, object: cup, from: door, to: hall}
+  - {name: last, object: letter, from: hall, to: door, after: third}
+"""
+
+
+class MissionsTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.places = dict(parse_mission(MISSION).places)
+        cls.client = actionlib.SimpleActionClient("deliver", DeliverAction)
+        cls.boxes = rospy.Publisher("sim_bridge/add_box", Marker, queue_size=10)
+
+    def setUp(self):
+        self.referee = Referee(self.places, print)
+        self._wait("the robot", lambda: server_is_ready(self.client) and self.referee.truth)
+
+    def test_1_a_mission_with_a_mistake_is_refused_naming_line_and_key(self):
+        self.client.send_goal(DeliverGoal(mission=MISSION.replace("to: sofa", "to: sofaa")))
+        self._wait("the refusal", self._is_over)
+        self.assertEqual(self.client.get_state(), GoalStatus.ABORTED)
+        self.assertIn("mission:8: deliveries[2].to names no place: sofaa", self.client.get_goal_status_text())
+
+    def test_2_a_mission_is_cancelled_while_an_object_is_carried(self):
+        goal = DeliverGoal(deliveries=[Delivery("away", "parcel", "pickup", "dropoff")])
+        self.client.send_goal(goal)
+        self._wait("the object on the robot", lambda: self._stage("away") == "carrying")
+        self._wait("motion", lambda: self.referee.truth.distance_to(Pose2(2.0, 3.0)) > 0.5)
+        self.client.cancel_goal()
+        self._wait("the end", self._is_over)
+        self.assertEqual(self.client.get_state(), GoalStatus.PREEMPTED)
+        self.assertEqual(self.client.get_result().deliveries[0].state, DeliveryState.CANCELLED)
+        self._wait("the state", lambda: self.referee.ledger.final_state == "cancelled")
+        stopped_at = self.referee.truth
+        end = self.referee.simulated_time + 3.0
+        self._wait("three seconds", lambda: self.referee.simulated_time > end)
+        coasted = self.referee.truth.distance_to(stopped_at)
+        print(f"{coasted:.3f} m driven after the cancellation")
+        self.assertLess(coasted, 0.3)
+        self.assertFalse(judge(self.referee.ledger, {ERRAND}).success)
+
+    def test_3_a_blocked_place_is_served_from_its_alternative_and_a_delivery_is_added(self):
+        self._drop_box(self.places["sofa"].pose)
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "mission.yaml"
+            path.write_text(MISSION)
+            command = ["rosrun", "pick_objects", "deliver", str(path)]
+            deliver = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+            self._wait("the first object", lambda: self._stage("first") == "carrying")
+            self._assert_services()
+            self._wait("the end", lambda: deliver.poll() is not None)
+        output = deliver.stdout.read()
+        print(output)
+        self.assertEqual(deliver.returncode, 0)
+        self.assertIn("blocked: book from door to sofa: delivered", output)
+        self._wait("the markers", lambda: not self.referee.ledger.untold_objects)
+        verdict = judge(self.referee.ledger, {ERRAND, OBJECTS})
+        self.assertTrue(verdict.success, verdict.reason)
+        records = {record.name: record for record in self.referee.ledger.deliveries}
+        self.assertEqual(records["blocked"].attempts, 3)
+        self.assertEqual(records["extra"].state, "delivered")
+        self.assertEqual(records["needless"].state, "cancelled")
+
+    def _assert_services(self):
+        add = rospy.ServiceProxy("pick_objects/add_delivery", AddDelivery)
+        cancel = rospy.ServiceProxy("pick_objects/cancel_delivery", CancelDelivery)
+        self.assertTrue(add(Delivery("extra", "key", "door", "hall")).success)
+        self.assertTrue(add(Delivery("needless", "key", "hall", "door")).success)
+        self.assertIn("there is no place 'moon'", add(Delivery("x", "key", "moon", "hall")).message)
+        self.assertTrue(cancel("needless").success)
+        self.assertIn("there is no delivery nothing", cancel("nothing").message)
+
+    def _stage(self, name):
+        return next((record.state for record in self.referee.ledger.deliveries if record.name == name), None)
+
+    def _is_over(self):
+        return self.client.get_state() not in (GoalStatus.PENDING, GoalStatus.ACTIVE)
+
+    def _drop_box(self, pose):
+        self._wait("a subscriber of boxes", lambda: self.boxes.get_num_connections() > 0)
+        box = Marker(ns="box", type=Marker.CUBE)
+        box.pose = pose2_to_msg(pose)
+        box.scale.x = box.scale.y = box.scale.z = 0.4
+        self.boxes.publish(box)
+
+    def _wait(self, what, is_there):
+        deadline = time.monotonic() + WALL_DEADLINE
+        while not is_there():
+            self.assertLess(time.monotonic(), deadline, f"no {what}; state '{self.referee.state}'")
+            time.sleep(0.02)
+
+
+if __name__ == "__main__":
+    rospy.init_node("test_missions")
+    rostest.rosrun("home_service_tests", "missions", MissionsTest)
