@@ -290,7 +290,7 @@ class Errand:
         return any(job.stage is Stage.FAILED for job in self.jobs)
 
     def _refuse_if_over(self) -> None:
-        if self.state in FINAL_STATES or self._is_cancelled:
+        if self.state in FINAL_STATES:
             raise MissionError("the mission is over")
 
     def _note_objects(self) -> None:

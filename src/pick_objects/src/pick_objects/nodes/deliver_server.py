@@ -43,7 +43,7 @@ class DeliverServer:
             time.sleep(poll_seconds)
 
     def _do(self, goal: DeliverGoal) -> None:
-        start = rospy.Time.now()
+        start, self._errand = rospy.Time.now(), None
         try:
             mission = self._understand(goal)
         except PlanarError as error:
