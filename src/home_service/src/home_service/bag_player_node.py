@@ -4,11 +4,12 @@ What was estimated during the recording, the transforms below the map, is left o
 can take its place.
 """
 
+import itertools
 import os
 import threading
 import time
 from pathlib import Path
-from typing import List, Set
+from typing import Iterable, Iterator, List, Optional, Set
 
 import rospy
 from rosgraph_msgs.msg import Clock
@@ -16,7 +17,7 @@ from roslib.message import get_message_class
 from std_msgs.msg import Header, String
 from tf2_msgs.msg import TFMessage
 
-from home_service.bag_files import INPUT_TYPES, LASER_SCAN, Recording
+from home_service.bag_files import INPUT_TYPES, LASER_SCAN, Played, Recording
 from planar import SettingsError
 from planar_ros.messages import frame_name, time_of
 from planar_ros.progress import TOPIC as PROGRESS_TOPIC
@@ -27,6 +28,9 @@ from sim_bridge.pacing import Pacer
 PLAYING, ENDED, BROKEN = "playing", "ended", "broken: "
 LISTENER_SECONDS = 30.0
 CLOCK_SECONDS = 0.01
+AHEAD_SECONDS = 0.5
+"""The nodes may be so far behind the bag's time, which is when a message came, not the time it speaks of."""
+BEGINNING_SECONDS = 0.3
 STATIC = "/tf_static"
 MAP_FRAME = "map"
 
@@ -37,11 +41,14 @@ class BagPlayer:
     def __init__(self):
         self._recording = Recording(_paths(rospy.get_param("~bags")))
         self._has_all = bool(rospy.get_param("~all", False))
-        self._pacer = Pacer(float(rospy.get_param("~speed", 1.0)), rospy.get_param("~wait_for", "").split())
+        speed, wait_for = float(rospy.get_param("~speed", 1.0)), rospy.get_param("~wait_for", "").split()
+        self._pacer = Pacer(speed, wait_for, period=AHEAD_SECONDS)
         self._changed = threading.Condition()
         self._state = rospy.Publisher("~state", String, queue_size=10, latch=True)
         self._clock = rospy.Publisher("/clock", Clock, queue_size=10, tcp_nodelay=True)
         self._clock_stamp = 0.0
+        self._is_estimate_missing = bool(wait_for)
+        rospy.Subscriber("/tf", TFMessage, self._see_estimate, queue_size=100)
         rospy.Subscriber(PROGRESS_TOPIC, Header, self._keep_progress, queue_size=50, tcp_nodelay=True)
         types = self._recording.types
         inputs = {topic for topic, kind in types.items() if self._has_all or kind in INPUT_TYPES}
@@ -49,6 +56,7 @@ class BagPlayer:
         if not self._has_all and LASER_SCAN not in types.values():
             there = ", ".join(sorted(types)) or "none"
             raise BagError(f"{self._recording.paths[0]}: no laser scans; topics: {there}")
+        self._scans = [topic for topic in self._topics if types[topic] == LASER_SCAN]
         self._publishers = {
             topic: rospy.Publisher(
                 topic,
@@ -65,18 +73,41 @@ class BagPlayer:
         self._state.publish(PLAYING)
         self._tell_static()
         self._wait_for_listeners()
+        messages = self._recording.messages(self._topics - {STATIC})
         try:
-            for topic, message, stamp in self._recording.messages(self._topics - {STATIC}):
-                if rospy.is_shutdown():
-                    return
-                self._wait_until_due(stamp)
-                self._tell_time(stamp)
-                self._publish(topic, message)
+            self._play(itertools.chain(self._beginning(messages), messages))
         except BagError as error:
             self._state.publish(BROKEN + str(error))
             return
         self._wait_until_due(self._recording.end + 2.0 * CLOCK_SECONDS)
         self._state.publish("; ".join([ENDED, *self._recording.gaps]))
+
+    def _play(self, messages: Iterable[Played]) -> None:
+        for topic, message, stamp in messages:
+            if rospy.is_shutdown():
+                return
+            self._wait_until_due(stamp)
+            self._tell_time(stamp)
+            self._publish(topic, message)
+
+    def _beginning(self, messages: Iterator[Played]) -> Iterator[Played]:
+        """Until shortly after the first scan; ends when a node has made a first estimate of that.
+
+        One that is not ready yet would else start in the middle, while the robot drives.
+        """
+        first: Optional[Played] = None
+        for played in messages:
+            yield played
+            if first is None and played.topic in self._scans:
+                first = played
+            if first is not None and played.stamp > first.stamp + BEGINNING_SECONDS:
+                break
+        deadline = time.monotonic() + LISTENER_SECONDS
+        while first is not None and self._is_estimate_missing and time.monotonic() < deadline:
+            if rospy.is_shutdown():
+                return
+            self._publish(first.topic, first.message)
+            time.sleep(BEGINNING_SECONDS)
 
     def _publish(self, topic: str, message) -> None:
         if topic == "/tf" and not self._has_all:
@@ -102,7 +133,7 @@ class BagPlayer:
 
     def _wait_for_listeners(self) -> None:
         """Until somebody listens to the scans, or for half a minute."""
-        scans = [self._publishers[topic] for topic in self._recording.topics_of(LASER_SCAN)]
+        scans = [self._publishers[topic] for topic in self._scans]
         deadline = time.monotonic() + LISTENER_SECONDS
         while not self._has_all and time.monotonic() < deadline and not rospy.is_shutdown():
             self._tell_time(self._recording.start)
@@ -124,6 +155,10 @@ class BagPlayer:
         if stamp >= self._clock_stamp + CLOCK_SECONDS or self._clock_stamp == 0.0:
             self._clock_stamp = stamp
         self._clock.publish(Clock(time_of(self._clock_stamp)))
+
+    def _see_estimate(self, message) -> None:
+        if any(frame_name(transform.header.frame_id) == MAP_FRAME for transform in message.transforms):
+            self._is_estimate_missing = False
 
     def _keep_progress(self, message) -> None:
         with self._changed:
