@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Usage: ./scripts/replay.sh [options] BAG...
 #
-# Plays recorded bags (of --record, or any with scans, odometry and /tf) to localization or mapping, without the
+# Plays bags (of recorded runs, or any with scans, odometry and /tf) to localization or mapping, without the
 # estimate that was recorded, and measures what they make of it against the truth, if that was recorded too.
 # The bags are only read; one that is cut off is played as far as it goes, and the result says so.
 # Leaves a run folder with report, trajectories (TUM) and result.json. BAG may be a folder of bags or of a run.
