@@ -69,7 +69,7 @@ def parameters_page() -> str:
 
 
 def _presets(names: List[str]) -> str:
-    return f"; presets {', '.join(f'`{name}`' for name in names)}" if names else ""
+    return f"; beside it {', '.join(f'`{name}`' for name in names)}" if names else ""
 
 
 def entries(text: str) -> List[Entry]:
@@ -77,6 +77,7 @@ def entries(text: str) -> List[Entry]:
     found: List[Entry] = []
     above: List[str] = []
     tables: List[str] = []
+    anchors: Dict[str, str] = {}
     for line in text.splitlines():
         continued = re.match(r"^\s{8,}# (.*)$", line)
         if continued and found:
@@ -92,10 +93,13 @@ def entries(text: str) -> List[Entry]:
             continue
         depth = len(match["indent"]) // 2
         name, value = ".".join([*tables[:depth], match["name"]]), match["value"].strip()
-        if not value and not match["off"]:
+        if (not value or value.startswith("&")) and not match["off"]:
             tables = [*tables[:depth], match["name"]]
+            anchors[value[1:]] = name
         else:
             meaning = (match["comment"] or " ".join(above)).strip()
+            if value.startswith("*"):
+                value, meaning = "", f"the same keys and defaults as `{anchors[value[1:]]}`"
             found.append(Entry(name.replace(".", "/"), value, meaning))
         above = []
     return found

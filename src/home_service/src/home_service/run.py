@@ -20,7 +20,7 @@ from home_service.run_folder import create_run_folder, write_result
 from home_service.verdict import DeliveryRecord, Verdict, judge
 from home_service.versions import versions
 from planar import MapFileError, PlanarError
-from run_report import summary, write_report
+from run_report import RunRecord, summary, write_report
 
 POLL_SECONDS = 0.05
 BRING_UP_SECONDS = 60.0
@@ -169,11 +169,9 @@ class Run:
             self.missing.append(f"result.json: {str(error).rpartition(': ')[2]}")
 
     def _report(self) -> None:
-        if self._recorder is None:
-            return
-        if self._graph.log_gap:
+        if self._graph is not None and self._graph.log_gap:
             self.missing.append(self._graph.log_gap)
-        record = self._recorder.record()
+        record = RunRecord() if self._recorder is None else self._recorder.record()
         self._result.update(summary(record))
         result = {**self._result, "missing": self.missing}
         self.missing = write_report(self.folder, result, record, self._options.gif)
