@@ -24,7 +24,7 @@ from run_report import RunRecord, summary, write_report
 
 POLL_SECONDS = 0.05
 BRING_UP_SECONDS = 60.0
-REPORT_SECONDS = 20.0
+REPORT_SECONDS = 60.0
 
 
 class Run:
@@ -85,7 +85,7 @@ class Run:
             self._graph.close()
         reporting.join(REPORT_SECONDS)
         if reporting.is_alive():
-            self.missing.append(f"report.html: not made within {REPORT_SECONDS:g} s")
+            self.missing.append(f"the report: not made within {REPORT_SECONDS:g} s")
         for gap in self.missing:
             self.display.say(f"warning: missing: {gap}")
         self.display.say(f"result, report and logs in {self.folder}")

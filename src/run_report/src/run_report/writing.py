@@ -21,7 +21,7 @@ TRAJECTORIES = (
 def write_report(
     folder: Path, result: Mapping[str, Any], record: RunRecord, with_gif: bool = False
 ) -> List[str]:
-    """Writes trajectories, record.json, run.png, run.gif if asked for, and report.html into the folder.
+    """Writes trajectories, record.json, run.png, report.html and, if asked for, run.gif into the folder.
 
     One that cannot be written does not keep the others from it: returns what is missing, in words, which the
     page tells as well.
@@ -30,23 +30,29 @@ def write_report(
         (f"{stem}.tum", partial(_write_trajectory, folder, stem, getattr(record, name)))
         for name, stem in TRAJECTORIES
     ]
-    works.append(("record.json", lambda: save_record(folder, record)))
-    works.append(("run.png", lambda: _write_picture(folder, result, record)))
-    if with_gif:
-        works.append(("run.gif", lambda: _write_animation(folder, result, record)))
+    works.append(("record.json", partial(save_record, folder, record)))
+    works.append(("run.png", partial(_write_picture, folder, result, record)))
     missing = list(result.get("missing", ()))
     for name, work in works:
         _attempt(name, work, missing)
-    page = report_html({**result, "missing": missing}, record).encode("utf-8")
-    _attempt("report.html", lambda: write_atomically(folder / "report.html", page), missing)
-    return missing
+    _write_page(folder, result, record, missing)
+    if with_gif and not _attempt("run.gif", partial(_write_animation, folder, result, record), missing):
+        _write_page(folder, result, record, missing)
+    return list(dict.fromkeys(missing))
 
 
-def _attempt(name: str, work: Callable[[], object], missing: List[str]) -> None:
+def _attempt(name: str, work: Callable[[], object], missing: List[str]) -> bool:
     try:
         work()
     except PlanarError as error:
         missing.append(f"{name}: {str(error).rpartition(': ')[2]}")
+        return False
+    return True
+
+
+def _write_page(folder: Path, result: Mapping[str, Any], record: RunRecord, missing: List[str]) -> None:
+    page = report_html({**result, "missing": missing}, record).encode("utf-8")
+    _attempt("report.html", partial(write_atomically, folder / "report.html", page), missing)
 
 
 def _write_trajectory(folder: Path, stem: str, rows) -> None:
