@@ -74,6 +74,17 @@ def test_meshes_are_read_where_no_cache_can_be_written(tmp_path):
     assert len(load_mesh(MeshFile(tmp_path / "a.obj"), tmp_path / "file" / "cache").triangles) == 4
 
 
+@pytest.mark.parametrize("keyword", ["o", "g"])
+def test_a_part_of_an_obj_file_is_found_by_its_name(tmp_path, cache, keyword):
+    low, high = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "v 0 0 5\nv 1 0 5\nv 0 1 5\nf 4 5 6\n"
+    (tmp_path / "a.obj").write_text(f"{keyword} low\n{low}{keyword} high\n{high}")
+    assert load_mesh(MeshFile(tmp_path / "a.obj", submesh="high"), cache).vertices[:, 2].min() == 5.0
+    centred = load_mesh(MeshFile(tmp_path / "a.obj", submesh="high", centred=True), cache)
+    assert centred.vertices.min(axis=0) == pytest.approx([-0.5, -0.5, 0.0])
+    with pytest.raises(WorldError, match="holds no mesh named 'middle'"):
+        load_mesh(MeshFile(tmp_path / "a.obj", submesh="middle"), cache)
+
+
 @pytest.mark.parametrize(("name", "content"), [("a.obj", ""), ("a.dae", "<COLLADA"), ("a.xyz", "?")])
 def test_what_holds_no_mesh_is_an_error_that_names_it(tmp_path, cache, name, content):
     (tmp_path / name).write_text(content)

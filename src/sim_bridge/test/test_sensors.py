@@ -14,7 +14,7 @@ from sim_bridge.pose3 import pose3, transform_points
 from sim_bridge.sensors.bumper import CENTRE, LEFT, RIGHT, pressed
 from sim_bridge.sensors.camera import Camera, CameraSettings, DepthCameraSettings, points_of
 from sim_bridge.sensors.imu import Imu, ImuSettings
-from sim_bridge.shapes import Box, Cylinder, Plane, Sphere
+from sim_bridge.shapes import Box, Cylinder, MeshFile, Plane, Sphere
 from sim_bridge.world import Body, Collision, Visual, World
 
 SMALL = CameraSettings(width=160, height=120)
@@ -107,6 +107,15 @@ def test_bodies_that_move_are_drawn_where_they_are_and_the_robot_itself_is_left_
     assert triangles[..., 0].mean() == pytest.approx(5.0)
     drawing.remove("ball::l")
     assert len(drawing.triangles(lambda name: pose3(), but="robot")[0]) == 0
+
+
+def test_a_mesh_that_cannot_be_read_is_named_and_the_rest_is_drawn(tmp_path):
+    (tmp_path / "broken.obj").write_text("")
+    drawing = Drawing()
+    looks = (MeshFile(tmp_path / "broken.obj"), Box((1.0, 1.0, 1.0)))
+    drawing.add(Body("m::l", np.eye(4), (), visuals=tuple(Visual(look, np.eye(4)) for look in looks)))
+    assert len(drawing.triangles(lambda name: np.eye(4))[0]) == 12
+    assert "broken.obj" in drawing.warnings[0]
 
 
 @pytest.mark.parametrize(

@@ -68,13 +68,18 @@ def render_map() -> None:
     try:
         world = load_world(arguments.world, model_folders(), arguments.strict)
         for warning in world.warnings:
-            print(f"warning: {warning}", file=sys.stderr)
+            _warn(warning)
         if arguments.picture:
-            _save_picture(picture_from_above(world, arguments.below), Path(arguments.picture))
+            picture = picture_from_above(world, arguments.below, warn=_warn)
+            _save_picture(picture, Path(arguments.picture))
         grid = true_map(world, arguments.height, arguments.resolution, tuple(arguments.inside))
         print(f"{save_map(grid, arguments.stem)}: {grid.cols} x {grid.rows} cells of {grid.resolution:g} m")
     except PlanarError as error:
         parser.exit(2, f"render_map: error: {error}\n")
+
+
+def _warn(text: str) -> None:
+    print(f"warning: {text}", file=sys.stderr)
 
 
 def _save_picture(picture: np.ndarray, path: Path) -> None:

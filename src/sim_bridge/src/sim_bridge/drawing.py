@@ -2,10 +2,11 @@
 
 import math
 from dataclasses import dataclass
-from typing import Callable, Dict, Optional, Sequence, Tuple
+from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
+from sim_bridge.errors import WorldError
 from sim_bridge.meshes import load_mesh
 from sim_bridge.pose3 import transform_points
 from sim_bridge.sensors.rasterizer import shades
@@ -36,9 +37,16 @@ class Drawing:
         self._still: Dict[str, _Drawn] = {}
         self._moving: Dict[str, _Drawn] = {}
         self._all_still: Optional[Tuple[np.ndarray, np.ndarray]] = None
+        # In words, what cannot be drawn.
+        self.warnings: List[str] = []
 
     def add(self, body: Body) -> None:
-        parts = [_triangles_of(visual) for visual in visible_parts(body)]
+        parts = []
+        for visual in visible_parts(body):
+            try:
+                parts.append(_triangles_of(visual))
+            except WorldError as error:
+                self.warnings.append(f"not to be seen: {error}")
         triangles = np.concatenate([np.empty((0, 3, 3)), *(triangles for triangles, _ in parts)])
         colours = np.concatenate([np.empty((0, 3)), *(colours for _, colours in parts)])
         self._place(body.name, body.mass is None, triangles, colours, body.pose_in_world)

@@ -1,7 +1,10 @@
 """Meshes of COLLADA, STL and OBJ files as triangles in metres, kept converted in a cache."""
 
 import hashlib
+import io
+import logging
 import os
+import re
 import tempfile
 import zipfile
 from pathlib import Path
@@ -44,8 +47,11 @@ def _convert(file: MeshFile) -> Mesh:
     import trimesh
 
     path, submesh = file.path, file.submesh
+    # It logs the whole traceback of every picture that is not there.
+    logging.getLogger("trimesh").setLevel(logging.CRITICAL)
     try:
-        scene: Any = trimesh.load(str(path), force="scene")
+        by_groups = submesh and path.suffix.lower() == ".obj"
+        scene: Any = _obj_by_groups(path) if by_groups else trimesh.load(str(path), force="scene")
         parts = [(node, *scene.graph[node]) for node in scene.graph.nodes_geometry]
         chosen = [
             scene.geometry[name].copy().apply_transform(placed)
@@ -67,6 +73,16 @@ def _convert(file: MeshFile) -> Mesh:
         vertices = vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2.0
     vertices, first = _without_doubles(vertices)
     return Mesh(vertices, first[triangles].astype(np.int32), colours)
+
+
+def _obj_by_groups(path: Path) -> Any:
+    """An OBJ file whose parts are its objects and groups; trimesh makes them of its materials, or objects."""
+    import trimesh
+
+    text = re.sub(r"^g ", "o ", path.read_text(errors="replace"), flags=re.MULTILINE)
+    return trimesh.load(
+        io.StringIO(text), file_type="obj", force="scene", group_material=False, skip_materials=True
+    )
 
 
 def _without_doubles(vertices: np.ndarray):

@@ -1,6 +1,6 @@
 """Pictures of worlds for people."""
 
-from typing import Tuple
+from typing import Callable, Tuple
 
 import numpy as np
 
@@ -16,16 +16,18 @@ SIZE, MARGIN = 1200, 0.5
 CUT = 70
 
 
-def picture_from_above(world: World, below: float = 2.0, size: int = SIZE) -> np.ndarray:
+def picture_from_above(
+    world: World, below: float = 2.0, size: int = SIZE, warn: Callable[[str], None] = lambda text: None
+) -> np.ndarray:
     """The world seen from above without perspective, y upwards, without what is higher than ``below``.
 
-    Solids that reach higher show where they are cut, in dark grey. Returns (H, W, 3), uint8. Raises
-    WorldError if there is nothing but endless planes.
+    Solids that reach higher show where they are cut, in dark grey. ``warn`` is told what cannot be drawn.
+    Returns (H, W, 3), uint8. Raises WorldError if there is nothing but endless planes.
     """
     low, high = _extent(world)
     scale = (size - 1) / float((high - low).max())
     width, height = (int(round(float(length) * scale)) + 1 for length in high - low)
-    triangles, shades = _drawn(world, planes=True)
+    triangles, shades = _drawn(world, planes=True, warn=warn)
     caps = _caps(world, below)
     triangles = np.concatenate((triangles, caps))
     shades = np.concatenate((shades, np.full((len(caps), 3), CUT, dtype=np.uint8)))
@@ -58,10 +60,14 @@ def _caps(world: World, height: float) -> np.ndarray:
     return np.concatenate((flat, np.full((*flat.shape[:2], 1), height)), axis=2)
 
 
-def _drawn(world: World, planes: bool) -> Tuple[np.ndarray, np.ndarray]:
+def _drawn(
+    world: World, planes: bool, warn: Callable[[str], None] = lambda text: None
+) -> Tuple[np.ndarray, np.ndarray]:
     poses = {body.name: body.pose_in_world for body in world.bodies}
     drawing = Drawing()
     for body in world.bodies:
         if planes or not any(isinstance(part.shape, Plane) for part in visible_parts(body)):
             drawing.add(body)
+    for warning in drawing.warnings:
+        warn(warning)
     return drawing.triangles(poses.__getitem__)

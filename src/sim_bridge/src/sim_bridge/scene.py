@@ -68,6 +68,8 @@ class Scene:
         self._pushes: List[Push] = []
         self._joint_pushes: List[JointPush] = []
         self._physics_steps = 0
+        # In words, what cameras cannot see, known when they first look.
+        self.unseen: Tuple[str, ...] = ()
         # Made when it is first looked at: meshes may take seconds.
         self._drawing: Optional[Drawing] = None
         # When the present rate of physics began.
@@ -159,6 +161,7 @@ class Scene:
         if self._drawing is None:
             self._drawing = Drawing()
             self._draw([*self._bodies.values(), *(robot.body() for robot in self._robots.values())])
+            self.unseen = tuple(self._drawing.warnings)
         return self._drawing.triangles(self._engine.pose_of, but)
 
     def picture(self, robot: str, number: int = 0) -> Picture:

@@ -42,12 +42,18 @@ class SensorTopics:
         for number, (topics, period) in enumerate(self._cameras):
             if steps % period == 0 and topics.are_wanted():
                 topics.publish(self._scene.picture(self._name, number), stamp)
+                self._warn()
         for number, (topic, frame, period) in enumerate(self._imus):
             if steps % period == 0 and topic.get_num_connections():
                 reading = self._scene.inertia(self._name, number, period * self._scene.step_seconds)
                 message = _imu_msg(reading)
                 message.header.stamp, message.header.frame_id = stamp, frame
                 topic.publish(message)
+
+    def _warn(self) -> None:
+        """Says once what the cameras cannot see."""
+        for text in self._scene.unseen:
+            rospy.logwarn_once(text)
 
     def _steps_of(self, rate: float) -> int:
         return max(round(1.0 / self._scene.step_seconds / rate), 1)
