@@ -25,12 +25,15 @@ class SimulationSettings(NoiseSettings):
 
 @dataclass(frozen=True)
 class BridgeSettings:
-    """``noise``: a profile of sim_bridge.noise; single values of it may be set beside it.
+    """``strict``: a mesh or model that the world lacks is an error.
+
+    ``noise``: a profile of sim_bridge.noise; single values of it may be set beside it.
 
     ``wait_for``: names of nodes, separated by spaces; rates in hertz must divide the odometry's.
     """
 
     world: str = ""
+    strict: bool = False
     seed: int = 0
     speed: float = 1.0
     noise: str = "turtlebot"

@@ -40,7 +40,7 @@ class Bridge:
         self._clock_steps = _steps_between(settings.clock_rate, rate, "clock_rate")
         joint_steps = _steps_between(settings.joint_state_rate, rate, "joint_state_rate")
         robots = _robots_asked_for(robot)
-        world = load_world(settings.world, model_folders())
+        world = load_world(settings.world, model_folders(), settings.strict)
         for warning in world.warnings:
             rospy.logwarn("%s", warning)
         self._scene = Scene(world, simulation_settings, settings.seed)
