@@ -213,6 +213,7 @@ build_workspace() {
 catkin_build() {
     # The workspace stands alone: another one that is sourced here must not become part of it.
     unset CMAKE_PREFIX_PATH LD_LIBRARY_PATH PKG_CONFIG_PATH PYTHONHOME PYTHONPATH "${!ROS_@}"
+    export ROS_LANG_DISABLE=genlisp:geneus:gennodejs # nobody here speaks these
     if [[ -d $noetic ]]; then
         set +u
         # shellcheck source=/dev/null
