@@ -98,7 +98,8 @@ build_image() {
 }
 
 run_image() { # READ_ONLY ARGUMENT...: as `docker run --network none [--read-only] -v RUNS:/runs IMAGE ARGUMENT...`
-    ROOTFS=$rootfs RUNS=$work/runs READ_ONLY=$1 OWNER=$user \
+    echo "127.0.0.1 localhost" >"$work/hosts"
+    ROOTFS=$rootfs RUNS=$work/runs HOSTS=$work/hosts READ_ONLY=$1 OWNER=$user \
         unshare --mount --net --ipc --pid --fork --kill-child bash -s -- "${environment[@]}" -- "${@:2}" <<'SANDBOX'
 set -e
 variables=()
@@ -109,6 +110,8 @@ mount --bind "$ROOTFS" "$ROOTFS"
 mount --rbind /dev "$ROOTFS/dev"
 mount -t proc proc "$ROOTFS/proc"
 mount --bind "$RUNS" "$ROOTFS/runs"
+touch "$ROOTFS/etc/hosts"
+mount --bind "$HOSTS" "$ROOTFS/etc/hosts"
 [[ $READ_ONLY == no ]] || mount -o remount,bind,ro "$ROOTFS"
 exec chroot --userspec="$OWNER:$OWNER" "$ROOTFS" env -i "${variables[@]}" \
     /opt/home-service-robot/docker/entrypoint.sh "$@" </dev/null
