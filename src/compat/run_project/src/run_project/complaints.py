@@ -16,7 +16,7 @@ _COMPLAINT = re.compile(
 def complaints_in(folder: Path) -> List[str]:
     """The first lines that tell of errors, each once, with the log's name before it."""
     found: List[str] = []
-    for log in sorted(folder.glob("*.log")):
+    for log in sorted(set(folder.glob("*.log")) - {folder / "build.log"}):
         for line in log.read_text(errors="replace").splitlines():
             line = _COLOUR.sub("", line).strip()
             entry = f"{log.stem}: {line}"
