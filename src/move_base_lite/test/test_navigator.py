@@ -2,22 +2,26 @@
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
-import numpy as np
 import pytest
 import yaml
+from robot_in_picture import (
+    BODY_RADIUS,
+    PERIOD,
+    PRESET,
+    Robot,
+    assert_arrived,
+    drive_to_end,
+    room,
+    two_rooms,
+    with_block,
+)
 
-from move_base_lite import Navigator, Status, load_settings, settings_from_parameters
+from move_base_lite import Navigator, Status, settings_from_parameters
 from move_base_lite.recovery import RecoverySettings, SlowSettings
-from planar import OCCUPIED, OccupancyGrid, Pose2, Scan, Twist2, wrap
-from planar.ray_casting import cast_rays
+from planar import Pose2, Twist2
 
-PRESET = Path(__file__).parents[1] / "config" / "turtlebot.yaml"
-SETTINGS = load_settings(PRESET)
 LOCAL_PLANNERS = ("dwa_local_planner/DWAPlannerROS", "move_base_lite/MppiPlannerROS")
-BODY_RADIUS = 0.178
-PERIOD = 0.1
 
 
 @pytest.fixture(params=LOCAL_PLANNERS)
@@ -25,88 +29,6 @@ def settings(request):
     """The preset, with each local planner in turn."""
     parameters = yaml.safe_load(PRESET.read_text())
     return settings_from_parameters({**parameters, "base_local_planner": request.param})[0]
-
-
-def room(width, height):
-    """An empty room of so many metres, with walls round it."""
-    cells = np.zeros((round(height / 0.05), round(width / 0.05)), dtype=np.int8)
-    cells[:2], cells[-2:], cells[:, :2], cells[:, -2:] = (OCCUPIED,) * 4
-    return OccupancyGrid(cells, 0.05)
-
-
-def with_block(grid, x_min, y_min, x_max, y_max, value=OCCUPIED):
-    cells = grid.cells.copy()
-    rows, cols = (
-        slice(round(y_min / 0.05), round(y_max / 0.05)),
-        slice(round(x_min / 0.05), round(x_max / 0.05)),
-    )
-    cells[rows, cols] = value
-    return replace(grid, cells=cells)
-
-
-def two_rooms(door):
-    """Two rooms of 3 m by 4 m, side by side, with a door of that width in the wall between them."""
-    return with_block(
-        with_block(room(6.1, 4.0), 3.0, 0.0, 3.1, 4.0), 3.0, 2.0 - door / 2, 3.1, 2.0 + door / 2, 0
-    )
-
-
-class Robot:
-    """A unicycle of limited acceleration, with odometry off by a turn and a laser of 180 beams."""
-
-    ODOM_IN_MAP = Pose2(0.4, -0.3, 0.8)
-
-    def __init__(self, true_grid, pose):
-        self.grid, self.pose, self.twist, self.now, self.clearance = true_grid, pose, Twist2(), 0.0, math.inf
-        self.has_laser = True
-
-    def scan(self):
-        angles = 2.0 * math.pi / 180 * np.arange(180)
-        ranges = cast_rays(self.grid, self.pose, angles, 8.0)
-        return Scan(self.now, 0.0, 2.0 * math.pi / 180, np.where(ranges >= 8.0, np.inf, ranges), 0.1, 8.0)
-
-    def tick(self, navigator):
-        decision = navigator.tick(
-            self.now,
-            self.pose,
-            self.ODOM_IN_MAP.inverse() @ self.pose,
-            self.twist,
-            self.scan() if self.has_laser else None,
-        )
-        self.drive(decision.command or Twist2())
-        return decision
-
-    def drive(self, command):
-        self.now += PERIOD
-        v = self.twist.v + np.clip(command.v - self.twist.v, -0.2, 0.2)
-        omega = self.twist.omega + np.clip(command.omega - self.twist.omega, -0.5, 0.5)
-        self.twist = Twist2(float(v), float(omega))
-        angle = self.twist.omega * PERIOD
-        self.pose = self.pose @ Pose2(
-            v * PERIOD * math.cos(angle / 2), v * PERIOD * math.sin(angle / 2), angle
-        )
-        obstacles_xy = self.grid.points_of(np.argwhere(self.grid.cells == OCCUPIED))
-        gaps = np.maximum(np.abs(obstacles_xy - (self.pose.x, self.pose.y)) - self.grid.resolution / 2, 0.0)
-        self.clearance = min(self.clearance, float(np.hypot(*gaps.T).min()) - BODY_RADIUS)
-
-
-def drive_to_end(robot, navigator, seconds=90.0):
-    """All decisions until the goal has ended."""
-    decisions = []
-    while robot.now < seconds:
-        decisions.append(robot.tick(navigator))
-        if decisions[-1].status.is_final:
-            return decisions
-    raise AssertionError(f"not there after {seconds} s: {decisions[-1]}")
-
-
-def assert_arrived(robot, decisions, goal):
-    assert decisions[-1].status is Status.SUCCEEDED, decisions[-1].text
-    assert decisions[-1].text == "Goal reached."
-    assert decisions[-1].command == Twist2()
-    assert robot.pose.distance_to(goal) <= SETTINGS.controller.xy_goal_tolerance + 0.05
-    assert abs(wrap(robot.pose.yaw - goal.yaw)) <= SETTINGS.controller.yaw_goal_tolerance + 0.05
-    assert robot.clearance > 0.0
 
 
 @pytest.mark.parametrize("door", [0.6, 0.7, 0.9])

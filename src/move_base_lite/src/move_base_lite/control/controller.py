@@ -48,6 +48,12 @@ class Controller:
         self._arrived = False
         self._is_turning = False
 
+    def change(self, settings: ControllerSettings, period: float) -> None:
+        """Goes on along the same plan with other settings."""
+        if (settings, period) != (self._settings, self._period):
+            self._settings, self._period = settings, period
+            self._follower = follower_for(settings, period)
+
     def set_plan(self, path_xy: np.ndarray, goal_in_map: Pose2) -> None:
         """Follows another path (N, 2); a change of goal forgets that the old one had been reached."""
         self._tracking = Tracking(path_xy)

@@ -88,7 +88,7 @@ class PathIntegral:
             self.reset()
             raise ControlError("every way tried leads into an obstacle")
         weights = np.exp((costs[best] - costs) / settings.temperature)
-        mean = np.tensordot(weights / weights.sum(), samples, axes=1)
+        mean = _mean_of(samples, weights / weights.sum())
         cost, poses, speeds = _drive(mean, *problem)
         if not cost <= costs[best] + settings.temperature:
             mean = samples[best]
@@ -178,6 +178,16 @@ def _costs_of(samples, start, scene, limits, weights):
     for i in range(samples.shape[0]):
         costs[i] = _drive(samples[i], start, scene, limits, weights)[0]
     return costs
+
+
+@numba.njit(cache=True)
+def _mean_of(samples, weights):
+    """The weighted mean; a product of BLAS would take more than one core for a moment."""
+    mean = np.zeros(samples.shape[1:])
+    for i in range(samples.shape[0]):
+        if weights[i] > 0.0:
+            mean += weights[i] * samples[i]
+    return mean
 
 
 @numba.njit(cache=True)

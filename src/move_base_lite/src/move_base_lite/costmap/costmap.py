@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import Optional, Tuple
+from typing import Optional, Sequence, Tuple
 
 import numba
 import numpy as np
@@ -11,9 +11,11 @@ from move_base_lite.costmap.costs import FREE, UNKNOWN
 from move_base_lite.costmap.footprint import Footprint, collides, contacts, footprint_from
 from move_base_lite.costmap.inflation import Inflation, InflationSettings
 from move_base_lite.costmap.obstacle_layer import NOTHING, OVERWRITE, ObstacleLayer, ObstacleSettings
+from move_base_lite.costmap.polygon import Polygon
 from move_base_lite.costmap.sighting import Sighting
 from move_base_lite.costmap.static_layer import StaticSettings, static_costs, static_costs_in
 from move_base_lite.costmap.window import NO_CELLS, Bounds, Window, union
+from move_base_lite.costmap.zone_layer import ZoneLayer
 from planar import OccupancyGrid, Pose2
 from planar.settings import check
 
@@ -73,7 +75,9 @@ class LayeredCostmap:
         self._obstacles: Optional[ObstacleLayer] = None
         if settings.obstacles.enabled:
             self._obstacles = ObstacleLayer(settings.obstacles, rows, cols, settings.track_unknown_space)
+        self._zones = ZoneLayer()
         self._ground = np.full((rows, cols), UNKNOWN if settings.track_unknown_space else FREE, np.uint8)
+        self._map = grid
         self._grid = grid if settings.static.enabled else None
         if self._grid is not None:
             self._map_costs = static_costs(self._grid.cells, settings.static)
@@ -92,6 +96,8 @@ class LayeredCostmap:
     def update(self, base_in_frame: Pose2, map_in_frame: Pose2 = Pose2()) -> None:
         """Follows the robot and takes in what has been noted."""
         changed = self._follow(base_in_frame, map_in_frame)
+        is_rolling = self.settings.rolling_window
+        changed = union(changed, self._zones.update(self.window, map_in_frame, is_rolling))
         if self._obstacles is not None:
             changed = union(changed, self._obstacles.update(self.window))
             if self.settings.obstacles.footprint_clearing_enabled:
@@ -108,8 +114,25 @@ class LayeredCostmap:
             self.costs[rows, cols] = self._ground[rows, cols]
         else:
             _stack(self.costs, self._ground, self._obstacles.costs, bounds, method == OVERWRITE)
+        self._zones.apply(self.costs, bounds)
         self._inflation.apply(self.costs, self.window, bounds)
         self._changed = union(self._changed, bounds)
+
+    def keep_out(self, barred: Sequence[Polygon], disliked: Sequence[Polygon]) -> None:
+        """From the next update on, polygons of the map are obstacles, others are only dear to be in."""
+        self._zones.set(barred, disliked)
+
+    def changed_to(self, settings: CostmapSettings) -> "LayeredCostmap":
+        """This costmap with other settings; it keeps what was seen unless its cells are others."""
+        if settings == self.settings:
+            return self
+        changed = LayeredCostmap(settings, self._map)
+        changed._zones = self._zones.anew()
+        seen, kept = self._obstacles, changed._obstacles
+        if seen is not None and kept is not None and self.window.is_like(changed.window):
+            changed.window, kept.costs = self.window, seen.costs
+            changed.refresh(changed.window.everything)
+        return changed
 
     def take_changed(self) -> Bounds:
         """The block of cells that may have changed since this was asked last."""

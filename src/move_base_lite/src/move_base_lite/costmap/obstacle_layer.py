@@ -9,6 +9,7 @@ import numpy as np
 
 from move_base_lite.costmap.costs import FREE, LETHAL, UNKNOWN
 from move_base_lite.costmap.footprint import Footprint
+from move_base_lite.costmap.polygon import Polygon
 from move_base_lite.costmap.sighting import Sighting
 from move_base_lite.costmap.window import NO_CELLS, Bounds, Window, union
 from planar import Pose2
@@ -149,11 +150,7 @@ class ObstacleLayer:
 
     def clear_footprint(self, window: Window, base_in_frame: Pose2, footprint: Footprint) -> Bounds:
         """Where the robot stands there is no obstacle."""
-        bounds = window.bounds_around(base_in_frame.x, base_in_frame.y, footprint.circumscribed_radius)
-        corners_xy = base_in_frame.transform_points(footprint.corners_xy)
-        corners = (corners_xy - (window.origin_x, window.origin_y)) / window.resolution
-        _fill(self.costs, corners, bounds)
-        return bounds
+        return Polygon(base_in_frame.transform_points(footprint.corners_xy)).fill(self.costs, window, FREE)
 
     def clear_outside(self, bounds: Bounds) -> None:
         """Forgets everything but the cells of ``bounds``."""
@@ -206,22 +203,3 @@ def _clear_ray(costs, x0, y0, x1, y1):
         row = math.floor(y0 + (y1 - y0) * step / steps)
         if 0 <= row < rows and 0 <= col < cols:
             costs[row, col] = FREE
-
-
-@numba.njit(cache=True)
-def _fill(costs, corners, bounds):
-    """Frees the cells whose centre lies in the polygon (even-odd rule); ``corners``: (N, 2) in cells."""
-    row_min, row_max, col_min, col_max = bounds
-    count = corners.shape[0]
-    for row in range(row_min, row_max):
-        y = row + 0.5
-        for col in range(col_min, col_max):
-            x = col + 0.5
-            inside = False
-            for i in range(count):
-                x0, y0 = corners[i - 1]
-                x1, y1 = corners[i]
-                if (y0 > y) != (y1 > y) and x < x0 + (y - y0) / (y1 - y0) * (x1 - x0):
-                    inside = not inside
-            if inside:
-                costs[row, col] = FREE

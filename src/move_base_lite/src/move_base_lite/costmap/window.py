@@ -52,6 +52,10 @@ class Window:
         row, col = self.cell_of(x, y)
         return 0 <= row < self.rows and 0 <= col < self.cols
 
+    def is_like(self, other: "Window") -> bool:
+        """Whether both have as many cells of the same size, wherever they lie."""
+        return replace(self, origin_x=other.origin_x, origin_y=other.origin_y) == other
+
     def centred_on(self, x: float, y: float) -> "Window":
         """The same window moved by whole cells so that its middle is at the point."""
         row, col = self.cell_of(x - 0.5 * self.cols * self.resolution, y - 0.5 * self.rows * self.resolution)

@@ -1,0 +1,53 @@
+"""Polygons on the floor."""
+
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+
+from move_base_lite.costmap.window import Bounds, Window
+from planar import Pose2
+
+
+@dataclass(frozen=True, eq=False)
+class Polygon:
+    """``corners_xy``: (N, 2), metres, in any order of turning. What is inside: the even-odd rule."""
+
+    corners_xy: np.ndarray
+
+    def holds(self, x: float, y: float) -> bool:
+        """Whether a point lies inside."""
+        return bool(_holds(self.corners_xy, x, y))
+
+    def seen_from(self, map_in_frame: Pose2) -> "Polygon":
+        """This polygon of the map in another frame."""
+        return Polygon(map_in_frame.transform_points(self.corners_xy))
+
+    def fill(self, costs: np.ndarray, window: Window, cost: int) -> Bounds:
+        """Gives a cost to the cells (rows, cols) whose centre lies inside; returns the block they lie in."""
+        corners = (self.corners_xy - (window.origin_x, window.origin_y)) / window.resolution
+        col_min, row_min = map(int, np.floor(corners.min(axis=0)))
+        col_max, row_max = map(int, np.ceil(corners.max(axis=0)))
+        bounds = window.cut(Bounds(row_min, row_max, col_min, col_max))
+        _fill(costs, corners, bounds, cost)
+        return bounds
+
+
+@numba.njit(cache=True)
+def _fill(costs, corners, bounds, cost):
+    row_min, row_max, col_min, col_max = bounds
+    for row in range(row_min, row_max):
+        for col in range(col_min, col_max):
+            if _holds(corners, col + 0.5, row + 0.5):
+                costs[row, col] = cost
+
+
+@numba.njit(cache=True)
+def _holds(corners, x, y):
+    inside = False
+    for i in range(corners.shape[0]):
+        x0, y0 = corners[i - 1]
+        x1, y1 = corners[i]
+        if (y0 > y) != (y1 > y) and x < x0 + (y - y0) / (y1 - y0) * (x1 - x0):
+            inside = not inside
+    return inside

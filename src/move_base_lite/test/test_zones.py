@@ -1,0 +1,110 @@
+"""Zones: the robot stays out, comes out again, and slows down."""
+
+import math
+
+import pytest
+from robot_in_picture import SETTINGS, Robot, assert_arrived, drive_to_end, room
+
+from move_base_lite import Navigator, Status
+from move_base_lite.zones import Zone, Zones, load_zones
+from planar import Pose2, SettingsError
+
+MIDDLE = Zone("middle", "keep_out", ((2.4, 0.0), (3.6, 0.0), (3.6, 2.6), (2.4, 2.6)))
+SLOW = Zone("slow", "speed", ((2.0, 0.0), (4.0, 0.0), (4.0, 4.0), (2.0, 4.0)), max_speed=0.2)
+
+
+def drive(zones, start, goal):
+    grid = room(6.0, 4.0)
+    robot, navigator = Robot(grid, start), Navigator(SETTINGS, grid, zones)
+    navigator.set_goal(goal)
+    poses, speeds = [], []
+    while robot.now < 90.0:
+        decision = robot.tick(navigator)
+        poses.append(robot.pose)
+        speeds.append(robot.twist.v)
+        if decision.status.is_final:
+            return robot, decision, poses, speeds
+    raise AssertionError("not there after 90 s")
+
+
+def test_the_whole_robot_stays_out_of_a_keep_out_zone():
+    goal = Pose2(5.4, 1.5)
+    robot, decision, poses, _ = drive(Zones([MIDDLE]), Pose2(0.6, 1.5), goal)
+    assert_arrived(robot, [decision], goal)
+    within = [pose for pose in poses if 2.4 - 0.178 < pose.x < 3.6 + 0.178]
+    assert min(pose.y for pose in within if 2.4 < pose.x < 3.6) > 2.6 + 0.178
+
+
+def test_a_zone_that_is_switched_off_does_not_count():
+    zones, goal = Zones([MIDDLE]), Pose2(5.4, 1.5)
+    zones.enable("middle", False)
+    robot, decision, poses, _ = drive(zones, Pose2(0.6, 1.5), goal)
+    assert_arrived(robot, [decision], goal)
+    assert max(pose.y for pose in poses) < 2.0
+
+
+def test_a_robot_inside_a_keep_out_zone_gets_out_of_it():
+    goal = Pose2(5.4, 1.5)
+    robot, decision, poses, _ = drive(Zones([MIDDLE]), Pose2(3.2, 1.0, math.pi), goal)
+    assert_arrived(robot, [decision], goal)
+    is_inside = [MIDDLE.holds(pose.x, pose.y) for pose in poses]
+    assert is_inside == sorted(is_inside, reverse=True), "once it is out, it stays out"
+    assert not is_inside[-1]
+
+
+def test_a_zone_switched_on_around_a_moving_robot_is_left():
+    zones, grid, goal = Zones([MIDDLE]), room(6.0, 4.0), Pose2(5.4, 1.5)
+    zones.enable("middle", False)
+    robot, navigator = Robot(grid, Pose2(0.6, 1.5)), Navigator(SETTINGS, grid, zones)
+    navigator.set_goal(goal)
+    while robot.pose.x < 2.6:
+        robot.tick(navigator)
+    zones.enable("middle", True)
+    assert_arrived(robot, drive_to_end(robot, navigator), goal)
+
+
+def test_a_goal_in_a_keep_out_zone_is_given_up_at_once_by_its_name():
+    _, decision, _, _ = drive(Zones([MIDDLE]), Pose2(0.6, 1.5), Pose2(3.0, 1.0))
+    assert decision.status is Status.ABORTED
+    assert decision.text.endswith(
+        "[code=GOAL_BLOCKED: the goal at (3.00, 1.00) is in the keep-out zone middle]"
+    )
+
+
+def test_the_robot_is_slow_in_a_speed_zone():
+    goal = Pose2(5.4, 1.5)
+    robot, decision, poses, speeds = drive(Zones([SLOW]), Pose2(0.6, 1.5), goal)
+    assert_arrived(robot, [decision], goal)
+    # It enters at full speed and brakes with 1.5 m/s^2.
+    assert max(v for pose, v in zip(poses, speeds) if 2.2 < pose.x < 4.0) <= 0.2 + 1e-6
+    assert max(v for pose, v in zip(poses, speeds) if pose.x < 2.0) > 0.4
+
+
+@pytest.mark.parametrize(
+    "text, reason",
+    [
+        ("", "expected zones by name"),
+        ("a: [1", "not valid YAML"),
+        ("a: {kind: keep_out}", "zone a: expected a table with kind and corners"),
+        ("a: {kind: lava, corners: [[0, 0], [1, 0], [1, 1]]}", "zone a: kind must be keep_out or speed"),
+        ("a: {kind: keep_out, corners: [[0, 0], [1, 0]]}", "zone a: corners must be at least 3 points"),
+        ("a: {kind: keep_out, corners: [[0, 0], [1, 0], [1, .nan]]}", "zone a: corners must be a list"),
+        ("a: {kind: speed, corners: [[0, 0], [1, 0], [1, 1]]}", "zone a: max_speed must be given for a"),
+        (
+            "a: {kind: speed, max_speed: -1, corners: [[0, 0], [1, 0], [1, 1]]}",
+            "zone a: max_speed must be positive",
+        ),
+        ("a: {kind: keep_out, corner: 1, corners: [[0, 0], [1, 0], [1, 1]]}", "zone a: unknown key corner"),
+    ],
+)
+def test_a_bad_file_of_zones_is_refused_by_file_zone_and_key(tmp_path, text, reason):
+    path = tmp_path / "zones.yaml"
+    path.write_text(text)
+    with pytest.raises(SettingsError, match=reason) as error:
+        load_zones(path)
+    assert str(error.value).startswith(f"{path}: ")
+
+
+def test_a_missing_file_of_zones_is_named():
+    with pytest.raises(SettingsError, match="nowhere.yaml: no such file of zones"):
+        load_zones("nowhere.yaml")
