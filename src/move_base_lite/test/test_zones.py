@@ -80,31 +80,45 @@ def test_the_robot_is_slow_in_a_speed_zone():
     assert max(v for pose, v in zip(poses, speeds) if pose.x < 2.0) > 0.4
 
 
+CORNERS = "corners: [[0, 0], [1, 0], [1, 1]]"
+
+
 @pytest.mark.parametrize(
     "text, reason",
     [
-        ("", "expected zones by name"),
+        ("", "expected a table"),
         ("a: [1", "not valid YAML"),
-        ("a: {kind: keep_out}", "zone a: expected a table with kind and corners"),
-        ("a: {kind: lava, corners: [[0, 0], [1, 0], [1, 1]]}", "zone a: kind must be keep_out or speed"),
-        ("a: {kind: keep_out, corners: [[0, 0], [1, 0]]}", "zone a: corners must be at least 3 points"),
-        ("a: {kind: keep_out, corners: [[0, 0], [1, 0], [1, .nan]]}", "zone a: corners must be a list"),
-        ("a: {kind: speed, corners: [[0, 0], [1, 0], [1, 1]]}", "zone a: max_speed must be given for a"),
-        (
-            "a: {kind: speed, max_speed: -1, corners: [[0, 0], [1, 0], [1, 1]]}",
-            "zone a: max_speed must be positive",
-        ),
-        ("a: {kind: keep_out, corner: 1, corners: [[0, 0], [1, 0], [1, 1]]}", "zone a: unknown key corner"),
+        ("a: {kind: keep_out}", "a.corners must be at least 3 points"),
+        ("a: {kind: lava, corners: []}", "a.kind must be one of keep_out, speed, got 'lava'"),
+        ("a: {kind: keep_out, corners: [[0, 0], [1, 0]]}", "a.corners must be at least 3 points"),
+        ("a: {kind: keep_out, corners: [[0, 0], [1, 0], [1, .nan]]}", "a.corners must be at least 3 points"),
+        (f"a: {{kind: speed, {CORNERS}}}", "a.max_speed is missing"),
+        (f"a: {{kind: speed, max_speed: -1, {CORNERS}}}", "a.max_speed must be positive, got -1"),
+        (f"a: {{kind: keep_out, max_speed: 1, {CORNERS}}}", "a.max_speed is not known"),
+        (f"a: {{kind: keep_out, enabled: 3, {CORNERS}}}", "a.enabled must be true or false"),
     ],
 )
-def test_a_bad_file_of_zones_is_refused_by_file_zone_and_key(tmp_path, text, reason):
+def test_a_bad_file_of_zones_is_refused_by_file_line_and_key(tmp_path, text, reason):
     path = tmp_path / "zones.yaml"
     path.write_text(text)
     with pytest.raises(SettingsError, match=reason) as error:
         load_zones(path)
-    assert str(error.value).startswith(f"{path}: ")
+    assert str(error.value).startswith(f"{path}:1: ")
+
+
+def test_a_file_of_zones_is_read(tmp_path):
+    path = tmp_path / "zones.yaml"
+    path.write_text(
+        f"a: {{kind: speed, max_speed: 0.3, {CORNERS}, enabled: false}}\nb: {{kind: keep_out, {CORNERS}}}"
+    )
+    zones = load_zones(path)
+    assert [(zone.name, zone.kind, zone.max_speed) for zone in zones.all] == [
+        ("a", "speed", 0.3),
+        ("b", "keep_out", math.inf),
+    ]
+    assert [zones.is_enabled(name) for name in "ab"] == [False, True]
 
 
 def test_a_missing_file_of_zones_is_named():
-    with pytest.raises(SettingsError, match="nowhere.yaml: no such file of zones"):
+    with pytest.raises(SettingsError, match="nowhere.yaml: no such file"):
         load_zones("nowhere.yaml")

@@ -45,7 +45,7 @@ class Navigator:
     def __init__(
         self, settings: NavigatorSettings, grid: Optional[OccupancyGrid] = None, zones: Zones = Zones()
     ):
-        self._settings = settings
+        self.settings = settings
         self._planner = GlobalPlanner(settings.planner)
         self._grid = grid
         self.zones = zones
@@ -59,11 +59,11 @@ class Navigator:
     def set_map(self, grid: Optional[OccupancyGrid]) -> None:
         """Goes on with another map, from which obstacles have to be seen anew."""
         self._grid = grid
-        self._costmaps = Costmaps(self._settings, grid, self.zones)
+        self._costmaps = Costmaps(self.settings, grid, self.zones)
 
     def change(self, settings: NavigatorSettings) -> None:
         """Goes on with other settings, goal and plan included."""
-        self._settings = settings
+        self.settings = settings
         self._planner = GlobalPlanner(settings.planner)
         self._controller.change(settings.controller, self._period)
         self._costmaps.change(settings)
@@ -80,7 +80,7 @@ class Navigator:
 
     @property
     def _period(self) -> float:
-        return 1.0 / self._settings.move_base.controller_frequency
+        return 1.0 / self.settings.move_base.controller_frequency
 
     def set_goal(self, goal_in_map: Pose2) -> None:
         """Drives there from the next tick on; a goal under way is left without stopping."""
@@ -96,7 +96,7 @@ class Navigator:
         self._new_goal = None
         self._pursuit: Optional[Pursuit] = None
         self._is_cancelled = False
-        self._controller = Controller(self._settings.controller, self._period)
+        self._controller = Controller(self.settings.controller, self._period)
 
     @property
     def is_active(self) -> bool:
@@ -118,8 +118,8 @@ class Navigator:
         ``sightings``: the same of any other sensors.
         """
         if scan is not None:
-            sightings = [*sightings, sighting_of_scan(self._settings.scan_topic, scan)]
-        if self.is_active or not self._settings.move_base.shutdown_costmaps:
+            sightings = [*sightings, sighting_of_scan(self.settings.scan_topic, scan)]
+        if self.is_active or not self.settings.move_base.shutdown_costmaps:
             self._costmaps.look(now, base_in_map, base_in_odom, sightings)
         if self._new_goal is not None and not self._is_cancelled:
             self._pursuit = Pursuit.of(self._new_goal, now, base_in_map)
@@ -133,11 +133,11 @@ class Navigator:
         if self._pursuit is None:
             return Decision(Status.IDLE)
         pursuit = self._pursuit
-        pursuit.advance(now, base_in_map, self._settings.move_base.oscillation_distance)
+        pursuit.advance(now, base_in_map, self.settings.move_base.oscillation_distance)
         decision = self._pursue(pursuit, now, base_in_map, base_in_odom, twist)
         if decision.status.is_final:
             return decision
-        usual_speed = self._settings.controller.max_vel_x
+        usual_speed = self.settings.controller.max_vel_x
         progress = pursuit.progress(now, self._controller.distance_left, usual_speed)
         return replace(decision, progress=progress)
 
@@ -169,14 +169,14 @@ class Navigator:
 
     def clear_around(self, base_in_map: Pose2) -> None:
         """Forgets what obstacles the map's costmap shows where the robot stands."""
-        radius = self._settings.move_base.clearing_radius
+        radius = self.settings.move_base.clearing_radius
         self.global_costmap.clear_around(
             base_in_map, 2.0 * (radius or self.global_costmap.footprint.circumscribed_radius)
         )
 
     def _wait_for_sensor(self, pursuit: Pursuit, now: float, topic: str) -> Decision:
         since = max(self._costmaps.last_seen(topic), pursuit.last_progress)
-        if now - since > self._settings.move_base.sensor_patience:
+        if now - since > self.settings.move_base.sensor_patience:
             return self._give_up(
                 now, STALE_SENSOR_TEXT, SensorStale(f"nothing on {topic} for {now - since:.1f} s")
             )
@@ -184,7 +184,7 @@ class Navigator:
 
     def _plan(self, pursuit: Pursuit, now: float, base_in_map: Pose2, is_under_way: bool = False) -> bool:
         """Makes a plan and hands it to the controller; False if there is none, the reason is noted."""
-        frequency = self._settings.move_base.planner_frequency
+        frequency = self.settings.move_base.planner_frequency
         pursuit.next_plan = now + (1.0 / frequency if frequency > 0.0 else math.inf)
         self._planned_at = now
         try:
@@ -212,7 +212,7 @@ class Navigator:
         return offered < WORTH_CHANGING * present
 
     def _be_patient_with_planning(self, pursuit: Pursuit, now: float) -> Decision:
-        settings = self._settings.move_base
+        settings = self.settings.move_base
         pursuit.failed_plans += 1
         is_out_of_time = now - pursuit.planning_since > settings.planner_patience
         is_out_of_retries = 0 <= settings.max_planning_retries < pursuit.failed_plans
@@ -223,7 +223,7 @@ class Navigator:
     def _drive(
         self, pursuit: Pursuit, now: float, base_in_map: Pose2, base_in_odom: Pose2, twist: Twist2
     ) -> Decision:
-        settings = self._settings.move_base
+        settings = self.settings.move_base
         if self._controller.is_goal_reached(base_in_map, twist):
             outcome = self._outcome(now, SUCCEEDED_OUTCOME, "SUCCESS", SUCCESS_TEXT)
             return self._end(Status.SUCCEEDED, SUCCESS_TEXT, outcome)
@@ -268,7 +268,7 @@ class Navigator:
         pursuit.reason = error
         if pursuit.control_fails_since is None:
             pursuit.control_fails_since = now
-        if now - pursuit.control_fails_since > self._settings.move_base.controller_patience:
+        if now - pursuit.control_fails_since > self.settings.move_base.controller_patience:
             pursuit.clear_up(Trigger.CONTROLLING)
         else:
             pursuit.plan_anew(now)
@@ -276,10 +276,10 @@ class Navigator:
     def _recover(
         self, pursuit: Pursuit, now: float, base_in_map: Pose2, base_in_odom: Pose2, twist: Twist2
     ) -> Decision:
-        recoveries = self._settings.recoveries
+        recoveries = self.settings.recoveries
         start = None
         if pursuit.recovery is None:
-            is_enabled = self._settings.move_base.recovery_behavior_enabled
+            is_enabled = self.settings.move_base.recovery_behavior_enabled
             if not is_enabled or pursuit.recovery_index >= len(recoveries):
                 reason = pursuit.reason or NavigationError("no reason is known")
                 return self._give_up(now, pursuit.trigger.value, reason)

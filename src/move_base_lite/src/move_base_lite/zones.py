@@ -2,15 +2,13 @@
 
 import math
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Any, List, Sequence, Tuple
+from typing import List, Sequence, Tuple
 
 import numpy as np
-import yaml
 
 from move_base_lite.costmap import Polygon
-from planar import Pose2, SettingsError
-from planar.settings import check, settings_from
+from planar import Pose2
+from planar.yaml_table import Table, read_table
 
 KEEP_OUT, SPEED = "keep_out", "speed"
 
@@ -28,13 +26,6 @@ class Zone:
     corners: Tuple[Tuple[float, float], ...] = field(repr=False)
     max_speed: float = math.inf
     enabled: bool = True
-
-    def __post_init__(self):
-        check(self.kind in (KEEP_OUT, SPEED), "kind", f"{KEEP_OUT} or {SPEED}", self.kind)
-        check(len(self.corners) >= 3, "corners", "at least 3 points [x, y]", self.corners)
-        check(self.max_speed > 0.0, "max_speed", "positive", self.max_speed)
-        is_limited = math.isfinite(self.max_speed)
-        check(is_limited == (self.kind == SPEED), "max_speed", "given for a speed zone only", self.max_speed)
 
     @property
     def polygon(self) -> Polygon:
@@ -79,34 +70,30 @@ class Zones:
 
 
 def load_zones(path) -> Zones:
-    """Zones of a YAML file: for each name its kind, its corners and, if it is a speed zone, its max_speed.
+    """Zones of a YAML file ``name: {kind: keep_out, corners: [[x, y], ...]}``; a zone that is not to count
+    from the start has ``enabled: false``, and one of kind ``speed`` its ``max_speed``, m/s.
 
-    Raises SettingsError naming file, zone and key.
+    Raises SettingsError naming file, line and key.
     """
-    try:
-        content = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise SettingsError(f"{path}: no such file of zones") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise SettingsError(f"{path}: cannot be read ({error})") from None
-    except yaml.YAMLError as error:
-        raise SettingsError(f"{path}: not valid YAML ({' '.join(str(error).split())})") from None
-    if not isinstance(content, dict):
-        raise SettingsError(f"{path}: expected zones by name, e.g. stairs: {{kind: keep_out, corners: ...}}")
-    return Zones([_zone(f"{path}: zone {name}: ", str(name), values) for name, values in content.items()])
+    table = read_table(path)
+    return Zones([_zone(name, table.table(name)) for name in table])
 
 
-def _zone(where: str, name: str, values: Any) -> Zone:
-    if not isinstance(values, dict) or not {"kind", "corners"} <= set(values):
-        raise SettingsError(f"{where}expected a table with kind and corners")
+def _zone(name: str, table: Table) -> Zone:
+    kind = table.choice("kind", (KEEP_OUT, SPEED))
+    table.allow_only("kind", "corners", "enabled", *(["max_speed"] if kind == SPEED else []))
+    max_speed = table.number("max_speed") if kind == SPEED else math.inf
+    if max_speed <= 0.0:
+        raise table.complaint("max_speed", f"must be positive, got {max_speed:g}")
+    return Zone(name, kind, _corners(table), max_speed, table.flag("enabled", True))
+
+
+def _corners(table: Table) -> Tuple[Tuple[float, float], ...]:
+    value = table.value("corners")
     try:
-        corners = tuple((float(x), float(y)) for x, y in values["corners"])
-        is_finite = all(math.isfinite(value) for corner in corners for value in corner)
+        corners = tuple((float(x), float(y)) for x, y in value)
     except (TypeError, ValueError):
-        is_finite = False
-    if not is_finite:
-        raise SettingsError(f"{where}corners must be a list of points [x, y], got {values['corners']!r}")
-    zone, unknown = settings_from(Zone, {**values, "name": name, "corners": corners}, where=where)
-    if unknown:
-        raise SettingsError(f"{where}unknown key {unknown[0]}")
-    return zone
+        corners = ()
+    if len(corners) < 3 or not np.isfinite(corners).all():
+        raise table.complaint("corners", f"must be at least 3 points [x, y], got {value!r}")
+    return corners

@@ -83,6 +83,31 @@ def parameter(
     return dataclasses.field(default=default, metadata=metadata)
 
 
+@dataclasses.dataclass(frozen=True)
+class Tunable:
+    """A value that may be changed while a node runs; its type is that of the ``default``."""
+
+    name: str
+    default: Any
+    meaning: str
+    low: float = -math.inf
+    high: float = math.inf
+    choices: Tuple[str, ...] = ()
+
+
+def tunables_of(kind: type) -> Tuple[Tunable, ...]:
+    """The fields of a settings dataclass that ``parameter`` says are dynamic."""
+    dynamic = [field for field in dataclasses.fields(kind) if field.metadata["dynamic"] is not None]
+    return tuple(_tunable(field.default, **field.metadata) for field in dynamic)
+
+
+def _tunable(
+    default: Any, name: str, meaning: str, low: float, choices: Sequence[str], dynamic, **_
+) -> Tunable:
+    high = math.inf if isinstance(dynamic, bool) else dynamic
+    return Tunable(name, default, meaning, low, high, tuple(choices))
+
+
 def check_parameters(settings: Any) -> None:
     """Raises SettingsError for the first field made by ``parameter`` that is out of its bounds."""
     for field in dataclasses.fields(settings):

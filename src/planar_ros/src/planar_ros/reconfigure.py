@@ -1,27 +1,36 @@
-"""dynamic_reconfigure without compiled .cfg files: its parameters are the fields of a settings dataclass."""
+"""dynamic_reconfigure without compiled .cfg files: its parameters are tunables (planar.settings)."""
 
 import dataclasses
 from types import SimpleNamespace
-from typing import Any, Callable, Dict
+from typing import Any, Callable, Dict, Mapping, Sequence
 
 from dynamic_reconfigure.server import Server
 
+from planar.settings import Tunable, tunables_of
+
 KINDS = {bool: "bool", int: "int", float: "double", str: "str"}
 RESTORE = "restore_defaults"
+LARGEST_INT = 2**31 - 1
 
 
-class Reconfiguration:
-    """Serves ``~set_parameters`` for the dynamic fields (planar.settings.parameter) of ``settings``.
+class Tuning:
+    """Serves ``set_parameters`` below ``namespace`` (default: the node's own) for some tunables.
 
-    ``change(values)``, values by official name, is asked at each call and returns the values then in force.
-    ``restore_defaults`` brings back those that the node was started with.
+    ``values``: those in force at the start, by name, which ``restore_defaults`` brings back.
+    ``change(values)`` is asked at each call and returns the values then in force.
     """
 
-    def __init__(self, settings: Any, change: Callable[[Dict[str, Any]], Dict[str, Any]]):
+    def __init__(
+        self,
+        tunables: Sequence[Tunable],
+        values: Mapping[str, Any],
+        change: Callable[[Dict[str, Any]], Dict[str, Any]],
+        namespace: str = "",
+    ):
         self._change = change
-        self._started_with = dynamic_values(settings)
+        self._started_with = dict(values)
         self._is_up = False
-        self._server = Server(_description(settings), self._on_call)
+        self._server = Server(_description(tunables, values), self._on_call, namespace)
         self._is_up = True
 
     def _on_call(self, config, level):
@@ -34,6 +43,13 @@ class Reconfiguration:
         return config
 
 
+class Reconfiguration(Tuning):
+    """Serves ``~set_parameters`` for the dynamic fields (planar.settings.parameter) of ``settings``."""
+
+    def __init__(self, settings: Any, change: Callable[[Dict[str, Any]], Dict[str, Any]]):
+        super().__init__(tunables_of(type(settings)), dynamic_values(settings), change)
+
+
 def dynamic_values(settings: Any) -> Dict[str, Any]:
     """The values of the dynamic fields, by official name."""
     return {
@@ -43,10 +59,9 @@ def dynamic_values(settings: Any) -> Dict[str, Any]:
     }
 
 
-def _description(settings: Any) -> SimpleNamespace:
+def _description(tunables: Sequence[Tunable], values: Mapping[str, Any]) -> SimpleNamespace:
     """What dynamic_reconfigure's generator would have made of a .cfg file."""
-    fields = [field for field in dataclasses.fields(settings) if field.metadata["dynamic"] is not None]
-    parameters = [_parameter(field, getattr(settings, field.name)) for field in fields]
+    parameters = [_parameter(tunable, values[tunable.name]) for tunable in tunables]
     parameters.append(_entry(RESTORE, False, "bring back the values of the start", False, True))
     group = {"name": "Default", "type": "", "state": True, "cstate": "true", "id": 0, "parent": 0}
     tables = {
@@ -56,22 +71,27 @@ def _description(settings: Any) -> SimpleNamespace:
     return SimpleNamespace(config_description={**group, "groups": [], "parameters": parameters}, **tables)
 
 
-def _parameter(field, value) -> Dict[str, Any]:
-    bounds, kind = field.metadata, type(field.default)
+def _parameter(tunable: Tunable, value) -> Dict[str, Any]:
+    kind = type(tunable.default)
     low, high = "", ""
     if kind is bool:
         low, high = False, True
     elif kind is not str:
         # What the node was started with is offered too, however large.
-        low, high = kind(bounds["low"]), kind(max(bounds["dynamic"], value))
+        low, high = _bound(kind, tunable.low), _bound(kind, max(tunable.high, value))
     edit_method = ""
-    if bounds["choices"]:
+    if tunable.choices:
         options = [
             {"name": choice.replace("-", "_"), "type": "str", "value": choice, "description": choice}
-            for choice in bounds["choices"]
+            for choice in tunable.choices
         ]
-        edit_method = repr({"enum": options, "enum_description": bounds["meaning"]})
-    return _entry(bounds["name"], value, bounds["meaning"], low, high, edit_method)
+        edit_method = repr({"enum": options, "enum_description": tunable.meaning})
+    return _entry(tunable.name, value, tunable.meaning, low, high, edit_method)
+
+
+def _bound(kind, value: float):
+    """A bound as a message can hold it."""
+    return kind(min(max(value, -LARGEST_INT), LARGEST_INT) if kind is int else value)
 
 
 def _entry(name, value, meaning, low, high, edit_method="") -> Dict[str, Any]:

@@ -6,8 +6,21 @@ from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Path
 from std_msgs.msg import Header
 
+from move_base_lite.planning import headings_along
 from planar import Pose2
 from planar_ros.messages import pose2_to_msg
+
+
+def plan_msg(
+    path_xy: np.ndarray,
+    stamp: rospy.Time,
+    frame: str,
+    orientation_mode: int,
+    start_yaw: float,
+    goal_yaw: float,
+) -> Path:
+    """A global plan (N, 2), headed as the mode says (see headings_along)."""
+    return path_msg(path_xy, stamp, frame, headings_along(path_xy, orientation_mode, start_yaw, goal_yaw))
 
 
 def path_msg(path_xy: np.ndarray, stamp: rospy.Time, frame: str, yaws: np.ndarray) -> Path:

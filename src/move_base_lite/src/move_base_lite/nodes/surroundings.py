@@ -40,10 +40,7 @@ class Surroundings:
         self._global_frame = frame_name(settings.global_costmap.global_frame)
         self._local_frame = frame_name(settings.local_costmap.global_frame)
         self._base_frame = frame_name(settings.local_costmap.robot_base_frame)
-        self._tolerances = (
-            settings.global_costmap.transform_tolerance,
-            settings.local_costmap.transform_tolerance,
-        )
+        self.change(settings)
         self._twist = Twist2()
         self._lock = threading.Lock()
         rospy.Subscriber(odom_topic, Odometry, self._on_odometry, queue_size=1, tcp_nodelay=True)
@@ -51,6 +48,11 @@ class Surroundings:
             _Sensor(source, transforms, self._local_frame, self._base_frame)
             for source in _sources_of(settings).values()
         ]
+
+    def change(self, settings: NavigatorSettings) -> None:
+        """Transforms may be as old as other settings say."""
+        costmaps = (settings.global_costmap, settings.local_costmap)
+        self._tolerances = tuple(costmap.transform_tolerance for costmap in costmaps)
 
     @property
     def silent_topics(self) -> List[str]:

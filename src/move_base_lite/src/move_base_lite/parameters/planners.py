@@ -49,6 +49,7 @@ _TRAJECTORY_NAMES = {
     "heading_lookahead": "forward_point_distance",
     "dwa": "use_dwa",
 }
+OLD_NAMES = (*_DWA_DEPRECATED.items(), *_TRAJECTORY_NAMES.items())
 _TRAJECTORY_DEFAULTS = {
     "max_vel_x": 0.5,
     "min_vel_x": 0.1,

@@ -1,0 +1,74 @@
+"""move_base's servers of dynamic_reconfigure: of itself, its costmaps, their layers, its planners."""
+
+import threading
+from typing import Any, Callable, Dict
+
+import rospy
+import yaml
+from geometry_msgs.msg import Polygon
+
+from move_base_lite.config import NavigatorSettings
+from move_base_lite.parameters import settings_from_parameters
+from move_base_lite.parameters.dynamic import changed, servers
+from move_base_lite.parameters.planners import GLOBAL_PLANNERS, LOCAL_PLANNERS
+from planar import SettingsError
+from planar_ros.reconfigure import Tuning
+
+PLANNERS = {"base_global_planner": GLOBAL_PLANNERS, "base_local_planner": LOCAL_PLANNERS}
+
+
+class ParameterTree:
+    """The parameters in force; ``apply(settings)`` is called when they have changed."""
+
+    def __init__(self, parameters: Dict[str, Any], apply: Callable[[NavigatorSettings], None]):
+        self._parameters = parameters
+        self._apply = apply
+        self._lock = threading.RLock()
+        self._servers: Dict[str, Tuning] = {}
+        for costmap in ("global_costmap", "local_costmap"):
+            self._hear_footprint(costmap)
+
+    def serve(self) -> None:
+        """Starts those servers that are not there yet."""
+        for namespace, tunables in servers(self._parameters).items():
+            if namespace not in self._servers:
+                values = {tunable.name: value for tunable, value in tunables}
+                self._servers[namespace] = Tuning(
+                    [tunable for tunable, _ in tunables],
+                    values,
+                    lambda asked, namespace=namespace: self._change(namespace, asked),
+                    namespace,
+                )
+
+    def _change(self, namespace: str, asked: Dict[str, Any]) -> Dict[str, Any]:
+        """The values in force after somebody has asked for others: all of them, or none if one is refused."""
+        where = rospy.get_name() + "/"
+        with self._lock:
+            try:
+                for key, known in PLANNERS.items():
+                    if asked.get(key, known[0]) not in known:
+                        raise SettingsError(
+                            f"{where}{key} must be one of {', '.join(known)}, got {asked[key]}"
+                        )
+                parameters = changed(self._parameters, namespace, asked)
+                settings, _ = settings_from_parameters(parameters, where)
+            except SettingsError as error:
+                rospy.logerr("%s; nothing is changed", error)
+                return {tunable.name: value for tunable, value in servers(self._parameters)[namespace]}
+            self._parameters = parameters
+            self._apply(settings)
+        if set(PLANNERS) & set(asked):
+            threading.Thread(target=self.serve, daemon=True).start()
+        return asked
+
+    def _hear_footprint(self, costmap: str) -> None:
+        """A footprint may come on the topic on which the present one is published, of another type."""
+        topic = self._parameters.get(costmap, {}).get("footprint_topic", "footprint")
+        rospy.Subscriber(f"~{costmap}/{topic}", rospy.AnyMsg, self._on_footprint, costmap, queue_size=1)
+
+    def _on_footprint(self, message, costmap: str) -> None:
+        if message._connection_header["type"] != Polygon._type:
+            return
+        polygon = Polygon().deserialize(message._buff)
+        corners = yaml.safe_dump([[point.x, point.y] for point in polygon.points], default_flow_style=True)
+        self._change(costmap, {"footprint": corners.strip()})
