@@ -2,99 +2,31 @@
 """move_base_lite has the action, topics, services and texts of move_base 1.17."""
 
 import math
-import unittest
 
 import actionlib
 import rospy
 import rostest
-from actionlib_msgs.msg import GoalStatus, GoalStatusArray
+from actionlib_msgs.msg import GoalStatus
 from diagnostic_msgs.msg import DiagnosticStatus
-from geometry_msgs.msg import PolygonStamped, PoseStamped, Quaternion, Twist
+from geometry_msgs.msg import PolygonStamped, PoseStamped, Twist
 from map_msgs.msg import OccupancyGridUpdate
+from move_base_client import Heard, MoveBaseTestCase, pose_at
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal, RecoveryStatus
-from nav_msgs.msg import OccupancyGrid, Odometry, Path
+from nav_msgs.msg import OccupancyGrid, Path
 from nav_msgs.srv import GetPlan
 from std_srvs.srv import Empty
 
 PERIOD = 0.1
-LEVEL = (0.0, 0.0, 0.0, 1.0)
 NO_PLAN = "Failed to find a valid plan. Even after executing recovery behaviors."
 IN_THE_NEXT_ROOM, NEAR, IN_A_WALL, OFF_THE_MAP = (2.0, 3.0), (1.0, 0.0), (5.0, 4.0), (50.0, 3.0)
 
 
-def pose_at(x, y, frame="map", quaternion=LEVEL):
-    message = PoseStamped()
-    message.header.frame_id = frame
-    message.pose.position.x, message.pose.position.y = x, y
-    message.pose.orientation = Quaternion(*quaternion)
-    return message
-
-
-class Heard:
-    """The messages of a topic with the times they came at."""
-
-    def __init__(self, topic, kind):
-        self.messages, self.times = [], []
-        self._subscriber = rospy.Subscriber(topic, kind, self._on_message)
-
-    def _on_message(self, message):
-        self.times.append(rospy.get_time())
-        self.messages.append(message)
-
-    def close(self):
-        self._subscriber.unregister()
-
-    def since(self, time):
-        return [message for at, message in zip(self.times, self.messages) if at >= time]
-
-    def wait(self, seconds=10.0):
-        until = rospy.get_time() + seconds
-        while not self.messages and rospy.get_time() < until:
-            rospy.sleep(0.05)
-        return self.messages[-1]
-
-
-class TestMoveBaseContract(unittest.TestCase):
+class TestMoveBaseContract(MoveBaseTestCase):
     @classmethod
     def setUpClass(cls):
-        cls.client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
-        assert cls.client.wait_for_server(rospy.Duration(30.0))
+        super().setUpClass()
         cls.make_plan = rospy.ServiceProxy("move_base/make_plan", GetPlan)
         cls.make_plan.wait_for_service(30.0)
-        cls.commands = Heard("cmd_vel", Twist)
-        cls.odometry = Heard("odom", Odometry)
-        cls.statuses = Heard("move_base/status", GoalStatusArray)
-
-    def has_active_goal(self):
-        newest = self.statuses.messages[-1].status_list
-        return any(status.status in (GoalStatus.PENDING, GoalStatus.ACTIVE) for status in newest)
-
-    def tearDown(self):
-        """Ends what is under way, and nothing else: a cancellation may overtake the next test's goal."""
-        at = rospy.get_time()
-        self.wait_until(lambda: self.statuses.since(at))
-        if self.has_active_goal():
-            self.client.cancel_all_goals()
-        self.wait_until(lambda: not self.has_active_goal())
-        self.wait_until(lambda: abs(self.odometry.messages[-1].twist.twist.linear.x) < 0.01)
-
-    def wait_until(self, is_so, seconds=30.0):
-        until = rospy.get_time() + seconds
-        while not is_so():
-            self.assertLess(rospy.get_time(), until, "waited in vain")
-            rospy.sleep(0.02)
-
-    def end_of(self, pose, seconds=60.0):
-        self.client.send_goal(MoveBaseGoal(pose))
-        self.assertTrue(self.client.wait_for_result(rospy.Duration(seconds)), "no result")
-        return self.client.get_state(), self.client.get_goal_status_text()
-
-    def drive(self, pose):
-        """Sends a goal and returns when the robot is under way."""
-        self.client.send_goal(MoveBaseGoal(pose))
-        self.wait_until(
-            lambda: self.odometry.messages and self.odometry.messages[-1].twist.twist.linear.x > 0.2
-        )
 
     def test_a_goal_is_reached_and_says_so_in_the_official_words(self):
         current_goal, plan = (

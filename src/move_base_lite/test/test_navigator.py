@@ -122,8 +122,7 @@ def test_a_cancelled_robot_is_told_to_stop_in_the_same_tick_whatever_it_is_doing
         decision = robot.tick(navigator)
         while decision.status is not wanted or (wanted is Status.CLEARING and decision.command == Twist2()):
             decision = robot.tick(navigator)
-        navigator.cancel()
-        decision = robot.tick(navigator)
+        decision = navigator.cancel(robot.now)
         assert (decision.status, decision.command) == (Status.CANCELLED, Twist2())
         assert robot.tick(navigator).status is Status.IDLE
         assert robot.tick(navigator).command is None

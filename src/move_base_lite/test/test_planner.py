@@ -6,7 +6,7 @@ from scipy.ndimage import label
 
 from move_base_lite import GoalBlocked, NoPath, OutOfMap, StartBlocked
 from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, Window
-from move_base_lite.planning import GlobalPlanner, PlannerSettings
+from move_base_lite.planning import GlobalPlanner, PlannerSettings, path_cost
 
 PICTURES = {
     "empty": """
@@ -83,15 +83,17 @@ def assert_is_free(path_xy, costs, window):
         assert costs[window.cell_of(*point)] < INSCRIBED
 
 
-@pytest.mark.parametrize("use_astar", [False, True])
+@pytest.mark.parametrize(
+    "how", [{}, {"use_astar": True}, {"any_angle": True}, {"use_grid_path": True}], ids=str
+)
 @pytest.mark.parametrize("name", PICTURES)
-def test_each_free_cell_is_reached_from_each_that_is_connected_to_it(name, use_astar):
+def test_each_free_cell_is_reached_from_each_that_is_connected_to_it(name, how):
     costs = costs_of(PICTURES[name])
-    window, planner = window_of(costs), GlobalPlanner(PlannerSettings(use_astar=use_astar))
+    window, planner = window_of(costs), GlobalPlanner(PlannerSettings(**how))
     rooms, _ = label(costs == 0)
     free = np.argwhere(costs == 0)
     for start in map(tuple, free):
-        for goal in map(tuple, free[::3]):
+        for goal in map(tuple, free):
             ends = centre(window, start), centre(window, goal)
             if rooms[start] == rooms[goal]:
                 path_xy = planner.plan(costs, window, *ends)
@@ -111,6 +113,23 @@ def test_a_path_over_open_ground_is_nearly_straight(use_astar, excess):
         path_xy = planner.plan(costs, Window(200, 200, 1.0), (20.5, 10.5), goal)
         straight = np.hypot(goal[0] - 20.5, goal[1] - 10.5)
         assert np.linalg.norm(np.diff(path_xy, axis=0), axis=1).sum() < excess * straight
+
+
+def test_at_any_angle_a_path_is_shorter_and_as_cheap():
+    rng = np.random.default_rng(3)
+    costs = np.zeros((120, 120), dtype=np.uint8)
+    for row, col in rng.integers(10, 105, (25, 2)):
+        costs[row : row + 6, col : col + 6] = LETHAL
+    window, ends = Window(120, 120, 0.1), ((0.55, 0.55), (11.45, 10.95))
+    plain, any_angle = (
+        GlobalPlanner(PlannerSettings(any_angle=how)).plan(costs, window, *ends) for how in (False, True)
+    )
+    assert_is_free(any_angle, costs, window)
+    plain_length, length = (
+        np.linalg.norm(np.diff(path, axis=0), axis=1).sum() for path in (plain, any_angle)
+    )
+    assert length < plain_length
+    assert path_cost(costs, window, any_angle) <= path_cost(costs, window, plain)
 
 
 def test_a_way_round_is_preferred_to_one_along_an_obstacle():

@@ -85,17 +85,15 @@ class Navigator:
     def set_goal(self, goal_in_map: Pose2) -> None:
         """Drives there from the next tick on; a goal under way is left without stopping."""
         self._new_goal: Optional[Pose2] = goal_in_map
-        self._is_cancelled = False
 
-    def cancel(self) -> None:
-        """Stops at the next tick."""
-        self._is_cancelled = self.is_active
+    def cancel(self, now: float) -> Decision:
+        """Ends the goal under way: the robot is to stop at once."""
+        return self._end(Status.CANCELLED, "", self._outcome(now, CANCELLED_OUTCOME, "CANCELLED", ""))
 
     def forget_goal(self) -> None:
         """Drops the goal without a word; the robot has to be stopped by other means."""
         self._new_goal = None
         self._pursuit: Optional[Pursuit] = None
-        self._is_cancelled = False
         self._controller = Controller(self.settings.controller, self._period)
 
     @property
@@ -121,15 +119,13 @@ class Navigator:
             sightings = [*sightings, sighting_of_scan(self.settings.scan_topic, scan)]
         if self.is_active or not self.settings.move_base.shutdown_costmaps:
             self._costmaps.look(now, base_in_map, base_in_odom, sightings)
-        if self._new_goal is not None and not self._is_cancelled:
+        if self._new_goal is not None:
             self._pursuit = Pursuit.of(self._new_goal, now, base_in_map)
             self._new_goal = None
             try:
                 self._costmaps.check_goal(self._pursuit.goal)
             except PlanningError as error:
                 return self._give_up(now, Trigger.PLANNING.value, error)
-        if self._is_cancelled:
-            return self._end(Status.CANCELLED, "", self._outcome(now, CANCELLED_OUTCOME, "CANCELLED", ""))
         if self._pursuit is None:
             return Decision(Status.IDLE)
         pursuit = self._pursuit

@@ -6,7 +6,7 @@ from typing import Optional
 import rospy
 
 from move_base_lite.config import NavigatorSettings
-from move_base_lite.decision import CANCELLED_OUTCOME, Decision, Outcome, Status, Trigger, with_reason
+from move_base_lite.decision import Decision, Outcome, Status, Trigger, with_reason
 from move_base_lite.errors import NavigationError, RobotLost
 from move_base_lite.navigator import Navigator
 from move_base_lite.nodes.costmap_topics import CostmapTopics
@@ -61,7 +61,7 @@ class MoveBaseNode:
         self._global_topics = CostmapTopics("global_costmap")
         self._local_topics = CostmapTopics("local_costmap")
         self._transforms = Transforms()
-        self._goals = GoalServer(self._map_frame, self._transforms)
+        self._goals = GoalServer(self._map_frame, self._transforms, self._on_cancel)
         odom_topic = parameters.get("DWAPlannerROS", {}).get("odom_topic", "odom")
         self._surroundings = Surroundings(self._settings, self._transforms, odom_topic)
         self._tree = ParameterTree(parameters, self._change)
@@ -130,6 +130,7 @@ class MoveBaseNode:
             if self._goals.is_active:
                 self._goals.end(Status.ABORTED, TIME_JUMP_TEXT)
                 self._topics.command(Twist2())
+            self._goals.forget_time()
 
     def _tick(self, now: rospy.Time):
         with self._lock:
@@ -186,16 +187,12 @@ class MoveBaseNode:
             self._lost_since = now
             return
         self._topics.command(Twist2())
-        if self._goals.is_cancelled:
-            self._navigator.forget_goal()
-            self._topics.outcome(Outcome(CANCELLED_OUTCOME, "CANCELLED", ""))
-            self._goals.end(Status.CANCELLED, "")
-        elif (now - self._lost_since).to_sec() > self._settings.move_base.sensor_patience:
+        if (now - self._lost_since).to_sec() > self._settings.move_base.sensor_patience:
             lost = RobotLost(missing)
             self._refuse(with_reason(Trigger.CONTROLLING.value, lost), lost)
 
     def _take_goal(self, now: rospy.Time):
-        """Accepts a new goal, or hears that the present one is cancelled."""
+        """Accepts a new goal, if one has come."""
         try:
             goal = self._goals.take(now)
         except InvalidGoal as error:
@@ -206,8 +203,15 @@ class MoveBaseNode:
             if goal is not None:
                 self._goal = goal
                 self._navigator.set_goal(goal)
-            elif self._goals.is_cancelled:
-                self._navigator.cancel()
+
+    def _on_cancel(self):
+        """Does not wait for the next tick."""
+        with self._lock:
+            if self._goals.is_cancelled:
+                decision = self._navigator.cancel(rospy.get_time())
+                self._topics.command(decision.command)
+                self._topics.outcome(decision.outcome)
+                self._goals.end(decision.status, decision.text)
 
     def _refuse(self, text: str, error: NavigationError):
         rospy.logerr(text)

@@ -5,10 +5,7 @@ from sensor_msgs.msg import PointCloud, PointCloud2
 
 
 def points_of(message) -> np.ndarray:
-    """Points (N, 3), float64, of a PointCloud or PointCloud2 in its frame; they may be NaN.
-
-    Raises ValueError for a PointCloud2 without float32 fields x, y and z.
-    """
+    """Points (N, 3), float64, of a PointCloud or PointCloud2 in its frame; they may be NaN."""
     if isinstance(message, PointCloud):
         return np.array([(point.x, point.y, point.z) for point in message.points]).reshape(-1, 3)
     return _points_of_cloud2(message)
@@ -16,9 +13,6 @@ def points_of(message) -> np.ndarray:
 
 def _points_of_cloud2(message: PointCloud2) -> np.ndarray:
     fields = {field.name: field for field in message.fields}
-    for axis in "xyz":
-        if axis not in fields or fields[axis].datatype != fields[axis].FLOAT32:
-            raise ValueError(f"a point cloud in {message.header.frame_id} has no float32 field {axis}")
     order = ">" if message.is_bigendian else "<"
     point = np.dtype(
         {

@@ -1,9 +1,11 @@
 """Goals: move_base's action, and the topic on which rviz sends them."""
 
-from typing import Optional
+import threading
+from typing import Callable, Optional
 
 import rospy
 from actionlib import SimpleActionServer
+from actionlib.action_server import ServerGoalHandle
 from geometry_msgs.msg import PoseStamped
 from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseFeedback
 
@@ -15,11 +17,17 @@ from planar_ros.transforms import Transforms
 
 
 class GoalServer:
-    """One goal at a time; a new one preempts the old one."""
+    """One goal at a time; a new one preempts the old one.
 
-    def __init__(self, map_frame: str, transforms: Transforms):
+    ``on_cancel`` is called in a thread of its own when a client wants the goal under way to be left.
+    """
+
+    def __init__(self, map_frame: str, transforms: Transforms, on_cancel: Callable[[], None]):
         self._map_frame, self._transforms = map_frame, transforms
         self._server = SimpleActionServer("move_base", MoveBaseAction, auto_start=False)
+        self._server.register_preempt_callback(
+            lambda: threading.Thread(target=on_cancel, daemon=True).start()
+        )
         self._current_goal = rospy.Publisher("~current_goal", PoseStamped, queue_size=1)
         self._action_goal = rospy.Publisher("move_base/goal", MoveBaseActionGoal, queue_size=1)
         rospy.Subscriber("move_base_simple/goal", PoseStamped, self._on_simple_goal, queue_size=1)
@@ -34,8 +42,9 @@ class GoalServer:
 
     @property
     def is_cancelled(self) -> bool:
-        """Whether the goal under way is to be left."""
-        return self._server.is_active() and self._server.is_preempt_requested()
+        """Whether the goal under way is to be left without another one to take over."""
+        server = self._server
+        return server.is_active() and server.is_preempt_requested() and not server.is_new_goal_available()
 
     def take(self, now: rospy.Time) -> Optional[Pose2]:
         """A goal that has come, in the map; it is accepted, and the old one preempted. None if there is none.
@@ -63,6 +72,12 @@ class GoalServer:
             self._server.set_preempted()
         else:
             self._server.set_aborted(text=text)
+
+    def forget_time(self) -> None:
+        """Time has jumped back: a goal is not old for being stamped before the last one."""
+        with self._server.action_server.lock, self._server.lock:
+            self._server.current_goal = self._server.next_goal = ServerGoalHandle()
+            self._server.new_goal = False
 
     def _on_simple_goal(self, message):
         goal = MoveBaseActionGoal()

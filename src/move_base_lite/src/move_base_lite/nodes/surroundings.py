@@ -14,11 +14,13 @@ from move_base_lite.config import NavigatorSettings
 from move_base_lite.costmap import Sighting, sighting_of_points, sighting_of_scan
 from move_base_lite.costmap.obstacle_layer import SourceSettings
 from move_base_lite.nodes.clouds import points_of
+from move_base_lite.nodes.sensor_checks import check_message
 from planar import Pose2, Twist2
 from planar_ros.messages import LaserScanArrays, frame_name, scan_from_msg
 from planar_ros.transforms import Transforms
 
 KEPT = 5
+WARN_SECONDS = 5.0
 MESSAGES = {"LaserScan": LaserScanArrays, "PointCloud": PointCloud, "PointCloud2": PointCloud2}
 
 
@@ -122,7 +124,9 @@ class _Sensor:
             waiting = list(self._messages)
         for message in reversed(waiting):
             sighting = self._seen_from(base_in_odom, message)
-            if sighting is not None:
+            if sighting is None:
+                self._complain_of(message)
+            else:
                 with self._lock:
                     while self._messages and self._messages[0].header.stamp <= message.header.stamp:
                         self._messages.popleft()
@@ -133,7 +137,20 @@ class _Sensor:
         with self._lock:
             self._messages.clear()
 
+    def _complain_of(self, message) -> None:
+        """A message that cannot be used for long, or not at all, is told of."""
+        frame = frame_name(self._source.sensor_frame or message.header.frame_id)
+        if frame not in self._mountings:
+            rospy.logwarn_throttle(
+                WARN_SECONDS, f"{self.topic}: no transform from its frame '{frame}' to {self._base_frame}"
+            )
+
     def _on_message(self, message):
+        try:
+            check_message(message)
+        except ValueError as error:
+            rospy.logwarn_throttle(WARN_SECONDS, f"{self.topic}: {error}")
+            return
         self.has_spoken = True
         with self._lock:
             self._messages.append(message)

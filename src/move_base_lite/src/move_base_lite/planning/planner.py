@@ -9,6 +9,7 @@ import numpy as np
 from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, Window
 from move_base_lite.errors import GoalBlocked, NoPath, OutOfMap, StartBlocked
 from move_base_lite.planning.nearest import nearest_passable
+from move_base_lite.planning.shortcuts import shortened
 from move_base_lite.planning.wavefront import FACTOR, NEUTRAL, descend, spread, traversal_costs
 from planar.settings import check
 
@@ -22,6 +23,7 @@ class PlannerSettings:
 
     ``neutral_cost``, ``cost_factor``: entering a cell costs neutral + factor * cost; ``lethal_cost``: from
     which cost on it cannot be entered. ``use_grid_path``: from cell to cell instead of down the gradient.
+    ``any_angle``: with straight lines where they cost no more, unlike navfn.
     ``orientation_mode``: which way the robot is to look on the way (see headings_along).
     """
 
@@ -29,6 +31,7 @@ class PlannerSettings:
     default_tolerance: float = 0.0
     use_astar: bool = False
     use_grid_path: bool = False
+    any_angle: bool = False
     neutral_cost: int = 50
     cost_factor: float = 0.8
     lethal_cost: int = 253
@@ -85,6 +88,8 @@ class GlobalPlanner:
         )
         if not len(path_cells):
             raise NoPath(f"no way leads from {_named('robot', start_xy)} to {_named('goal', goal_xy)}")
+        if settings.any_angle and not settings.use_grid_path:
+            path_cells = shortened(traversal, path_cells)
         path_xy = path_cells * window.resolution + (window.origin_x, window.origin_y)
         ends = [np.array([start_xy]), path_xy[1:-1] if free_start == start else path_xy[:-1]]
         ends.append(np.array([goal_xy]) if free_goal == goal else path_xy[-1:])

@@ -1,0 +1,128 @@
+"""Slows and stops whatever the robot is told to do, by what its sensors see at this moment.
+
+No map, no memory, no plan: the last thing between any command, teleoperated too, and the wheels
+(after nav2_collision_monitor's "approach" and "stop" zones).
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Tuple
+
+import numba
+import numpy as np
+
+from move_base_lite.costmap import Footprint, footprint_from
+from planar import Twist2
+from planar.settings import check
+
+STEPS = 20
+# Metres that the robot must come closer by to count as doing so: a circle is a polygon here.
+CLOSER = 0.005
+# Metres inside the outline from which on a point belongs to the robot itself.
+OWN_BODY = 0.03
+CLEAR, SLOWED, STOPPED = "clear", "slowed", "stopped"
+
+
+@dataclass(frozen=True)
+class MonitorSettings:
+    """Metres and seconds.
+
+    ``footprint``: corners (x, y) of the robot; if there are none, a circle of ``robot_radius``.
+    ``stop_distance``: clearance around it at which it is stopped, unless it moves away.
+    ``time_to_collision``: it is slowed so that it would take so long to come as close as that.
+    ``scan_timeout``: it is stopped if its sensor has been silent for so long.
+    """
+
+    footprint: Tuple[Tuple[float, float], ...] = ()
+    robot_radius: float = 0.18
+    stop_distance: float = 0.05
+    time_to_collision: float = 1.0
+    scan_timeout: float = 0.5
+
+    def __post_init__(self):
+        check(self.robot_radius > 0.0, "robot_radius", "positive", self.robot_radius)
+        check(self.stop_distance >= 0.0, "stop_distance", "at least 0", self.stop_distance)
+        check(self.time_to_collision > 0.0, "time_to_collision", "positive", self.time_to_collision)
+        check(self.scan_timeout > 0.0, "scan_timeout", "positive", self.scan_timeout)
+        check(len(self.footprint) not in (1, 2), "footprint", "at least 3 points", self.footprint)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The command that may pass, and why: clear, slowed or stopped."""
+
+    command: Twist2
+    reason: str
+
+
+class CollisionMonitor:
+    """Looks at one command at a time."""
+
+    def __init__(self, settings: MonitorSettings):
+        self._settings = settings
+        outline: Footprint = footprint_from(settings.footprint, settings.robot_radius, 0.0)
+        self._corners_xy = outline.corners_xy
+
+    def judge(self, command: Twist2, points_xy: np.ndarray) -> Verdict:
+        """What of a command may pass; ``points_xy``: (N, 2), obstacles in the base frame, metres.
+
+        The robot is followed along the command's arc. A point that is within the stop distance already does
+        not count as long as the robot moves away from it.
+        """
+        if command == Twist2():
+            return Verdict(command, CLEAR)
+        settings = self._settings
+        seconds = _free_seconds(
+            self._corners_xy,
+            points_xy,
+            command.v,
+            command.omega,
+            settings.stop_distance,
+            settings.time_to_collision,
+        )
+        share = seconds / settings.time_to_collision
+        if share >= 1.0:
+            return Verdict(command, CLEAR)
+        if share <= 1.0 / STEPS:
+            return Verdict(Twist2(), STOPPED)
+        return Verdict(Twist2(share * command.v, share * command.omega), SLOWED)
+
+
+@numba.njit(cache=True)
+def _free_seconds(corners, points, v, omega, margin, horizon):
+    """Seconds until a point comes closer to the moving outline than the margin, or closer still; at most the
+    horizon."""
+    dt = horizon / STEPS
+    nearest = np.empty(points.shape[0])
+    for i in range(points.shape[0]):
+        nearest[i] = _distance(corners, points[i, 0], points[i, 1])
+    x, y, yaw = 0.0, 0.0, 0.0
+    for step in range(1, STEPS + 1):
+        x += v * dt * math.cos(yaw + 0.5 * omega * dt)
+        y += v * dt * math.sin(yaw + 0.5 * omega * dt)
+        yaw += omega * dt
+        c, s = math.cos(yaw), math.sin(yaw)
+        for i in range(points.shape[0]):
+            if nearest[i] < -OWN_BODY:
+                continue
+            along, across = points[i, 0] - x, points[i, 1] - y
+            distance = _distance(corners, c * along + s * across, c * across - s * along)
+            if distance < margin and distance < nearest[i] - CLOSER:
+                return (step - 1) * dt
+    return horizon
+
+
+@numba.njit(cache=True)
+def _distance(corners, x, y):
+    """Metres from the polygon, negative inside."""
+    squared, inside = np.inf, False
+    for i in range(corners.shape[0]):
+        x0, y0 = corners[i - 1]
+        x1, y1 = corners[i]
+        along_x, along_y = x1 - x0, y1 - y0
+        share = ((x - x0) * along_x + (y - y0) * along_y) / (along_x * along_x + along_y * along_y)
+        share = min(max(share, 0.0), 1.0)
+        squared = min(squared, (x - x0 - share * along_x) ** 2 + (y - y0 - share * along_y) ** 2)
+        if (y0 > y) != (y1 > y) and x < x0 + (y - y0) / (y1 - y0) * along_x:
+            inside = not inside
+    return -math.sqrt(squared) if inside else math.sqrt(squared)

@@ -1,0 +1,133 @@
+"""A stage for tests of move_base: clock, map, transforms and sensors of a robot without physics.
+
+Time goes on as fast as the node under test keeps up, and whatever a test switches off is silent.
+"""
+
+import math
+import threading
+import time
+
+import numpy as np
+import rospy
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import OccupancyGrid as OccupancyGridMsg
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import PointCloud2
+from sensor_msgs.point_cloud2 import create_cloud_xyz32
+from std_msgs.msg import Header
+from tf2_msgs.msg import TFMessage
+
+from planar import OccupancyGrid, Pose2, grid_from_picture
+from planar.ray_casting import cast_rays
+from planar_ros.messages import LaserScanArrays, grid_to_msg, pose2_to_msg, transform_msg
+from planar_ros.progress import TOPIC as PROGRESS_TOPIC
+
+ROOMS = """
+################
+#......##......#
+#......##......#
+#......##......#
+#..............#
+#..............#
+#......##......#
+#......##......#
+#......##......#
+################
+"""
+CELL_METRES, RESOLUTION = 0.4, 0.05
+STEP, LEAD = 0.05, 0.1
+# Simulated seconds a second, at most: what a message takes on its way counts in simulated time.
+SPEED = 5.0
+# Wall seconds after which time goes on without the node.
+PATIENCE = 1.0
+BEAMS, RANGE_MAX = 360, 8.0
+
+
+def rooms() -> OccupancyGrid:
+    """Two rooms side by side, 6.4 x 4 m, with a door of 0.8 m; the lower left corner is the origin."""
+    times = round(CELL_METRES / RESOLUTION)
+    cells = grid_from_picture(ROOMS, RESOLUTION).cells
+    return OccupancyGrid(np.kron(cells, np.ones((times, times), np.int8)), RESOLUTION)
+
+
+class Stage:
+    """The robot starts at (1, 2) in the map, and odometry there too."""
+
+    def __init__(self):
+        self.grid = rooms()
+        self.base_in_odom, self.odom_in_map = Pose2(1.0, 2.0), Pose2()
+        self.twist = Twist()
+        self.has_localization = self.has_odometry = self.has_scan = True
+        self.scan_frame = "laser"
+        self.cloud_xyz = None
+        self.now = 100.0
+        self._reached, self._told = 0.0, threading.Event()
+        self._clock = rospy.Publisher("/clock", Clock, queue_size=10, tcp_nodelay=True)
+        self._tf = rospy.Publisher("/tf", TFMessage, queue_size=10, tcp_nodelay=True)
+        self._odom = rospy.Publisher("odom", Odometry, queue_size=10, tcp_nodelay=True)
+        self._scan = rospy.Publisher("scan", LaserScanArrays, queue_size=10, tcp_nodelay=True)
+        self._cloud = rospy.Publisher("cloud", PointCloud2, queue_size=10, tcp_nodelay=True)
+        self._map = rospy.Publisher("map", OccupancyGridMsg, queue_size=1, latch=True)
+        rospy.Subscriber("cmd_vel", Twist, self._on_command, queue_size=1, tcp_nodelay=True)
+        rospy.Subscriber(PROGRESS_TOPIC, Header, self._on_progress, queue_size=10, tcp_nodelay=True)
+        threading.Thread(target=self._run, daemon=True).start()
+
+    @property
+    def base_in_map(self) -> Pose2:
+        return self.odom_in_map @ self.base_in_odom
+
+    def show_map(self):
+        self._map.publish(grid_to_msg(self.grid, rospy.Time(0), "map"))
+
+    def _run(self):
+        while not rospy.is_shutdown():
+            self._move()
+            self._publish()
+            until = time.monotonic() + PATIENCE
+            while self._reached < self.now - LEAD and time.monotonic() < until:
+                self._told.wait(0.02)
+                self._told.clear()
+            time.sleep(STEP / SPEED)
+
+    def _move(self):
+        self.now += STEP
+        v, omega = self.twist.linear.x, self.twist.angular.z
+        self.base_in_odom = self.base_in_odom @ Pose2(
+            v * STEP * math.cos(omega * STEP / 2), v * STEP * math.sin(omega * STEP / 2), omega * STEP
+        )
+
+    def _publish(self):
+        stamp = rospy.Time.from_sec(round(self.now, 3))
+        transforms = [transform_msg(Pose2(), "base_footprint", "laser", stamp)]
+        if self.has_odometry:
+            transforms.append(transform_msg(self.base_in_odom, "odom", "base_footprint", stamp))
+        if self.has_localization:
+            transforms.append(transform_msg(self.odom_in_map, "map", "odom", stamp))
+        self._tf.publish(transforms)
+        odometry = Odometry(header=Header(stamp=stamp, frame_id="odom"), child_frame_id="base_footprint")
+        odometry.pose.pose, odometry.twist.twist = pose2_to_msg(self.base_in_odom), self.twist
+        self._odom.publish(odometry)
+        if self.has_scan:
+            self._publish_scan(stamp)
+        if self.cloud_xyz is not None:
+            header = Header(stamp=stamp, frame_id="base_footprint")
+            self._cloud.publish(create_cloud_xyz32(header, self.cloud_xyz))
+        self._clock.publish(Clock(stamp))
+
+    def _publish_scan(self, stamp):
+        angles = -math.pi + 2.0 * math.pi / BEAMS * np.arange(BEAMS)
+        message = LaserScanArrays()
+        message.header.stamp, message.header.frame_id = stamp, self.scan_frame
+        message.angle_min, message.angle_increment = -math.pi, 2.0 * math.pi / BEAMS
+        message.range_min, message.range_max = 0.1, RANGE_MAX
+        message.ranges = cast_rays(self.grid, self.base_in_map, angles, RANGE_MAX).astype(np.float32)
+        message.intensities = np.empty(0, np.float32)
+        self._scan.publish(message)
+
+    def _on_command(self, message):
+        self.twist = message
+
+    def _on_progress(self, message):
+        self._reached = message.stamp.to_sec()
+        self._told.set()
