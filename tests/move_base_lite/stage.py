@@ -41,7 +41,7 @@ STEP, LEAD = 0.05, 0.1
 SPEED = 5.0
 # Wall seconds after which time goes on without the node.
 PATIENCE = 1.0
-BEAMS, RANGE_MAX = 360, 8.0
+BEAMS, RANGE_MAX, STEPS_PER_SCAN = 360, 8.0, 2
 
 
 def rooms() -> OccupancyGrid:
@@ -61,7 +61,7 @@ class Stage:
         self.has_localization = self.has_odometry = self.has_scan = True
         self.scan_frame = "laser"
         self.cloud_xyz = None
-        self.now = 100.0
+        self.now, self._steps = 100.0, 0
         self._reached, self._told = 0.0, threading.Event()
         self._clock = rospy.Publisher("/clock", Clock, queue_size=10, tcp_nodelay=True)
         self._tf = rospy.Publisher("/tf", TFMessage, queue_size=10, tcp_nodelay=True)
@@ -108,7 +108,8 @@ class Stage:
         odometry = Odometry(header=Header(stamp=stamp, frame_id="odom"), child_frame_id="base_footprint")
         odometry.pose.pose, odometry.twist.twist = pose2_to_msg(self.base_in_odom), self.twist
         self._odom.publish(odometry)
-        if self.has_scan:
+        self._steps += 1
+        if self.has_scan and self._steps % STEPS_PER_SCAN == 0:
             self._publish_scan(stamp)
         if self.cloud_xyz is not None:
             header = Header(stamp=stamp, frame_id="base_footprint")
