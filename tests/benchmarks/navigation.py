@@ -3,7 +3,7 @@
 
 The Navigator gets true poses in the map and drifting odometry; localization is another benchmark's subject.
 
-    python3 tests/benchmarks/navigation.py --pairs 50 --boxes 6
+    python3 tests/benchmarks/navigation.py --pairs 50 --boxes 6 --walkers 4
 """
 
 import argparse
@@ -16,12 +16,13 @@ from pathlib import Path
 from typing import List, Optional
 
 import numpy as np
+from walkers import MOVING, Walker, add_walkers
 
 from move_base_lite import Navigator, NavigatorSettings, PlanningError, Status, load_settings
 from move_base_lite.costmap import LayeredCostmap
 from move_base_lite.warming import warm_up
 from planar import OccupancyGrid, Pose2, load_map, wrap
-from sim_bridge import Simulation, load_world
+from sim_bridge import ROBOTS, Simulation, load_world
 from sim_bridge.world import World
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -32,7 +33,10 @@ SETTLE_SECONDS = 0.5
 
 @dataclass(frozen=True)
 class Run:
-    """One drive. Lengths in metres, times in simulated seconds but ``tick_ms``, CPU time per control tick."""
+    """One drive. Lengths in metres, times in simulated seconds but ``tick_ms``, CPU time per control tick.
+
+    ``touched``: what the robot has touched; ``bumped_into``: the people that touched it while it stood.
+    """
 
     pair: int
     status: str
@@ -44,6 +48,7 @@ class Run:
     off_by_angle: float
     recoveries: int
     touched: List[str]
+    bumped_into: List[str]
     tick_ms: List[float]
 
 
@@ -65,11 +70,13 @@ def main() -> int:
 def _drive(pair: int, options, settings: NavigatorSettings, grid: OccupancyGrid, world: World) -> Run:
     rng = np.random.default_rng([options.seed, pair])
     start, goal = places(settings, grid, rng, 2)
-    simulation = Simulation(world, seed=pair, base_in_world=start)
+    simulation = Simulation(world, ROBOTS[options.robot], seed=pair, base_in_world=start)
     for number in range(options.boxes):
         add_box(simulation, f"box_{number}", settings, grid, rng, keep_free=(start, goal))
+    ends = places(settings, grid, rng, 2 * options.walkers)
+    walkers = add_walkers(simulation, options.walkers, settings, grid, ends, rng)
     try:
-        run = _pursue(pair, options, simulation, Navigator(settings, grid), goal)
+        run = _pursue(pair, options, simulation, Navigator(settings, grid), goal, walkers)
     finally:
         simulation.close()
     touched = f", touched {', '.join(run.touched)}" if run.touched else ""
@@ -81,11 +88,14 @@ def _drive(pair: int, options, settings: NavigatorSettings, grid: OccupancyGrid,
     return run
 
 
-def _pursue(pair: int, options, simulation: Simulation, navigator: Navigator, goal: Pose2) -> Run:
+def _pursue(
+    pair: int, options, simulation: Simulation, navigator: Navigator, goal: Pose2, walkers: List[Walker]
+) -> Run:
     period = round(1.0 / options.rate / simulation.step_seconds)
     observation = simulation.step()
     start_stamp, last, driven, planned = observation.stamp, observation.base_in_world, 0.0, 0.0
-    touched, recoveries, tick_ms = set(), 0, []
+    touched, bumped_into, recoveries, tick_ms = set(), set(), 0, []
+    people = {walker.name for walker in walkers}
     scan, decision = None, None
     navigator.set_goal(goal)
     while observation.stamp - start_stamp < options.limit:
@@ -107,10 +117,14 @@ def _pursue(pair: int, options, simulation: Simulation, navigator: Navigator, go
             if decision.status.is_final:
                 break
         for _ in range(period):
+            for walker in walkers:
+                walker.walk(observation.base_in_world, simulation.step_seconds)
             observation = simulation.step(command)
             command = None
             scan = observation.scan or scan
-            touched.update(observation.contacts)
+            for name in observation.contacts:
+                stands = name in people and abs(observation.odometry.twist.v) < MOVING
+                (bumped_into if stands else touched).add(name)
         driven += last.distance_to(observation.base_in_world)
         last = observation.base_in_world
     return Run(
@@ -124,6 +138,7 @@ def _pursue(pair: int, options, simulation: Simulation, navigator: Navigator, go
         off_by_angle=abs(wrap(last.yaw - goal.yaw)),
         recoveries=recoveries,
         touched=sorted(touched),
+        bumped_into=sorted(bumped_into),
         tick_ms=tick_ms,
     )
 
@@ -172,6 +187,7 @@ def _summary(runs: List[Run]) -> dict:
         "runs": len(runs),
         "reached": len(reached),
         "runs_with_collision": sum(bool(run.touched) for run in runs),
+        "runs_bumped_into": sum(bool(run.bumped_into) for run in runs),
         "recoveries": sum(run.recoveries for run in runs),
         "mean_seconds": _mean([run.seconds for run in reached]),
         "mean_speed": _mean([run.driven / run.seconds for run in reached]),
@@ -193,6 +209,8 @@ def _options():
     parser.add_argument("--pairs", type=int, default=50, help="number of random pairs of start and goal")
     parser.add_argument("--only", type=int, help="drive only the pair of this number")
     parser.add_argument("--boxes", type=int, default=0, help="boxes that the map does not show")
+    parser.add_argument("--walkers", type=int, default=0, help="people that walk to and fro")
+    parser.add_argument("--robot", default="turtlebot_lidar", choices=ROBOTS, help="which robot drives")
     parser.add_argument("--seed", type=int, default=0, help="of all chance")
     parser.add_argument("--limit", type=float, default=180.0, help="simulated seconds a drive may take")
     parser.add_argument("--rate", type=float, default=10.0, help="control ticks per simulated second")

@@ -4,13 +4,26 @@ import dataclasses
 from types import SimpleNamespace
 from typing import Any, Callable, Dict, Mapping, Sequence
 
+from dynamic_reconfigure.encoding import extract_params
 from dynamic_reconfigure.server import Server
 
 from planar.settings import Tunable, tunables_of
+from planar_ros.parameters import ParameterWriter
 
 KINDS = {bool: "bool", int: "int", float: "double", str: "str"}
 RESTORE = "restore_defaults"
 LARGEST_INT = 2**31 - 1
+
+
+class _Server(Server):
+    """A server that talks to the parameter server once instead of once a parameter."""
+
+    def _copy_from_parameter_server(self):
+        """What the parameter server says is in the values in force already."""
+
+    def _copy_to_parameter_server(self):
+        names = [parameter["name"] for parameter in extract_params(self.type.config_description)]
+        ParameterWriter().write({self.ns + name: self.config[name] for name in names})
 
 
 class Tuning:
@@ -30,7 +43,7 @@ class Tuning:
         self._change = change
         self._started_with = dict(values)
         self._is_up = False
-        self._server = Server(_description(tunables, values), self._on_call, namespace)
+        self._server = _Server(_description(tunables, values), self._on_call, namespace)
         self._is_up = True
 
     def _on_call(self, config, level):

@@ -23,22 +23,22 @@ class ParameterTree:
     def __init__(self, parameters: Dict[str, Any], apply: Callable[[NavigatorSettings], None]):
         self._parameters = parameters
         self._apply = apply
-        self._lock = threading.RLock()
+        self._lock, self._serving = threading.RLock(), threading.Lock()
         self._servers: Dict[str, Tuning] = {}
         for costmap in ("global_costmap", "local_costmap"):
             self._hear_footprint(costmap)
 
     def serve(self) -> None:
         """Starts those servers that are not there yet."""
-        for namespace, tunables in servers(self._parameters).items():
-            if namespace not in self._servers:
-                values = {tunable.name: value for tunable, value in tunables}
-                self._servers[namespace] = Tuning(
-                    [tunable for tunable, _ in tunables],
-                    values,
-                    lambda asked, namespace=namespace: self._change(namespace, asked),
-                    namespace,
-                )
+        with self._serving:
+            for namespace, tunables in servers(self._parameters).items():
+                if namespace not in self._servers:
+                    self._servers[namespace] = Tuning(
+                        [tunable for tunable, _ in tunables],
+                        {tunable.name: value for tunable, value in tunables},
+                        lambda asked, namespace=namespace: self._change(namespace, asked),
+                        namespace,
+                    )
 
     def _change(self, namespace: str, asked: Dict[str, Any]) -> Dict[str, Any]:
         """The values in force after somebody has asked for others: all of them, or none if one is refused."""
