@@ -26,8 +26,9 @@ LOCAL_PLANNERS = ("dwa_local_planner/DWAPlannerROS", "move_base_lite/MppiPlanner
 
 @pytest.fixture(params=LOCAL_PLANNERS)
 def settings(request):
-    """The preset, with each local planner in turn."""
+    """The preset, with each local planner in turn; DWA with plans as navfn makes them."""
     parameters = yaml.safe_load(PRESET.read_text())
+    parameters["NavfnROS"]["any_angle"] = "Mppi" in request.param
     return settings_from_parameters({**parameters, "base_local_planner": request.param})[0]
 
 
