@@ -92,7 +92,7 @@ def _row(times: np.ndarray, lengths: np.ndarray) -> dict:
 
 
 def _of_size(grid: OccupancyGrid, size: int) -> OccupancyGrid:
-    """The grid's middle; where it has too few rows or columns, each of its cells as several of the same size."""
+    """The grid's middle; where it has too few rows or columns, each of its cells as several of that size."""
     times = max(-(-size // count) for count in grid.cells.shape)
     cells = np.kron(grid.cells, np.ones((times, times), np.int8))
     row, col = ((count - size) // 2 for count in cells.shape)
