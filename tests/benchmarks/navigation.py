@@ -54,7 +54,7 @@ class Run:
 
 def main() -> int:
     options = _options()
-    settings, grid = load_settings(options.config), load_map(options.map)
+    settings, grid = load_settings(options.config, *options.custom), load_map(options.map)
     world = load_world(options.world)
     warm_up(settings)
     pairs = range(options.pairs) if options.only is None else [options.only]
@@ -95,7 +95,7 @@ def _pursue(
     observation = simulation.step()
     start_stamp, last, driven, planned = observation.stamp, observation.base_in_world, 0.0, 0.0
     touched, bumped_into, recoveries, tick_ms = set(), set(), 0, []
-    people = {walker.name for walker in walkers}
+    people = {f"{walker.name}::link" for walker in walkers}
     scan, decision = None, None
     navigator.set_goal(goal)
     while observation.stamp - start_stamp < options.limit:
@@ -219,6 +219,7 @@ def _options():
     parser.add_argument(
         "--config", default=ROOT / "src" / "move_base_lite" / "config" / "turtlebot.yaml", help="parameters"
     )
+    parser.add_argument("--custom", nargs="*", default=[], help="files of parameters that override those")
     parser.add_argument("--json", help="file for the figures of every run")
     return parser.parse_args()
 

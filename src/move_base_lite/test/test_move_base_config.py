@@ -191,3 +191,14 @@ def test_no_parameters_at_all_mean_the_official_defaults():
         "aggressive_reset",
     ]
     assert warnings == []
+
+
+@pytest.mark.parametrize("name", ["turtlebot3_burger", "turtlebot3_waffle", "turtlebot_kinect"])
+def test_what_differs_for_another_robot_is_known_and_changes_something(name):
+    preset = load_settings(CONFIG / "turtlebot.yaml")
+    assert load_settings(CONFIG / "turtlebot.yaml", CONFIG / f"{name}.yaml") != preset
+    parameters = yaml.safe_load((CONFIG / f"{name}.yaml").read_text())
+    assert (
+        settings_from_parameters({**parameters, "base_local_planner": "move_base_lite/MppiPlannerROS"})[1]
+        == []
+    )

@@ -1,6 +1,6 @@
 """move_base's parameters, as a nested dictionary, made into the settings of a Navigator."""
 
-from typing import Any, List, Mapping, Tuple
+from typing import Any, Dict, List, Mapping, Tuple
 
 import yaml
 
@@ -19,11 +19,22 @@ _MOVE_BASE_IGNORED = {
 }  # fmt: skip
 
 
-def load_settings(path) -> NavigatorSettings:
-    """Settings from a YAML file of official parameters, as ``rosparam load`` would read it."""
-    with open(path, encoding="utf-8") as file:  # noqa: PTH123
-        parameters = yaml.safe_load(file)
-    return settings_from_parameters(parameters, str(path) + ": ")[0]
+def load_settings(*paths) -> NavigatorSettings:
+    """Settings from YAML files of official parameters, later ones over earlier, as ``rosparam load`` does."""
+    parameters: Dict[str, Any] = {}
+    for path in paths:
+        with open(path, encoding="utf-8") as file:  # noqa: PTH123
+            parameters = _merged(parameters, yaml.safe_load(file) or {})
+    return settings_from_parameters(parameters, f"{paths[-1]}: ")[0]
+
+
+def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> Dict[str, Any]:
+    """Nested dictionaries, one over the other."""
+    merged = dict(below)
+    for key, value in above.items():
+        both = isinstance(value, dict) and isinstance(merged.get(key), dict)
+        merged[key] = _merged(merged[key], value) if both else value
+    return merged
 
 
 def settings_from_parameters(
