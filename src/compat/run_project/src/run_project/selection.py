@@ -53,7 +53,7 @@ def _reason(
             return "its sources do not build with today's libraries, and the simulation does not need it"
     missing = sorted(other for other in _components(cmake) - kept if not is_there(other))
     if missing:
-        return f"needs {', '.join(missing)} to be built, which cannot be installed"
+        return f"needs {', '.join(missing)} to be built, which is not there"
     if name in stand_ins:
         missing = sorted(other for other in _found_in_xacro(folder) - kept if not is_there(other))
         if missing:
