@@ -11,6 +11,7 @@ from planar import Pose2
 from planar.settings import check
 from planar_ros.messages import pose2_from_msg, time_of
 from planar_ros.parameters import parameters_below, read_settings
+from planar_ros.prompt_sending import send_promptly
 from planar_ros.shell import run
 from sim_bridge.cli import find_file, model_folders
 from sim_bridge.config import BridgeSettings, RobotSettings, SimulationSettings
@@ -117,4 +118,5 @@ def _steps_between(rate: int, step_rate: int, name: str) -> int:
 
 
 def main():
+    send_promptly()
     run("sim_bridge", lambda: Bridge().run())
