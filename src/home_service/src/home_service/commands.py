@@ -10,6 +10,7 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 
+from home_service.following import FollowWatch
 from home_service.run import Run
 from home_service.verdict import ARRIVAL_TOLERANCE, DEMO, ERRAND, MARKERS, OBJECTS, Verdict
 from planar import Pose2
@@ -54,6 +55,18 @@ def home_service(options: Namespace) -> int:
         _tell_master(run)
         run.display.say("send missions to the action deliver; Ctrl-C ends")
         return _until_it_ends(run)
+
+
+def follow(options: Namespace) -> int:
+    with Run(options, "follow.launch", **_files(options)) as run:
+        following = FollowWatch("follower")
+        failure = run.watch(lambda: run.referee.ledger.is_complete({ERRAND}))
+        run.referee.ledger.failure = failure or run.referee.ledger.failure
+        verdict = run.judge({ERRAND})
+        if verdict.success:
+            complaint = following.complaint
+            verdict = Verdict(complaint is None, complaint or f"{verdict.reason}; {following.praise}")
+        return run.conclude(verdict, **following.findings())
 
 
 def _errand(options: Namespace, launch_file: str, expected: Set[str], **arguments) -> int:

@@ -13,6 +13,7 @@ COMMANDS = {
     "pick_objects": "Carries out a mission, by default from the pick-up to the drop-off zone.",
     "add_marker": "Shows the object at pick-up, hides it, and shows it at drop-off, by the clock.",
     "home_service": "Fetches the object at the pick-up zone and delivers it at the drop-off zone.",
+    "follow": "Lets a second robot follow the first, while that does its errand.",
     "test_slam": "Starts home and SLAM, driven with keys (terminal or pipe), or by itself; saves the map.",
     "map_home": "Lets the robot explore the world, saves its map, and scores it against the true one.",
     "report": "Makes the report of a run anew, from what its folder holds.",
@@ -130,7 +131,7 @@ def _add_own_options(name: str, parser: argparse.ArgumentParser) -> None:
         parser.add_argument("--map", type=Path, default=ROOT / "map/home.yaml", help="map of that world")
     if name == "test_slam":
         parser.add_argument("--drive", choices=("keys", "auto"), default="keys", help="who drives the robot")
-    if name in ("home_service", "pick_objects", "add_marker", "rehearse"):
+    if name in ("home_service", "pick_objects", "add_marker", "follow", "rehearse"):
         parser.add_argument("--zones", type=Path, default=ROOT / "map/zones.yaml", help="YAML of zones")
     if name in ("home_service", "pick_objects", "rehearse"):
         parser.add_argument("--mission", type=Path, metavar="FILE", help="YAML of deliveries")

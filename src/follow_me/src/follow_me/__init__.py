@@ -1,0 +1,6 @@
+"""One robot follows another at a distance, without ROS; the node is in ``follow_me.node``."""
+
+from follow_me.config import FollowSettings
+from follow_me.follower import Follower
+
+__all__ = ["FollowSettings", "Follower"]

@@ -1,0 +1,26 @@
+"""Settings of following."""
+
+from dataclasses import dataclass
+
+from planar.settings import check_parameters, parameter
+
+
+@dataclass(frozen=True)
+class FollowSettings:
+    """Metres and seconds."""
+
+    gap: float = parameter("gap", 0.6, "how far behind the leader to stay, along its way, m", 0.1)
+    goal_shift: float = parameter("goal_shift", 0.15, "a goal that has moved by this is sent anew, m", 0.01)
+    goal_period: float = parameter("goal_period", 0.3, "goals are no more frequent than this, s", 0.05)
+
+    def __post_init__(self):
+        check_parameters(self)
+
+
+@dataclass(frozen=True)
+class NodeSettings(FollowSettings):
+    """What the node needs besides."""
+
+    map_frame: str = parameter("map_frame", "map", "frame of the goals")
+    base_frame: str = parameter("base_frame", "base_footprint", "frame of the robot that follows")
+    leader_frame: str = parameter("leader_frame", "leader/base_footprint", "frame of the robot it follows")

@@ -1,0 +1,56 @@
+"""The facade: where to go in order to follow a robot."""
+
+import math
+from typing import List, Optional
+
+from follow_me.config import FollowSettings
+from planar import Pose2
+
+# Points of the leader's way are this far from each other, metres.
+_SPACING = 0.05
+
+
+class Follower:
+    """Goes where the leader has been, so that the way is free, and stays ``gap`` behind it along that way."""
+
+    def __init__(self, settings: FollowSettings):
+        self._settings = settings
+        self._way: List[Pose2] = []
+        self._goal: Optional[Pose2] = None
+
+    def goal(self, leader_in_map: Pose2, follower_in_map: Pose2) -> Optional[Pose2]:
+        """A new place to go to; None while the last one will do, or the leader is near enough."""
+        if not self._way or self._way[-1].distance_to(leader_in_map) >= _SPACING:
+            self._way.append(leader_in_map)
+        if follower_in_map.distance_to(leader_in_map) <= self._settings.gap:
+            return None
+        place = self._place_behind(leader_in_map) or leader_in_map
+        if place.distance_to(leader_in_map) < 0.5 * self._settings.gap:
+            place = _on_the_line(leader_in_map, follower_in_map, self._settings.gap)
+        if self._goal is not None and self._goal.distance_to(place) < self._settings.goal_shift:
+            return None
+        self._goal = place
+        return place
+
+    def _place_behind(self, leader_in_map: Pose2) -> Optional[Pose2]:
+        """The place on the leader's way ``gap`` behind it, looking at it; forgets what lies before."""
+        left, after = self._settings.gap, leader_in_map
+        for number in range(len(self._way) - 1, -1, -1):
+            here = self._way[number]
+            left -= here.distance_to(after)
+            after = here
+            if left <= 0.0:
+                del self._way[:number]
+                return _facing(here, leader_in_map)
+        return None
+
+
+def _on_the_line(leader_in_map: Pose2, follower_in_map: Pose2, gap: float) -> Pose2:
+    """Between the two, ``gap`` from the leader, when that has stood still, or has turned round."""
+    bearing = math.atan2(follower_in_map.y - leader_in_map.y, follower_in_map.x - leader_in_map.x)
+    there = Pose2(leader_in_map.x + gap * math.cos(bearing), leader_in_map.y + gap * math.sin(bearing))
+    return _facing(there, leader_in_map)
+
+
+def _facing(place: Pose2, other: Pose2) -> Pose2:
+    return Pose2(place.x, place.y, math.atan2(other.y - place.y, other.x - place.x))

@@ -1,0 +1,67 @@
+"""The node ``follow_me``: asks tf where both robots are, and sends goals to the follower's move_base."""
+
+import threading
+
+import rospy
+from geometry_msgs.msg import PoseStamped
+
+from follow_me.config import NodeSettings
+from follow_me.follower import Follower
+from planar_ros.clock import sleep_until
+from planar_ros.messages import pose2_to_msg
+from planar_ros.parameters import read_settings
+from planar_ros.shell import run
+from planar_ros.transforms import Transforms
+from planar_ros.waiting import Waiting
+
+
+class FollowMe:
+    """Sends goals for as long as it lives; without transforms it waits, and says for which."""
+
+    def __init__(self):
+        self._settings = read_settings(NodeSettings)
+        self._follower = Follower(self._settings)
+        self._transforms = Transforms()
+        self._goals = rospy.Publisher("move_base_simple/goal", PoseStamped, queue_size=1)
+        frames = (self._settings.leader_frame, self._settings.base_frame)
+        Waiting(
+            {
+                f"a listener to {self._goals.resolved_name}": self._is_heard,
+                **{
+                    f"the transform {self._settings.map_frame} -> {frame}": lambda frame=frame: (
+                        self._in_map(frame) is not None
+                    )
+                    for frame in frames
+                },
+            }
+        )
+        threading.Thread(target=self._work, daemon=True).start()
+
+    def _work(self):
+        try:
+            while not rospy.is_shutdown():
+                sleep_until(rospy.Time.now() + rospy.Duration(self._settings.goal_period))
+                self._follow()
+        except rospy.ROSInterruptException:
+            return
+
+    def _follow(self):
+        leader, follower = self._in_map(self._settings.leader_frame), self._in_map(self._settings.base_frame)
+        if leader is None or follower is None or not self._is_heard():
+            return
+        goal = self._follower.goal(leader, follower)
+        if goal is not None:
+            message = PoseStamped()
+            message.header.stamp, message.header.frame_id = rospy.Time.now(), self._settings.map_frame
+            message.pose = pose2_to_msg(goal)
+            self._goals.publish(message)
+
+    def _in_map(self, frame):
+        return self._transforms.lookup(self._settings.map_frame, frame)
+
+    def _is_heard(self):
+        return self._goals.get_num_connections() > 0
+
+
+def main():
+    run("follow_me", FollowMe)

@@ -1,0 +1,61 @@
+"""A follower stays behind its leader, on the leader's own way."""
+
+import math
+from dataclasses import fields
+from pathlib import Path
+
+import pytest
+import yaml
+
+from follow_me import Follower, FollowSettings
+from follow_me.config import NodeSettings
+from planar import Pose2
+
+GAP = 0.8
+BEHIND = Pose2(-1.0, 0.0, 0.0)
+
+
+def follower():
+    return Follower(FollowSettings(gap=GAP))
+
+
+def test_a_leader_that_is_near_is_not_pursued():
+    assert follower().goal(Pose2(), Pose2(-0.5, 0.0, 0.0)) is None
+
+
+def test_a_leader_that_stands_is_approached_in_a_line_up_to_the_gap():
+    goal = follower().goal(Pose2(3.0, 0.0, 2.0), Pose2(1.0, 0.0, 0.0))
+    assert (goal.x, goal.y, goal.yaw) == pytest.approx((3.0 - GAP, 0.0, 0.0))
+
+
+def test_the_goal_lies_on_the_leaders_way_behind_it_and_looks_at_it():
+    guide = follower()
+    for step in range(61):  # 3 m straight on, then 3 m to the left
+        guide.goal(Pose2(0.05 * step, 0.0, 0.0), BEHIND)
+    last = None
+    for step in range(1, 61):
+        last = guide.goal(Pose2(3.0, 0.05 * step, math.pi / 2), BEHIND) or last
+    assert last.x == pytest.approx(3.0) and last.yaw == pytest.approx(math.pi / 2)
+    assert 3.0 - last.y == pytest.approx(GAP, abs=FollowSettings().goal_shift + 0.1)
+
+
+def test_a_goal_is_given_anew_only_when_it_has_moved():
+    guide = follower()
+    assert guide.goal(Pose2(3.0, 0.0, 0.0), BEHIND) is not None
+    assert guide.goal(Pose2(3.01, 0.0, 0.0), BEHIND) is None
+    assert guide.goal(Pose2(3.5, 0.0, 0.0), BEHIND) is not None
+
+
+def test_a_leader_that_turns_round_does_not_call_the_follower_upon_itself():
+    guide = follower()
+    for step in range(20):
+        guide.goal(Pose2(0.1 * step, 0.0, 0.0), BEHIND)
+    for step in range(20):
+        leader = Pose2(2.0 - 0.1 * step, 0.0, math.pi)
+        goal = guide.goal(leader, BEHIND)
+        assert goal is None or goal.distance_to(leader) > 0.5 * GAP
+
+
+def test_the_yaml_documents_every_parameter_with_its_default():
+    path = Path(__file__).resolve().parents[1] / "config" / "follow_me.yaml"
+    assert yaml.safe_load(path.read_text()) == {one.name: one.default for one in fields(NodeSettings)}

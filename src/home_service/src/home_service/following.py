@@ -1,0 +1,66 @@
+"""Watches one robot follow another, by ground truth."""
+
+import threading
+from typing import Any, Dict, List, Optional
+
+import rospy
+from nav_msgs.msg import Odometry
+from std_msgs.msg import String
+
+from planar import Pose2
+from planar_ros.messages import pose2_from_msg
+
+# A follower is with its leader within this distance, metres, and must be for this share of the time.
+WITH_LEADER, REQUIRED_SHARE = 1.5, 0.9
+
+
+class FollowWatch:
+    """How far the robot below ``namespace`` truly is from the one without, at each message of its truth."""
+
+    def __init__(self, namespace: str):
+        self.collisions: List[str] = []
+        self._leader: Optional[Pose2] = None
+        self._seen, self._near, self._farthest = 0, 0, 0.0
+        self._lock = threading.Lock()
+        rospy.Subscriber("base_pose_ground_truth", Odometry, self._see_leader, queue_size=50)
+        rospy.Subscriber(f"{namespace}/base_pose_ground_truth", Odometry, self._see_follower, queue_size=50)
+        rospy.Subscriber(f"{namespace}/contacts", String, self._see_contacts, queue_size=50)
+
+    @property
+    def share(self) -> float:
+        """Of the time, in which the follower was with its leader."""
+        return self._near / max(self._seen, 1)
+
+    @property
+    def complaint(self) -> Optional[str]:
+        """Why this was no following; None if it was."""
+        if self.collisions:
+            return f"the follower collided with {', '.join(sorted(set(self.collisions)))}"
+        return None if self.share >= REQUIRED_SHARE else f"{self.praise} only"
+
+    @property
+    def praise(self) -> str:
+        return f"the follower was within {WITH_LEADER} m for {100.0 * self.share:.0f} % of the time"
+
+    def findings(self) -> Dict[str, Any]:
+        """What belongs into result.json; metres."""
+        return {
+            "follower_share_near": round(self.share, 4),
+            "follower_farthest": round(self._farthest, 3),
+            "follower_collisions": self.collisions,
+        }
+
+    def _see_leader(self, message):
+        self._leader = pose2_from_msg(message.pose.pose)
+
+    def _see_follower(self, message):
+        if self._leader is None:
+            return
+        distance = pose2_from_msg(message.pose.pose).distance_to(self._leader)
+        with self._lock:
+            self._seen += 1
+            self._near += distance <= WITH_LEADER
+            self._farthest = max(self._farthest, distance)
+
+    def _see_contacts(self, message):
+        self.collisions += message.data.splitlines()

@@ -1,0 +1,101 @@
+"""Two hosts with a cable between them: network namespaces of this machine. Needs root."""
+
+import ctypes
+import os
+import signal
+import subprocess
+import uuid
+from pathlib import Path
+from typing import List
+
+CLONE_NEWNET = 0x40000000
+MASTER_PORT = 11311
+
+
+class Host:
+    """A network namespace with one address, ``address``, on its end of a cable."""
+
+    def __init__(self, name: str, address: str):
+        self.name, self.address = name, address
+        self._processes: List[subprocess.Popen] = []
+
+    def environment(self, master: "Host") -> dict:
+        """What ROS needs to know on this host."""
+        return {
+            **os.environ,
+            "ROS_MASTER_URI": f"http://{master.address}:{MASTER_PORT}",
+            "ROS_IP": self.address,
+        }
+
+    def start(self, master: "Host", *command: str) -> subprocess.Popen:
+        """Starts a program on this host."""
+        process = subprocess.Popen(
+            ["ip", "netns", "exec", self.name, *command], env=self.environment(master), start_new_session=True
+        )
+        self._processes.append(process)
+        return process
+
+    def stop_all(self) -> None:
+        """Ends what was started, the last first."""
+        for process in reversed(self._processes):
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT)
+                try:
+                    process.wait(20.0)
+                except subprocess.TimeoutExpired:
+                    os.killpg(process.pid, signal.SIGKILL)
+                    process.wait()
+
+    def enter(self) -> None:
+        """Puts this process onto this host, with all threads that it starts from now on."""
+        with Path("/var/run/netns", self.name).open("rb") as namespace:
+            if ctypes.CDLL(None, use_errno=True).setns(namespace.fileno(), CLONE_NEWNET) != 0:
+                raise OSError(ctypes.get_errno(), f"cannot enter {self.name}")
+
+
+class Cable:
+    """Two hosts that reach each other; a context that takes them away in the end."""
+
+    def __init__(self):
+        number = uuid.uuid4().hex[:6]
+        self.robot = Host(f"robot{number}", "10.77.0.1")
+        self.desk = Host(f"desk{number}", "10.77.0.2")
+
+    def __enter__(self) -> "Cable":
+        for host in (self.robot, self.desk):
+            _ip("netns", "add", host.name)
+        _ip(
+            "link",
+            "add",
+            "cable",
+            "netns",
+            self.robot.name,
+            "type",
+            "veth",
+            "peer",
+            "name",
+            "cable",
+            "netns",
+            self.desk.name,
+        )
+        for host in (self.robot, self.desk):
+            _ip("-n", host.name, "addr", "add", f"{host.address}/24", "dev", "cable")
+            for device in ("lo", "cable"):
+                _ip("-n", host.name, "link", "set", device, "up")
+        return self
+
+    def __exit__(self, *_) -> None:
+        for host in (self.desk, self.robot):
+            host.stop_all()
+            _ip("netns", "delete", host.name)
+
+    def cut(self) -> None:
+        """Nothing comes through any more."""
+        _ip("-n", self.desk.name, "link", "set", "cable", "down")
+
+    def mend(self) -> None:
+        _ip("-n", self.desk.name, "link", "set", "cable", "up")
+
+
+def _ip(*arguments: str) -> None:
+    subprocess.run(["ip", *arguments], check=True)
