@@ -12,6 +12,8 @@
 #   --map FILE       map of that world (default: map/home.yaml)
 #   --robot NAME     robot profile of sim_bridge (default: turtlebot_lidar)
 #   --seed N         seed of every noise and every particle (default: 0)
+#   --record inputs|all
+#                    record bags: scans, odometry and truth, or everything (docs/bags.md)
 #   --timeout N      the run fails after N seconds of wall time (default: 900)
 #   --gif            also leave run.gif, the run as an animation
 #   --output FOLDER  where the run folder is made (default: ./runs)

@@ -29,7 +29,7 @@ FIRST_PORT = 11390
 CLOCK_RATE = 50
 FIRST_SEED = 300
 # How long, wall seconds, a process may take to start, and what a player may take beyond the bag's length.
-DEADLINE_SECONDS = 60.0
+DEADLINE_SECONDS = 180.0
 # Time for the player and the node to find each other before the bag starts, seconds.
 CONNECTION_SECONDS = 3
 

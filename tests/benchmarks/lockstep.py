@@ -32,7 +32,7 @@ TOLERANCE = 0.1
 # How long, wall seconds, a node may take to answer a scan before the scan counts as unanswered.
 ANSWER_SECONDS = 3.0
 # A node may take this long to start, wall seconds.
-START_SECONDS = 30.0
+START_SECONDS = 120.0
 
 
 class Master:
