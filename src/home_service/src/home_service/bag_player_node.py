@@ -42,7 +42,7 @@ class BagPlayer:
         self._recording = Recording(_paths(rospy.get_param("~bags")))
         self._has_all = bool(rospy.get_param("~all", False))
         speed, wait_for = float(rospy.get_param("~speed", 1.0)), rospy.get_param("~wait_for", "").split()
-        self._pacer = Pacer(speed, wait_for, period=AHEAD_SECONDS)
+        self._pacer = Pacer(speed, wait_for, shortest_period=AHEAD_SECONDS)
         self._changed = threading.Condition()
         self._state = rospy.Publisher("~state", String, queue_size=10, latch=True)
         self._clock = rospy.Publisher("/clock", Clock, queue_size=10, tcp_nodelay=True)

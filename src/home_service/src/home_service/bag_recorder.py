@@ -1,6 +1,7 @@
 """Records a run into bags, by rosbag's recorder as a process of its own."""
 
 import ctypes
+import shutil
 import signal
 import subprocess
 from pathlib import Path
@@ -18,6 +19,9 @@ PROFILES = {
 SPLIT_MEGABYTES = 128
 MOST_SPLITS = 8
 CLOSE_SECONDS = 5.0
+FULL_BYTES = 1 << 20
+PAUSED = "Disabling recording"
+"""What the recorder says when the disk is nearly full."""
 PR_SET_PDEATHSIG = 1
 
 
@@ -47,24 +51,22 @@ class BagRecorder:
 
     def close(self) -> List[str]:
         """Ends the recording; returns what is missing of it."""
-        missing = (
-            [] if self._process.poll() is None else [f"bag: the recorder ended early{self._last_words()}"]
-        )
+        has_ended = self._process.poll() is not None
+        missing = [f"bag: the recorder ended early: {self._cause()}"] if has_ended else []
         self._process.send_signal(signal.SIGINT)
         try:
             self._process.wait(CLOSE_SECONDS)
         except subprocess.TimeoutExpired:
             self._process.kill()
         missing += [f"bag: {path.name} was not closed" for path in sorted(self._folder.glob("*.bag.active"))]
-        if not missing and self._last_words("space"):
-            missing.append(f"bag: {self._last_words('space')}")
+        if PAUSED in (self._folder / "record.log").read_text(encoding="utf-8", errors="replace"):
+            missing.append("bag: there was too little space on the disk to record everything")
         return missing
 
-    def _last_words(self, about: str = "") -> str:
-        """The last line of the recorder's log, of those ``about`` something."""
-        text = (self._folder / "record.log").read_text(encoding="utf-8", errors="replace")
-        lines = [line for line in text.splitlines() if about in line]
-        return f": {lines[-1].strip()}" if lines else ""
+    def _cause(self) -> str:
+        if shutil.disk_usage(self._folder).free < FULL_BYTES:
+            return "the disk is full"
+        return f"exit code {self._process.returncode}, see bag/record.log"
 
 
 def _end_with_parent() -> None:

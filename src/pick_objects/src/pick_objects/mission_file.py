@@ -1,6 +1,7 @@
 """Mission files: YAML, of which every mistake is told with file, line and key before anything moves."""
 
 from dataclasses import fields
+from pathlib import Path
 from typing import Dict, List, Mapping, Optional, Set, Tuple
 
 from pick_objects.config import ErrandSettings
@@ -45,7 +46,7 @@ def _mission(
     grid: Optional[OccupancyGrid],
 ) -> Mission:
     table.allow_only("name", "places", "objects", "settings", "deliveries")
-    name = table.text("name", source)
+    name = table.text("name", Path(source).stem)
     places = {**known_places, **_places(table, grid)}
     things = _things(table)
     settings = _settings(table, defaults)

@@ -34,9 +34,9 @@ class PickObjects:
     def __init__(self):
         self._settings = read_settings(NodeSettings, ignore=ErrandSettings.__dataclass_fields__)
         self._defaults = read_settings(ErrandSettings, ignore=NodeSettings.__dataclass_fields__)
+        self._map: Optional[OccupancyGrid] = None
         self._zones = load_places(self._settings.zones_file)
         self._mission = self._read_mission()
-        self._map: Optional[OccupancyGrid] = None
         self._errand: Optional[Errand] = None
         self._lock = threading.Lock()
         self._driver = Driver(self._settings.frame_id)
@@ -69,8 +69,7 @@ class PickObjects:
     def _read_mission(self) -> Optional[Mission]:
         settings = self._settings
         if settings.mission_file:
-            grid = getattr(self, "_map", None)
-            return load_mission(settings.mission_file, self._zones, self._defaults, grid)
+            return load_mission(settings.mission_file, self._zones, self._defaults, self._map)
         if settings.serve:
             return None
         return errand_mission(*places_of_errand(settings.zones_file), self._defaults)

@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+"""A recorded run, localized anew from its bag, is as good as it was; a killed run leaves a closed bag."""
+
+import json
+import os
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import psutil
+import rosbag
+import rostest
+
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+RUN_SECONDS, CLOSE_SECONDS = 140.0, 15.0
+# Live and replayed errors are a few millimetres each, on so short a way.
+LARGEST_RMSE = 0.02
+
+
+class BagsTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def test_a_recorded_run_is_localized_anew_as_well(self):
+        live = self._run("test_navigation.sh", "--goals", "1.5 0.3 0", "--record", "inputs", "--seed", "106")
+        bag = self.folder / "live/bag/inputs_0.bag"
+        with rosbag.Bag(str(bag)) as recorded:
+            self.assertGreater(recorded.get_message_count("/scan"), 20)
+        before = bag.read_bytes()
+        replayed = self._run("replay.sh", str(self.folder / "live"))
+        print(f"rmse live {live['localization_error']}, replayed {replayed['localization_error']}")
+        self.assertEqual(replayed["missing"], [])
+        self.assertEqual(bag.read_bytes(), before)
+        for result in (live, replayed):
+            self.assertLess(result["localization_error"]["rmse"], LARGEST_RMSE)
+        self.assertTrue((self.folder / "replay/trajectory_estimated.tum").stat().st_size)
+
+    def test_the_bag_is_closed_when_the_run_is_killed(self):
+        run = subprocess.Popen(
+            [str(SCRIPTS / "launch.sh"), "--record", "all", "--output", str(self.folder)],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+        self._wait("a bag", lambda: list(self.folder.glob("*/bag/*.bag.active")), RUN_SECONDS)
+        time.sleep(2.0)
+        children = psutil.Process(run.pid).children(recursive=True)
+        os.kill(run.pid, signal.SIGKILL)
+        run.wait()
+        self._wait("the bag's end", lambda: list(self.folder.glob("*/bag/*.bag")), CLOSE_SECONDS)
+        for process in children:
+            if process.is_running():
+                process.terminate()
+        psutil.wait_procs(children, timeout=CLOSE_SECONDS)
+        with rosbag.Bag(str(next(self.folder.glob("*/bag/*.bag")))) as bag:
+            print(f"{bag.get_message_count()} messages")
+            self.assertGreater(bag.get_message_count("/scan"), 0)
+
+    def _run(self, script, *arguments):
+        """Runs a script to its success; returns its result. Its folder becomes ``live`` or ``replay``."""
+        command = [str(SCRIPTS / script), *arguments, "--output", str(self.folder)]
+        known = set(self.folder.iterdir())
+        done = subprocess.run(
+            command,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=RUN_SECONDS,
+            check=False,
+        )
+        self.assertEqual(done.returncode, 0, done.stdout)
+        made = next(path for path in self.folder.iterdir() if path not in known)
+        made = made.rename(self.folder / ("replay" if script == "replay.sh" else "live"))
+        return json.loads((made / "result.json").read_text())
+
+    def _wait(self, what, is_there, seconds):
+        deadline = time.monotonic() + seconds
+        while not is_there():
+            self.assertLess(time.monotonic(), deadline, f"no {what}")
+            time.sleep(0.1)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("home_service_tests", "bags", BagsTest)
