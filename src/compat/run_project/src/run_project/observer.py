@@ -13,6 +13,7 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 from visualization_msgs.msg import Marker, MarkerArray
 
+from run_project.rviz_topics import ALWAYS
 from run_project.verdict import Ledger
 
 # seq and stamp at the start of a message with a header: what changes when nothing else does.
@@ -36,6 +37,11 @@ class Observer:
             rospy.Subscriber("/contacts", String, self._see_contacts, queue_size=50),
             rospy.Subscriber("/base_pose_ground_truth", Odometry, self._see_truth, queue_size=50),
         ]
+        # From the start: what is published as soon as somebody has subscribed would be missed later.
+        self._follow_markers(ALWAYS)
+        self._follow_goals("/move_base/goal")
+        self._follow_results("/move_base/result")
+        self._seen.update((ALWAYS, "/move_base/goal", "/move_base/result"))
 
     def look_around(self) -> None:
         """Subscribes to the topics of interest that are new on the master."""
@@ -52,18 +58,17 @@ class Observer:
             is_theirs = follow != self._follow_markers or topic in of_project
             if follow is not None and is_theirs and topic not in self._seen:
                 self._seen.add(topic)
-                follow(topic, kind)
+                follow(topic)
 
-    def _follow_goals(self, topic, _kind):
+    def _follow_goals(self, topic):
         self._subscribe(topic, MoveBaseActionGoal, self._see_goal)
         self._subscribe(topic.rsplit("/", 1)[0] + "/status", GoalStatusArray, self._see_status)
 
-    def _follow_results(self, topic, _kind):
+    def _follow_results(self, topic):
         self._subscribe(topic, MoveBaseActionResult, self._see_result)
 
-    def _follow_markers(self, topic, kind):
-        is_array = kind.endswith("Array")
-        self._subscribe(topic, rospy.AnyMsg, lambda raw: self._see_raw_marker(topic, is_array, raw._buff))
+    def _follow_markers(self, topic):
+        self._subscribe(topic, rospy.AnyMsg, lambda raw: self._see_raw_marker(topic, raw))
 
     def _subscribe(self, topic, kind, callback):
         self._subscribers.append(rospy.Subscriber(topic, kind, callback, queue_size=100, tcp_nodelay=True))
@@ -88,8 +93,9 @@ class Observer:
         name, number, text = status.goal_id.id, status.status, status.text
         self._note(lambda: self.ledger.see_status(self.simulated_time, name, number, text))
 
-    def _see_raw_marker(self, topic: str, is_array: bool, data: bytes):
+    def _see_raw_marker(self, topic: str, raw: rospy.AnyMsg):
         """Some publish the same marker a thousand times a second: only what differs is looked into."""
+        data, is_array = raw._buff, raw._connection_header["type"].endswith("Array")
         content = data if is_array else data[CHANGING_BYTES:]
         if self._latest.get(topic) == content:
             return

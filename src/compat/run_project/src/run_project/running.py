@@ -121,9 +121,11 @@ class ProjectRun:
             return True
         if nodes_are_gone and script_is_over:
             return quiet_wall > (SETTLED_SECONDS if ledger.goals or ledger.markers else QUIET_SECONDS)
-        has_story = ledger.is_quiet or (ledger.markers and not ledger.goals)
         quiet_simulated = self.observer.simulated_time - ledger.latest_news
-        return has_story and quiet_wall > QUIET_SECONDS and quiet_simulated > QUIET_SIMULATED
+        if ledger.goals:
+            return ledger.is_quiet and quiet_wall > QUIET_SECONDS and quiet_simulated > QUIET_SIMULATED
+        # A goal may still come: bringing up localization and navigation takes a while on a busy machine.
+        return bool(ledger.markers) and quiet_wall > STALLED_SECONDS
 
     def _tell(self, news: str) -> None:
         self._news_wall = time.monotonic()
