@@ -41,13 +41,16 @@ class BagsTest(unittest.TestCase):
         self.assertTrue((self.folder / "replay/trajectory_estimated.tum").stat().st_size)
 
     def test_the_bag_is_closed_when_the_run_is_killed(self):
-        run = subprocess.Popen(
-            [str(SCRIPTS / "launch.sh"), "--record", "all", "--output", str(self.folder)],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            start_new_session=True,
-        )
-        self._wait("a bag", lambda: list(self.folder.glob("*/bag/*.bag.active")), RUN_SECONDS)
+        output = self.folder / "output.txt"
+        with output.open("w") as stream:
+            run = subprocess.Popen(
+                [str(SCRIPTS / "launch.sh"), "--record", "all", "--output", str(self.folder)],
+                stdin=subprocess.DEVNULL,
+                stdout=stream,
+                start_new_session=True,
+            )
+        self._wait("simulation", lambda: "the home is open" in output.read_text(), RUN_SECONDS)
+        self._wait("bag", lambda: list(self.folder.glob("*/bag/*.bag.active")), CLOSE_SECONDS)
         time.sleep(2.0)
         children = psutil.Process(run.pid).children(recursive=True)
         os.kill(run.pid, signal.SIGKILL)
@@ -59,7 +62,7 @@ class BagsTest(unittest.TestCase):
         psutil.wait_procs(children, timeout=CLOSE_SECONDS)
         with rosbag.Bag(str(next(self.folder.glob("*/bag/*.bag")))) as bag:
             print(f"{bag.get_message_count()} messages")
-            self.assertGreater(bag.get_message_count("/scan"), 0)
+            self.assertGreater(bag.get_message_count("/base_pose_ground_truth"), 0)
 
     def _run(self, script, *arguments):
         """Runs a script to its success; returns its result. Its folder becomes ``live`` or ``replay``."""
