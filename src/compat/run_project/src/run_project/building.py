@@ -18,8 +18,12 @@ STAND_INS = PACKAGE_FOLDER / "stand_ins"
 FRESH_CLONE = PACKAGE_FOLDER / "cmake" / "fresh_clone.cmake"
 # A bound on how many packages may turn out one after the other not to be configurable.
 CONFIGURATIONS = 20
+UNCONFIGURED = "Configuring incomplete"
 
-_BROKEN_CONFIGURATION = re.compile(r"CMake Error at (\S+?)/CMakeLists\.txt:\d+[^\n]*\n\s*([^\n]+)")
+# From one error of CMake to its reason, and to the first of a project's files in its call stack.
+_CMAKE_ERROR = re.compile(r"^CMake Error at ", re.MULTILINE)
+_CMAKE_REASON = re.compile(r"\n\s*([^\n]+)")
+_CMAKE_PLACE = re.compile(r"(\S+?)/CMakeLists\.txt:\d+")
 _MISSING_CONFIG = re.compile(r'provided by\s+"(\S+?)"')
 _BROKEN_SOURCE = re.compile(r"^(/\S+?):\d+(?::\d+)?: (?:fatal )?error: (.*)", re.MULTILINE)
 _BROKEN_LINK = re.compile(r"CMakeFiles/(\S+?)\.dir/\S+: (?:in function .*?: )?(undefined reference .*)")
@@ -73,12 +77,12 @@ def build(workspace: Workspace, log: Path, say: Callable[[str], None]) -> None:
         _ignore(workspace, name, reason, say)
     for _ in range(CONFIGURATIONS):
         output = _catkin_make(workspace, log)
-        broken = _broken_configurations(workspace, output)
+        broken = broken_configurations(workspace, output)
         if not broken:
             break
         for name, reason in broken.items():
             _ignore(workspace, name, reason, say)
-    if not (workspace.folder / "devel" / "setup.bash").exists():
+    if UNCONFIGURED in output or not (workspace.folder / "devel" / "setup.bash").exists():
         raise BuildError(f"the project's workspace could not be configured, see {log}")
     if _failed(output):
         output = _catkin_make(workspace, log)  # messages may be generated later than their users are compiled
@@ -144,14 +148,17 @@ def _failed(output: str) -> bool:
     return bool(re.search(r"^make.*\*\*\*|Invoking .* failed", output, re.MULTILINE))
 
 
-def _broken_configurations(workspace: Workspace, output: str) -> Dict[str, str]:
-    if "Configuring incomplete" not in output:
+def broken_configurations(workspace: Workspace, output: str) -> Dict[str, str]:
+    if UNCONFIGURED not in output:
         return {}
     broken: Dict[str, str] = {}
-    for match in _BROKEN_CONFIGURATION.finditer(output):
-        missing = _MISSING_CONFIG.search(output, match.start())
-        reason = f"needs {missing.group(1)}, which is not there" if missing else match.group(2).strip()
-        for name in _packages_at(workspace, match.group(1)) - set(workspace.missing):
+    for error in _CMAKE_ERROR.split(output)[1:]:
+        place, said, missing = (p.search(error) for p in (_CMAKE_PLACE, _CMAKE_REASON, _MISSING_CONFIG))
+        if missing:
+            reason = f"needs {missing.group(1)}, which is not there"
+        else:
+            reason = said.group(1) if said else "cannot be configured"
+        for name in _packages_at(workspace, place.group(1)) - set(workspace.missing) if place else ():
             broken.setdefault(name, reason)
     return broken
 
