@@ -7,15 +7,16 @@ from rich.table import Table
 
 from home_service.run_folder import write_result
 from planar import write_atomically
-from run_report import write_report
+from run_report import summary, write_report
 from run_report.comparison import compared_figures, comparison_html, load_run
 
 
 def report(options: Namespace) -> int:
     """Makes the report of a run anew from what was recorded of it."""
     run = load_run(options.run)
-    missing = write_report(run.folder, {**run.result, "missing": []}, run.record, options.gif)
-    write_result(run.folder, {**run.result, "missing": missing})
+    result = {**run.result, **summary(run.record), "missing": []}
+    missing = write_report(run.folder, result, run.record, options.gif)
+    write_result(run.folder, {**result, "missing": missing})
     for gap in missing:
         print(f"warning: missing: {gap}")
     print(f"report in {run.folder / 'report.html'}")
