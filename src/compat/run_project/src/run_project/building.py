@@ -104,7 +104,8 @@ def environment(workspace: Workspace) -> Dict[str, str]:
 
 def _is_there(package: str) -> bool:
     prefixes = [*os.environ.get("CMAKE_PREFIX_PATH", "").split(":"), "/usr"]
-    return any((Path(prefix) / "share" / package / "cmake").is_dir() for prefix in prefixes if prefix)
+    folders = (f"share/{package}/cmake", f"lib/cmake/{package}", f"lib/*/cmake/{package}")
+    return any(any(Path(prefix).glob(folder)) for prefix in prefixes if prefix for folder in folders)
 
 
 def _ignore(workspace: Workspace, name: str, reason: str, say: Callable[[str], None]) -> None:
