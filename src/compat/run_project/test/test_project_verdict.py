@@ -37,6 +37,14 @@ def test_a_project_that_did_nothing_failed():
     assert not judge(Ledger()).success
 
 
+def test_markers_alone_are_enough_unless_the_script_is_an_errand():
+    ledger = Ledger()
+    ledger.see_marker(0.0, ("shapes", 0), (1.0, 2.0))
+    assert judge(ledger).success
+    assert judge(ledger, is_errand=True).reason == "no goal sent; markers: shown at (1.00, 2.00)"
+    assert not judge(ledger, is_errand=True).success
+
+
 def test_a_status_is_told_once():
     ledger = Ledger()
     assert ledger.see_status(1.0, "a", ACTIVE, "") == "goal 1 active"

@@ -118,10 +118,10 @@ class Verdict:
     reason: str
 
 
-def judge(ledger: Ledger, failure: Optional[str] = None) -> Verdict:
+def judge(ledger: Ledger, failure: Optional[str] = None, is_errand: bool = False) -> Verdict:
     """Success if all goals that the project sent were reached; without goals, if it showed a marker.
 
-    ``failure``: why the run was cut short, if it was.
+    ``failure``: why the run was cut short, if it was. ``is_errand``: markers alone are not enough.
     """
     goals = list(ledger.goals.values())
     reached = sum(goal.status == "succeeded" for goal in goals)
@@ -137,9 +137,7 @@ def judge(ledger: Ledger, failure: Optional[str] = None) -> Verdict:
     story = f"markers: {', '.join(ledger.markers)}" if ledger.markers else "no marker shown"
     if goals:
         return Verdict(True, f"{reached} of {len(goals)} goals reached; {story}")
-    if ledger.markers:
-        return Verdict(True, f"no goal sent; {story}")
-    return Verdict(False, "the project sent no goal and showed no marker")
+    return Verdict(bool(ledger.markers) and not is_errand, f"no goal sent; {story}")
 
 
 def _at(place: Optional[Tuple[float, float]]) -> str:
