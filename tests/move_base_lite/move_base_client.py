@@ -66,6 +66,7 @@ class MoveBaseTestCase(unittest.TestCase):
         if self.has_active_goal():
             self.client.cancel_all_goals()
         self.wait_until(lambda: not self.has_active_goal())
+        self.odometry.wait()
         self.wait_until(lambda: abs(self.odometry.messages[-1].twist.twist.linear.x) < 0.01)
 
     def wait_until(self, is_so, seconds=30.0):

@@ -91,7 +91,10 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
         self.assert_stops_when_cancelled()
 
     def test_cancel_in_each_recovery(self):
+        # The wall is in the map as well, where no recovery clears it.
+        self.addCleanup(self.stage.show_map)
         self.stage_wall(True)
+        self.stage.show_map()
         started = Heard("move_base/recovery_status", RecoveryStatus)
         rospy.sleep(0.5)
         for number, name in enumerate(RECOVERIES):
