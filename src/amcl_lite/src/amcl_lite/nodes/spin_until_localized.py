@@ -43,6 +43,7 @@ class SpinUntilLocalized:
 
     def spin(self, timeout: float, turn_speed: float) -> str:
         """Returns where the robot is, in words. Raises NotLocalizedError after ``timeout``, ROS seconds."""
+        _wait_for_time()
         self._ask_for_global_localization()
         clock = _Clock()
         try:
@@ -106,6 +107,15 @@ class _Clock:
                 f"time has stood still for {PATIENCE_SECONDS:g} s: is the simulation paused?"
             )
         return now - self._start
+
+
+def _wait_for_time():
+    """A node that has just started knows no simulated time yet, and could not tell which poses are new."""
+    until = time.monotonic() + PATIENCE_SECONDS
+    while not rospy.get_time():
+        if rospy.is_shutdown() or time.monotonic() > until:
+            raise NotLocalizedError(f"no time came on /clock within {PATIENCE_SECONDS:g} s")
+        time.sleep(POLL_SECONDS)
 
 
 def _spreads(message) -> np.ndarray:
