@@ -1,12 +1,10 @@
 """The way in: parse, read what was named, run the command, answer with an exit code."""
 
-import os
-import signal
-import sys
 from typing import List, Optional
 
 from home_service.display import complain
 from home_service.errors import LaunchError, RunInterruptedError
+from home_service.interruption import leave, raise_when_interrupted
 from home_service.options import MAPPING_COMMANDS, REPORT_COMMANDS, ROS_COMMANDS, parse
 from planar import PlanarError
 
@@ -15,8 +13,7 @@ FAILURE, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
 def main(arguments: Optional[List[str]] = None) -> int:
     """Runs one command; returns its exit code: 0 success, 1 failure, 2 bad input, 130 interrupted."""
-    signal.signal(signal.SIGINT, _interrupt)
-    signal.signal(signal.SIGTERM, _interrupt)
+    raise_when_interrupted()
     try:
         options = parse(arguments)
         if options.command in REPORT_COMMANDS:
@@ -72,14 +69,5 @@ def read_inputs(options) -> None:
         options.loaded_mission = errand_mission(*places_of_errand(options.zones))
 
 
-def _interrupt(number, _frame):
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)
-    raise RunInterruptedError(signal.Signals(number).name)
-
-
 if __name__ == "__main__":
-    code = main()
-    sys.stdout.flush()
-    # Without waiting for threads of ROS that still listen to a master that is gone.
-    os._exit(code)
+    leave(main())

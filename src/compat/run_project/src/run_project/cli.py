@@ -4,7 +4,6 @@ import fcntl
 import hashlib
 import os
 import re
-import signal
 import sys
 import time
 from pathlib import Path
@@ -12,6 +11,7 @@ from typing import Dict, List, Optional
 
 from home_service.display import Display, complain
 from home_service.errors import LaunchError, RunInterruptedError
+from home_service.interruption import leave, raise_when_interrupted
 from home_service.run_folder import create_run_folder, write_result
 from home_service.versions import versions
 from planar import PlanarError
@@ -40,8 +40,7 @@ ERRAND = "home_service"
 
 def main(arguments: Optional[List[str]] = None) -> int:
     """Runs a project; returns the exit code: 0 success, 1 failure, 2 bad input, 130 interrupted."""
-    signal.signal(signal.SIGINT, _interrupt)
-    signal.signal(signal.SIGTERM, _interrupt)
+    raise_when_interrupted()
     try:
         return run(parse(sys.argv[1:] if arguments is None else arguments))
     except RunInterruptedError:
@@ -193,14 +192,5 @@ class _WorkFolder:
         self._lock.close()
 
 
-def _interrupt(number, _frame):
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)
-    raise RunInterruptedError(signal.Signals(number).name)
-
-
 if __name__ == "__main__":
-    code = main()
-    sys.stdout.flush()
-    # Without waiting for threads of ROS that still listen to a master that is gone.
-    os._exit(code)
+    leave(main())

@@ -1,5 +1,7 @@
 """Parameters of global and local planners."""
 
+from typing import Sequence
+
 from move_base_lite.control import ControllerSettings, DwaSettings, MppiSettings
 from move_base_lite.parameters.reader import Reader, below, renamed
 from move_base_lite.planning import PlannerSettings
@@ -60,11 +62,7 @@ _TRAJECTORY_DEFAULTS = {
 
 
 def controller_settings(reader: Reader, parameters) -> ControllerSettings:
-    planner = str(parameters.get("base_local_planner", LOCAL_PLANNERS[0]))
-    if planner not in LOCAL_PLANNERS:
-        reader.warnings.append(f"no local planner {planner} here, {LOCAL_PLANNERS[0]} takes its place")
-        planner = LOCAL_PLANNERS[0]
-    namespace = planner.rpartition("/")[2]
+    namespace = _planner_namespace(reader, parameters, "local", LOCAL_PLANNERS)
     values = dict(below(parameters, namespace))
     if "latch_xy_goal_tolerance" in parameters:
         values.setdefault("latch_xy_goal_tolerance", parameters["latch_xy_goal_tolerance"])
@@ -84,14 +82,19 @@ def controller_settings(reader: Reader, parameters) -> ControllerSettings:
 
 
 def planner_settings(reader: Reader, parameters) -> PlannerSettings:
-    planner = str(parameters.get("base_global_planner", GLOBAL_PLANNERS[0]))
-    if planner not in GLOBAL_PLANNERS:
-        reader.warnings.append(f"no global planner {planner} here, {GLOBAL_PLANNERS[0]} takes its place")
-        planner = GLOBAL_PLANNERS[0]
-    namespace = planner.rpartition("/")[2]
+    namespace = _planner_namespace(reader, parameters, "global", GLOBAL_PLANNERS)
     values = dict(below(parameters, namespace))
     if namespace == "GlobalPlanner":
         values = {"cost_factor": 3.0, "orientation_mode": 1, **values}
     if "use_dijkstra" in values:
         values["use_astar"] = not values.pop("use_dijkstra")
     return reader.read(PlannerSettings, values, namespace + "/", _PLANNER_IGNORED)
+
+
+def _planner_namespace(reader: Reader, parameters, kind: str, known: Sequence[str]) -> str:
+    """Where the parameters of the planner asked for stand; the first one known takes the place of others."""
+    planner = str(parameters.get(f"base_{kind}_planner", known[0]))
+    if planner not in known:
+        reader.warnings.append(f"no {kind} planner {planner} here, {known[0]} takes its place")
+        planner = known[0]
+    return planner.rpartition("/")[2]
