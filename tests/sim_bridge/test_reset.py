@@ -61,12 +61,14 @@ class TestReset(unittest.TestCase):
         time.sleep(0.1)
 
     def tell_initial_pose(self):
+        """Where the robot was a moment ago, as a person would click it: its goal goes on meanwhile."""
+        self.wait_until(self.initial_pose.get_num_connections, "amcl")
+        last = self.truth[-1]
         message = PoseWithCovarianceStamped()
-        message.header.frame_id = "map"
-        message.pose.pose.orientation.w = 1.0
+        message.header.stamp, message.header.frame_id = last.header.stamp, "map"
+        message.pose.pose = last.pose.pose
         message.pose.covariance[0] = message.pose.covariance[7] = 0.05
         message.pose.covariance[35] = 0.03
-        self.wait_until(self.initial_pose.get_num_connections, "amcl")
         self.initial_pose.publish(message)
 
     def assert_nodes_work(self):
