@@ -20,7 +20,9 @@ CMake Error at worlds/CMakeLists.txt:7 (find_package):
 
 def test_packages_that_cannot_be_configured_are_told_with_the_reason(tmp_path):
     packages = {name: tmp_path / "src" / name for name in ("maps", "worlds", "pick")}
-    broken = broken_configurations(Workspace(tmp_path, tmp_path / "src", packages), OUTPUT)
+    broken = broken_configurations(
+        Workspace(tmp_path, tmp_path / "src", packages, tmp_path / "pretended"), OUTPUT
+    )
     assert broken == {
         "maps": "Could NOT find Protobuf (missing: Protobuf_LIBRARIES)",
         "worlds": "needs gazebo, which is not there",

@@ -1,4 +1,4 @@
-from run_project.selection import left_out
+from run_project.selection import select
 
 COMPILED = "find_package(catkin REQUIRED COMPONENTS {0})\nadd_executable(x x.cpp)\n"
 
@@ -11,40 +11,53 @@ def package(folder, name, cmake, **files):
     return {name: folder / name}
 
 
-def choose(folders, stand_ins=(), there=("roscpp",)):
-    return left_out(folders, set(stand_ins), there.__contains__)
+def stand_in(folder, name, *parts):
+    for part in parts:
+        (folder / "ours" / name / part).mkdir(parents=True)
+    return {name: folder / "ours" / name}
+
+
+def choose(folders, stand_ins=None, there=("roscpp",)):
+    return select(folders, stand_ins or {}, there.__contains__)
 
 
 def test_the_authors_own_packages_are_built(tmp_path):
-    assert choose(package(tmp_path, "pick_objects", COMPILED.format("roscpp"))) == {}
+    selection = choose(package(tmp_path, "pick_objects", COMPILED.format("roscpp")))
+    assert (selection.replaced, selection.unbuilt, selection.absent) == ({}, {}, {})
 
 
-def test_compiled_packages_of_that_time_are_left_out(tmp_path):
-    assert (
-        "do not build" in choose(package(tmp_path, "kobuki_node", COMPILED.format("roscpp")))["kobuki_node"]
-    )
+def test_compiled_packages_of_that_time_are_not_built(tmp_path):
+    selection = choose(package(tmp_path, "kobuki_node", COMPILED.format("roscpp capabilities")))
+    assert "do not build" in selection.unbuilt["kobuki_node"]
+    assert selection.absent == {}
 
 
-def test_a_launch_package_wins_over_ours_and_a_compiled_one_does_not(tmp_path):
+def test_a_launch_package_wins_over_ours_and_programs_of_that_time_do_not(tmp_path):
     folders = package(tmp_path, "turtlebot_gazebo", "find_package(catkin REQUIRED)\n")
     folders.update(package(tmp_path, "gmapping", COMPILED.format("roscpp")))
-    assert sorted(choose(folders, stand_ins=("turtlebot_gazebo", "gmapping"))) == ["gmapping"]
+    folders.update(package(tmp_path, "turtlebot_navigation", COMPILED.format("roscpp")))
+    ours = {
+        **stand_in(tmp_path, "turtlebot_gazebo", "launch"),
+        **stand_in(tmp_path, "turtlebot_navigation", "launch"),
+        **stand_in(tmp_path, "gmapping", "nodes", "launch"),
+    }
+    selection = choose(folders, ours)
+    assert sorted(selection.replaced) == ["gmapping"]
+    assert sorted(selection.unbuilt) == ["turtlebot_navigation"]
 
 
-def test_what_needs_a_package_that_is_not_there_is_left_out_with_its_users(tmp_path):
+def test_what_asks_for_a_package_that_is_nowhere_is_built_without_it(tmp_path):
     folders = package(tmp_path, "low", COMPILED.format("roscpp capabilities"))
     folders.update(package(tmp_path, "high", COMPILED.format("low")))
-    reasons = choose(folders)
-    assert sorted(reasons) == ["high", "low"]
-    assert "needs capabilities" in reasons["low"]
+    assert choose(folders).absent == {"capabilities": ["low"]}
 
 
 def test_a_commented_dependency_is_none(tmp_path):
-    assert choose(package(tmp_path, "a", COMPILED.format("roscpp\n# capabilities\n"))) == {}
+    assert choose(package(tmp_path, "a", COMPILED.format("roscpp\n# capabilities\n"))).absent == {}
 
 
 def test_a_robot_that_needs_parts_that_are_not_there_is_replaced_by_ours(tmp_path):
     folders = package(tmp_path, "turtlebot_description", "", robot="$(find kobuki_description)/urdf")
-    reasons = choose(folders, stand_ins=("turtlebot_description",))
-    assert "kobuki_description" in reasons["turtlebot_description"]
-    assert choose(folders) == {}
+    ours = stand_in(tmp_path, "turtlebot_description", "robots")
+    assert "kobuki_description" in choose(folders, ours).replaced["turtlebot_description"]
+    assert choose(folders).replaced == {}

@@ -11,7 +11,7 @@ from typing import Callable, Dict, Set
 from run_project.errors import BuildError
 from run_project.layout import LEFTOVERS, Checkout
 from run_project.placement import Placement
-from run_project.selection import left_out
+from run_project.selection import select
 
 PACKAGE_FOLDER = Path(__file__).resolve().parents[2]
 STAND_INS = PACKAGE_FOLDER / "stand_ins"
@@ -31,11 +31,17 @@ _BROKEN_LINK = re.compile(r"CMakeFiles/(\S+?)\.dir/\S+: (?:in function .*?: )?(u
 
 @dataclass
 class Workspace:
-    """A project's copy. ``missing``: packages left out or not built, with the reason."""
+    """A project's copy.
+
+    ``pretended``: a folder for packages that are not there. ``unbuilt``: packages whose files alone are used.
+    ``missing``: packages that are not as their author meant them, with the reason.
+    """
 
     folder: Path
     checkout: Path
     packages: Dict[str, Path]
+    pretended: Path
+    unbuilt: Set[str] = field(default_factory=set)
     missing: Dict[str, str] = field(default_factory=dict)
 
 
@@ -62,26 +68,30 @@ def copy_checkout(checkout: Checkout, placement: Placement, work: Path) -> Works
         (workspace / name).symlink_to(work / name)
     (workspace / "src" / "CMakeLists.txt").unlink(missing_ok=True)  # often a link to the author's ROS
     packages = {name: target / folder for name, folder in checkout.packages.items()}
-    return Workspace(workspace, target, packages)
+    return Workspace(workspace, target, packages, work / "pretended")
 
 
 def build(workspace: Workspace, log: Path, say: Callable[[str], None]) -> None:
-    """Builds all that can be built. Raises BuildError if the workspace cannot even be configured.
-
-    A package that cannot be is ignored from then on: by catkin, and by everything that looks for packages.
-    """
-    stand_ins = {
-        folder.name for folder in PACKAGE_FOLDER.parent.iterdir() if (folder / "package.xml").exists()
-    }
-    for name, reason in sorted(left_out(workspace.packages, stand_ins, _is_there).items()):
-        _ignore(workspace, name, reason, say)
+    """Builds all that can be built. Raises BuildError if the workspace cannot even be configured."""
+    stand_ins = {folder.name: folder for folder in PACKAGE_FOLDER.parent.iterdir()}
+    selection = select(workspace.packages, stand_ins, _is_there)
+    for name, reason in selection.replaced.items():
+        # Ignored by everything that looks for packages, so that ours is found.
+        (workspace.packages[name] / "CATKIN_IGNORE").touch()
+        workspace.missing[name] = reason
+        say(f"package {name}: ours is used; {reason}")
+    for name, reason in selection.unbuilt.items():
+        _leave_out(workspace, name, reason, say)
+    for name, users in selection.absent.items():
+        _pretend(workspace, name)
+        say(f"there is no package {name}; built without it: {', '.join(users)}")
     for _ in range(CONFIGURATIONS):
         output = _catkin_make(workspace, log)
         broken = broken_configurations(workspace, output)
         if not broken:
             break
         for name, reason in broken.items():
-            _ignore(workspace, name, reason, say)
+            _leave_out(workspace, name, reason, say)
     if UNCONFIGURED in output or not (workspace.folder / "devel" / "setup.bash").exists():
         raise BuildError(f"the project's workspace could not be configured, see {log}")
     if _failed(output):
@@ -108,10 +118,17 @@ def _is_there(package: str) -> bool:
     return any(any(Path(prefix).glob(folder)) for prefix in prefixes if prefix for folder in folders)
 
 
-def _ignore(workspace: Workspace, name: str, reason: str, say: Callable[[str], None]) -> None:
-    (workspace.packages[name] / "CATKIN_IGNORE").touch()
+def _leave_out(workspace: Workspace, name: str, reason: str, say: Callable[[str], None]) -> None:
+    workspace.unbuilt.add(name)
     workspace.missing[name] = reason
-    say(f"package {name} is left out: {reason}")
+    say(f"package {name} is not built: {reason}")
+
+
+def _pretend(workspace: Workspace, name: str) -> None:
+    """Lets CMake find an empty package: much of what is asked for is needed to run, or not at all."""
+    folder = workspace.pretended / "share" / name / "cmake"
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / f"{name}Config.cmake").write_text(f"set({name}_FOUND_CATKIN_PROJECT TRUE)\n")
 
 
 def _catkin_make(workspace: Workspace, log: Path) -> str:
@@ -120,12 +137,13 @@ def _catkin_make(workspace: Workspace, log: Path) -> str:
         "catkin_make",
         f"-DCMAKE_PROJECT_INCLUDE={FRESH_CLONE}",
         "-DCATKIN_ENABLE_TESTING=OFF",
+        f"-DCATKIN_BLACKLIST_PACKAGES={';'.join(sorted(workspace.unbuilt))}",
         "-Wno-dev",
     ]
     command += [f"-DPYTHON_EXECUTABLE={shutil.which('python3')}", "--force-cmake"]
     command += ["--make-args", "-k"]
     variables = {
-        "CMAKE_PREFIX_PATH": f"{STAND_INS}:{os.environ['CMAKE_PREFIX_PATH']}",
+        "CMAKE_PREFIX_PATH": f"{STAND_INS}:{os.environ['CMAKE_PREFIX_PATH']}:{workspace.pretended}",
         "LC_ALL": "C",
         "PWD": str(workspace.folder),  # catkin_make goes by it
         "ROS_PARALLEL_JOBS": f"-j{os.cpu_count()}",  # its own default waits while the machine is busy

@@ -1,8 +1,9 @@
 """Which of a project's packages are built, and which are left out, and why."""
 
 import re
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable, Dict, Mapping, Optional, Set
+from typing import Callable, Dict, List, Mapping, Set
 
 # Packages of TurtleBot's time that projects carry along in source. Compiled, they ask for a Boost or a
 # pluginlib of their day; in simulation nothing of them is needed that is not here already.
@@ -21,44 +22,53 @@ _WORDS_OF_CMAKE = {"REQUIRED", "COMPONENTS", "QUIET", "OPTIONAL_COMPONENTS"}
 _FIND = re.compile(r"\$\(find\s+([\w-]+)\)")
 
 
-def left_out(
-    folders: Mapping[str, Path], stand_ins: Set[str], is_there: Callable[[str], bool]
-) -> Dict[str, str]:
-    """The packages to leave out of a project's ``folders``, with reasons.
+@dataclass(frozen=True)
+class Selection:
+    """What is not built of a project, and why.
 
-    ``stand_ins``: packages of this workspace that stand in for official ones. ``is_there``: whether a package
-    can be found by catkin outside the project.
+    ``replaced``: packages whose place ours take. ``unbuilt``: packages of which only the files are used, as
+    launch files and worlds. ``absent``: packages that are nowhere, each with those that ask for it to be built.
     """
-    reasons: Dict[str, str] = {}
-    changed = True
-    while changed:
-        changed = False
-        for name in sorted(set(folders) - set(reasons)):
-            kept = set(folders) - set(reasons)
-            reason = _reason(name, folders[name], stand_ins, kept, is_there)
-            if reason:
-                reasons[name] = reason
-                changed = True
-    return reasons
+
+    replaced: Dict[str, str]
+    unbuilt: Dict[str, str]
+    absent: Dict[str, List[str]]
 
 
-def _reason(
-    name: str, folder: Path, stand_ins: Set[str], kept: Set[str], is_there: Callable[[str], bool]
-) -> Optional[str]:
-    cmake = _read(folder / "CMakeLists.txt")
-    if _COMPILED.search(cmake):
-        if name in stand_ins:
-            return "this workspace has its own, and the sources of that time do not build"
-        if CARRIED_ALONG.fullmatch(name):
-            return "its sources do not build with today's libraries, and the simulation does not need it"
-    missing = sorted(other for other in _components(cmake) - kept if not is_there(other))
-    if missing:
-        return f"needs {', '.join(missing)} to be built, which is not there"
-    if name in stand_ins:
-        missing = sorted(other for other in _found_in_xacro(folder) - kept if not is_there(other))
-        if missing:
-            return f"its robots need {', '.join(missing)}, which is not there; this workspace has its own"
-    return None
+def select(
+    folders: Mapping[str, Path], stand_ins: Mapping[str, Path], is_there: Callable[[str], bool]
+) -> Selection:
+    """Divides the packages in a project's ``folders``.
+
+    ``stand_ins``: the folders of this workspace's packages that stand in for official ones. ``is_there``:
+    whether a package can be found by catkin outside the project.
+    """
+    replaced: Dict[str, str] = {}
+    unbuilt: Dict[str, str] = {}
+    absent: Dict[str, List[str]] = {}
+    for name, folder in sorted(folders.items()):
+        cmake = _read(folder / "CMakeLists.txt")
+        is_compiled = bool(_COMPILED.search(cmake))
+        lost_parts = sorted(
+            other for other in _found_in_xacro(folder) if other not in folders and not is_there(other)
+        )
+        if name in stand_ins and lost_parts:
+            replaced[name] = f"its robots need {', '.join(lost_parts)}, which is not there"
+        elif name in stand_ins and is_compiled and _has_programs(stand_ins[name]):
+            replaced[name] = "the sources of that time do not build"
+        elif is_compiled and CARRIED_ALONG.fullmatch(name):
+            unbuilt[name] = (
+                "its sources do not build with today's libraries, and the simulation does not need it"
+            )
+        else:
+            for other in sorted(_components(cmake) - set(folders)):
+                if not is_there(other):
+                    absent.setdefault(other, []).append(name)
+    return Selection(replaced, unbuilt, absent)
+
+
+def _has_programs(stand_in: Path) -> bool:
+    return any((stand_in / part).is_dir() for part in ("nodes", "msg"))
 
 
 def _components(cmake: str) -> Set[str]:
