@@ -29,6 +29,12 @@ def test_a_goal_that_ended_otherwise_is_a_failure_with_the_reason(ending):
     assert "1 of 2 goals reached; goal 2 at (1.00, 2.00)" in verdict.reason
 
 
+def test_a_goal_that_was_sent_again_until_it_was_reached_is_no_failure():
+    verdict = judge(ledger_of(ABORTED, SUCCEEDED))
+    assert verdict.success
+    assert verdict.reason.startswith("1 of 2 goals reached")
+
+
 def test_a_run_that_was_cut_short_is_a_failure():
     assert not judge(ledger_of(SUCCEEDED), "interrupted").success
 

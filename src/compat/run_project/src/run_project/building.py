@@ -3,6 +3,7 @@
 import os
 import re
 import shutil
+import signal
 import subprocess
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -75,30 +76,28 @@ def build(workspace: Workspace, log: Path, say: Callable[[str], None]) -> None:
     """Builds all that can be built. Raises BuildError if the workspace cannot even be configured."""
     stand_ins = {folder.name: folder for folder in PACKAGE_FOLDER.parent.iterdir()}
     selection = select(workspace.packages, stand_ins, _is_there)
-    for name, reason in selection.replaced.items():
+    for name in selection.replaced:
         # Ignored by everything that looks for packages, so that ours is found.
         (workspace.packages[name] / "CATKIN_IGNORE").touch()
-        workspace.missing[name] = reason
-        say(f"package {name}: ours is used; {reason}")
-    for name, reason in selection.unbuilt.items():
-        _leave_out(workspace, name, reason, say)
+    workspace.missing.update(selection.replaced)
+    _tell("ours in place of", selection.replaced, say)
+    _leave_out(workspace, selection.unbuilt, say)
     for name, users in selection.absent.items():
         _pretend(workspace, name)
-        say(f"there is no package {name}; built without it: {', '.join(users)}")
+        say(f"  there is no package {name}; built without it: {', '.join(users)}")
     for _ in range(CONFIGURATIONS):
         output = _catkin_make(workspace, log)
         broken = broken_configurations(workspace, output)
         if not broken:
             break
-        for name, reason in broken.items():
-            _leave_out(workspace, name, reason, say)
+        _leave_out(workspace, broken, say)
     if UNCONFIGURED in output or not (workspace.folder / "devel" / "setup.bash").exists():
         raise BuildError(f"the project's workspace could not be configured, see {log}")
     if _failed(output):
         output = _catkin_make(workspace, log)  # messages may be generated later than their users are compiled
-    for name, reason in _broken_sources(workspace, output).items():
-        workspace.missing[name] = f"does not compile: {reason}"
-        say(f"package {name} does not compile: {reason}")
+    broken = _broken_sources(workspace, output)
+    workspace.missing.update(broken)
+    _tell("not compiled:", broken, say)
 
 
 def environment(workspace: Workspace) -> Dict[str, str]:
@@ -118,10 +117,16 @@ def _is_there(package: str) -> bool:
     return any(any(Path(prefix).glob(folder)) for prefix in prefixes if prefix for folder in folders)
 
 
-def _leave_out(workspace: Workspace, name: str, reason: str, say: Callable[[str], None]) -> None:
-    workspace.unbuilt.add(name)
-    workspace.missing[name] = reason
-    say(f"package {name} is not built: {reason}")
+def _leave_out(workspace: Workspace, reasons: Dict[str, str], say: Callable[[str], None]) -> None:
+    workspace.unbuilt.update(reasons)
+    workspace.missing.update(reasons)
+    _tell("not built:", reasons, say)
+
+
+def _tell(what: str, reasons: Dict[str, str], say: Callable[[str], None]) -> None:
+    for reason in sorted(set(reasons.values())):
+        names = sorted(name for name in reasons if reasons[name] == reason)
+        say(f"  {what} {', '.join(names)} ({reason})")
 
 
 def _pretend(workspace: Workspace, name: str) -> None:
@@ -148,19 +153,26 @@ def _catkin_make(workspace: Workspace, log: Path) -> str:
         "PWD": str(workspace.folder),  # catkin_make goes by it
         "ROS_PARALLEL_JOBS": f"-j{os.cpu_count()}",  # its own default waits while the machine is busy
     }
-    run = subprocess.run(
+    make = subprocess.Popen(
         command,
         cwd=str(workspace.folder),
         env={**os.environ, **variables},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
+        start_new_session=True,
         text=True,
         errors="replace",
     )
+    try:
+        output, _ = make.communicate()
+    except BaseException:
+        os.killpg(make.pid, signal.SIGKILL)
+        make.wait()
+        raise
     with log.open("a", encoding="utf-8") as file:
-        file.write(run.stdout)
-    return run.stdout
+        file.write(output)
+    return output
 
 
 def _failed(output: str) -> bool:

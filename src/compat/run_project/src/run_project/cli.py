@@ -19,7 +19,7 @@ from run_project.building import PACKAGE_FOLDER, Workspace, build, copy_checkout
 from run_project.complaints import complaints_in
 from run_project.errors import BuildError, ProjectError
 from run_project.headless_rviz import SHOWN
-from run_project.layout import Checkout, choose_script, read_checkout
+from run_project.layout import Checkout, choose_script, is_errand, read_checkout
 from run_project.options import parse
 from run_project.placement import READ_SUFFIXES, Placement, place
 from run_project.private_root import prefix
@@ -34,8 +34,6 @@ ROS_FOLDER = re.compile(r"/opt/ros/[a-z]+")
 # What the simulation does not leave behind at speed 0, and how often it publishes odometry: as Gazebo does.
 WAIT_FOR = "amcl move_base"
 ODOMETRY_RATE = 200
-# Scripts so named drive the robot; others may just show a marker.
-ERRAND = "home_service"
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
@@ -66,16 +64,19 @@ def run(options) -> int:
     folder = create_run_folder(options.output.resolve(), "run_project")
     logs = folder / "log"
     with Display() as display:
-        display.say(f"{checkout.root}: {checkout.kind.value}, script {script}")
-        display.say(f"run folder {folder}")
+        display.say(f"{checkout.root}: {checkout.kind.value}, {len(checkout.packages)} packages in it")
+        display.say(f"logs in {logs}")
         with _WorkFolder(checkout.root) as work:
             workspace = copy_checkout(checkout, placement, work.path)
-            display.show("building the project")
+            display.show("building ...")
             build(workspace, logs / "build.log", display.say)
             display.say(f"built in {time.time() - started:.0f} s")
             if options.build_only:
                 return 0
             job = _job(options, workspace, placement, texts, script, work.path, logs)
+            for target in sorted(placement.mounts):
+                display.say(f"provides {target}, for this run alone")
+            display.say(f"runs {script}; times are simulated:")
             return _run_job(
                 options, job, folder, workspace, display, {"project": str(checkout.root), "script": script}
             )
@@ -127,7 +128,7 @@ def _run_job(options, job: Job, folder: Path, workspace: Workspace, display: Dis
     }
     started, failure, run, is_interrupted = time.monotonic(), None, None, False
     try:
-        with ProjectRun(job, folder / "log", parameters, display.say) as run:
+        with ProjectRun(job, folder / "log", parameters, display) as run:
             if options.record:
                 run.record(folder / "run.bag")
             failure = run.watch(options.timeout)
@@ -135,7 +136,7 @@ def _run_job(options, job: Job, folder: Path, workspace: Workspace, display: Dis
         failure, is_interrupted = "interrupted", True
     observer = run.observer if run is not None else None
     ledger = observer.ledger if observer is not None else Ledger()
-    verdict = judge(ledger, failure, is_errand=ERRAND in Path(about["script"]).name)
+    verdict = judge(ledger, failure, is_errand=is_errand(about["script"]))
     complaints = complaints_in(folder / "log")
     path = write_result(
         folder,
@@ -158,7 +159,7 @@ def _run_job(options, job: Job, folder: Path, workspace: Workspace, display: Dis
         },
     )
     _report(display, verdict, ledger, complaints)
-    display.say(f"result in {path}")
+    display.say(f"result in {path}, a log of each window in {folder / 'log'}")
     return INTERRUPTED if is_interrupted else 0 if verdict.success else FAILURE
 
 

@@ -67,7 +67,7 @@ def choose_script(checkout: Checkout, wanted: Optional[str]) -> Path:
     scripts = checkout.scripts()
     if wanted is None:
         chosen = [script for script in scripts if script.stem == WORD] or [
-            script for script in scripts if _letters(WORD) in _letters(script.stem)
+            script for script in scripts if is_errand(str(script))
         ]
     else:
         chosen = [Path(file) for file in checkout.files if file == os.path.normpath(wanted)] or [
@@ -77,6 +77,11 @@ def choose_script(checkout: Checkout, wanted: Optional[str]) -> Path:
         return min(chosen, key=lambda script: (len(script.parts), str(script)))
     names = ", ".join(str(script) for script in scripts) or "none"
     raise ProjectError(f"{checkout.root}: no script {wanted or WORD + '.sh'} in it; its scripts: {names}")
+
+
+def is_errand(script: str) -> bool:
+    """Whether a script drives the robot, by its name; others may just show a marker."""
+    return _letters(WORD) in _letters(Path(script).stem)
 
 
 def _letters(text: str) -> str:

@@ -28,10 +28,12 @@ class Observer:
     def __init__(self, say: Callable[[str], None]):
         self.ledger = Ledger()
         self.simulated_time = 0.0
+        self.has_goal_clients = False
         self._say = say
         self._lock = threading.Lock()
         self._latest: Dict[str, bytes] = {}
         self._seen: Set[str] = set()
+        self._goal_topics: Set[str] = set()
         self._subscribers = [
             rospy.Subscriber("/clock", Clock, self._see_clock, queue_size=1),
             rospy.Subscriber("/contacts", String, self._see_contacts, queue_size=50),
@@ -59,8 +61,18 @@ class Observer:
             if follow is not None and is_theirs and topic not in self._seen:
                 self._seen.add(topic)
                 follow(topic)
+        self.has_goal_clients = any(
+            topic in self._goal_topics and not NODES_OF_ROBOT.issuperset(nodes) for topic, nodes in publishers
+        )
+
+    def status(self) -> str:
+        """How things stand, in a line."""
+        ledger = self.ledger
+        goal = f", goal {len(ledger.goals)} {list(ledger.goals.values())[-1].status}" if ledger.goals else ""
+        return f"{self.simulated_time:7.1f} s  {ledger.distance_driven:.1f} m driven{goal}"
 
     def _follow_goals(self, topic):
+        self._goal_topics.add(topic)
         self._subscribe(topic, MoveBaseActionGoal, self._see_goal)
         self._subscribe(topic.rsplit("/", 1)[0] + "/status", GoalStatusArray, self._see_status)
 

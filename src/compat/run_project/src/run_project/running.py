@@ -7,15 +7,17 @@ import subprocess
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable, Dict, List, Mapping, Optional
+from typing import Dict, List, Mapping, Optional
 
 import psutil
 import rosgraph
 import rospy
 
+from home_service.display import Display
 from home_service.errors import LaunchError
 from home_service.graph import adopt_orphans, end_descendants, free_port
 from run_project.observer import Observer
+from run_project.terminal import WindowLogs
 
 POLL_SECONDS = 0.2
 MASTER_SECONDS = 30.0
@@ -24,6 +26,8 @@ SIGINT_SECONDS = 4.0
 # Seconds of wall time without any news, and of simulated time, after which all is done.
 SETTLED_SECONDS = 3.0
 QUIET_SECONDS, QUIET_SIMULATED = 25.0, 30.0
+# The same once no node is left that could send a goal: a marker may still be moved.
+UNATTENDED_SECONDS, UNATTENDED_SIMULATED = 8.0, 10.0
 # Seconds of wall time in which some simulated time has to pass.
 STALLED_SECONDS = 90.0
 SHELLS = ("", "bash", "sh", "dash", "zsh")
@@ -44,14 +48,15 @@ class Job:
 class ProjectRun:
     """Context of a run: entering starts a master, leaving ends every process of the run."""
 
-    def __init__(self, job: Job, logs: Path, parameters: Mapping[str, object], say: Callable[[str], None]):
+    def __init__(self, job: Job, logs: Path, parameters: Mapping[str, object], display: Display):
         self._job = job
         self._logs = logs
-        self._say = say
+        self._display = display
         self._parameters = parameters
         self.observer: Optional[Observer] = None
         self._helpers: List[subprocess.Popen] = []
         self._script: Optional[subprocess.Popen] = None
+        self._windows = WindowLogs(logs)
         self._news_wall = time.monotonic()
 
     def __enter__(self) -> "ProjectRun":
@@ -97,6 +102,9 @@ class ProjectRun:
         while True:
             now = time.monotonic()
             observer.look_around()
+            for window in self._windows.opened():
+                self._display.say(f"{observer.simulated_time:7.1f} s  window {window}")
+            self._display.show(observer.status())
             if observer.simulated_time != moved_time:
                 moved_wall, moved_time = now, observer.simulated_time
             if now - latest_enter > ENTER_SECONDS:
@@ -123,13 +131,16 @@ class ProjectRun:
             return quiet_wall > (SETTLED_SECONDS if ledger.goals or ledger.markers else QUIET_SECONDS)
         quiet_simulated = self.observer.simulated_time - ledger.latest_news
         if ledger.goals:
-            return ledger.is_quiet and quiet_wall > QUIET_SECONDS and quiet_simulated > QUIET_SIMULATED
+            enough_wall, enough_simulated = QUIET_SECONDS, QUIET_SIMULATED
+            if not self.observer.has_goal_clients:
+                enough_wall, enough_simulated = UNATTENDED_SECONDS, UNATTENDED_SIMULATED
+            return ledger.is_quiet and quiet_wall > enough_wall and quiet_simulated > enough_simulated
         # A goal may still come: bringing up localization and navigation takes a while on a busy machine.
         return bool(ledger.markers) and quiet_wall > STALLED_SECONDS
 
     def _tell(self, news: str) -> None:
         self._news_wall = time.monotonic()
-        self._say(news)
+        self._display.say(news)
 
     def _start_helper(self, name: str, command: List[str]) -> None:
         with (self._logs / f"{name}.log").open("w") as log:

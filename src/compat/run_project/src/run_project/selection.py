@@ -27,7 +27,7 @@ class Selection:
     """What is not built of a project, and why.
 
     ``replaced``: packages whose place ours take. ``unbuilt``: packages of which only the files are used, as
-    launch files and worlds. ``absent``: packages that are nowhere, each with those that ask for it to be built.
+    launch files and worlds. ``absent``: packages that are nowhere, each with those that ask for it.
     """
 
     replaced: Dict[str, str]
@@ -55,11 +55,9 @@ def select(
         if name in stand_ins and lost_parts:
             replaced[name] = f"its robots need {', '.join(lost_parts)}, which is not there"
         elif name in stand_ins and is_compiled and _has_programs(stand_ins[name]):
-            replaced[name] = "the sources of that time do not build"
+            replaced[name] = "sources of that time do not build today"
         elif is_compiled and CARRIED_ALONG.fullmatch(name):
-            unbuilt[name] = (
-                "its sources do not build with today's libraries, and the simulation does not need it"
-            )
+            unbuilt[name] = "sources of that time do not build today; the simulation does without"
         else:
             for other in sorted(_components(cmake) - set(folders)):
                 if not is_there(other):

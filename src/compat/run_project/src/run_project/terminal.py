@@ -8,6 +8,8 @@ from typing import List
 from run_project.windows import commands_of, returns_at_once, title_of
 
 LOGS = "RUN_PROJECT_LOGS"
+# Logs that lie beside those of the windows.
+NOT_WINDOWS = ("build", "master", "record", "script")
 
 
 def main(terminal: str, arguments: List[str]) -> None:
@@ -27,6 +29,20 @@ def open_window(command: List[str], folder: Path) -> subprocess.Popen:
         return subprocess.Popen(
             command, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT, start_new_session=True
         )
+
+
+class WindowLogs:
+    """The logs of the windows in a folder, as they come."""
+
+    def __init__(self, folder: Path):
+        self._folder = folder
+        self._known = set(NOT_WINDOWS)
+
+    def opened(self) -> List[str]:
+        """The names of the windows that have been opened since the last call."""
+        new = sorted({log.stem for log in self._folder.glob("*.log")} - self._known)
+        self._known.update(new)
+        return new
 
 
 def _new_file(folder: Path, title: str):

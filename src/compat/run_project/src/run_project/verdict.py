@@ -119,16 +119,17 @@ class Verdict:
 
 
 def judge(ledger: Ledger, failure: Optional[str] = None, is_errand: bool = False) -> Verdict:
-    """Success if all goals that the project sent were reached; without goals, if it showed a marker.
+    """Success if the robot reached all places it was sent to; without goals, if the project showed a marker.
 
-    ``failure``: why the run was cut short, if it was. ``is_errand``: markers alone are not enough.
+    A goal that failed and was sent again does not count. ``failure``: why the run was cut short, if it was.
+    ``is_errand``: markers alone are not enough.
     """
     goals = list(ledger.goals.values())
     reached = sum(goal.status == "succeeded" for goal in goals)
     failed = [
         f"goal {number}{_at(goal.place)} {goal.status}{f' ({goal.text})' if goal.text else ''}"
         for number, goal in enumerate(goals, 1)
-        if goal.status != "succeeded"
+        if goal.status != "succeeded" and not _was_reached_later(goal, goals[number:])
     ]
     if failure:
         return Verdict(False, f"{failure}; {reached} of {len(goals)} goals reached")
@@ -138,6 +139,13 @@ def judge(ledger: Ledger, failure: Optional[str] = None, is_errand: bool = False
     if goals:
         return Verdict(True, f"{reached} of {len(goals)} goals reached; {story}")
     return Verdict(bool(ledger.markers) and not is_errand, f"no goal sent; {story}")
+
+
+def _was_reached_later(goal: Goal, later: List[Goal]) -> bool:
+    return goal.place is not None and any(
+        other.status == "succeeded" and other.place and math.dist(goal.place, other.place) < SAME_PLACE
+        for other in later
+    )
 
 
 def _at(place: Optional[Tuple[float, float]]) -> str:
