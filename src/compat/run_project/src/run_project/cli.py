@@ -31,9 +31,9 @@ FAILURE, BAD_INPUT, INTERRUPTED = 1, 2, 130
 WORK = PACKAGE_FOLDER.parents[2] / "build" / "projects"
 LARGEST_TEXT = 3_000_000
 ROS_FOLDER = re.compile(r"/opt/ros/[a-z]+")
-# What the simulation does not leave behind at speed 0, and how often it publishes odometry: as Gazebo does.
-WAIT_FOR = "amcl move_base"
-ODOMETRY_RATE = 200
+# Of the simulator: what it does not leave behind at speed 0, and what projects count on as Gazebo does so: many
+# compare places in the map with /odom, which does not drift there.
+SIMULATOR = {"wait_for": "amcl move_base", "odometry_rate": 200, "noise": "ideal", "range_noise": 0.01}
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
@@ -123,8 +123,7 @@ def _run_job(options, job: Job, folder: Path, workspace: Workspace, display: Dis
         "/use_sim_time": True,
         "/gazebo/speed": options.speed,
         "/gazebo/seed": options.seed,
-        "/gazebo/wait_for": WAIT_FOR,
-        "/gazebo/odometry_rate": ODOMETRY_RATE,
+        **{f"/gazebo/{name}": value for name, value in SIMULATOR.items()},
     }
     started, failure, run, is_interrupted = time.monotonic(), None, None, False
     try:

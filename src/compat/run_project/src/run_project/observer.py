@@ -13,11 +13,12 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 from visualization_msgs.msg import Marker, MarkerArray
 
-from run_project.rviz_topics import ALWAYS
 from run_project.verdict import Ledger
 
 # seq and stamp at the start of a message with a header: what changes when nothing else does.
 CHANGING_BYTES = struct.calcsize("<III")
+# Most projects' markers; their nodes wait until somebody listens.
+MARKERS = "/visualization_marker"
 # Their markers are about themselves, not about the project's story.
 NODES_OF_ROBOT = frozenset(("/amcl", "/explore", "/gazebo", "/map_server", "/move_base", "/slam_gmapping"))
 
@@ -40,10 +41,10 @@ class Observer:
             rospy.Subscriber("/base_pose_ground_truth", Odometry, self._see_truth, queue_size=50),
         ]
         # From the start: what is published as soon as somebody has subscribed would be missed later.
-        self._follow_markers(ALWAYS)
+        self._follow_markers(MARKERS)
         self._follow_goals("/move_base/goal")
         self._follow_results("/move_base/result")
-        self._seen.update((ALWAYS, "/move_base/goal", "/move_base/result"))
+        self._seen.update((MARKERS, "/move_base/goal", "/move_base/result"))
 
     def look_around(self) -> None:
         """Subscribes to the topics of interest that are new on the master."""

@@ -4,22 +4,21 @@ from typing import Iterator, Set
 
 import yaml
 
-# rviz listens to this one in every marker display that names no other.
-ALWAYS = "/visualization_marker"
-# Pictures and clouds: heavy to make, and nobody looks at them without a window.
-UNSEEN = ("Image", "Camera", "DepthCloud", "PointCloud2", "PointCloud", "RGBDImage")
+# Pictures and clouds: heavy to make, and nobody looks at them without a window. Markers: the observer listens to
+# all of them, and must be the first: some nodes show a marker once, as soon as somebody listens.
+UNSEEN = ("Image", "Camera", "DepthCloud", "PointCloud2", "PointCloud", "RGBDImage", "Marker", "MarkerArray")
 TOPIC_KEYS = ("Topic", "Marker Topic", "Update Topic")
 
 
 def topics_of(text: str) -> Set[str]:
-    """The topics of all enabled displays in the text of a configuration, and ALWAYS."""
+    """The topics of all enabled displays in the text of a configuration, but for UNSEEN ones."""
     try:
         config = yaml.safe_load(text.replace("\t", "  "))
     except yaml.YAMLError:
-        return {ALWAYS}
+        return set()
     manager = config.get("Visualization Manager") if isinstance(config, dict) else None
     displays = manager.get("Displays") if isinstance(manager, dict) else None
-    return {ALWAYS, *_topics(displays)}
+    return set(_topics(displays))
 
 
 def _topics(displays) -> Iterator[str]:
