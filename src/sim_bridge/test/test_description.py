@@ -199,6 +199,21 @@ SDF_ROBOT = """<sdf version="1.4"><world name="w"><model name="rover"><pose>1 2 
 </model></world></sdf>"""
 
 
+def test_a_robot_without_a_laser_scans_with_its_depth_camera(tmp_path):
+    laser = SDF_ROBOT[SDF_ROBOT.index("<sensor") : SDF_ROBOT.index("</sensor>")]
+    kinect = """<sensor type="depth" name="k"><pose>0 0 0.3 0 0 0</pose><update_rate>20</update_rate>
+<camera><horizontal_fov>1.0</horizontal_fov><image><width>101</width><height>80</height></image></camera>
+<plugin name="k" filename="libgazebo_ros_openni_kinect.so"><updateRate>5</updateRate>
+<frameName>camera_depth_optical_frame</frameName><pointCloudCutoffMax>4</pointCloudCutoffMax></plugin>"""
+    path = tmp_path / "rover.world"
+    path.write_text(SDF_ROBOT.replace(laser, kinect))
+    (model,) = load_world(path).robots
+    (scanner,) = read_sdf_robot(model)[0].lasers
+    assert (scanner.frame, scanner.topic, scanner.rate) == ("camera_depth_frame", "scan", 5.0)
+    assert (scanner.beams, scanner.angle_increment, scanner.sight) == (101, pytest.approx(0.01), 4.0)
+    assert scanner.pose_in_base[2, 3] == pytest.approx(0.3)
+
+
 def test_a_robot_that_is_part_of_a_world_is_a_robot(tmp_path):
     path = tmp_path / "rover.world"
     path.write_text(SDF_ROBOT)

@@ -31,8 +31,8 @@ FAILURE, BAD_INPUT, INTERRUPTED = 1, 2, 130
 WORK = PACKAGE_FOLDER.parents[2] / "build" / "projects"
 LARGEST_TEXT = 3_000_000
 ROS_FOLDER = re.compile(r"/opt/ros/[a-z]+")
-# Of the simulator: what it does not leave behind at speed 0, and what projects count on as Gazebo does so: many
-# compare places in the map with /odom, which does not drift there.
+# Of the simulator: what it does not leave behind at speed 0, and what projects count on as Gazebo does so:
+# many compare places in the map with /odom, which does not drift there.
 SIMULATOR = {"wait_for": "amcl move_base", "odometry_rate": 200, "noise": "ideal", "range_noise": 0.01}
 
 

@@ -4,8 +4,8 @@ from typing import Iterator, Set
 
 import yaml
 
-# Pictures and clouds: heavy to make, and nobody looks at them without a window. Markers: the observer listens to
-# all of them, and must be the first: some nodes show a marker once, as soon as somebody listens.
+# Pictures and clouds: heavy to make, and nobody looks at them without a window. Markers: the observer listens
+# to all of them, and must be the first: some nodes show a marker once, as soon as somebody listens.
 UNSEEN = ("Image", "Camera", "DepthCloud", "PointCloud2", "PointCloud", "RGBDImage", "Marker", "MarkerArray")
 TOPIC_KEYS = ("Topic", "Marker Topic", "Update Topic")
 

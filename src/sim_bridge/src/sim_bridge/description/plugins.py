@@ -20,6 +20,7 @@ from sim_bridge.description.sensors import (
     IMU_PLUGINS,
     read_camera,
     read_imu,
+    scan_of,
 )
 from sim_bridge.description.structure import Structure
 from sim_bridge.description.values import flag, length, number, text
@@ -49,7 +50,10 @@ class Equipment:
 
 
 def read_equipment(structure: Structure, blocks: Blocks) -> Equipment:
-    """Drives first, as the namespace is theirs. Raises WorldError naming the element."""
+    """Drives first, as the namespace is theirs; a robot without a laser sees by its depth camera.
+
+    Raises WorldError naming the element.
+    """
     equipment = Equipment()
     left_out = []
     for plugin in blocks.plugins:
@@ -70,6 +74,8 @@ def read_equipment(structure: Structure, blocks: Blocks) -> Equipment:
                 equipment.imus.append(read_imu(sensor, plugin, link, structure))
             else:
                 left_out.append(plugin)
+    if not equipment.lasers:
+        equipment.lasers += [scan_of(camera) for camera in equipment.cameras if camera.depth_topic][:1]
     names = dict.fromkeys(plugin.attribute("filename") for plugin in left_out)
     equipment.warnings += [f"robot {structure.name}: plugin {name} is left out" for name in names]
     return equipment
@@ -181,9 +187,7 @@ def _read_laser(
         angle_increment=(last - first) / (beams - 1),
         range_min=nearest,
         range_max=farthest,
-        sight=number(plugin, "sight", farthest),
-        no_return=math.nan if text(plugin, "noReturn", "inf") == "nan" else math.inf,
-        too_near=math.nan if text(plugin, "noReturn", "inf") == "nan" else -math.inf,
+        sight=farthest,
         rate=rate or None,
         noise=deviation.numbers(1)[0] if deviation is not None else None,
     )

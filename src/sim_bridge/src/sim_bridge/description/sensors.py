@@ -4,7 +4,7 @@ import math
 from typing import Any, Dict, Optional
 
 from planar import SettingsError
-from sim_bridge.description.profile import CameraProfile, ImuProfile
+from sim_bridge.description.profile import CameraProfile, ImuProfile, LaserProfile
 from sim_bridge.description.structure import Structure
 from sim_bridge.description.values import number, text
 from sim_bridge.pose3 import IDENTITY
@@ -49,6 +49,30 @@ def read_camera(
             prefix + text(plugin, "depthImageCameraInfoTopicName", "depth/camera_info") if is_depth else ""
         ),
         points_topic=prefix + text(plugin, "pointCloudTopicName", "points") if is_depth else "",
+    )
+
+
+def scan_of(camera: CameraProfile) -> LaserProfile:
+    """The level scan that depthimage_to_laserscan makes of a depth camera, with a TurtleBot's defaults.
+
+    Its frame is beside the optical one and named after it: ``camera_depth_frame`` for
+    ``camera_depth_optical_frame``.
+    """
+    settings = camera.settings
+    assert isinstance(settings, DepthCameraSettings)
+    return LaserProfile(
+        frame=camera.frame.replace("_optical", ""),
+        topic="scan",
+        pose_in_base=camera.pose_in_base,
+        beams=settings.width,
+        angle_min=-settings.horizontal_fov / 2.0,
+        angle_increment=settings.horizontal_fov / (settings.width - 1),
+        range_min=0.45,
+        range_max=10.0,
+        sight=settings.max_depth,
+        no_return=math.nan,
+        too_near=math.nan,
+        rate=camera.rate,
     )
 
 
