@@ -47,6 +47,14 @@ def test_until_all_nodes_have_reported_time_passes_as_on_the_wall():
     assert pacer.delay(0.06, 0.0) > 0.0
 
 
+def test_a_node_whose_scan_waits_for_slow_odometry_is_not_waited_for():
+    pacer = Pacer(0.0, ["amcl"])
+    reported(pacer, "amcl", 0.985, period=0.025)
+    assert pacer.behind(1.1) == ["amcl"]
+    pacer.odometry_delay = 0.08
+    assert pacer.behind(1.1) == []
+
+
 def test_in_lock_step_the_slowest_node_sets_the_pace():
     pacer = Pacer(0.0, ["amcl", "move_base"])
     reported(pacer, "amcl", 5.0)

@@ -66,6 +66,7 @@ class Bridge:
         try:
             while not rospy.is_shutdown():
                 self._orders.carry_out()
+                self._time.expect_odometry(self._fleet.odometry_seconds)
                 if not self._time.wait_for_turn():
                     continue
                 self._step()

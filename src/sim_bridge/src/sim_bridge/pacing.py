@@ -21,6 +21,7 @@ class Pacer:
     The period is the longest of the latest times between two of its reports, not less than
     ``shortest_period`` seconds. A node that keeps all others waiting for ``patience`` wall seconds is given
     up as missing until its reports tell its period anew.
+    ``odometry_delay``: simulated seconds that a scan may have to wait for odometry; they are granted besides.
     While a node is missing, as all are at the start, the simulation goes on at most in real time.
     """
 
@@ -29,6 +30,7 @@ class Pacer:
     ):
         self.speed = speed
         self.wait_for = frozenset(wait_for)
+        self.odometry_delay = 0.0
         self._shortest_period = shortest_period
         self._patience = patience
         self._missing: Set[str] = set(self.wait_for)
@@ -81,7 +83,7 @@ class Pacer:
 
     def period_of(self, name: str) -> float:
         """How far, in simulated seconds, time may pass ahead of a node."""
-        return max(self._shortest_period, *self._gaps.get(name, (0.0,)))
+        return max(self._shortest_period, *self._gaps.get(name, (0.0,))) + self.odometry_delay
 
     def give_up(self, stamp: float, wall: float) -> List[str]:
         """The nodes that have been waited for too long; from now on they are missing."""

@@ -50,6 +50,11 @@ class Fleet:
         """Of all topics of the robots."""
         return [publisher for topics in self._robots.values() for publisher in topics.publishers()]
 
+    @property
+    def odometry_seconds(self) -> float:
+        """Of all robots, the most simulated seconds between two messages of odometry."""
+        return max((topics.odometry_seconds for topics in self._robots.values()), default=0.0)
+
     def step(self) -> None:
         """Moves on by one period of the odometry."""
         commands = {name: topics.take_command() for name, topics in self._robots.items()}

@@ -60,6 +60,11 @@ class RobotTopics:
         self._commands = commands(name, namespace, profile.drive.command_topics)
         self._kobuki = KobukiTopics(scene, name, namespace, orders) if is_kobuki else None
 
+    @property
+    def odometry_seconds(self) -> float:
+        """Simulated seconds between two messages of odometry."""
+        return self._odom_steps * self._scene.step_seconds
+
     def take_command(self) -> Optional[Twist2]:
         """The command that has come since the last call, if any."""
         return self._commands.take(self._scene.stamp)

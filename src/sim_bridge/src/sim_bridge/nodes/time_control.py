@@ -52,6 +52,10 @@ class TimeControl:
         """``speed``: times real time, 0 for as fast as possible."""
         self._pacer.speed = speed
 
+    def expect_odometry(self, seconds: float) -> None:
+        """Each robot tells its odometry at least every ``seconds``."""
+        self._pacer.odometry_delay = max(0.0, seconds - self._scene.step_seconds)
+
     def wait_for_turn(self) -> bool:
         """Waits until the next step may be taken, or something else is to be done first (then False)."""
         if self.is_paused and not self._grants:
