@@ -88,3 +88,24 @@ def test_a_path_below_a_mount_is_found_in_its_source():
     mounts = {"/home/author/ws": Path()}
     assert mounts_to("/home/author/ws/src/a", mounts) == Path("src/a")
     assert mounts_to("/home/author/ws2/src/a", mounts) is None
+
+
+MAP = "image: {}\nresolution: 0.05\n"
+
+
+@pytest.mark.parametrize(
+    ("named", "mounts", "links"),
+    [
+        ("/home/author/map.pgm", {"/home/author/map.pgm": Path("src/maps/map.pgm")}, {}),
+        ("/home/author/ws/src/old/map.pgm", {}, {Path("src/old/map.pgm"): Path("src/maps/map.pgm")}),
+        ("/home/author/ws/src/maps/map.pgm", {}, {}),
+        ("/home/author/other.pgm", {}, {}),
+    ],
+)
+def test_an_image_named_where_it_once_was_is_found_beside_its_map(named, mounts, links):
+    script = "scripts/home_service.sh"
+    texts = {script: "cat /home/author/ws/src/maps/map.yaml", "maps/map.yaml": MAP.format(named)}
+    checkout = sources(*FILES, "maps/map.yaml", "maps/map.pgm", "old_maps/map.pgm")
+    placement = place(checkout, script, texts, home="/home/me", user="me")
+    assert placement.mounts == {"/home/author/ws": Path(), **mounts}
+    assert placement.links == links

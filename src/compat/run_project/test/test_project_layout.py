@@ -69,6 +69,7 @@ def test_another_script_is_named_by_stem_name_or_path(tmp_path, wanted):
 def test_a_script_that_is_not_there_is_answered_with_those_that_are(tmp_path):
     project = checkout(tmp_path, "src/pick/package.xml", "src/scripts/pick.sh")
     with pytest.raises(
-        ProjectError, match=r"no script home_service\.sh in it; its scripts: src/scripts/pick\.sh"
+        ProjectError,
+        match=r"no script home_service\.sh in it; name another of its scripts: src/scripts/pick\.sh",
     ):
         choose_script(project, None)

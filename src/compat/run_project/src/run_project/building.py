@@ -64,6 +64,11 @@ def copy_checkout(checkout: Checkout, placement: Placement, work: Path) -> Works
     )
     for script in checkout.scripts():
         (target / script).chmod(0o755)
+    for missing, found in placement.links.items():
+        link = tree / missing
+        link.parent.mkdir(parents=True, exist_ok=True)
+        if not link.exists():
+            link.symlink_to(tree / found)
     for name in ("build", "devel"):
         (work / name).mkdir(exist_ok=True)
         (workspace / name).symlink_to(work / name)

@@ -61,25 +61,24 @@ def run(options) -> int:
     script = str(choose_script(checkout, options.script))
     texts = read_texts(checkout, script)
     placement = place(checkout, script, texts, str(Path.home()), os.environ.get("USER", "root"))
-    folder = create_run_folder(options.output.resolve(), "run_project")
-    logs = folder / "log"
-    with Display() as display:
+    with _WorkFolder(checkout.root) as work, Display() as display:
+        folder = create_run_folder(options.output.resolve(), "run_project")
+        logs = folder / "log"
         display.say(f"{checkout.root}: {checkout.kind.value}, {len(checkout.packages)} packages in it")
         display.say(f"logs in {logs}")
-        with _WorkFolder(checkout.root) as work:
-            workspace = copy_checkout(checkout, placement, work.path)
-            display.show("building ...")
-            build(workspace, logs / "build.log", display.say)
-            display.say(f"built in {time.time() - started:.0f} s")
-            if options.build_only:
-                return 0
-            job = _job(options, workspace, placement, texts, script, work.path, logs)
-            for target in sorted(placement.mounts):
-                display.say(f"provides {target}, for this run alone")
-            display.say(f"runs {script}; times are simulated:")
-            return _run_job(
-                options, job, folder, workspace, display, {"project": str(checkout.root), "script": script}
-            )
+        workspace = copy_checkout(checkout, placement, work.path)
+        display.show("building ...")
+        build(workspace, logs / "build.log", display.say)
+        display.say(f"built in {time.time() - started:.0f} s")
+        if options.build_only:
+            return 0
+        job = _job(options, workspace, placement, texts, script, work.path, logs)
+        for target in sorted(placement.mounts):
+            display.say(f"provides {target}, for this run alone")
+        display.say(f"runs {script}; times are simulated:")
+        return _run_job(
+            options, job, folder, workspace, display, {"project": str(checkout.root), "script": script}
+        )
 
 
 def read_texts(checkout: Checkout, script: str) -> Dict[str, str]:

@@ -49,7 +49,8 @@ def read_checkout(root: Path) -> Checkout:
     files = tuple(_files(root))
     packages = _packages(root, files)
     if not packages:
-        raise ProjectError(f"{root}: no package.xml in it or below")
+        hint = " (it has git submodules: have they been fetched?)" if ".gitmodules" in files else ""
+        raise ProjectError(f"{root}: no package.xml in it or below{hint}")
     workspace = None
     if Path() in packages.values():
         kind = Kind.PACKAGE
@@ -76,7 +77,9 @@ def choose_script(checkout: Checkout, wanted: Optional[str]) -> Path:
     if chosen:
         return min(chosen, key=lambda script: (len(script.parts), str(script)))
     names = ", ".join(str(script) for script in scripts) or "none"
-    raise ProjectError(f"{checkout.root}: no script {wanted or WORD + '.sh'} in it; its scripts: {names}")
+    raise ProjectError(
+        f"{checkout.root}: no script {wanted or WORD + '.sh'} in it; name another of its scripts: {names}"
+    )
 
 
 def is_errand(script: str) -> bool:

@@ -7,7 +7,7 @@ under which most of the named files exist is taken.
 
 import os
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Pattern, Set, Tuple
 
@@ -40,13 +40,15 @@ _PATH = re.compile(r"[^\s\"'`;&|()<>=,]*/[^\s\"'`;&|()<>=,]*|(?<=:=)[^\s\"';&]+"
 class Placement:
     """All paths are relative to the folder in which the workspace is made.
 
-    ``mounts``: absolute folders that the project's files name, and what must be seen there.
+    ``mounts``: absolute folders and files that the project's files name, and what must be seen there.
+    ``links``: files that they name and that lie elsewhere in the checkout, and where that is.
     """
 
     checkout: Path
     workspace: Path
     start: Path
     mounts: Dict[str, Path]
+    links: Dict[Path, Path] = field(default_factory=dict)
 
 
 def place(checkout: Checkout, script: str, texts: Mapping[str, str], home: str, user: str) -> Placement:
@@ -66,7 +68,29 @@ def place(checkout: Checkout, script: str, texts: Mapping[str, str], home: str, 
             if best is None or score > best[0]:
                 best = score, Placement(at, workspace, start, mounts)
     assert best is not None
-    return best[1]
+    placement = best[1]
+    _find_strays(checkout, texts, placement, home, user)
+    return placement
+
+
+def _find_strays(
+    checkout: Checkout, texts: Mapping[str, str], placement: Placement, home: str, user: str
+) -> None:
+    """Adds files named where they once were: they lie beside those that name them, or once elsewhere."""
+    there = _there(checkout, placement.checkout, placement.workspace)
+    folders = dict(placement.mounts)
+    for file, text in sorted(texts.items()):
+        for path in sorted(absolute_paths(text, home, user)):
+            place_named = mounts_to(path, folders)
+            namesakes = [other for other in checkout.files if Path(other).name == Path(path).name]
+            beside = [other for other in namesakes if Path(other).parent == Path(file).parent]
+            found = beside or namesakes
+            if len(found) != 1 or (place_named is not None and _tried(place_named) in there):
+                continue
+            if place_named is None:
+                placement.mounts[path] = placement.checkout / found[0]
+            else:
+                placement.links[place_named] = placement.checkout / found[0]
 
 
 def absolute_paths(text: str, home: str, user: str) -> Set[str]:

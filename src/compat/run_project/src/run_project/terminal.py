@@ -1,5 +1,6 @@
 """The terminal emulator without a screen: each window is a process of its own, with a log of its own."""
 
+import contextlib
 import os
 import subprocess
 from pathlib import Path
@@ -17,8 +18,9 @@ def main(terminal: str, arguments: List[str]) -> None:
     folder = Path(os.environ[LOGS])
     windows = [open_window(command, folder) for command in commands_of(terminal, arguments)]
     if not returns_at_once(terminal):
-        for window in windows:
-            window.wait()
+        with contextlib.suppress(KeyboardInterrupt):
+            for window in windows:
+                window.wait()
 
 
 def open_window(command: List[str], folder: Path) -> subprocess.Popen:
