@@ -3,6 +3,10 @@
 # git keeps no empty folders.
 file(MAKE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/include")
 
+# Messages of the other packages, declared or not: where they had been built before, a missing dependency went
+# unnoticed.
+include_directories(AFTER "${CATKIN_DEVEL_PREFIX}/include")
+
 # Where every package of the author's machine had been found before, a missing dependency went unnoticed.
 file(READ "${CMAKE_CURRENT_SOURCE_DIR}/CMakeLists.txt" _text)
 string(REGEX REPLACE "#[^\n]*" "" _text "${_text}")
