@@ -48,6 +48,8 @@ class Robot:
     def __init__(self, true_grid, pose):
         self.grid, self.pose, self.twist, self.now, self.clearance = true_grid, pose, Twist2(), 0.0, math.inf
         self.has_laser = True
+        self.turns_too_fast_by = 1.0
+        self.turn_acceleration = 5.0
 
     def scan(self):
         angles = 2.0 * math.pi / 180 * np.arange(180)
@@ -68,7 +70,8 @@ class Robot:
     def drive(self, command):
         self.now += PERIOD
         v = self.twist.v + np.clip(command.v - self.twist.v, -0.2, 0.2)
-        omega = self.twist.omega + np.clip(command.omega - self.twist.omega, -0.5, 0.5)
+        change, wanted = self.turn_acceleration * PERIOD, self.turns_too_fast_by * command.omega
+        omega = self.twist.omega + np.clip(wanted - self.twist.omega, -change, change)
         self.twist = Twist2(float(v), float(omega))
         angle = self.twist.omega * PERIOD
         self.pose = self.pose @ Pose2(

@@ -129,6 +129,15 @@ def test_a_cancelled_robot_is_told_to_stop_in_the_same_tick_whatever_it_is_doing
         assert robot.tick(navigator).command is None
 
 
+def test_a_robot_that_turns_a_third_faster_than_it_is_told_is_not_spun_up(settings):
+    grid, goal = room(6.0, 4.0), Pose2(5.4, 3.0, -2.0)
+    robot, navigator = Robot(grid, Pose2(0.6, 1.0, 3.0)), Navigator(settings, grid)
+    robot.turns_too_fast_by, robot.turn_acceleration = 4.0 / 3.0, 100.0
+    robot.twist = Twist2(0.0, 4.0)
+    navigator.set_goal(goal)
+    assert_arrived(robot, drive_to_end(robot, navigator), goal)
+
+
 def test_a_new_goal_is_taken_over_without_stopping(settings):
     grid, goal = room(6.0, 4.0), Pose2(5.4, 3.0)
     robot, navigator = Robot(grid, Pose2(0.6, 2.0)), Navigator(settings, grid)

@@ -47,6 +47,7 @@ class Controller:
         self._goal_in_map = Pose2()
         self._arrived = False
         self._is_turning = False
+        self._omega_told: Optional[float] = None
 
     def change(self, settings: ControllerSettings, period: float) -> None:
         """Goes on along the same plan with other settings."""
@@ -63,6 +64,7 @@ class Controller:
 
     def reset(self) -> None:
         self._tracking = None
+        self._omega_told = None
         self._goal_in_map = Pose2()
         self._arrived = self._is_turning = False
 
@@ -98,6 +100,30 @@ class Controller:
 
         Raises ControlError if none is safe.
         """
+        told, self._omega_told = self._omega_told, None
+        control = self._choose(base_in_map, base_in_local, self._as_told(twist, told), costmap, highest)
+        self._omega_told = control.command.omega
+        return control
+
+    def _as_told(self, twist: Twist2, told: Optional[float]) -> Twist2:
+        """The velocity measured, with the turn rate last ``told`` if the robot turns distinctly faster.
+
+        A robot whose wheels stand closer than its drive believes always does: to brake by what is measured
+        would speed it up.
+        """
+        margin = 0.5 * self._settings.acc_lim_theta * self._period
+        if told is None or abs(twist.omega) <= abs(told) + margin:
+            return twist
+        return Twist2(twist.v, math.copysign(told, twist.omega))
+
+    def _choose(
+        self,
+        base_in_map: Pose2,
+        base_in_local: Pose2,
+        twist: Twist2,
+        costmap: LayeredCostmap,
+        highest: Twist2,
+    ) -> Control:
         assert self._tracking is not None, "control() needs a plan"
         self._tracking.advance(base_in_map.x, base_in_map.y)
         if self._is_near(base_in_map):
