@@ -27,10 +27,6 @@ class TfDemoTest(unittest.TestCase):
             assert time.monotonic() < deadline, "there are no two turtles"
             time.sleep(0.02)
 
-    @classmethod
-    def keep(cls, pose, turtle):
-        cls.poses[turtle] = pose
-
     def distance(self):
         first, second = self.poses["turtle1"], self.poses["turtle2"]
         return math.hypot(first.x - second.x, first.y - second.y)

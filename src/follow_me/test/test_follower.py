@@ -11,16 +11,29 @@ from follow_me import Follower, FollowSettings
 from follow_me.config import NodeSettings
 from planar import Pose2
 
-GAP = 0.8
+GAP, SLACK = 0.8, 0.2
 BEHIND = Pose2(-1.0, 0.0, 0.0)
 
 
 def follower():
-    return Follower(FollowSettings(gap=GAP))
+    return Follower(FollowSettings(gap=GAP, slack=SLACK))
 
 
 def test_a_leader_that_is_near_is_not_pursued():
     assert follower().goal(Pose2(), Pose2(-0.5, 0.0, 0.0)) is None
+
+
+def test_a_leader_that_goes_round_a_near_follower_is_kept_in_view():
+    here = Pose2(1.0, 2.0, 0.0)
+    goal = follower().goal(Pose2(1.0, 2.5, 0.0), here)
+    assert (goal.x, goal.y, goal.yaw) == pytest.approx((1.0, 2.0, math.pi / 2))
+
+
+def test_a_follower_that_stands_sets_off_when_the_leader_is_farther_than_gap_and_slack():
+    guide, here = follower(), Pose2()
+    assert guide.goal(Pose2(GAP + SLACK - 0.01, 0.0, 0.0), here) is None
+    assert guide.goal(Pose2(GAP + SLACK + 0.01, 0.0, 0.0), here) is not None
+    assert guide.goal(Pose2(GAP + 0.5 * SLACK, 0.0, 0.0), here).x == pytest.approx(0.5 * SLACK)
 
 
 def test_a_leader_that_stands_is_approached_in_a_line_up_to_the_gap():

@@ -4,32 +4,58 @@ import math
 from typing import List, Optional
 
 from follow_me.config import FollowSettings
-from planar import Pose2
+from planar import Pose2, wrap
 
 # Points of the leader's way are this far from each other, metres.
 _SPACING = 0.05
 
 
 class Follower:
-    """Goes where the leader has been, so that the way is free, and stays ``gap`` behind it along that way."""
+    """Goes where the leader has been, so that the way is free, and stays ``gap`` behind it along that way.
+
+    Once there it stands and turns with the leader, so as to be able to set off at once when that goes on.
+    """
 
     def __init__(self, settings: FollowSettings):
         self._settings = settings
         self._way: List[Pose2] = []
         self._goal: Optional[Pose2] = None
+        self._is_under_way = False
 
     def goal(self, leader_in_map: Pose2, follower_in_map: Pose2) -> Optional[Pose2]:
-        """A new place to go to; None while the last one will do, or the leader is near enough."""
+        """A new pose to go to; None while the last one will do, or the leader is near and in view."""
         if not self._way or self._way[-1].distance_to(leader_in_map) >= _SPACING:
             self._way.append(leader_in_map)
-        if follower_in_map.distance_to(leader_in_map) <= self._settings.gap:
+        self._set_off_or_stop(follower_in_map.distance_to(leader_in_map))
+        if self._is_under_way:
+            goal = self._goal_behind(leader_in_map, follower_in_map)
+        else:
+            goal = _facing(follower_in_map, leader_in_map)
+            if self._is_turned(follower_in_map, goal):
+                return None
+        if self._goal is not None and self._is_as_good(self._goal, goal):
             return None
-        place = self._place_behind(leader_in_map) or leader_in_map
-        if place.distance_to(leader_in_map) < 0.5 * self._settings.gap:
-            place = _on_the_line(leader_in_map, follower_in_map, self._settings.gap)
-        if self._goal is not None and self._goal.distance_to(place) < self._settings.goal_shift:
-            return None
-        self._goal = place
+        self._goal = goal
+        return goal
+
+    def _set_off_or_stop(self, distance: float) -> None:
+        if distance > self._settings.gap + self._settings.slack:
+            self._is_under_way = True
+        elif distance <= self._settings.gap:
+            self._is_under_way = False
+
+    def _is_as_good(self, one: Pose2, other: Pose2) -> bool:
+        return one.distance_to(other) < self._settings.goal_shift and self._is_turned(one, other)
+
+    def _is_turned(self, one: Pose2, other: Pose2) -> bool:
+        return abs(wrap(one.yaw - other.yaw)) < self._settings.goal_turn
+
+    def _goal_behind(self, leader_in_map: Pose2, follower_in_map: Pose2) -> Pose2:
+        """Behind the leader on its way, or straight towards it when it has stood still or turned round."""
+        gap = self._settings.gap
+        place = self._place_behind(leader_in_map)
+        if place is None or place.distance_to(leader_in_map) < 0.5 * gap:
+            return _on_the_line(leader_in_map, follower_in_map, gap)
         return place
 
     def _place_behind(self, leader_in_map: Pose2) -> Optional[Pose2]:
@@ -46,7 +72,7 @@ class Follower:
 
 
 def _on_the_line(leader_in_map: Pose2, follower_in_map: Pose2, gap: float) -> Pose2:
-    """Between the two, ``gap`` from the leader, when that has stood still, or has turned round."""
+    """Between the two, ``gap`` from the leader."""
     bearing = math.atan2(follower_in_map.y - leader_in_map.y, follower_in_map.x - leader_in_map.x)
     there = Pose2(leader_in_map.x + gap * math.cos(bearing), leader_in_map.y + gap * math.sin(bearing))
     return _facing(there, leader_in_map)

@@ -10,6 +10,7 @@ from follow_me.follower import Follower
 from planar_ros.clock import sleep_until
 from planar_ros.messages import pose2_to_msg
 from planar_ros.parameters import read_settings
+from planar_ros.progress import Progress
 from planar_ros.shell import run
 from planar_ros.transforms import Transforms
 from planar_ros.waiting import Waiting
@@ -22,6 +23,7 @@ class FollowMe:
         self._settings = read_settings(NodeSettings)
         self._follower = Follower(self._settings)
         self._transforms = Transforms()
+        self._progress = Progress()
         self._goals = rospy.Publisher("move_base_simple/goal", PoseStamped, queue_size=1)
         frames = (self._settings.leader_frame, self._settings.base_frame)
         Waiting(
@@ -38,12 +40,19 @@ class FollowMe:
         threading.Thread(target=self._work, daemon=True).start()
 
     def _work(self):
-        try:
-            while not rospy.is_shutdown():
-                sleep_until(rospy.Time.now() + rospy.Duration(self._settings.goal_period))
+        period, now = rospy.Duration(self._settings.goal_period), rospy.Time.now()
+        while not rospy.is_shutdown():
+            try:
+                # Of the two only a jump back of time makes the second the earlier one.
+                now = sleep_until(min(now, rospy.Time.now()) + period)
                 self._follow()
-        except rospy.ROSInterruptException:
-            return
+                self._progress.report(now)
+            except rospy.ROSTimeMovedBackwardsException:
+                now = rospy.Time.now()
+                self._follower = Follower(self._settings)
+                self._transforms.clear()
+            except rospy.ROSInterruptException:
+                return
 
     def _follow(self):
         leader, follower = self._in_map(self._settings.leader_frame), self._in_map(self._settings.base_frame)

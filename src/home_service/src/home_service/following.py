@@ -1,6 +1,7 @@
 """Watches one robot follow another, by ground truth."""
 
 import threading
+from collections import OrderedDict
 from typing import Any, Dict, List, Optional
 
 import rospy
@@ -12,18 +13,20 @@ from planar_ros.messages import pose2_from_msg
 
 # A follower is with its leader within this distance, metres, and must be for this share of the time.
 WITH_LEADER, REQUIRED_SHARE = 1.5, 0.9
+# So many messages the truth about one robot may come before that about the other.
+UNPAIRED = 500
 
 
 class FollowWatch:
-    """How far the robot below ``namespace`` truly is from the one without, at each message of its truth."""
+    """How far the robot below ``namespace`` truly is from the one without, at each moment told of both."""
 
     def __init__(self, namespace: str):
         self.collisions: List[str] = []
-        self._leader: Optional[Pose2] = None
+        self._unpaired: OrderedDict[rospy.Time, Pose2] = OrderedDict()
         self._seen, self._near, self._farthest = 0, 0, 0.0
         self._lock = threading.Lock()
-        rospy.Subscriber("base_pose_ground_truth", Odometry, self._see_leader, queue_size=50)
-        rospy.Subscriber(f"{namespace}/base_pose_ground_truth", Odometry, self._see_follower, queue_size=50)
+        for topic in ("base_pose_ground_truth", f"{namespace}/base_pose_ground_truth"):
+            rospy.Subscriber(topic, Odometry, self._see_truth, queue_size=50)
         rospy.Subscriber(f"{namespace}/contacts", String, self._see_contacts, queue_size=50)
 
     @property
@@ -50,14 +53,16 @@ class FollowWatch:
             "follower_collisions": self.collisions,
         }
 
-    def _see_leader(self, message):
-        self._leader = pose2_from_msg(message.pose.pose)
-
-    def _see_follower(self, message):
-        if self._leader is None:
-            return
-        distance = pose2_from_msg(message.pose.pose).distance_to(self._leader)
+    def _see_truth(self, message):
+        stamp, pose = message.header.stamp, pose2_from_msg(message.pose.pose)
         with self._lock:
+            other = self._unpaired.pop(stamp, None)
+            if other is None:
+                self._unpaired[stamp] = pose
+                if len(self._unpaired) > UNPAIRED:
+                    self._unpaired.popitem(last=False)
+                return
+            distance = pose.distance_to(other)
             self._seen += 1
             self._near += distance <= WITH_LEADER
             self._farthest = max(self._farthest, distance)

@@ -64,7 +64,7 @@ class TurtleTopics:
             if request.off:
                 pen = Pen(before.color, before.width, is_on=False)
             else:
-                pen = Pen((request.r, request.g, request.b), request.width or Pen.width)
+                pen = Pen((request.r, request.g, request.b), request.width or 1)
             self._world.set_pen(self._name, pen)
         return SetPenResponse()
 
