@@ -2,11 +2,13 @@
 
 import threading
 
+import actionlib
 import rospy
-from geometry_msgs.msg import PoseStamped
+from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 
 from follow_me.config import NodeSettings
 from follow_me.follower import Follower
+from planar_ros.actions import server_is_ready
 from planar_ros.clock import sleep_until
 from planar_ros.messages import pose2_to_msg
 from planar_ros.parameters import read_settings
@@ -24,11 +26,11 @@ class FollowMe:
         self._follower = Follower(self._settings)
         self._transforms = Transforms()
         self._progress = Progress()
-        self._goals = rospy.Publisher("move_base_simple/goal", PoseStamped, queue_size=1)
+        self._move_base = actionlib.SimpleActionClient("move_base", MoveBaseAction)
         frames = (self._settings.leader_frame, self._settings.base_frame)
         Waiting(
             {
-                f"a listener to {self._goals.resolved_name}": self._is_heard,
+                f"the action {rospy.resolve_name('move_base')}": self._is_heard,
                 **{
                     f"the transform {self._settings.map_frame} -> {frame}": lambda frame=frame: (
                         self._in_map(frame) is not None
@@ -60,16 +62,17 @@ class FollowMe:
             return
         goal = self._follower.goal(leader, follower)
         if goal is not None:
-            message = PoseStamped()
-            message.header.stamp, message.header.frame_id = rospy.Time.now(), self._settings.map_frame
-            message.pose = pose2_to_msg(goal)
-            self._goals.publish(message)
+            message = MoveBaseGoal()
+            header = message.target_pose.header
+            header.stamp, header.frame_id = rospy.Time.now(), self._settings.map_frame
+            message.target_pose.pose = pose2_to_msg(goal)
+            self._move_base.send_goal(message)
 
     def _in_map(self, frame):
         return self._transforms.lookup(self._settings.map_frame, frame)
 
     def _is_heard(self):
-        return self._goals.get_num_connections() > 0
+        return server_is_ready(self._move_base)
 
 
 def main():

@@ -13,20 +13,27 @@ from planar_ros.messages import pose2_from_msg
 
 # A follower is with its leader within this distance, metres, and must be for this share of the time.
 WITH_LEADER, REQUIRED_SHARE = 1.5, 0.9
+# The time begins when the leader has gone so far, metres.
+SET_OFF = 0.05
 # So many messages the truth about one robot may come before that about the other.
 UNPAIRED = 500
 
 
 class FollowWatch:
-    """How far the robot below ``namespace`` truly is from the one without, at each moment told of both."""
+    """How far the robot below ``namespace`` truly is from the one without, at each moment told of both.
+
+    From when the leader sets off.
+    """
 
     def __init__(self, namespace: str):
         self.collisions: List[str] = []
+        self._start: Optional[Pose2] = None
+        self._has_set_off = False
         self._unpaired: OrderedDict[rospy.Time, Pose2] = OrderedDict()
         self._seen, self._near, self._farthest = 0, 0, 0.0
         self._lock = threading.Lock()
-        for topic in ("base_pose_ground_truth", f"{namespace}/base_pose_ground_truth"):
-            rospy.Subscriber(topic, Odometry, self._see_truth, queue_size=50)
+        rospy.Subscriber("base_pose_ground_truth", Odometry, self._see_leader, queue_size=50)
+        rospy.Subscriber(f"{namespace}/base_pose_ground_truth", Odometry, self._see_truth, queue_size=50)
         rospy.Subscriber(f"{namespace}/contacts", String, self._see_contacts, queue_size=50)
 
     @property
@@ -52,6 +59,13 @@ class FollowWatch:
             "follower_farthest": round(self._farthest, 3),
             "follower_collisions": self.collisions,
         }
+
+    def _see_leader(self, message):
+        pose = pose2_from_msg(message.pose.pose)
+        self._start = self._start or pose
+        self._has_set_off = self._has_set_off or pose.distance_to(self._start) > SET_OFF
+        if self._has_set_off:
+            self._see_truth(message)
 
     def _see_truth(self, message):
         stamp, pose = message.header.stamp, pose2_from_msg(message.pose.pose)

@@ -42,6 +42,7 @@ class NodeSettings:
     zones_file: str = ""
     mission_file: str = ""
     serve: bool = False
+    wait_for: str = ""
     frame_id: str = "map"
     server_timeout: float = 60.0
     map_timeout: float = 10.0

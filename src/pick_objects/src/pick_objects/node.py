@@ -23,7 +23,7 @@ from planar.places import load_places, places_of_errand, why_unreachable
 from planar_ros.messages import OccupancyGridArrays, grid_from_msg
 from planar_ros.parameters import read_settings
 from planar_ros.shell import fail, run
-from planar_ros.waiting import Waiting
+from planar_ros.waiting import Readiness, Waiting
 
 POLL_SECONDS = 0.02
 
@@ -44,12 +44,10 @@ class PickObjects:
         rospy.Subscriber("map", OccupancyGridArrays, self._keep_map, queue_size=1)
         rospy.Service("~add_delivery", AddDelivery, self._on_add)
         rospy.Service("~cancel_delivery", CancelDelivery, self._on_cancel)
-        Waiting(
-            {
-                f"a map on {rospy.resolve_name('map')}": lambda: self._map is not None,
-                f"the action {rospy.resolve_name('move_base')}": self._driver.is_ready,
-            }
-        )
+        self._required = {f"the action {rospy.resolve_name('move_base')}": self._driver.is_ready}
+        for name in map(rospy.resolve_name, self._settings.wait_for.split()):
+            self._required[f"{name} to be ready"] = Readiness(name)
+        Waiting({f"a map on {rospy.resolve_name('map')}": lambda: self._map is not None, **self._required})
 
     def work(self) -> Finish:
         """Carries the mission out and says how it ended; one that serves goes on until shutdown."""
@@ -100,9 +98,12 @@ class PickObjects:
         settings = self._settings
         if not _wait_for(lambda: self._map is not None, settings.map_timeout):
             rospy.logwarn("no map within %g s: the places are not checked", settings.map_timeout)
-        if not _wait_for(self._driver.is_ready, settings.server_timeout):
-            return f"no action {rospy.resolve_name('move_base')} within {settings.server_timeout:g} s"
+        if not _wait_for(lambda: not self._missing(), settings.server_timeout):
+            return f"waited {settings.server_timeout:g} s in vain for {', '.join(self._missing())}"
         return None
+
+    def _missing(self) -> List[str]:
+        return [what for what, is_met in self._required.items() if not is_met()]
 
     def _why_impossible(self, mission: Mission) -> Optional[str]:
         names = dict.fromkeys(name for d in mission.deliveries for name in (d.source, d.destination))

@@ -48,6 +48,20 @@ class Waiting:
             time.sleep(POLL_SECONDS)
 
 
+class Readiness:
+    """Whether another node has all that it waits for, by what it tells on its ``~waiting_for``."""
+
+    def __init__(self, node: str):
+        self._is_ready = False
+        rospy.Subscriber(f"{node}/{TOPIC}", String, self._hear, queue_size=10)
+
+    def __call__(self) -> bool:
+        return self._is_ready
+
+    def _hear(self, message):
+        self._is_ready = not message.data
+
+
 def _check_clock():
     if not rospy.get_param("/use_sim_time", False):
         return
