@@ -82,6 +82,28 @@ def test_a_narrow_gap_that_is_really_there_is_no_doubled_wall():
     assert score_map(truth, truth, START).doubled_walls == 0
 
 
+def test_a_wall_drawn_again_far_off_is_noticed():
+    doubled = changed(box_room(), slice(20, 40), 20, OCCUPIED)
+    assert score_map(doubled, box_room(), START).doubled_walls == 1
+
+
+def test_a_wall_in_the_wrong_place_is_not_drawn_twice():
+    moved = changed(changed(box_room(), slice(6, 54), 4, FREE), slice(6, 54), 5, FREE)
+    moved = changed(moved, slice(8, 52), 10, OCCUPIED)
+    assert score_map(moved, box_room(), START).doubled_walls == 0
+
+
+def test_a_gap_too_narrow_for_the_true_grid_is_no_doubled_wall():
+    fine = OccupancyGrid(np.kron(box_room().cells, np.ones((5, 5), dtype=np.int8)), RESOLUTION / 5, ORIGIN)
+    cupboard_and_gap = changed(
+        changed(fine, slice(30, 60), slice(100, 200), OCCUPIED), slice(30, 33), slice(100, 200), FREE
+    )
+    closed = changed(box_room(), slice(6, 12), slice(20, 40), OCCUPIED)
+    mapped = changed(closed, 6, slice(30, 40), FREE)
+    assert score_map(mapped, closed, START).doubled_walls == 1
+    assert score_map(mapped, closed, START, fine_truth=cupboard_and_gap).doubled_walls == 0
+
+
 def test_the_corner_beside_a_cupboard_is_no_doubled_wall():
     truth = changed(box_room(), slice(6, 12), slice(20, 40), OCCUPIED)
     rim_too_far = changed(truth, 11, 19, OCCUPIED)

@@ -13,12 +13,15 @@ from explorer_lite.msg import ExploreAction, ExploreGoal
 from home_service.errors import LaunchError
 from home_service.run import Run
 from home_service.verdict import ARRIVAL_TOLERANCE, Verdict
-from planar import Pose2, SettingsError, load_map
+from planar import OccupancyGrid, Pose2, SettingsError, load_map
 from planar.map_score import MapScore, score_map
 from planar_ros.actions import server_is_ready
+from sim_bridge import RobotProfile
 from sim_bridge.true_map import true_map
+from sim_bridge.world import World
 
 LEAST_RECALL = LEAST_PRECISION = 0.95
+FINE_RESOLUTION = 0.01
 SAVE_SECONDS = 30.0
 TELEOP = ["rosrun", "teleop_lite", "turtlebot_teleop_key", "turtlebot_teleop_keyboard/cmd_vel:=cmd_vel"]
 
@@ -40,7 +43,7 @@ def map_home(options: Namespace) -> int:
         failure = _explore(run)
         path = save_map(run, options.save)
         way_home = run.referee.truth.distance_to(Pose2())
-        score = _score(path, options)
+        score = score_against_world(load_map(path), options.loaded_world, options.loaded_robot)
         run.display.say(f"map saved in {path}")
         return run.conclude(_judge(failure, run, score, way_home), map=str(path), **asdict(score))
 
@@ -97,12 +100,11 @@ def save_map(run: Run, stem: Optional[Path]) -> Path:
     return stem.with_name(stem.name + ".yaml")
 
 
-def _score(path: Path, options: Namespace) -> MapScore:
-    """The saved map against what the robot's laser could have seen of the world."""
-    robot = options.loaded_robot
+def score_against_world(grid: OccupancyGrid, world: World, robot: RobotProfile) -> MapScore:
+    """A map against what the robot's laser could have seen of the world from where the robot can get."""
     height = float(robot.laser.pose_in_base[2, 3])
-    truth = true_map(options.loaded_world, height)
-    return score_map(load_map(path), truth, robot_radius=robot.radius, sight=robot.laser.sight)
+    truth, fine_truth = (true_map(world, height, resolution) for resolution in (0.05, FINE_RESOLUTION))
+    return score_map(grid, truth, robot_radius=robot.radius, sight=robot.laser.sight, fine_truth=fine_truth)
 
 
 def _judge(failure: Optional[str], run: Run, score: MapScore, way_home: float) -> Verdict:

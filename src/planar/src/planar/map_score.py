@@ -1,9 +1,10 @@
 """How good a map is, compared with the true one."""
 
 from dataclasses import dataclass
+from typing import Optional
 
 import numpy as np
-from scipy.ndimage import binary_closing, find_objects, label
+from scipy.ndimage import binary_closing, binary_dilation, find_objects, label
 from scipy.spatial import cKDTree
 
 from planar.distance_field import distance_field
@@ -16,6 +17,7 @@ VIEWPOINT_SPACING = 0.25
 RAYS = 720
 DOUBLING_GAP = 0.30
 DOUBLING_LENGTH = 0.30
+EIGHT_NEIGHBOURS = np.ones((3, 3), dtype=bool)
 
 
 @dataclass(frozen=True)
@@ -36,8 +38,12 @@ def score_map(
     tolerance: float = 0.10,
     robot_radius: float = 0.18,
     sight: float = 10.0,
+    fine_truth: Optional[OccupancyGrid] = None,
 ) -> MapScore:
     """Scores a map against the true one, of any extent and resolution each.
+
+    ``fine_truth``: the true map once more, with cells small enough to show gaps that ``truth`` closes and a
+    laser sees into, lest they count as doubled walls.
 
     Counted as visible are walls that a robot of ``robot_radius`` metres could have in ``sight`` metres from
     anywhere it can drive to from ``start_in_truth``. Raises PlanarError if that place is not free.
@@ -51,7 +57,7 @@ def score_map(
     return MapScore(
         recall=_share_near(visible_xy, mapped_xy, tolerance),
         precision=_share_near(mapped_xy, true_xy, tolerance),
-        doubled_walls=_count_doubled_walls(grid, truth, truth_in_map, tolerance),
+        doubled_walls=_count_doubled_walls(grid, fine_truth or truth, truth_in_map, tolerance),
     )
 
 
@@ -81,11 +87,15 @@ def _share_near(points_xy, others_xy, tolerance) -> float:
 
 
 def _count_doubled_walls(grid, truth, truth_in_map, tolerance) -> int:
-    """Long narrow gaps between walls that the truth has not: the same wall, drawn in two places."""
-    return sum(_count_false_gaps(grid, truth, truth_in_map, tolerance, across) for across in (0, 1))
+    """Long narrow gaps between walls that the truth has not, and long walls where it has none, while the
+    wall that they stand for is drawn in its place as well."""
+    doubled = _long_false_gaps(grid, truth, truth_in_map, tolerance, 0)
+    doubled |= _long_false_gaps(grid, truth, truth_in_map, tolerance, 1)
+    doubled |= _long(_second_walls(grid, truth, truth_in_map, tolerance), grid.resolution)
+    return int(label(binary_dilation(doubled, EIGHT_NEIGHBOURS), EIGHT_NEIGHBOURS)[1])
 
 
-def _count_false_gaps(grid, truth, truth_in_map, tolerance, across) -> int:
+def _long_false_gaps(grid, truth, truth_in_map, tolerance, across) -> np.ndarray:
     gap_cells = np.argwhere(_gaps(grid, across))
     true_gaps_xy = [
         truth_in_map.transform_points(truth.points_of(np.argwhere(_gaps(truth, i)))) for i in (0, 1)
@@ -93,11 +103,18 @@ def _count_false_gaps(grid, truth, truth_in_map, tolerance, across) -> int:
     if len(gap_cells) and any(map(len, true_gaps_xy)):
         distances, _ = cKDTree(np.vstack(true_gaps_xy)).query(grid.points_of(gap_cells))
         gap_cells = gap_cells[distances > tolerance]
-    is_false = np.zeros(grid.cells.shape, dtype=bool)
-    is_false[tuple(gap_cells.T)] = True
-    gaps, _ = label(is_false, structure=np.ones((3, 3)))
-    lengths = [gap[1 - across].stop - gap[1 - across].start for gap in find_objects(gaps)]
-    return sum(length * grid.resolution >= DOUBLING_LENGTH for length in lengths)
+    return _long(_mask(grid, gap_cells), grid.resolution, axes=(1 - across,))
+
+
+def _second_walls(grid, truth, truth_in_map, tolerance) -> np.ndarray:
+    """Wall cells far from any true wall, the nearest of which is in the map too: bool (rows, cols)."""
+    cells = np.argwhere(grid.cells == OCCUPIED)
+    mapped_xy = grid.points_of(cells)
+    true_xy = truth_in_map.transform_points(truth.points_of(np.argwhere(truth.cells == OCCUPIED)))
+    distances, nearest = cKDTree(true_xy).query(mapped_xy)
+    is_astray = distances > tolerance + 1e-9
+    gaps, _ = cKDTree(mapped_xy).query(true_xy[nearest[is_astray]])
+    return _mask(grid, cells[is_astray][gaps <= tolerance])
 
 
 def _gaps(grid, across) -> np.ndarray:
@@ -106,3 +123,19 @@ def _gaps(grid, across) -> np.ndarray:
     walls = np.pad(grid.cells == OCCUPIED, reach)
     closed = binary_closing(walls, np.ones((reach, 1) if across == 0 else (1, reach)))
     return closed[reach:-reach, reach:-reach] & (grid.cells == FREE)
+
+
+def _mask(grid, cells) -> np.ndarray:
+    mask = np.zeros(grid.cells.shape, dtype=bool)
+    mask[tuple(cells.T)] = True
+    return mask
+
+
+def _long(mask, resolution, axes=(0, 1)) -> np.ndarray:
+    """The part of a mask whose pieces are at least DOUBLING_LENGTH long along one of the axes."""
+    pieces, _ = label(mask, EIGHT_NEIGHBOURS)
+    is_long = [False]
+    for box in find_objects(pieces):
+        length = max(box[axis].stop - box[axis].start for axis in axes) * resolution
+        is_long.append(length >= DOUBLING_LENGTH)
+    return np.array(is_long)[pieces]

@@ -1,0 +1,232 @@
+#!/usr/bin/env python3
+"""How well a robot maps a world by itself: what map_home.sh does, in one process, one seed after the other.
+
+Simulation, Mapper, Explorer and Navigator are stepped together; each map is scored against the true grid, and
+a mission is rehearsed on it.
+
+    python3 tests/benchmarks/mapping.py --seeds 100-119 --mission map/mission.yaml
+    python3 tests/benchmarks/mapping.py --world FILE --robot turtlebot_kinect --maps runs/maps
+"""
+
+import argparse
+import json
+import sys
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import List, Optional
+
+import numpy as np
+
+from explorer_lite import Explorer, Finish, GoalReached, GoalRefused, GoTo
+from home_service.mapping import LEAST_PRECISION, LEAST_RECALL, score_against_world
+from home_service.rehearsal import NAVIGATION_CONFIG, Rehearsal
+from home_service.verdict import ARRIVAL_TOLERANCE
+from move_base_lite import Decision, Navigator, Status, load_settings
+from pick_objects import load_mission
+from planar import OccupancyGrid, PlanarError, Pose2, Twist2, save_map
+from planar.map_score import MapScore
+from planar.settings_file import settings_from_yaml
+from sim_bridge import RobotProfile, Simulation, load_world, robot_named
+from sim_bridge.world import World
+from slam_lite.config import NodeSettings
+from slam_lite.mapper import Mapper
+from slam_lite.rendering import MapRenderer, on_canvas
+
+ROOT = Path(__file__).resolve().parents[2]
+SLAM_CONFIG = ROOT / "src/slam_lite/config/turtlebot.yaml"
+LONGEST_SECONDS = 600.0
+EXPLORE_PERIOD = 0.1
+
+
+@dataclass(frozen=True)
+class Mapped:
+    """One run: how it ended, how good the map is, and how far off the mapper was. Metres, seconds."""
+
+    seed: int
+    success: bool
+    reason: str
+    simulated_seconds: float
+    cpu_seconds: float
+    recall: float
+    precision: float
+    doubled_walls: int
+    way_home: float
+    collisions: int
+    mean_error: float
+    max_error: float
+    mission: Optional[bool] = None
+
+
+class MappingRun:
+    """Explores one world with one seed; a map every ``map_update_interval``, as the node does it."""
+
+    def __init__(self, world: World, robot: RobotProfile, seed: int):
+        self._simulation = Simulation(world, robot, seed=seed)
+        self._settings, _ = settings_from_yaml(NodeSettings, SLAM_CONFIG)
+        self.mapper = Mapper(self._settings)
+        self._renderer = MapRenderer(self._settings.resolution, self._settings.occupied_threshold)
+        self._explorer = Explorer()
+        navigation = load_settings(NAVIGATION_CONFIG)
+        self._navigator = Navigator(navigation)
+        self._steps_per_tick = round(
+            1.0 / (navigation.move_base.controller_frequency * self._simulation.step_seconds)
+        )
+        self._odom_in_map = Pose2()
+        self._map_stamp = -np.inf
+        self.true_keys: List[np.ndarray] = []
+        self.collisions = 0
+        self.base_in_world = Pose2()
+        self.now = 0.0
+
+    def run(self) -> Finish:
+        """Explores to the end and returns how it ended."""
+        command, event, outcome = Twist2(), None, None
+        try:
+            while outcome is None:
+                grid, odometry, scan = self._sense(command)
+                if len(self.true_keys) == 0:
+                    continue
+                base_in_map = self._odom_in_map @ odometry.base_in_odom
+                order = self._explorer.advance(self.now, grid, base_in_map, event)
+                if isinstance(order, GoTo):
+                    self._navigator.set_goal(order.pose)
+                decision = self._navigator.tick(
+                    self.now, base_in_map, odometry.base_in_odom, odometry.twist, scan
+                )
+                command, event = decision.command or Twist2(), _event_of(decision)
+                if isinstance(order, Finish):
+                    outcome = order
+                elif self.now > LONGEST_SECONDS:
+                    outcome = Finish(False, f"not done within {LONGEST_SECONDS:g} simulated seconds")
+        finally:
+            self._simulation.close()
+        return outcome
+
+    def _sense(self, command: Twist2):
+        """Moves on by one control period; returns a new map or None, the odometry and the newest scan."""
+        grid = scan = None
+        for _ in range(self._steps_per_tick):
+            seen = self._simulation.step(command)
+            self.collisions += len(seen.contacts)
+            if seen.scan is not None:
+                scan = seen.scan
+                grid = self._map(seen) or grid
+        self.now, self.base_in_world = seen.stamp, seen.base_in_world
+        return grid, seen.odometry, scan
+
+    def _map(self, seen) -> Optional[OccupancyGrid]:
+        update = self.mapper.insert(seen.odometry.base_in_odom, seen.scan)
+        if update is not None:
+            self._odom_in_map = update.odom_in_map
+            if update.is_key:
+                self.true_keys.append(seen.base_in_world.as_array())
+        if seen.scan.stamp - self._map_stamp < self._settings.map_update_interval:
+            return None
+        self._map_stamp = seen.scan.stamp
+        grid = self.grid()
+        self._navigator.set_map(on_canvas(grid, self._settings.extent))
+        return on_canvas(grid, self._settings.extent)
+
+    def grid(self) -> OccupancyGrid:
+        """The map as the node would publish it now."""
+        self._renderer.update(*self.mapper.evidence())
+        return self._renderer.grid()
+
+
+def _event_of(decision: Decision):
+    if decision.status is Status.SUCCEEDED:
+        return GoalReached()
+    return GoalRefused(decision.text) if decision.status is Status.ABORTED else None
+
+
+def judge(run: MappingRun, end: Finish, score: MapScore, seed: int, cpu: float, mission) -> Mapped:
+    way_home = run.base_in_world.distance_to(Pose2())
+    estimated = run.mapper.key_poses
+    errors = np.hypot(*(estimated[:, :2] - np.array(run.true_keys)[:, :2]).T)
+    complaints = [
+        (not end.success, end.reason),
+        (way_home > ARRIVAL_TOLERANCE, f"{way_home:.2f} m from the start"),
+        (score.recall < LEAST_RECALL, "recall"),
+        (score.precision < LEAST_PRECISION, "precision"),
+        (score.doubled_walls > 0, "doubled walls"),
+        (run.collisions > 0, "collision"),
+        (mission is False, "the mission on its map"),
+    ]
+    reasons = [text for is_wrong, text in complaints if is_wrong]
+    return Mapped(
+        seed,
+        not reasons,
+        "; ".join(reasons) or end.reason,
+        run.now,
+        cpu,
+        *asdict(score).values(),
+        way_home,
+        run.collisions,
+        float(errors.mean()),
+        float(errors.max()),
+        mission,
+    )
+
+
+def main() -> int:
+    options = _options()
+    robot = robot_named(options.robot)
+    results = []
+    try:
+        world = load_world(options.world)
+        for seed in options.seeds:
+            results.append(_one(options, world, robot, seed))
+    except PlanarError as error:
+        sys.exit(f"mapping.py: error: {error}")
+    successes = sum(result.success for result in results)
+    print(f"{successes} of {len(results)} succeeded")
+    if options.json:
+        options.json.write_text(json.dumps([asdict(result) for result in results], indent=2) + "\n")
+    return 0 if successes == len(results) else 1
+
+
+def _one(options, world: World, robot: RobotProfile, seed: int) -> Mapped:
+    start = time.process_time()
+    run = MappingRun(world, robot, seed)
+    end = run.run()
+    cpu = time.process_time() - start
+    grid = run.grid()
+    score = score_against_world(grid, world, robot)
+    if options.maps:
+        options.maps.mkdir(parents=True, exist_ok=True)
+        save_map(grid, options.maps / f"{seed}")
+    drives_well = None
+    if options.mission:
+        mission = load_mission(options.mission)
+        drives_well = Rehearsal(world, robot, grid, mission, seed).run().verdict.success
+    result = judge(run, end, score, seed, cpu, drives_well)
+    print(
+        f"seed {seed}: {'SUCCESS' if result.success else 'FAILURE'}: {result.reason}\n"
+        f"  {result.simulated_seconds:.0f} s simulated, {cpu:.0f} s of CPU, recall {result.recall:.3f}, "
+        f"precision {result.precision:.3f}, {result.doubled_walls} doubled walls, "
+        f"back {result.way_home:.2f} m from the start, {result.collisions} collisions, "
+        f"keys off by {result.mean_error:.3f} m (at most {result.max_error:.3f})",
+        flush=True,
+    )
+    return result
+
+
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seeds", type=_seeds, default=range(10), help="such as 0-9 (default) or 7")
+    parser.add_argument("--world", type=Path, default=ROOT / "map/home.world", help="default: the home")
+    parser.add_argument("--robot", default="turtlebot_lidar", help="profile (default: turtlebot_lidar)")
+    parser.add_argument("--maps", type=Path, metavar="FOLDER", help="keep the maps there")
+    parser.add_argument("--json", type=Path, help="write the figures here")
+    parser.add_argument("--mission", type=Path, metavar="FILE", help="drive this on each map")
+    return parser.parse_args()
+
+
+def _seeds(text: str) -> range:
+    first, _, last = text.partition("-")
+    return range(int(first), int(last or first) + 1)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
