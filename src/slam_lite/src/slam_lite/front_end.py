@@ -13,6 +13,7 @@ from slam_lite.matching.correlative import Window, search_far, search_near
 from slam_lite.matching.local_map import LocalMap, Match
 from slam_lite.matching.refinement import refine
 from slam_lite.surface import Surface
+from slam_lite.view import View
 
 # A match with a smaller response than this is searched again in a wide window, as after a slip of the wheels.
 _POOR_RESPONSE = 0.4
@@ -58,9 +59,11 @@ class RecentScans:
         self.local_map = LocalMap()
         self._window_keys = window_keys
         self._window: Deque[Tuple[Surface, Pose2]] = deque()
+        self._last_view: Optional[View] = None
 
     def add(self, surface: Surface, base_in_track: Pose2) -> None:
         """Adds a key scan."""
+        self._last_view = View(surface, base_in_track)
         if len(self._window) >= self._window_keys:
             for _ in range(len(self._window) // 2):
                 self._window.popleft()
@@ -74,6 +77,10 @@ class RecentScans:
 
     def gather(self, base_in_track: Pose2) -> None:
         """Nothing to do: the scans around the robot are those it has just made."""
+
+    def new_share(self, surface: Surface, base_in_track: Pose2) -> float:
+        """Share of a scan, 0 to 1, that looks where the last key scan did not."""
+        return 0.0 if self._last_view is None else self._last_view.new_share(surface, base_in_track)
 
 
 class KnownScans:
@@ -93,6 +100,10 @@ class KnownScans:
         distances = np.hypot(self._poses[:, 0] - base_in_track.x, self._poses[:, 1] - base_in_track.y)
         for key in np.flatnonzero(distances < _KNOWN_RADIUS):
             self.local_map.add(self._surfaces[key], Pose2.from_array(self._poses[key]))
+
+    def new_share(self, surface: Surface, base_in_track: Pose2) -> float:
+        """A finished map has nothing new."""
+        return 0.0
 
 
 class FrontEnd:
@@ -139,7 +150,8 @@ class FrontEnd:
             float(np.clip(3.0 * math.sqrt(variance[2]), 0.1, 0.5)),
         )
         doubt = variance if moves(motion) else _STEADY_MOTION_VARIANCE
-        start = search_near(surface, local_map, predicted, window, doubt)
+        new_share = self._scans.new_share(surface, predicted)
+        start = search_near(surface, local_map, predicted, window, doubt, new_share)
         match = refine(surface, local_map, start, predicted, prior)
         if match.response < _POOR_RESPONSE:
             match = self._search_wide(surface, (predicted, last_in_track), match)

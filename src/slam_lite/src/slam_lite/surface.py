@@ -14,7 +14,8 @@ class Surface:
     """The surface points that one scan saw, in the base frame.
 
     ``points_xy``: float32 (N, 2), metres, thinned to an even spacing. ``normals_xy``: float32 (N, 2), the
-    unit normal of the line through each point's neighbours, (0, 0) where the neighbours do not form a line.
+    unit normal of the line through each point's neighbours, on the side from which it was seen, (0, 0) where
+    the neighbours do not form a line.
     """
 
     points_xy: np.ndarray
@@ -58,6 +59,8 @@ def _surface(ranges, angle, increment, shortest, longest, x, y, spacing):
     normals = np.zeros((count, 2), dtype=np.float32)
     for i in range(count):
         _set_normal(points, normals, i)
+        if normals[i, 0] * (x - points[i, 0]) + normals[i, 1] * (y - points[i, 1]) < 0.0:
+            normals[i] = -normals[i]
     return points, normals
 
 

@@ -39,12 +39,18 @@ class Peak:
 
 
 def search_near(
-    surface: Surface, local_map: LocalMap, guess: Pose2, window: Window, variance: np.ndarray
+    surface: Surface,
+    local_map: LocalMap,
+    guess: Pose2,
+    window: Window,
+    variance: np.ndarray,
+    new_share: float = 0.0,
 ) -> Pose2:
     """The best pose of a small window, in steps of two cells.
 
     ``variance``: (3,) of the guess, m^2, m^2, rad^2. To overrule it takes a share of the scan: somebody who
-    walks ahead of the robot is but a few beams, wheels that slip are seen by all.
+    walks ahead of the robot is but a few beams, wheels that slip are seen by all. ``new_share``: the share
+    that nothing in the map can fit and that is likely to fit something else when it is elsewhere.
     """
     best = _search_near(
         local_map.likelihood,
@@ -55,6 +61,7 @@ def search_near(
         max(1, round(window.angle / _NEAR_ANGLE_STEP)),
         (2.0 * local_map.resolution) ** 2 / variance[0],
         _NEAR_ANGLE_STEP**2 / variance[2],
+        _OVERRULING_SHARE + new_share,
     )
     return local_map.from_grid(best)
 
@@ -81,7 +88,7 @@ def _scores(likelihood, resolution, points, poses):
 
 
 @numba.njit(cache=True, nogil=True)
-def _search_near(likelihood, resolution, points, guess, steps, angle_steps, step_chi, angle_chi):
+def _search_near(likelihood, resolution, points, guess, steps, angle_steps, step_chi, angle_chi, share):
     rows, cols = likelihood.shape
     n = len(points)
     best_score, best = -np.inf, guess.copy()
@@ -97,7 +104,7 @@ def _search_near(likelihood, resolution, points, guess, steps, angle_steps, step
                     if 0 <= q < cols and 0 <= r < rows:
                         total += likelihood[r, q]
                 chi = step_chi * (i * i + j * j) + angle_chi * k * k
-                penalty = _OVERRULING_SHARE * chi / (chi + _HALF_CHI_SQUARE)
+                penalty = share * chi / (chi + _HALF_CHI_SQUARE)
                 score = total / (255.0 * max(n, 1)) - penalty
                 if score > best_score:
                     best_score = score

@@ -1,7 +1,8 @@
 """Continuous refinement of a pose: point-to-line ICP against a local map.
 
 A. Censi, "An ICP variant using a point-to-line metric", ICRA 2008; the map's points and their normals stand
-for the lines, and each residual is weighted by Geman and McClure's robust cost.
+for the lines, and each residual is weighted by Geman and McClure's robust cost. Points are not drawn to the
+other side of a wall: that would make two rooms one wall's thickness too close.
 """
 
 import math
@@ -22,6 +23,8 @@ _ON_SURFACE = 0.1
 _SIGMA = 0.05
 # Chi-square at which the belief in the prior is halved.
 _FREE_CHI_SQUARE = 9.0
+# Two normals whose cosine is less than this belong to the two sides of a wall.
+_OPPOSED = -0.5
 # Weight of a point that has no line to be drawn to, only a point.
 _CORNER_WEIGHT = 0.2
 
@@ -40,6 +43,7 @@ def refine(
         local_map.normals_xy,
         local_map.resolution,
         surface.points_xy,
+        surface.normals_xy,
         local_map.to_grid(start),
         local_map.to_grid(prior),
         prior_information * _SIGMA**2,
@@ -48,11 +52,13 @@ def refine(
 
 
 @numba.njit(cache=True, nogil=True)
-def _refine(nearest, map_points, map_normals, resolution, points, start, believed, prior):
+def _refine(nearest, map_points, map_normals, resolution, points, normals, start, believed, prior):
     pose = start.copy()
     weighted_prior = prior.copy()
     for _ in range(_MAX_STEPS):
-        information, gradient, _ = _linearize(nearest, map_points, map_normals, resolution, points, pose)
+        information, gradient, _ = _linearize(
+            nearest, map_points, map_normals, resolution, points, normals, pose
+        )
         deviation = pose - believed
         deviation[2] = (deviation[2] + math.pi) % (2.0 * math.pi) - math.pi
         # Cauchy's weight: wheels that slipped must not pull the pose off what is seen.
@@ -64,12 +70,14 @@ def _refine(nearest, map_points, map_normals, resolution, points, start, believe
         pose += step
         if abs(step[0]) < 1e-4 and abs(step[1]) < 1e-4 and abs(step[2]) < 1e-5:
             break
-    information, _, on_surface = _linearize(nearest, map_points, map_normals, resolution, points, pose)
+    information, _, on_surface = _linearize(
+        nearest, map_points, map_normals, resolution, points, normals, pose
+    )
     return pose, information + weighted_prior, on_surface / max(len(points), 1)
 
 
 @numba.njit(cache=True, nogil=True)
-def _linearize(nearest, map_points, map_normals, resolution, points, pose):
+def _linearize(nearest, map_points, map_normals, resolution, points, normals, pose):
     h00, h01, h02, h11, h12, h22 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     g0, g1, g2 = 0.0, 0.0, 0.0
     c, s = math.cos(pose[2]), math.sin(pose[2])
@@ -84,6 +92,9 @@ def _linearize(nearest, map_points, map_normals, resolution, points, pose):
         i = nearest[row, col]
         ex, ey = x - map_points[i, 0], y - map_points[i, 1]
         nx, ny = map_normals[i, 0], map_normals[i, 1]
+        cosine = c * (normals[p, 0] * nx + normals[p, 1] * ny) + s * (normals[p, 0] * ny - normals[p, 1] * nx)
+        if cosine < _OPPOSED:
+            continue
         if nx != 0.0 or ny != 0.0:
             error = ex * nx + ey * ny
             w = 1.0 / (1.0 + (error / _OUTLIER_SCALE) ** 2) ** 2
