@@ -6,7 +6,8 @@ from planar import Pose2, wrap
 from slam_lite.matching.correlative import Window, search_far, search_near
 from slam_lite.matching.local_map import LocalMap
 from slam_lite.matching.refinement import refine
-from slam_lite.surface import surface_of
+from slam_lite.surface import Surface, surface_of
+from slam_lite.view import View
 
 HERE = Pose2(6.5, 2.2, 0.2)
 NO_BELIEF = np.zeros((3, 3))
@@ -45,8 +46,6 @@ def test_refinement_finds_the_step_between_two_scans_to_a_centimetre(office):
 
 
 def test_along_a_bare_wall_a_match_knows_that_it_knows_nothing(office):
-    from slam_lite.surface import Surface
-
     wall_xy = np.column_stack((np.arange(-3.0, 3.0, 0.05), np.full(120, 1.0))).astype(np.float32)
     wall = Surface(wall_xy, np.tile(np.array([0.0, 1.0], dtype=np.float32), (120, 1)))
     local_map = LocalMap()
@@ -57,9 +56,36 @@ def test_along_a_bare_wall_a_match_knows_that_it_knows_nothing(office):
     assert match.information[0, 0] < 1e-3 * match.information[1, 1]
 
 
-def test_belief_decides_where_nothing_is_seen():
-    from slam_lite.surface import Surface
+def test_a_wall_is_not_taken_for_its_other_side():
+    length = np.arange(-1.0, 1.0, 0.03)
+    front = np.column_stack((length, np.zeros_like(length))).astype(np.float32)
+    back = front + np.array([0.0, 0.15], dtype=np.float32)
+    up = np.tile(np.array([0.0, 1.0], dtype=np.float32), (len(front), 1))
+    local_map = LocalMap()
+    local_map.clear(Pose2())
+    local_map.add(Surface(front, -up), Pose2())
+    match = refine(Surface(back, up), local_map, Pose2(), Pose2(), np.eye(3))
+    assert match.response == 0.0
+    assert error(match.base_pose, Pose2()) == (0.0, 0.0)
 
+
+def test_normals_point_to_where_the_surface_was_seen_from(office):
+    surface = surface_at(office, HERE)
+    has_normal = surface.normals_xy.any(axis=1)
+    towards = -(surface.points_xy * surface.normals_xy).sum(axis=1)
+    assert has_normal.mean() > 0.9
+    assert (towards[has_normal] >= 0.0).all()
+
+
+def test_what_lies_beside_a_view_is_new(office):
+    narrow = surface_of(office.scan(HERE, field_of_view=1.0), 20.0, 0.03)
+    view = View(narrow, HERE)
+    assert view.new_share(narrow, HERE) == 0.0
+    assert view.new_share(narrow, HERE @ Pose2(0.0, 0.0, 0.5)) > 0.2
+    assert view.new_share(narrow, HERE @ Pose2(0.0, 0.0, 2.0)) == 1.0
+
+
+def test_belief_decides_where_nothing_is_seen():
     nothing = Surface(np.empty((0, 2), dtype=np.float32), np.empty((0, 2), dtype=np.float32))
     local_map = LocalMap()
     local_map.clear(Pose2())

@@ -96,9 +96,11 @@ def _count_doubled_walls(grid, truth, truth_in_map, tolerance) -> int:
 
 
 def _long_false_gaps(grid, truth, truth_in_map, tolerance, across) -> np.ndarray:
-    gap_cells = np.argwhere(_gaps(grid, across))
+    gap_cells = np.argwhere(_gaps(grid, across, DOUBLING_GAP))
+    # Both walls of a true gap may be drawn nearer to each other.
+    widest = DOUBLING_GAP + 2.0 * tolerance
     true_gaps_xy = [
-        truth_in_map.transform_points(truth.points_of(np.argwhere(_gaps(truth, i)))) for i in (0, 1)
+        truth_in_map.transform_points(truth.points_of(np.argwhere(_gaps(truth, i, widest)))) for i in (0, 1)
     ]
     if len(gap_cells) and any(map(len, true_gaps_xy)):
         distances, _ = cKDTree(np.vstack(true_gaps_xy)).query(grid.points_of(gap_cells))
@@ -117,9 +119,9 @@ def _second_walls(grid, truth, truth_in_map, tolerance) -> np.ndarray:
     return _mask(grid, cells[is_astray][gaps <= tolerance])
 
 
-def _gaps(grid, across) -> np.ndarray:
-    """Free cells with a wall close on both sides along one axis of the grid: bool (rows, cols)."""
-    reach = round(DOUBLING_GAP / grid.resolution) + 1
+def _gaps(grid, across, widest) -> np.ndarray:
+    """Free cells between walls at most ``widest`` metres apart along one axis: bool (rows, cols)."""
+    reach = round(widest / grid.resolution) + 1
     walls = np.pad(grid.cells == OCCUPIED, reach)
     closed = binary_closing(walls, np.ones((reach, 1) if across == 0 else (1, reach)))
     return closed[reach:-reach, reach:-reach] & (grid.cells == FREE)

@@ -14,7 +14,7 @@ from slam_lite.rendering import Beams
 from slam_lite.surface import Surface
 
 FORMAT = "slam_lite state"
-VERSION = 1
+VERSION = 2
 
 
 class StateFileError(PlanarError):
