@@ -28,6 +28,8 @@ SETTLED_SECONDS = 3.0
 QUIET_SECONDS, QUIET_SIMULATED = 25.0, 30.0
 # The same once no node is left that could send a goal: a marker may still be moved.
 UNATTENDED_SECONDS, UNATTENDED_SIMULATED = 8.0, 10.0
+# The same before the first goal.
+IDLE_SECONDS, IDLE_SIMULATED = 90.0, 60.0
 # Seconds of wall time in which some simulated time has to pass.
 STALLED_SECONDS = 90.0
 SHELLS = ("", "bash", "sh", "dash", "zsh")
@@ -103,7 +105,7 @@ class ProjectRun:
             now = time.monotonic()
             observer.look_around()
             for window in self._windows.opened():
-                self._display.say(f"{observer.simulated_time:7.1f} s  window {window}")
+                self._tell(f"{observer.simulated_time:7.1f} s  window {window}")
             self._display.show(observer.status())
             if observer.simulated_time != moved_time:
                 moved_wall, moved_time = now, observer.simulated_time
@@ -136,7 +138,7 @@ class ProjectRun:
                 enough_wall, enough_simulated = UNATTENDED_SECONDS, UNATTENDED_SIMULATED
             return ledger.is_quiet and quiet_wall > enough_wall and quiet_simulated > enough_simulated
         # A goal may still come: bringing up localization and navigation takes a while on a busy machine.
-        return bool(ledger.markers) and quiet_wall > STALLED_SECONDS
+        return quiet_wall > IDLE_SECONDS and quiet_simulated > IDLE_SIMULATED
 
     def _tell(self, news: str) -> None:
         self._news_wall = time.monotonic()
