@@ -8,7 +8,7 @@ import actionlib
 import rosnode
 import rospy
 import rostest
-from actionlib_msgs.msg import GoalStatus
+from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import Odometry
@@ -41,8 +41,15 @@ class TestReset(unittest.TestCase):
         self.reset("/gazebo/reset_simulation")
         self.wait_until(lambda: self.truth[-1].header.stamp.to_sec() < 5.0, "time to begin anew")
         self.assertLess(self.distance_from(0.0, 0.0), 0.5)
+        self.assert_status_is_told()
         self.tell_initial_pose()
         self.assert_nodes_work()
+
+    def assert_status_is_told(self):
+        """Several times: an old timer ends at its first sleep after the jump."""
+        told = []
+        rospy.Subscriber("move_base/status", GoalStatusArray, told.append, queue_size=10)
+        self.wait_until(lambda: len(told) >= 5, "the status of move_base")
 
     def start_goal(self, x, y):
         """A client of its own: one that has lived through a jump of time has forgotten nothing of it."""

@@ -16,7 +16,7 @@ from explorer_lite.markers import frontier_markers
 from explorer_lite.msg import ExploreAction, ExploreFeedback, ExploreResult
 from explorer_lite.warming import warm_up
 from planar import OccupancyGrid, Pose2
-from planar_ros.actions import server_is_ready
+from planar_ros.actions import ActionServer, server_is_ready
 from planar_ros.messages import OccupancyGridArrays, grid_from_msg, pose2_to_msg
 from planar_ros.parameters import read_settings
 from planar_ros.shell import run
@@ -60,7 +60,7 @@ class Explore:
             f"the action {rospy.resolve_name('move_base')}": lambda: server_is_ready(self._client),
         }
         Waiting(self._conditions)
-        self._server = actionlib.SimpleActionServer("explore", ExploreAction, self._execute, auto_start=False)
+        self._server = ActionServer("explore", ExploreAction, self._execute, auto_start=False)
         self._server.start()
 
     def _execute(self, goal):

@@ -1,6 +1,19 @@
-"""Clients of actions."""
+"""Clients and servers of actions."""
 
 import actionlib
+import rospy
+
+
+class ActionServer(actionlib.SimpleActionServer):
+    """A server that tells its status also after time was set back, which ends actionlib's own timer."""
+
+    def start(self) -> None:
+        super().start()
+        server = self.action_server
+        if server.status_timer is not None:
+            server.status_timer.shutdown()
+            period = rospy.Duration(1.0 / server.status_frequency)
+            server.status_timer = rospy.Timer(period, server.publish_status_async, reset=True)
 
 
 def server_is_ready(client: actionlib.SimpleActionClient) -> bool:

@@ -4,7 +4,6 @@ import threading
 from typing import Callable, Optional
 
 import rospy
-from actionlib import SimpleActionServer
 from actionlib.action_server import ServerGoalHandle
 from geometry_msgs.msg import PoseStamped
 from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseFeedback
@@ -13,6 +12,7 @@ from move_base_lite.decision import Status
 from move_base_lite.nodes.goals import goal_from_msg
 from move_base_lite.nodes.plan_messages import pose_msg
 from planar import Pose2
+from planar_ros.actions import ActionServer
 from planar_ros.transforms import Transforms
 
 
@@ -24,7 +24,7 @@ class GoalServer:
 
     def __init__(self, map_frame: str, transforms: Transforms, on_cancel: Callable[[], None]):
         self._map_frame, self._transforms = map_frame, transforms
-        self._server = SimpleActionServer("move_base", MoveBaseAction, auto_start=False)
+        self._server = ActionServer("move_base", MoveBaseAction, auto_start=False)
         self._server.register_preempt_callback(
             lambda: threading.Thread(target=on_cancel, daemon=True).start()
         )

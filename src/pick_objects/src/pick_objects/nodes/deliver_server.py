@@ -3,7 +3,6 @@
 import time
 from typing import Callable, Optional
 
-import actionlib
 import rospy
 from home_service_msgs.msg import DeliverAction, DeliverFeedback, DeliverGoal, DeliverResult
 
@@ -12,6 +11,7 @@ from pick_objects.mission import Mission
 from pick_objects.nodes.mission_topics import MissionTopics, delivery_states
 from planar import PlanarError
 from planar.driving import Finish
+from planar_ros.actions import ActionServer
 
 FEEDBACK_SECONDS = 0.2
 
@@ -32,7 +32,7 @@ class DeliverServer:
         self._topics, self._understand, self._carry_out = topics, understand, carry_out
         self._errand: Optional[Errand] = None
         self._latest_feedback = 0.0
-        self._server = actionlib.SimpleActionServer("deliver", DeliverAction, auto_start=False)
+        self._server = ActionServer("deliver", DeliverAction, auto_start=False)
         self._server.start()
 
     def serve(self, poll_seconds: float) -> None:
