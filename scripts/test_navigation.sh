@@ -14,7 +14,7 @@
 #   --seed N         seed of every noise and every particle (default: 0)
 #   --record inputs|all
 #                    record bags: scans, odometry and truth, or everything (docs/bags.md)
-#   --timeout N      the run fails after N seconds of wall time (default: 900)
+#   --timeout N      the run fails after N seconds of wall time (default: 900, without --goals never)
 #   --gif            also leave run.gif, the run as an animation
 #   --output FOLDER  where the run folder is made (default: ./runs)
 #   --help           this text

@@ -1,3 +1,4 @@
+import math
 from argparse import ArgumentTypeError
 
 import pytest
@@ -30,6 +31,22 @@ def test_every_command_explains_itself(command, capsys):
         parse([command, "--help"])
     assert stop.value.code == 0
     assert "--seed" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "arguments, expected",
+    [
+        (["home_service"], 900.0),
+        (["home_service", "--serve"], math.inf),
+        (["home_service", "--serve", "--timeout", "5"], 5.0),
+        (["launch"], math.inf),
+        (["test_navigation"], math.inf),
+        (["test_navigation", "--goals", "1 2 3"], 900.0),
+        (["rehearse"], 600.0),
+    ],
+)
+def test_what_a_person_ends_has_no_time_out_of_its_own(arguments, expected):
+    assert parse(arguments).timeout == expected
 
 
 @pytest.mark.parametrize("option", ["world", "map", "zones"])

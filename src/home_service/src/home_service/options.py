@@ -1,11 +1,13 @@
 """The command line of each command."""
 
 import argparse
+import math
 from pathlib import Path
 from typing import List, Optional
 
 ROOT = Path(__file__).resolve().parents[4]
 MAX_SPEED = 1000.0
+RUN_SECONDS = 900.0
 
 COMMANDS = {
     "launch": "Starts the simulated home with the robot in it, until Ctrl-C.",
@@ -52,7 +54,20 @@ def parse(arguments: Optional[List[str]]) -> argparse.Namespace:
         if name in ROS_COMMANDS:
             _add_graph_options(command)
         _add_own_options(name, command)
-    return parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    if "timeout" not in options:
+        options.timeout = math.inf if _ends_with_ctrl_c(options) else RUN_SECONDS
+    return options
+
+
+def _ends_with_ctrl_c(options: argparse.Namespace) -> bool:
+    """Whether it is a person who ends the run."""
+    return (
+        options.command == "launch"
+        or (options.command == "home_service" and options.serve)
+        or (options.command == "test_navigation" and options.goals is None)
+        or (options.command == "test_slam" and options.drive == "keys")
+    )
 
 
 def _add_report_options(name: str, parser: argparse.ArgumentParser) -> None:
@@ -117,7 +132,12 @@ def _add_run_options(parser: argparse.ArgumentParser) -> None:
         help="1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz 1)",
     )
     parser.add_argument("--rviz", action="store_true", help="show the run in rviz, where there is a display")
-    parser.add_argument("--timeout", type=seconds, default=900.0, help="wall-clock seconds a run may take")
+    parser.add_argument(
+        "--timeout",
+        type=seconds,
+        default=argparse.SUPPRESS,
+        help=f"wall-clock seconds a run may take (default: {RUN_SECONDS:g}; none for what Ctrl-C ends)",
+    )
     parser.add_argument("--gif", action="store_true", help="also leave run.gif, the run as an animation")
     parser.add_argument("--output", type=Path, default=Path("runs"), help="where run folders are made")
 
