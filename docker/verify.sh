@@ -16,7 +16,15 @@ root=$(cd -P -- "$(dirname -- "$(readlink -f -- "$0")")/.." && pwd)
 readonly image=localhost/home-service-robot user=1000 certificates=/etc/ssl/certs/ca-certificates.crt
 base='' tests=all work=''
 
-say() { printf '\n== %s\n' "$*"; }
+say() { printf '\n== %d:%02d  %s\n' $((SECONDS / 60)) $((SECONDS % 60)) "$*"; } # with the time since the start
+
+show() { # PATTERN LOG: of what is read, the lines that match, with the time since the start; all of it goes to LOG
+    local line
+    while IFS= read -r line; do
+        if [[ $line =~ $1 ]]; then printf '   %d:%02d  %.100s\n' $((SECONDS / 60)) $((SECONDS % 60)) "$line"; fi
+        printf '%s\n' "$line" >>"$2"
+    done
+}
 
 fail() { # SENTENCE [EXIT_CODE]
     printf 'error: %s\n' "$1" >&2
@@ -68,8 +76,8 @@ builder() { buildah --root "$work/storage" --runroot "$work/state" "$@"; }
 make_base() {
     if [[ -z $base ]]; then
         say "A root file system of Debian 12"
-        debootstrap --variant=minbase bookworm "$work/base" >"$work/debootstrap.log" ||
-            fail "debootstrap failed (see $work/debootstrap.log)"
+        debootstrap --variant=minbase bookworm "$work/base" 2>&1 | show '^I: (.* the base system|Base system)' \
+            "$work/debootstrap.log" || fail "debootstrap failed (see $work/debootstrap.log)"
         rm -rf "$work"/base/var/cache/apt/*.bin "$work"/base/var/cache/apt/archives/*.deb
         base=$work/base
     fi
@@ -87,7 +95,8 @@ build_image() {
         options+=(-v "$certificates:/run/certificates.crt:ro" -v "$work/pip.conf:/etc/pip.conf:ro")
     fi
     builder build "${options[@]}" --from localhost/debian:bookworm-slim \
-        --file "$root/docker/Dockerfile" --tag "$image" "$root" >"$work/build.log" 2>&1 || {
+        --file "$root/docker/Dockerfile" --tag "$image" "$root" 2>&1 |
+        show 'STEP [0-9]|^  done in' "$work/build.log" || {
         tail -n 30 "$work/build.log" >&2
         fail "the build failed (see $work/build.log)"
     }
