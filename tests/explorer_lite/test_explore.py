@@ -12,7 +12,7 @@ from move_base_msgs.msg import MoveBaseAction
 
 from explorer_lite.msg import ExploreAction, ExploreGoal
 from planar import Pose2, grid_from_picture
-from planar_ros.actions import server_is_ready
+from planar_ros.actions import goal_is_over, server_is_ready
 from planar_ros.messages import OccupancyGridArrays, grid_to_msg, pose2_from_msg
 from planar_ros.transforms import Transforms
 
@@ -111,7 +111,7 @@ class ExploreTest(unittest.TestCase):
         client.send_goal(ExploreGoal(return_to_start=True), feedback_cb=feedback)
 
     def _end(self, client):
-        self._wait_until(lambda: client.get_state() not in (GoalStatus.PENDING, GoalStatus.ACTIVE))
+        self._wait_until(lambda: goal_is_over(client))
         return client.get_state()
 
     def _wait_until(self, is_met):

@@ -11,6 +11,7 @@ import actionlib
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
+from gazebo_msgs.msg import ModelStates
 from home_service_msgs.msg import DeliverAction, DeliverGoal, Delivery, DeliveryState
 from home_service_msgs.srv import AddDelivery, CancelDelivery
 from visualization_msgs.msg import Marker
@@ -19,15 +20,16 @@ from home_service.referee import Referee
 from home_service.verdict import ERRAND, OBJECTS, judge
 from pick_objects import parse_mission
 from planar import Pose2
-from planar_ros.actions import server_is_ready
-from planar_ros.messages import pose2_to_msg
+from planar_ros.actions import goal_is_over, server_is_ready
+from planar_ros.messages import pose2_from_msg, pose2_to_msg
 
 WALL_DEADLINE = 240.0
 MISSION = """\
 places:
   hall: {x: 1.2, y: 0.2}
-  door: {x: 2.6, y: 0.2}
+  door: {x: 2.6, y: 0.2, yaw: 1.57}
   sofa: {x: 4.0, y: 0.4, approaches: [{x: 3.3, y: -0.1}]}
+objects: {cup: {}, book: {}, letter: {solid: true}}
 settings: {pickup_seconds: 1.0, dropoff_seconds: 0.5, retry_seconds: 0.5, attempts: 2, order: shortest}
 deliveries:
   - {name: first, object: cup, from: hall, to: door}
@@ -35,6 +37,25 @@ deliveries:
   - {name: third, object: cup, from: door, to: hall}
   - {name: last, object: letter, from: hall, to: door, after: third}
 """
+
+
+class BoxWatch:
+    """Follows a model in the simulator, seen from the robot that carries it now and then."""
+
+    def __init__(self, name):
+        self._name = name
+        self.standing, self.riding = [], []
+        self._subscriber = rospy.Subscriber("/gazebo/model_states", ModelStates, self._see, queue_size=10)
+
+    def _see(self, message):
+        if self._name not in message.name:
+            return
+        box = message.pose[message.name.index(self._name)]
+        robot = pose2_from_msg(message.pose[message.name.index("mobile_base")])
+        if box.position.z > 0.5:
+            self.riding.append(robot.distance_to(pose2_from_msg(box)))
+        else:
+            self.standing.append(pose2_from_msg(box))
 
 
 class MissionsTest(unittest.TestCase):
@@ -50,9 +71,9 @@ class MissionsTest(unittest.TestCase):
 
     def test_1_a_mission_with_a_mistake_is_refused_naming_line_and_key(self):
         self.client.send_goal(DeliverGoal(mission=MISSION.replace("to: sofa", "to: sofaa")))
-        self._wait("the refusal", self._is_over)
+        self._wait("the refusal", lambda: goal_is_over(self.client))
         self.assertEqual(self.client.get_state(), GoalStatus.ABORTED)
-        self.assertIn("mission:8: deliveries[2].to names no place: sofaa", self.client.get_goal_status_text())
+        self.assertIn("mission:9: deliveries[2].to names no place: sofaa", self.client.get_goal_status_text())
 
     def test_2_a_mission_is_cancelled_while_an_object_is_carried(self):
         goal = DeliverGoal(deliveries=[Delivery("away", "parcel", "pickup", "dropoff")])
@@ -60,7 +81,7 @@ class MissionsTest(unittest.TestCase):
         self._wait("the object on the robot", lambda: self._stage("away") == "carrying")
         self._wait("motion", lambda: self.referee.truth.distance_to(Pose2(2.0, 3.0)) > 0.5)
         self.client.cancel_goal()
-        self._wait("the end", self._is_over)
+        self._wait("the end", lambda: goal_is_over(self.client))
         self.assertEqual(self.client.get_state(), GoalStatus.PREEMPTED)
         self.assertEqual(self.client.get_result().deliveries[0].state, DeliveryState.CANCELLED)
         self._wait("the state", lambda: self.referee.ledger.final_state == "cancelled")
@@ -74,6 +95,7 @@ class MissionsTest(unittest.TestCase):
 
     def test_3_a_blocked_place_is_served_from_its_alternative_and_a_delivery_is_added(self):
         self._drop_box(self.places["sofa"].pose)
+        letter = BoxWatch("letter")
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "mission.yaml"
             path.write_text(MISSION)
@@ -93,6 +115,14 @@ class MissionsTest(unittest.TestCase):
         self.assertEqual(records["blocked"].attempts, 3)
         self.assertEqual(records["extra"].state, "delivered")
         self.assertEqual(records["needless"].state, "cancelled")
+        self._assert_body(letter)
+
+    def _assert_body(self, letter):
+        """It stood in front of one place, rode on the robot, and stands in front of the other."""
+        print(f"on the robot at most {max(letter.riding):.3f} m off its middle")
+        for place, box in (("hall", letter.standing[0]), ("door", letter.standing[-1])):
+            self.assertAlmostEqual(self.places[place].distance_to(box), 0.5, delta=0.15)
+        self.assertLess(max(letter.riding), 0.05)
 
     def _assert_services(self):
         add = rospy.ServiceProxy("pick_objects/add_delivery", AddDelivery)
@@ -105,9 +135,6 @@ class MissionsTest(unittest.TestCase):
 
     def _stage(self, name):
         return next((record.state for record in self.referee.ledger.deliveries if record.name == name), None)
-
-    def _is_over(self):
-        return self.client.get_state() not in (GoalStatus.PENDING, GoalStatus.ACTIVE)
 
     def _drop_box(self, pose):
         self._wait("a subscriber of boxes", lambda: self.boxes.get_num_connections() > 0)

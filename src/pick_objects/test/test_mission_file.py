@@ -67,6 +67,12 @@ def test_a_mission_is_read_with_the_places_that_were_known_before(tmp_path):
         ("radius: 0.3", "radius: 0", "mission:3: places.kitchen.radius must be positive"),
         ("size: 0.1", "size: huge", "mission:10: objects.cup.size must be a number"),
         ("[0, 0, 1]", "[0, 0, 9]", "mission:10: objects.cup.color must be three numbers from 0 to 1"),
+        ("letter: {}", "letter: {solid: maybe}", "mission:11: objects.letter.solid must be true or false"),
+        (
+            "size: 0.1",
+            "size: 0.3, solid: true",
+            "mission:10: objects.cup.size must be at most 0.25",
+        ),
         ("to: desk}", "to: kitchen}", r"mission:14: deliveries\[1\].to must be another place than kitchen"),
         (
             "from: desk, to: kitchen",

@@ -166,3 +166,22 @@ def test_the_rate_of_physics_can_be_changed_and_time_goes_on(scene):
     assert scene.stamp == pytest.approx(1.0)
     with pytest.raises(SettingsError, match="divisor of physics_rate"):
         scene.set_physics_rate(77)
+
+
+def test_what_is_attached_to_a_robot_goes_with_it_until_it_is_let_go(scene):
+    scene.add_robot("robot", LIDAR)
+    scene.add([box("parcel", 0.0, mass=0.2)])
+    scene.set_model_motion("parcel", at_rest(pose3(z=0.7)))
+    base = scene.links_of("robot")[0]
+    scene.attach(base, "parcel::link")
+    observation = drive(scene, 4.0, {"robot": Twist2(0.5, 0.4)})
+    parcel_in_base = np.linalg.inv(scene.link_motion(base).pose) @ scene.link_motion("parcel::link").pose
+    assert math.hypot(observation["robot"].base_in_world.x, observation["robot"].base_in_world.y) > 1.0
+    np.testing.assert_allclose(parcel_in_base[:3, 3], (0.0, 0.0, 0.7), atol=0.01)
+    assert observation["robot"].contacts == ()
+    scene.detach(base, "parcel::link")
+    scene.set_model_motion("parcel", at_rest(pose3(3.0, -2.0, 1.0)))
+    drive(scene, 1.0)
+    assert scene.model_motion("parcel").pose[2, 3] == pytest.approx(0.25, abs=0.01)
+    with pytest.raises(UnknownEntityError, match="parcel::link is not attached"):
+        scene.detach(base, "parcel::link")

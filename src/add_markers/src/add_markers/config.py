@@ -21,6 +21,7 @@ class MarkerSettings:
     frame_id: str = "map"
     base_frame_id: str = "base_footprint"
     size: float = 0.2
+    robot_model: str = "mobile_base"
 
     def __post_init__(self):
         check(bool(self.zones_file), "zones_file", "the path of a YAML file of zones", self.zones_file)

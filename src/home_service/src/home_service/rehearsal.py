@@ -14,6 +14,7 @@ import numpy as np
 from add_markers import CarriedParcel
 from amcl_lite import Localizer, LocalizerSettings
 from home_service.delivery_watch import DeliveryWatch
+from home_service.rehearsed_bodies import RehearsedBodies
 from home_service.verdict import ERRAND, MARKERS, Ledger, Verdict, judge
 from move_base_lite import Decision, NavigationError, Navigator, Status, load_settings
 from pick_objects import Errand, Finish, GoalReached, GoalRefused, GoTo, MeasureWays, Mission, WaysMeasured
@@ -81,6 +82,7 @@ class Rehearsal:
             1.0 / (navigation.move_base.controller_frequency * self._simulation.step_seconds)
         )
         self._errand = Errand(mission)
+        self._bodies = RehearsedBodies(self._simulation, grid)
         self._parcel = parcel
         self._places = mission.places
         self._ledger = Ledger()
@@ -101,6 +103,7 @@ class Rehearsal:
             self._note(observation, base_in_map)
             order = self._errand.advance(now, event)
             self._note_state(observation.base_in_world)
+            self._bodies.follow(self._errand, observation.base_in_world)
             if isinstance(order, GoTo):
                 self._navigator.set_goal(order.pose)
             decision = self._navigator.tick(now, base_in_map, odometry.base_in_odom, odometry.twist, scan)

@@ -17,11 +17,15 @@ class MissionError(PlanarError):
 
 @dataclass(frozen=True)
 class Thing:
-    """An object to be carried: the edge of a cube around it in metres; red, green and blue from 0 to 1."""
+    """An object to be carried: the edge of a cube around it in metres; red, green and blue from 0 to 1.
+
+    ``solid``: whether it is a body in the simulator, a column that wide.
+    """
 
     name: str
     size: float = 0.2
     color: Tuple[float, float, float] = ORANGE
+    solid: bool = False
 
 
 @dataclass(frozen=True)

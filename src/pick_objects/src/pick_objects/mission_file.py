@@ -12,6 +12,7 @@ from planar.settings import nearest_name, settings_from
 from planar.yaml_table import Table, parse_table, read_table
 
 Places = Mapping[str, Place]
+WIDEST_SOLID = 0.25
 
 
 def load_mission(
@@ -78,12 +79,15 @@ def _things(table: Table) -> Dict[str, Thing]:
     objects, things = table.table("objects"), {}
     for name in objects:
         entry = objects.table(name)
-        entry.allow_only("size", "color")
+        entry.allow_only("size", "color", "solid")
         size = entry.number("size", Thing(name).size)
         entry.check(size > 0.0, "size", "positive")
         color = entry.numbers("color", "red, green, blue") if "color" in entry else ORANGE
         entry.check(all(0.0 <= share <= 1.0 for share in color), "color", "three numbers from 0 to 1")
-        things[name] = Thing(name, size, color)  # type: ignore[arg-type]
+        solid = entry.flag("solid", False)
+        if solid:
+            entry.check(size <= WIDEST_SOLID, "size", f"at most {WIDEST_SOLID}, that the robot can carry it")
+        things[name] = Thing(name, size, color, solid)  # type: ignore[arg-type]
     return things
 
 

@@ -28,3 +28,8 @@ def server_is_ready(client: actionlib.SimpleActionClient) -> bool:
         and inner.pub_cancel.get_num_connections() > 0
         and inner.result_sub.get_num_connections() > 0
     )
+
+
+def goal_is_over(client: actionlib.SimpleActionClient) -> bool:
+    """Whether the last goal has ended and its result has come, which may be later than its state."""
+    return client.simple_state == actionlib.SimpleGoalState.DONE

@@ -1,5 +1,6 @@
 """Rigid bodies in PyBullet: what stands and moves in a world, and what touches what."""
 
+import itertools
 from dataclasses import dataclass, field
 from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
@@ -107,6 +108,7 @@ class Engine:
         self._links: Dict[str, _Link] = {}
         self._joints: Dict[str, _Joint] = {}
         self._names: Dict[Tuple[int, int], str] = {}
+        self._attachments: Dict[Tuple[str, str], int] = {}
         # Links that are not drawn down, and their masses.
         self._weightless: Dict[str, float] = {}
         self._gravity = gravity
@@ -144,18 +146,15 @@ class Engine:
     def pose_of(self, name: str) -> np.ndarray:
         """Where a link is, (4, 4) in the world."""
         link = self._links[name]
-        if link.index >= 0:
-            return self.motion_of(name).pose
-        return _pose(*self._bullet.getBasePositionAndOrientation(link.number)) @ link.from_centre
+        return self._centre_of(link) @ link.from_centre
 
     def set_motion(self, name: str, motion: Motion) -> None:
         """Puts a link to another place, with all that hangs together with it, and sets its velocity."""
         link = self._links[name]
         centre = motion.pose @ link.centre
         if link.index >= 0:
-            here = self._bullet.getLinkState(link.number, link.index, computeForwardKinematics=1)
             root = _pose(*self._bullet.getBasePositionAndOrientation(link.number))
-            centre = centre @ inverse(_pose(*here[:2])) @ root
+            centre = centre @ inverse(self._centre_of(link)) @ root
         self._bullet.resetBasePositionAndOrientation(link.number, position(centre), quaternion(centre))
         linear = motion.linear + cross(motion.angular, centre[:3, 3] - motion.pose[:3, 3])
         self._bullet.resetBaseVelocity(link.number, linear.tolist(), motion.angular.tolist())
@@ -180,6 +179,9 @@ class Engine:
     def remove(self, name: str) -> None:
         """Takes away a link and all that hangs together with it."""
         number = self._links[name].number
+        for pair in list(self._attachments):
+            if number in (self._links[link].number for link in pair):
+                self.detach(*pair)
         self._bullet.removeBody(number)
         self._links = {key: link for key, link in self._links.items() if link.number != number}
         self._joints = {key: joint for key, joint in self._joints.items() if joint.number != number}
@@ -188,6 +190,37 @@ class Engine:
 
     def has_link(self, name: str) -> bool:
         return name in self._links
+
+    def attach(self, first: str, second: str) -> None:
+        """Holds two links together as they are now until they are detached; meanwhile they never collide."""
+        if (first, second) in self._attachments:
+            self.detach(first, second)
+        one, other = self._links[first], self._links[second]
+        other_in_one = inverse(self._centre_of(one)) @ self._centre_of(other)
+        self._attachments[first, second] = self._bullet.createConstraint(
+            one.number,
+            one.index,
+            other.number,
+            other.index,
+            pybullet.JOINT_FIXED,
+            [0.0, 0.0, 0.0],
+            position(other_in_one),
+            [0.0, 0.0, 0.0],
+            quaternion(other_in_one),
+        )
+        self._let_collide(one, other, False)
+
+    def is_attached(self, first: str, second: str) -> bool:
+        return (first, second) in self._attachments
+
+    def detach_all(self) -> None:
+        for pair in list(self._attachments):
+            self.detach(*pair)
+
+    def detach(self, first: str, second: str) -> None:
+        """Lets go what was attached in this order."""
+        self._bullet.removeConstraint(self._attachments.pop((first, second)))
+        self._let_collide(self._links[first], self._links[second], True)
 
     def joint_state(self, name: str) -> JointState:
         joint = self._joints[name]
@@ -295,6 +328,18 @@ class Engine:
             collisionFilterMask=WORLD_GROUPS,
         )
         return np.array([point[2] if number >= 0 else -np.inf for number, _, _, point, _ in hits])
+
+    def _centre_of(self, link: _Link) -> np.ndarray:
+        """Where the centre of a link's mass is, with its principal axes, (4, 4) in the world."""
+        if link.index < 0:
+            return _pose(*self._bullet.getBasePositionAndOrientation(link.number))
+        return _pose(*self._bullet.getLinkState(link.number, link.index, computeForwardKinematics=1)[:2])
+
+    def _let_collide(self, one: _Link, other: _Link, may_collide: bool) -> None:
+        """All parts of the one with all parts of the other."""
+        parts = [[index for number, index in self._names if number == link.number] for link in (one, other)]
+        for first, second in itertools.product(*parts):
+            self._bullet.setCollisionFilterPair(one.number, other.number, first, second, int(may_collide))
 
     def _add_tree(self, tree: Tree) -> None:
         """Each body is a link on its parent's; the shapes that do not fit into one are fixed links on it."""

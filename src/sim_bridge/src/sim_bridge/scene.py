@@ -223,6 +223,18 @@ class Scene:
         self.link_motion(link)
         self._set_motion(link, motion)
 
+    def attach(self, first: str, second: str) -> None:
+        """Holds two links together as they are now; they do not feel each other's touch then."""
+        self.link_motion(first)
+        self.link_motion(second)
+        self._engine.attach(first, second)
+
+    def detach(self, first: str, second: str) -> None:
+        """Raises UnknownEntityError if these two are not attached in this order."""
+        if not self._engine.is_attached(first, second):
+            raise UnknownEntityError(f"{second} is not attached to {first}")
+        self._engine.detach(first, second)
+
     def joint_names(self, model: str) -> List[str]:
         """The names of a model's joints that move, ``model::joint``."""
         return [
@@ -303,6 +315,7 @@ class Scene:
 
     def reset_poses(self) -> None:
         """Puts every model and robot back to where it was first put, at rest. Time and odometry go on."""
+        self._engine.detach_all()
         self.set_joints({joint.name: joint.start for joint in self._joints.values()})
         for name in self._unheld(self._bodies):
             self._set_motion(name, Motion(self._bodies[name].pose_in_world, *AT_REST))

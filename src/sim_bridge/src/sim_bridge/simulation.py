@@ -37,6 +37,11 @@ class Simulation:
         self.scene.add_robot(ROBOT_NAME, robot, base_in_world)
 
     @property
+    def base(self) -> str:
+        """The name of the link that the robot's pose is told by."""
+        return self.scene.links_of(ROBOT_NAME)[0]
+
+    @property
     def step_seconds(self) -> float:
         """Simulated seconds that a step takes: the period of the odometry."""
         return self.scene.step_seconds
@@ -60,10 +65,16 @@ class Simulation:
 
 
 def box_on_floor(
-    name: str, size: Tuple[float, float, float], pose: Pose2, mass: Optional[float] = None
+    name: str,
+    size: Tuple[float, float, float],
+    pose: Pose2,
+    mass: Optional[float] = None,
+    height: float = 0.0,
 ) -> Body:
-    """A model of one box, ``size`` in metres. Raises WorldError if it has no size or place."""
+    """A model of one box, ``size`` in metres, whose bottom is at ``height``. Raises WorldError if it has no
+    size or place.
+    """
     if not (all(0.0 < length < math.inf for length in size) and pose.is_finite()):
         raise WorldError(f"{name}: a box needs positive lengths and a place, got {size} at {pose}")
-    in_world = from_pose2(pose, z=size[2] / 2.0)
+    in_world = from_pose2(pose, z=height + size[2] / 2.0)
     return Body(f"{name}::link", in_world, (Collision(Box(size), np.eye(4)),), mass)

@@ -3,23 +3,26 @@
 from typing import Dict
 
 import rospy
-from geometry_msgs.msg import Point
 from home_service_msgs.msg import MissionState, ObjectState
 from visualization_msgs.msg import Marker
 
+from add_markers.bodies import HEIGHT, RIDING_HEIGHT
 from add_markers.config import MarkerSettings
+from add_markers.nodes.mission_bodies import MissionBodies
+from planar import Pose2
+from planar_ros.messages import pose2_from_msg, pose2_to_msg
 from planar_ros.waiting import Waiting
 
 STATE_TOPIC = "pick_objects/mission_state"
-CARRYING_HEIGHT = 0.5
-"""Of the object above the ground, metres: on top of a TurtleBot."""
 
 
 class MissionMarkers:
-    """Shows what pick_objects tells. A marker's name space is its object's name; it waits for nobody."""
+    """A marker's name space is its object's name; solid objects become bodies in the simulator, too."""
 
     def __init__(self, settings: MarkerSettings):
         self._base_frame = settings.base_frame_id
+        self._bodies = MissionBodies(settings)
+        self._standing: Dict[str, Pose2] = {}
         self._shown: Dict[str, ObjectState] = {}
         self._frame_id = ""
         # Subscribers that come late get the latest marker of each object, not of one of them alone.
@@ -37,6 +40,7 @@ class MissionMarkers:
     def _follow(self, message: MissionState) -> None:
         self._has_state, self._frame_id = True, message.header.frame_id
         objects = {state.name: state for state in message.objects}
+        self._standing = self._bodies.follow(message.objects)
         for name in [name for name in self._shown if name not in objects]:
             self._publisher.publish(Marker(ns=name, action=Marker.DELETE))
             del self._shown[name]
@@ -47,15 +51,16 @@ class MissionMarkers:
 
     def _marker(self, state: ObjectState) -> Marker:
         marker = Marker(ns=state.name, id=0, type=Marker.CUBE, action=Marker.ADD, color=state.color)
-        marker.scale.x = marker.scale.y = marker.scale.z = state.size
+        marker.scale.x = marker.scale.y = state.size
+        marker.scale.z = HEIGHT if state.is_solid else state.size
         marker.pose.orientation.w = 1.0
         if state.is_carried:
             marker.header.frame_id, marker.frame_locked = self._base_frame, True
-            marker.pose.position.z = CARRYING_HEIGHT
+            marker.pose.position.z = RIDING_HEIGHT + marker.scale.z / 2.0
         else:
-            at = state.pose.position
-            marker.header.frame_id, marker.pose.orientation = self._frame_id, state.pose.orientation
-            marker.pose.position = Point(at.x, at.y, state.size / 2.0)
+            marker.header.frame_id = self._frame_id
+            marker.pose = pose2_to_msg(self._standing.get(state.name) or pose2_from_msg(state.pose))
+            marker.pose.position.z = marker.scale.z / 2.0
         return marker
 
 

@@ -13,9 +13,8 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 from home_service_msgs.msg import DeliverAction, DeliverGoal
 
-from planar_ros.actions import server_is_ready
+from planar_ros.actions import goal_is_over, server_is_ready
 
-OPEN = (GoalStatus.PENDING, GoalStatus.ACTIVE)
 POLL_SECONDS, TELL_SECONDS, CANCEL_SECONDS = 0.1, 2.0, 10.0
 SUCCESS, FAILURE, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
@@ -66,7 +65,7 @@ def _follow(client, goal: DeliverGoal, interrupted: threading.Event, deadline: f
             print(f"{100.0 * state.progress:3.0f} %  {where}, about {state.time_left:.0f} s left", flush=True)
 
     client.send_goal(goal, feedback_cb=tell)
-    while client.get_state() in OPEN:
+    while not goal_is_over(client):
         if interrupted.is_set() or time.monotonic() > deadline or not server_is_ready(client):
             client.cancel_goal()
             if not _wait_for_end(client, time.monotonic() + CANCEL_SECONDS):
@@ -74,7 +73,7 @@ def _follow(client, goal: DeliverGoal, interrupted: threading.Event, deadline: f
             break
         time.sleep(POLL_SECONDS)
     result = client.get_result()
-    for state in result.deliveries if result else ():
+    for state in result.deliveries if result else ():  # a server that is gone leaves none
         told = state.delivery
         outcome = {state.DELIVERED: "delivered", state.CANCELLED: "cancelled"}.get(
             state.state, "not delivered"
@@ -88,9 +87,9 @@ def _follow(client, goal: DeliverGoal, interrupted: threading.Event, deadline: f
 
 
 def _wait_for_end(client, deadline: float) -> bool:
-    while client.get_state() in OPEN and time.monotonic() < deadline:
+    while not goal_is_over(client) and time.monotonic() < deadline:
         time.sleep(POLL_SECONDS)
-    return client.get_state() not in OPEN
+    return goal_is_over(client)
 
 
 def _complain(text: str, code: int = BAD_INPUT) -> int:

@@ -66,6 +66,7 @@ class MissionTopics:
             pose=pose2_to_msg(self._left_at.get(name, where.pose)),
             size=thing.size,
             color=ColorRGBA(*thing.color, 1.0),
+            is_solid=thing.solid,
         )
 
     def _note_left(self, errand: Errand) -> None:

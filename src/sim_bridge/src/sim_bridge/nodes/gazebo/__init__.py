@@ -1,6 +1,7 @@
-"""Gazebo's services and topics below /gazebo (gazebo_ros 2.9), with its status texts."""
+"""Gazebo's services and topics below /gazebo (gazebo_ros 2.9), with its status texts, and a plugin's."""
 
 from sim_bridge.nodes.fleet import Fleet
+from sim_bridge.nodes.gazebo.attaching import AttachServices
 from sim_bridge.nodes.gazebo.forces import ForceServices
 from sim_bridge.nodes.gazebo.joints import JointServices
 from sim_bridge.nodes.gazebo.lights import LightServices
@@ -28,6 +29,7 @@ class GazeboInterface:
         JointServices(scene, server)
         ForceServices(scene, server)
         LightServices(scene, server)
+        AttachServices(scene, server)
 
     def publish(self) -> None:
         """Where all models and links are, for those who have subscribed."""

@@ -24,8 +24,9 @@ class Server:
         self._orders = orders
 
     def serve(self, name: str, kind, answer: Callable) -> None:
-        """The service /gazebo/``name``."""
-        rospy.Service(NAMESPACE + name, kind, lambda request: self._orders.ask(lambda: answer(request)))
+        """The service ``name``, below /gazebo unless it begins with a slash."""
+        full_name = rospy.names.ns_join(NAMESPACE, name)
+        rospy.Service(full_name, kind, lambda request: self._orders.ask(lambda: answer(request)))
 
     def listen(self, name: str, kind, take: Callable) -> None:
         """The topic /gazebo/``name``; ``take`` is called with a message and what tells a failure."""
