@@ -13,6 +13,7 @@ OFFICIAL = dict(
 )
 NEEDED = ("std_msgs", "geometry_msgs", "sensor_msgs", "trajectory_msgs")
 SHARES = [Path("/usr/share"), *Path("/opt/ros").glob("*/share")]
+HAS_DEFINITIONS = any((share / "std_msgs/msg/Header.msg").exists() for share in SHARES)
 
 
 def md5(package, file):
@@ -25,6 +26,9 @@ def md5(package, file):
     return gentools.compute_md5(context, spec)
 
 
+@pytest.mark.skipif(
+    not HAS_DEFINITIONS, reason="the messages' definitions are not installed, as in the image"
+)
 @pytest.mark.parametrize("package", ["gazebo_msgs", "gazebo_ros_link_attacher", "kobuki_msgs"])
 def test_types_have_the_md5_of_the_official_ones(package):
     files = [file for kind in ("msg", "srv") for file in sorted((COMPAT / package / kind).glob("*"))]
