@@ -3,18 +3,20 @@
 #
 # Builds the image without a container engine's daemon, from an empty cache, and proves it: the mission as a user who
 # is not root, once more without network and with nothing writable but the run folder, an interrupted one, and the
-# tests. Needs root, buildah, and debootstrap for the base.
+# tests. Needs root, buildah, and debootstrap for the base. Takes half an hour; tells what it is at, and since when.
 # Exit code: 0 all proven, 1 failure, 2 bad usage.
 #
 #   --base TAR       root file system of Debian 12 to build on (default: made with debootstrap)
-#   --tests WHAT     unit, ros, all or none, with names as for scripts/test.sh (default: all)
+#   --ros-tests NAMES
+#                    besides the unit tests, the ROS tests whose paths contain one of the names (default: all)
+#   --rviz           also the target with rviz: a mission shown on the display
 #   --work FOLDER    where images and results are kept (default: a temporary folder, deleted at the end)
 #   --help           this text
 
 set -euo pipefail
 root=$(cd -P -- "$(dirname -- "$(readlink -f -- "$0")")/.." && pwd)
-readonly image=localhost/home-service-robot user=1000 certificates=/etc/ssl/certs/ca-certificates.crt
-base='' tests=all work=''
+readonly name=home-service-robot user=1000 certificates=/etc/ssl/certs/ca-certificates.crt
+base='' ros_tests='' rviz='' work=''
 
 say() { printf '\n== %d:%02d  %s\n' $((SECONDS / 60)) $((SECONDS % 60)) "$*"; } # with the time since the start
 
@@ -37,9 +39,15 @@ parse() {
     while (($#)); do
         case $1 in
             --help | -h) usage && exit 0 ;;
-            --base | --tests | --work) (($# > 1)) || fail "$1 needs a value" 2 ;;&
+            --rviz)
+                [[ -n ${DISPLAY:-} ]] || fail "--rviz needs a display" 2
+                rviz=yes
+                shift
+                continue
+                ;;
+            --base | --ros-tests | --work) (($# > 1)) || fail "$1 needs a value" 2 ;;&
             --base) base=$(readlink -f -- "$2") ;;
-            --tests) tests=$2 ;;
+            --ros-tests) ros_tests=$2 ;;
             --work) work=$(readlink -m -- "$2") ;;
             *) fail "unknown option '$1'" 2 ;;
         esac
@@ -57,10 +65,9 @@ check_tools() {
 }
 
 make_work_folder() {
-    if [[ -z $work ]]; then
-        work=$(mktemp -d)
-        trap clean_up EXIT
-    fi
+    is_kept=$work
+    work=${work:-$(mktemp -d)}
+    trap clean_up EXIT
     mkdir -p "$work/runs" "$work/storage" "$work/state"
     chown "$user:$user" "$work/runs"
 }
@@ -68,7 +75,7 @@ make_work_folder() {
 clean_up() {
     builder umount --all >/dev/null 2>&1 || true
     builder rm --all >/dev/null 2>&1 || true
-    rm -rf --one-file-system "$work"
+    [[ -n $is_kept ]] || rm -rf --one-file-system "$work"
 }
 
 builder() { buildah --root "$work/storage" --runroot "$work/state" "$@"; }
@@ -87,9 +94,8 @@ make_base() {
     builder commit --quiet --rm "$container" localhost/debian:bookworm-slim >/dev/null
 }
 
-build_image() {
-    say "The image, from an empty cache"
-    local options=(--isolation chroot --format docker --layers --no-cache --pull-never)
+build_image() { # NAME OPTION...: builds an image and mounts it as $rootfs
+    local image=localhost/$1 options=(--isolation chroot --format docker --layers --pull-never "${@:2}")
     if [[ -r $certificates ]]; then # pip trusts whom this machine trusts
         printf '[global]\ncert = /run/certificates.crt\n' >"$work/pip.conf"
         options+=(-v "$certificates:/run/certificates.crt:ro" -v "$work/pip.conf:/etc/pip.conf:ro")
@@ -100,7 +106,7 @@ build_image() {
         tail -n 30 "$work/build.log" >&2
         fail "the build failed (see $work/build.log)"
     }
-    builder images --format '{{.Name}} {{.Size}}' "$image"
+    builder images --format '{{.Name}}:{{.Tag}} {{.Size}}' "$image"
     rootfs=$(builder mount "$(builder from --pull-never "$image")")
     mapfile -t environment < <(builder inspect --type image --format '{{range .OCIv1.Config.Env}}{{println .}}{{end}}' \
         "$image" | sed '/^$/d')
@@ -108,7 +114,7 @@ build_image() {
 
 run_image() { # READ_ONLY ARGUMENT...: as `docker run --network none [--read-only] -v RUNS:/runs IMAGE ARGUMENT...`
     echo "127.0.0.1 localhost" >"$work/hosts"
-    ROOTFS=$rootfs RUNS=$work/runs HOSTS=$work/hosts READ_ONLY=$1 OWNER=$user \
+    ROOTFS=$rootfs RUNS=$work/runs HOSTS=$work/hosts READ_ONLY=$1 OWNER=$user DISPLAY=${rviz:+$DISPLAY} \
         unshare --mount --net --ipc --pid --fork --kill-child bash -s -- "${environment[@]}" -- "${@:2}" <<'SANDBOX'
 set -e
 variables=()
@@ -117,6 +123,10 @@ shift
 ip link set lo up
 mount --bind "$ROOTFS" "$ROOTFS"
 mount --rbind /dev "$ROOTFS/dev"
+if [[ -n $DISPLAY ]]; then
+    mkdir -p "$ROOTFS/tmp/.X11-unix"
+    mount --bind /tmp/.X11-unix "$ROOTFS/tmp/.X11-unix"
+fi
 mount -t proc proc "$ROOTFS/proc"
 mount --bind "$RUNS" "$ROOTFS/runs"
 touch "$ROOTFS/etc/hosts"
@@ -140,13 +150,21 @@ parse "$@"
 check_tools
 make_work_folder
 make_base
-build_image
+say "The image, from an empty cache"
+build_image "$name" --no-cache
 expect 0 "The mission, as user $user, without network" no --seed 1 --gif
 expect 0 "The mission with nothing writable but the run folder" yes home_service --seed 2
 expect 2 "Bad input" yes home_service --world nowhere.world
 expect 1 "A mission that takes too long" yes home_service --timeout 5
-# shellcheck disable=SC2086 # WHAT may be several words
-[[ $tests == none ]] || expect 0 "The tests, as user $user" no test $tests
+expect 0 "The unit tests, as user $user" no test unit
+# shellcheck disable=SC2086 # NAMES may be several
+expect 0 "The ROS tests, as user $user" no test ros $ros_tests
+if [[ -n $rviz ]]; then
+    say "The image with rviz"
+    build_image "$name:rviz" --target rviz
+    environment+=("DISPLAY=$DISPLAY" LIBGL_ALWAYS_SOFTWARE=1)
+    expect 0 "The mission, shown in rviz" yes home_service --rviz
+fi
 say "What the runs left, and to whom it belongs"
 ls -ln "$work"/runs/*/
 say "All proven"
