@@ -10,6 +10,7 @@ a mission is rehearsed on it.
 
 import argparse
 import json
+import math
 import sys
 import time
 from dataclasses import asdict, dataclass
@@ -18,7 +19,7 @@ from typing import List, Optional
 
 import numpy as np
 
-from explorer_lite import Explorer, Finish, GoalReached, GoalRefused, GoTo
+from explorer_lite import Explorer, ExplorerSettings, Finish, GoalReached, GoalRefused, GoTo
 from home_service.mapping import LEAST_PRECISION, LEAST_RECALL, score_against_world
 from home_service.rehearsal import NAVIGATION_CONFIG, Rehearsal
 from home_service.verdict import ARRIVAL_TOLERANCE
@@ -34,6 +35,7 @@ from slam_lite.mapper import Mapper
 from slam_lite.rendering import MapRenderer, on_canvas
 
 ROOT = Path(__file__).resolve().parents[2]
+KINECT_CONFIG = ROOT / "src/move_base_lite/config/turtlebot_kinect.yaml"
 SLAM_CONFIG = ROOT / "src/slam_lite/config/turtlebot.yaml"
 LONGEST_SECONDS = 600.0
 EXPLORE_PERIOD = 0.1
@@ -66,8 +68,9 @@ class MappingRun:
         self._settings, _ = settings_from_yaml(NodeSettings, SLAM_CONFIG)
         self.mapper = Mapper(self._settings)
         self._renderer = MapRenderer(self._settings.resolution, self._settings.occupied_threshold)
-        self._explorer = Explorer()
-        navigation = load_settings(NAVIGATION_CONFIG)
+        field_of_view = robot.laser.beams * robot.laser.angle_increment
+        self._explorer = Explorer(ExplorerSettings(field_of_view=field_of_view))
+        navigation = load_settings(NAVIGATION_CONFIG, *([KINECT_CONFIG] if field_of_view < math.pi else []))
         self._navigator = Navigator(navigation)
         self._steps_per_tick = round(
             1.0 / (navigation.move_base.controller_frequency * self._simulation.step_seconds)

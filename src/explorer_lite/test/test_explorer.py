@@ -1,3 +1,4 @@
+import math
 from pathlib import Path
 
 import pytest
@@ -54,6 +55,17 @@ def test_the_robot_is_sent_to_the_frontier_and_home_when_all_is_known():
     assert end == Finish(True, "explored 6.0 m2")
     assert task.state is ExplorerState.DONE
     assert task.advance(21.0, None, ROBOT) is None
+
+
+def test_a_sensor_that_sees_little_at_once_is_turned_before_the_robot_drives():
+    task = explorer(field_of_view=1.0, reach=2.0)
+    order = task.advance(0.0, grid(OPEN_TO_THE_RIGHT), Pose2(2.25, 1.25, math.pi))
+    assert (order.pose.x, order.pose.y) == (2.25, 1.25)
+    assert order.pose.yaw == pytest.approx(0.0)
+    # That has shown nothing; now it has to be looked at from nearer.
+    order = task.advance(20.0, grid(OPEN_TO_THE_RIGHT), Pose2(2.25, 1.25), GoalReached())
+    order = order or task.advance(30.0, grid(OPEN_TO_THE_RIGHT), Pose2(2.25, 1.25))
+    assert order.pose.x == pytest.approx(3.25)
 
 
 def test_without_a_way_home_asked_for_it_ends_where_all_is_known():

@@ -9,6 +9,9 @@ from planar.settings import check
 class ExplorerSettings:
     """What is worth going to, and how patient the explorer is. Metres, radians and simulated seconds.
 
+    ``field_of_view``: how much the sensor sees at once, 0 if that has to be found out; one that does not see
+    all around is turned to the frontiers within ``reach`` before the robot drives on.
+
     The cost of a frontier is ``potential_scale`` times the way there, plus ``orientation_scale`` times the
     turn towards it, less ``gain_scale`` times its length; the cheapest is next.
     """
@@ -18,6 +21,7 @@ class ExplorerSettings:
     clearance: float = 0.25
     goal_clearance: float = 0.35
     reach: float = 1.5
+    field_of_view: float = 0.0
     potential_scale: float = 1.0
     orientation_scale: float = 0.5
     gain_scale: float = 0.5
@@ -45,6 +49,7 @@ class ExplorerSettings:
             "gain_scale",
             "switch_gain",
             "map_patience",
+            "field_of_view",
         ):
             check(getattr(self, name) >= 0.0, name, "zero or more", getattr(self, name))
         check(

@@ -10,12 +10,14 @@ import numpy as np
 from explorer_lite.config import ExplorerSettings
 from explorer_lite.frontiers import Frontier, find_frontiers, known_part
 from explorer_lite.travel import travel_distances
-from explorer_lite.viewpoints import viewpoint_of
+from explorer_lite.viewpoints import view_from_here, viewpoint_of
 from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, wrap
 from planar.distance_field import distance_field
 from planar.driving import Finish, GoalReached, GoalRefused
 
 PROGRESS_DISTANCE = 0.1
+ALL_AROUND = math.radians(300.0)
+"""A sensor that sees this much at once sees beside the robot, too, when it faces a frontier."""
 RESEND_DISTANCE = 0.5
 STRANDED_REFUSALS = 8
 """So many goals refused at the same place say more about the robot than about the goals."""
@@ -46,19 +48,24 @@ Event = Union[GoalReached, GoalRefused]
 
 @dataclass(frozen=True, eq=False)
 class Target:
-    """A frontier and from where it is to be looked at; ``cost`` in metres of way."""
+    """A frontier and from where it is to be looked at; ``cost`` in metres of way.
+
+    ``in_passing``: the robot was there when it took notice of the frontier.
+    """
 
     frontier: Frontier
     viewpoint: Pose2
     cost: float
+    in_passing: bool
 
 
 @dataclass(frozen=True, eq=False)
 class Refusal:
-    """A frontier that was tried in vain from a viewpoint."""
+    """A frontier that was tried in vain from a viewpoint, or only ``in_passing``, by a turn on the spot."""
 
     middle_xy: np.ndarray
     viewpoint: Pose2
+    in_passing: bool
 
 
 class Explorer:
@@ -174,7 +181,9 @@ class Explorer:
             self.frontiers.append(frontier)
             cost = settings.potential_scale * _at(distances, grid, viewpoint)
             cost += settings.orientation_scale * _turn(robot, viewpoint)
-            targets.append(Target(frontier, viewpoint, cost - settings.gain_scale * frontier.size))
+            cost -= settings.gain_scale * frontier.size
+            in_passing = robot.distance_to(viewpoint) < PROGRESS_DISTANCE
+            targets.append(Target(frontier, viewpoint, cost, in_passing))
         return targets
 
     def _viewpoint(
@@ -182,13 +191,20 @@ class Explorer:
     ) -> Optional[Pose2]:
         settings, middle_xy = self._settings, frontier.middle_xy
         gaps = [float(np.hypot(*(refusal.middle_xy - middle_xy))) for refusal in self._refusals]
-        if sum(gap <= settings.blacklist_radius for gap in gaps) >= settings.attempts:
+        attempts = [
+            gap <= settings.blacklist_radius and not refusal.in_passing
+            for refusal, gap in zip(self._refusals, gaps)
+        ]
+        if sum(attempts) >= settings.attempts:
             return None
         shunned = [refusal.viewpoint for refusal, gap in zip(self._refusals, gaps) if gap <= settings.reach]
+        limits = settings.reach, shunned, settings.blacklist_radius
+        if 0.0 < settings.field_of_view < ALL_AROUND:
+            viewpoint = view_from_here(frontier, grid, robot, *limits)
+            if viewpoint is not None:
+                return viewpoint
         for goal_distances in goals:
-            viewpoint = viewpoint_of(
-                frontier, grid, goal_distances, robot, settings.reach, shunned, settings.blacklist_radius
-            )
+            viewpoint = viewpoint_of(frontier, grid, goal_distances, robot, *limits)
             if viewpoint is not None:
                 return viewpoint
         return None
@@ -222,7 +238,8 @@ class Explorer:
 
     def _refuse_target(self) -> None:
         if self._target is not None:
-            self._refusals.append(Refusal(self._target.frontier.middle_xy, self._target.viewpoint))
+            target = self._target
+            self._refusals.append(Refusal(target.frontier.middle_xy, target.viewpoint, target.in_passing))
         self._target = None
 
     def _is_stranded(self, robot: Pose2) -> bool:
@@ -280,5 +297,7 @@ def _at(distances: np.ndarray, grid: OccupancyGrid, pose: Pose2) -> float:
 
 
 def _turn(robot: Pose2, goal: Pose2) -> float:
-    """By how much the robot has to turn to drive straight to a goal, radians."""
+    """By how much the robot has to turn to drive straight to a goal, or to face it on the spot, radians."""
+    if robot.distance_to(goal) < PROGRESS_DISTANCE:
+        return abs(wrap(goal.yaw - robot.yaw))
     return abs(wrap(math.atan2(goal.y - robot.y, goal.x - robot.x) - robot.yaw))

@@ -1,6 +1,7 @@
 """The ROS node of explorer_lite: the action ``explore``, carried out with move_base on the growing map."""
 
 import time
+from dataclasses import replace
 from typing import Optional
 
 import actionlib
@@ -17,7 +18,7 @@ from explorer_lite.msg import ExploreAction, ExploreFeedback, ExploreResult
 from explorer_lite.warming import warm_up
 from planar import OccupancyGrid, Pose2
 from planar_ros.actions import ActionServer, server_is_ready
-from planar_ros.messages import OccupancyGridArrays, grid_from_msg, pose2_to_msg
+from planar_ros.messages import LaserScanArrays, OccupancyGridArrays, grid_from_msg, pose2_to_msg
 from planar_ros.parameters import read_settings
 from planar_ros.shell import run
 from planar_ros.transforms import Transforms
@@ -47,11 +48,13 @@ class Explore:
         self._explorer_settings = read_settings(ExplorerSettings, ignore=node_fields)
         warm_up()
         self._map: Optional[OccupancyGrid] = None
+        self._field_of_view = 0.0
         self._transforms = Transforms()
         self._markers = rospy.Publisher("~frontiers", MarkerArray, queue_size=1, latch=True)
         self._client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
         self._pending = False
         rospy.Subscriber("map", OccupancyGridArrays, self._keep_map, queue_size=1, tcp_nodelay=True)
+        self._scans = rospy.Subscriber("scan", LaserScanArrays, self._measure_view, queue_size=1)
         rospy.on_shutdown(self._client.cancel_all_goals)
         frames = f"{self._settings.global_frame} to {self._settings.robot_base_frame}"
         self._conditions = {
@@ -64,7 +67,12 @@ class Explore:
         self._server.start()
 
     def _execute(self, goal):
-        explorer = Explorer(self._explorer_settings, goal.return_to_start)
+        settings = self._explorer_settings
+        if settings.field_of_view == 0.0:
+            settings = replace(settings, field_of_view=self._field_of_view)
+        if self._field_of_view > 0.0:
+            self._scans.unregister()
+        explorer = Explorer(settings, goal.return_to_start)
         start = rospy.get_time()
         rospy.loginfo("exploring")
         end = self._explore(explorer)
@@ -157,6 +165,9 @@ class Explore:
         stamped = PoseStamped(pose=pose2_to_msg(pose))
         stamped.header.frame_id, stamped.header.stamp = self._settings.global_frame, rospy.Time.now()
         return stamped
+
+    def _measure_view(self, scan):
+        self._field_of_view = len(scan.ranges) * abs(scan.angle_increment)
 
     def _keep_map(self, message):
         self._map = grid_from_msg(message)

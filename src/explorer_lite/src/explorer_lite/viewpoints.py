@@ -30,20 +30,41 @@ def viewpoint_of(
     first_row, first_col = max(row - margin, 0), max(col - margin, 0)
     window = distances[first_row : row + margin + 1, first_col : col + margin + 1]
     places_xy = grid.points_of(np.argwhere(np.isfinite(window)) + [first_row, first_col])
+    lengths = _lengths_of_sight(grid, middle_xy, places_xy, reach, shunned, shunned_radius)
+    if not np.isfinite(lengths).any():
+        return None
+    best = int(np.argmin(lengths))
+    x, y = places_xy[best].tolist()
+    beyond = middle_xy - (places_xy[best] if lengths[best] > 0.0 else [robot.x, robot.y])
+    return Pose2(x, y, math.atan2(beyond[1], beyond[0]))
+
+
+def view_from_here(
+    frontier: Frontier,
+    grid: OccupancyGrid,
+    robot: Pose2,
+    reach: float,
+    shunned: List[Pose2],
+    shunned_radius: float,
+) -> Optional[Pose2]:
+    """The robot's own place, facing a frontier's middle, if that would do as a viewpoint; else None."""
+    here_xy, middle_xy = np.array([[robot.x, robot.y]]), frontier.middle_xy
+    if not np.isfinite(_lengths_of_sight(grid, middle_xy, here_xy, reach, shunned, shunned_radius))[0]:
+        return None
+    return Pose2(robot.x, robot.y, math.atan2(middle_xy[1] - robot.y, middle_xy[0] - robot.x))
+
+
+def _lengths_of_sight(grid, middle_xy, places_xy, reach, shunned, shunned_radius) -> np.ndarray:
+    """Metres (N,) from places (N, 2) to a point; inf for those out of reach or sight, or shunned."""
     offsets = places_xy - middle_xy
     lengths = np.hypot(offsets[:, 0], offsets[:, 1])
-    allowed = lengths <= reach
+    lengths[lengths > reach] = np.inf
     for pose in shunned:
-        allowed &= np.hypot(places_xy[:, 0] - pose.x, places_xy[:, 1] - pose.y) > shunned_radius
-    places_xy, offsets, lengths = places_xy[allowed], offsets[allowed], lengths[allowed]
-    if len(places_xy) == 0:
-        return None
-    directions = np.arctan2(offsets[:, 1], offsets[:, 0])
-    sights = cast_rays(grid, Pose2(*middle_xy.tolist()), directions, reach + grid.resolution)
-    in_sight = sights >= lengths
-    if not in_sight.any():
-        return None
-    best = int(np.argmin(np.where(in_sight, lengths, np.inf)))
-    x, y = places_xy[best].tolist()
-    beyond = -offsets[best] if lengths[best] > 0.0 else middle_xy - [robot.x, robot.y]
-    return Pose2(x, y, math.atan2(beyond[1], beyond[0]))
+        near = np.hypot(places_xy[:, 0] - pose.x, places_xy[:, 1] - pose.y) <= shunned_radius
+        lengths[near] = np.inf
+    possible = np.flatnonzero(np.isfinite(lengths))
+    if len(possible):
+        directions = np.arctan2(offsets[possible, 1], offsets[possible, 0])
+        sights = cast_rays(grid, Pose2(*middle_xy.tolist()), directions, reach + grid.resolution)
+        lengths[possible[sights < lengths[possible]]] = np.inf
+    return lengths
