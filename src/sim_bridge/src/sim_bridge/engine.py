@@ -322,11 +322,9 @@ class Engine:
 
     def floors_below(self, points_xyz: np.ndarray) -> np.ndarray:
         """The heights (N,) of what is below points (N, 3), -inf where there is nothing."""
-        hits = self._bullet.rayTestBatch(
-            points_xyz.tolist(),
-            (points_xyz - [0.0, 0.0, DEEPEST_FLOOR]).tolist(),
-            collisionFilterMask=WORLD_GROUPS,
-        )
+        starts = points_xyz.tolist()
+        ends = [(x, y, z - DEEPEST_FLOOR) for x, y, z in starts]
+        hits = self._bullet.rayTestBatch(starts, ends, collisionFilterMask=WORLD_GROUPS)
         return np.array([point[2] if number >= 0 else -np.inf for number, _, _, point, _ in hits])
 
     def _centre_of(self, link: _Link) -> np.ndarray:
@@ -478,10 +476,8 @@ _UNUSED_ARGUMENTS: Dict[str, Any] = {
 
 
 def _pose(point: Sequence[float], orientation: Sequence[float]) -> np.ndarray:
-    pose = np.eye(4)
-    pose[:3, :3] = np.reshape(pybullet.getMatrixFromQuaternion(orientation), (3, 3))
-    pose[:3, 3] = point
-    return pose
+    (x, y, z), r = point, pybullet.getMatrixFromQuaternion(orientation)
+    return np.array((r[:3] + (x,), r[3:6] + (y,), r[6:] + (z,), (0.0, 0.0, 0.0, 1.0)))
 
 
 def _arguments(shape: Shape) -> Dict[str, Any]:

@@ -52,7 +52,8 @@ class DeadReckoning:
         self, drive: DriveProfile, has_gyro: bool, settings: SimulationSettings, rng: np.random.Generator
     ):
         scales = 1.0 + rng.normal(0.0, settings.encoder_scale, 2)
-        self._radii = drive.wheel_radius * (scales if has_gyro else scales[:1].repeat(2))
+        radii = drive.wheel_radius * (scales if has_gyro else scales[:1].repeat(2))
+        self._radii: Tuple[float, ...] = tuple(radii.tolist())
         self._gyro_scale = 1.0 + rng.normal(0.0, settings.gyro_scale)
         self._gyro_bias = rng.normal(0.0, settings.gyro_bias)
         self._left_count = len(drive.left_joints)
@@ -61,7 +62,7 @@ class DeadReckoning:
         self._settings = settings
         self._alphas = _Alphas(settings, rng)
         self._rng = rng
-        self._angles = np.zeros(2)
+        self._angles = (0.0, 0.0)
         self._pose = Pose2()
 
     def reset(self) -> None:
@@ -70,24 +71,27 @@ class DeadReckoning:
 
     def update(self, moved: Moved) -> Odometry:
         """Moves on by one period."""
-        angles = np.asarray(moved.wheel_angles)
-        sides = np.array([angles[: self._left_count].mean(), angles[self._left_count :].mean()])
-        rolled = (sides - self._angles) * self._radii
+        left, right = moved.wheel_angles[: self._left_count], moved.wheel_angles[self._left_count :]
+        sides = (sum(left) / len(left), sum(right) / len(right))
+        rolled = tuple(
+            (angle - before) * radius for angle, before, radius in zip(sides, self._angles, self._radii)
+        )
         self._angles = sides
-        distance = float(rolled.mean())
+        distance = 0.5 * sum(rolled)
         slip = self._settings.wheel_slip * math.sqrt(abs(distance)) * self._rng.standard_normal()
         rate = self._measured_rate(moved, rolled)
         self._pose = self._pose @ self._alphas.disturbed(_arc(distance + slip, rate * moved.seconds))
         return Odometry(self._pose, Twist2(distance / moved.seconds, rate))
 
-    def _measured_rate(self, moved: Moved, rolled: np.ndarray) -> float:
-        """The turn rate, rad/s, by the gyro or by the distances (2,) that the sides have rolled."""
+    def _measured_rate(self, moved: Moved, rolled: Tuple[float, ...]) -> float:
+        """The turn rate, rad/s, by the gyro or by the distances that the left and right side have rolled."""
         draw = self._rng.standard_normal()
         if self._has_gyro:
             noise = self._settings.gyro_noise / math.sqrt(moved.seconds) * draw
             return self._gyro_scale * moved.twist.omega + self._gyro_bias + noise
-        slip = self._settings.wheel_slip * math.sqrt(np.abs(rolled).mean()) * draw
-        return float((rolled[1] - rolled[0] + slip) / self._separation / moved.seconds)
+        left, right = rolled
+        slip = self._settings.wheel_slip * math.sqrt(0.5 * (abs(left) + abs(right))) * draw
+        return (right - left + slip) / self._separation / moved.seconds
 
 
 class _Alphas:
