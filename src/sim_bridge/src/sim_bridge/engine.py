@@ -1,6 +1,7 @@
 """Rigid bodies in PyBullet: what stands and moves in a world, and what touches what."""
 
 import itertools
+import math
 from dataclasses import dataclass, field
 from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
@@ -317,15 +318,14 @@ class Engine:
 
     def floor_below(self, x: float, y: float, z: float) -> Optional[float]:
         """The height of the first of the world's bodies below a point, None if there is none."""
-        (floor,) = self.floors_below(np.array([[x, y, z]]))
-        return floor if floor > -np.inf else None
+        (floor,) = self.floors_below([(x, y, z)])
+        return floor if floor > -math.inf else None
 
-    def floors_below(self, points_xyz: np.ndarray) -> np.ndarray:
-        """The heights (N,) of what is below points (N, 3), -inf where there is nothing."""
-        starts = points_xyz.tolist()
-        ends = [(x, y, z - DEEPEST_FLOOR) for x, y, z in starts]
-        hits = self._bullet.rayTestBatch(starts, ends, collisionFilterMask=WORLD_GROUPS)
-        return np.array([point[2] if number >= 0 else -np.inf for number, _, _, point, _ in hits])
+    def floors_below(self, points: Sequence[Sequence[float]]) -> List[float]:
+        """The heights of what is below points in space, -inf where there is nothing."""
+        ends = [(x, y, z - DEEPEST_FLOOR) for x, y, z in points]
+        hits = self._bullet.rayTestBatch(points, ends, collisionFilterMask=WORLD_GROUPS)
+        return [point[2] if number >= 0 else -math.inf for number, _, _, point, _ in hits]
 
     def _centre_of(self, link: _Link) -> np.ndarray:
         """Where the centre of a link's mass is, with its principal axes, (4, 4) in the world."""

@@ -37,21 +37,20 @@ class KobukiSensors:
     def __init__(self, engine: Engine, cliff_threshold: float, hubs_xyz: np.ndarray, wheel_radius: float):
         self._engine = engine
         self._downward_xyz = np.vstack([*CLIFF_SENSORS.values(), hubs_xyz])
-        self._limits = np.array(
-            [cliff_threshold] * len(CLIFF_SENSORS) + [wheel_radius + WHEEL_DROP] * len(hubs_xyz)
-        )
+        self._limits = [cliff_threshold] * len(CLIFF_SENSORS) + [wheel_radius + WHEEL_DROP] * len(hubs_xyz)
 
     def read(
         self, base_in_world: np.ndarray, contacts_xyz: List[Tuple[float, float, float]]
     ) -> KobukiReading:
         """``base_in_world``: (4, 4); ``contacts_xyz``: where the robot touches things, in the world."""
-        points_xyz = transform_points(base_in_world, self._downward_xyz)
-        is_deep = points_xyz[:, 2] - self._engine.floors_below(points_xyz) >= self._limits
+        points = transform_points(base_in_world, self._downward_xyz).tolist()
+        floors = self._engine.floors_below(points)
+        is_deep = [z - floor >= limit for (_, _, z), floor, limit in zip(points, floors, self._limits)]
         bumpers: FrozenSet[int] = frozenset()
         if contacts_xyz:
             bumpers = pressed(transform_points(np.linalg.inv(base_in_world), np.array(contacts_xyz)))
-        if not is_deep.any():
+        if not any(is_deep):
             return KobukiReading(bumpers)
         cliffs = (sector for sector, deep in zip(CLIFF_SENSORS, is_deep) if deep)
-        dropped = np.flatnonzero(is_deep[len(CLIFF_SENSORS) :]).tolist()
+        dropped = (wheel for wheel, deep in enumerate(is_deep[len(CLIFF_SENSORS) :]) if deep)
         return KobukiReading(bumpers, frozenset(cliffs), frozenset(dropped))
