@@ -70,7 +70,13 @@ class MissionsTest(unittest.TestCase):
         self._wait("the robot", lambda: server_is_ready(self.client) and self.referee.truth)
 
     def test_1_a_mission_with_a_mistake_is_refused_naming_line_and_key(self):
-        self.client.send_goal(DeliverGoal(mission=MISSION.replace("to: sofa", "to: sofaa")))
+        wrong = MISSION.replace("to: sofa", "to: sofaa")
+        with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
+            file.write(wrong)
+            file.flush()
+            refused = subprocess.run(["rosrun", "pick_objects", "deliver", file.name], timeout=WALL_DEADLINE)
+        self.assertEqual(refused.returncode, 2)
+        self.client.send_goal(DeliverGoal(mission=wrong))
         self._wait("the refusal", lambda: goal_is_over(self.client))
         self.assertEqual(self.client.get_state(), GoalStatus.ABORTED)
         self.assertIn("mission:9: deliveries[2].to names no place: sofaa", self.client.get_goal_status_text())

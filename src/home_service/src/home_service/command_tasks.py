@@ -280,7 +280,8 @@ class Stretch(Task):
         direction = math.copysign(1.0, self._amount)
         if left * direction <= 0.01:
             return Outcome(Result.SUCCEEDED, f"{'turned' if self._is_turn else 'drove'} {self._done:.2f}")
-        if not self._is_turn and self._motion.is_blocked(pose @ Pose2(direction * self.LOOK_AHEAD, 0.0)):
+        ahead = Pose2(direction * min(self.LOOK_AHEAD, abs(left)), 0.0)
+        if not self._is_turn and self._motion.is_blocked(pose @ ahead):
             return Outcome(Result.FAILED, f"an obstacle is in the way, {abs(left):.2f} m before the end")
         velocity = direction * min(self._speed, SLOW_DOWN * abs(left))
         self._motion.command(*((0.0, velocity) if self._is_turn else (velocity, 0.0)))

@@ -51,10 +51,12 @@ class Referee:
         self._places = places
         self._say = say
         self._recent: Deque[Tuple[float, Pose2]] = deque(maxlen=REMEMBERED)
+        self._unjudged: Deque[MissionState] = deque()
         self._deliveries = DeliveryWatch(places, self.ledger.deliveries, say)
         self._told: Set[str] = set()
         self._lock = threading.Lock()
-        rospy.Subscriber("base_pose_ground_truth", Odometry, self._see_truth, queue_size=50, tcp_nodelay=True)
+        truth = "base_pose_ground_truth"
+        rospy.Subscriber(truth, Odometry, self._see_truth, queue_size=REMEMBERED, tcp_nodelay=True)
         rospy.Subscriber("contacts", String, self._see_contact, queue_size=50)
         rospy.Subscriber("pick_objects/state", String, self._see_state, queue_size=10)
         rospy.Subscriber("pick_objects/mission_state", MissionState, self._see_mission, queue_size=50)
@@ -83,6 +85,7 @@ class Referee:
                 self.distance_driven += self.truth.distance_to(truth)
             self.truth, self.simulated_time = truth, stamp
             self._recent.append((stamp, truth))
+            self._judge_missions()
             has_moved = self._start_truth.distance_to(truth) > MOTION_DISTANCE
             if self.first_motion_wall is None and has_moved:
                 self.first_motion_wall = time.time()
@@ -93,6 +96,13 @@ class Referee:
 
     def _see_mission(self, message):
         with self._lock:
+            self._unjudged.append(message)
+            self._judge_missions()
+
+    def _judge_missions(self):
+        """Judges what has been told of missions, each once the truth of its moment has come."""
+        while self._unjudged and self._unjudged[0].header.stamp.to_sec() <= self.simulated_time:
+            message = self._unjudged.popleft()
             truth = self._truth_at(message.header.stamp.to_sec())
             for state in message.deliveries:
                 told = state.delivery

@@ -11,7 +11,7 @@ from typing import List, Optional
 import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
-from home_service_msgs.msg import DeliverAction, DeliverGoal
+from home_service_msgs.msg import DeliverAction, DeliverGoal, DeliveryState
 
 from planar_ros.actions import goal_is_over, server_is_ready
 
@@ -72,18 +72,24 @@ def _follow(client, goal: DeliverGoal, interrupted: threading.Event, deadline: f
                 return _complain("the robot does not answer", FAILURE)
             break
         time.sleep(POLL_SECONDS)
-    result = client.get_result()
-    for state in result.deliveries if result else ():  # a server that is gone leaves none
-        told = state.delivery
-        outcome = {state.DELIVERED: "delivered", state.CANCELLED: "cancelled"}.get(
-            state.state, "not delivered"
-        )
-        reason = f" ({state.reason})" if state.reason and state.state == state.FAILED else ""
-        print(f"{told.name}: {told.object} from {told.source} to {told.destination}: {outcome}{reason}")
+    deliveries = getattr(client.get_result(), "deliveries", ())  # a server that is gone leaves no result
+    for state in deliveries:
+        _tell_end(state)
     print(client.get_goal_status_text(), flush=True)
     if interrupted.is_set():
         return INTERRUPTED
-    return SUCCESS if client.get_state() == GoalStatus.SUCCEEDED else FAILURE
+    if client.get_state() == GoalStatus.SUCCEEDED:
+        return SUCCESS
+    is_refused = client.get_state() == GoalStatus.ABORTED and not deliveries
+    return BAD_INPUT if is_refused else FAILURE
+
+
+def _tell_end(state: DeliveryState) -> None:
+    told = state.delivery
+    ends = {state.DELIVERED: "delivered", state.CANCELLED: "cancelled"}
+    reason = f" ({state.reason})" if state.reason and state.state == state.FAILED else ""
+    end = ends.get(state.state, "not delivered") + reason
+    print(f"{told.name}: {told.object} from {told.source} to {told.destination}: {end}")
 
 
 def _wait_for_end(client, deadline: float) -> bool:

@@ -1,0 +1,48 @@
+import pytest
+import rospy
+from home_service_msgs.msg import Delivery, DeliveryState, MissionState
+from nav_msgs.msg import Odometry
+
+from home_service.referee import Referee
+from planar import Pose2
+from planar.places import Place
+
+PLACES = {name: Place(name, Pose2(x, 0.0)) for name, x in (("hall", 2.0), ("door", 5.0))}
+
+
+@pytest.fixture
+def referee(monkeypatch):
+    monkeypatch.setattr(rospy, "Subscriber", lambda *_, **__: None)
+    return Referee(PLACES, say=lambda line: None)
+
+
+def truth(stamp, x):
+    message = Odometry()
+    message.header.stamp = rospy.Time.from_sec(stamp)
+    message.pose.pose.position.x, message.pose.pose.orientation.w = x, 1.0
+    return message
+
+
+def arrival(stamp):
+    delivery = Delivery("post", "letter", "hall", "door")
+    message = MissionState(state="picking up", deliveries=[DeliveryState(delivery, 2, 1, "")])
+    message.header.stamp = rospy.Time.from_sec(stamp)
+    return message
+
+
+def test_an_arrival_is_judged_by_the_truth_of_its_moment_even_if_that_comes_later(referee):
+    referee._see_truth(truth(1.0, 1.6))
+    referee._see_mission(arrival(2.0))
+    assert referee.ledger.deliveries == []
+    referee._see_truth(truth(2.0, 1.95))
+    referee._see_truth(truth(2.1, 2.4))
+    (record,) = referee.ledger.deliveries
+    assert record.pickup_error == pytest.approx(0.05)
+    assert referee.ledger.final_state == "picking up"
+
+
+def test_an_arrival_is_judged_by_where_the_robot_stood_not_by_where_it_is(referee):
+    for stamp, x in ((1.0, 2.01), (2.0, 3.0)):
+        referee._see_truth(truth(stamp, x))
+    referee._see_mission(arrival(1.0))
+    assert referee.ledger.deliveries[0].pickup_error == pytest.approx(0.01)
