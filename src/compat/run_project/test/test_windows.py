@@ -35,6 +35,8 @@ def test_a_terminal_runs_what_its_window_would(terminal, arguments, commands):
         ),
         (["rosrun", "pick_objects", "pick_objects"], "rosrun-pick_objects"),
         (["bash", "-c", "roscore"], "roscore"),
+        (["bash", "-c", "source a.bash; cd b && roscore"], "roscore"),
+        (["bash", "-c", "source a.bash"], "window"),
         (["bash", "-c", "echo 'unbalanced"], "echo"),
     ],
 )

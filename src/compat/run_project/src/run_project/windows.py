@@ -29,6 +29,9 @@ ALIASES = {
     "konsole": "xterm",
 }
 
+# Commands of one argument that come before what a window is opened for.
+PREPARING = ("source", ".", "cd", "export", "sleep")
+
 
 def commands_of(terminal: str, arguments: List[str]) -> List[List[str]]:
     """The argument vectors that the windows of ``terminal`` run, one a window.
@@ -58,7 +61,10 @@ def title_of(command: List[str]) -> str:
         if word in ("roslaunch", "rosrun"):
             named = [Path(other).stem for other in words[at + 1 :] if ":=" not in other]
             return "-".join([word, *named[1:2]] if len(named) > 1 else [word, *named[:1]])
-    return Path(words[0]).name if words else "window"
+    at = 0
+    while words[at : at + 1] and words[at] in PREPARING:
+        at += 2
+    return Path(words[at]).name if at < len(words) else "window"
 
 
 def returns_at_once(terminal: str) -> bool:
