@@ -32,6 +32,8 @@ UNATTENDED_SECONDS, UNATTENDED_SIMULATED = 8.0, 10.0
 IDLE_SECONDS, IDLE_SIMULATED = 90.0, 60.0
 # Seconds of wall time in which some simulated time has to pass.
 STALLED_SECONDS = 90.0
+# A process that has taken so much of a core for so many seconds spins; how nice it has to be then.
+SPINNING_SHARE, SPINNING_SECONDS, SPINNING_NICENESS = 0.3, 5.0, 15
 SHELLS = ("", "bash", "sh", "dash", "zsh")
 # Runs in a project's workspace whenever that is sourced.
 SETUP_TOOL = "_setup_util.py"
@@ -112,7 +114,9 @@ class ProjectRun:
             if now - latest_enter > ENTER_SECONDS:
                 latest_enter = now
                 self._press_enter()
-            is_working = bool(self._project_processes())
+            own = self._project_processes()
+            _put_spinners_last(own)
+            is_working = bool(own)
             has_worked = has_worked or is_working
             if self._is_done(now - self._news_wall, has_worked and not is_working):
                 return None
@@ -193,6 +197,15 @@ class ProjectRun:
                 if str(self._job.work) in program and not program.endswith(SETUP_TOOL):
                     found.append(process)
         return found
+
+
+def _put_spinners_last(processes: List[psutil.Process]) -> None:
+    """Some nodes never sleep: the core that they take must not be missing where the robot is simulated."""
+    for process in processes:
+        with contextlib.suppress(psutil.Error):
+            times, age = process.cpu_times(), time.time() - process.create_time()
+            if age > SPINNING_SECONDS and times.user + times.system > SPINNING_SHARE * age:
+                process.nice(SPINNING_NICENESS)
 
 
 def _program(command: List[str]) -> str:
