@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """The node slam_gmapping of slam_lite keeps the contract of gmapping 1.4, and offers what is its own."""
 
-import math
 import shutil
 import subprocess
 import tempfile
@@ -15,22 +14,14 @@ from nav_msgs.msg import MapMetaData
 from nav_msgs.srv import LoadMap
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool
+from toy_room import RESOLUTION, circle, room, sweep
 
-from planar import OCCUPIED, OccupancyGrid, Pose2, load_map
-from planar.ray_casting import cast_rays
+from planar import OCCUPIED, Pose2, load_map
 from planar_ros.messages import GetMapArrays, LaserScanArrays, OccupancyGridArrays, frame_name, grid_from_msg
 from planar_ros.transforms import Transforms
 
-RESOLUTION, RANGE_MAX, BEAMS = 0.05, 10.0, 360
 WAIT_SECONDS = 20.0
 STEPS = 24
-
-
-def room() -> OccupancyGrid:
-    """6 m x 4 m with a pillar, its middle at (0, 0)."""
-    cells = np.zeros((82, 122), dtype=np.int8)
-    cells[[0, -1], :] = cells[:, [0, -1]] = cells[50:56, 80:90] = OCCUPIED
-    return OccupancyGrid(cells, RESOLUTION, Pose2(-3.05, -2.05, 0.0))
 
 
 class SlamContractTest(unittest.TestCase):
@@ -73,17 +64,11 @@ class SlamContractTest(unittest.TestCase):
     @classmethod
     def sense(cls, step):
         """The robot drives a circle; its odometry turns 2 % too little."""
-        cls.base_in_map = Pose2(0.8 * math.sin(0.15 * step), 0.8 - 0.8 * math.cos(0.15 * step), 0.15 * step)
+        cls.base_in_map = circle(0.15 * step)
         base_in_odom = Pose2(cls.base_in_map.x, cls.base_in_map.y, 0.147 * step)
         stamp = rospy.Time.now()
-        scan = LaserScanArrays()
-        scan.header.stamp, scan.header.frame_id = stamp, "laser"
-        scan.angle_min, scan.angle_increment = -math.pi, 2.0 * math.pi / BEAMS
-        scan.range_min, scan.range_max = 0.1, RANGE_MAX
-        angles = scan.angle_min + scan.angle_increment * np.arange(BEAMS)
-        scan.ranges = cast_rays(cls.truth, cls.base_in_map, angles, RANGE_MAX).astype(np.float32)
+        scan = sweep(cls.truth, cls.base_in_map, stamp, "laser")
         scan.ranges[10], scan.ranges[20], scan.ranges[30] = np.nan, np.inf, 0.0
-        scan.intensities = np.zeros(0, dtype=np.float32)
         cls.transforms.send(Pose2(), "base_link", "laser", stamp)
         cls.transforms.send(base_in_odom, "odom", "base_link", stamp)
         cls.scans.publish(scan)

@@ -15,8 +15,9 @@ import rospy
 import rostest
 from sensor_msgs.msg import LaserScan
 from tf2_msgs.msg import TFMessage
+from toy_room import circle, room
 
-from planar import OCCUPIED, OccupancyGrid, Pose2, load_map
+from planar import OCCUPIED, Pose2, load_map
 from planar.ray_casting import cast_rays
 from planar_ros.messages import transform_msg
 
@@ -24,14 +25,8 @@ SCANS, START, PERIOD = 120, 1000.0, 0.2
 LASER_IN_BASE = Pose2(0.1, 0.0, 0.0)
 
 
-def room() -> OccupancyGrid:
-    cells = np.zeros((82, 122), dtype=np.int8)
-    cells[[0, -1], :] = cells[:, [0, -1]] = cells[50:56, 80:90] = OCCUPIED
-    return OccupancyGrid(cells, 0.05, Pose2(-3.05, -2.05, 0.0))
-
-
 def base_at(i: int) -> Pose2:
-    return Pose2(0.8 * math.sin(0.05 * i), 0.8 - 0.8 * math.cos(0.05 * i), 0.05 * i)
+    return circle(0.05 * i)
 
 
 def write_bag(path, scans=True, transforms=True, back_at=None):
