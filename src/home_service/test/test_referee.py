@@ -2,6 +2,7 @@ import pytest
 import rospy
 from home_service_msgs.msg import Delivery, DeliveryState, MissionState
 from nav_msgs.msg import Odometry
+from visualization_msgs.msg import Marker
 
 from home_service.referee import Referee
 from planar import Pose2
@@ -46,3 +47,16 @@ def test_an_arrival_is_judged_by_where_the_robot_stood_not_by_where_it_is(refere
         referee._see_truth(truth(stamp, x))
     referee._see_mission(arrival(1.0))
     assert referee.ledger.deliveries[0].pickup_error == pytest.approx(0.01)
+
+
+def test_the_marker_of_an_object_may_be_taken_away_and_shown_anew(referee):
+    referee._see_mission(arrival(0.0))
+    for action, is_locked, x in (
+        (Marker.ADD, False, 2.0),
+        (Marker.ADD, True, 0.0),
+        (Marker.DELETE, False, 0.0),
+    ):
+        message = Marker(ns="letter", action=action, frame_locked=is_locked)
+        message.pose.position.x, message.pose.orientation.w = x, 1.0
+        referee._see_marker(message)
+    assert referee.ledger.markers == ["letter at hall", "letter carried"]

@@ -121,10 +121,10 @@ class Referee:
             self._say(f"collision with {name}")
 
     def _see_marker(self, message):
-        if not self._places:
+        is_hidden = message.action == Marker.DELETE
+        if not self._places or (is_hidden and message.ns != PARCEL):
             return
         if message.ns == PARCEL:
-            is_hidden = message.action == Marker.DELETE
             event = "hidden" if is_hidden else f"shown at {self._nearest_place(message, self._places)}"
         elif message.frame_locked:
             event = f"{message.ns} carried"

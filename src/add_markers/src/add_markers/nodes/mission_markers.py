@@ -45,7 +45,11 @@ class MissionMarkers:
             self._publisher.publish(Marker(ns=name, action=Marker.DELETE))
             del self._shown[name]
         for name, state in objects.items():
-            if state != self._shown.get(name):
+            before = self._shown.get(name)
+            if state != before:
+                if before is not None and before.is_carried:
+                    # rviz 1.14 dies of a marker that is no longer locked to its frame.
+                    self._publisher.publish(Marker(ns=name, action=Marker.DELETE))
                 self._shown[name] = state
                 self._publisher.publish(self._marker(state))
 
