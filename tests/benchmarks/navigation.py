@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Drives a simulated TurtleBot between random places of a home, without ROS, and says how well it went.
 
-The Navigator gets true poses in the map and drifting odometry; localization is another benchmark's subject.
+It localizes itself from scans and drifting odometry; the truth is for the starting pose and the referee.
 
     python3 tests/benchmarks/navigation.py --pairs 50 --boxes 6 --walkers 4
 """
@@ -18,14 +18,18 @@ from typing import List, Optional
 import numpy as np
 from walkers import MOVING, Walker, add_walkers
 
+from amcl_lite import Localizer, LocalizerSettings
+from amcl_lite.config import InitialPose
 from move_base_lite import Navigator, NavigatorSettings, PlanningError, Status, load_settings
 from move_base_lite.costmap import LayeredCostmap
 from move_base_lite.warming import warm_up
 from planar import OccupancyGrid, Pose2, load_map, wrap
+from planar.settings_file import settings_from_yaml
 from sim_bridge import ROBOTS, Simulation, load_world
 from sim_bridge.world import World
 
 ROOT = Path(__file__).resolve().parents[2]
+LOCALIZATION_CONFIG = ROOT / "src" / "amcl_lite" / "config" / "turtlebot.yaml"
 BOX_SIZE = (0.35, 0.35, 0.5)
 BOX_CLEARANCE = 1.0
 SETTLE_SECONDS = 0.5
@@ -76,7 +80,8 @@ def _drive(pair: int, options, settings: NavigatorSettings, grid: OccupancyGrid,
     ends = places(settings, grid, rng, 2 * options.walkers)
     walkers = add_walkers(simulation, options.walkers, settings, grid, ends, rng)
     try:
-        run = _pursue(pair, options, simulation, Navigator(settings, grid), goal, walkers)
+        localizer = _localizer_at(start, grid, options.seed)
+        run = _pursue(pair, options, simulation, localizer, Navigator(settings, grid), goal, walkers)
     finally:
         simulation.close()
     touched = f", touched {', '.join(run.touched)}" if run.touched else ""
@@ -88,8 +93,21 @@ def _drive(pair: int, options, settings: NavigatorSettings, grid: OccupancyGrid,
     return run
 
 
+def _localizer_at(start: Pose2, grid: OccupancyGrid, seed: int) -> Localizer:
+    settings, _ = settings_from_yaml(LocalizerSettings, LOCALIZATION_CONFIG)
+    localizer = Localizer(grid, settings, np.random.default_rng(seed))
+    localizer.set_pose(start, InitialPose().covariance)
+    return localizer
+
+
 def _pursue(
-    pair: int, options, simulation: Simulation, navigator: Navigator, goal: Pose2, walkers: List[Walker]
+    pair: int,
+    options,
+    simulation: Simulation,
+    localizer: Localizer,
+    navigator: Navigator,
+    goal: Pose2,
+    walkers: List[Walker],
 ) -> Run:
     period = round(1.0 / options.rate / simulation.step_seconds)
     observation = simulation.step()
@@ -100,14 +118,12 @@ def _pursue(
     navigator.set_goal(goal)
     while observation.stamp - start_stamp < options.limit:
         command = None
-        if (decision is None or not decision.status.is_final) and scan is not None:
+        if localizer.odom_in_map is not None:
+            base_in_odom = observation.odometry.base_in_odom
+            base_in_map = localizer.odom_in_map @ base_in_odom
             began = time.process_time()
             decision = navigator.tick(
-                observation.stamp,
-                observation.base_in_world,
-                observation.odometry.base_in_odom,
-                observation.odometry.twist,
-                scan,
+                observation.stamp, base_in_map, base_in_odom, observation.odometry.twist, scan
             )
             tick_ms.append(1e3 * (time.process_time() - began))
             command, scan = decision.command, None
@@ -121,7 +137,9 @@ def _pursue(
                 walker.walk(observation.base_in_world, simulation.step_seconds)
             observation = simulation.step(command)
             command = None
-            scan = observation.scan or scan
+            if observation.scan is not None:
+                scan = observation.scan
+                localizer.update(observation.odometry.base_in_odom, scan)
             for name in observation.contacts:
                 stands = name in people and abs(observation.odometry.twist.v) < MOVING
                 (bumped_into if stands else touched).add(name)

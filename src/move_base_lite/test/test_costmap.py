@@ -153,7 +153,8 @@ def test_nothing_is_marked_where_the_robot_stands():
 
 def test_unknown_cells_stay_unknown_until_seen():
     grid = grid_from_picture("?????\n.....\n.....", 1.0)
-    settings = CostmapSettings(static=StaticSettings(), track_unknown_space=True, obstacles=OBSTACLES)
+    obstacles = replace(OBSTACLES, track_unknown_space=True)
+    settings = CostmapSettings(static=StaticSettings(), track_unknown_space=True, obstacles=obstacles)
     costmap = LayeredCostmap(settings, grid)
     assert cost_at(costmap, 1.5, 2.5) == UNKNOWN
     see(costmap, Pose2(0.5, 2.5), scan_of(np.inf))

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from move_base_lite import NavigatorSettings, load_settings, settings_from_parameters
+from move_base_lite import Navigator, NavigatorSettings, load_settings, settings_from_parameters
 from move_base_lite.config import MoveBaseSettings
 from move_base_lite.control import DwaSettings, MppiSettings
 from move_base_lite.costmap import CostmapSettings
@@ -15,7 +15,7 @@ from move_base_lite.costmap.obstacle_layer import ObstacleSettings, SourceSettin
 from move_base_lite.costmap.static_layer import StaticSettings
 from move_base_lite.planning import PlannerSettings
 from move_base_lite.recovery import RotateSettings, SlowSettings
-from planar import SettingsError
+from planar import Pose2, SettingsError, grid_from_picture
 
 DWA = {"base_local_planner": "dwa_local_planner/DWAPlannerROS"}
 CONFIG = Path(__file__).resolve().parents[1] / "config"
@@ -162,6 +162,26 @@ def test_ranges_of_sensors_are_searched_for_upwards():
     assert (front.topic, front.obstacle_range, front.raytrace_range) == ("front", 4.0, 6.0)
     assert (back.topic, back.obstacle_range, back.raytrace_range) == ("back", 1.0, 6.0)
     assert warnings == []
+
+
+@pytest.mark.parametrize(
+    "costmap, layer, tracks",
+    [(True, {}, True), (False, {}, False), (False, {"track_unknown_space": True}, True)],
+)
+def test_a_layer_tracks_the_unknown_as_its_costmap_does_unless_it_says_otherwise(costmap, layer, tracks):
+    plugins = [{"name": "obstacle_layer", "type": "costmap_2d::ObstacleLayer"}]
+    parameters = {"track_unknown_space": costmap, "plugins": plugins, "obstacle_layer": layer}
+    settings, warnings = settings_from_parameters({"global_costmap": parameters})
+    assert settings.global_costmap.obstacles.track_unknown_space is tracks
+    assert warnings == []
+
+
+def test_no_plan_of_the_preset_leads_through_what_the_map_does_not_know():
+    settings = load_settings(CONFIG / "turtlebot.yaml")
+    grid = grid_from_picture("..........\n..........\n????......\n..........\n..........", 0.5)
+    navigator = Navigator(settings, grid)
+    start, goal = Pose2(0.75, 0.75), Pose2(0.75, 1.75)
+    assert navigator.make_plan(start, goal)[:, 0].max() > 2.0
 
 
 def test_move_slow_and_clear_is_read():

@@ -7,6 +7,7 @@ from scipy.ndimage import label
 from move_base_lite import GoalBlocked, NoPath, OutOfMap, StartBlocked
 from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, Window
 from move_base_lite.planning import GlobalPlanner, PlannerSettings, path_cost
+from move_base_lite.planning.wavefront import descend, spread, traversal_costs
 
 PICTURES = {
     "empty": """
@@ -103,6 +104,18 @@ def test_each_free_cell_is_reached_from_each_that_is_connected_to_it(name, how):
             else:
                 with pytest.raises(NoPath):
                     planner.plan(costs, window, *ends)
+
+
+def test_a_plan_is_neither_longer_nor_dearer_than_the_bare_gradient():
+    rng = np.random.default_rng(5)
+    costs = rng.choice([0, 0, 30, 90, 200], (60, 60)).astype(np.uint8)
+    window, start, goal = Window(60, 60, 1.0), (5, 4), (50, 56)
+    potential = spread(traversal_costs(costs, True), *start, *goal, False)
+    bare = descend(potential, *start, *goal, 0.5)
+    plan = GlobalPlanner(PlannerSettings()).plan(costs, window, centre(window, start), centre(window, goal))
+    lengths = [np.linalg.norm(np.diff(path, axis=0), axis=1).sum() for path in (plan, bare)]
+    assert lengths[0] < lengths[1]
+    assert path_cost(costs, window, plan) <= path_cost(costs, window, bare)
 
 
 @pytest.mark.parametrize("use_astar, excess", [(False, 1.01), (True, 1.03)])

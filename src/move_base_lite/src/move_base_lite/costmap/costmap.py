@@ -74,7 +74,7 @@ class LayeredCostmap:
         rows, cols = self.window.rows, self.window.cols
         self._obstacles: Optional[ObstacleLayer] = None
         if settings.obstacles.enabled:
-            self._obstacles = ObstacleLayer(settings.obstacles, rows, cols, settings.track_unknown_space)
+            self._obstacles = ObstacleLayer(settings.obstacles, rows, cols)
         self._zones = ZoneLayer()
         self._ground = np.full((rows, cols), UNKNOWN if settings.track_unknown_space else FREE, np.uint8)
         self._map = grid

@@ -56,9 +56,11 @@ class SourceSettings:
 @dataclass(frozen=True)
 class ObstacleSettings:
     """The layer and its sensors. ``combination_method``: 0 overwrites the layers below where something is
-    known, 1 takes the higher cost, 99 leaves the costmap alone."""
+    known, 1 takes the higher cost, 99 leaves the costmap alone. ``track_unknown_space``: cells not seen yet
+    leave what is below as it is; otherwise they make the unknown of a map free."""
 
     enabled: bool = True
+    track_unknown_space: bool = False
     footprint_clearing_enabled: bool = True
     max_obstacle_height: float = 2.0
     combination_method: int = MAXIMUM
@@ -80,9 +82,9 @@ class _Observation:
 class ObstacleLayer:
     """Cells that sensors have shown to be occupied or free, aligned with the costmap's window."""
 
-    def __init__(self, settings: ObstacleSettings, rows: int, cols: int, track_unknown_space: bool):
+    def __init__(self, settings: ObstacleSettings, rows: int, cols: int):
         self.settings = settings
-        self._default = UNKNOWN if track_unknown_space else FREE
+        self._default = UNKNOWN if settings.track_unknown_space else FREE
         self._kept: Dict[str, List[_Observation]] = {source.topic: [] for source in settings.sources}
         self._new: Dict[str, _Observation] = {}
         self.costs = np.full((rows, cols), self._default, dtype=np.uint8)

@@ -23,7 +23,7 @@ _VOXELS_IGNORED = {
 }  # fmt: skip
 _STATIC_IGNORED = {"first_map_only", "subscribe_to_updates", "use_maximum"}
 _OBSTACLE_IGNORED = {
-    "observation_sources", "track_unknown_space", "transform_tolerance", "obstacle_range", "raytrace_range",
+    "observation_sources", "transform_tolerance", "obstacle_range", "raytrace_range",
 } | _VOXELS_IGNORED  # fmt: skip
 
 # What belongs to each kind of layer; it stood in the costmap's own namespace before there were plugins.
@@ -48,12 +48,13 @@ def costmap_settings(reader: Reader, values, name: str, parameters) -> CostmapSe
     obstacles = ObstacleSettings(enabled=False)
     inflation = InflationSettings(enabled=False)
     for layer, kind in layers_of(reader, values, name).items():
-        tree, where = below(values, layer), f"{name}/{layer}/"
+        tree, where = dict(below(values, layer)), f"{name}/{layer}/"
         if kind == "StaticLayer":
             static = reader.read(StaticSettings, tree, where, _STATIC_IGNORED)
         elif kind == "InflationLayer":
             inflation = reader.read(InflationSettings, tree, where)
         else:
+            tree.setdefault("track_unknown_space", settings.track_unknown_space)
             earlier = obstacles.sources
             obstacles = _obstacle_settings(reader, tree, where, [values, parameters])
             obstacles = replace(obstacles, sources=(*earlier, *obstacles.sources))

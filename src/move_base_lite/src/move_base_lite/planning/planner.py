@@ -14,6 +14,8 @@ from move_base_lite.planning.wavefront import FACTOR, NEUTRAL, descend, spread, 
 from planar.settings import check
 
 STEP_CELLS = 0.5
+# Cells that a shortcut may span: any number at any angle; otherwise what evens out the steps of the gradient.
+ANY_ANGLE, SMOOTH = 200.0, 3.0
 START_TOLERANCE = 0.5
 
 
@@ -88,8 +90,8 @@ class GlobalPlanner:
         )
         if not len(path_cells):
             raise NoPath(f"no way leads from {_named('robot', start_xy)} to {_named('goal', goal_xy)}")
-        if settings.any_angle and not settings.use_grid_path:
-            path_cells = shortened(traversal, path_cells)
+        if not settings.use_grid_path:
+            path_cells = shortened(traversal, path_cells, ANY_ANGLE if settings.any_angle else SMOOTH)
         path_xy = path_cells * window.resolution + (window.origin_x, window.origin_y)
         ends = [np.array([start_xy]), path_xy[1:-1] if free_start == start else path_xy[:-1]]
         ends.append(np.array([goal_xy]) if free_goal == goal else path_xy[-1:])

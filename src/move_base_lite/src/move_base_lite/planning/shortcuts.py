@@ -7,16 +7,16 @@ import numpy as np
 
 from move_base_lite.planning.wavefront import IMPASSABLE
 
-# Cells that a straight line may be long, and cells between the points of the smoothed path.
-LONGEST = 200.0
+# Cells between the points of the smoothed path.
 SPACING = 0.5
 # Cells to both sides of a line that it is not to touch an obstacle within.
 GRAZING = 0.05
 
 
 @numba.njit(cache=True)
-def shortened(traversal, path):
-    """The path (N, 2) as (col, row), with shortcuts; points at most half a cell apart, the ends as they were.
+def shortened(traversal, path, longest):
+    """The path (N, 2) as (col, row), with shortcuts of at most ``longest`` cells; points at most half a cell
+    apart, the ends as they were. It is never longer nor dearer.
 
     ``traversal``: cost of entering each cell, uint8 (rows, cols).
     """
@@ -31,7 +31,7 @@ def shortened(traversal, path):
         # Ever longer strides while they succeed, ever shorter ones when not.
         while stride > 0:
             there = min(reached + stride, path.shape[0] - 1)
-            if there > reached and _is_worth(traversal, path, costs, here, there):
+            if there > reached and _is_worth(traversal, path, costs, here, there, longest):
                 reached = there
                 stride *= 2
             else:
@@ -41,9 +41,9 @@ def shortened(traversal, path):
 
 
 @numba.njit(cache=True)
-def _is_worth(traversal, path, costs, here, there):
+def _is_worth(traversal, path, costs, here, there, longest):
     length = math.hypot(path[there, 0] - path[here, 0], path[there, 1] - path[here, 1])
-    return length <= LONGEST and _line_cost(traversal, path[here], path[there]) <= costs[there] - costs[here]
+    return length <= longest and _line_cost(traversal, path[here], path[there]) <= costs[there] - costs[here]
 
 
 @numba.njit(cache=True)
