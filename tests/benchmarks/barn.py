@@ -18,7 +18,7 @@ import time
 from dataclasses import asdict, dataclass, replace
 from multiprocessing import Pool
 from pathlib import Path
-from typing import Dict, List, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from move_base_lite.warming import warm_up
 from planar import Pose2
 from sim_bridge import ROBOTS, Simulation, SimulationSettings, load_world
 
-ROOT = Path(__file__).resolve().parents[2]
+CONFIG = Path(__file__).resolve().parents[2] / "src" / "move_base_lite" / "config" / "jackal.yaml"
 START = Pose2(-2.25, 3.0, math.pi / 2.0)
 GOAL_IN_ODOM = Pose2(10.0, 0.0)
 ARRIVED = 1.0
@@ -54,9 +54,7 @@ class Run:
 
 def main() -> int:
     options = _options()
-    worlds = _worlds(options.folder)
-    if options.only is not None:
-        worlds = {number: worlds[number] for number in options.only}
+    worlds = worlds_in(options.folder, options.only)
     settings = load_settings(options.config)
     warm_up(settings)
     tasks = [
@@ -148,14 +146,14 @@ def _drive(simulation: Simulation, settings: NavigatorSettings) -> Run:
     )  # fmt: skip
 
 
-def _worlds(folder: Path) -> Dict[int, Tuple[Path, Path]]:
-    """Number -> files of the world and of its reference path."""
+def worlds_in(folder: Path, only: Optional[Sequence[int]]) -> Dict[int, Tuple[Path, Path]]:
+    """Number -> files of the world and of its reference path, of all worlds or some."""
     worlds = {int(file.stem.split("_")[1]): file for file in folder.rglob("world_*.world")}
     paths = {int(file.stem.split("_")[1]): file for file in folder.rglob("path_*.npy")}
     both = sorted(set(worlds) & set(paths))
     if not both:
         sys.exit(f"{folder}: no pairs of world_N.world and path_N.npy")
-    return {number: (worlds[number], paths[number]) for number in both}
+    return {number: (worlds[number], paths[number]) for number in (both if only is None else only)}
 
 
 def _summary(runs: List[Run]) -> dict:
@@ -180,9 +178,7 @@ def _options():
     parser.add_argument("--seeds", type=int, default=10, help="runs of each world, seeds 0, 1, ...")
     parser.add_argument("--only", type=int, nargs="+", help="numbers of the worlds to drive")
     parser.add_argument("--jobs", type=int, default=1, help="processes")
-    parser.add_argument(
-        "--config", default=ROOT / "src" / "move_base_lite" / "config" / "jackal.yaml", help="parameters"
-    )
+    parser.add_argument("--config", default=CONFIG, help="parameters")
     parser.add_argument("--json", help="file for the figures of every run")
     return parser.parse_args()
 

@@ -23,7 +23,7 @@ from amcl_lite.config import InitialPose
 from move_base_lite import Navigator, NavigatorSettings, PlanningError, Status, load_settings
 from move_base_lite.costmap import LayeredCostmap
 from move_base_lite.warming import warm_up
-from planar import OccupancyGrid, Pose2, load_map, wrap
+from planar import FREE, OccupancyGrid, Pose2, load_map, wrap
 from planar.settings_file import settings_from_yaml
 from sim_bridge import ROBOTS, Simulation, load_world
 from sim_bridge.world import World
@@ -32,7 +32,8 @@ ROOT = Path(__file__).resolve().parents[2]
 LOCALIZATION_CONFIG = ROOT / "src" / "amcl_lite" / "config" / "turtlebot.yaml"
 BOX_SIZE = (0.35, 0.35, 0.5)
 BOX_CLEARANCE = 1.0
-SETTLE_SECONDS = 0.5
+# Steps of the simulation for which a person stays where it is.
+STEPS_OF_WALKERS = 2
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,7 @@ def _drive(pair: int, options, settings: NavigatorSettings, grid: OccupancyGrid,
     for number in range(options.boxes):
         add_box(simulation, f"box_{number}", settings, grid, rng, keep_free=(start, goal))
     ends = places(settings, grid, rng, 2 * options.walkers)
-    walkers = add_walkers(simulation, options.walkers, settings, grid, ends, rng)
+    walkers = add_walkers(simulation, options.walkers, settings, grid, ends, rng, options.heedless)
     try:
         localizer = _localizer_at(start, grid, options.seed)
         run = _pursue(pair, options, simulation, localizer, Navigator(settings, grid), goal, walkers)
@@ -132,9 +133,9 @@ def _pursue(
                 planned = _length(decision.plan_xy)
             if decision.status.is_final:
                 break
-        for _ in range(period):
-            for walker in walkers:
-                walker.walk(observation.base_in_world, simulation.step_seconds)
+        for step in range(period):
+            for walker in walkers if step % STEPS_OF_WALKERS == 0 else ():
+                walker.walk(observation.base_in_world, STEPS_OF_WALKERS * simulation.step_seconds)
             observation = simulation.step(command)
             command = None
             if observation.scan is not None:
@@ -166,7 +167,7 @@ def places(settings: NavigatorSettings, grid: OccupancyGrid, rng, count: int) ->
     costmap = LayeredCostmap(settings.global_costmap, grid)
     navigator = Navigator(settings, grid)
     places: List[Pose2] = []
-    free = np.argwhere(costmap.costs_of_map < 128)
+    free = np.argwhere((costmap.costs_of_map < 128) & (grid.cells == FREE))
     while len(places) < count:
         x, y = grid.points_of(free[rng.integers(len(free), size=1)])[0]
         place = Pose2(float(x), float(y), float(rng.uniform(-math.pi, math.pi)))
@@ -228,6 +229,7 @@ def _options():
     parser.add_argument("--only", type=int, help="drive only the pair of this number")
     parser.add_argument("--boxes", type=int, default=0, help="boxes that the map does not show")
     parser.add_argument("--walkers", type=int, default=0, help="people that walk to and fro")
+    parser.add_argument("--heedless", action="store_true", help="they do not wait for the robot")
     parser.add_argument("--robot", default="turtlebot_lidar", choices=ROBOTS, help="which robot drives")
     parser.add_argument("--seed", type=int, default=0, help="of all chance")
     parser.add_argument("--limit", type=float, default=180.0, help="simulated seconds a drive may take")

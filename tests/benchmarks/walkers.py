@@ -22,10 +22,16 @@ MOVING = 0.03
 
 
 class Walker:
-    """Walks along a path (N, 2) and back; waits when the robot is in the way, then turns back."""
+    """Walks along a path (N, 2) and back; waits when the robot is in the way, then turns back.
 
-    def __init__(self, simulation: Simulation, name: str, path_xy: np.ndarray, speed: float):
+    A heedless one walks on.
+    """
+
+    def __init__(
+        self, simulation: Simulation, name: str, path_xy: np.ndarray, speed: float, is_heedless: bool
+    ):
         self.name = name
+        self._comfort = -math.inf if is_heedless else COMFORT + RADIUS
         self._simulation, self._path_xy, self._speed = simulation, path_xy, speed
         steps = np.linalg.norm(np.diff(path_xy, axis=0), axis=1)
         self._travelled = np.concatenate(([0.0], np.cumsum(steps)))
@@ -39,7 +45,7 @@ class Walker:
         x, y = self._at(ahead)
         here = math.dist(self._at(self._along), (robot.x, robot.y))
         there = math.dist((x, y), (robot.x, robot.y))
-        if there < COMFORT + RADIUS and there < here:
+        if there < min(self._comfort, here):
             self._waited += seconds
             if self._waited > PATIENCE:
                 self._direction, self._waited = -self._direction, 0.0
@@ -65,6 +71,7 @@ def add_walkers(
     grid: OccupancyGrid,
     places: List[Pose2],
     rng: np.random.Generator,
+    are_heedless: bool = False,
 ) -> List[Walker]:
     """People between pairs of ``places``, two each, at speeds of people at home."""
     navigator = Navigator(settings, grid)
@@ -74,6 +81,7 @@ def add_walkers(
             f"walker_{number}",
             navigator.make_plan(places[2 * number], places[2 * number + 1]),
             rng.uniform(SLOWEST, FASTEST),
+            are_heedless,
         )
         for number in range(count)
     ]

@@ -176,8 +176,10 @@ def test_a_layer_tracks_the_unknown_as_its_costmap_does_unless_it_says_otherwise
     assert warnings == []
 
 
-def test_no_plan_of_the_preset_leads_through_what_the_map_does_not_know():
-    settings = load_settings(CONFIG / "turtlebot.yaml")
+def test_no_plan_leads_through_what_the_map_does_not_know_if_the_layer_tracks_it():
+    parameters = yaml.safe_load((CONFIG / "turtlebot.yaml").read_text())
+    parameters["global_costmap"]["obstacle_layer"]["track_unknown_space"] = True
+    settings, _ = settings_from_parameters(parameters)
     grid = grid_from_picture("..........\n..........\n????......\n..........\n..........", 0.5)
     navigator = Navigator(settings, grid)
     start, goal = Pose2(0.75, 0.75), Pose2(0.75, 1.75)

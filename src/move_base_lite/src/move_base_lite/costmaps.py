@@ -36,16 +36,27 @@ class Costmaps:
         self.whole.reset()
 
     def look(
-        self, now: float, base_in_map: Pose2, base_in_odom: Pose2, sightings: Sequence[Sighting]
+        self,
+        now: float,
+        base_in_map: Pose2,
+        base_in_odom: Pose2,
+        sightings: Sequence[Sighting],
+        lasting: Sequence[Sighting],
     ) -> None:
-        """Has the costmaps note what is seen, and brings those up to date that are due."""
+        """Has the costmaps note what is seen, and brings those up to date that are due.
+
+        ``lasting``: the same without what will soon have gone, for the costmap to plan on.
+        """
         map_in_odom = base_in_odom @ base_in_map.inverse()
         self._draw_zones(base_in_map)
         for sighting in sightings:
             self._last_seen[sighting.topic] = sighting.stamp
-        views = ((self.near, base_in_odom, map_in_odom), (self.whole, base_in_map, Pose2()))
-        for number, (costmap, base_in_frame, map_in_frame) in enumerate(views):
-            for sighting in sightings:
+        views = (
+            (self.near, base_in_odom, map_in_odom, sightings),
+            (self.whole, base_in_map, Pose2(), lasting),
+        )
+        for number, (costmap, base_in_frame, map_in_frame, seen) in enumerate(views):
+            for sighting in seen:
                 costmap.note(sighting, base_in_frame)
             if now >= self._next_updates[number] - TIME_TOLERANCE:
                 costmap.update(base_in_frame, map_in_frame)

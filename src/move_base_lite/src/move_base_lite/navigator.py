@@ -23,6 +23,7 @@ from move_base_lite.decision import (
     with_reason,
 )
 from move_base_lite.errors import ControlError, NavigationError, Oscillation, PlanningError, SensorStale
+from move_base_lite.movers import Movers
 from move_base_lite.planning import GlobalPlanner, path_cost
 from move_base_lite.pursuit import Pursuit
 from move_base_lite.recovery import RecoveryContext, recovery_from
@@ -60,6 +61,7 @@ class Navigator:
         """Goes on with another map, from which obstacles have to be seen anew."""
         self._grid = grid
         self._costmaps = Costmaps(self.settings, grid, self.zones)
+        self._movers = Movers()
 
     def change(self, settings: NavigatorSettings) -> None:
         """Goes on with other settings, goal and plan included."""
@@ -118,7 +120,8 @@ class Navigator:
         if scan is not None:
             sightings = [*sightings, sighting_of_scan(self.settings.scan_topic, scan)]
         if self.is_active or not self.settings.move_base.shutdown_costmaps:
-            self._costmaps.look(now, base_in_map, base_in_odom, sightings)
+            lasting = [self._lasting(base_in_odom, sighting) for sighting in sightings]
+            self._costmaps.look(now, base_in_map, base_in_odom, sightings, lasting)
         if self._new_goal is not None:
             self._pursuit = Pursuit.of(self._new_goal, now, base_in_map)
             self._new_goal = None
@@ -148,6 +151,12 @@ class Navigator:
         if pursuit.status is Status.PLANNING and not self._plan(pursuit, now, base_in_map):
             return self._be_patient_with_planning(pursuit, now)
         return self._drive(pursuit, now, base_in_map, base_in_odom, twist)
+
+    def _lasting(self, base_in_odom: Pose2, sighting: Sighting) -> Sighting:
+        """What is seen without what moves: a plan does not have to lead around people who walk."""
+        if not self.settings.controller.looks_for_movers or sighting.topic != self.settings.scan_topic:
+            return sighting
+        return self._movers.look(base_in_odom, sighting)
 
     def make_plan(self, start_in_map: Pose2, goal_in_map: Pose2, tolerance: float = 0.0) -> np.ndarray:
         """Path (N, 2) in the map between any two places. Raises PlanningError."""
@@ -234,7 +243,12 @@ class Navigator:
             return Decision(pursuit.status, Twist2(), plan_xy=plan_xy)
         try:
             control = self._controller.control(
-                base_in_map, base_in_odom, twist, self.local_costmap, self._speed_limit(pursuit, base_in_odom)
+                base_in_map,
+                base_in_odom,
+                twist,
+                self.local_costmap,
+                self._speed_limit(pursuit, base_in_odom),
+                self._movers.at(now),
             )
         except ControlError as error:
             self._be_patient_with_control(pursuit, now, error)

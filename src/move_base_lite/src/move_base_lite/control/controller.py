@@ -21,6 +21,8 @@ FOLLOWED_ANGLE = 0.1
 # Metres between the places checked on the way to a standstill, and how much longer that is taken to be.
 STOPPING_STEP = 0.05
 STOPPING_MARGIN = 1.3
+# Seconds for which a robot that stands still looks out for what moves, and metres at which that is to pass.
+SOON, PASSING = 3.0, 0.3
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,8 +97,11 @@ class Controller:
         twist: Twist2,
         costmap: LayeredCostmap,
         highest: Twist2,
+        movers: np.ndarray,
     ) -> Control:
         """The velocity for the next period, within the settings and the ``highest`` speeds.
+
+        ``movers``: what moves, in the local frame (see Movers).
 
         Raises ControlError if none is safe.
         """
@@ -133,12 +138,20 @@ class Controller:
         error = self._tracking.heading_error(
             base_in_map.x, base_in_map.y, base_in_map.yaw, self._settings.heading_lookahead
         )
-        turn = self._turn(error, base_in_local, twist, costmap, plan_xy) if self._should_turn(error) else None
+        turn = None
+        if self._should_turn(error) and not self._is_in_the_way(base_in_local, twist, costmap, movers):
+            turn = self._turn(error, base_in_local, twist, costmap, plan_xy)
         if turn is not None:
             return turn
         try:
             trajectory = self._follower.follow(
-                costmap, base_in_local, twist, plan_xy, self._within_limits(highest), self.distance_left
+                costmap,
+                base_in_local,
+                twist,
+                plan_xy,
+                self._within_limits(highest),
+                self.distance_left,
+                movers,
             )
         except ControlError:
             return self._find_another_way(error, base_in_local, twist, costmap, plan_xy)
@@ -194,15 +207,28 @@ class Controller:
                 return Control(command, base_in_local.as_array()[None, :], plan_xy)
         return None
 
+    def _is_in_the_way(
+        self, base_in_local: Pose2, twist: Twist2, costmap: LayeredCostmap, movers: np.ndarray
+    ) -> bool:
+        """Whether something that moves would soon come near the robot if that stopped here."""
+        here = base_in_local @ Pose2(self._stopping_distance(twist), 0.0)
+        offsets, velocities = movers[:, :2] - (here.x, here.y), movers[:, 2:4]
+        closest_at = -(offsets * velocities).sum(axis=1) / np.maximum((velocities**2).sum(axis=1), 1e-6)
+        passing = offsets + velocities * np.clip(closest_at, 0.0, SOON)[:, None]
+        reach = movers[:, 4] + costmap.footprint.circumscribed_radius + PASSING
+        return bool((np.hypot(passing[:, 0], passing[:, 1]) < reach).any())
+
+    def _stopping_distance(self, twist: Twist2) -> float:
+        """Metres, negative backwards."""
+        return twist.v * (self._period + abs(twist.v) / (2.0 * self._settings.acc_lim_x))
+
     def _can_stop(self, base_in_local: Pose2, twist: Twist2, costmap: LayeredCostmap) -> bool:
         """Whether the robot touches nothing new where it would stand after braking."""
-        way = (
-            STOPPING_MARGIN * abs(twist.v) * (self._period + abs(twist.v) / (2.0 * self._settings.acc_lim_x))
-        )
-        if way < costmap.window.resolution:
+        way = STOPPING_MARGIN * self._stopping_distance(twist)
+        if abs(way) < costmap.window.resolution:
             return True
         touching = costmap.contacts(base_in_local)
-        steps = math.copysign(way, twist.v) * np.linspace(0.0, 1.0, math.ceil(way / STOPPING_STEP) + 1)[1:]
+        steps = way * np.linspace(0.0, 1.0, math.ceil(abs(way) / STOPPING_STEP) + 1)[1:]
         return all(costmap.contacts(base_in_local @ Pose2(float(step), 0.0)) <= touching for step in steps)
 
     def _within_limits(self, highest: Twist2) -> Twist2:

@@ -37,8 +37,11 @@ class DynamicWindow:
         plan_xy: np.ndarray,
         highest: Twist2,
         distance_left: float,
+        movers: np.ndarray,
     ) -> Trajectory:
         """The cheapest velocity, looking no further ahead than the end, or the robot would creep towards it.
+
+        As in the official one, whatever moves is where it is now.
 
         Raises ControlError if each of them hits something or leads nowhere.
         """

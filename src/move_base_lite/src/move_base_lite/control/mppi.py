@@ -21,6 +21,8 @@ CHECKED_ANGLE = 0.1
 CHECKED_DISTANCE = 0.05
 # Metres ahead at which the slope of the cost to go is felt.
 NOSE = 0.3
+# Metres around what moves within which obstacles are taken for it.
+AROUND_MOVER = 0.1
 # m/s that a robot counts as at least when it lingers near an obstacle.
 CREEPING = 0.1
 FAR = 1e3
@@ -31,7 +33,8 @@ class PathIntegral:
 
     What a way costs is what is left to drive at its end, through free cells and shy of obstacles, in metres,
     with penalties for nearness, turning and driving backwards. A way that touches something ends there; if
-    the robot could not stop before, it does not count. The random deviations are drawn once, from the seed.
+    the robot could not stop before, it does not count. What moves is expected where it will be by then.
+    The random deviations are drawn once, from the seed.
     """
 
     def __init__(self, settings: MppiSettings, period: float):
@@ -63,6 +66,7 @@ class PathIntegral:
         plan_xy: np.ndarray,
         highest: Twist2,
         distance_left: float,
+        movers: np.ndarray,
     ) -> Trajectory:
         """The velocity for the next period, within the ``highest`` speeds, and where it may lead.
 
@@ -70,7 +74,7 @@ class PathIntegral:
         """
         settings = self._settings
         scene = _Scene(
-            clearance=distance_field(costmap.costs >= LETHAL, costmap.window.resolution, FAR),
+            clearance=distance_field(_standing(costmap, movers), costmap.window.resolution, FAR),
             to_go=self._cost_to_go(costmap, plan_xy),
             origin_x=costmap.window.origin_x,
             origin_y=costmap.window.origin_y,
@@ -78,6 +82,7 @@ class PathIntegral:
             outline_xy=costmap.outline_xy,
             inscribed_radius=costmap.footprint.inscribed_radius,
             circumscribed_radius=costmap.footprint.circumscribed_radius,
+            movers=movers,
         )
         start = np.array([*base_pose.as_array(), twist.v, twist.omega])
         problem = (start, scene, self._limits(highest), self._weights)
@@ -120,6 +125,20 @@ class PathIntegral:
         return field * np.float32(window.resolution / NEUTRAL)
 
 
+def _standing(costmap: LayeredCostmap, movers: np.ndarray) -> np.ndarray:
+    """Which cells (rows, cols) are obstacles that stay: those that movers are seen in will have gone."""
+    obstacles, window = costmap.costs >= LETHAL, costmap.window
+    for x, y, _, _, radius in movers:
+        bounds = window.bounds_around(x, y, radius + AROUND_MOVER)
+        block = obstacles[slice(*bounds[:2]), slice(*bounds[2:])]
+        rows, cols = np.nonzero(block)
+        apart_x = window.origin_x + (bounds[2] + cols + 0.5) * window.resolution - x
+        apart_y = window.origin_y + (bounds[0] + rows + 0.5) * window.resolution - y
+        is_its_own = np.hypot(apart_x, apart_y) < radius + AROUND_MOVER
+        block[rows[is_its_own], cols[is_its_own]] = False
+    return obstacles
+
+
 def _smooth_noise(rng: np.random.Generator, settings: MppiSettings, steps: int) -> np.ndarray:
     """Deviations (samples, steps, 2) of speed and turn rate; the first is none."""
     knots = rng.standard_normal((settings.samples, KNOTS, 2))
@@ -150,6 +169,7 @@ class _Scene(NamedTuple):
     outline_xy: np.ndarray
     inscribed_radius: float
     circumscribed_radius: float
+    movers: np.ndarray
 
 
 class _Limits(NamedTuple):
@@ -194,7 +214,7 @@ def _mean_of(samples, weights):
 def _drive(wanted, start, scene, limits, weights):
     """Cost, poses (N + 1, 3) and speeds (N, 2) of a robot that is asked for the speeds ``wanted`` (N, 2).
 
-    The speeds are those it can reach, cut to what its clearance allows. The cost is inf if it hits something
+    The speeds are those it can reach, cut to what its clearance allows. The cost is inf if it hits what stands
     before it could have stopped. A robot in touch may move as long as it never touches at more points.
     """
     steps = wanted.shape[0]
@@ -202,14 +222,14 @@ def _drive(wanted, start, scene, limits, weights):
     dt = limits.period
     x, y, yaw, v, omega = start
     poses[0] = x, y, yaw
-    room = _room(scene, x, y, yaw)
-    least_room = min(scene.resolution, room)
+    still_room = _room(scene, x, y, yaw)
+    least_room = min(scene.resolution, still_room, _room_beside_movers(scene, x, y, 0.0))
     seconds_to_stop = abs(v) / limits.acceleration
     cost, moved, turned = 0.0, 0.0, 0.0
     to_go = _at(scene.to_go, scene, x, y)
     for step in range(steps):
         v = _towards(v, wanted[step, 0], limits.acceleration * dt)
-        v = _speed_in(v, room, limits)
+        v = _speed_in(v, still_room, limits)
         omega = _towards(omega, wanted[step, 1], limits.turn_acceleration * dt)
         omega = min(max(omega, -limits.highest_omega), limits.highest_omega)
         heading = yaw + 0.5 * omega * dt
@@ -218,25 +238,34 @@ def _drive(wanted, start, scene, limits, weights):
         moved, turned = moved + abs(v) * dt, turned + abs(omega) * dt
         if moved > CHECKED_DISTANCE or turned > CHECKED_ANGLE or step == steps - 1:
             moved, turned = 0.0, 0.0
-            room = _room(scene, x_next, y_next, yaw_next)
-            if room < least_room:
-                if (step - 1) * dt < seconds_to_stop:
-                    return np.inf, poses, speeds
-                cost += (1.0 - step / steps) * (1.0 + weights.delay * steps * dt * to_go)
-                for rest in range(step, steps):
-                    poses[rest + 1] = x, y, yaw
-                break
+            still_room = _room(scene, x_next, y_next, yaw_next)
+        passing_room = _room_beside_movers(scene, x_next, y_next, (step + 1) * dt)
+        if min(still_room, passing_room) < least_room:
+            if still_room < least_room and (step - 1) * dt < seconds_to_stop:
+                return np.inf, poses, speeds
+            cost += (1.0 - step / steps) * (1.0 + weights.delay * steps * dt * to_go)
+            for rest in range(step, steps):
+                poses[rest + 1] = x, y, yaw
+            break
         x, y, yaw = x_next, y_next, yaw_next
         poses[step + 1] = x, y, yaw
         speeds[step] = v, omega
-        if room < weights.safe_distance:
-            nearness = 1.0 - max(room, 0.0) / weights.safe_distance
-            cost += weights.obstacle * nearness * nearness * (abs(v) + CREEPING) * dt
+        nearness = _nearness(still_room, weights)
+        cost += weights.obstacle * nearness * nearness * (abs(v) + CREEPING) * dt
+        # Standing still makes nobody pass at a greater distance.
+        nearness = _nearness(passing_room, weights)
+        cost += weights.obstacle * nearness * nearness * limits.highest_v * dt
         to_go = _at(scene.to_go, scene, x, y)
         cost += dt * (weights.delay * to_go + weights.turn * omega * omega - weights.backward * min(v, 0.0))
     ahead = _at(scene.to_go, scene, x + NOSE * math.cos(yaw), y + NOSE * math.sin(yaw))
     slope = min(max((ahead - to_go) / NOSE, -1.0), 1.0)
     return cost + to_go + weights.heading * slope, poses, speeds
+
+
+@numba.njit(cache=True)
+def _nearness(room, weights):
+    """1 in touch, 0 from the safe distance on."""
+    return 1.0 - max(room, 0.0) / weights.safe_distance if room < weights.safe_distance else 0.0
 
 
 @numba.njit(cache=True)
@@ -282,6 +311,17 @@ def _room(scene, x, y, yaw):
         else:
             nearest = min(nearest, scene.clearance[row, col])
     return nearest if touching == 0 else -float(touching)
+
+
+@numba.njit(cache=True)
+def _room_beside_movers(scene, x, y, seconds):
+    """Metres from the robot's circle to the nearest of what moves, so many seconds from now."""
+    nearest = FAR
+    for i in range(scene.movers.shape[0]):
+        mover_x, mover_y, v_x, v_y, radius = scene.movers[i]
+        apart = math.hypot(mover_x + seconds * v_x - x, mover_y + seconds * v_y - y)
+        nearest = min(nearest, apart - radius - scene.circumscribed_radius)
+    return nearest
 
 
 @numba.njit(cache=True)

@@ -29,6 +29,11 @@ class ControllerSettings:
     rotate_to_path_angle: float = 0.9
     heading_lookahead: float = 0.4
 
+    @property
+    def looks_for_movers(self) -> bool:
+        """Whether it matters what moves."""
+        return False
+
     def __post_init__(self):
         for name in (
             "max_vel_trans",
@@ -85,7 +90,8 @@ class MppiSettings(ControllerSettings):
     worse than the best and still count. ``safe_distance``: clearance below which it is dear to drive;
     ``approach_time``: the robot is no faster than takes so many seconds to cover its clearance, but never
     slower than ``creep_vel_x``. The weights of nearness, turning, driving backwards, an end that faces away
-    from the goal, and delay are of costs counted in metres left to drive.
+    from the goal, and delay are of costs counted in metres left to drive. ``predict_movers``: whether people
+    and all that moves are expected where they will be by then, instead of where they are seen.
     """
 
     min_vel_x: float = -0.3
@@ -103,6 +109,7 @@ class MppiSettings(ControllerSettings):
     backward_weight: float = 1.0
     heading_weight: float = 0.2
     delay_weight: float = 0.5
+    predict_movers: bool = True
     seed: int = 0
 
     def __post_init__(self):
@@ -112,3 +119,7 @@ class MppiSettings(ControllerSettings):
         weights = [f"{name}_weight" for name in ("obstacle", "turn", "backward", "heading", "delay")]
         for name in ("safe_distance", "approach_time", *weights):
             check(getattr(self, name) >= 0, name, "at least 0", getattr(self, name))
+
+    @property
+    def looks_for_movers(self) -> bool:
+        return self.predict_movers

@@ -1,0 +1,173 @@
+"""A simulated robot that speaks ROS, for whatever node is a move_base, and the node itself."""
+
+import contextlib
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Iterator, Optional
+
+import actionlib
+import numpy as np
+import rosgraph
+import rospy
+import yaml
+from actionlib_msgs.msg import GoalStatus
+from geometry_msgs.msg import PoseStamped, Twist
+from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
+from nav_msgs.msg import OccupancyGrid as OccupancyGridMsg
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
+from roslib.packages import find_node
+from std_srvs.srv import Empty
+from tf2_msgs.msg import TFMessage
+from tf2_ros import StaticTransformBroadcaster
+
+from planar import OccupancyGrid, Pose2, Twist2
+from planar_ros.actions import server_is_ready
+from planar_ros.messages import LaserScanArrays, grid_to_msg, pose2_to_msg, transform_msg
+from sim_bridge import Simulation
+
+START_SECONDS = 60.0
+GAP = 1.0
+
+
+@contextlib.contextmanager
+def move_base(options) -> Iterator[subprocess.Popen]:
+    """A master and the node ``options.node`` with parameters as the launch file sets them, while it lasts."""
+    os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{options.port}"
+    master = subprocess.Popen(["rosmaster", "--core", "-p", str(options.port)], stdout=subprocess.DEVNULL)
+    node = None
+    try:
+        while not rosgraph.is_master_online():
+            time.sleep(0.1)
+        node = _start_node(options)
+        rospy.init_node("benchmark", disable_signals=True)
+        yield node
+    finally:
+        for process in (node, master):
+            if process is not None:
+                process.terminate()
+                process.wait()
+
+
+def _start_node(options) -> subprocess.Popen:
+    parameters = yaml.safe_load(Path(options.config).read_text(encoding="utf-8"))
+    parameters.setdefault("DWAPlannerROS", {})["global_frame_id"] = "odom"
+    if options.local_planner:
+        parameters["base_local_planner"] = options.local_planner
+    rospy.set_param("/use_sim_time", True)
+    rospy.set_param("/move_base", parameters)
+    package, executable = options.node.split("/")
+    path = find_node(package, executable)
+    if not path:
+        raise SystemExit(f"no node {options.node} is installed")
+    return subprocess.Popen([path[0], "__name:=move_base"], stdout=sys.stderr)
+
+
+def add_node_options(parser, config: Path) -> None:
+    """What says which node drives, and how fast."""
+    parser.add_argument("--node", default="move_base_lite/move_base_lite", help="package/executable")
+    parser.add_argument("--config", default=config, help="parameters of move_base")
+    parser.add_argument("--local-planner", help="base_local_planner instead of that of the parameters")
+    parser.add_argument("--speed", type=float, default=1.0, help="simulated seconds a second")
+    parser.add_argument("--port", type=int, default=11411, help="of the ROS master that is started")
+
+
+class RobotOverRos:
+    """A Simulation that speaks ROS: clock, tf, odom and scan out, cmd_vel in; wall time paces it."""
+
+    def __init__(self, speed: float, grid: Optional[OccupancyGrid] = None):
+        self._speed = speed
+        self._clock = rospy.Publisher("/clock", Clock, queue_size=10, tcp_nodelay=True)
+        self._tf = rospy.Publisher("/tf", TFMessage, queue_size=10, tcp_nodelay=True)
+        self._odom = rospy.Publisher("odom", Odometry, queue_size=10, tcp_nodelay=True)
+        self._scan = rospy.Publisher("scan", LaserScanArrays, queue_size=10, tcp_nodelay=True)
+        self._static = StaticTransformBroadcaster()
+        self._command = None
+        rospy.Subscriber("cmd_vel", Twist, self._on_command, queue_size=1, tcp_nodelay=True)
+        if grid is not None:
+            self._map = rospy.Publisher("map", OccupancyGridMsg, queue_size=1, latch=True)
+            self._map.publish(grid_to_msg(grid, rospy.Time(0), "map"))
+        self._begun = 0.0
+
+    def put(self, simulation: Simulation) -> None:
+        """Goes on with another simulation; its time is added to what has passed."""
+        self._begun = self.now if self._begun else GAP
+        self._simulation, self._command = simulation, None
+        self._wall = time.monotonic()
+        self.step()
+        while self.observation.scan is None:
+            self.step()
+        laser = self.observation.scan.laser_in_base
+        stamp = rospy.Time.from_sec(self.now)
+        self._static.sendTransform(transform_msg(laser, "base_footprint", "laser", stamp))
+
+    @property
+    def now(self) -> float:
+        return self._begun + self.observation.stamp
+
+    def step_for(self, seconds: float) -> None:
+        """Moves on by so many seconds."""
+        for _ in range(round(seconds / self._simulation.step_seconds)):
+            self.step()
+
+    def step(self) -> None:
+        """Moves on by one period of the odometry."""
+        command, self._command = self._command, None
+        self.observation = seen = self._simulation.step(command)
+        stamp = rospy.Time.from_sec(self.now)
+        odometry = seen.odometry
+        odom_in_map = seen.base_in_world @ odometry.base_in_odom.inverse()
+        self._tf.publish(
+            [
+                transform_msg(odom_in_map, "map", "odom", stamp + rospy.Duration(0.1)),
+                transform_msg(odometry.base_in_odom, "odom", "base_footprint", stamp),
+            ]
+        )
+        message = Odometry()
+        message.header.stamp, message.header.frame_id = stamp, "odom"
+        message.child_frame_id = "base_footprint"
+        message.pose.pose = pose2_to_msg(odometry.base_in_odom)
+        message.twist.twist.linear.x = odometry.twist.v
+        message.twist.twist.angular.z = odometry.twist.omega
+        self._odom.publish(message)
+        if seen.scan is not None:
+            self._publish_scan(seen.scan, stamp)
+        self._clock.publish(Clock(stamp))
+        self._wall += self._simulation.step_seconds / self._speed
+        time.sleep(max(0.0, self._wall - time.monotonic()))
+
+    def _publish_scan(self, scan, stamp):
+        message = LaserScanArrays()
+        message.header.stamp, message.header.frame_id = stamp, "laser"
+        message.angle_min, message.angle_increment = scan.angle_min, scan.angle_increment
+        message.angle_max = scan.angle_min + scan.angle_increment * (len(scan.ranges) - 1)
+        message.range_min, message.range_max = scan.range_min, scan.range_max
+        message.ranges, message.intensities = scan.ranges, np.empty(0, dtype=np.float32)
+        self._scan.publish(message)
+
+    def _on_command(self, message):
+        self._command = Twist2(message.linear.x, message.angular.z)
+
+
+def client_with_goal(robot: RobotOverRos, frame: str, goal: Pose2) -> actionlib.SimpleActionClient:
+    """Sends the goal to a node that has forgotten what it saw before. Exits if the node does not start."""
+    client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
+    until = time.monotonic() + START_SECONDS
+    while not server_is_ready(client):
+        robot.step()
+        if time.monotonic() > until:
+            raise SystemExit("the node does not start")
+    robot.step_for(GAP)
+    rospy.ServiceProxy("move_base/clear_costmaps", Empty)()
+    robot.step_for(GAP)
+    pose = PoseStamped(pose=pose2_to_msg(goal))
+    pose.header.frame_id = frame
+    client.send_goal(MoveBaseGoal(pose))
+    return client
+
+
+def is_under_way(client: actionlib.SimpleActionClient) -> bool:
+    return client.get_state() in (GoalStatus.PENDING, GoalStatus.ACTIVE)
