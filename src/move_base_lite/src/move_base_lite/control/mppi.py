@@ -214,7 +214,7 @@ def _mean_of(samples, weights):
 def _drive(wanted, start, scene, limits, weights):
     """Cost, poses (N + 1, 3) and speeds (N, 2) of a robot that is asked for the speeds ``wanted`` (N, 2).
 
-    The speeds are those it can reach, cut to what its clearance allows. The cost is inf if it hits what stands
+    The speeds are those it can reach, cut to what its clearance allows. The cost is inf if it hits what stays
     before it could have stopped. A robot in touch may move as long as it never touches at more points.
     """
     steps = wanted.shape[0]
