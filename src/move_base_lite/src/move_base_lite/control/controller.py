@@ -106,7 +106,8 @@ class Controller:
         Raises ControlError if none is safe.
         """
         told, self._omega_told = self._omega_told, None
-        control = self._choose(base_in_map, base_in_local, self._as_told(twist, told), costmap, highest)
+        twist = self._as_told(twist, told)
+        control = self._choose(base_in_map, base_in_local, twist, costmap, highest, movers)
         self._omega_told = control.command.omega
         return control
 
@@ -128,6 +129,7 @@ class Controller:
         twist: Twist2,
         costmap: LayeredCostmap,
         highest: Twist2,
+        movers: np.ndarray,
     ) -> Control:
         assert self._tracking is not None, "control() needs a plan"
         self._tracking.advance(base_in_map.x, base_in_map.y)
