@@ -9,9 +9,9 @@ from planar.settings import check_parameters, parameter
 class FollowSettings:
     """Metres, radians and seconds."""
 
-    gap: float = parameter("gap", 0.6, "how far behind the leader to stay, along its way, m", 0.1)
+    gap: float = parameter("gap", 0.7, "how far behind the leader to stay, along its way, m", 0.1)
     slack: float = parameter(
-        "slack", 0.3, "how much farther a leader may go before one sets off after it, m", 0.0
+        "slack", 0.2, "how much farther a leader may go before one sets off after it, m", 0.0
     )
     goal_shift: float = parameter("goal_shift", 0.1, "a goal that has moved by this is sent anew, m", 0.01)
     goal_turn: float = parameter("goal_turn", 0.5, "a goal that has turned by this is sent anew, rad", 0.05)
