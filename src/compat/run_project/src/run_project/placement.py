@@ -33,6 +33,8 @@ _CD_PWD = re.compile(
 _WORKING_FOLDER = re.compile(r"\$\(\s*pwd\s*\)|`\s*pwd\s*`|\$PWD\b|\$\{PWD\}")
 _ROSPACK = re.compile(r"(?:\$\(\s*rospack\s+find\s+([\w-]+)\s*\)|`\s*rospack\s+find\s+([\w-]+)\s*`)")
 _CD = re.compile(r"(?:^|[;&(\"'\s])cd\s+[\"']?([^\s;&\"')]+)")
+# A quoted piece that goes on outside of its quotes: "$PWD"/src.
+_QUOTED_PIECE = re.compile(r"([\"'])([^\"'\s]*)\1(?=/)")
 _PATH = re.compile(r"[^\s\"'`;&|()<>=,]*/[^\s\"'`;&|()<>=,]*|(?<=:=)[^\s\"';&]+")
 
 
@@ -112,7 +114,7 @@ def paths_named(text: str, start: str, script_folder: str, packages: Mapping[str
     Not a shell: knows ``cd``, assignments, ``$(pwd)``, the script's own folder and ``rospack find``.
     All folders, also those of the packages, are given absolute.
     """
-    text = _replaced(_SCRIPT_FOLDER, script_folder, text)
+    text = _QUOTED_PIECE.sub(r"\2", _replaced(_SCRIPT_FOLDER, script_folder, text))
     text = _CD_PWD.sub(lambda match: _joined(start, match.group(1)), text)
     text = _ROSPACK.sub(lambda match: packages.get(match.group(1) or match.group(2), "?"), text)
     text = _with_values(text, start)
