@@ -1,7 +1,6 @@
 """A simulated robot that speaks ROS, for whatever node is a move_base, and the node itself."""
 
 import contextlib
-import os
 import subprocess
 import sys
 import time
@@ -10,11 +9,11 @@ from typing import Iterator, Optional
 
 import actionlib
 import numpy as np
-import rosgraph
 import rospy
 import yaml
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped, Twist
+from lockstep import Master
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import OccupancyGrid as OccupancyGridMsg
 from nav_msgs.msg import Odometry
@@ -36,20 +35,13 @@ GAP = 1.0
 @contextlib.contextmanager
 def move_base(options) -> Iterator[subprocess.Popen]:
     """A master and the node ``options.node`` with parameters as the launch file sets them, while it lasts."""
-    os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{options.port}"
-    master = subprocess.Popen(["rosmaster", "--core", "-p", str(options.port)], stdout=subprocess.DEVNULL)
-    node = None
-    try:
-        while not rosgraph.is_master_online():
-            time.sleep(0.1)
+    with contextlib.closing(Master(options.port)):
         node = _start_node(options)
-        rospy.init_node("benchmark", disable_signals=True)
-        yield node
-    finally:
-        for process in (node, master):
-            if process is not None:
-                process.terminate()
-                process.wait()
+        try:
+            yield node
+        finally:
+            node.terminate()
+            node.wait()
 
 
 def _start_node(options) -> subprocess.Popen:
@@ -57,7 +49,6 @@ def _start_node(options) -> subprocess.Popen:
     parameters.setdefault("DWAPlannerROS", {})["global_frame_id"] = "odom"
     if options.local_planner:
         parameters["base_local_planner"] = options.local_planner
-    rospy.set_param("/use_sim_time", True)
     rospy.set_param("/move_base", parameters)
     package, executable = options.node.split("/")
     path = find_node(package, executable)

@@ -9,19 +9,17 @@ a map is due at to the map's arrival.
 """
 
 import argparse
+import contextlib
 import json
-import os
-import subprocess
 import sys
 import time
 from pathlib import Path
 from typing import Dict, List
 
 import numpy as np
-import psutil
-import rosgraph
 import rospy
 from drives import Sighting, random_drive
+from lockstep import Master, Node
 from rich.console import Console
 from rich.table import Table
 from rosgraph_msgs.msg import Clock
@@ -108,28 +106,14 @@ def main() -> int:
     world = world_from_picture("office", big_office())
     grid = true_map(world, inside=(START.x, START.y))
     drive = random_drive(world, grid, options.seed, options.seconds, start=START)
-    os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{options.port}"
-    master = subprocess.Popen(["rosmaster", "--core", "-p", str(options.port)], stdout=subprocess.DEVNULL)
-    node = None
-    try:
-        while not rosgraph.is_master_online():
-            time.sleep(0.1)
-        rospy.set_param("/use_sim_time", True)
+    with contextlib.closing(Master(options.port)):
         rospy.set_param("/slam_gmapping", PARAMETERS)
-        node = subprocess.Popen([find_node("slam_lite", "slam_gmapping")[0]], stdout=sys.stderr)
-        rospy.init_node("benchmark", disable_signals=True)
-        test = LiveTest()
-        test.wait_for_node()
-        process = psutil.Process(node.pid)
-        cpu = sum(process.cpu_times()[:2])
-        test.play(drive)
-        cpu = sum(process.cpu_times()[:2]) - cpu
-        _tell(test, drive, cpu, process.memory_info().rss / 2**20, options.json)
-    finally:
-        for child in (node, master):
-            if child is not None:
-                child.terminate()
-                child.wait()
+        with contextlib.closing(Node(find_node("slam_lite", "slam_gmapping"))) as node:
+            test = LiveTest()
+            test.wait_for_node()
+            cpu = node.cpu_seconds()
+            test.play(drive)
+            _tell(test, drive, node.cpu_seconds() - cpu, node.resident_megabytes(), options.json)
     return 0
 
 

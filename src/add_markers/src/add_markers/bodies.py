@@ -14,6 +14,8 @@ ANGLES = [math.radians(side * angle) for angle in range(0, 181, 30) for side in 
 """To the sides of where the robot faces, those in front first."""
 HEIGHT = 0.4
 """Of a box, metres: lower ones are not seen by every laser, and run over."""
+MASS = 0.3
+"""Of a box, kilograms: less than a TurtleBot notices."""
 ROBOT_SIZE, RIDING_HEIGHT = 0.36, 0.43
 """How wide a TurtleBot is, and the height of what it carries, a little above its top, metres."""
 

@@ -3,13 +3,11 @@
 from typing import Set
 
 from add_markers import Bodies, Move, Solid
-from add_markers.bodies import HEIGHT, RIDING_HEIGHT
+from add_markers.bodies import HEIGHT, MASS, RIDING_HEIGHT
 from pick_objects import Errand
 from planar import OccupancyGrid, Pose2
 from sim_bridge import Simulation
 from sim_bridge.simulation import box_on_floor
-
-MASS = 0.3
 
 
 class RehearsedBodies:

@@ -16,7 +16,7 @@ from geometry_msgs.msg import Pose
 from home_service_msgs.msg import ObjectState
 from std_msgs.msg import ColorRGBA
 
-from add_markers.bodies import HEIGHT, RIDING_HEIGHT, Bodies, Move, Solid, Vanish
+from add_markers.bodies import HEIGHT, MASS, RIDING_HEIGHT, Bodies, Move, Solid, Vanish
 from add_markers.config import MarkerSettings
 from planar import Pose2
 from planar_ros.messages import OccupancyGridArrays, grid_from_msg, pose2_from_msg, pose2_to_msg
@@ -26,7 +26,7 @@ START_SECONDS, ANSWER_SECONDS = 20.0, 5.0
 LINK = "link"
 BOX = f"""
 <sdf version="1.6"><model name="box"><link name="{LINK}">
-  <gravity>{{has_weight}}</gravity><inertial><mass>0.3</mass></inertial>
+  <gravity>{{has_weight}}</gravity><inertial><mass>{MASS}</mass></inertial>
   <collision name="box"><geometry><box><size>{{size}} {{size}} {HEIGHT}</size></box></geometry></collision>
   <visual name="box"><geometry><box><size>{{size}} {{size}} {HEIGHT}</size></box></geometry>
     <material><diffuse>{{color.r}} {{color.g}} {{color.b}} 1</diffuse></material></visual>
