@@ -241,6 +241,18 @@ def test_poses_may_be_given_in_other_frames(load):
     assert in_world(world, "m::d")[:3, 3] == pytest.approx([17.0, 0.0, 0.0])
 
 
+def test_a_joint_may_be_named_like_a_link_and_then_the_name_means_the_link(load):
+    world = load(
+        "<model name='m'><link name='body'/><link name='wheel'><pose>0 2 0 0 0 0</pose></link>"
+        "<joint name='wheel' type='revolute'><pose>0 0 1 0 0 0</pose><parent>body</parent>"
+        "<child>wheel</child><axis><xyz>0 1 0</xyz></axis></joint>"
+        "<link name='hub'><pose relative_to='wheel'>1 0 0 0 0 0</pose></link></model>"
+    )
+    assert in_world(world, "m::wheel")[:3, 3] == pytest.approx([0.0, 2.0, 0.0])
+    assert in_world(world, "m::hub")[:3, 3] == pytest.approx([1.0, 2.0, 0.0])
+    assert world.joints[0].pose_in_child[:3, 3] == pytest.approx([0.0, 0.0, 1.0])
+
+
 def test_models_stand_in_frames_of_the_world_and_of_each_other(load):
     lone = "<link name='l'/>"
     world = load(

@@ -13,9 +13,8 @@ from run_project.errors import BuildError
 from run_project.layout import LEFTOVERS, Checkout
 from run_project.placement import Placement
 from run_project.selection import select
+from run_project.stand_ins import PACKAGE_FOLDER, STAND_INS
 
-PACKAGE_FOLDER = Path(__file__).resolve().parents[2]
-STAND_INS = PACKAGE_FOLDER / "stand_ins"
 FRESH_CLONE = PACKAGE_FOLDER / "cmake" / "fresh_clone.cmake"
 # A bound on how many packages may turn out one after the other not to be configurable.
 CONFIGURATIONS = 20

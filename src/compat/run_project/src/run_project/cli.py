@@ -15,7 +15,7 @@ from home_service.interruption import leave, raise_when_interrupted
 from home_service.run_folder import create_run_folder, write_result
 from home_service.versions import versions
 from planar import PlanarError
-from run_project.building import PACKAGE_FOLDER, Workspace, build, copy_checkout, environment
+from run_project.building import Workspace, build, copy_checkout, environment
 from run_project.complaints import complaints_in
 from run_project.errors import BuildError, ProjectError
 from run_project.headless_rviz import SHOWN
@@ -24,6 +24,7 @@ from run_project.options import parse
 from run_project.placement import READ_SUFFIXES, Placement, place
 from run_project.private_root import prefix
 from run_project.running import Job, ProjectRun
+from run_project.stand_ins import PACKAGE_FOLDER
 from run_project.terminal import LOGS
 from run_project.verdict import Ledger, Verdict, judge
 

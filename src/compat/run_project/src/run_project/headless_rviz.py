@@ -1,15 +1,14 @@
 """rviz without a window: subscribes to what its configuration displays, and looks at nothing."""
 
 import os
-import shutil
 import sys
 from pathlib import Path
 from typing import List, Optional
 
 import rospy
 
-from run_project.building import STAND_INS
 from run_project.rviz_topics import topics_of
+from run_project.stand_ins import without_stand_ins
 
 SHOWN = "RUN_PROJECT_RVIZ"
 OPTIONS = ("-d", "--display-config")
@@ -18,7 +17,7 @@ OPTIONS = ("-d", "--display-config")
 def main() -> None:
     """Becomes the real rviz if there is one to be shown."""
     if os.environ.get(SHOWN):
-        os.execv(_real_rviz(), ["rviz", *sys.argv[1:]])
+        os.execvpe("rviz", ["rviz", *sys.argv[1:]], without_stand_ins(os.environ))
     rospy.init_node("rviz", anonymous=True)
     config = config_file(rospy.myargv()[1:])
     text = ""
@@ -44,8 +43,3 @@ def config_file(arguments: List[str]) -> Optional[Path]:
 
 def _look_away(_message) -> None:
     pass
-
-
-def _real_rviz() -> str:
-    elsewhere = [folder for folder in os.environ["PATH"].split(":") if folder != str(STAND_INS / "bin")]
-    return shutil.which("rviz", path=":".join(elsewhere)) or "rviz"

@@ -39,11 +39,12 @@ class Model:
     def __post_init__(self):
         self._by_name: Dict[str, Model] = {}
         self.frames = Frames(self._frames_of_nested)
-        for link in self.element.children("link"):
-            self.frames.declare(link.name, link)
         for joint in self.element.children("joint"):
             child = joint.child("child")
             self.frames.declare(joint.name, joint, child.text if child is not None else "")
+        # After the joints: before SDF 1.7 one may be named like a link, and then the name means the link.
+        for link in self.element.children("link"):
+            self.frames.declare(link.name, link)
         declare_frames(self.frames, self.element)
 
     @property
