@@ -203,11 +203,21 @@ build_workspace() {
     : >"$log"
     # A build that was cut short, made elsewhere, or holds packages that have gone is made anew.
     if [[ ! -e $stamp || $(head -n 1 "$stamp") != "${inputs%%$'\n'*}" ]]; then
-        rm -rf "$root/build" "$root/devel"
+        clear_build
     fi
     rm -f "$stamp"
     step "Building the workspace" "$log" catkin_build || give_up "the catkin build failed" "$log"
     say "$inputs" >"$stamp"
+}
+
+clear_build() { # but for other people's projects that run at this moment: each holds the lock in its folder
+    local folder
+    for folder in "$root"/build/projects/*/; do
+        [[ ! -d $folder ]] || flock --nonblock "$folder/lock" rm -rf "$folder" ||
+            say "left alone, in use: $folder"
+    done
+    [[ ! -d $root/build ]] || find "$root/build" -mindepth 1 -maxdepth 1 ! -name projects -exec rm -rf {} +
+    rm -rf "$root/devel"
 }
 
 catkin_build() {
