@@ -1,4 +1,4 @@
-from run_project.building import Workspace, broken_configurations
+from run_project.building import Workspace, broken_configurations, environment
 
 OUTPUT = """
 CMake Error at /usr/share/cmake-3.25/Modules/FindPackageHandleStandardArgs.cmake:230 (message):
@@ -27,3 +27,11 @@ def test_packages_that_cannot_be_configured_are_told_with_the_reason(tmp_path):
         "maps": "Could NOT find Protobuf (missing: Protobuf_LIBRARIES)",
         "worlds": "needs gazebo, which is not there",
     }
+
+
+def test_models_are_found_where_they_lie_after_the_folders_that_the_project_names(tmp_path):
+    (tmp_path / "devel").mkdir()
+    (tmp_path / "devel/setup.bash").write_text("export GAZEBO_MODEL_PATH=/theirs")
+    models = (tmp_path / "src/models", tmp_path / "src/world")
+    workspace = Workspace(tmp_path, tmp_path / "src", {}, tmp_path / "pretended", models)
+    assert environment(workspace)["GAZEBO_MODEL_PATH"] == f"/theirs:{models[0]}:{models[1]}"

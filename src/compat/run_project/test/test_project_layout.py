@@ -43,6 +43,15 @@ def test_what_a_build_left_behind_is_not_read(tmp_path):
     assert sorted(project.packages) == ["pick"]
 
 
+def test_folders_of_models_are_found_wherever_they_are(tmp_path):
+    project = checkout(
+        tmp_path,
+        *("src/pick/package.xml", "src/pick/models/chair/model.config", "src/pick/models/table/model.config"),
+        "world/House/model.config",
+    )
+    assert [str(folder) for folder in project.model_folders()] == ["src/pick/models", "world"]
+
+
 def test_a_folder_without_packages_is_refused_by_name(tmp_path):
     with pytest.raises(ProjectError, match=r"no package\.xml"):
         read_checkout(tmp_path)

@@ -7,7 +7,7 @@ import signal
 import subprocess
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Callable, Dict, Set
+from typing import Callable, Dict, Set, Tuple
 
 from run_project.errors import BuildError
 from run_project.layout import LEFTOVERS, Checkout
@@ -18,6 +18,7 @@ from run_project.stand_ins import PACKAGE_FOLDER, STAND_INS
 FRESH_CLONE = PACKAGE_FOLDER / "cmake" / "fresh_clone.cmake"
 # A bound on how many packages may turn out one after the other not to be configurable.
 CONFIGURATIONS = 20
+MODEL_PATH = "GAZEBO_MODEL_PATH"
 UNCONFIGURED = "Configuring incomplete"
 
 # From one error of CMake to its reason, and to the first of a project's files in its call stack.
@@ -33,14 +34,16 @@ _BROKEN_LINK = re.compile(r"CMakeFiles/(\S+?)\.dir/\S+: (?:in function .*?: )?(u
 class Workspace:
     """A project's copy.
 
-    ``pretended``: a folder for packages that are not there. ``unbuilt``: packages whose files alone are used.
-    ``missing``: packages that are not as their author meant them, with the reason.
+    ``pretended``: a folder for packages that are not there. ``model_folders``: where Gazebo's models lie.
+    ``unbuilt``: packages whose files alone are used. ``missing``: packages that are not as their author meant
+    them, with the reason.
     """
 
     folder: Path
     checkout: Path
     packages: Dict[str, Path]
     pretended: Path
+    model_folders: Tuple[Path, ...] = ()
     unbuilt: Set[str] = field(default_factory=set)
     missing: Dict[str, str] = field(default_factory=dict)
 
@@ -73,7 +76,8 @@ def copy_checkout(checkout: Checkout, placement: Placement, work: Path) -> Works
         (workspace / name).symlink_to(work / name)
     (workspace / "src" / "CMakeLists.txt").unlink(missing_ok=True)  # often a link to the author's ROS
     packages = {name: target / folder for name, folder in checkout.packages.items()}
-    return Workspace(workspace, target, packages, work / "pretended")
+    model_folders = tuple(target / folder for folder in checkout.model_folders())
+    return Workspace(workspace, target, packages, work / "pretended", model_folders)
 
 
 def build(workspace: Workspace, log: Path, say: Callable[[str], None]) -> None:
@@ -105,14 +109,16 @@ def build(workspace: Workspace, log: Path, say: Callable[[str], None]) -> None:
 
 
 def environment(workspace: Workspace) -> Dict[str, str]:
-    """The environment that sourcing the workspace gives."""
+    """The environment that sourcing the workspace gives; Gazebo's models are found where they lie in it."""
     script = 'source "$1/devel/setup.bash" >&2; exec env -0'
     kept = {name: value for name, value in os.environ.items() if not name.startswith("TURTLEBOT_")}
     output = subprocess.run(
         ["bash", "-c", script, "bash", str(workspace.folder)], env=kept, stdout=subprocess.PIPE, check=True
     ).stdout
     pairs = (entry.partition("=") for entry in output.decode(errors="surrogateescape").split("\0") if entry)
-    return {name: value for name, _, value in pairs}
+    variables = {name: value for name, _, value in pairs}
+    model_path = [variables.get(MODEL_PATH, ""), *map(str, workspace.model_folders)]
+    return {**variables, MODEL_PATH: ":".join(filter(None, model_path))}
 
 
 def _is_there(package: str) -> bool:

@@ -40,6 +40,11 @@ class Checkout:
         """All shell scripts."""
         return [Path(file) for file in self.files if file.endswith((".sh", ".bash"))]
 
+    def model_folders(self) -> List[Path]:
+        """All folders in which Gazebo's models lie, those that worlds name as ``model://name``."""
+        models = (Path(file).parent for file in self.files if Path(file).name == "model.config")
+        return sorted({model.parent for model in models})
+
 
 def read_checkout(root: Path) -> Checkout:
     """Looks at the folder ``root``. Raises ProjectError if there is no package in it."""
