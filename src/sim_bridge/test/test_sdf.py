@@ -335,6 +335,25 @@ def test_a_missing_mesh_is_told_once_and_is_an_error_if_strict(load):
             load(missing, strict=True)
 
 
+def test_of_a_missing_mesh_of_gazebos_own_models_the_footprint_is_there(load):
+    dumpster = "<mesh><uri>model://dumpster/meshes/dumpster.dae</uri><scale>2 2 1</scale></mesh>"
+    world = load(geometry(dumpster))
+    vertices = world.bodies[0].collisions[0].shape.vertices
+    assert vertices.max(axis=0) - vertices.min(axis=0) == pytest.approx([3.0, 1.92, 1.18])
+    assert "dumpster.dae not found, only its footprint is here" in world.warnings[0]
+    with pytest.raises(WorldError, match="not found"):
+        load(geometry(dumpster), strict=True)
+
+
+def test_a_footprint_may_have_parts(load):
+    table = "<mesh><uri>model:///table_marble/meshes/table_lightmap.dae</uri></mesh>"
+    legs = load(geometry(table)).bodies[0].collisions[0].shape
+    triangles = legs.vertices[legs.triangles]
+    lids = triangles[(triangles[:, :, 2] == 1.3).all(axis=1)]
+    assert (np.abs(lids[:, :, 0]) > 3.0).all()
+    assert areas_of(lids).sum() == pytest.approx(0.7 * 0.5 * 2 + 0.8 * 0.5 + 0.7 * 0.5)
+
+
 def test_colours_come_from_the_material_or_its_script(load):
     def visual(material):
         return f"<visual name='v'>{UNIT_BOX}<material>{material}</material></visual>"

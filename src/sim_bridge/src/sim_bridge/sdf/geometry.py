@@ -3,11 +3,12 @@
 from pathlib import Path
 from typing import Callable, Dict, List, Optional, Sequence
 
-import mapbox_earcut
 import numpy as np
 
 from sim_bridge.sdf.element import Element
+from sim_bridge.sdf.footprints import footprint_of
 from sim_bridge.sdf.includes import resolve
+from sim_bridge.sdf.prism import prism
 from sim_bridge.shapes import Box, Cylinder, Look, Mesh, MeshFile, Plane, Sphere
 
 # SDF's own default, metres.
@@ -19,7 +20,11 @@ class LeftOutError(Exception):
 
 
 class MissingError(LeftOutError):
-    """A mesh whose file is not there."""
+    """A mesh whose file is not there; ``instead``: what is known of it all the same."""
+
+    def __init__(self, text: str, instead: Optional[Mesh] = None):
+        super().__init__(text)
+        self.instead = instead
 
 
 def read_shape(geometry: Element, folder: Path, model_folders: Sequence[Path]) -> Optional[Look]:
@@ -69,12 +74,12 @@ def _read_plane(plane: Element) -> Plane:
 def _find_mesh(mesh: Element, folder: Path, model_folders: Sequence[Path]) -> MeshFile:
     uri = mesh.required("uri").text
     path = resolve(uri, folder, model_folders)
-    if path is None:
-        raise MissingError(f"mesh {uri} not found")
     scale, submesh = mesh.child("scale"), mesh.child("submesh")
     x, y, z = scale.numbers(3) if scale is not None else (1.0, 1.0, 1.0)
     if 0.0 in (x, y, z):
         raise mesh.error("a scale must not be 0")
+    if path is None:
+        raise MissingError(f"mesh {uri} not found", footprint_of(uri, (x, y, z)))
     return MeshFile(
         path,
         (x, y, z),
@@ -94,22 +99,7 @@ def _extrude(polylines: Sequence[Element]) -> Mesh:
             raise polyline.error(f"an outline needs 3 points or more, got {len(points_xy)}")
         rings.append(points_xy)
     height = polylines[0].child("height")
-    top = height.lengths(1)[0] if height is not None else POLYLINE_HEIGHT
-    points_xy, ends = np.vstack(rings), np.cumsum([len(ring) for ring in rings])
-    lid = mapbox_earcut.triangulate_float64(points_xy, ends.astype(np.uint32)).reshape(-1, 3).astype(np.int64)
-    count = len(points_xy)
-    lower = np.arange(count)
-    following = np.concatenate(
-        [np.roll(np.arange(end - len(ring), end), -1) for ring, end in zip(rings, ends)]
-    )
-    sides = np.vstack(
-        (
-            np.column_stack((lower, following, following + count)),
-            np.column_stack((lower, following + count, lower + count)),
-        )
-    )
-    vertices = np.vstack([np.column_stack((points_xy, np.full(count, z))) for z in (0.0, top)])
-    return Mesh(vertices, np.vstack((lid, lid + count, sides)))
+    return prism(rings, 0.0, height.lengths(1)[0] if height is not None else POLYLINE_HEIGHT)
 
 
 _READERS: Dict[str, Callable[[Element], Look]] = {

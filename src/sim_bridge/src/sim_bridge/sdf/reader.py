@@ -195,8 +195,10 @@ class _Reader:
         try:
             shape = read_shape(part.required("geometry"), model.folder, self._model_folders)
         except MissingError as missing:
-            self._warnings.missing(part, str(missing))
-            return None
+            shape = missing.instead
+            self._warnings.missing(
+                part, str(missing), "left out" if shape is None else "only its footprint is here"
+            )
         except LeftOutError as left_out:
             self._warnings.leave_out(part, f"{left_out}, left out", kind=("geometry", str(left_out)))
             return None

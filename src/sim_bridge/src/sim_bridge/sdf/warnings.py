@@ -21,11 +21,11 @@ class Warnings:
         first, count = self._lines.get(key, (text, 0))
         self._lines[key] = (first, count + 1)
 
-    def missing(self, element: Element, what: str) -> None:
+    def missing(self, element: Element, what: str, so: str = "left out") -> None:
         """A file that is not there. Raises WorldError if this is strict."""
         if self._strict:
             raise element.error(what)
-        self.leave_out(element, f"{what}, left out", kind=what)
+        self.leave_out(element, f"{what}, {so}", kind=what)
 
     def check_children(self, element: Element) -> None:
         """Names the children of an element that are neither honoured nor without bearing."""
