@@ -8,10 +8,10 @@ from run_project.verdict import Ledger, judge
 ACTIVE, PREEMPTED, SUCCEEDED, ABORTED = 1, 2, 3, 4
 
 
-def ledger_of(*endings):
+def ledger_of(*endings, places=((1.0, 2.0),)):
     ledger = Ledger()
     for number, ending in enumerate(endings):
-        ledger.see_goal(float(number), f"goal-{number}", (1.0, 2.0))
+        ledger.see_goal(float(number), f"goal-{number}", places[number % len(places)])
         ledger.see_status(float(number), f"goal-{number}", ending, "text")
     return ledger
 
@@ -33,6 +33,24 @@ def test_a_goal_that_was_sent_again_until_it_was_reached_is_no_failure():
     verdict = judge(ledger_of(ABORTED, SUCCEEDED))
     assert verdict.success
     assert verdict.reason.startswith("1 of 2 goals reached")
+
+
+A, B, C = (1.0, 2.0), (3.0, 4.0), (5.0, 6.0)
+
+
+@pytest.mark.parametrize(
+    ("places", "goals"),
+    [((A, B, A, B), 4), ((A, B, A, B, A), 4), ((A, B, C) * 2, 6), ((A, B, C, A, C), 0), ((A, A, A, A), 0)],
+)
+def test_a_project_that_goes_its_rounds_for_ever_is_recognized_after_two(places, goals):
+    assert ledger_of(*[SUCCEEDED] * len(places), places=places).two_rounds == goals
+    assert ledger_of(ABORTED, *[SUCCEEDED] * (len(places) - 1), places=places).two_rounds == 0
+
+
+def test_the_goal_of_a_third_round_does_not_count():
+    verdict = judge(ledger_of(*[SUCCEEDED] * 4, ACTIVE, places=(A, B)))
+    assert verdict.success
+    assert verdict.reason.startswith("4 of 4 goals reached")
 
 
 def test_a_run_that_was_cut_short_is_a_failure():

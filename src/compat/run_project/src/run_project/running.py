@@ -131,7 +131,7 @@ class ProjectRun:
     def _is_done(self, quiet_wall: float, nodes_are_gone: bool) -> bool:
         ledger = self.observer.ledger
         script_is_over = self._script.poll() is not None
-        if script_is_over and not _others(self._helpers):
+        if (script_is_over and not _others(self._helpers)) or ledger.two_rounds:
             return True
         if nodes_are_gone and script_is_over:
             return quiet_wall > (SETTLED_SECONDS if ledger.goals or ledger.markers else QUIET_SECONDS)

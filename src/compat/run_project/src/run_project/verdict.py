@@ -103,6 +103,16 @@ class Ledger:
         """Whether a goal has been sent and none is under way."""
         return bool(self.goals) and all(goal.status in FINAL for goal in self.goals.values())
 
+    @property
+    def two_rounds(self) -> int:
+        """The number of goals after which it had been through the same places twice; 0 if it has not."""
+        goals = list(self.goals.values())
+        for round_length in range(2, len(goals) // 2 + 1):
+            first, second = goals[:round_length], goals[round_length : 2 * round_length]
+            if all(map(_is_reached_again, first, second)) and not _is_one_place(first):
+                return 2 * round_length
+        return 0
+
     def _goal(self, now: float, name: str) -> Goal:
         if name not in self.goals:
             self.goals[name] = Goal(sent=now)
@@ -121,10 +131,10 @@ class Verdict:
 def judge(ledger: Ledger, failure: Optional[str] = None, is_errand: bool = False) -> Verdict:
     """Success if the robot reached all places it was sent to; without goals, if the project showed a marker.
 
-    A goal that failed and was sent again does not count. ``failure``: why the run was cut short, if it was.
-    ``is_errand``: markers alone are not enough.
+    A goal that failed and was sent again does not count, nor do those of a third round of the same places.
+    ``failure``: why the run was cut short, if it was. ``is_errand``: markers alone are not enough.
     """
-    goals = list(ledger.goals.values())
+    goals = list(ledger.goals.values())[: ledger.two_rounds or None]
     reached = sum(goal.status == "succeeded" for goal in goals)
     failed = [
         f"goal {number}{_at(goal.place)} {goal.status}{f' ({goal.text})' if goal.text else ''}"
@@ -142,10 +152,21 @@ def judge(ledger: Ledger, failure: Optional[str] = None, is_errand: bool = False
 
 
 def _was_reached_later(goal: Goal, later: List[Goal]) -> bool:
-    return goal.place is not None and any(
-        other.status == "succeeded" and other.place and math.dist(goal.place, other.place) < SAME_PLACE
-        for other in later
-    )
+    return any(other.status == "succeeded" and _is_same_place(goal, other) for other in later)
+
+
+def _is_reached_again(goal: Goal, later: Goal) -> bool:
+    return goal.status == "succeeded" and later.status == "succeeded" and _is_same_place(goal, later)
+
+
+def _is_one_place(goals: List[Goal]) -> bool:
+    return all(_is_same_place(goals[0], goal) for goal in goals)
+
+
+def _is_same_place(goal: Goal, other: Goal) -> bool:
+    if goal.place is None or other.place is None:
+        return False
+    return math.dist(goal.place, other.place) < SAME_PLACE
 
 
 def _at(place: Optional[Tuple[float, float]]) -> str:
