@@ -185,6 +185,15 @@ def test_a_start_in_an_obstacle_is_left_for_the_nearest_free_cell_or_refused():
         planner.plan(costs, window, centre(window, (1, 1)), goal)
 
 
+def test_a_blocked_end_does_not_give_way_to_a_place_to_which_nothing_leads():
+    costs = costs_of("########\n#.#....#\n########")
+    window, planner = window_of(costs), GlobalPlanner(PlannerSettings())
+    between, beyond, in_the_open = (centre(window, (1, col)) for col in (2, 3, 6))
+    path_xy = planner.plan(costs, window, between, in_the_open)
+    assert path_xy[:, 0].min() == between[0]
+    assert tuple(planner.plan(costs, window, in_the_open, between, tolerance=0.5)[-1]) == beyond
+
+
 @pytest.mark.parametrize("outside", [(-5.0, 2.6), (0.0, 99.0)])
 def test_a_place_off_the_map_is_refused(outside):
     costs = costs_of(PICTURES["empty"])

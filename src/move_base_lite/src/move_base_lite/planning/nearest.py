@@ -1,26 +1,46 @@
-"""The nearest cell on which the robot can stand."""
+"""Where the robot can stand near a place where it cannot."""
 
 import math
 from typing import Optional, Tuple
 
 import numpy as np
+from scipy.ndimage import label
 
 from move_base_lite.planning.wavefront import IMPASSABLE
 
+Cell = Tuple[int, int]
 
-def nearest_passable(
-    traversal: np.ndarray, cell: Tuple[int, int], tolerance_cells: float
-) -> Optional[Tuple[int, int]]:
-    """The cell itself if it can be entered, else the nearest that can within the tolerance, else None."""
+
+def passable_ends(
+    traversal: np.ndarray, start: Cell, goal: Cell, start_reach: float, goal_reach: float
+) -> Tuple[Optional[Cell], Optional[Cell]]:
+    """Start and goal, each moved to the nearest passable cell within its reach, in cells; None without one.
+
+    One that has to be moved goes to where a way from the other leads, if one does: the nearest place may be
+    enclosed, as the inside of a cupboard is.
+    """
+    passable = traversal < IMPASSABLE
+    free_start, free_goal = _nearest(passable, start, start_reach), _nearest(passable, goal, goal_reach)
+    if free_start is None or free_goal is None or (free_start == start and free_goal == goal):
+        return free_start, free_goal
+    regions, _ = label(passable)
+    if free_goal != goal:
+        free_goal = _nearest(regions == regions[free_start], goal, goal_reach) or free_goal
+    if free_start != start and regions[free_start] != regions[free_goal]:
+        free_start = _nearest(regions == regions[free_goal], start, start_reach) or free_start
+    return free_start, free_goal
+
+
+def _nearest(allowed: np.ndarray, cell: Cell, reach: float) -> Optional[Cell]:
+    """The cell itself if it is allowed, else the nearest that is, else None."""
     row, col = cell
-    if traversal[row, col] < IMPASSABLE:
+    if allowed[row, col]:
         return cell
-    reach = math.floor(tolerance_cells)
-    row_min, col_min = max(row - reach, 0), max(col - reach, 0)
-    block = traversal[row_min : row + reach + 1, col_min : col + reach + 1]
-    rows, cols = np.nonzero(block < IMPASSABLE)
+    side = math.floor(reach)
+    row_min, col_min = max(row - side, 0), max(col - side, 0)
+    rows, cols = np.nonzero(allowed[row_min : row + side + 1, col_min : col + side + 1])
     squares = (rows + row_min - row) ** 2 + (cols + col_min - col) ** 2
-    within = squares <= tolerance_cells**2
+    within = squares <= reach**2
     if not within.any():
         return None
     best = int(np.argmin(np.where(within, squares, squares.max() + 1)))

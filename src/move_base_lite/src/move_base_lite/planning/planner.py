@@ -8,7 +8,7 @@ import numpy as np
 
 from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, Window
 from move_base_lite.errors import GoalBlocked, NoPath, OutOfMap, StartBlocked
-from move_base_lite.planning.nearest import nearest_passable
+from move_base_lite.planning.nearest import passable_ends
 from move_base_lite.planning.shortcuts import shortened
 from move_base_lite.planning.wavefront import FACTOR, NEUTRAL, descend, spread, traversal_costs
 from planar.settings import check
@@ -66,7 +66,8 @@ class GlobalPlanner:
         """Path (N, 2), metres in the window's frame, from start to goal or near it.
 
         A goal that cannot be stood on gives way to the nearest free place within ``tolerance`` (or the
-        default one if that is larger). A start in the costs of a near obstacle is left by the shortest way.
+        default one if that is larger); a start, to one within half a metre: of those from which the other end
+        can be reached, if any can.
         Raises OutOfMap, StartBlocked, GoalBlocked or NoPath.
         """
         settings = self._settings
@@ -76,10 +77,10 @@ class GlobalPlanner:
         start = self._cell_in_map(window, start_xy, "robot")
         goal = self._cell_in_map(window, goal_xy, "goal")
         tolerance_cells = max(tolerance, self._settings.default_tolerance) / window.resolution
-        free_start = nearest_passable(traversal, start, START_TOLERANCE / window.resolution)
+        start_cells = START_TOLERANCE / window.resolution
+        free_start, free_goal = passable_ends(traversal, start, goal, start_cells, tolerance_cells)
         if free_start is None:
             raise StartBlocked(f"{_named('robot', start_xy)} is {_why(costs[start])}")
-        free_goal = nearest_passable(traversal, goal, tolerance_cells)
         if free_goal is None:
             raise GoalBlocked(f"{_named('goal', goal_xy)} is {_why(costs[goal])}")
         if free_start == free_goal:
