@@ -48,6 +48,31 @@ class TestCamera(unittest.TestCase):
         errors = np.abs(np.interp(bearings[seen], angles, scan.ranges) - ranges[seen])
         self.assertLess(np.nanmedian(errors), 0.01)
 
+    def test_the_scan_is_that_of_depthimage_to_laserscan(self):
+        scan, info = wait_for("scan", LaserScan), wait_for("camera/depth/camera_info", CameraInfo)
+        self.assertEqual(scan.header.frame_id, "camera_depth_frame")
+        self.assertEqual((len(scan.ranges), len(scan.intensities)), (640, 640))
+        for told, expected in (
+            (scan.angle_min, -math.radians(30.0)),
+            (scan.angle_max, math.radians(30.0)),
+            (scan.range_min, 0.45),
+            (scan.range_max, 10.0),
+            (scan.scan_time, 0.033),
+            (scan.time_increment, 0.0),
+        ):
+            self.assertAlmostEqual(told, expected, places=5)
+        self.assertLessEqual(np.nanmax(scan.ranges), 5.0)
+        self.assertFalse(np.isinf(scan.ranges).any(), "what is not seen is not a number")
+        self.assertEqual(info.header.frame_id, "camera_depth_optical_frame")
+        self.assertEqual((info.P[0], info.P[3]), (info.K[0], 0.0))
+
+    def test_pictures_and_scans_come_ten_times_a_second(self):
+        for topic, kind in (("camera/depth/image_raw", Image), ("scan", LaserScan)):
+            stamps = stamps_of(topic, kind, 6)
+            steps = np.diff(stamps) / 0.1
+            self.assertTrue(np.allclose(steps, np.round(steps)), f"{topic}: {steps}")
+            self.assertGreater(steps.min(), 0.5)
+
     def test_the_inertial_sensor_feels_gravity(self):
         imu = wait_for("mobile_base/sensors/imu_data", Imu)
         self.assertEqual(imu.header.frame_id, "base_link")
@@ -72,6 +97,18 @@ class TestCamera(unittest.TestCase):
         with_pictures.unregister()
         rospy.sleep(0.5)
         self.assertGreater(simulated_in(2.0), 1.5 * slow)
+
+
+def stamps_of(topic, kind, count):
+    """Of so many messages in a row, s."""
+    stamps = []
+    heard = rospy.Subscriber(topic, kind, lambda message: stamps.append(message.header.stamp.to_sec()))
+    deadline = time.monotonic() + 20.0
+    while len(stamps) < count:
+        assert time.monotonic() < deadline, f"too few messages on {topic}"
+        time.sleep(0.01)
+    heard.unregister()
+    return stamps
 
 
 def dropped_messages():

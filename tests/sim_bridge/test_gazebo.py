@@ -148,14 +148,29 @@ class TestGazebo(unittest.TestCase):
         self.assertAlmostEqual(model_state("can").pose.position.x, 1.0, delta=0.01)
 
     def test_what_cannot_be_spawned_is_refused_with_a_reason(self):
-        broken = call("/gazebo/spawn_sdf_model", srv.SpawnModel, "crate", "<sdf", "", Pose(), "")
-        self.assertFalse(broken.success)
-        self.assertIn("not well-formed", broken.status_message)
-        lost = self.spawn(frame="nothing")
-        self.assertFalse(lost.success)
-        self.assertIn("reference_frame not found", lost.status_message)
-        nowhere = self.spawn(math.nan)
-        self.assertFalse(nowhere.success)
+        bomb = "<!DOCTYPE x [<!ENTITY a 'b'>]><sdf version='1.6'><model name='&a;'/></sdf>"
+        flat = BOX.replace("0.4 0.4 0.4", "0.4 0 0.4")
+        unicorn = (
+            "<sdf version='1.6'><world name='w'><include><uri>model://unicorn</uri></include></world></sdf>"
+        )
+        for xml, reason in (
+            ("<sdf", "not well-formed XML (unclosed token: line 1, column 0)"),
+            (bomb, "refused, defines entities"),
+            (flat, "box > size: must be positive, got '0.4 0 0.4'"),
+            ("<robot name='r'/>", "its root is <robot>"),
+            ("<sdf version='1.6'><model name='any'/></sdf>", "has no links"),
+            (unicorn, "model://unicorn not found"),
+        ):
+            answer = call("/gazebo/spawn_sdf_model", srv.SpawnModel, "crate", xml, "", Pose(), "")
+            self.assertFalse(answer.success, xml)
+            self.assertTrue(answer.status_message.startswith("SpawnModel: Failure - crate"), answer)
+            self.assertIn(reason, answer.status_message)
+        self.assertEqual(
+            self.spawn(frame="nothing").status_message,
+            "SpawnModel: reference reference_frame not found, "
+            "did you forget to scope the link by model name?",
+        )
+        self.assertEqual(self.spawn(math.nan).status_message, "SpawnModel: Failure - the pose is not finite")
 
     def test_states_are_relative_to_the_frame_asked_for(self):
         state = ModelState("mobile_base", pose_at(1.0, 0.0, 0.0, math.pi / 2.0), Twist(), "world")
@@ -203,12 +218,52 @@ class TestGazebo(unittest.TestCase):
         self.assertTrue(call("/gazebo/set_link_state", srv.SetLinkState, state).success)
         told = call("/gazebo/get_link_state", srv.GetLinkState, "crate::body", "").link_state
         self.assertAlmostEqual(told.pose.position.x, 1.5, delta=0.01)
+        unscoped = call("/gazebo/get_link_state", srv.GetLinkState, "body", "base_footprint")
+        self.assertTrue(unscoped.success, "as in Gazebo, if the name is the only one")
+
+    def test_answers_are_counted_and_say_their_frame_and_time(self):
+        first, second = (model_state("mobile_base", "ground_plane").header for _ in range(2))
+        self.assertEqual((second.seq, second.frame_id), (first.seq + 1, "ground_plane"))
+        self.assertGreaterEqual(second.stamp, first.stamp)
+        self.assertGreater(first.stamp.to_sec(), 0.0)
+
+    def test_states_that_are_not_finite_are_refused(self):
+        lost, fast = pose_at(math.nan, 0.0), Twist(linear=Vector3(math.inf, 0.0, 0.0))
+        for answer, text in (
+            (
+                call(
+                    "/gazebo/set_model_state", srv.SetModelState, ModelState("mobile_base", lost, Twist(), "")
+                ),
+                "SetModelState: the pose is not finite",
+            ),
+            (
+                call(
+                    "/gazebo/set_model_state", srv.SetModelState, ModelState("mobile_base", Pose(), fast, "")
+                ),
+                "SetModelState: the twist is not finite",
+            ),
+            (
+                call(
+                    "/gazebo/set_link_state",
+                    srv.SetLinkState,
+                    LinkState("mobile_base::base_footprint", lost, Twist(), ""),
+                ),
+                "SetLinkState: the pose is not finite",
+            ),
+        ):
+            self.assertEqual((answer.success, answer.status_message), (False, text))
+        self.assertTrue(math.isfinite(model_state("mobile_base").pose.position.x))
 
     def test_states_can_be_set_by_topic(self):
         publisher = rospy.Publisher("/gazebo/set_model_state", ModelState, queue_size=1)
         self.wait_until(publisher.get_num_connections)
         publisher.publish(ModelState("mobile_base", pose_at(0.6, 0.0), Twist(), ""))
         self.wait_until(lambda: abs(model_state("mobile_base").pose.position.x - 0.6) < 0.01)
+        self.spawn(1.0)
+        links = rospy.Publisher("/gazebo/set_link_state", LinkState, queue_size=1)
+        self.wait_until(links.get_num_connections)
+        links.publish(LinkState("crate::body", pose_at(1.5, 0.2, 0.2), Twist(), ""))
+        self.wait_until(lambda: abs(model_state("crate").pose.position.x - 1.5) < 0.01)
 
     def test_all_models_and_links_are_told_by_topic(self):
         models = rospy.wait_for_message("/gazebo/model_states", ModelStates, 10.0)
@@ -234,6 +289,13 @@ class TestGazebo(unittest.TestCase):
         self.simulated(3.0)
         self.assertAlmostEqual(model_state("crate").twist.linear.y, 0.0, delta=0.01)
         self.assertGreater(model_state("crate").pose.position.y, before + 0.2)
+        call(
+            "/gazebo/apply_body_wrench", srv.ApplyBodyWrench, "crate::body", "", Point(), push,
+            rospy.Time(0), rospy.Duration(-1),
+        )  # fmt: skip
+        call("/gazebo/clear_body_wrenches", srv.BodyRequest, "crate::body")
+        self.simulated(0.5)
+        self.assertAlmostEqual(model_state("crate").twist.linear.y, 0.0, delta=0.01)
 
     def test_physics_can_be_told_and_changed(self):
         kept = call("/gazebo/get_physics_properties", srv.GetPhysicsProperties)
@@ -245,10 +307,28 @@ class TestGazebo(unittest.TestCase):
         self.assertAlmostEqual(changed.time_step, 0.0025)
         self.assertEqual(changed.max_update_rate, 0.0)
         change.time_step = 0.013
-        refused = call("/gazebo/set_physics_properties", srv.SetPhysicsProperties, change)
-        self.assertFalse(refused.success)
+        for time_step, reason in (
+            (0.013, "odometry_rate must be a divisor of physics_rate (77), got 50"),
+            (1e-9, "time_step must be at least 1e-05, max_update_rate not negative"),
+            (math.nan, "time_step must be at least 1e-05, max_update_rate not negative"),
+        ):
+            change.time_step = time_step
+            refused = call("/gazebo/set_physics_properties", srv.SetPhysicsProperties, change)
+            self.assertEqual(refused.status_message, f"SetPhysicsProperties: {reason}")
+            self.assertFalse(refused.success)
         change.time_step = 0.005
         call("/gazebo/set_physics_properties", srv.SetPhysicsProperties, change)
+
+    def test_physics_can_be_reconfigured(self):
+        client = Client("/gazebo", timeout=20.0)
+        before = client.get_configuration()
+        self.assertEqual((before["time_step"], before["gravity_z"]), (0.005, -9.8))
+        self.assertEqual(client.update_configuration({"gravity_z": -1.6})["gravity_z"], -1.6)
+        told = call("/gazebo/get_physics_properties", srv.GetPhysicsProperties)
+        self.assertEqual((told.gravity.z, told.time_step), (-1.6, 0.005))
+        kept = client.update_configuration({"gravity_x": 3.0})
+        self.assertEqual((kept["gravity_x"], kept["gravity_z"]), (0.0, -1.6), "only along z")
+        client.update_configuration({"gravity_z": -9.8})
 
     def wait_until(self, is_met):
         deadline = time.monotonic() + 20.0

@@ -222,6 +222,19 @@ def test_a_single_model_can_be_read_from_text():
     assert np.array_equal(body.pose_in_world, pose3(3.0))
 
 
+def test_a_model_to_spawn_may_be_included_by_a_world(tmp_path):
+    add_model(tmp_path, "chair", model(name="chair"))
+    (tmp_path / "stool").mkdir()
+    text = "<sdf version='1.4'><world name='default'><include><uri>model://{}</uri></include></world></sdf>"
+    (body,) = read_model(text.format("chair"), "mine", pose3(3.0), [tmp_path]).bodies
+    assert body.name == "mine::l"
+    assert np.array_equal(body.pose_in_world, pose3(3.0))
+    for missing in ("unicorn", "stool"):
+        world = read_model(text.format(missing), "mine", pose3(), [tmp_path])
+        assert world.bodies == ()
+        assert f"model://{missing} not found" in world.warnings[0]
+
+
 def in_world(world, name):
     (body,) = (body for body in world.bodies if body.name == name)
     return body.pose_in_world

@@ -43,7 +43,8 @@ def test_an_unknown_noise_is_refused_with_the_nearest_name():
 @pytest.mark.parametrize(
     ("values", "named"),
     [
-        ({"physics_rate": 0}, "physics_rate must be positive"),
+        ({"physics_rate": 0}, "physics_rate must be between 1 and 100000, got 0"),
+        ({"physics_rate": 10**9}, "physics_rate must be between"),
         ({"scan_rate": 30}, "scan_rate must be a divisor of physics_rate"),
         ({"odometry_rate": 0}, "odometry_rate"),
         ({"alpha1": -1.0}, "alpha1"),

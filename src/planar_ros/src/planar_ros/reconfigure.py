@@ -46,6 +46,12 @@ class Tuning:
         self._server = _Server(_description(tunables, values), self._on_call, namespace)
         self._is_up = True
 
+    def close(self) -> None:
+        """Ends the service and its topics."""
+        self._server.set_service.shutdown()
+        self._server.descr_topic.unregister()
+        self._server.update_topic.unregister()
+
     def _on_call(self, config, level):
         if not self._is_up:  # the server's own first call, with what is on the parameter server
             config.update(self._started_with)

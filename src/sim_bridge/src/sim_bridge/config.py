@@ -5,6 +5,9 @@ from dataclasses import dataclass
 from planar.settings import check, check_parameters, parameter
 from sim_bridge.noise import NoiseSettings
 
+# Hertz; with more, a single period of the odometry would take seconds.
+HIGHEST_PHYSICS_RATE = 100_000
+
 
 @dataclass(frozen=True)
 class SimulationSettings(NoiseSettings):
@@ -16,7 +19,8 @@ class SimulationSettings(NoiseSettings):
 
     def __post_init__(self):
         super().__post_init__()
-        check(self.physics_rate > 0, "physics_rate", "positive", self.physics_rate)
+        is_sane = 0 < self.physics_rate <= HIGHEST_PHYSICS_RATE
+        check(is_sane, "physics_rate", f"between 1 and {HIGHEST_PHYSICS_RATE}", self.physics_rate)
         for name in ("odometry_rate", "scan_rate"):
             rate = getattr(self, name)
             divides = rate > 0 and self.physics_rate % rate == 0

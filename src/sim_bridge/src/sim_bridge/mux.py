@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Dict, Mapping, Optional, Sequence, Tuple
 
 from planar import SettingsError, Twist2
-from planar.yaml_table import read_table
+from planar.yaml_table import Table, parse_table, read_table
 
 IDLE = "idle"
 
@@ -30,15 +30,23 @@ TURTLEBOT_INPUTS: Tuple[MuxInput, ...] = (
 
 def read_inputs(path) -> Tuple[MuxInput, ...]:
     """The inputs of a file in the format of yocs_cmd_vel_mux. Raises SettingsError naming file and line."""
-    table = read_table(path)
+    return _inputs_of(read_table(path), str(path))
+
+
+def parse_inputs(text: str, source: str) -> Tuple[MuxInput, ...]:
+    """The same of a text, which errors call ``source``."""
+    return _inputs_of(parse_table(text, source), source)
+
+
+def _inputs_of(table: Table, source: str) -> Tuple[MuxInput, ...]:
     inputs = tuple(
         MuxInput(one.text("name"), one.text("topic"), one.number("timeout"), round(one.number("priority")))
         for one in table.tables("subscribers")
     )
     if not inputs:
-        raise SettingsError(f"{path}: subscribers is missing or empty")
+        raise SettingsError(f"{source}: subscribers is missing or empty")
     if len({one.priority for one in inputs}) < len(inputs):
-        raise SettingsError(f"{path}: subscribers: two have the same priority")
+        raise SettingsError(f"{source}: subscribers: two have the same priority")
     return inputs
 
 

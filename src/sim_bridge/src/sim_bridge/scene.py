@@ -201,6 +201,14 @@ class Scene:
             return motion
         return _seen_from(motion, inverse(self._bodies[link].pose_in_model))
 
+    def full_link_name(self, name: str) -> str:
+        """The name ``model::link`` of the first link that is called so, with its model or without."""
+        known = [link for model in self.model_names() for link in self.links_of(model)]
+        for link in known:
+            if link == name or link.endswith("::" + name):
+                return link
+        raise UnknownEntityError(_unknown("link", name, known))
+
     def link_motion(self, link: str) -> Motion:
         model = link.split("::", 1)[0]
         if model not in self.model_names() or link not in self.links_of(model):

@@ -1,14 +1,16 @@
 """The command spawn_model: puts a model from a file, a parameter or stdin into the running simulation."""
 
 import argparse
+import contextlib
 import math
 import sys
 import time
 from pathlib import Path
-from typing import List, Tuple
+from typing import Dict, List, Tuple
 
 import rospy
 from gazebo_msgs.msg import ModelStates
+from gazebo_msgs.srv import DeleteModel
 from geometry_msgs.msg import Point, Pose, Quaternion
 from std_srvs.srv import Empty
 
@@ -44,9 +46,9 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     parser.add_argument("-wait", metavar="MODEL", help="wait until that model is there")
     for name, meaning in zip("xyzRPY", ("m", "m", "m", "roll, rad", "pitch, rad", "yaw, rad")):
         parser.add_argument(f"-{name}", type=float, default=0.0, help=meaning)
-    parser.add_argument("-J", nargs=2, action="append", default=[], metavar=("JOINT", "POSITION"))
+    parser.add_argument("-J", nargs=2, action="append", default=[], metavar=("JOINT", "RAD_OR_M"))
     parser.add_argument("-package_to_model", action="store_true", help="accepted: package:// is understood")
-    parser.add_argument("-b", action="store_true", help="accepted: the simulator ends with its launch")
+    parser.add_argument("-b", action="store_true", help="stay, and delete the model when interrupted")
     return parser.parse_args(arguments)
 
 
@@ -70,19 +72,31 @@ def spawn(options: argparse.Namespace) -> None:
     if options.wait:
         _wait_for_model(options.wait, options.gazebo_namespace)
     client = spawn_urdf_model_client if options.urdf else spawn_sdf_model_client
-    success, text = client(
-        options.model, xml, options.robot_namespace, pose, options.reference_frame, options.gazebo_namespace
-    )
-    if not success:
-        raise SpawnError(text)
-    print(text)
-    if options.J:
-        names, positions = zip(*((name, float(position)) for name, position in options.J))
-        set_model_configuration_client(
-            options.model, options.param or "", names, positions, options.gazebo_namespace
-        )
+    namespace, joints = options.gazebo_namespace, _joints(options)
+    if not client(options.model, xml, options.robot_namespace, pose, options.reference_frame, namespace):
+        raise SpawnError(f"{options.model} is not spawned")
+    if joints and not set_model_configuration_client(
+        options.model, options.param or "", list(joints), list(joints.values()), namespace
+    ):
+        raise SpawnError("the joints are not set")
     if options.unpause:
-        rospy.ServiceProxy(f"{options.gazebo_namespace}/unpause_physics", Empty)()
+        rospy.ServiceProxy(f"{namespace}/unpause_physics", Empty)()
+    if options.b:
+        rospy.on_shutdown(lambda: _delete(options.model, namespace))
+        rospy.spin()
+
+
+def _joints(options) -> Dict[str, float]:
+    """Positions by joint."""
+    try:
+        return {name: float(position) for name, position in options.J}
+    except ValueError as error:
+        raise SpawnError(f"-J: {error}") from None
+
+
+def _delete(model: str, namespace: str) -> None:
+    with contextlib.suppress(rospy.ServiceException):  # the simulator may be gone already
+        rospy.ServiceProxy(f"{namespace}/delete_model", DeleteModel)(model)
 
 
 def _model_xml(options) -> str:
@@ -94,9 +108,9 @@ def _model_xml(options) -> str:
         uri = f"<uri>model://{options.database}</uri>"
         return f'<sdf version="1.5"><world name="default"><include>{uri}</include></world></sdf>'
     try:
-        return Path(options.file).read_text()
-    except OSError as error:
-        raise SpawnError(f"cannot read {options.file}: {error.strerror}") from error
+        return Path(options.file).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise SpawnError(f"{options.file}: cannot be read ({error})") from None
 
 
 def _parameter(name: str) -> str:

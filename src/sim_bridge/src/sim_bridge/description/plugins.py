@@ -32,6 +32,10 @@ ODOMETRY_SOURCES = ("encoder", "world", "gyro")
 LASER_PLUGINS = ("gazebo_ros_laser", "gazebo_ros_gpu_laser")
 # They tell Gazebo what is true here anyhow.
 NEEDLESS_PLUGINS = {"gazebo_ros_p3d"}
+# Variances of z, roll and pitch that odometry does not measure.
+UNMEASURED = (1e12, 1e12, 1e12)
+# What Kobuki's plugin says of orientation and turn rates, about x, y and z.
+KOBUKI_IMU_VARIANCES = (1e6, 1e6, 0.05)
 
 
 @dataclass
@@ -107,6 +111,7 @@ def _read_diff_drive(plugin: Element, structure: Structure, equipment: Equipment
         text(plugin, "robotBaseFrame", "base_footprint"),
         sends_transform=flag(plugin, "publishTf", True) and flag(plugin, "publishOdomTF", True),
         rate=number(plugin, "updateRate", 100.0) or None,
+        variances=(1e-5, 1e-5, *UNMEASURED, 1e-3),
     )
     if flag(plugin, "publishWheelJointState", False):
         equipment.joint_states = JointStateProfile(equipment.drive.joints, equipment.odometry.rate)
@@ -132,6 +137,12 @@ def _read_skid_steer(plugin: Element, structure: Structure, equipment: Equipment
         text(plugin, "robotBaseFrame", "base_footprint"),
         sends_transform=flag(plugin, "broadcastTF", False),
         rate=number(plugin, "updateRate", 100.0) or None,
+        variances=(
+            number(plugin, "covariance_x", 1e-4),
+            number(plugin, "covariance_y", 1e-4),
+            *UNMEASURED,
+            number(plugin, "covariance_yaw", 0.01),
+        ),
     )
 
 
@@ -150,7 +161,15 @@ def _read_kobuki(plugin: Element, structure: Structure, equipment: Equipment) ->
     )
     equipment.odometry = OdometryProfile("gyro", sends_transform=plugin.flag("publish_tf"))
     equipment.joint_states = JointStateProfile(equipment.drive.joints)
-    equipment.imus.append(ImuProfile("mobile_base/sensors/imu_data", "base_link", IDENTITY))
+    equipment.imus.append(
+        ImuProfile(
+            "mobile_base/sensors/imu_data",
+            "base_link",
+            IDENTITY,
+            orientation_variances=KOBUKI_IMU_VARIANCES,
+            turn_variances=KOBUKI_IMU_VARIANCES,
+        )
+    )
     equipment.kobuki = KobukiProfile(length(plugin, "cliff_detection_threshold", 0.04))
 
 

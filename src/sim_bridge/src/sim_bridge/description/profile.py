@@ -16,7 +16,7 @@ class LaserProfile:
 
     A beam that meets nothing within ``sight`` metres reads ``no_return``, one that meets something nearer
     than ``range_min`` reads ``too_near`` (REP 117). ``rate`` in hertz and ``noise``, the standard deviation
-    of a range in metres, are None where the simulation's settings decide.
+    of a range in metres, are None where the simulation's settings decide. ``scan_time``, s, is only told.
     """
 
     frame: str
@@ -30,6 +30,7 @@ class LaserProfile:
     sight: float
     no_return: float = math.inf
     too_near: float = -math.inf
+    scan_time: float = 0.0
     rate: Optional[float] = None
     noise: Optional[float] = None
 
@@ -59,12 +60,17 @@ class DriveProfile:
         return self.left_joints + self.right_joints
 
 
+# x, y and yaw are measured, the rest is not (kobuki_gazebo_plugins).
+KOBUKI_VARIANCES = (0.1, 0.1, 1e6, 1e6, 1e6, 0.05)
+
+
 @dataclass(frozen=True)
 class OdometryProfile:
     """How a robot measures where it is.
 
     ``source``: ``gyro`` (distance from the wheels, heading from a gyro), ``encoder`` (both from the wheels)
     or ``world`` (the truth, in the frame of the world). ``rate`` in hertz, None for the simulation's.
+    ``variances``, which are only told: of x, y, z, m^2, roll, pitch and yaw, rad^2.
     """
 
     source: str = "encoder"
@@ -73,6 +79,7 @@ class OdometryProfile:
     base_frame: str = "base_footprint"
     sends_transform: bool = True
     rate: Optional[float] = None
+    variances: Tuple[float, ...] = KOBUKI_VARIANCES
 
 
 @dataclass(frozen=True)
@@ -108,7 +115,8 @@ class ImuProfile:
     """An inertial sensor at ``pose_in_base`` (4, 4).
 
     ``rate`` in hertz and ``noise``, the standard deviation of what it measures in SI units, are None where
-    the simulation's settings decide.
+    the simulation's settings decide. Variances, (3,) each, about and along its axes, are only told; 0 means
+    unknown (sensor_msgs/Imu).
     """
 
     topic: str
@@ -116,6 +124,9 @@ class ImuProfile:
     pose_in_base: np.ndarray
     rate: Optional[float] = None
     noise: Optional[float] = None
+    orientation_variances: Tuple[float, ...] = (0.0, 0.0, 0.0)
+    turn_variances: Tuple[float, ...] = (0.0, 0.0, 0.0)
+    acceleration_variances: Tuple[float, ...] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)

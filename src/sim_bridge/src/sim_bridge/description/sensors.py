@@ -72,6 +72,7 @@ def scan_of(camera: CameraProfile) -> LaserProfile:
         sight=settings.max_depth,
         no_return=math.nan,
         too_near=math.nan,
+        scan_time=0.033,
         rate=camera.rate,
     )
 
@@ -80,10 +81,15 @@ def read_imu(sensor: Optional[Element], plugin: Element, link: str, structure: S
     """An inertial sensor's plugin, in a <sensor> or below the model. Raises WorldError."""
     pose = sensor.raw_pose() if sensor is not None else None
     noise = plugin.child("gaussianNoise")
+    deviation = noise.numbers(1)[0] if noise is not None else None
+    variances = ((deviation or 0.0) ** 2,) * 3
     return ImuProfile(
         topic=text(plugin, "topicName", "imu"),
         frame=text(plugin, "frameName", "") or text(plugin, "frameId", "") or link,
         pose_in_base=structure.pose_in_base(link) @ (IDENTITY if pose is None else pose),
         rate=number(plugin, "updateRateHZ", 0.0) or number(plugin, "updateRate", 0.0) or None,
-        noise=noise.numbers(1)[0] if noise is not None else None,
+        noise=deviation,
+        orientation_variances=variances,
+        turn_variances=variances,
+        acceleration_variances=variances,
     )

@@ -1,15 +1,18 @@
 """The topics that a robot takes its velocity from."""
 
-from typing import Dict, List, Optional
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 import rospy
 from geometry_msgs.msg import Twist
 from std_msgs.msg import String
 
-from planar import Twist2
-from sim_bridge.mux import TURTLEBOT_INPUTS, Mux, Smoother, read_inputs
+from planar import SettingsError, Twist2
+from planar.settings import Tunable
+from planar_ros.reconfigure import Tuning
+from sim_bridge.mux import TURTLEBOT_INPUTS, Mux, MuxInput, Smoother, parse_inputs, read_inputs
 
 MUX = "cmd_vel_mux"
+MUX_FILE, MUX_TEXT = "yaml_cfg_file", "yaml_cfg_data"
 RAW_TOPIC = "navigation_velocity_smoother/raw_cmd_vel"
 # What smoothed commands count as.
 SMOOTHED_INPUT = "input/navi"
@@ -26,7 +29,7 @@ class CommandTopics:
         self._command: Optional[Twist2] = None
         self._connections: List = []
         for topic in topics:
-            self._subscribe(namespace, topic, self._on_command)
+            self._connections.append(self._subscribed(namespace, topic, self._on_command))
 
     def take(self, _now: float) -> Optional[Twist2]:
         """The command that has come since the last call, if any."""
@@ -37,13 +40,11 @@ class CommandTopics:
         for connection in self._connections:
             connection.unregister()
 
-    def _subscribe(self, namespace: str, topic: str, callback, *arguments) -> None:
+    def _subscribed(self, namespace: str, topic: str, callback: Callable, *arguments) -> rospy.Subscriber:
         name = rospy.names.ns_join(namespace, topic)
-        self._connections.append(
-            rospy.Subscriber(
-                name, Twist, lambda message: callback(self._twist(message), *arguments), queue_size=1,
-                tcp_nodelay=True,
-            )
+        return rospy.Subscriber(
+            name, Twist, lambda message: callback(self._twist(message), *arguments), queue_size=1,
+            tcp_nodelay=True,
         )  # fmt: skip
 
     def _twist(self, message: Twist) -> Twist2:
@@ -59,24 +60,31 @@ class CommandTopics:
 class MuxTopics(CommandTopics):
     """Beside plain topics the inputs of cmd_vel_mux, those of the file that its parameter names if it is set.
 
-    What comes on the smoother's topic counts as navigation's. Raises SettingsError.
+    What comes on the smoother's topic counts as navigation's. As with the official mux dynamic_reconfigure
+    brings other inputs, of a file or a text. Raises SettingsError.
     """
 
     def __init__(self, robot: str, namespace: str, topics):
         super().__init__(robot, namespace, topics)
-        where = rospy.names.ns_join(namespace, MUX)
-        file = rospy.get_param(f"{where}/yaml_cfg_file", "")
-        self._mux, self._smoother = Mux(read_inputs(file) if file else TURTLEBOT_INPUTS), Smoother()
-        self._smoothed_name = next((one.name for one in self._mux.inputs if one.topic == SMOOTHED_INPUT), "")
+        self._where = where = rospy.names.ns_join(namespace, MUX)
+        file = rospy.get_param(f"{where}/{MUX_FILE}", "")
+        self._smoother = Smoother()
         self._arrived: Dict[str, Twist2] = {}
         self._raw: Optional[Twist2] = None
         self._raw_stamp = 0.0
         self._told = ""
         self._active = rospy.Publisher(f"{where}/active", String, queue_size=1, latch=True)
-        self._connections.append(self._active)
-        for one in self._mux.inputs:
-            self._subscribe(where, one.topic, self._on_input, one.name)
-        self._subscribe(namespace, RAW_TOPIC, self._on_raw)
+        self._inputs: List[rospy.Subscriber] = []
+        self._listen_to(self._inputs_of(file))
+        self._connections += [self._active, self._subscribed(namespace, RAW_TOPIC, self._on_raw)]
+        self._tuning = self._tuned({MUX_FILE: file, MUX_TEXT: ""})
+
+    def close(self) -> None:
+        super().close()
+        if self._tuning is not None:
+            self._tuning.close()
+        for one in self._inputs:
+            one.unregister()
 
     def take(self, now: float) -> Optional[Twist2]:
         arrived, self._arrived = self._arrived, {}
@@ -95,6 +103,37 @@ class MuxTopics(CommandTopics):
         if not 0.0 <= seconds < LONGEST_PERIOD:  # the robot has come to rest since
             self._smoother, seconds = Smoother(), FIRST_PERIOD
         return self._smoother.smooth(raw, seconds)
+
+    def _tuned(self, values: Dict[str, str]) -> Optional[Tuning]:
+        tunables = (
+            Tunable(MUX_FILE, "", "path of a YAML file of the mux's inputs"),
+            Tunable(MUX_TEXT, "", "the inputs as YAML, instead of a file"),
+        )
+        try:
+            return Tuning(tunables, values, self._on_reconfigure, self._where)
+        except rospy.ServiceException:  # there is one for all robots of a namespace
+            return None
+
+    def _listen_to(self, inputs: Sequence[MuxInput]) -> None:
+        for one in self._inputs:
+            one.unregister()
+        self._mux = Mux(inputs)
+        self._smoothed_name = next((one.name for one in inputs if one.topic == SMOOTHED_INPUT), "")
+        self._inputs = [self._subscribed(self._where, one.topic, self._on_input, one.name) for one in inputs]
+
+    def _on_reconfigure(self, values: Dict[str, Any]) -> Dict[str, Any]:
+        """Goes on with the inputs there are if the new ones make no sense."""
+        try:
+            self._listen_to(self._inputs_of(values[MUX_FILE], values[MUX_TEXT]))
+        except SettingsError as error:
+            rospy.logerr("%s", error)
+        return values
+
+    def _inputs_of(self, file: str, text: str = "") -> Tuple[MuxInput, ...]:
+        """Those of the text, else of the file, else a TurtleBot's."""
+        if text:
+            return parse_inputs(text, f"{self._where}/{MUX_TEXT}")
+        return read_inputs(file) if file else TURTLEBOT_INPUTS
 
     def _on_input(self, twist: Twist2, name: str) -> None:
         self._arrived[name] = twist

@@ -1,5 +1,7 @@
 """The topics of a Kobuki base below mobile_base (kobuki_gazebo_plugins), but for its velocity."""
 
+from typing import Callable
+
 import rospy
 from kobuki_msgs.msg import (
     BumperEvent,
@@ -10,8 +12,10 @@ from kobuki_msgs.msg import (
     Sound,
     WheelDropEvent,
 )
+from sensor_msgs.msg import PointCloud2
 from std_msgs.msg import Empty
 
+from sim_bridge.nodes.bumper_cloud import FRAME, BumperCloud
 from sim_bridge.nodes.orders import Orders
 from sim_bridge.scene import Scene
 from sim_bridge.sensors.bumper import CENTRE, LEFT, RIGHT
@@ -23,21 +27,29 @@ WHEEL_BITS = {WheelDropEvent.RIGHT: 1, WheelDropEvent.LEFT: 2}
 
 
 class KobukiTopics:
-    """Events when something changes, the state as often as it is told; commands for motors and odometry."""
+    """Events when something changes, the state as often as it is told; commands for motors and odometry.
 
-    def __init__(self, scene: Scene, name: str, namespace: str, orders: Orders):
+    ``frame_of`` prefixes a frame's name.
+    """
+
+    def __init__(
+        self, scene: Scene, name: str, namespace: str, orders: Orders, frame_of: Callable[[str], str]
+    ):
         self._scene = scene
         self._name = name
         self._orders = orders
         self._last = KobukiReading()
         self._where = rospy.names.ns_join(namespace, "mobile_base")
-        self._bumper, self._cliff, self._drop, self._state = (
+        self._frame = frame_of(FRAME)
+        self._points = BumperCloud()
+        self._bumper, self._cliff, self._drop, self._state, self._cloud = (
             self._publisher(topic, kind)
             for topic, kind in (
                 ("events/bumper", BumperEvent),
                 ("events/cliff", CliffEvent),
                 ("events/wheel_drop", WheelDropEvent),
                 ("sensors/core", SensorState),
+                ("sensors/bumper_pointcloud", PointCloud2),
             )
         )
         self._subscribers = [
@@ -58,14 +70,19 @@ class KobukiTopics:
             self._drop.publish(WheelDropEvent(wheel=wheel, state=wheel in reading.dropped))
         if self._state.get_num_connections():
             state = SensorState()
-            state.header.stamp = stamp
+            state.header.stamp, state.header.frame_id = stamp, self._frame
             state.bumper = sum(SECTOR_BITS[sector] for sector in reading.bumpers)
             state.cliff = sum(SECTOR_BITS[sector] for sector in reading.cliffs)
             state.wheel_drop = sum(WHEEL_BITS[wheel] for wheel in reading.dropped)
             self._state.publish(state)
+        if self._points.is_due(reading) and self._cloud.get_num_connections():
+            cloud = self._points.message(reading)
+            cloud.header.stamp, cloud.header.frame_id = stamp, self._frame
+            self._cloud.publish(cloud)
 
     def close(self) -> None:
-        for connection in (self._bumper, self._cliff, self._drop, self._state, *self._subscribers):
+        publishers = (self._bumper, self._cliff, self._drop, self._state, self._cloud)
+        for connection in (*publishers, *self._subscribers):
             connection.unregister()
 
     def _publisher(self, topic, kind):

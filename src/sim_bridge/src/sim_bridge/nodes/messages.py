@@ -1,7 +1,7 @@
 """Poses and motions in space as messages, and back."""
 
 import math
-from typing import Tuple
+from typing import List, Sequence, Tuple
 
 import numpy as np
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
@@ -41,3 +41,8 @@ def motion_from_msgs(pose: Pose, twist: Twist) -> Motion:
 def vector_from_msg(message) -> np.ndarray:
     """(3,) of a Vector3 or Point."""
     return np.array([message.x, message.y, message.z])
+
+
+def covariance_of(variances: Sequence[float]) -> List[float]:
+    """(N * N,) of N values that err independently, row by row."""
+    return np.diag(variances).ravel().tolist()

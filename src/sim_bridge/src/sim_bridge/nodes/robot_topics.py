@@ -2,7 +2,6 @@
 
 from typing import List, Optional
 
-import numpy as np
 import rospy
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
@@ -12,6 +11,7 @@ from planar import Scan, Twist2
 from planar_ros.messages import LaserScanArrays, time_of
 from sim_bridge.nodes.command_topics import CommandTopics, MuxTopics
 from sim_bridge.nodes.kobuki_topics import KobukiTopics
+from sim_bridge.nodes.messages import covariance_of
 from sim_bridge.nodes.motion_messages import OdometryMsg, TransformMsg
 from sim_bridge.nodes.orders import Orders
 from sim_bridge.nodes.performance import CountingPublisher
@@ -21,8 +21,6 @@ from sim_bridge.scene import Scene
 
 # The frame of the world file; it coincides with a map made or rendered of that world.
 WORLD_FRAME = "world"
-# Kobuki's: x, y and yaw are measured, the rest is not.
-ODOMETRY_COVARIANCE = np.diag([0.1, 0.1, 1e6, 1e6, 1e6, 0.05]).ravel().tolist()
 
 
 class RobotTopics:
@@ -46,7 +44,7 @@ class RobotTopics:
         self._odom = self._publisher(profile.odometry.topic, Odometry, 100)
         self._truth = self._publisher("base_pose_ground_truth", Odometry, 100)
         base_frame, odom_frame = self._frame(profile.odometry.base_frame), self._frame(profile.odometry.frame)
-        self._odom_msg = OdometryMsg(odom_frame, base_frame, ODOMETRY_COVARIANCE)
+        self._odom_msg = OdometryMsg(odom_frame, base_frame, covariance_of(profile.odometry.variances))
         self._truth_msg = OdometryMsg(WORLD_FRAME, base_frame, [0.0] * 36)
         self._transform = TransformMsg(odom_frame, base_frame)
         self._scans = [self._publisher(laser.topic, LaserScanArrays) for laser in profile.lasers]
@@ -58,7 +56,7 @@ class RobotTopics:
         is_kobuki = profile.kobuki is not None
         commands = MuxTopics if is_kobuki else CommandTopics
         self._commands = commands(name, namespace, profile.drive.command_topics)
-        self._kobuki = KobukiTopics(scene, name, namespace, orders) if is_kobuki else None
+        self._kobuki = KobukiTopics(scene, name, namespace, orders, self._frame) if is_kobuki else None
 
     @property
     def odometry_seconds(self) -> float:
@@ -75,7 +73,7 @@ class RobotTopics:
         stamp = time_of(observation.stamp)
         for publisher, laser, scan in zip(self._scans, self._profile.lasers, observation.scans):
             if scan is not None and publisher.get_num_connections():
-                publisher.publish(_scan_msg(scan, self._frame(laser.frame)))
+                publisher.publish(_scan_msg(scan, self._frame(laser.frame), laser.scan_time))
         joints_are_due = self._profile.joint_states is not None and self._steps % self._joint_steps == 0
         if joints_are_due and self._joints.get_num_connections():
             self._joints.publish(self._joint_state_msg(observation, stamp))
@@ -142,13 +140,14 @@ class RobotTopics:
         return message
 
 
-def _scan_msg(scan: Scan, frame: str) -> LaserScanArrays:
+def _scan_msg(scan: Scan, frame: str, scan_time: float) -> LaserScanArrays:
     message = LaserScanArrays()
     message.header.stamp = time_of(scan.stamp)
     message.header.frame_id = frame
     message.angle_min = scan.angle_min
     message.angle_increment = scan.angle_increment
     message.angle_max = scan.angle_min + scan.angle_increment * (len(scan.ranges) - 1)
+    message.scan_time = scan_time
     message.range_min, message.range_max = scan.range_min, scan.range_max
     message.ranges = scan.ranges
     message.intensities = scan.intensities

@@ -8,6 +8,7 @@ from sensor_msgs.msg import Imu
 
 from sim_bridge.description.profile import ImuProfile
 from sim_bridge.nodes.camera_topics import CameraTopics
+from sim_bridge.nodes.messages import covariance_of
 from sim_bridge.pose3 import quaternion
 from sim_bridge.scene import Scene
 from sim_bridge.sensors.imu import ImuReading
@@ -33,9 +34,10 @@ class SensorTopics:
             for camera in profile.cameras
         ]
         self._imus = [
-            (publisher(imu.topic, Imu, QUEUE_SIZE), frame_of(imu.frame), self._steps_of(_rate_of(imu, scene)))
+            (publisher(imu.topic, Imu, QUEUE_SIZE), imu, self._steps_of(_rate_of(imu, scene)))
             for imu in profile.imus
         ]
+        self._frame_of = frame_of
 
     def publish(self, steps: int, stamp: rospy.Time) -> None:
         """What is due after that many steps of the scene."""
@@ -43,11 +45,11 @@ class SensorTopics:
             if steps % period == 0 and topics.are_wanted():
                 topics.publish(self._scene.picture(self._name, number), stamp)
                 self._warn()
-        for number, (topic, frame, period) in enumerate(self._imus):
+        for number, (topic, imu, period) in enumerate(self._imus):
             if steps % period == 0 and topic.get_num_connections():
                 reading = self._scene.inertia(self._name, number, period * self._scene.step_seconds)
-                message = _imu_msg(reading)
-                message.header.stamp, message.header.frame_id = stamp, frame
+                message = _imu_msg(reading, imu)
+                message.header.stamp, message.header.frame_id = stamp, self._frame_of(imu.frame)
                 topic.publish(message)
 
     def _warn(self) -> None:
@@ -63,10 +65,12 @@ def _rate_of(imu: ImuProfile, scene: Scene) -> float:
     return imu.rate or scene.settings.odometry_rate
 
 
-def _imu_msg(reading: ImuReading) -> Imu:
-    """Covariances are not told: 0 means unknown (sensor_msgs/Imu)."""
+def _imu_msg(reading: ImuReading, imu: ImuProfile) -> Imu:
     return Imu(
         orientation=Quaternion(*quaternion(reading.orientation)),
+        orientation_covariance=covariance_of(imu.orientation_variances),
         angular_velocity=Vector3(*reading.turn_rates),
+        angular_velocity_covariance=covariance_of(imu.turn_variances),
         linear_acceleration=Vector3(*reading.acceleration),
+        linear_acceleration_covariance=covariance_of(imu.acceleration_variances),
     )

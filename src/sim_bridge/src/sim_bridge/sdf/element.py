@@ -131,4 +131,4 @@ def parse_text(text, file: str, roots: Sequence[str] = ("sdf", "gazebo")) -> Ele
 
 def version_of(text: str) -> Tuple[int, ...]:
     """A version as numbers, so that 1.10 comes after 1.9."""
-    return tuple(int(number) if number.isdigit() else 0 for number in text.split("."))
+    return tuple(int(number) if number.isdecimal() else 0 for number in text.split("."))

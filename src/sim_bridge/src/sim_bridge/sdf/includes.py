@@ -25,6 +25,11 @@ def resolve(uri: str, beside: Path, model_folders: Sequence[Path]) -> Optional[P
     return next((candidate for candidate in candidates if candidate.exists()), None)
 
 
+def has_model(path: Path) -> bool:
+    """Whether that is an SDF file or the folder of a model."""
+    return path.is_file() or (path / "model.config").is_file()
+
+
 def model_file(folder: Path) -> Path:
     """The newest SDF file that a model folder's ``model.config`` names. Raises WorldError."""
     if folder.is_file():

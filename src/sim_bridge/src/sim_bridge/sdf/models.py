@@ -8,7 +8,7 @@ import numpy as np
 
 from sim_bridge.sdf.element import Element, parse, parse_text
 from sim_bridge.sdf.frames import Frames
-from sim_bridge.sdf.includes import model_file, resolve
+from sim_bridge.sdf.includes import has_model, model_file, resolve
 from sim_bridge.sdf.plugins import DRIVES, plugin_name
 from sim_bridge.sdf.warnings import Warnings
 
@@ -91,7 +91,7 @@ class ModelReader:
         for element in parent.children("model"):
             yield self.model(element, element, folder, element.name, static, depth)
         for include in parent.children("include"):
-            model = self._included(include, folder, static, depth)
+            model = self.included(include, folder, static, depth)
             if model is not None:
                 yield model
 
@@ -112,7 +112,9 @@ class ModelReader:
             model.add(nested)
         return model
 
-    def _included(self, include: Element, folder: Path, static: bool, depth: int) -> Optional[Model]:
+    def included(
+        self, include: Element, folder: Path, static: bool = False, depth: int = 0
+    ) -> Optional[Model]:
         """What an <include> names; its own <name>, <pose> and <static> win."""
         if depth >= MAX_INCLUDE_DEPTH:
             raise include.error("includes itself")
@@ -125,7 +127,7 @@ class ModelReader:
             model = parse_text(_GROUND_PLANE_SDF, uri).required("model")
         else:
             found = resolve(uri, folder, self._model_folders)
-            if found is None:
+            if found is None or not has_model(found):
                 self._warnings.missing(include, f"model {uri} not found")
                 return None
             file = model_file(found)

@@ -39,9 +39,17 @@ def load_world(path, model_folders: Sequence[Path] = (), strict: bool = False) -
 def read_model(
     xml, name: str, pose: np.ndarray, model_folders: Sequence[Path] = (), strict: bool = False
 ) -> World:
-    """A world of the one model described by SDF text, called ``name`` and placed at ``pose`` (4, 4)."""
+    """A world of the one model described by SDF text, called ``name`` and placed at ``pose`` (4, 4).
+
+    Instead of a model the text may hold a world that includes it.
+    """
     reader = _Reader(tuple(model_folders), Warnings(strict))
-    reader.read_model(parse_text(xml, name).required("model"), name, pose)
+    root = parse_text(xml, name)
+    include = root.child("world", "include")
+    if include is not None:
+        reader.read_include(include, name, pose)
+    else:
+        reader.read_model(root.required("model"), name, pose)
     return reader.world(name)
 
 
@@ -92,6 +100,12 @@ class _Reader:
 
     def read_model(self, element: Element, name: str, pose: np.ndarray) -> None:
         self._put(self._models.model(element, element, Path(), name), pose, None)
+
+    def read_include(self, include: Element, name: str, pose: np.ndarray) -> None:
+        model = self._models.included(include, Path())
+        if model is not None:
+            model.name = name
+            self._put(model, pose, None)
 
     def _put(self, model: Model, in_world: np.ndarray, state: Optional[ModelState]) -> None:
         """Adds a model of the world, if it is driven as a robot."""

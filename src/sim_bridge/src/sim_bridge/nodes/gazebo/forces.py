@@ -22,14 +22,14 @@ class ForceServices:
 
     def _on_apply_wrench(self, request):
         answer = srv.ApplyBodyWrenchResponse
+        try:
+            name = self._scene.full_link_name(request.body_name)
+        except UnknownEntityError:
+            return answer(False, "ApplyBodyWrench: body does not exist")
         frame = frame_named(self._scene, request.reference_frame)
         if frame is None:
             return answer(False, "ApplyBodyWrench: reference_frame not found")
-        try:
-            link = self._scene.link_motion(request.body_name)
-        except UnknownEntityError:
-            return answer(False, "ApplyBodyWrench: body does not exist")
-        turned = frame.pose[:3, :3]
+        link, turned = self._scene.link_motion(name), frame.pose[:3, :3]
         force = turned @ vector_from_msg(request.wrench.force)
         torque = turned @ vector_from_msg(request.wrench.torque)
         if request.reference_frame in WORLD_NAMES:
@@ -40,7 +40,7 @@ class ForceServices:
         if not np.isfinite(np.concatenate((force, torque, arm))).all():
             return answer(False, "ApplyBodyWrench: the wrench is not finite")
         span = self._span(request)
-        self._scene.push(Push(request.body_name, force, torque + cross(arm, force), *span))
+        self._scene.push(Push(name, force, torque + cross(arm, force), *span))
         return answer(True, "")
 
     def _on_clear_wrenches(self, request):

@@ -41,7 +41,7 @@ class PropertyServices:
 
     def _on_get_link(self, request):
         try:
-            mass = self._scene.mass_properties(request.link_name)
+            mass = self._scene.mass_properties(self._scene.full_link_name(request.link_name))
         except UnknownEntityError:
             return srv.GetLinkPropertiesResponse(
                 success=False, status_message=f"GetLinkProperties: link not found, {SCOPE_HINT}"
@@ -66,7 +66,8 @@ class PropertyServices:
         """Mass, moments about the axes that the link has, and weight; its centre of mass stays."""
         answer = srv.SetLinkPropertiesResponse
         try:
-            kept = self._scene.mass_properties(request.link_name)
+            link = self._scene.full_link_name(request.link_name)
+            kept = self._scene.mass_properties(link)
         except UnknownEntityError:
             return answer(False, f"SetLinkProperties: link not found, {SCOPE_HINT}")
         inertia = np.array(
@@ -85,7 +86,7 @@ class PropertyServices:
             return answer(False, "SetLinkProperties: the principal axes of inertia cannot be turned")
         if np.abs(vector_from_msg(request.com.position) - kept.centre[:3, 3]).max() > NEGLIGIBLE:
             return answer(False, "SetLinkProperties: the centre of mass cannot be moved")
-        self._scene.set_mass(request.link_name, request.mass, moments.tolist(), request.gravity_mode)
+        self._scene.set_mass(link, request.mass, moments.tolist(), request.gravity_mode)
         return answer(True, "SetLinkProperties: properties set")
 
 

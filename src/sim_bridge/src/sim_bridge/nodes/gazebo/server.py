@@ -1,6 +1,6 @@
 """How Gazebo's services are offered, and in which frames they are told of."""
 
-from typing import Callable, Optional
+from typing import Callable, Optional, TypeVar
 
 import numpy as np
 import rospy
@@ -10,6 +10,8 @@ from sim_bridge.errors import UnknownEntityError
 from sim_bridge.nodes.orders import Orders
 from sim_bridge.pose3 import inverse
 from sim_bridge.scene import Scene
+
+T = TypeVar("T")
 
 NAMESPACE = "/gazebo/"
 # Names that all mean the world.
@@ -26,7 +28,11 @@ class Server:
     def serve(self, name: str, kind, answer: Callable) -> None:
         """The service ``name``, below /gazebo unless it begins with a slash."""
         full_name = rospy.names.ns_join(NAMESPACE, name)
-        rospy.Service(full_name, kind, lambda request: self._orders.ask(lambda: answer(request)))
+        rospy.Service(full_name, kind, lambda request: self.between_steps(lambda: answer(request)))
+
+    def between_steps(self, do: Callable[[], T]) -> T:
+        """Has ``do`` called between two steps and returns what it returns."""
+        return self._orders.ask(do)
 
     def listen(self, name: str, kind, take: Callable) -> None:
         """The topic /gazebo/``name``; ``take`` is called with a message and what tells a failure."""
@@ -38,11 +44,13 @@ class Server:
 
 
 def frame_named(scene: Scene, name: str) -> Optional[Motion]:
-    """The motion of the link or model of that name, or of the world; None if there is none."""
+    """The motion of the model or link of that name, or of the world; None if there is none."""
     if name in WORLD_NAMES:
         return Motion(np.eye(4), np.zeros(3), np.zeros(3))
     try:
-        return scene.link_motion(name) if "::" in name else scene.model_motion(name)
+        if name in scene.model_names():
+            return scene.model_motion(name)
+        return scene.link_motion(scene.full_link_name(name))
     except UnknownEntityError:
         return None
 

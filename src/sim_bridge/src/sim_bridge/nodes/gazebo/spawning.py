@@ -9,7 +9,7 @@ import rospy
 from planar import PlanarError
 from sim_bridge.cli import find_file
 from sim_bridge.description import RobotProfile, read_prop, read_sdf_robot, read_urdf_robot
-from sim_bridge.errors import NoDriveError, UnknownEntityError
+from sim_bridge.errors import NoDriveError, UnknownEntityError, WorldError
 from sim_bridge.nodes.fleet import Fleet
 from sim_bridge.nodes.gazebo.server import SCOPE_HINT, Server, frame_named
 from sim_bridge.nodes.messages import pose3_from_msg
@@ -63,6 +63,8 @@ class SpawnServices:
         return srv.SpawnModelResponse(True, "SpawnModel: Successfully spawned entity")
 
     def _add(self, model: World, request) -> None:
+        if not (model.bodies or model.robots):
+            raise WorldError("; ".join([f"{request.model_name} has no links", *model.warnings]))
         for warning in model.warnings:
             rospy.logwarn("%s", warning)
         self._scene.add(model.bodies, model.joints)

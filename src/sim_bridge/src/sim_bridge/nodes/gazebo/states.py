@@ -74,7 +74,7 @@ class StateServices:
         response.link_state.link_name = request.link_name
         response.link_state.reference_frame = request.reference_frame
         try:
-            motion = self._scene.link_motion(request.link_name)
+            motion = self._scene.link_motion(self._scene.full_link_name(request.link_name))
         except UnknownEntityError:
             response.status_message = f"GetLinkState: link not found, {SCOPE_HINT}"
             return response
@@ -100,14 +100,15 @@ class StateServices:
         return answer(True, "SetModelState: set model state done")
 
     def _set_link(self, state: LinkState, answer):
+        try:
+            link = self._scene.full_link_name(state.link_name)
+        except UnknownEntityError:
+            return answer(False, "SetLinkState: link does not exist")
         frame = frame_named(self._scene, state.reference_frame)
         if frame is None:
             return answer(False, "SetLinkState: failed")
         try:
-            motion = absolute(motion_from_msgs(state.pose, state.twist), frame)
-            self._scene.set_link_motion(state.link_name, motion)
-        except UnknownEntityError:
-            return answer(False, "SetLinkState: link does not exist")
+            self._scene.set_link_motion(link, absolute(motion_from_msgs(state.pose, state.twist), frame))
         except WorldError as error:
             return answer(False, f"SetLinkState: {error}")
         return answer(True, "SetLinkState: success")
