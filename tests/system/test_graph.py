@@ -12,6 +12,7 @@ import tf2_ros
 import yaml
 
 WALL_DEADLINE = 60.0
+SETTLING_SECONDS = 3.0
 NODES = {"/sim_bridge", "/robot_state_publisher", "/map_server", "/amcl", "/move_base"}
 NODES |= {"/pick_objects", "/add_markers"}
 TOPICS = {
@@ -37,7 +38,8 @@ SERVICES = {"/static_map", "/global_localization", "/request_nomotion_update", "
 SERVICES |= {"/move_base/make_plan", "/move_base/clear_costmaps"}
 NAMES_PAGE = Path(__file__).resolve().parents[2] / "docs/names.md"
 # Of every node, and of dynamic_reconfigure and actions; and what tests and tools bring along.
-UNSPOKEN = ("get_loggers", "set_logger_level", "waiting_for", "parameter_descriptions", "parameter_updates")
+UNSPOKEN = ("get_loggers", "set_logger_level", "waiting_for")
+UNSPOKEN += ("set_parameters", "parameter_descriptions", "parameter_updates")
 UNSPOKEN += (
     "goal",
     "cancel",
@@ -68,7 +70,7 @@ class GraphTest(unittest.TestCase):
     def test_the_page_of_names_knows_every_topic_and_service(self):
         self._wait_for(NODES, self._nodes)
         page = NAMES_PAGE.read_text(encoding="utf-8")
-        publishers, _, services = self.master.getSystemState()
+        publishers, _, services = self._settled_graph()
         mine = {rospy.get_name()}
         names = {name for name, nodes in [*publishers, *services] if set(nodes) - mine}
         unknown = {name for name in names if f"`{name}`" not in page and not name.endswith(UNSPOKEN)}
@@ -82,6 +84,16 @@ class GraphTest(unittest.TestCase):
         self.assertEqual([parents.get(frame) for frame in CHAIN[1:]], CHAIN[:-1])
         roots = {parent for parent in parents.values() if parent not in parents}
         self.assertEqual(roots, {"map"})
+
+    def _settled_graph(self):
+        """Publishers, subscribers and services when nothing has been added for a while."""
+        deadline = time.monotonic() + WALL_DEADLINE
+        graph, before = self.master.getSystemState(), None
+        while graph != before:
+            self.assertLess(time.monotonic(), deadline, "the graph keeps changing")
+            time.sleep(SETTLING_SECONDS)
+            graph, before = self.master.getSystemState(), graph
+        return graph
 
     def _nodes(self):
         return {name for part in self.master.getSystemState() for _, names in part for name in names}
