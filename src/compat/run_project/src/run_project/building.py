@@ -12,6 +12,7 @@ from typing import Callable, Dict, Set, Tuple
 from run_project.errors import BuildError
 from run_project.layout import LEFTOVERS, Checkout
 from run_project.placement import Placement
+from run_project.python2 import in_python3
 from run_project.selection import select
 from run_project.stand_ins import PACKAGE_FOLDER, STAND_INS
 
@@ -93,6 +94,7 @@ def build(workspace: Workspace, log: Path, say: Callable[[str], None]) -> None:
     for name, users in selection.absent.items():
         _pretend(workspace, name)
         say(f"  there is no package {name}; built without it: {', '.join(users)}")
+    _modernize(workspace, say)
     for _ in range(CONFIGURATIONS):
         output = _catkin_make(workspace, log)
         broken = broken_configurations(workspace, output)
@@ -144,6 +146,20 @@ def _pretend(workspace: Workspace, name: str) -> None:
     folder = workspace.pretended / "share" / name / "cmake"
     folder.mkdir(parents=True, exist_ok=True)
     (folder / f"{name}Config.cmake").write_text(f"set({name}_FOUND_CATKIN_PROJECT TRUE)\n")
+
+
+def _modernize(workspace: Workspace, say: Callable[[str], None]) -> None:
+    """Makes Python 3 of the scripts in Python 2, in the copy."""
+    changed = []
+    for name in sorted(set(workspace.packages) - set(workspace.missing)):
+        for script in sorted(workspace.packages[name].rglob("*.py")):
+            source = script.read_text(encoding="utf-8", errors="surrogateescape")
+            text = in_python3(source)
+            if text != source:
+                script.write_text(text, encoding="utf-8", errors="surrogateescape")
+                changed.append(script.name)
+    if changed:
+        say(f"  in Python 2, made Python 3 of in the copy: {', '.join(changed)}")
 
 
 def _catkin_make(workspace: Workspace, log: Path) -> str:

@@ -1,0 +1,23 @@
+import pytest
+
+from run_project.python2 import in_python3
+
+
+@pytest.mark.parametrize(
+    ("source", "converted"),
+    [
+        ("print 'hello'\n", "print('hello')\n"),
+        (
+            "try:\n    x()\nexcept ValueError, e:\n    print e",
+            "try:\n    x()\nexcept ValueError as e:\n    print(e)\n",
+        ),
+        ("if a:\n\tb()\n        c()\n", "if a:\n        b()\n        c()\n"),
+    ],
+)
+def test_python_2_becomes_python_3(source, converted):
+    assert in_python3(source) == converted
+
+
+@pytest.mark.parametrize("source", ["print('hello')\n", "\tno python at all (\n", "\0", ""])
+def test_all_else_stays_as_it_is(source):
+    assert in_python3(source) == source
