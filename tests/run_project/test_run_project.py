@@ -22,9 +22,7 @@ RUN_SECONDS = 240.0
 EXIT_SECONDS = 30.0
 
 
-needs_compiler = unittest.skipUnless(shutil.which("g++"), "no C++ compiler here, as in the image")
-
-
+@unittest.skipUnless(shutil.which("g++"), "no C++ compiler here, as in the image")
 class RunProjectTest(unittest.TestCase):
     def setUp(self):
         self._mark = uuid.uuid4().hex
@@ -34,7 +32,6 @@ class RunProjectTest(unittest.TestCase):
         shutil.copytree(SAMPLE, self._checkout)
         self.addCleanup(_remove_work_folder, self._checkout)
 
-    @needs_compiler
     def test_a_project_is_built_run_and_judged_without_a_trace(self):
         hash_before = _hash_of(self._checkout)
         run = self._start(self._checkout)
@@ -50,7 +47,6 @@ class RunProjectTest(unittest.TestCase):
         self.assertEqual(_processes_with(self._mark), [])
         self.assertEqual(_mounts_of(self._checkout), [])
 
-    @needs_compiler
     def test_an_interrupted_run_leaves_nothing_behind(self):
         run = self._start(self._checkout, "--speed", "1")
         while "shown at" not in run.stdout.readline() and run.poll() is None:
