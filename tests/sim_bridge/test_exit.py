@@ -9,6 +9,7 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import time
 import unittest
 from pathlib import Path
@@ -19,6 +20,7 @@ import roslib.packages
 import rostest
 
 WORLD = Path(__file__).resolve().parents[2] / "map" / "home.world"
+NODE = roslib.packages.find_node("sim_bridge", "sim_bridge")[0]
 START_SECONDS = 60.0
 # What is aimed at, measured by `test_exit.py STARTS`; the test itself only tells an end from a hang.
 EXIT_SECONDS = 1.0
@@ -27,7 +29,7 @@ SITUATIONS = ("running", "paused", "without master", "terminated")
 
 
 class Started:
-    """A master and a simulator of its own; leaving ends both."""
+    """A master of its own and simulators that start there; leaving ends all."""
 
     def __init__(self):
         self._processes = []
@@ -52,10 +54,23 @@ class Started:
         self.master = self._run("rosmaster", "--core", "-p", str(port), env=environment)
         self._wait_for(lambda: ServerProxy(self.uri).getPid("/test")[0] == 1)
         ServerProxy(self.uri).setParam("/test", "/use_sim_time", True)
-        node = roslib.packages.find_node("sim_bridge", "sim_bridge")[0]
-        self.simulator = self._run(node, f"_world:={WORLD}", "_speed:=0", env=environment)
-        self._wait_for(self._is_up)
         self.environment = environment
+
+    def start_simulator(self):
+        self.simulator = self._run(NODE, f"_world:={WORLD}", "_speed:=0", env=self.environment)
+        self._wait_for(self._is_up)
+
+    def failed_start(self, *parameters):
+        """The exit code and what is said by a simulator that is to end at once."""
+        ended = subprocess.run(
+            [NODE, *parameters],
+            env=self.environment,
+            capture_output=True,
+            text=True,
+            timeout=START_SECONDS,
+            check=False,
+        )
+        return ended.returncode, ended.stdout + ended.stderr
 
     def _run(self, *command, env):
         self._processes.append(subprocess.Popen(command, env=env))
@@ -103,6 +118,7 @@ def exit_in(situation):
     """Seconds to the end, its exit code, and the processes it leaves behind."""
     before = {process.pid for process in psutil.process_iter()}
     with Started() as started:
+        started.start_simulator()
         if situation == "paused":
             started.pause()
         if situation == "without master":
@@ -120,6 +136,26 @@ class TestExit(unittest.TestCase):
             print(f"{situation}: ended in {seconds:.2f} s")
             self.assertLess(seconds, HANG_SECONDS, situation)
             self.assertEqual((code, left), (0, []), situation)
+
+    def test_what_it_cannot_start_with_is_told_in_a_line(self):
+        with Started() as started, tempfile.TemporaryDirectory() as folder:
+            broken, still = Path(folder) / "broken.world", Path(folder) / "still.urdf"
+            broken.write_text("<sdf><world")
+            still.write_text("<robot name='r'><link name='a'/></robot>")
+            world = f"_world:={WORLD}"
+            for parameters, reason in (
+                (["_world:=/no.world"], "/no.world: cannot be read (No such file or directory)"),
+                ([f"_world:={broken}"], "broken.world: not well-formed XML"),
+                ([world, "_robot:=turtelbot_lidar"], "did you mean turtlebot_lidar?"),
+                ([world, f"_robot:={still}"], "robot r has no drive"),
+                ([world, "_robot:=turtlebot_lidar", "_x:=-2.6", "_y:=4.99"], "inside wardrobe::link"),
+                ([world, "_seed:=-1"], "/sim_bridge/seed must be not negative, got -1"),
+            ):
+                code, text = started.failed_start(*parameters)
+                self.assertNotIn(code, (0, -6, -11), text)
+                self.assertIn(reason, text)
+                self.assertNotIn("Traceback", text)
+                self.assertNotIn("unknown parameter", text)
 
 
 def main():

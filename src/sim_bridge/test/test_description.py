@@ -82,6 +82,7 @@ def test_a_diff_drive_is_read_with_the_defaults_of_its_plugin():
     odometry = robot.odometry
     assert (odometry.source, odometry.topic, odometry.frame) == ("world", "odom", "odom")
     assert (odometry.base_frame, odometry.rate, odometry.sends_transform) == ("base_footprint", 100.0, True)
+    assert odometry.variances == (1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3)
     assert robot.joint_states is None
     assert robot.model.lowest == pytest.approx(0.0, abs=1e-9)
     assert len(robot.model.base.collisions) == 2, "a caster is part of the base"
@@ -119,6 +120,14 @@ def test_a_laser_is_mounted_and_measures_as_its_sensor_says():
     assert laser.angle_increment == pytest.approx(3.0 / 180)
     assert laser.pose_in_base[:3, 3] == pytest.approx([0.1, 0.0, 0.3])
     assert (laser.range_min, laser.range_max, laser.no_return) == (0.1, 8.0, math.inf)
+
+
+def test_an_imu_says_how_noisy_its_plugin_makes_it():
+    imu = """<gazebo><plugin name="i" filename="libgazebo_ros_imu.so"><bodyName>chassis</bodyName>
+    <topicName>imu/data</topicName><updateRate>50</updateRate><gaussianNoise>0.1</gaussianNoise></plugin></gazebo>"""
+    (read,) = read_urdf_robot(urdf(DRIVE.format(more="") + imu), "mine.urdf").imus
+    assert (read.topic, read.frame, read.rate, read.noise) == ("imu/data", "chassis", 50.0, 0.1)
+    assert read.turn_variances == read.orientation_variances == pytest.approx((0.01, 0.01, 0.01))
 
 
 def test_an_unknown_plugin_is_named_once():

@@ -122,6 +122,22 @@ def test_includes_are_found_in_the_model_folders(load, tmp_path):
     assert body.pose_in_world == pytest.approx(pose3(1.0, 2.0))
 
 
+@pytest.mark.parametrize(
+    "scheme", ["file://{}/chair", "{}/chair", "chair", "file://chair", "chair/model.sdf"]
+)
+def test_includes_are_found_by_path_and_may_be_made_static(load, tmp_path, scheme):
+    content = "<model name='chair'><pose>9 9 9 0 0 0</pose><link name='l'/></model>"
+    add_model(tmp_path, "chair", content)
+    include = f"<include><uri>{scheme.format(tmp_path)}</uri>{{}}</include>"
+    (still,) = load(include.format("<static>true</static>")).bodies
+    assert still.mass is None
+    assert still.pose_in_world == pytest.approx(
+        pose3(9.0, 9.0, 9.0)
+    ), "the model's own pose if there is no other"
+    (loose,) = load(include.format("")).bodies
+    assert loose.mass == 1.0
+
+
 def test_an_include_that_includes_itself_is_an_error(load, tmp_path):
     add_model(tmp_path, "loop", "<model name='loop'><include><uri>model://loop</uri></include></model>")
     with pytest.raises(WorldError, match="includes itself"):

@@ -9,6 +9,8 @@ import rospy
 from planar import SettingsError
 from planar.settings import nearest_name, settings_from
 
+# What dynamic_reconfigure leaves beside a node's parameters.
+RESTORE = "restore_defaults"
 T = TypeVar("T")
 
 
@@ -29,7 +31,7 @@ def read_settings(
     where = rospy.resolve_name(namespace).rstrip("/") + "/"
     values = {name: value for name, value in parameters_below(where).items() if not isinstance(value, dict)}
     settings, unknown = settings_from(kind, {**defaults, **values}, names, where)
-    known = {*names, *kind.__dataclass_fields__, *ignore, "strict_params"}  # type: ignore[attr-defined]
+    known = {*names, *kind.__dataclass_fields__, *ignore, "strict_params", RESTORE}  # type: ignore[attr-defined]
     for name in unknown:
         if name not in known:
             _report_unknown(where + name, nearest_name(name, known))

@@ -8,10 +8,9 @@ from dynamic_reconfigure.encoding import extract_params
 from dynamic_reconfigure.server import Server
 
 from planar.settings import Tunable, tunables_of
-from planar_ros.parameters import ParameterWriter
+from planar_ros.parameters import RESTORE, ParameterWriter
 
 KINDS = {bool: "bool", int: "int", float: "double", str: "str"}
-RESTORE = "restore_defaults"
 LARGEST_INT = 2**31 - 1
 
 

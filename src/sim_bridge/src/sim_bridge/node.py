@@ -58,6 +58,10 @@ class Bridge:
         for model in world.robots:
             profile, pose = read_sdf_robot(model)
             self._fleet.add(model.name, profile, to_pose2(pose), float(pose[2, 3]))
+        if not rospy.has_param(
+            "/use_sim_time"
+        ):  # as Gazebo does: those that start from now on go by our clock
+            rospy.set_param("/use_sim_time", True)
         self._gazebo = GazeboInterface(self._scene, self._fleet, self._time, self._orders, model_folders())
         rospy.Subscriber("~add_box", Marker, self._on_box, queue_size=10)
 
