@@ -6,6 +6,7 @@ import time
 import unittest
 
 import rospy
+import rosservice
 import rostest
 from gazebo_msgs.srv import DeleteModel, SpawnModel
 from geometry_msgs.msg import Pose, Twist
@@ -47,6 +48,22 @@ ROVER = f"""<robot name="rover">
 <plugin name="l" filename="libgazebo_ros_laser.so"><topicName>laser/scan</topicName>
 <frameName>hokuyo</frameName></plugin></sensor></gazebo></robot>"""
 
+CART_WHEEL = """<link name="{side}"><pose>0 {y} 0.1 1.5707963 0 0</pose><inertial><mass>0.5</mass></inertial>
+<collision name="c"><geometry><cylinder><radius>0.1</radius><length>0.04</length></cylinder></geometry>
+</collision></link><joint name="{side}_hinge" type="revolute"><parent>chassis</parent><child>{side}</child>
+<axis><xyz>0 0 -1</xyz></axis></joint>"""
+CART = f"""<sdf version="1.6"><model name="any"><link name="chassis"><pose>0 0 0.1 0 0 0</pose>
+<inertial><mass>6</mass></inertial>
+<collision name="c"><geometry><box><size>0.4 0.2 0.1</size></box></geometry></collision>
+<collision name="f"><pose>0.15 0 -0.05 0 0 0</pose><geometry><sphere><radius>0.05</radius></sphere></geometry>
+</collision>
+<collision name="b"><pose>-0.15 0 -0.05 0 0 0</pose><geometry><sphere><radius>0.05</radius></sphere></geometry>
+</collision></link>
+{CART_WHEEL.format(side="left", y="0.15")}{CART_WHEEL.format(side="right", y="-0.15")}
+<plugin name="drive" filename="libgazebo_ros_diff_drive.so"><leftJoint>left_hinge</leftJoint>
+<rightJoint>right_hinge</rightJoint><wheelSeparation>0.3</wheelSeparation><wheelDiameter>0.2</wheelDiameter>
+<robotBaseFrame>chassis</robotBaseFrame></plugin></model></sdf>"""
+
 
 def wait_until(what, is_met):
     deadline = time.monotonic() + PATIENCE_SECONDS
@@ -68,11 +85,12 @@ class Latest:
         return self.messages[-1]
 
 
-def spawn(name, text, x, y, yaw, namespace=""):
-    rospy.wait_for_service("/gazebo/spawn_urdf_model", PATIENCE_SECONDS)
+def spawn(name, text, x, y, yaw, namespace="", kind="urdf"):
+    service = f"/gazebo/spawn_{kind}_model"
+    rospy.wait_for_service(service, PATIENCE_SECONDS)
     pose = Pose()
     pose.position.x, pose.position.y, pose.orientation = x, y, quaternion_of(yaw)
-    return rospy.ServiceProxy("/gazebo/spawn_urdf_model", SpawnModel)(name, text, namespace, pose, "world")
+    return rospy.ServiceProxy(service, SpawnModel)(name, text, namespace, pose, "world")
 
 
 class TestRobots(unittest.TestCase):
@@ -181,11 +199,34 @@ class TestRobots(unittest.TestCase):
         self.assertEqual(self.bumper.messages[0].state, BumperEvent.PRESSED)
         self.assertFalse(math.isnan(self.truth.next().pose.pose.position.x))
 
-    def test_7_a_deleted_robot_takes_its_topics_along(self):
-        rospy.ServiceProxy("/gazebo/delete_model", DeleteModel)("rover")
-        topics = lambda: {topic for topic, _ in rospy.get_published_topics()}  # noqa: E731
-        wait_until("the topics to go", lambda: "/rover/odom" not in topics())
+    def test_7_a_robot_described_in_sdf_is_driven_too(self):
+        spawned = spawn("cart", CART, 2.0, 3.0, 1.0, "/cart", "sdf")
+        self.assertTrue(spawned.success, spawned.status_message)
+        odometry, velocity = (
+            Latest("/cart/odom", Odometry),
+            rospy.Publisher("/cart/cmd_vel", Twist, queue_size=1),
+        )
+        wait_until("the cart", velocity.get_num_connections)
+        self.assertAlmostEqual(odometry.next().pose.pose.position.x, 2.0, delta=0.05)
+        command = Twist()
+        command.angular.z = 0.5
+        velocity.publish(command)
+        wait_until("a turn", lambda: odometry.next().twist.twist.angular.z > 0.4)
+
+    def test_8_a_deleted_robot_takes_its_topics_along_and_can_come_again(self):
+        delete = rospy.ServiceProxy("/gazebo/delete_model", DeleteModel)
+        for name, topic in (("rover", "/rover/odom"), ("mobile_base", "/cmd_vel_mux/active")):
+            self.assertTrue(delete(name).success)
+            wait_until("the topics to go", lambda topic=topic: topic not in published())
+        wait_until("the mux to go", lambda: not rosservice.get_service_node("/cmd_vel_mux/set_parameters"))
+        again = spawn("mobile_base", robot_named("turtlebot_lidar").description(), 0.0, 0.0, 0.0)
+        self.assertTrue(again.success, again.status_message)
+        rospy.wait_for_service("/cmd_vel_mux/set_parameters", PATIENCE_SECONDS)
         self.odom.next()
+
+
+def published():
+    return {topic for topic, _ in rospy.get_published_topics()}
 
 
 if __name__ == "__main__":
