@@ -57,7 +57,7 @@ CART = f"""<sdf version="1.6"><model name="any"><link name="chassis"><pose>0 0 0
 <collision name="c"><geometry><box><size>0.4 0.2 0.1</size></box></geometry></collision>
 <collision name="f"><pose>0.15 0 -0.05 0 0 0</pose><geometry><sphere><radius>0.05</radius></sphere></geometry>
 </collision>
-<collision name="b"><pose>-0.15 0 -0.05 0 0 0</pose><geometry><sphere><radius>0.05</radius></sphere></geometry>
+<collision name="b"><pose>-.15 0 -0.05 0 0 0</pose><geometry><sphere><radius>0.05</radius></sphere></geometry>
 </collision></link>
 {CART_WHEEL.format(side="left", y="0.15")}{CART_WHEEL.format(side="right", y="-0.15")}
 <plugin name="drive" filename="libgazebo_ros_diff_drive.so"><leftJoint>left_hinge</leftJoint>
