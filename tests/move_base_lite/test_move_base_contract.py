@@ -11,8 +11,14 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PolygonStamped, PoseStamped, Twist
 from map_msgs.msg import OccupancyGridUpdate
 from move_base_client import Heard, MoveBaseTestCase, pose_at
-from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal, RecoveryStatus
-from nav_msgs.msg import OccupancyGrid, Path
+from move_base_msgs.msg import (
+    MoveBaseAction,
+    MoveBaseActionFeedback,
+    MoveBaseActionGoal,
+    MoveBaseGoal,
+    RecoveryStatus,
+)
+from nav_msgs.msg import OccupancyGrid, Odometry, Path
 from nav_msgs.srv import GetPlan
 from std_srvs.srv import Empty
 
@@ -103,10 +109,20 @@ class TestMoveBaseContract(MoveBaseTestCase):
     def test_the_simple_topic_sends_a_goal(self):
         publisher = rospy.Publisher("move_base_simple/goal", PoseStamped, queue_size=1)
         current_goal = Heard("move_base/current_goal", PoseStamped)
+        relayed, feedback = (
+            Heard("move_base/goal", MoveBaseActionGoal),
+            Heard("move_base/feedback", MoveBaseActionFeedback),
+        )
         self.wait_until(publisher.get_num_connections)
         rospy.sleep(0.5)
         publisher.publish(pose_at(*NEAR))
         self.assertEqual(current_goal.wait().pose.position.x, NEAR[0])
+        self.assertEqual(relayed.wait().goal.target_pose.pose.position.x, NEAR[0])
+        truth = Heard("base_pose_ground_truth", Odometry).wait().pose.pose.position
+        told = feedback.wait().feedback.base_position
+        self.assertEqual(told.header.frame_id, "map")
+        error = math.hypot(told.pose.position.x - truth.x, told.pose.position.y - truth.y)
+        self.assertLess(error, 0.3, "localization, and what was driven meanwhile")
 
     def test_make_plan_plans_while_idle_and_is_refused_while_active(self):
         plan = self.make_plan(PoseStamped(), pose_at(*IN_THE_NEXT_ROOM), 0.0).plan
