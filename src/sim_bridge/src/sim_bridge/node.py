@@ -19,6 +19,7 @@ from sim_bridge.description import read_sdf_robot
 from sim_bridge.errors import WorldError
 from sim_bridge.nodes.fleet import Fleet
 from sim_bridge.nodes.gazebo import GazeboInterface
+from sim_bridge.nodes.gazebo.server import NAMESPACE
 from sim_bridge.nodes.orders import Orders
 from sim_bridge.nodes.performance import Performance
 from sim_bridge.nodes.time_control import TimeControl
@@ -63,6 +64,8 @@ class Bridge:
         ):  # as Gazebo does: those that start from now on go by our clock
             rospy.set_param("/use_sim_time", True)
         self._gazebo = GazeboInterface(self._scene, self._fleet, self._time, self._orders, model_folders())
+        if rospy.resolve_name("~") != NAMESPACE:  # else what Gazebo itself offers has that name
+            self._time.offer_speed()
         rospy.Subscriber("~add_box", Marker, self._on_box, queue_size=10)
 
     def run(self) -> None:

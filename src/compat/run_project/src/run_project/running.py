@@ -204,8 +204,16 @@ def _put_spinners_last(processes: List[psutil.Process]) -> None:
     for process in processes:
         with contextlib.suppress(psutil.Error):
             times, age = process.cpu_times(), time.time() - process.create_time()
-            if age > SPINNING_SECONDS and times.user + times.system > SPINNING_SHARE * age:
+            is_spinning = age > SPINNING_SECONDS and times.user + times.system > SPINNING_SHARE * age
+            if is_spinning and process.nice() < SPINNING_NICENESS:
                 process.nice(SPINNING_NICENESS)
+                _put_session_last(process)
+
+
+def _put_session_last(process: psutil.Process) -> None:
+    """Linux may share out the cores by sessions, one a node; niceness counts only within a session."""
+    with contextlib.suppress(OSError):
+        Path(f"/proc/{process.pid}/autogroup").write_text(f"{SPINNING_NICENESS}\n")
 
 
 def _program(command: List[str]) -> str:

@@ -41,7 +41,6 @@ class TimeControl:
         self._grants: List[_Grant] = []
         rospy.Subscriber(PROGRESS_TOPIC, Header, self._on_progress, queue_size=100, tcp_nodelay=True)
         rospy.Service("~step", Step, self._on_step)
-        Reconfiguration(RunTimeSettings(pacer.speed), self._on_reconfigure)
         Waiting({f"{name} on {PROGRESS_TOPIC}": self._follows(name) for name in pacer.wait_for})
 
     @property
@@ -51,6 +50,10 @@ class TimeControl:
     def set_speed(self, speed: float) -> None:
         """``speed``: times real time, 0 for as fast as possible."""
         self._pacer.speed = speed
+
+    def offer_speed(self) -> None:
+        """Lets dynamic_reconfigure change the speed, below the node's own name."""
+        Reconfiguration(RunTimeSettings(self.speed), self._on_reconfigure)
 
     def expect_odometry(self, seconds: float) -> None:
         """Each robot tells its odometry at least every ``seconds``."""
