@@ -30,6 +30,7 @@ set_up() { # EXTRA...: brings the workspace up to date; extras are dev and rviz
     [[ -z $packages_only ]] || return 0
     [[ -z $build ]] || build_workspace
     [[ -z $kernels ]] || compile_kernels
+    exec 9<&- # what is run now must not keep others from setting up
 }
 
 # -- what is missing: each variable is empty when nothing is -------------------------------------------
@@ -121,7 +122,7 @@ check_python() {
         fail "/usr/bin/python3 is $(/usr/bin/python3 --version 2>&1 || true): the workspace needs Python 3.8 to 3.11"
 }
 
-take_turns() { # one set-up at a time; the lock ends with the last process of the set-up
+take_turns() { # one set-up at a time; the lock ends with the set-up, or with the last process of one cut short
     exec 9<"$root/scripts/setup.sh"
     flock --nonblock 9 || step "Waiting for another set-up of this workspace" /dev/null flock 9
 }
