@@ -25,7 +25,7 @@ START_SECONDS = 60.0
 # What is aimed at, measured by `test_exit.py STARTS`; the test itself only tells an end from a hang.
 EXIT_SECONDS = 1.0
 HANG_SECONDS = 5.0
-SITUATIONS = ("running", "paused", "without master", "terminated")
+SITUATIONS = ("running", "paused", "without master", "terminated", "as gazebo")
 
 
 class Started:
@@ -56,9 +56,11 @@ class Started:
         ServerProxy(self.uri).setParam("/test", "/use_sim_time", True)
         self.environment = environment
 
-    def start_simulator(self):
-        self.simulator = self._run(NODE, f"_world:={WORLD}", "_speed:=0", env=self.environment)
-        self._wait_for(self._is_up)
+    def start_simulator(self, name="sim_bridge"):
+        self.simulator = self._run(
+            NODE, f"__name:={name}", f"_world:={WORLD}", "_speed:=0", env=self.environment
+        )
+        self._wait_for(lambda: self._is_up(name))
 
     def failed_start(self, *parameters):
         """The exit code and what is said by a simulator that is to end at once."""
@@ -96,10 +98,10 @@ class Started:
         self.simulator.wait(20.0)
         return time.monotonic() - start
 
-    def _is_up(self):
+    def _is_up(self, name):
         """Whether the simulator has registered the last of its topics."""
         _, _, (_, subscribed, _) = ServerProxy(self.uri).getSystemState("/test")
-        return "/sim_bridge/add_box" in [topic for topic, _ in subscribed]
+        return f"/{name}/add_box" in [topic for topic, _ in subscribed]
 
     def _wait_for(self, is_there):
         deadline = time.monotonic() + START_SECONDS
@@ -118,7 +120,7 @@ def exit_in(situation):
     """Seconds to the end, its exit code, and the processes it leaves behind."""
     before = {process.pid for process in psutil.process_iter()}
     with Started() as started:
-        started.start_simulator()
+        started.start_simulator("gazebo" if situation == "as gazebo" else "sim_bridge")
         if situation == "paused":
             started.pause()
         if situation == "without master":
