@@ -13,3 +13,9 @@ string(REGEX REPLACE "#[^\n]*" "" _text "${_text}")
 if(_text MATCHES "generate_messages" AND NOT _text MATCHES "message_generation")
   find_package(message_generation QUIET)
 endif()
+
+# Tests are not built here; roslaunch_add_file_check asks for one all the same.
+if(NOT CATKIN_ENABLE_TESTING AND NOT COMMAND catkin_run_tests_target)
+  function(catkin_run_tests_target)
+  endfunction()
+endif()
