@@ -59,6 +59,8 @@ def main() -> int:
         return 2
     options.out.mkdir(parents=True, exist_ok=True)
     scores = [score_log(bag, relations, options.out, options.config) for bag, relations in logs]
+    for _, relations in logs:  # not before, as the memory of who starts a replay counts as the replay's
+        draw(options.out / relations.stem)
     (options.out / "slam.json").write_text(json.dumps([asdict(score) for score in scores], indent=2) + "\n")
     Console(width=120).print(_table(scores))
     return 0
@@ -74,7 +76,7 @@ def find_logs(folder: Path) -> List[Tuple[Path, Path]]:
 
 
 def score_log(bag: Path, relations_path: Path, out: Path, config: Path = None) -> Score:
-    """Replays a bag, keeps its map and trajectory in ``out``, draws them and scores the trajectory."""
+    """Replays a bag, keeps its map and trajectory in ``out``, and scores the trajectory."""
     stem = out / relations_path.stem
     tum = stem.with_suffix(".tum")
     command = [sys.executable, str(REPLAY), str(bag), "--map", str(stem), "--trajectory", str(tum)]
@@ -84,11 +86,9 @@ def score_log(bag: Path, relations_path: Path, out: Path, config: Path = None) -
     if status != 0:
         raise SystemExit(f"error: the replay of {bag} failed")
     wall_seconds = time.monotonic() - start
-    rows = np.loadtxt(tum)
-    trajectory = np.column_stack((rows[:, :3], 2.0 * np.arctan2(rows[:, 6], rows[:, 7])))
+    trajectory = read_trajectory(tum)
     relations = np.loadtxt(relations_path)
     translation, rotation = relation_errors(trajectory, relations)
-    draw(stem, trajectory)
     return Score(
         log=relations_path.stem,
         relations=len(relations),
@@ -102,6 +102,12 @@ def score_log(bag: Path, relations_path: Path, out: Path, config: Path = None) -
         cpu_seconds=usage.ru_utime + usage.ru_stime,
         memory_mb=usage.ru_maxrss / 1024.0,
     )
+
+
+def read_trajectory(tum: Path) -> np.ndarray:
+    """Rows ``t x y yaw``, (N, 4), of a trajectory file."""
+    rows = np.loadtxt(tum)
+    return np.column_stack((rows[:, :3], 2.0 * np.arctan2(rows[:, 6], rows[:, 7])))
 
 
 def relation_errors(trajectory: np.ndarray, relations: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
@@ -132,8 +138,9 @@ def _seen_from(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     return np.column_stack((c * dx + s * dy, c * dy - s * dx, second[:, 2] - first[:, 2]))
 
 
-def draw(stem: Path, trajectory: np.ndarray) -> None:
-    """Writes the map with the trajectory on it as a picture beside the map."""
+def draw(stem: Path) -> None:
+    """Writes a map with the trajectory on it as a picture beside the map."""
+    trajectory = read_trajectory(stem.with_suffix(".tum"))
     grid = load_map(stem.with_name(stem.name + ".yaml"))
     shade = np.full(grid.cells.shape, 0.8)
     shade[grid.cells == FREE] = 1.0

@@ -155,18 +155,19 @@ class SlamConditionsTest(unittest.TestCase):
             before = [path.read_bytes() for path in files]
             # Writing more than this fails as on a full disk.
             psutil.Process(node.pid).rlimit(psutil.RLIMIT_FSIZE, (1000, 1000))
-            for service, path in (("save_map", stem), ("save_state", state)):
-                with self.assertRaisesRegex(rospy.ServiceException, "cannot be written"):
+            for service, path, file in (("save_map", stem, "full.pgm"), ("save_state", state, "full.npz")):
+                with self.assertRaisesRegex(rospy.ServiceException, f"{file}: cannot be written"):
                     self.call("follower", service, path)
         self.assertEqual(sorted(self.folder.glob("full.*")), files)
         self.assertEqual([path.read_bytes() for path in files], before)
 
     @contextmanager
     def follower_in(self, state):
-        """A node that localizes in a state; what it prints cannot fill anything."""
+        """A node that localizes in a state, and whose words cannot be written anywhere."""
         command = [find_node("slam_lite", "slam_gmapping")[0], f"_state:={state}", "_localization_only:=true"]
         remaps = ["__ns:=/follower", "/tf:=/follower/tf", "__name:=slam_gmapping"]
-        node = subprocess.Popen([*command, *remaps], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        with Path("/dev/full").open("w") as full:
+            node = subprocess.Popen([*command, *remaps], stdout=full, stderr=full)
         try:
             rospy.wait_for_service("/follower/slam_gmapping/save_map", WAIT_SECONDS)
             yield node

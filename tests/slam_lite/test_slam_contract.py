@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The node slam_gmapping of slam_lite keeps the contract of gmapping 1.4, and offers what is its own."""
 
+import math
 import shutil
 import subprocess
 import tempfile
@@ -12,12 +13,21 @@ import rospy
 import rostest
 from nav_msgs.msg import MapMetaData
 from nav_msgs.srv import LoadMap
+from rosgraph_msgs.msg import Log
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool
+from tf2_msgs.msg import TFMessage
 from toy_room import RESOLUTION, circle, room, sweep
 
 from planar import OCCUPIED, Pose2, load_map
-from planar_ros.messages import GetMapArrays, LaserScanArrays, OccupancyGridArrays, frame_name, grid_from_msg
+from planar_ros.messages import (
+    GetMapArrays,
+    LaserScanArrays,
+    OccupancyGridArrays,
+    frame_name,
+    grid_from_msg,
+    transform_msg,
+)
 from planar_ros.transforms import Transforms
 
 WAIT_SECONDS = 20.0
@@ -130,6 +140,20 @@ class SlamContractTest(unittest.TestCase):
             self.sense(step)
         self.assertEqual(self.newest_map().header.stamp, before)
         self.assertTrue(pause(False).success)
+
+    def test_a_laser_that_is_not_mounted_planar_is_refused(self):
+        words = []
+        rospy.Subscriber("/rosout", Log, lambda message: words.append(message.msg))
+        before = self.newest_map().header.stamp
+        stamp = rospy.Time.now()
+        tilted = transform_msg(Pose2(), "base_link", "tilted", stamp)
+        tilted.transform.rotation.x = tilted.transform.rotation.w = math.sqrt(0.5)
+        rospy.Publisher("/tf", TFMessage, queue_size=1, latch=True).publish(TFMessage([tilted]))
+        self.transforms.send(circle(0.0), "odom", "base_link", stamp)
+        self.scans.publish(sweep(self.truth, circle(0.0), stamp, "tilted"))
+        reason = "the z coordinate of its axis has to be 1 or -1, not 0.00000"
+        self.wait_for(lambda: f"laser tilted has to be mounted planar: {reason}" in words)
+        self.assertEqual(self.newest_map().header.stamp, before)
 
     def test_a_senseless_parameter_ends_the_node_with_its_name(self):
         run = subprocess.run(

@@ -1,3 +1,5 @@
+import resource
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -72,3 +74,16 @@ def test_a_failed_save_leaves_the_old_map_alone(tmp_path):
     with pytest.raises(MapFileError, match="cannot be written"):
         save_map(grid_from_picture("#"), tmp_path / "nowhere" / "home")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_disk_that_is_full_after_the_image_leaves_the_old_pair_alone(tmp_path):
+    yaml_path = save_map(grid_from_picture("#"), tmp_path / "home")
+    old = [path.read_bytes() for path in sorted(tmp_path.iterdir())]
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (64, limits[1]))  # enough for the image alone
+    try:
+        with pytest.raises(MapFileError, match=f"{yaml_path}: cannot be written"):
+            save_map(grid_from_picture("."), tmp_path / "home")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert [path.read_bytes() for path in sorted(tmp_path.iterdir())] == old

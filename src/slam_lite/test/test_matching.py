@@ -108,7 +108,7 @@ def test_a_far_search_finds_the_place_in_a_wide_window(office):
     peak = search_far(surface_at(office, HERE), local_map, guess, Window(5.0, 0.8), 0.5, apart=0.6)
     distance, angle = error(peak.base_pose, HERE)
     assert distance < 0.1 and angle < 0.02
-    assert peak.is_unique
+    assert peak.is_unique and not peak.slide.any()
 
 
 def test_branch_and_bound_finds_what_trying_every_pose_finds(office):
@@ -124,16 +124,27 @@ def test_branch_and_bound_finds_what_trying_every_pose_finds(office):
     assert peak.score == np.float64(best)
 
 
-def test_two_places_alike_are_not_unique():
-    from slam_lite.surface import Surface
-
-    niches = [np.column_stack((x + np.array([0.0, 0.1, 0.2, 0.3]), np.full(4, 1.0))) for x in (0.0, 2.0)]
+def test_places_alike_are_not_unique():
     local_map = LocalMap()
     local_map.clear(Pose2())
-    for niche in niches:
-        local_map.add(Surface(niche.astype(np.float32), np.zeros((4, 2), dtype=np.float32)), Pose2())
-    one = Surface(niches[0].astype(np.float32), np.zeros((4, 2), dtype=np.float32))
-    assert not search_far(one, local_map, Pose2(), Window(3.0, 0.05), 0.3, apart=0.5).is_unique
+    for x, y in ((0.0, 0.0), (2.0, 0.0), (0.0, 2.0)):
+        local_map.add(niche(), Pose2(x, y))
+    assert not search_far(niche(), local_map, Pose2(), Window(3.0, 0.05), 0.3, apart=0.5).is_unique
+
+
+def test_places_alike_along_a_line_leave_one_direction_open():
+    local_map = LocalMap()
+    local_map.clear(Pose2())
+    for x in (0.0, 1.0, 2.0):
+        local_map.add(niche(), Pose2(x, 0.5 * x))
+    peak = search_far(niche(), local_map, Pose2(), Window(3.0, 0.05), 0.3, apart=0.5)
+    assert peak.is_unique
+    np.testing.assert_allclose(np.abs(peak.slide), [2.0 / math.sqrt(5.0), 1.0 / math.sqrt(5.0)], atol=0.05)
+
+
+def niche() -> Surface:
+    points = np.column_stack((np.array([0.0, 0.1, 0.2, 0.3]), np.full(4, 1.0)))
+    return Surface(points.astype(np.float32), np.zeros((4, 2), dtype=np.float32))
 
 
 def test_nowhere_alike_is_no_peak(office):

@@ -3,6 +3,7 @@
 import os
 import tempfile
 from pathlib import Path
+from typing import Dict, Mapping
 
 import numpy as np
 from PIL import Image, UnidentifiedImageError
@@ -79,7 +80,7 @@ def cells_from_image(
 
 
 def save_map(grid: OccupancyGrid, stem, occupied_at: int = 65, free_at: int = 25) -> Path:
-    """Writes ``stem``.pgm and ``stem``.yaml as map_saver does, each whole or not at all; returns the YAML.
+    """Writes ``stem``.pgm and ``stem``.yaml as map_saver does, both or none; returns the YAML.
 
     Cells of 0..free_at become free, occupied_at..100 occupied, all others unknown. The YAML names the image
     without a folder, so that the pair can be moved together.
@@ -96,23 +97,30 @@ def save_map(grid: OccupancyGrid, stem, occupied_at: int = 65, free_at: int = 25
         f"origin: [{grid.origin.x:f}, {grid.origin.y:f}, {grid.origin.yaw:f}]\n"
         "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n\n"
     )
-    write_atomically(pgm_path, header.encode("ascii") + np.flipud(image).tobytes())
-    write_atomically(yaml_path, description.encode("ascii"))
+    pgm = header.encode("ascii") + np.flipud(image).tobytes()
+    write_together({pgm_path: pgm, yaml_path: description.encode("ascii")})
     return yaml_path
 
 
 def write_atomically(path, data: bytes) -> None:
     """Writes beside ``path``, then renames, so that no reader sees half a file. Raises MapFileError."""
-    path = Path(path)
+    write_together({Path(path): data})
+
+
+def write_together(files: Mapping[Path, bytes]) -> None:
+    """Writes all files beside their paths, then renames them: on a full disk the old ones stay."""
+    written: Dict[Path, Path] = {}
     try:
-        descriptor, beside = tempfile.mkstemp(dir=str(path.parent), prefix=path.name + ".")
-        try:
+        for path, data in files.items():
+            descriptor, name = tempfile.mkstemp(dir=str(path.parent), prefix=path.name + ".")
+            written[path] = Path(name)
             with os.fdopen(descriptor, "wb") as file:
                 file.write(data)
-            Path(beside).chmod(0o644)
-            Path(beside).replace(path)
-        except BaseException:
-            Path(beside).unlink()
-            raise
+            written[path].chmod(0o644)
+        for path in files:
+            written[path].replace(path)
     except OSError as error:
         raise MapFileError(f"{path}: cannot be written ({error.strerror})") from None
+    finally:
+        for beside in written.values():
+            beside.unlink(missing_ok=True)

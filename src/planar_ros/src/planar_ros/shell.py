@@ -6,7 +6,8 @@ import queue
 import signal
 import sys
 import threading
-from typing import Callable
+from contextlib import suppress
+from typing import Callable, TextIO
 
 import rospy
 from rosgraph import get_master_uri
@@ -24,6 +25,7 @@ def run(node_name: str, start: Callable[[], object]) -> None:
     A PlanarError during the start is a user's mistake: one line on stderr, exit code 2.
     """
     _shut_down_on_signals()
+    sys.stdout, sys.stderr = _Forgiving(sys.stdout), _Forgiving(sys.stderr)
     # A node's matrices are small: more threads of BLAS would only wait for work, in busy loops.
     threadpool_limits(1, user_api="blas")
     try:
@@ -55,6 +57,28 @@ def fail(text: str, exit_code: int = 2) -> None:
     print(f"[{rospy.get_name()}] error: {text}", file=sys.stderr, flush=True)
     rospy.signal_shutdown(text)
     sys.exit(exit_code)
+
+
+class _Forgiving:
+    """A stream that drops what cannot be written, as on a full disk.
+
+    rospy's own logging would raise in whatever the node is doing, a service's answer for example.
+    """
+
+    def __init__(self, stream: TextIO):
+        self._stream = stream
+
+    def __getattr__(self, name: str):
+        return getattr(self._stream, name)
+
+    def write(self, text: str) -> int:
+        with suppress(OSError):
+            self._stream.write(text)
+        return len(text)
+
+    def flush(self) -> None:
+        with suppress(OSError):
+            self._stream.flush()
 
 
 def _shut_down_on_signals() -> None:

@@ -167,7 +167,7 @@ class FrontEnd:
         local_map = self._scans.local_map
         for center in centers:
             peak = search_far(surface, local_map, center, _WIDE_WINDOW, _SURE_RESPONSE - 0.1, apart=0.5)
-            if peak is not None and peak.is_unique:
+            if peak is not None and peak.is_unique and not peak.slide.any():
                 wide = refine(surface, local_map, peak.base_pose, peak.base_pose, _NO_BELIEF)
                 if wide.response > _SURE_RESPONSE:
                     return wide

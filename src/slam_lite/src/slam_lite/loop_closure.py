@@ -15,7 +15,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
-from planar import Pose2
+from planar import Pose2, wrap
 from slam_lite.config import MapperSettings
 from slam_lite.matching.correlative import Window, scores, search_far
 from slam_lite.matching.local_map import LocalMap, Match
@@ -25,12 +25,15 @@ from slam_lite.surface import Surface
 
 # Growth of the search window with the way along the graph: metres and radians per metre.
 _DRIFT_DISTANCE, _DRIFT_ANGLE = 0.04, 0.008
-_MIN_WINDOW, _MAX_WINDOW = Window(0.3, 0.1), Window(6.0, 0.8)
+_MIN_WINDOW, _MAX_WINDOW = Window(0.3, 0.1), Window(12.0, 0.8)
 # Closures found in windows up to this size need no second witness.
 _FAMILIAR_DISTANCE = 1.0
-# Key scans of the place (to each side) and of the robot's recent way that are put together for a match.
+# Key scans of the place (to each side) and of the robot's recent way that are put together for a match,
+# and out to which distance: in windows up to the given size; in wider ones in proportion, up to so many times
+# as many, for there it takes more to tell one corridor from another.
 _PLACE_KEYS, _RECENT_KEYS = 20, 12
 _PLACE_RADIUS, _RECENT_WAY = 6.0, 4.0
+_ENOUGH_FOR_DISTANCE, _MAX_SCALE = 2.0, 3.0
 _GUESS_WAY = 5.0
 # How far from each other two closures are made that share no scan and yet speak of the same stretch, metres.
 _MAX_WITNESS_WAY = 15.0
@@ -38,6 +41,8 @@ _MAX_POINTS = 500
 # A match may slide by these ways, metres, if the score there is this share of its own.
 _SLIDES = np.concatenate((-np.arange(0.2, 1.05, 0.1), np.arange(0.2, 1.05, 0.1)))
 _SLIDE_SHARE = 0.9
+# Cosine of the angle up to which two slides are along the same corridor.
+_PARALLEL = 0.95
 _MAX_CANDIDATES = 3
 
 
@@ -45,21 +50,27 @@ _MAX_CANDIDATES = 3
 class Candidate:
     """Key ``place``, perhaps near key ``recent``, and the ``window`` in which to look for recent.
 
-    ``recent_keys``: how many keys up to recent belong to the way that has just been gone.
+    ``recent_keys``: how many keys up to recent are put together. ``scale``: how much more is needed than in
+    a small window.
     """
 
     place: int
     recent: int
     recent_keys: int
     window: Window
+    scale: float
 
 
 @dataclass(frozen=True, eq=False)
 class Closure:
-    """An edge from a place seen before to a recent key, with the detour (metres) that it shortens."""
+    """An edge from a place seen before to a recent key, found in ``window``.
+
+    ``slide``: unit vector (2,), along first's axes, in which the edge knows nothing, or zeros.
+    """
 
     edge: Edge
     window: Window
+    slide: np.ndarray
 
     @property
     def is_familiar(self) -> bool:
@@ -78,23 +89,18 @@ def candidates(recent: int, poses: np.ndarray, edges: Edges, settings: MapperSet
     keys = np.flatnonzero(possible)
     if len(keys) == 0:
         return []
-    latest = detours[max(0, recent - _RECENT_KEYS + 1) : recent + 1][::-1]
-    recent_keys = int(np.argmax(latest > _RECENT_WAY)) or len(latest)
     stretches = np.split(keys, np.flatnonzero(np.diff(keys) > 5) + 1)
     nearest = [int(stretch[np.argmin(straight[stretch])]) for stretch in stretches]
     nearest.sort(key=lambda key: straight[key])
-    return [
-        Candidate(
-            key,
-            recent,
-            recent_keys,
-            Window(
-                float(windows[key]),
-                float(np.clip(_DRIFT_ANGLE * detours[key], _MIN_WINDOW.angle, _MAX_WINDOW.angle)),
-            ),
-        )
-        for key in nearest[:_MAX_CANDIDATES]
-    ]
+    return [_candidate(key, recent, detours, float(windows[key])) for key in nearest[:_MAX_CANDIDATES]]
+
+
+def _candidate(place: int, recent: int, detours: np.ndarray, distance: float) -> Candidate:
+    scale = float(np.clip(distance / _ENOUGH_FOR_DISTANCE, 1.0, _MAX_SCALE))
+    latest = detours[max(0, recent - round(scale * _RECENT_KEYS) + 1) : recent + 1][::-1]
+    recent_keys = int(np.argmax(latest > scale * _RECENT_WAY)) or len(latest)
+    angle = float(np.clip(_DRIFT_ANGLE * detours[place], _MIN_WINDOW.angle, _MAX_WINDOW.angle))
+    return Candidate(place, recent, recent_keys, Window(distance, angle), scale)
 
 
 def find_closure(
@@ -108,9 +114,10 @@ def find_closure(
     place, recent = candidate.place, candidate.recent
     first_recent = recent - candidate.recent_keys + 1
     local_map.clear(Pose2())
-    for key in range(max(0, place - _PLACE_KEYS), min(first_recent, place + _PLACE_KEYS + 1)):
+    reach = round(candidate.scale * _PLACE_KEYS)
+    for key in range(max(0, place - reach), min(first_recent, place + reach + 1)):
         in_place = _between(poses[place], poses[key])
-        if math.hypot(in_place.x, in_place.y) < _PLACE_RADIUS:
+        if math.hypot(in_place.x, in_place.y) < candidate.scale * _PLACE_RADIUS:
             local_map.add(surfaces[key], in_place)
     recent_surface = _joined(
         [(surfaces[key], _between(poses[recent], poses[key])) for key in range(first_recent, recent + 1)]
@@ -128,9 +135,12 @@ def find_closure(
     moved = peak.base_pose.inverse() @ match.base_pose
     if math.hypot(moved.x, moved.y) > 0.3 or abs(moved.yaw) > 0.1:
         return None
-    information = _without_slides(match, recent_surface, local_map)
+    if peak.slide.any():
+        information = _blurred(match.information, candidate.window.distance * peak.slide)
+    else:
+        information = _without_slides(match, recent_surface, local_map)
     edge = Edge(place, recent, match.base_pose, information, is_loop=True)
-    return Closure(edge, candidate.window)
+    return Closure(edge, candidate.window, peak.slide)
 
 
 def _without_slides(match: Match, surface: Surface, local_map: LocalMap) -> np.ndarray:
@@ -147,16 +157,20 @@ def _without_slides(match: Match, surface: Surface, local_map: LocalMap) -> np.n
     possible = np.abs(_SLIDES[fits[1:] >= _SLIDE_SHARE * fits[0]])
     if len(possible) == 0:
         return match.information
-    direction = np.append(weakest, 0.0)
-    covariance = np.linalg.inv(match.information + 1e-3 * np.eye(3))
-    return np.linalg.inv(covariance + possible.max() ** 2 * np.outer(direction, direction))
+    return _blurred(match.information, possible.max() * weakest)
+
+
+def _blurred(information: np.ndarray, sigma_xy: np.ndarray) -> np.ndarray:
+    """The information (3, 3) less what an error of ``sigma_xy`` (2,), metres, in that direction takes."""
+    sigma = np.append(sigma_xy, 0.0)
+    return np.linalg.inv(np.linalg.inv(information + 1e-3 * np.eye(3)) + np.outer(sigma, sigma))
 
 
 def agree(one: Closure, other: Closure, poses: np.ndarray) -> bool:
     """Whether two closures between the same two stretches of the way tell the same story.
 
     Around the cycle place - recent - other recent - other place - place the errors must cancel, up to what
-    the front end may have drifted between them.
+    the front end may have drifted between them, and across a corridor that both may slide along.
     """
     a, b = one.edge, other.edge
     recent_step = _between(poses[a.second], poses[b.second])
@@ -165,8 +179,15 @@ def agree(one: Closure, other: Closure, poses: np.ndarray) -> bool:
     if not _RECENT_WAY <= recent_way <= _MAX_WITNESS_WAY:
         return False
     way = recent_way + math.hypot(place_step.x, place_step.y)
-    cycle = (a.second_in_first @ recent_step).inverse() @ (place_step @ b.second_in_first)
-    return math.hypot(cycle.x, cycle.y) < 0.15 + 0.02 * way and abs(cycle.yaw) < 0.05 + 0.005 * way
+    told, retold = a.second_in_first @ recent_step, place_step @ b.second_in_first
+    error = np.array([retold.x - told.x, retold.y - told.y])
+    other_slide = Pose2(0.0, 0.0, place_step.yaw).transform_points(other.slide[None])[0]
+    if one.slide.any() and other_slide.any() and abs(one.slide @ other_slide) < _PARALLEL:
+        return False
+    for slide in (one.slide, other_slide):
+        error -= (error @ slide) * slide
+    turn = wrap(retold.yaw - told.yaw)
+    return math.hypot(*error) < 0.15 + 0.02 * way and abs(turn) < 0.05 + 0.005 * way
 
 
 def _ways_along_graph(start: int, poses: np.ndarray, edges: Edges) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 import math
 import threading
-from typing import Optional
+from typing import Dict, Optional
 
 import numpy as np
 import rospy
@@ -39,6 +39,8 @@ SCAN_QUEUE_SIZE = 5
 # A surprise of 3 is normal; odometry that errs several times more than it should is worth a warning.
 MEAN_SURPRISE_ALARM = 30.0
 SURPRISE_MEMORY = 100
+# How far the z axis of a laser may be from straight up or down: gmapping's bound for its height.
+PLANAR_TOLERANCE = 1e-3
 # The entropy is that of the pose told to this much: 1 cm, 1 cm and 0.01 rad.
 ENTROPY_CELL = 1e-6
 
@@ -66,6 +68,7 @@ class SlamNode:
         self._base_in_odom: Optional[Pose2] = None
         self._is_paused = False
         self._scan_count = 0
+        self._heights: Dict[str, float] = {}
         self._map_stamp = -math.inf
         self._transform_stamp = None
         self._map_message = None
@@ -114,10 +117,25 @@ class SlamNode:
     def _on_scan(self, message, scan, base_in_odom):
         self._scan_count += 1
         due = (self._scan_count - 1) % self._settings.throttle_scans == 0
-        if due and not self._is_paused:
+        if due and not self._is_paused and self._is_planar(message.header.frame_id):
             with self._lock:
                 self._insert(base_in_odom, scan)
         self._progress.report(message.header.stamp)
+
+    def _is_planar(self, laser_frame):
+        if laser_frame not in self._heights:
+            mounting = self._transforms.matrix(self._settings.base_frame, laser_frame)
+            self._heights[laser_frame] = 1.0 if mounting is None else float(mounting[2, 2])
+        height = self._heights[laser_frame]
+        if abs(abs(height) - 1.0) <= PLANAR_TOLERANCE:
+            return True
+        rospy.logwarn_throttle(
+            ALARM_SECONDS,
+            "laser %s has to be mounted planar: the z coordinate of its axis has to be 1 or -1, not %.5f",
+            frame_name(laser_frame),
+            height,
+        )
+        return False
 
     def _insert(self, base_in_odom, scan):
         self._base_in_odom = base_in_odom

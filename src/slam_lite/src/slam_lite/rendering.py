@@ -59,18 +59,19 @@ class MapRenderer:
 
     def update(self, beams: Sequence[Beams], poses: np.ndarray) -> None:
         """Brings the counts up to date with the scans' present poses (N, 3) in the map."""
-        half = 0.5 * self._resolution
-        for i, (scan_beams, pose) in enumerate(zip(beams, poses)):
+        news = [i for i in range(len(beams)) if i >= len(self._placed) or self._has_moved(i, poses[i])]
+        self._cover([(beams[i], poses[i]) for i in news])
+        for i in news:
             if i < len(self._placed):
-                old = self._placed[i]
-                moved = np.hypot(*(pose[:2] - old[:2])) > half or abs(wrap(float(pose[2] - old[2]))) > 0.005
-                if not moved:
-                    continue
-                self._count(scan_beams, old, -1)
-                self._placed[i] = pose.copy()
+                self._count(beams[i], self._placed[i], -1)
+                self._placed[i] = poses[i].copy()
             else:
-                self._placed.append(pose.copy())
-            self._count(scan_beams, pose, 1)
+                self._placed.append(poses[i].copy())
+            self._count(beams[i], poses[i], 1)
+
+    def _has_moved(self, i: int, pose: np.ndarray) -> bool:
+        x, y, turn = pose - self._placed[i]
+        return math.hypot(x, y) > 0.5 * self._resolution or abs(wrap(float(turn))) > 0.005
 
     def grid(self) -> OccupancyGrid:
         """The map of all scans counted so far, as large as what they reached."""
@@ -80,22 +81,30 @@ class MapRenderer:
             return OccupancyGrid(np.full((1, 1), UNKNOWN, dtype=np.int8), self._resolution)
         row, col = rows[0], cols[0]
         hits, visits = (part[row : rows[-1] + 1, col : cols[-1] + 1] for part in (hits, visits))
-        cells = np.full(hits.shape, UNKNOWN, dtype=np.int8)
-        cells[visits > 0] = FREE
-        cells[hits > self._threshold * visits] = OCCUPIED
+        cells = _judged(hits, visits, self._threshold)
         x, y = (self._corner + [col, row]) * self._resolution
         return OccupancyGrid(cells, self._resolution, Pose2(float(x), float(y), 0.0))
 
     def _count(self, beams: Beams, pose: np.ndarray, amount: int) -> None:
-        base_in_map = Pose2.from_array(pose)
-        ends = base_in_map.transform_points(beams.ends_xy) / self._resolution
-        start = base_in_map.transform_points(beams.laser_xy[None])[0] / self._resolution
-        if amount > 0:
-            self._cover(np.floor(np.vstack((ends, start))).astype(np.int64))
+        start, ends = self._in_cells(beams, pose)
         _trace(self._counts, start - self._corner, ends - self._corner, beams.marks, amount)
 
-    def _cover(self, cells: np.ndarray) -> None:
-        lowest, highest = cells.min(axis=0) - 1, cells.max(axis=0) + 2
+    def _in_cells(self, beams: Beams, pose: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+        """Where a scan's beams start, (2,), and end, (N, 2), in cells from the map's origin."""
+        base_in_map = Pose2.from_array(pose)
+        start = base_in_map.transform_points(beams.laser_xy[None])[0]
+        return start / self._resolution, base_in_map.transform_points(beams.ends_xy) / self._resolution
+
+    def _cover(self, placed: Sequence[Tuple[Beams, np.ndarray]]) -> None:
+        """Makes room for the beams of some scans at their poses, for all at once: large maps take memory."""
+        if not placed:
+            return
+        extents = []
+        for beams, pose in placed:
+            cells = np.vstack(self._in_cells(beams, pose))
+            extents.append((cells.min(axis=0), cells.max(axis=0)))
+        lowest = np.floor(np.min([low for low, _ in extents], axis=0)).astype(np.int64) - 1
+        highest = np.floor(np.max([high for _, high in extents], axis=0)).astype(np.int64) + 2
         if self._counts.size == 0:
             self._corner = lowest
             self._counts = np.zeros((2, *(highest - lowest)[::-1]), dtype=np.uint16)
@@ -153,3 +162,14 @@ def _trace(counts, start, ends, marks, amount):
         if marks[i]:
             counts[1, end_row, end_col] += amount
             counts[0, end_row, end_col] += amount
+
+
+@numba.njit(cache=True, nogil=True)
+def _judged(hits, visits, threshold):
+    """The cells, FREE, OCCUPIED or UNKNOWN, that these counts speak for."""
+    cells = np.full(hits.shape, UNKNOWN, dtype=np.int8)
+    for row in range(cells.shape[0]):
+        for col in range(cells.shape[1]):
+            if visits[row, col] > 0:
+                cells[row, col] = OCCUPIED if hits[row, col] > threshold * visits[row, col] else FREE
+    return cells

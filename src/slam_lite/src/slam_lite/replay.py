@@ -70,13 +70,20 @@ def _replay(options: argparse.Namespace) -> int:
     if len(trajectory) == 0:
         raise BagError(f"{options.bag}: no scans on {options.scan_topic} could be used")
     mapper.settle()
-    if options.trajectory:
-        text = tum_text(trajectory.poses(mapper.key_poses, of_laser=options.pose_of == "laser"))
-        write_atomically(options.trajectory, text.encode("ascii"))
-    if options.map:
-        save_map(mapper.grid(), options.map)
+    _save(options, mapper, trajectory)
     print(f"{len(trajectory)} scans, {len(mapper.key_poses)} kept, {mapper.loop_count} loop closures")
     return exit_code
+
+
+def _save(options: argparse.Namespace, mapper: Mapper, trajectory: Trajectory) -> None:
+    """Writes what was asked for; the map also when the trajectory cannot be written."""
+    try:
+        if options.trajectory:
+            text = tum_text(trajectory.poses(mapper.key_poses, of_laser=options.pose_of == "laser"))
+            write_atomically(options.trajectory, text.encode("ascii"))
+    finally:
+        if options.map:
+            save_map(mapper.grid(), options.map)
 
 
 def _settings(path: Optional[Path]) -> NodeSettings:

@@ -30,12 +30,14 @@ class Window:
 class Peak:
     """The best pose of a window and its ``score``, the mean likelihood, 0 to 1, of the surface's points.
 
-    ``is_unique``: no pose elsewhere in the window scores nearly as well.
+    ``is_unique``: no pose elsewhere in the window scores nearly as well, unless ``slide``, a unit vector (2,)
+    along the map's axes or zeros, says along which line there are such poses, as in a smooth corridor.
     """
 
     base_pose: Pose2
     score: float
     is_unique: bool
+    slide: np.ndarray
 
 
 def search_near(
@@ -136,17 +138,22 @@ def search_far(
     bounds = _coarse_bounds(maxima[-1], cols, rows, cells)
     order = np.argsort(-bounds, axis=None, kind="stable")[: np.count_nonzero(bounds > min_score)]
     search = (maxima, bounds, order, cols, rows, cells)
-    best, score = _climb(*search, min_score, 2.0, np.zeros(3, dtype=np.int64), 0, 0)
+    best, score = _climb(*search, min_score, 2.0, np.zeros(3, dtype=np.int64), 0.0, 0, np.zeros(2))
     if score <= min_score:
         return None
-    rivalling = _RIVAL_SHARE * score
-    _, rival = _climb(
-        *search, rivalling, rivalling, best, round(apart / resolution), math.ceil(0.5 / angle_step)
-    )
+    enough = _RIVAL_SHARE * score
+    apart_cells, apart_angles = apart / resolution, math.ceil(0.5 / angle_step)
+    slide = np.zeros(2)
+    rival, rival_score = _climb(*search, enough, enough, best, apart_cells, apart_angles, slide)
+    is_unique = rival_score <= enough
+    if not is_unique and abs(rival[2] - best[2]) < apart_angles:
+        slide = (rival - best)[:2] / np.hypot(*(rival - best)[:2])
+        _, rival_score = _climb(*search, enough, enough, best, apart_cells, apart_angles, slide)
+        is_unique = rival_score <= enough
     x, y = start[:2] + (best[:2] + corner) * resolution
     yaw = wrap(start[2] + (best[2] - angle_steps) * angle_step)
     base_pose = local_map.from_grid(np.array([x, y, yaw]))
-    return Peak(base_pose, score, rival <= rivalling)
+    return Peak(base_pose, score, is_unique, slide)
 
 
 # A pose elsewhere that scores this share of the best one makes it doubtful.
@@ -219,10 +226,13 @@ def _coarse_bounds(coarse, cols, rows, cells):
 
 
 @numba.njit(cache=True, nogil=True)
-def _climb(maxima, bounds, order, cols, rows, cells, min_score, enough, excluded, apart_cells, apart_angles):
+def _climb(
+    maxima, bounds, order, cols, rows, cells, min_score, enough, excluded, apart_cells, apart_angles, slide
+):
     """Best (col shift, row shift, angle index) above ``min_score``, and its score, by branch and bound.
 
-    Poses near the ``excluded`` one do not count. Ends early when a score exceeds ``enough``.
+    Poses near the ``excluded`` one, or near the line through it along ``slide``, do not count. Ends early
+    when a score exceeds ``enough``.
     """
     side = bounds.shape[1]
     best, best_score = np.zeros(3, dtype=np.int64), min_score
@@ -241,7 +251,9 @@ def _climb(maxima, bounds, order, cols, rows, cells, min_score, enough, excluded
                 continue
             level, u, v = stack[depth]
             if level == 0:
-                near = abs(u - excluded[0]) < apart_cells and abs(v - excluded[1]) < apart_cells
+                du, dv = u - excluded[0], v - excluded[1]
+                along = slide[0] * du + slide[1] * dv
+                near = du * du + dv * dv - along * along < apart_cells * apart_cells
                 outside = abs(u) > cells or abs(v) > cells
                 if not (outside or (near and abs(k - excluded[2]) < apart_angles)):
                     best_score = stack_bounds[depth]
@@ -249,14 +261,14 @@ def _climb(maxima, bounds, order, cols, rows, cells, min_score, enough, excluded
                 continue
             half = 2 ** (level - 1)
             for quarter in range(4):
-                du, dv = u + half * (quarter % 2), v + half * (quarter // 2)
-                bound = _score(maxima[level - 1], cols[k], rows[k], du, dv)
+                shift_u, shift_v = u + half * (quarter % 2), v + half * (quarter // 2)
+                bound = _score(maxima[level - 1], cols[k], rows[k], shift_u, shift_v)
                 # The best child ends on top of the stack.
                 at = depth
                 depth += 1
                 while at > depth - 1 - quarter and stack_bounds[at - 1] > bound:
                     stack[at], stack_bounds[at] = stack[at - 1], stack_bounds[at - 1]
                     at -= 1
-                stack[at] = level - 1, du, dv
+                stack[at] = level - 1, shift_u, shift_v
                 stack_bounds[at] = bound
     return best, best_score
