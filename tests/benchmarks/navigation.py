@@ -79,7 +79,7 @@ def _drive(pair: int, options, settings: NavigatorSettings, grid: OccupancyGrid,
     for number in range(options.boxes):
         add_box(simulation, f"box_{number}", settings, grid, rng, keep_free=(start, goal))
     ends = places(settings, grid, rng, 2 * options.walkers)
-    walkers = add_walkers(simulation, options.walkers, settings, grid, ends, rng, options.heedless)
+    walkers = add_walkers(simulation, options.walkers, settings, grid, ends, start, rng, options.heedless)
     try:
         localizer = _localizer_at(start, grid, options.seed)
         run = _pursue(pair, options, simulation, localizer, Navigator(settings, grid), goal, walkers)

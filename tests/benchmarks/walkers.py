@@ -70,18 +70,19 @@ def add_walkers(
     settings: NavigatorSettings,
     grid: OccupancyGrid,
     places: List[Pose2],
+    robot: Pose2,
     rng: np.random.Generator,
     are_heedless: bool = False,
 ) -> List[Walker]:
-    """People between pairs of ``places``, two each, at speeds of people at home."""
+    """People between pairs of ``places``, two each, at speeds of people at home.
+
+    Each starts at that of its places which is farther from the ``robot``, so that nobody stands in it.
+    """
     navigator = Navigator(settings, grid)
-    return [
-        Walker(
-            simulation,
-            f"walker_{number}",
-            navigator.make_plan(places[2 * number], places[2 * number + 1]),
-            rng.uniform(SLOWEST, FASTEST),
-            are_heedless,
-        )
-        for number in range(count)
-    ]
+    walkers = []
+    for number in range(count):
+        ends = sorted(places[2 * number : 2 * number + 2], key=robot.distance_to, reverse=True)
+        path_xy = navigator.make_plan(*ends)
+        speed = rng.uniform(SLOWEST, FASTEST)
+        walkers.append(Walker(simulation, f"walker_{number}", path_xy, speed, are_heedless))
+    return walkers
