@@ -3,6 +3,7 @@
 import unittest
 
 import actionlib
+import numpy as np
 import rospy
 from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from geometry_msgs.msg import PoseStamped, Quaternion, Twist
@@ -18,6 +19,13 @@ def pose_at(x, y, frame="map", quaternion=LEVEL):
     message.pose.position.x, message.pose.position.y = x, y
     message.pose.orientation = Quaternion(*quaternion)
     return message
+
+
+def points_of(cloud):
+    """The fields of a PointCloud2 of float32, by name, in order: arrays (N,)."""
+    points = np.frombuffer(cloud.data, "<f4").reshape(cloud.width, -1)
+    assert points.shape[1] == len(cloud.fields)
+    return {field.name: points[:, field.offset // 4] for field in cloud.fields}
 
 
 class Heard:

@@ -4,13 +4,14 @@
 import math
 
 import actionlib
+import numpy as np
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PolygonStamped, PoseStamped, Twist
 from map_msgs.msg import OccupancyGridUpdate
-from move_base_client import Heard, MoveBaseTestCase, pose_at
+from move_base_client import Heard, MoveBaseTestCase, points_of, pose_at
 from move_base_msgs.msg import (
     MoveBaseAction,
     MoveBaseActionFeedback,
@@ -20,7 +21,7 @@ from move_base_msgs.msg import (
 )
 from nav_msgs.msg import OccupancyGrid, Odometry, Path
 from nav_msgs.srv import GetPlan
-from std_srvs.srv import Empty
+from sensor_msgs.msg import PointCloud2
 
 PERIOD = 0.1
 NO_PLAN = "Failed to find a valid plan. Even after executing recovery behaviors."
@@ -125,11 +126,18 @@ class TestMoveBaseContract(MoveBaseTestCase):
         self.assertLess(error, 0.3, "localization, and what was driven meanwhile")
 
     def test_make_plan_plans_while_idle_and_is_refused_while_active(self):
+        potential = Heard("move_base/NavfnROS/potential", PointCloud2)
+        rospy.sleep(0.5)
         plan = self.make_plan(PoseStamped(), pose_at(*IN_THE_NEXT_ROOM), 0.0).plan
         self.assertGreater(len(plan.poses), 50)
         self.assertEqual(plan.header.frame_id, "")
         self.assertEqual(plan.poses[0].header.frame_id, "map")
         self.assertEqual(plan.poses[-1].pose.position.x, IN_THE_NEXT_ROOM[0])
+        self.assertEqual(potential.wait().header.frame_id, "map")
+        wave = points_of(potential.wait())
+        self.assertEqual(list(wave), ["x", "y", "z", "pot"])
+        at_goal = np.hypot(wave["x"] - IN_THE_NEXT_ROOM[0], wave["y"] - IN_THE_NEXT_ROOM[1]).argmin()
+        self.assertAlmostEqual(wave["z"][at_goal], 20.0, delta=0.5)
         self.assertEqual(self.make_plan(PoseStamped(), pose_at(*OFF_THE_MAP), 0.0).plan.poses, [])
         self.drive(pose_at(*IN_THE_NEXT_ROOM))
         with self.assertRaisesRegex(rospy.ServiceException, "must be in an inactive state"):
@@ -154,11 +162,6 @@ class TestMoveBaseContract(MoveBaseTestCase):
         self.assertEqual((local.wait().info.width, local.wait().header.frame_id), (80, "odom"))
         footprint = Heard("move_base/local_costmap/footprint", PolygonStamped)
         self.assertEqual(len(footprint.wait().polygon.points), 16)
-
-    def test_costmaps_are_cleared_on_request(self):
-        clear = rospy.ServiceProxy("move_base/clear_costmaps", Empty)
-        clear.wait_for_service(5.0)
-        clear()
 
     def test_a_goal_without_a_way_tries_the_recoveries_before_it_is_aborted(self):
         recoveries = Heard("move_base/recovery_status", RecoveryStatus)

@@ -6,9 +6,10 @@ import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Point32, Polygon, PolygonStamped
-from move_base_client import Heard, MoveBaseTestCase, pose_at
+from move_base_client import Heard, MoveBaseTestCase, points_of, pose_at
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.srv import GetPlan
+from sensor_msgs.msg import PointCloud2
 from std_srvs.srv import SetBool
 from visualization_msgs.msg import MarkerArray
 
@@ -41,6 +42,9 @@ OFFICIAL = {
         "max_scaling_factor", "vx_samples", "vy_samples", "vth_samples", "use_dwa",
     },
 }  # fmt: skip
+
+
+INSCRIBED = 253
 
 
 def client_of(name):
@@ -80,9 +84,20 @@ class TestMoveBaseTuning(MoveBaseTestCase):
         self.assertTrue(self.has_active_goal())
 
     def test_another_local_planner_takes_over_on_the_way(self):
+        costs, ways = (
+            Heard(f"move_base/DWAPlannerROS/{name}", PointCloud2)
+            for name in ("cost_cloud", "trajectory_cloud")
+        )
         self.drive(pose_at(1.5, 0.3))
         config = self.tune("move_base", base_local_planner="dwa_local_planner/DWAPlannerROS")
         self.assertEqual(config["base_local_planner"], "dwa_local_planner/DWAPlannerROS")
+        fields = points_of(costs.wait())
+        self.assertEqual(list(fields), ["x", "y", "z", "path_cost", "goal_cost", "occ_cost", "total_cost"])
+        self.assertLess(fields["occ_cost"].max(), INSCRIBED)
+        fields = points_of(ways.wait())
+        self.assertEqual(list(fields), ["x", "y", "z", "theta", "cost"])
+        self.assertGreater(len(set(fields["cost"])), 10, "ways tried")
+        self.assertEqual({ways.wait().header.frame_id, costs.wait().header.frame_id}, {"odom"})
         self.assertTrue(self.client.wait_for_result(rospy.Duration(30.0)))
         self.assertEqual(self.client.get_state(), GoalStatus.SUCCEEDED)
 

@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 import yaml
 from robot_in_picture import (
@@ -18,6 +19,7 @@ from robot_in_picture import (
 )
 
 from move_base_lite import Navigator, Status, settings_from_parameters
+from move_base_lite.costmap import INSCRIBED
 from move_base_lite.recovery import RecoverySettings, SlowSettings
 from planar import Pose2, Twist2
 
@@ -41,6 +43,24 @@ def test_the_robot_passes_a_door(settings, door, start):
     decisions = drive_to_end(robot, navigator)
     assert_arrived(robot, decisions, goal)
     assert not any(decision.recovery for decision in decisions)
+
+
+def test_what_dwa_has_chosen_from_can_be_looked_at():
+    parameters = {**yaml.safe_load(PRESET.read_text()), "base_local_planner": LOCAL_PLANNERS[0]}
+    grid = two_rooms(0.9)
+    robot, navigator = Robot(grid, Pose2(1.0, 2.0)), Navigator(settings_from_parameters(parameters)[0], grid)
+    navigator.set_goal(Pose2(5.0, 2.0))
+    decision = [robot.tick(navigator) for _ in range(10)][-1]
+    points = decision.exploration.trajectory_points()
+    cheapest = points[points[:, 3] == points[:, 3].min()]
+    assert np.array_equal(cheapest[:, :3], decision.trajectory)
+    x, y, to_path, to_goal, cost, total = decision.exploration.cell_costs().T
+    beside_plan = np.hypot(*(decision.followed_xy[:, None] - np.column_stack((x, y))).T).min(axis=1)
+    assert beside_plan[to_path == 0.0].max() < navigator.local_costmap.window.resolution
+    assert cost.max() < INSCRIBED
+    controller = navigator.settings.controller
+    way = controller.path_distance_bias * to_path + controller.goal_distance_bias * to_goal
+    assert np.allclose(total, 0.05 * way + controller.occdist_scale * cost)
 
 
 def test_the_robot_leaves_a_trap_whose_end_is_near_the_goal(settings):

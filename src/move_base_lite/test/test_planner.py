@@ -118,6 +118,24 @@ def test_a_plan_is_neither_longer_nor_dearer_than_the_bare_gradient():
     assert path_cost(costs, window, plan) <= path_cost(costs, window, bare)
 
 
+def test_the_wave_of_a_plan_is_kept_if_it_is_to_be_seen():
+    costs, ends = costs_of(PICTURES["two rooms"]), [(1, 1), (3, 3), (3, 7)]
+    window = window_of(costs)
+    start_xy, reached_xy, shut_xy = (centre(window, cell) for cell in ends)
+    planner = GlobalPlanner(PlannerSettings(visualize_potential=True))
+    planner.plan(costs, window, start_xy, reached_xy)
+    seen = planner.potential
+    assert (seen.values[ends[0]], seen.values[ends[1]]) == (0.0, seen.at_goal)
+    assert np.isinf(seen.values[costs == LETHAL]).all()
+    with pytest.raises(NoPath):
+        planner.plan(costs, window, start_xy, shut_xy)
+    assert planner.potential is not seen
+    assert np.isinf(planner.potential.at_goal)
+    unseen = GlobalPlanner(PlannerSettings())
+    unseen.plan(costs, window, start_xy, reached_xy)
+    assert unseen.potential is None
+
+
 @pytest.mark.parametrize("use_astar, excess", [(False, 1.01), (True, 1.03)])
 def test_a_path_over_open_ground_is_nearly_straight(use_astar, excess):
     costs = np.zeros((200, 200), dtype=np.uint8)

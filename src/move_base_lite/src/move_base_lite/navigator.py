@@ -24,7 +24,7 @@ from move_base_lite.decision import (
 )
 from move_base_lite.errors import ControlError, NavigationError, Oscillation, PlanningError, SensorStale
 from move_base_lite.movers import Movers
-from move_base_lite.planning import GlobalPlanner, path_cost
+from move_base_lite.planning import GlobalPlanner, Potential, path_cost
 from move_base_lite.pursuit import Pursuit
 from move_base_lite.recovery import RecoveryContext, recovery_from
 from move_base_lite.zones import Zones
@@ -79,6 +79,11 @@ class Navigator:
     def local_costmap(self) -> LayeredCostmap:
         """The costmap to drive on, in odometry's frame."""
         return self._costmaps.near
+
+    @property
+    def potential(self) -> Optional[Potential]:
+        """The wave of the newest plan, if the settings ask for it."""
+        return self._planner.potential
 
     @property
     def _period(self) -> float:
@@ -252,7 +257,13 @@ class Navigator:
             )
         except ControlError as error:
             self._be_patient_with_control(pursuit, now, error)
-            return Decision(pursuit.status, Twist2(), str(error), plan_xy=plan_xy)
+            return Decision(
+                pursuit.status,
+                Twist2(),
+                str(error),
+                plan_xy=plan_xy,
+                exploration=self._controller.exploration,
+            )
         pursuit.control_fails_since = None
         pursuit.has_overcome(Trigger.CONTROLLING)
         return Decision(
@@ -261,6 +272,7 @@ class Navigator:
             plan_xy=plan_xy,
             trajectory=control.poses,
             followed_xy=control.plan_xy,
+            exploration=self._controller.exploration,
         )
 
     def _speed_limit(self, pursuit: Pursuit, base_in_odom: Pose2) -> Twist2:

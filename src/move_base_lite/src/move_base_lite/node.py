@@ -14,6 +14,7 @@ from move_base_lite.nodes.decision_topics import DecisionTopics
 from move_base_lite.nodes.goal_server import GoalServer
 from move_base_lite.nodes.goals import InvalidGoal
 from move_base_lite.nodes.plan_services import PlanServices
+from move_base_lite.nodes.potential_topic import PotentialTopic
 from move_base_lite.nodes.surroundings import Surroundings, View
 from move_base_lite.nodes.tuning import ParameterTree
 from move_base_lite.nodes.zone_topics import ZoneTopics
@@ -58,6 +59,7 @@ class MoveBaseNode:
         self._lost_since = rospy.Time(0)
         self._is_up = False
         self._topics = DecisionTopics(self._global_planner, local_planner, self._map_frame, odom_frame)
+        self._potential = PotentialTopic(self._global_planner, self._map_frame)
         self._global_topics = CostmapTopics("global_costmap")
         self._local_topics = CostmapTopics("local_costmap")
         self._transforms = Transforms()
@@ -151,6 +153,7 @@ class MoveBaseNode:
                 now.to_sec(), view.base_in_map, view.base_in_odom, view.twist, None, view.sightings
             )
             self._act(now, view, decision)
+            self._potential.publish(now, self._navigator.potential, self._settings.planner.publish_scale)
             self._global_topics.publish(now, self._navigator.global_costmap, view.base_in_map)
             self._local_topics.publish(now, self._navigator.local_costmap, view.base_in_odom)
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from move_base_lite.control.dwa import DynamicWindow
 from move_base_lite.control.escape import way_out
+from move_base_lite.control.exploration import Exploration
 from move_base_lite.control.mppi import PathIntegral
 from move_base_lite.control.rotation import rotation_towards, stopping
 from move_base_lite.control.settings import ControllerSettings, DwaSettings, MppiSettings
@@ -64,12 +65,6 @@ class Controller:
             self._goal_in_map = goal_in_map
             self._arrived = self._is_turning = False
 
-    def reset(self) -> None:
-        self._tracking = None
-        self._omega_told = None
-        self._goal_in_map = Pose2()
-        self._arrived = self._is_turning = False
-
     def is_goal_reached(self, base_in_map: Pose2, twist: Twist2) -> bool:
         """Within both tolerances of the goal, and at a standstill."""
         settings = self._settings
@@ -90,6 +85,11 @@ class Controller:
         """Metres of the plan still to drive."""
         return self._tracking.distance_left if self._tracking else 0.0
 
+    @property
+    def exploration(self) -> Optional[Exploration]:
+        """What the last control() chose from, also in vain; None if it was another way."""
+        return self._follower.exploration
+
     def control(
         self,
         base_in_map: Pose2,
@@ -106,6 +106,7 @@ class Controller:
         Raises ControlError if none is safe.
         """
         told, self._omega_told = self._omega_told, None
+        self._follower.exploration = None
         twist = self._as_told(twist, told)
         control = self._choose(base_in_map, base_in_local, twist, costmap, highest, movers)
         self._omega_told = control.command.omega

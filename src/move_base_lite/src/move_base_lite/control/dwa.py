@@ -1,33 +1,34 @@
 """The dynamic window approach (Fox, Burgard and Thrun, 1997) with the critics of dwa_local_planner."""
 
 import math
+from typing import Optional
 
 import numba
 import numpy as np
 
+from move_base_lite.control.arcs import arc
+from move_base_lite.control.exploration import Exploration
 from move_base_lite.control.map_grid import UNREACHABLE, distances_to
 from move_base_lite.control.settings import DwaSettings
 from move_base_lite.control.trajectory import Trajectory
 from move_base_lite.costmap import INSCRIBED, LayeredCostmap
 from move_base_lite.costmap.footprint import COLLISION, count_contacts, footprint_cost
-from move_base_lite.errors import ControlError
 from planar import Pose2, Twist2
 
 REJECTED = -1.0
-
-
 SHORTEST_HORIZON = 0.5
 
 
 class DynamicWindow:
-    """Chooses among the velocities within reach, each kept for a while."""
+    """Chooses among the velocities within reach, each kept for a while.
+
+    ``exploration``: what it chose from last.
+    """
 
     def __init__(self, settings: DwaSettings, period: float):
         self._settings = settings
         self._period = period
-
-    def reset(self) -> None:
-        """Nothing is remembered."""
+        self.exploration: Optional[Exploration] = None
 
     def follow(
         self,
@@ -46,12 +47,13 @@ class DynamicWindow:
         Raises ControlError if each of them hits something or leads nowhere.
         """
         horizon = min(max(distance_left / highest.v, SHORTEST_HORIZON), self._settings.sim_time)
-        return best_trajectory(
+        self.exploration = explore(
             self._settings, costmap, base_pose, twist, plan_xy, highest, horizon, self._period
         )
+        return self.exploration.best()
 
 
-def best_trajectory(
+def explore(
     settings: DwaSettings,
     costmap: LayeredCostmap,
     base_pose: Pose2,
@@ -60,12 +62,11 @@ def best_trajectory(
     highest: Twist2,
     sim_time: float,
     period: float,
-) -> Trajectory:
-    """The cheapest of the velocities reachable within ``period`` seconds.
+) -> Exploration:
+    """Scores the velocities reachable within ``period`` seconds.
 
     ``plan_xy``: (N, 2), the part of the plan ahead within the costmap. ``highest``: speeds.
     ``sim_time``: seconds that each velocity is followed ahead.
-    Raises ControlError if each of them hits something or leads nowhere.
     """
     window = costmap.window
     goal_x, goal_y = plan_xy[-1]
@@ -99,19 +100,9 @@ def best_trajectory(
         (path_scale, goal_scale, path_scale if far_from_goal else 0.0, settings.occdist_scale),
     )
     scores = np.where(scores < 0.0, np.inf, scores + settings.twirling_scale * np.abs(samples[:, 1]))
-    best = int(np.argmin(scores))
-    if not math.isfinite(scores[best]):
-        raise ControlError("every velocity within reach leads into an obstacle")
-    v, omega = samples[best]
-    poses = _simulate(
-        base_pose.as_array(),
-        v,
-        omega,
-        sim_time,
-        settings.sim_granularity,
-        settings.angular_sim_granularity,
+    return Exploration(
+        settings, base_pose, sim_time, samples, scores, window, costmap.costs, from_path, from_goal
     )
-    return Trajectory(Twist2(float(v), float(omega)), poses, float(scores[best]))
 
 
 def velocity_samples(settings: DwaSettings, twist: Twist2, highest: Twist2, period: float) -> np.ndarray:
@@ -140,28 +131,6 @@ def _spaced(now: float, change: float, lowest: float, highest: float, count: int
 
 
 @numba.njit(cache=True)
-def _steps(v, omega, sim_time, granularity, angular_granularity):
-    return max(
-        1, int(math.ceil(max(abs(v) * sim_time / granularity, abs(omega) * sim_time / angular_granularity)))
-    )
-
-
-@numba.njit(cache=True)
-def _simulate(start, v, omega, sim_time, granularity, angular_granularity):
-    """Poses (N, 3) along an arc driven at constant velocity."""
-    steps = _steps(v, omega, sim_time, granularity, angular_granularity)
-    dt = sim_time / steps
-    poses = np.empty((steps + 1, 3))
-    poses[0] = start
-    for i in range(steps):
-        heading = poses[i, 2] + 0.5 * omega * dt
-        poses[i + 1, 0] = poses[i, 0] + v * dt * math.cos(heading)
-        poses[i + 1, 1] = poses[i, 1] + v * dt * math.sin(heading)
-        poses[i + 1, 2] = poses[i, 2] + omega * dt
-    return poses
-
-
-@numba.njit(cache=True)
 def _score(
     costs,
     origin_x,
@@ -185,7 +154,7 @@ def _score(
     scores = np.empty(samples.shape[0])
     for i in range(samples.shape[0]):
         v, omega = samples[i]
-        poses = _simulate(start, v, omega, sim_time, granularity, angular_granularity)
+        poses = arc(start, v, omega, sim_time, granularity, angular_granularity)
         highest = _obstacle_cost(costs, origin_x, origin_y, resolution, outline_xy, poses, contacts)
         if highest < 0.0:
             scores[i] = REJECTED

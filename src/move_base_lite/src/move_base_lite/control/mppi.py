@@ -1,11 +1,12 @@
 """Model predictive path integral control (Williams et al., 2017) on a field of the cost to go."""
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, Optional
 
 import numba
 import numpy as np
 
+from move_base_lite.control.exploration import Exploration
 from move_base_lite.control.settings import MppiSettings
 from move_base_lite.control.trajectory import Trajectory
 from move_base_lite.costmap import LETHAL, LayeredCostmap
@@ -34,8 +35,10 @@ class PathIntegral:
     What a way costs is what is left to drive at its end, through free cells and shy of obstacles, in metres,
     with penalties for nearness, turning and driving backwards. A way that touches something ends there; if
     the robot could not stop before, it does not count. What moves is expected where it will be by then.
-    The random deviations are drawn once, from the seed.
+    The random deviations are drawn once, from the seed. They are not shown as an ``exploration``.
     """
+
+    exploration: Optional[Exploration] = None
 
     def __init__(self, settings: MppiSettings, period: float):
         self._settings = settings

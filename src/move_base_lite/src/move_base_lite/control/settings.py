@@ -60,7 +60,11 @@ class ControllerSettings:
 
 @dataclass(frozen=True)
 class DwaSettings(ControllerSettings):
-    """DWAPlannerROS's own: metres, seconds, radians."""
+    """DWAPlannerROS's own: metres, seconds, radians.
+
+    ``publish_traj_pc``, ``publish_cost_grid_pc``: whether the trajectories tried, and the costs of the cells
+    that they lead through, are shown.
+    """
 
     sim_time: float = 1.7
     sim_granularity: float = 0.025
@@ -74,6 +78,8 @@ class DwaSettings(ControllerSettings):
     twirling_scale: float = 0.0
     forward_point_distance: float = 0.325
     cheat_factor: float = 1.0
+    publish_traj_pc: bool = False
+    publish_cost_grid_pc: bool = False
 
     def __post_init__(self):
         super().__post_init__()

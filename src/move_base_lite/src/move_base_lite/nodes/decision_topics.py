@@ -10,6 +10,7 @@ from move_base_msgs.msg import RecoveryStatus
 from nav_msgs.msg import Path
 
 from move_base_lite.decision import Decision, Outcome
+from move_base_lite.nodes.exploration_topics import ExplorationTopics
 from move_base_lite.nodes.plan_messages import path_msg, plan_msg, pose_msg, trajectory_msg
 from move_base_lite.nodes.status_messages import outcome_msg, progress_msg
 from planar import Pose2, Twist2
@@ -34,6 +35,7 @@ class DecisionTopics:
         self._plan = rospy.Publisher(f"~{global_planner}/plan", Path, queue_size=1)
         self._global_plan = rospy.Publisher(f"~{local}/global_plan", Path, queue_size=1)
         self._local_plan = rospy.Publisher(f"~{local}/local_plan", Path, queue_size=1)
+        self._exploration = ExplorationTopics(local, odom_frame)
 
     def command(self, command: Twist2) -> None:
         message = Twist()
@@ -61,6 +63,8 @@ class DecisionTopics:
         self._publish_followed(now, decision.followed_xy)
         if decision.trajectory is not None and self._local_plan.get_num_connections():
             self._local_plan.publish(trajectory_msg(decision.trajectory, now, self._odom_frame))
+        if decision.exploration is not None:
+            self._exploration.publish(now, decision.exploration)
         if decision.recovery is not None:
             self._tell_recovery(now, decision, base_in_map)
         if decision.progress is not None and now >= self._next_feedback:

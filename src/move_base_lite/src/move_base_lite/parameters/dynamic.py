@@ -131,7 +131,7 @@ _GLOBAL_PLANNER = (
     Tunable("lethal_cost", 253, "cost from which on a cell cannot be entered", 1, 255),
     Tunable("neutral_cost", 50, "of entering a free cell", 1, 255),
     Tunable("cost_factor", 3.0, "how much a cell's cost adds to that", 0.01, 5.0),
-    Tunable("publish_potential", True, "(no effect)"),
+    Tunable("publish_potential", True, "whether the wave of each plan is shown"),
     Tunable("orientation_mode", 1, "of the poses: 0 none ... 6 rightward", 0, 6),
     Tunable("orientation_window_size", 1, "(no effect)", 1, 255),
     Tunable("outline_map", True, "(no effect: the rim is always barred)"),

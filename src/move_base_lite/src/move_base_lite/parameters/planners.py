@@ -17,9 +17,9 @@ LOCAL_PLANNERS = (
 # code, or read by it and never used.
 _DWA_IGNORED = {
     "max_vel_y", "min_vel_y", "acc_lim_y", "acc_lim_trans", "vy_samples", "stop_time_buffer",
-    "global_frame_id", "publish_traj_pc", "publish_cost_grid_pc", "sum_scores", "odom_topic",
-    "holonomic_robot", "restore_defaults", "prune_plan", "scaling_speed", "max_scaling_factor",
-    "oscillation_reset_dist", "oscillation_reset_angle", "controller_frequency", "penalize_negative_x",
+    "global_frame_id", "sum_scores", "odom_topic", "holonomic_robot", "restore_defaults", "prune_plan",
+    "scaling_speed", "max_scaling_factor", "oscillation_reset_dist", "oscillation_reset_angle",
+    "controller_frequency", "penalize_negative_x",
 }  # fmt: skip
 _TRAJECTORY_IGNORED = _DWA_IGNORED | {
     "escape_vel", "y_vels", "heading_scoring", "heading_scoring_timestep", "meter_scoring",
@@ -27,8 +27,8 @@ _TRAJECTORY_IGNORED = _DWA_IGNORED | {
     "backup_vel", "min_vel_theta",
 }  # fmt: skip
 _PLANNER_IGNORED = {
-    "planner_window_x", "planner_window_y", "visualize_potential", "publish_scale", "publish_potential",
-    "outline_map", "old_navfn_behavior", "use_quadratic", "orientation_window_size", "restore_defaults",
+    "planner_window_x", "planner_window_y", "publish_potential", "outline_map", "old_navfn_behavior",
+    "use_quadratic", "orientation_window_size", "restore_defaults",
 }  # fmt: skip
 _DWA_DEPRECATED = {
     "max_trans_vel": "max_vel_trans",
@@ -58,6 +58,7 @@ _TRAJECTORY_DEFAULTS = {
     "min_in_place_vel_theta": 0.4,
     "yaw_goal_tolerance": 0.05,
     "sim_time": 1.0,
+    "publish_cost_grid_pc": True,
 }
 
 
@@ -85,7 +86,8 @@ def planner_settings(reader: Reader, parameters) -> PlannerSettings:
     namespace = _planner_namespace(reader, parameters, "global", GLOBAL_PLANNERS)
     values = dict(below(parameters, namespace))
     if namespace == "GlobalPlanner":
-        values = {"cost_factor": 3.0, "orientation_mode": 1, **values}
+        values = {"cost_factor": 3.0, "orientation_mode": 1, "publish_potential": True, **values}
+        values = renamed(values, {"publish_potential": "visualize_potential"})
     if "use_dijkstra" in values:
         values["use_astar"] = not values.pop("use_dijkstra")
     return reader.read(PlannerSettings, values, namespace + "/", _PLANNER_IGNORED)

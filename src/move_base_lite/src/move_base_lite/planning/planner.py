@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Tuple
+from typing import Optional, Tuple
 
 import numpy as np
 
@@ -27,6 +27,7 @@ class PlannerSettings:
     which cost on it cannot be entered. ``use_grid_path``: from cell to cell instead of down the gradient.
     ``any_angle``: with straight lines where they cost no more, unlike navfn.
     ``orientation_mode``: which way the robot is to look on the way (see headings_along).
+    ``visualize_potential``: whether the wave of a plan is shown, as a grid of at most ``publish_scale``.
     """
 
     allow_unknown: bool = True
@@ -38,6 +39,8 @@ class PlannerSettings:
     cost_factor: float = 0.8
     lethal_cost: int = 253
     orientation_mode: int = 0
+    visualize_potential: bool = False
+    publish_scale: int = 100
 
     def __post_init__(self):
         check(
@@ -46,14 +49,31 @@ class PlannerSettings:
         check(self.lethal_cost <= 253, "lethal_cost", "at most 253", self.lethal_cost)
         check(self.cost_factor >= 0.0, "cost_factor", "at least 0", self.cost_factor)
         check(0 <= self.orientation_mode <= 6, "orientation_mode", "0 to 6", self.orientation_mode)
+        check(1 <= self.publish_scale <= 127, "publish_scale", "1 to 127", self.publish_scale)
         check(self.default_tolerance >= 0.0, "default_tolerance", "at least 0", self.default_tolerance)
 
 
+@dataclass(frozen=True, eq=False)
+class Potential:
+    """The wave of a plan: cost from the robot, float32 (rows, cols), inf where it has not come to.
+
+    ``at_goal``: its value there.
+    """
+
+    values: np.ndarray
+    window: Window
+    at_goal: float
+
+
 class GlobalPlanner:
-    """Plans on costs given with their window; holds no costmap of its own."""
+    """Plans on costs given with their window; holds no costmap of its own.
+
+    ``potential``: the wave of the newest plan, found or not, if the settings ask for it.
+    """
 
     def __init__(self, settings: PlannerSettings):
         self._settings = settings
+        self.potential: Optional[Potential] = None
 
     def plan(
         self,
@@ -86,6 +106,8 @@ class GlobalPlanner:
         if free_start == free_goal:
             return np.array([start_xy, goal_xy if free_goal == goal else _centre(window, free_goal)])
         potential = spread(traversal, *free_start, *free_goal, settings.use_astar)
+        if settings.visualize_potential:
+            self.potential = Potential(potential, window, float(potential[free_goal]))
         path_cells = descend(
             potential, *free_start, *free_goal, 0.0 if settings.use_grid_path else STEP_CELLS
         )

@@ -1,0 +1,32 @@
+"""What the dynamic window approach tries, as rviz shows it."""
+
+import numpy as np
+import rospy
+from sensor_msgs.msg import PointCloud2
+
+from move_base_lite.control import Exploration
+from move_base_lite.nodes.clouds import cloud_msg
+
+TRAJECTORY_FIELDS = ("x", "y", "z", "theta", "cost")
+COST_FIELDS = ("x", "y", "z", "path_cost", "goal_cost", "occ_cost", "total_cost")
+
+
+class ExplorationTopics:
+    """``~<planner>/trajectory_cloud`` and ``~<planner>/cost_cloud``, made while somebody listens."""
+
+    def __init__(self, local_planner: str, odom_frame: str):
+        self._odom_frame = odom_frame
+        self._trajectories = rospy.Publisher(f"~{local_planner}/trajectory_cloud", PointCloud2, queue_size=1)
+        self._costs = rospy.Publisher(f"~{local_planner}/cost_cloud", PointCloud2, queue_size=1)
+
+    def publish(self, now: rospy.Time, exploration: Exploration) -> None:
+        """To be called in the period in which it was made."""
+        settings = exploration.settings
+        if settings.publish_traj_pc and self._trajectories.get_num_connections():
+            x, y, *rest = exploration.trajectory_points().T
+            columns = (x, y, np.zeros(len(x)), *rest)
+            self._trajectories.publish(cloud_msg(columns, TRAJECTORY_FIELDS, now, self._odom_frame))
+        if settings.publish_cost_grid_pc and self._costs.get_num_connections():
+            x, y, *rest = exploration.cell_costs().T
+            columns = (x, y, np.zeros(len(x)), *rest)
+            self._costs.publish(cloud_msg(columns, COST_FIELDS, now, self._odom_frame))
