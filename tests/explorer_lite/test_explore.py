@@ -8,9 +8,9 @@ import actionlib
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
+from home_service_msgs.msg import ExploreAction, ExploreGoal
 from move_base_msgs.msg import MoveBaseAction
 
-from explorer_lite.msg import ExploreAction, ExploreGoal
 from planar import Pose2, grid_from_picture
 from planar_ros.actions import goal_is_over, server_is_ready
 from planar_ros.messages import OccupancyGridArrays, grid_to_msg, pose2_from_msg

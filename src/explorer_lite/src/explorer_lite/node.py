@@ -8,13 +8,13 @@ import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Point, PoseStamped
+from home_service_msgs.msg import ExploreAction, ExploreFeedback, ExploreResult
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from visualization_msgs.msg import MarkerArray
 
 from explorer_lite.config import ExplorerSettings, NodeSettings
 from explorer_lite.explorer import Explorer, ExplorerState, Finish, GoalReached, GoalRefused, GoTo
 from explorer_lite.markers import frontier_markers
-from explorer_lite.msg import ExploreAction, ExploreFeedback, ExploreResult
 from explorer_lite.warming import warm_up
 from planar import OccupancyGrid, Pose2
 from planar_ros.actions import ActionServer, server_is_ready

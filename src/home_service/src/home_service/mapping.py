@@ -8,8 +8,8 @@ from typing import Optional
 
 import actionlib
 from actionlib_msgs.msg import GoalStatus
+from home_service_msgs.msg import ExploreAction, ExploreGoal
 
-from explorer_lite.msg import ExploreAction, ExploreGoal
 from home_service.errors import LaunchError
 from home_service.run import Run
 from home_service.verdict import ARRIVAL_TOLERANCE, Verdict
