@@ -59,9 +59,8 @@ class Bridge:
         for model in world.robots:
             profile, pose = read_sdf_robot(model)
             self._fleet.add(model.name, profile, to_pose2(pose), float(pose[2, 3]))
-        if not rospy.has_param(
-            "/use_sim_time"
-        ):  # as Gazebo does: those that start from now on go by our clock
+        # As Gazebo does: those that start from now on go by our clock.
+        if not rospy.has_param("/use_sim_time"):
             rospy.set_param("/use_sim_time", True)
         self._gazebo = GazeboInterface(self._scene, self._fleet, self._time, self._orders, model_folders())
         if rospy.resolve_name("~") != NAMESPACE:  # else what Gazebo itself offers has that name
