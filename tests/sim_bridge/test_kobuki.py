@@ -2,7 +2,6 @@
 """What a Kobuki feels, by its events, its state and its cloud of points; and who may drive it."""
 
 import math
-import time
 import unittest
 
 import rospy
@@ -12,6 +11,7 @@ from gazebo_msgs.msg import ModelState
 from gazebo_msgs.srv import SetModelState
 from geometry_msgs.msg import Pose, Twist, Vector3
 from kobuki_msgs.msg import BumperEvent, CliffEvent, SensorState, WheelDropEvent
+from listening import PATIENCE_SECONDS, Heard, wait_until
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, JointState, PointCloud2
 from sensor_msgs.point_cloud2 import read_points
@@ -20,7 +20,6 @@ from std_srvs.srv import Empty
 
 from planar_ros.messages import quaternion_of
 
-PATIENCE_SECONDS = 20.0
 INPUTS = {
     "input/navi": "Navigation",
     "input/switch": "Switch",
@@ -30,36 +29,22 @@ INPUTS = {
 JOYSTICK = "subscribers: [{name: Joystick, topic: input/joy, timeout: 0.5, priority: 1}]"
 
 
-def wait_until(what, is_met):
-    deadline = time.monotonic() + PATIENCE_SECONDS
-    while not is_met():
-        assert time.monotonic() < deadline, f"waited in vain for {what}"
-        time.sleep(0.005)
-
-
-class Heard:
-    """The messages of a topic since the start of a test."""
-
-    def __init__(self, topic, kind):
-        self.messages = []
-        self._subscriber = rospy.Subscriber(topic, kind, self.messages.append, queue_size=1000)
-        wait_until(f"a publisher of {topic}", self._subscriber.get_num_connections)
-
-    def next(self):
-        count = len(self.messages)
-        wait_until("a message", lambda: len(self.messages) > count)
-        return self.messages[-1]
+def heard(topic, kind):
+    """Listens once there is a publisher."""
+    listener = Heard(topic, kind)
+    wait_until(f"a publisher of {topic}", listener.is_connected)
+    return listener
 
 
 class TestKobuki(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.bumper = Heard("mobile_base/events/bumper", BumperEvent)
-        cls.cliff = Heard("mobile_base/events/cliff", CliffEvent)
-        cls.drop = Heard("mobile_base/events/wheel_drop", WheelDropEvent)
-        cls.state = Heard("mobile_base/sensors/core", SensorState)
-        cls.cloud = Heard("mobile_base/sensors/bumper_pointcloud", PointCloud2)
-        cls.odom, cls.active = Heard("odom", Odometry), Heard("cmd_vel_mux/active", String)
+        cls.bumper = heard("mobile_base/events/bumper", BumperEvent)
+        cls.cliff = heard("mobile_base/events/cliff", CliffEvent)
+        cls.drop = heard("mobile_base/events/wheel_drop", WheelDropEvent)
+        cls.state = heard("mobile_base/sensors/core", SensorState)
+        cls.cloud = heard("mobile_base/sensors/bumper_pointcloud", PointCloud2)
+        cls.odom, cls.active = heard("odom", Odometry), heard("cmd_vel_mux/active", String)
         cls.velocity = rospy.Publisher("cmd_vel", Twist, queue_size=1)
         wait_until("the simulation", cls.velocity.get_num_connections)
         cls.odom.next()

@@ -11,6 +11,7 @@ import rostest
 from gazebo_msgs.srv import DeleteModel, SpawnModel
 from geometry_msgs.msg import Pose, Twist
 from kobuki_msgs.msg import BumperEvent, MotorPower
+from listening import PATIENCE_SECONDS, Heard, wait_until
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Empty, String
@@ -19,7 +20,6 @@ from tf2_msgs.msg import TFMessage
 from planar_ros.messages import LaserScanArrays, quaternion_of
 from sim_bridge import robot_named
 
-PATIENCE_SECONDS = 20.0
 WHEEL = """<link name="{side}"><inertial><mass value="0.5"/>
 <inertia ixx="0.001" iyy="0.001" izz="0.001"/></inertial>
 <collision><origin rpy="1.5707963 0 0"/><geometry><cylinder radius="0.1" length="0.04"/></geometry>
@@ -65,26 +65,6 @@ CART = f"""<sdf version="1.6"><model name="any"><link name="chassis"><pose>0 0 0
 <robotBaseFrame>chassis</robotBaseFrame></plugin></model></sdf>"""
 
 
-def wait_until(what, is_met):
-    deadline = time.monotonic() + PATIENCE_SECONDS
-    while not is_met():
-        assert time.monotonic() < deadline, f"waited in vain for {what}"
-        time.sleep(0.005)
-
-
-class Latest:
-    """The latest message of a topic, and all of them."""
-
-    def __init__(self, topic, kind):
-        self.messages = []
-        rospy.Subscriber(topic, kind, self.messages.append, queue_size=1000)
-
-    def next(self):
-        count = len(self.messages)
-        wait_until("a message", lambda: len(self.messages) > count)
-        return self.messages[-1]
-
-
 def spawn(name, text, x, y, yaw, namespace="", kind="urdf"):
     service = f"/gazebo/spawn_{kind}_model"
     rospy.wait_for_service(service, PATIENCE_SECONDS)
@@ -98,16 +78,14 @@ class TestRobots(unittest.TestCase):
     def setUpClass(cls):
         cls.turtlebot = spawn("mobile_base", robot_named("turtlebot_lidar").description(), 0.0, 0.0, 0.0)
         cls.rover = spawn("rover", ROVER, 3.0, 0.0, 3.14, "/rover")
-        cls.odom, cls.rover_odom = Latest("/odom", Odometry), Latest("/rover/odom", Odometry)
-        cls.truth = Latest("/base_pose_ground_truth", Odometry)
-        cls.scan, cls.rover_scan = (
-            Latest(topic, LaserScanArrays) for topic in ("/scan", "/rover/laser/scan")
-        )
+        cls.odom, cls.rover_odom = Heard("/odom", Odometry), Heard("/rover/odom", Odometry)
+        cls.truth = Heard("/base_pose_ground_truth", Odometry)
+        cls.scan, cls.rover_scan = (Heard(topic, LaserScanArrays) for topic in ("/scan", "/rover/laser/scan"))
         cls.joints, cls.active = (
-            Latest("/rover/joint_states", JointState),
-            Latest("/cmd_vel_mux/active", String),
+            Heard("/rover/joint_states", JointState),
+            Heard("/cmd_vel_mux/active", String),
         )
-        cls.tf, cls.bumper = Latest("/tf", TFMessage), Latest("/mobile_base/events/bumper", BumperEvent)
+        cls.tf, cls.bumper = Heard("/tf", TFMessage), Heard("/mobile_base/events/bumper", BumperEvent)
         topics = ("navi", "teleop")
         cls.inputs = {
             one: rospy.Publisher(f"/cmd_vel_mux/input/{one}", Twist, queue_size=1) for one in topics
@@ -203,7 +181,7 @@ class TestRobots(unittest.TestCase):
         spawned = spawn("cart", CART, 2.0, 3.0, 1.0, "/cart", "sdf")
         self.assertTrue(spawned.success, spawned.status_message)
         odometry, velocity = (
-            Latest("/cart/odom", Odometry),
+            Heard("/cart/odom", Odometry),
             rospy.Publisher("/cart/cmd_vel", Twist, queue_size=1),
         )
         wait_until("the cart", velocity.get_num_connections)

@@ -5,7 +5,6 @@ import math
 import signal
 import subprocess
 import tempfile
-import time
 import unittest
 from pathlib import Path
 
@@ -13,11 +12,11 @@ import rospy
 import rostest
 from gazebo_msgs.srv import DeleteModel, GetModelState, GetPhysicsProperties
 from geometry_msgs.msg import Pose
+from listening import PATIENCE_SECONDS, wait_until
 from std_srvs.srv import Empty
 
 from gazebo_ros.gazebo_interface import spawn_sdf_model_client
 
-PATIENCE_SECONDS = 20.0
 POST = """<?xml version='1.0'?><sdf version='1.6'><model name='any'><static>1</static>
 <link name="l"><collision name="c"><geometry><cylinder><radius>0.1</radius><length>1</length></cylinder>
 </geometry></collision></link></model></sdf>"""
@@ -81,16 +80,10 @@ class TestSpawnModel(unittest.TestCase):
         with subprocess.Popen(command, stdin=subprocess.PIPE, text=True) as process:
             process.stdin.write(POST)
             process.stdin.close()
-            self.wait_until(lambda: state("post").success)
+            wait_until("the post", lambda: state("post").success)
             process.send_signal(signal.SIGINT)
-            self.wait_until(lambda: process.poll() is not None)
+            wait_until("its end", lambda: process.poll() is not None)
         self.assertFalse(state("post").success)
-
-    def wait_until(self, is_met):
-        deadline = time.monotonic() + PATIENCE_SECONDS
-        while not is_met():
-            self.assertLess(time.monotonic(), deadline, "waited in vain")
-            time.sleep(0.05)
 
 
 if __name__ == "__main__":
