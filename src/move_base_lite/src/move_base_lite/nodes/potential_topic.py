@@ -6,9 +6,9 @@ import numpy as np
 import rospy
 from sensor_msgs.msg import PointCloud2
 
-from move_base_lite.nodes.clouds import cloud_msg
 from move_base_lite.planning import Potential
 from planar import OccupancyGrid, Pose2
+from planar_ros.clouds import cloud_msg
 from planar_ros.messages import OccupancyGridArrays, grid_to_msg
 
 CLOUD_FIELDS = ("x", "y", "z", "pot")

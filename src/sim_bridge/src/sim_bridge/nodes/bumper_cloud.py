@@ -3,8 +3,10 @@
 import math
 
 import numpy as np
-from sensor_msgs.msg import PointCloud2, PointField
+import rospy
+from sensor_msgs.msg import PointCloud2
 
+from planar_ros.clouds import cloud_msg
 from sim_bridge.sensors.bumper import CENTRE, LEFT, RIGHT
 from sim_bridge.sensors.kobuki import KobukiReading
 
@@ -12,7 +14,6 @@ FRAME = "base_link"
 # As turtlebot_bringup sets it, and how far off a point lies that means "nothing there", m.
 RADIUS, HEIGHT, FAR = 0.24, 0.04, 100.0
 BEARINGS = {LEFT: math.radians(70.0), CENTRE: 0.0, RIGHT: -math.radians(70.0)}
-FIELDS = [PointField(name, 4 * number, PointField.FLOAT32, 1) for number, name in enumerate("xyz")]
 
 
 class BumperCloud:
@@ -26,24 +27,10 @@ class BumperCloud:
         return bool(before or self._felt)
 
     @staticmethod
-    def message(reading: KobukiReading) -> PointCloud2:
+    def message(reading: KobukiReading, stamp: rospy.Time, frame: str) -> PointCloud2:
         """Three points: left, centre, right."""
         felt = reading.bumpers | reading.cliffs
-        points_xyz = np.array(
-            [
-                (reach * math.cos(bearing), reach * math.sin(bearing), HEIGHT)
-                for sector, bearing in BEARINGS.items()
-                for reach in [RADIUS if sector in felt else FAR]
-            ],
-            dtype="<f4",
-        )
-        return PointCloud2(
-            height=1,
-            width=len(points_xyz),
-            fields=FIELDS,
-            is_bigendian=False,
-            point_step=points_xyz.strides[0],
-            row_step=points_xyz.nbytes,
-            data=points_xyz.tobytes(),
-            is_dense=True,
-        )
+        reach = np.array([RADIUS if sector in felt else FAR for sector in BEARINGS])
+        bearings = np.array(list(BEARINGS.values()))
+        columns = (reach * np.cos(bearings), reach * np.sin(bearings), np.full(len(reach), HEIGHT))
+        return cloud_msg(columns, "xyz", stamp, frame)

@@ -76,9 +76,7 @@ class KobukiTopics:
             state.wheel_drop = sum(WHEEL_BITS[wheel] for wheel in reading.dropped)
             self._state.publish(state)
         if self._points.is_due(reading) and self._cloud.get_num_connections():
-            cloud = self._points.message(reading)
-            cloud.header.stamp, cloud.header.frame_id = stamp, self._frame
-            self._cloud.publish(cloud)
+            self._cloud.publish(self._points.message(reading, stamp, self._frame))
 
     def close(self) -> None:
         publishers = (self._bumper, self._cliff, self._drop, self._state, self._cloud)
