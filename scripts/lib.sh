@@ -99,5 +99,5 @@ run_command() { # NAME ARGUMENT...: a command of home_service, after the set-up 
     if is_among --rviz "$@" && [[ -n ${DISPLAY:-} ]]; then extras=(rviz); fi
     set_up "${extras[@]}"
     ros_environment
-    exec python3 -m home_service.cli "$@"
+    exec python3 -m home_service "$@"
 }

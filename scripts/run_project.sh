@@ -23,4 +23,4 @@ extras=(projects)
 if is_among --rviz "$@"; then extras+=(rviz); fi
 set_up "${extras[@]}"
 ros_environment
-exec python3 -m run_project.cli "$@"
+exec python3 -m run_project "$@"

@@ -54,9 +54,10 @@ def failure(reason: str) -> Outcome:
 
 
 def read_report(path: Path) -> Outcome:
-    """The counts of a JUnit report, over all its suites."""
+    """The counts of a JUnit report, over all its suites, and what the first failure says."""
     try:
-        suites = list(ElementTree.parse(path).getroot().iter("testsuite"))
+        report = ElementTree.parse(path).getroot()
+        suites = list(report.iter("testsuite"))
         counts = {
             name: sum(int(suite.get(name, 0)) for suite in suites)
             for name in ("tests", "failures", "errors", "skipped")
@@ -64,7 +65,20 @@ def read_report(path: Path) -> Outcome:
     except (OSError, ElementTree.ParseError, ValueError) as error:
         return failure(f"no readable report {path.name}: {error}")
     failed = counts["failures"] + counts["errors"]
-    return Outcome(counts["tests"] - failed - counts["skipped"], failed, counts["skipped"])
+    return Outcome(
+        counts["tests"] - failed - counts["skipped"], failed, counts["skipped"], first_failure(report)
+    )
+
+
+def first_failure(report: ElementTree.Element) -> str:
+    """The name and the message of the first test that failed; empty if none did."""
+    for case in report.iter("testcase"):
+        for kind in ("failure", "error"):
+            found = case.find(kind)
+            if found is not None:
+                message = found.get("message") or (found.text or "").strip().rpartition("\n")[2]
+                return f"{case.get('name')}: {' '.join(message.split())[:300]}"
+    return ""
 
 
 def judge_unit_tests(report: Path, exit_code: int) -> Outcome:

@@ -19,6 +19,23 @@ def test_a_report_is_counted_over_all_its_suites(tmp_path):
     assert read_report(path) == Outcome(passed=4, failed=2, skipped=1)
 
 
+@pytest.mark.parametrize(
+    "kind, told",
+    [
+        ('<failure message="assert 1 == 2">...</failure>', "test_b: assert 1 == 2"),
+        (
+            "<error>Traceback\n  File x\nAssertionError: 3 m too far\n</error>",
+            "test_b: AssertionError: 3 m too far",
+        ),
+    ],
+)
+def test_the_reason_is_what_the_first_failure_says(tmp_path, kind, told):
+    path = tmp_path / "unit.xml"
+    cases = f'<testcase name="test_a"/><testcase name="test_b">{kind}</testcase>'
+    path.write_text(f'<testsuite tests="2" failures="1">{cases}</testsuite>')
+    assert read_report(path) == Outcome(passed=1, failed=1, reason=told)
+
+
 def test_a_ros_test_without_a_report_has_failed_although_rostest_ended_with_zero(tmp_path):
     write_report(tmp_path / "tests" / "rostest-a.xml", 1)
     outcome = judge_ros_test(["a"], tmp_path, 0)

@@ -1,47 +1,38 @@
 """The way in: parse, read what was named, run the command, answer with an exit code."""
 
-from typing import List, Optional
+import importlib
+from argparse import Namespace
+from typing import Callable, List, Optional
 
 from home_service.display import complain
-from home_service.errors import LaunchError, RunInterruptedError
-from home_service.interruption import leave, raise_when_interrupted
-from home_service.options import MAPPING_COMMANDS, REPORT_COMMANDS, ROS_COMMANDS, parse
+from home_service.errors import LaunchError
+from home_service.interruption import INTERRUPTED, RunInterruptedError, raise_when_interrupted
+from home_service.options import MAPPING_COMMANDS, REPORT_COMMANDS, parse
 from planar import PlanarError
+from planar_ros.entry import leaving_when_interrupted
 
-FAILURE, BAD_INPUT, INTERRUPTED = 1, 2, 130
+FAILURE, BAD_INPUT = 1, 2
+MODULES = {
+    "rehearse": "rehearse",
+    "doctor": "doctor",
+    "replay": "replaying",
+    **dict.fromkeys(REPORT_COMMANDS, "reports"),
+    **dict.fromkeys(MAPPING_COMMANDS, "mapping"),
+}  # of the commands that are not in the module commands
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
     """Runs one command; returns its exit code: 0 success, 1 failure, 2 bad input, 130 interrupted."""
-    raise_when_interrupted()
     try:
-        options = parse(arguments)
-        if options.command in REPORT_COMMANDS:
-            from home_service import reports
-
-            return getattr(reports, options.command)(options)
-        if options.command == "doctor":
-            from home_service.doctor import doctor
-
-            return doctor(options)
-        if options.command == "replay":
-            from home_service.replaying import replay
-
-            return replay(options)
-        read_inputs(options)
-        if options.command in MAPPING_COMMANDS:
-            from home_service import mapping
-
-            return getattr(mapping, options.command)(options)
-        if options.command in ROS_COMMANDS:
-            from home_service import commands
-
-            return getattr(commands, options.command)(options)
-        from home_service.rehearse import rehearse
-
-        return rehearse(options)
-    except RunInterruptedError:
-        complain("interrupted")
+        with leaving_when_interrupted():
+            options = parse(arguments)
+            if "world" in options:
+                read_inputs(options)
+            command = find_command(options.command)
+        raise_when_interrupted()
+        return command(options)
+    except RunInterruptedError as error:
+        complain(str(error))
         return INTERRUPTED
     except LaunchError as error:
         complain(str(error))
@@ -49,6 +40,12 @@ def main(arguments: Optional[List[str]] = None) -> int:
     except PlanarError as error:
         complain(str(error))
         return BAD_INPUT
+
+
+def find_command(name: str) -> Callable[[Namespace], int]:
+    """The function of that name; no more than it needs is imported, which takes time enough."""
+    module = importlib.import_module(f"home_service.{MODULES.get(name, 'commands')}")
+    return getattr(module, name)
 
 
 def read_inputs(options) -> None:
@@ -67,7 +64,3 @@ def read_inputs(options) -> None:
         options.places = options.loaded_mission.places
     elif "zones" in options:
         options.loaded_mission = errand_mission(*places_of_errand(options.zones))
-
-
-if __name__ == "__main__":
-    leave(main())

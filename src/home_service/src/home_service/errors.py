@@ -12,7 +12,3 @@ class LaunchError(PlanarError):
     def __init__(self, text: str, is_bad_input: bool = False):
         super().__init__(text)
         self.is_bad_input = is_bad_input
-
-
-class RunInterruptedError(PlanarError):
-    """Somebody pressed Ctrl-C or asked the run to end."""

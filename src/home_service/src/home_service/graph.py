@@ -14,13 +14,18 @@ from pathlib import Path
 from typing import IO, Dict, List, Mapping, Optional
 
 import psutil
+import rosgraph
 
 from home_service.errors import LaunchError
+from home_service.interruption import raise_if_interrupted
 
 PR_SET_CHILD_SUBREAPER = 36
 SIGINT_SECONDS = 8.0
+HEARING_SECONDS = 2.0
 SIGTERM_SECONDS = 2.0
 DIED = re.compile(r"\[(?P<node>[^\]\[]+)-\d+\] process has died \[pid \d+, exit code (?P<code>-?\d+)")
+POLL_SECONDS = 0.02
+ENDING = "killing on exit"
 COMPLAINT = re.compile(r"^\[/(?P<node>\S+)\] error: (?P<text>.*)")
 BAD_INPUT = 2
 
@@ -62,6 +67,7 @@ class RosGraph:
             )
         except FileNotFoundError:
             raise LaunchError("roslaunch is not on the PATH: run scripts/setup.sh") from None
+        self._is_ending = threading.Event()
         self._pump = threading.Thread(target=self._read_output, daemon=True)
         self._pump.start()
 
@@ -78,15 +84,18 @@ class RosGraph:
         """Ends every process of the graph: SIGINT first, then SIGTERM, then SIGKILL."""
         if self.is_running:
             self._roslaunch.send_signal(signal.SIGINT)
-        self._wait_for_roslaunch(SIGINT_SECONDS)
+        self._wait_for_roslaunch()
         end_descendants(SIGTERM_SECONDS)
         self._pump.join(1.0)
 
-    def _wait_for_roslaunch(self, seconds: float) -> None:
-        try:
-            self._roslaunch.wait(seconds)
-        except subprocess.TimeoutExpired:
-            self._roslaunch.terminate()
+    def _wait_for_roslaunch(self) -> None:
+        """Patiently while it ends nodes: it may not hear before it has any, and stay on after the last."""
+        started = time.monotonic()
+        while self.is_running:
+            ends_nodes = self._is_ending.is_set() and psutil.Process(self._roslaunch.pid).children()
+            if time.monotonic() - started > (SIGINT_SECONDS if ends_nodes else HEARING_SECONDS):
+                return
+            time.sleep(POLL_SECONDS)
 
     def _read_output(self) -> None:
         """Reads on whatever happens to the log, since roslaunch stands still when nobody reads."""
@@ -101,8 +110,11 @@ class RosGraph:
                 except OSError as error:
                     self.log_gap = f"log/roslaunch.log: {error.strerror}"
                     log = None
+        self._is_ending.set()
 
     def _notice(self, line: str) -> None:
+        if line.rstrip().endswith(ENDING):
+            self._is_ending.set()
         complaint, death = COMPLAINT.match(line), DIED.search(line)
         if complaint:
             self._complaints[complaint.group("node")] = complaint.group("text")
@@ -110,6 +122,13 @@ class RosGraph:
             node, code = death.group("node"), int(death.group("code"))
             text = self._complaints.get(node, f"died with exit code {code}, see {self._log_folder}")
             self._failure = NodeFailure(f"{node}: {text}", code == BAD_INPUT)
+
+
+def is_master_online() -> bool:
+    """As rosgraph's function of that name, but what interrupts it is not lost."""
+    is_online = rosgraph.is_master_online()
+    raise_if_interrupted()
+    return is_online
 
 
 def free_port() -> int:

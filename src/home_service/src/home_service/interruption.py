@@ -3,23 +3,42 @@
 import os
 import signal
 import sys
+from typing import NoReturn
 
-from home_service.errors import RunInterruptedError
+INTERRUPTED = 130
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+_is_interrupted = False
+
+
+class RunInterruptedError(KeyboardInterrupt):
+    """Somebody pressed Ctrl-C or asked the run to end."""
+
+    def __init__(self) -> None:
+        super().__init__("interrupted")
 
 
 def raise_when_interrupted() -> None:
     """From now on the first SIGINT or SIGTERM raises RunInterruptedError, and further ones are ignored."""
-    signal.signal(signal.SIGINT, _interrupt)
-    signal.signal(signal.SIGTERM, _interrupt)
+    for number in SIGNALS:
+        signal.signal(number, _raise)
 
 
-def leave(code: int) -> None:
+def raise_if_interrupted() -> None:
+    """Raises RunInterruptedError once more, in case that a library has caught the first one."""
+    if _is_interrupted:
+        raise RunInterruptedError
+
+
+def leave(code: int) -> NoReturn:
     """Ends the process without waiting for threads of ROS that still listen to a master that is gone."""
     sys.stdout.flush()
     os._exit(code)
 
 
-def _interrupt(number, _frame):
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)
-    raise RunInterruptedError(signal.Signals(number).name)
+def _raise(_number, _frame):
+    global _is_interrupted
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
+    _is_interrupted = True
+    raise RunInterruptedError

@@ -7,13 +7,13 @@ from argparse import Namespace
 from typing import Any, Callable, Dict, List, Optional
 
 import psutil
-import rosgraph
 import rospy
 
 from home_service.bag_recorder import BagRecorder
 from home_service.display import Display
 from home_service.errors import LaunchError
-from home_service.graph import RosGraph
+from home_service.graph import RosGraph, is_master_online
+from home_service.interruption import RunInterruptedError, raise_if_interrupted
 from home_service.recorder import Recorder
 from home_service.referee import Referee
 from home_service.run_folder import create_run_folder, write_result
@@ -57,7 +57,7 @@ class Run:
         try:
             self.display.say(f"run folder {self.folder}")
             self._graph = RosGraph("home_service", self._launch_file, self._arguments, self.folder / "log")
-            self._wait("the ROS master", rosgraph.is_master_online)
+            self._wait("the ROS master", is_master_online)
             rospy.init_node("referee", disable_signals=True, anonymous=True, log_level=rospy.ERROR)
             if getattr(self._options, "record", None):
                 self._wait("simulated time", lambda: rospy.has_param("/use_sim_time"))
@@ -73,7 +73,7 @@ class Run:
 
     def __exit__(self, _kind, error, _traceback) -> None:
         self.display.show("shutting down")
-        if isinstance(error, PlanarError):
+        if isinstance(error, (PlanarError, RunInterruptedError)):
             self._keep_result(Verdict(False, str(error)))
         if self._bags is not None:
             self.missing += self._bags.close()
@@ -94,6 +94,7 @@ class Run:
     def watch(self, is_over: Callable[[], bool]) -> Optional[str]:
         """Shows progress until ``is_over``; returns why the run cannot go on, or None if it got there."""
         while not is_over():
+            raise_if_interrupted()
             failure = self._node_failure()
             if failure:
                 return failure
@@ -126,6 +127,7 @@ class Run:
     def _wait(self, what: str, is_there: Callable[[], bool]) -> None:
         deadline = time.monotonic() + BRING_UP_SECONDS
         while not is_there():
+            raise_if_interrupted()
             failure = self._node_failure()
             if failure is None and not self._graph.is_running:
                 failure = f"roslaunch ended before {what} was there, see {self.folder / 'log'}"

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Dict, List, Optional
 
 from home_service.display import Display, complain
-from home_service.errors import LaunchError, RunInterruptedError
-from home_service.interruption import leave, raise_when_interrupted
+from home_service.errors import LaunchError
+from home_service.interruption import INTERRUPTED, RunInterruptedError, raise_when_interrupted
 from home_service.run_folder import create_run_folder, write_result
 from home_service.versions import versions
 from planar import PlanarError
@@ -28,7 +28,7 @@ from run_project.stand_ins import PACKAGE_FOLDER
 from run_project.terminal import LOGS
 from run_project.verdict import Ledger, Verdict, judge
 
-FAILURE, BAD_INPUT, INTERRUPTED = 1, 2, 130
+FAILURE, BAD_INPUT = 1, 2
 WORK = PACKAGE_FOLDER.parents[2] / "build" / "projects"
 LARGEST_TEXT = 3_000_000
 ROS_FOLDER = re.compile(r"/opt/ros/[a-z]+")
@@ -42,8 +42,8 @@ def main(arguments: Optional[List[str]] = None) -> int:
     raise_when_interrupted()
     try:
         return run(parse(sys.argv[1:] if arguments is None else arguments))
-    except RunInterruptedError:
-        complain("interrupted")
+    except RunInterruptedError as error:
+        complain(str(error))
         return INTERRUPTED
     except (BuildError, LaunchError) as error:
         complain(str(error))
@@ -131,8 +131,8 @@ def _run_job(options, job: Job, folder: Path, workspace: Workspace, display: Dis
             if options.record:
                 run.record(folder / "run.bag")
             failure = run.watch(options.timeout)
-    except RunInterruptedError:
-        failure, is_interrupted = "interrupted", True
+    except RunInterruptedError as error:
+        failure, is_interrupted = str(error), True
     observer = run.observer if run is not None else None
     ledger = observer.ledger if observer is not None else Ledger()
     verdict = judge(ledger, failure, is_errand=is_errand(about["script"]))
@@ -190,7 +190,3 @@ class _WorkFolder:
 
     def __exit__(self, *_):
         self._lock.close()
-
-
-if __name__ == "__main__":
-    leave(main())

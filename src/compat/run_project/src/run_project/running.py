@@ -10,12 +10,11 @@ from pathlib import Path
 from typing import Dict, List, Mapping, Optional
 
 import psutil
-import rosgraph
 import rospy
 
 from home_service.display import Display
 from home_service.errors import LaunchError
-from home_service.graph import adopt_orphans, end_descendants, free_port
+from home_service.graph import adopt_orphans, end_descendants, free_port, is_master_online
 from run_project.observer import Observer
 from run_project.terminal import WindowLogs
 
@@ -124,7 +123,7 @@ class ProjectRun:
                 return f"not done within {timeout:g} s of wall time"
             if now - moved_wall > STALLED_SECONDS:
                 return f"no simulated time has passed for {STALLED_SECONDS:g} s"
-            if not rosgraph.is_master_online():
+            if not is_master_online():
                 return "the ROS master has ended"
             time.sleep(POLL_SECONDS)
 
@@ -183,7 +182,7 @@ class ProjectRun:
 
     def _wait_for_master(self) -> None:
         deadline = time.monotonic() + MASTER_SECONDS
-        while not rosgraph.is_master_online():
+        while not is_master_online():
             if time.monotonic() > deadline or self._helpers[0].poll() is not None:
                 raise LaunchError(f"no ROS master came up, see {self._logs / 'master.log'}")
             time.sleep(0.05)
