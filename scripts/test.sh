@@ -13,4 +13,5 @@ answer_help "$@"
 set_up
 ros_environment
 export ROS_PACKAGE_PATH="$root/tests:$ROS_PACKAGE_PATH"
+export PYTHONPATH="$root/tests/shared:$PYTHONPATH"
 exec python3 "$root/tests/runner/run_tests.py" "$@"

@@ -10,6 +10,7 @@ import rostest
 from actionlib_msgs.msg import GoalStatus
 from home_service_msgs.msg import ExploreAction, ExploreGoal
 from move_base_msgs.msg import MoveBaseAction
+from waiting import wait_until
 
 from planar import Pose2, grid_from_picture
 from planar_ros.actions import goal_is_over, server_is_ready
@@ -19,7 +20,6 @@ from planar_ros.transforms import Transforms
 HALF_KNOWN = grid_from_picture("######??\n#....???\n#....???\n#....???\n######??", resolution=0.5)
 KNOWN = grid_from_picture("########\n#......#\n#......#\n#......#\n########", resolution=0.5)
 START = Pose2(1.25, 1.25)
-PATIENCE_SECONDS = 20.0
 
 
 class ToyWorld:
@@ -83,10 +83,10 @@ class ExploreTest(unittest.TestCase):
     def test_cancelling_stops_the_robot_and_ends_the_goal(self):
         feedback = []
         self._explore(self.client, "dawdles", feedback.append)
-        self._wait_until(lambda: feedback)
+        wait_until("feedback", lambda: feedback)
         self.client.cancel_goal()
         self.assertEqual(self._end(self.client), GoalStatus.PREEMPTED)
-        self._wait_until(lambda: self.world.cancelled == 1)
+        wait_until("the cancel", lambda: self.world.cancelled == 1)
         self.assertGreater(self.client.get_result().explored_area, 0.0)
 
     def test_what_cannot_be_reached_is_reported(self):
@@ -105,18 +105,12 @@ class ExploreTest(unittest.TestCase):
 
     def _explore(self, client, manner, feedback=None):
         self.world.reset(manner)
-        self._wait_until(lambda: server_is_ready(client))
+        wait_until("the action", lambda: server_is_ready(client))
         client.send_goal(ExploreGoal(return_to_start=True), feedback_cb=feedback)
 
     def _end(self, client):
-        self._wait_until(lambda: goal_is_over(client))
+        wait_until("the result", lambda: goal_is_over(client))
         return client.get_state()
-
-    def _wait_until(self, is_met):
-        deadline = time.monotonic() + PATIENCE_SECONDS
-        while not is_met():
-            self.assertLess(time.monotonic(), deadline)
-            time.sleep(0.02)
 
 
 if __name__ == "__main__":

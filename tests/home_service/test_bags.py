@@ -13,6 +13,7 @@ from pathlib import Path
 import psutil
 import rosbag
 import rostest
+from waiting import wait_until
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 RUN_SECONDS, CLOSE_SECONDS = 140.0, 15.0
@@ -49,13 +50,13 @@ class BagsTest(unittest.TestCase):
                 stdout=stream,
                 start_new_session=True,
             )
-        self._wait("simulation", lambda: "the home is open" in output.read_text(), RUN_SECONDS)
-        self._wait("bag", lambda: list(self.folder.glob("*/bag/*.bag.active")), CLOSE_SECONDS)
+        wait_until("the simulation", lambda: "the home is open" in output.read_text(), RUN_SECONDS)
+        wait_until("a bag", lambda: list(self.folder.glob("*/bag/*.bag.active")), CLOSE_SECONDS)
         time.sleep(2.0)
         children = psutil.Process(run.pid).children(recursive=True)
         os.kill(run.pid, signal.SIGKILL)
         run.wait()
-        self._wait("the bag's end", lambda: list(self.folder.glob("*/bag/*.bag")), CLOSE_SECONDS)
+        wait_until("the bag's end", lambda: list(self.folder.glob("*/bag/*.bag")), CLOSE_SECONDS)
         for process in children:
             if process.is_running():
                 process.terminate()
@@ -80,12 +81,6 @@ class BagsTest(unittest.TestCase):
         made = next(path for path in self.folder.iterdir() if path not in known)
         made = made.rename(self.folder / ("replay" if script == "replay.sh" else "live"))
         return json.loads((made / "result.json").read_text())
-
-    def _wait(self, what, is_there, seconds):
-        deadline = time.monotonic() + seconds
-        while not is_there():
-            self.assertLess(time.monotonic(), deadline, f"no {what}")
-            time.sleep(0.1)
 
 
 if __name__ == "__main__":

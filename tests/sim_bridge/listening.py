@@ -1,17 +1,7 @@
-"""Waiting for the simulation, and hearing what it says."""
-
-import time
+"""Hearing what the simulation says."""
 
 import rospy
-
-PATIENCE_SECONDS = 20.0
-
-
-def wait_until(what, is_met):
-    deadline = time.monotonic() + PATIENCE_SECONDS
-    while not is_met():
-        assert time.monotonic() < deadline, f"waited in vain for {what}"
-        time.sleep(0.005)
+from waiting import wait_until
 
 
 class Heard:
@@ -22,9 +12,13 @@ class Heard:
         self._subscriber = rospy.Subscriber(topic, kind, self.messages.append, queue_size=1000)
 
     def next(self):
-        count = len(self.messages)
-        wait_until("a message", lambda: len(self.messages) > count)
-        return self.messages[-1]
+        return self.following(1)[0]
+
+    def following(self, count):
+        """The next ``count`` messages."""
+        first = len(self.messages)
+        wait_until("messages", lambda: len(self.messages) >= first + count)
+        return self.messages[first : first + count]
 
     def is_connected(self):
         return self._subscriber.get_num_connections() > 0

@@ -16,6 +16,7 @@ from sensor_msgs.msg import LaserScan
 from sim_bridge_msgs.srv import Step
 from std_msgs.msg import Float64
 from std_srvs.srv import Empty
+from waiting import wait_until
 
 BOX = """<sdf version='1.6'><model name='any'><pose>0 0 0.2 0 0 0</pose><link name='body'>
 <inertial><mass>2</mass></inertial>
@@ -118,7 +119,7 @@ class TestGazebo(unittest.TestCase):
         )
         stamps = []
         call("/gazebo/unpause_physics", Empty)
-        self.wait_until(lambda: stamps)
+        wait_until("a message", lambda: stamps)
         odometry.unregister()
 
     def test_world_properties_list_the_models(self):
@@ -256,14 +257,14 @@ class TestGazebo(unittest.TestCase):
 
     def test_states_can_be_set_by_topic(self):
         publisher = rospy.Publisher("/gazebo/set_model_state", ModelState, queue_size=1)
-        self.wait_until(publisher.get_num_connections)
+        wait_until("the simulator", publisher.get_num_connections)
         publisher.publish(ModelState("mobile_base", pose_at(0.6, 0.0), Twist(), ""))
-        self.wait_until(lambda: abs(model_state("mobile_base").pose.position.x - 0.6) < 0.01)
+        wait_until("the robot", lambda: abs(model_state("mobile_base").pose.position.x - 0.6) < 0.01)
         self.spawn(1.0)
         links = rospy.Publisher("/gazebo/set_link_state", LinkState, queue_size=1)
-        self.wait_until(links.get_num_connections)
+        wait_until("the simulator", links.get_num_connections)
         links.publish(LinkState("crate::body", pose_at(1.5, 0.2, 0.2), Twist(), ""))
-        self.wait_until(lambda: abs(model_state("crate").pose.position.x - 1.5) < 0.01)
+        wait_until("the crate", lambda: abs(model_state("crate").pose.position.x - 1.5) < 0.01)
 
     def test_all_models_and_links_are_told_by_topic(self):
         models = rospy.wait_for_message("/gazebo/model_states", ModelStates, 10.0)
@@ -329,12 +330,6 @@ class TestGazebo(unittest.TestCase):
         kept = client.update_configuration({"gravity_x": 3.0})
         self.assertEqual((kept["gravity_x"], kept["gravity_z"]), (0.0, -1.6), "only along z")
         client.update_configuration({"gravity_z": -9.8})
-
-    def wait_until(self, is_met):
-        deadline = time.monotonic() + 20.0
-        while not is_met():
-            self.assertLess(time.monotonic(), deadline, "waited in vain")
-            time.sleep(0.01)
 
 
 if __name__ == "__main__":

@@ -11,12 +11,13 @@ from gazebo_msgs.msg import ModelState
 from gazebo_msgs.srv import SetModelState
 from geometry_msgs.msg import Pose, Twist, Vector3
 from kobuki_msgs.msg import BumperEvent, CliffEvent, SensorState, WheelDropEvent
-from listening import PATIENCE_SECONDS, Heard, wait_until
+from listening import Heard
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, JointState, PointCloud2
 from sensor_msgs.point_cloud2 import read_points
 from std_msgs.msg import String
 from std_srvs.srv import Empty
+from waiting import PATIENCE_SECONDS, wait_until
 
 from planar_ros.messages import quaternion_of
 

@@ -7,6 +7,7 @@ import unittest
 import rospy
 import rostest
 from std_msgs.msg import Float64
+from waiting import wait_until
 
 from planar_ros.messages import LaserScanArrays
 from planar_ros.progress import Progress
@@ -28,7 +29,7 @@ class TestLockStep(unittest.TestCase):
 
         rospy.Subscriber("scan", LaserScanArrays, work, queue_size=100, tcp_nodelay=True)
         rospy.Subscriber("sim_bridge/real_time_factor", Float64, lambda message: factors.append(message.data))
-        self._wait_until(lambda: len(factors) >= 2 and len(stamps) > 50)
+        wait_until("speed and odometry", lambda: len(factors) >= 2 and len(stamps) > 50)
         gaps = [later - earlier for earlier, later in zip(stamps, stamps[1:])]
         self.assertLess(max(gaps), PERIOD + 1e-6)
         self.assertLess(max(ahead[10:]), PERIOD + 1e-6, "but for the first, which start the lock-step")
@@ -36,13 +37,7 @@ class TestLockStep(unittest.TestCase):
 
         working = False
         count = len(stamps)
-        self._wait_until(lambda: len(stamps) > count + 20)
-
-    def _wait_until(self, is_met):
-        deadline = time.monotonic() + 25.0
-        while not is_met():
-            self.assertLess(time.monotonic(), deadline, "waited in vain")
-            time.sleep(0.01)
+        wait_until("odometry", lambda: len(stamps) > count + 20)
 
 
 if __name__ == "__main__":

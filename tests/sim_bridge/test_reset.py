@@ -13,9 +13,9 @@ from geometry_msgs.msg import PoseWithCovarianceStamped
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import Odometry
 from std_srvs.srv import Empty
+from waiting import wait_until
 
 NODES = ("/sim_bridge", "/robot_state_publisher", "/map_server", "/amcl", "/move_base")
-PATIENCE_SECONDS = 60.0
 
 
 class TestReset(unittest.TestCase):
@@ -23,11 +23,11 @@ class TestReset(unittest.TestCase):
         self.truth = []
         rospy.Subscriber("base_pose_ground_truth", Odometry, self.truth.append, queue_size=1000)
         self.initial_pose = rospy.Publisher("initialpose", PoseWithCovarianceStamped, queue_size=1)
-        self.wait_until(lambda: self.truth, "the simulation")
+        wait_until("the simulation", lambda: self.truth)
 
     def test_reset_world_in_the_middle_of_a_goal(self):
         self.start_goal(2.0, 3.0)
-        self.wait_until(lambda: self.distance_from(0.0, 0.0) > 0.7, "the robot to set off")
+        wait_until("the robot to set off", lambda: self.distance_from(0.0, 0.0) > 0.7)
         self.reset("/gazebo/reset_world")
         self.assertLess(self.distance_from(0.0, 0.0), 0.5)
         stamps = [message.header.stamp.to_sec() for message in self.truth]
@@ -37,9 +37,9 @@ class TestReset(unittest.TestCase):
 
     def test_reset_simulation_in_the_middle_of_a_goal(self):
         self.start_goal(2.0, 3.0)
-        self.wait_until(lambda: self.distance_from(0.0, 0.0) > 0.7, "the robot to set off")
+        wait_until("the robot to set off", lambda: self.distance_from(0.0, 0.0) > 0.7)
         self.reset("/gazebo/reset_simulation")
-        self.wait_until(lambda: self.truth[-1].header.stamp.to_sec() < 5.0, "time to begin anew")
+        wait_until("time to begin anew", lambda: self.truth[-1].header.stamp.to_sec() < 5.0)
         self.assertLess(self.distance_from(0.0, 0.0), 0.5)
         self.assert_status_is_told()
         self.tell_initial_pose()
@@ -49,12 +49,12 @@ class TestReset(unittest.TestCase):
         """Several times: an old timer ends at its first sleep after the jump."""
         told = []
         rospy.Subscriber("move_base/status", GoalStatusArray, told.append, queue_size=10)
-        self.wait_until(lambda: len(told) >= 5, "the status of move_base")
+        wait_until("the status of move_base", lambda: len(told) >= 5)
 
     def start_goal(self, x, y):
         """A client of its own: one that has lived through a jump of time has forgotten nothing of it."""
         client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
-        self.wait_until(lambda: client.wait_for_server(rospy.Duration(0.1)), "move_base")
+        wait_until("move_base", lambda: client.wait_for_server(rospy.Duration(0.1)))
         goal = MoveBaseGoal()
         goal.target_pose.header.frame_id = "map"
         goal.target_pose.pose.position.x, goal.target_pose.pose.position.y = x, y
@@ -69,7 +69,7 @@ class TestReset(unittest.TestCase):
 
     def tell_initial_pose(self):
         """Where the robot was a moment ago, as a person would click it: its goal goes on meanwhile."""
-        self.wait_until(self.initial_pose.get_num_connections, "amcl")
+        wait_until("amcl", self.initial_pose.get_num_connections)
         last = self.truth[-1]
         message = PoseWithCovarianceStamped()
         message.header.stamp, message.header.frame_id = last.header.stamp, "map"
@@ -82,19 +82,13 @@ class TestReset(unittest.TestCase):
         for name in NODES:
             self.assertTrue(rosnode.rosnode_ping(name, max_count=1), f"{name} is gone")
         client = self.start_goal(1.0, 0.3)
-        self.wait_until(lambda: client.get_state() not in (GoalStatus.PENDING, GoalStatus.ACTIVE), "the goal")
+        wait_until("the goal", lambda: client.get_state() not in (GoalStatus.PENDING, GoalStatus.ACTIVE))
         self.assertEqual(client.get_state(), GoalStatus.SUCCEEDED, client.get_goal_status_text())
         self.assertLess(self.distance_from(1.0, 0.3), 0.3)
 
     def distance_from(self, x, y):
         position = self.truth[-1].pose.pose.position
         return ((position.x - x) ** 2 + (position.y - y) ** 2) ** 0.5
-
-    def wait_until(self, is_met, what):
-        deadline = time.monotonic() + PATIENCE_SECONDS
-        while not is_met():
-            self.assertLess(time.monotonic(), deadline, f"waited in vain for {what}")
-            time.sleep(0.01)
 
 
 if __name__ == "__main__":

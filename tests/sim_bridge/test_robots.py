@@ -11,11 +11,12 @@ import rostest
 from gazebo_msgs.srv import DeleteModel, SpawnModel
 from geometry_msgs.msg import Pose, Twist
 from kobuki_msgs.msg import BumperEvent, MotorPower
-from listening import PATIENCE_SECONDS, Heard, wait_until
+from listening import Heard
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Empty, String
 from tf2_msgs.msg import TFMessage
+from waiting import PATIENCE_SECONDS, wait_until
 
 from planar_ros.messages import LaserScanArrays, quaternion_of
 from sim_bridge import robot_named

@@ -3,45 +3,23 @@
 
 import math
 import threading
-import time
 import unittest
 
 import numpy as np
 import rospy
 import rostest
 from geometry_msgs.msg import Twist
+from listening import Heard
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64, String
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker
+from waiting import wait_until
 
 from planar_ros.messages import LaserScanArrays
 from planar_ros.transforms import Transforms
-
-PATIENCE_SECONDS = 20.0
-
-
-class Recorder:
-    """All messages of a topic."""
-
-    def __init__(self, topic, kind):
-        self.messages = []
-        self._subscriber = rospy.Subscriber(topic, kind, self.messages.append, queue_size=1000)
-
-    def next(self, count=1):
-        """The next ``count`` messages."""
-        first = len(self.messages)
-        wait_until(lambda: len(self.messages) >= first + count)
-        return self.messages[first : first + count]
-
-
-def wait_until(is_met):
-    deadline = time.monotonic() + PATIENCE_SECONDS
-    while not is_met():
-        assert time.monotonic() < deadline, "waited in vain"
-        time.sleep(0.005)
 
 
 def periods(messages):
@@ -51,21 +29,21 @@ def periods(messages):
 class TestSimBridge(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.odom = Recorder("odom", Odometry)
-        cls.truth = Recorder("base_pose_ground_truth", Odometry)
-        cls.scan = Recorder("scan", LaserScanArrays)
-        cls.joints = Recorder("joint_states", JointState)
-        cls.clock = Recorder("/clock", Clock)
-        cls.tf = Recorder("/tf", TFMessage)
-        cls.contacts = Recorder("contacts", String)
-        cls.real_time_factor = Recorder("sim_bridge/real_time_factor", Float64)
+        cls.odom = Heard("odom", Odometry)
+        cls.truth = Heard("base_pose_ground_truth", Odometry)
+        cls.scan = Heard("scan", LaserScanArrays)
+        cls.joints = Heard("joint_states", JointState)
+        cls.clock = Heard("/clock", Clock)
+        cls.tf = Heard("/tf", TFMessage)
+        cls.contacts = Heard("contacts", String)
+        cls.real_time_factor = Heard("sim_bridge/real_time_factor", Float64)
         cls.transforms = Transforms()
         cls.commands = {
             topic: rospy.Publisher(topic, Twist, queue_size=1)
             for topic in ("cmd_vel", "mobile_base/commands/velocity")
         }
         cls.boxes = rospy.Publisher("sim_bridge/add_box", Marker, queue_size=1)
-        wait_until(lambda: cls.scan.messages and cls.boxes.get_num_connections())
+        wait_until("the simulation", lambda: cls.scan.messages and cls.boxes.get_num_connections())
 
     def drive(self, topic, v, omega, messages=25):
         """Commands a speed for so many periods of the odometry; returns the last odometry."""
@@ -73,50 +51,50 @@ class TestSimBridge(unittest.TestCase):
         command.linear.x, command.angular.z = v, omega
         for _ in range(messages):
             self.commands[topic].publish(command)
-            (odometry,) = self.odom.next()
+            odometry = self.odom.next()
         return odometry
 
     def test_every_topic_comes_at_its_rate_and_time_never_goes_back(self):
-        self.assertTrue(np.allclose(periods(self.odom.next(50)), 0.02))
-        self.assertTrue(np.allclose(periods(self.truth.next(50)), 0.02))
-        self.assertTrue(np.allclose(periods(self.scan.next(10)), 0.1))
-        self.assertTrue(np.allclose(periods(self.joints.next(10)), 0.1))
-        times = [message.clock.to_sec() for message in self.clock.next(50)]
+        self.assertTrue(np.allclose(periods(self.odom.following(50)), 0.02))
+        self.assertTrue(np.allclose(periods(self.truth.following(50)), 0.02))
+        self.assertTrue(np.allclose(periods(self.scan.following(10)), 0.1))
+        self.assertTrue(np.allclose(periods(self.joints.following(10)), 0.1))
+        times = [message.clock.to_sec() for message in self.clock.following(50)]
         self.assertTrue(np.allclose(np.diff(times), 0.02))
 
     def test_simulated_time_passes_at_the_speed_asked_for(self):
-        (factor,) = self.real_time_factor.next()
+        factor = self.real_time_factor.next()
         self.assertAlmostEqual(factor.data, 3.0, delta=0.5)
 
     def test_frames_are_those_of_a_turtlebot(self):
-        (odometry,) = self.odom.next()
+        odometry = self.odom.next()
         self.assertEqual((odometry.header.frame_id, odometry.child_frame_id), ("odom", "base_footprint"))
         self.assertGreater(odometry.pose.covariance[0], 0.0)
-        (truth,) = self.truth.next()
+        truth = self.truth.next()
         self.assertEqual(truth.header.frame_id, "world")
-        (scan,) = self.scan.next()
+        scan = self.scan.next()
         self.assertEqual(scan.header.frame_id, "laser")
         self.assertEqual(len(scan.ranges), 360)
         for frame in ("laser", "base_link", "wheel_left_link", "wheel_right_link", "caster_front_link"):
-            wait_until(lambda frame=frame: self.transforms.lookup("odom", frame) is not None)
+            wait_until("its transform", lambda frame=frame: self.transforms.lookup("odom", frame) is not None)
 
     def test_odom_to_base_footprint_is_sent_with_the_odometry(self):
         def transform():
-            sent = [one for message in self.tf.next(3) for one in message.transforms]
+            sent = [one for message in self.tf.following(3) for one in message.transforms]
             return next((one for one in sent if one.child_frame_id == "base_footprint"), None)
 
-        wait_until(lambda: transform() is not None)
+        wait_until("its transform", lambda: transform() is not None)
         self.assertEqual(transform().header.frame_id, "odom")
 
     def test_both_command_topics_drive_the_robot_and_silence_stops_it(self):
         for topic in self.commands:
             self.assertAlmostEqual(self.drive(topic, 0.0, 0.8).twist.twist.angular.z, 0.8, delta=0.1)
-            stopped = self.odom.next(60)[-1]
+            stopped = self.odom.following(60)[-1]
             self.assertAlmostEqual(stopped.twist.twist.angular.z, 0.0, delta=0.05)
 
     def test_wheels_turn_in_joint_states(self):
         self.drive("cmd_vel", 0.1, 0.0)
-        (joints,) = self.joints.next()
+        joints = self.joints.next()
         self.assertEqual(joints.name, ["wheel_left_joint", "wheel_right_joint"])
         self.assertGreater(min(joints.velocity), 1.0)
 
@@ -126,18 +104,21 @@ class TestSimBridge(unittest.TestCase):
 
     def test_an_added_box_is_seen_and_what_is_touched_is_named(self):
         box = Marker(type=Marker.CUBE, ns="crate")
-        (truth,) = self.truth.next()
+        truth = self.truth.next()
         heading = 2.0 * math.atan2(truth.pose.pose.orientation.z, truth.pose.pose.orientation.w)
         box.pose.position.x = truth.pose.pose.position.x + 0.7 * math.cos(heading)
         box.pose.position.y = truth.pose.pose.position.y + 0.7 * math.sin(heading)
         box.pose.orientation = truth.pose.pose.orientation
         box.scale.x = box.scale.y = box.scale.z = 0.4
         self.boxes.publish(box)
-        wait_until(lambda: abs(self.scan.next()[0].ranges[180] - 0.5) < 0.05)
+        wait_until("the box in the scan", lambda: abs(self.scan.next().ranges[180] - 0.5) < 0.05)
         pushing = threading.Event()
         threading.Thread(target=self._push_until, args=(pushing,), daemon=True).start()
         try:
-            wait_until(lambda: any("crate::link" in message.data for message in self.contacts.messages))
+            wait_until(
+                "the contact",
+                lambda: any("crate::link" in message.data for message in self.contacts.messages),
+            )
         finally:
             pushing.set()
 

@@ -12,8 +12,8 @@ import rospy
 import rostest
 from gazebo_msgs.srv import DeleteModel, GetModelState, GetPhysicsProperties
 from geometry_msgs.msg import Pose
-from listening import PATIENCE_SECONDS, wait_until
 from std_srvs.srv import Empty
+from waiting import PATIENCE_SECONDS, wait_until
 
 from gazebo_ros.gazebo_interface import spawn_sdf_model_client
 

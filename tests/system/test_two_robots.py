@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """Two robots drive to two goals at once in one world, and do not hear each other."""
 
-import time
 import unittest
 
 import actionlib
@@ -11,13 +10,14 @@ from actionlib_msgs.msg import GoalStatus
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import Odometry
 from std_msgs.msg import String
+from waiting import wait_until
 
 from planar import Pose2
 from planar_ros.actions import server_is_ready
 from planar_ros.messages import LaserScanArrays, pose2_from_msg, pose2_to_msg
 
+RESULT_SECONDS = 120.0
 ARRIVAL_TOLERANCE = 0.25
-WALL_DEADLINE = 120.0
 GOALS = {"alice": Pose2(-2.0, 1.0, 3.14), "bob": Pose2(2.0, 3.0, 0.0)}
 
 
@@ -60,15 +60,17 @@ class Witness:
 class TwoRobotsTest(unittest.TestCase):
     def test_both_arrive_where_they_were_sent(self):
         robots = {name: Witness(name) for name in GOALS}
-        self._wait(
+        wait_until(
             "two robots",
             lambda: all(server_is_ready(one.client) and one.truth and one.frames for one in robots.values()),
         )
         for name, one in robots.items():
             one.send(GOALS[name])
-        self._wait("both to drive", lambda: all(one.distance > 0.3 for one in robots.values()))
+        wait_until("both to drive", lambda: all(one.distance > 0.3 for one in robots.values()))
         self.assertTrue(all(one.is_active() for one in robots.values()), "both drive at once")
-        self._wait("results", lambda: not any(one.is_active() for one in robots.values()))
+        wait_until(
+            "both results", lambda: not any(one.is_active() for one in robots.values()), RESULT_SECONDS
+        )
         for name, one in robots.items():
             self.assertEqual(one.client.get_state(), GoalStatus.SUCCEEDED, one.client.get_goal_status_text())
             error = one.truth.distance_to(GOALS[name])
@@ -76,12 +78,6 @@ class TwoRobotsTest(unittest.TestCase):
             self.assertLess(error, ARRIVAL_TOLERANCE)
             self.assertEqual(one.collisions, set())
             self.assertEqual(one.frames, {f"{name}/{frame}" for frame in ("odom", "base_footprint", "laser")})
-
-    def _wait(self, what, is_there):
-        deadline = time.monotonic() + WALL_DEADLINE
-        while not is_there():
-            self.assertLess(time.monotonic(), deadline, f"no {what}")
-            time.sleep(0.02)
 
 
 if __name__ == "__main__":

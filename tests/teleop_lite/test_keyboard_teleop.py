@@ -6,12 +6,12 @@ import pty
 import signal
 import subprocess
 import termios
-import time
 import unittest
 
 import rospy
 import rostest
 from geometry_msgs.msg import Twist
+from waiting import wait_until
 
 COMMAND = ["rosrun", "teleop_lite", "turtlebot_teleop_key"]
 TOPIC = "/turtlebot_teleop_keyboard/cmd_vel"
@@ -41,7 +41,9 @@ class KeyboardTeleopTest(unittest.TestCase):
         run = subprocess.Popen(COMMAND, stdin=subprocess.PIPE)
         run.stdin.write(b"i:0.5\n")
         run.stdin.flush()
-        self._wait_until(lambda: (0.0, 0.0) in self.velocities[-1:] and max(self.velocities)[0] > 0.0)
+        wait_until(
+            "driving and a stop", lambda: (0.0, 0.0) in self.velocities[-1:] and max(self.velocities)[0] > 0.0
+        )
         run.stdin.write(b"l:0.5")
         run.stdin.close()
         self.assertEqual(run.wait(EXIT_SECONDS), 0)
@@ -87,7 +89,7 @@ class KeyboardTeleopTest(unittest.TestCase):
             os.write(keyboard, b"u")
             return self.velocities and self.velocities[-1][0] >= 0.1
 
-        self._wait_until(is_moving)
+        wait_until("motion", is_moving)
         end(run, keyboard)
         code = run.wait(EXIT_SECONDS)
         self.assertEqual(self.velocities[-1], (0.0, 0.0))
@@ -95,12 +97,6 @@ class KeyboardTeleopTest(unittest.TestCase):
         os.close(keyboard)
         os.close(terminal)
         return code
-
-    def _wait_until(self, is_met):
-        deadline = time.monotonic() + EXIT_SECONDS
-        while not is_met():
-            self.assertLess(time.monotonic(), deadline)
-            time.sleep(0.05)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,6 @@
 import contextlib
 import subprocess
 import tempfile
-import time
 import unittest
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from learning_server.srv import IntPlus
 from roslaunch.config import load_config_default
 from std_srvs.srv import Empty, Trigger
 from turtlesim.msg import Pose
+from waiting import wait_until
 
 RADIUS = 0.5 / 0.2  # metres: of the circle that velocity_publisher drives
 
@@ -60,23 +60,17 @@ class CourseTest(unittest.TestCase):
     def setUp(self):
         rospy.ServiceProxy("/reset", Empty)()
 
-    def wait_until(self, is_so, what, seconds=20.0):
-        deadline = time.monotonic() + seconds
-        while not is_so():
-            self.assertLess(time.monotonic(), deadline, what)
-            time.sleep(0.05)
-
     def pose(self):
         return rospy.wait_for_message("/turtle1/pose", Pose, 5.0)
 
     def test_the_velocity_publisher_drives_a_circle(self):
         places_xy = []
         with running("learning_topic", "velocity_publisher.py"):
-            self.wait_until(lambda: self.pose().linear_velocity > 0.0, "the turtle does not move")
+            wait_until("the turtle to move", lambda: self.pose().linear_velocity > 0.0)
             subscriber = rospy.Subscriber(
                 "/turtle1/pose", Pose, lambda pose: places_xy.append((pose.x, pose.y))
             )
-            self.wait_until(lambda: len(places_xy) > 300, "no poses")
+            wait_until("poses", lambda: len(places_xy) > 300)
             subscriber.unregister()
         x, y = np.array(places_xy).T
         # The circle through all places, by least squares: x^2 + y^2 = 2 a x + 2 b y + c.
@@ -89,13 +83,13 @@ class CourseTest(unittest.TestCase):
 
     def test_the_pose_subscriber_prints_where_the_turtle_is(self):
         with running("learning_topic", "pose_subscriber.py") as printed:
-            self.wait_until(lambda: "turtle pose: x 5.54, y 5.54" in printed(), "no pose is printed")
+            wait_until("a printed pose", lambda: "turtle pose: x 5.54, y 5.54" in printed())
 
     def test_company_info_is_published_and_received(self):
         with running("learning_topic", "information_subscriber.py") as printed, running(
             "learning_topic", "information_publisher.py"
         ):
-            self.wait_until(lambda: "company info: Home Service" in printed(), "nothing is received")
+            wait_until("the company info", lambda: "company info: Home Service" in printed())
 
     def test_a_turtle_is_spawned_once(self):
         code, output = run("learning_server", "turtle_spawn.py")
@@ -112,7 +106,7 @@ class CourseTest(unittest.TestCase):
             for message, drives in (("driving", True), ("standing", False), ("driving", True)):
                 answer = toggle()
                 self.assertEqual((answer.success, answer.message), (True, message))
-                self.wait_until(lambda: (self.pose().linear_velocity > 0.0) == drives, message)  # noqa: B023
+                wait_until(message, lambda: (self.pose().linear_velocity > 0.0) == drives)  # noqa: B023
 
     def test_5_and_6_are_11(self):
         with running("learning_server", "int_plus_server.py"):

@@ -1,0 +1,13 @@
+"""Waiting for something to become so, never for ever."""
+
+import time
+
+PATIENCE_SECONDS = 60.0  # wall time, of a machine that has other things to do
+
+
+def wait_until(what, is_met, seconds=PATIENCE_SECONDS):
+    """Fails with ``what`` there was to wait for, after that wall time."""
+    deadline = time.monotonic() + seconds
+    while not is_met():
+        assert time.monotonic() < deadline, f"waited {seconds:g} s in vain for {what}"
+        time.sleep(0.01)
