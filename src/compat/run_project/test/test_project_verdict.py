@@ -35,6 +35,18 @@ def test_a_goal_that_was_sent_again_until_it_was_reached_is_no_failure():
     assert verdict.reason.startswith("1 of 2 goals reached")
 
 
+@pytest.mark.parametrize(
+    ("metres", "ending", "success"), [(0.3, PREEMPTED, True), (0.7, PREEMPTED, False), (0.3, ABORTED, False)]
+)
+def test_a_goal_that_is_cancelled_when_the_robot_is_there_is_reached(metres, ending, success):
+    ledger = Ledger()
+    ledger.see_goal(0.0, "goal", (1.0, 2.0))
+    ledger.see_position((1.0 + metres, 2.0))
+    ledger.see_status(1.0, "goal", ending, "")
+    assert ledger.goals["goal"].distance == metres
+    assert judge(ledger).success is success
+
+
 A, B, C = (1.0, 2.0), (3.0, 4.0), (5.0, 6.0)
 
 

@@ -20,17 +20,26 @@ FINAL = frozenset(("preempted", "succeeded", "aborted", "rejected", "recalled", 
 # Metres: a marker that moves by less stays; a robot that moves by more at once has been put there.
 SAME_PLACE = 0.1
 JUMP = 0.5
+# Metres from a goal within which a project may call it reached, and cancel it, by its own measure.
+NEAR = 0.5
 
 
 @dataclass
 class Goal:
-    """A goal, its place in metres if known, and how it ended."""
+    """A goal, its place, how it ended, and how far from it the robot truly was then; metres, if known."""
 
     status: str = "pending"
     text: str = ""
     place: Optional[Tuple[float, float]] = None
     sent: float = 0.0
     ended: Optional[float] = None
+    distance: Optional[float] = None
+
+    @property
+    def is_reached(self) -> bool:
+        """Whether it succeeded, or was cancelled by who sent it when the robot was there."""
+        is_near = self.distance is not None and self.distance < NEAR
+        return self.status == "succeeded" or (self.status == "preempted" and is_near)
 
 
 @dataclass
@@ -59,6 +68,8 @@ class Ledger:
         self.latest_news = now
         if status in FINAL:
             goal.ended = now
+            if goal.place and self._position:
+                goal.distance = round(math.dist(goal.place, self._position), 3)
         said = f": {text}" if text and status not in ("active", "succeeded") else ""
         return f"goal {list(self.goals).index(name) + 1}{_at(goal.place)} {status}{said}"
 
@@ -135,11 +146,11 @@ def judge(ledger: Ledger, failure: Optional[str] = None, is_errand: bool = False
     ``failure``: why the run was cut short, if it was. ``is_errand``: markers alone are not enough.
     """
     goals = list(ledger.goals.values())[: ledger.two_rounds or None]
-    reached = sum(goal.status == "succeeded" for goal in goals)
+    reached = sum(goal.is_reached for goal in goals)
     failed = [
         f"goal {number}{_at(goal.place)} {goal.status}{f' ({goal.text})' if goal.text else ''}"
         for number, goal in enumerate(goals, 1)
-        if goal.status != "succeeded" and not _was_reached_later(goal, goals[number:])
+        if not goal.is_reached and not _was_reached_later(goal, goals[number:])
     ]
     if failure:
         return Verdict(False, f"{failure}; {reached} of {len(goals)} goals reached")
@@ -152,11 +163,11 @@ def judge(ledger: Ledger, failure: Optional[str] = None, is_errand: bool = False
 
 
 def _was_reached_later(goal: Goal, later: List[Goal]) -> bool:
-    return any(other.status == "succeeded" and _is_same_place(goal, other) for other in later)
+    return any(other.is_reached and _is_same_place(goal, other) for other in later)
 
 
 def _is_reached_again(goal: Goal, later: Goal) -> bool:
-    return goal.status == "succeeded" and later.status == "succeeded" and _is_same_place(goal, later)
+    return goal.is_reached and later.is_reached and _is_same_place(goal, later)
 
 
 def _is_one_place(goals: List[Goal]) -> bool:
