@@ -13,8 +13,8 @@ import unittest
 import uuid
 from pathlib import Path
 
-import psutil
 import rostest
+from processes import processes_with
 
 SCRIPT = Path(__file__).resolve().parents[2] / "scripts/run_project.sh"
 SAMPLE = Path(__file__).resolve().parent / "sample_project"
@@ -44,7 +44,7 @@ class RunProjectTest(unittest.TestCase):
         self.assertEqual(result["collisions"], [])
         self.assertGreater(result["distance_driven"], 2.0)
         self.assertEqual(_hash_of(self._checkout), hash_before)
-        self.assertEqual(_processes_with(self._mark), [])
+        self.assertEqual(processes_with(self._mark), [])
         self.assertEqual(_mounts_of(self._checkout), [])
 
     def test_an_interrupted_run_leaves_nothing_behind(self):
@@ -56,7 +56,7 @@ class RunProjectTest(unittest.TestCase):
         run.communicate(timeout=EXIT_SECONDS)
         print(f"ended {time.monotonic() - started:.1f} s after the interrupt")
         self.assertEqual(run.returncode, 130)
-        self.assertEqual(_processes_with(self._mark), [])
+        self.assertEqual(processes_with(self._mark), [])
 
     def test_what_is_no_project_is_refused_in_one_line(self):
         for path, words in ((self._folder / "nowhere", "no such folder"), (self._folder, "")):
@@ -98,18 +98,6 @@ def _hash_of(folder):
 def _mounts_of(checkout):
     """Mounts that name the checkout, or the work folder that is named after it; others mount things too."""
     return [line for line in Path("/proc/self/mounts").read_text().splitlines() if checkout.name in line]
-
-
-def _processes_with(mark):
-    """Living processes whose environment holds ``mark``."""
-    found = []
-    for process in psutil.process_iter():
-        try:
-            if mark.encode() in Path(f"/proc/{process.pid}/environ").read_bytes():
-                found.append(" ".join(process.cmdline()))
-        except (OSError, psutil.Error):
-            continue
-    return found
 
 
 if __name__ == "__main__":

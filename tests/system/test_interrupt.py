@@ -10,8 +10,8 @@ import unittest
 import uuid
 from pathlib import Path
 
-import psutil
 import rostest
+from processes import processes_with
 
 SCRIPT = Path(__file__).resolve().parents[2] / "scripts/home_service.sh"
 MOMENTS = (0.1, 0.6, 1.5, 3.0, 6.0)
@@ -23,7 +23,7 @@ class InterruptTest(unittest.TestCase):
         for moment in MOMENTS:
             mark = f"HOME_SERVICE_TEST={uuid.uuid4()}"
             code = self._interrupted_run(moment, mark)
-            left = _processes_with(mark)
+            left = processes_with(mark)
             print(f"interrupted after {moment} s: exit code {code}, {len(left)} processes left")
             self.assertNotEqual(code, 0)
             self.assertEqual(left, [], f"interrupted after {moment} s")
@@ -41,18 +41,6 @@ class InterruptTest(unittest.TestCase):
             time.sleep(moment)
             run.send_signal(signal.SIGINT)
             return run.wait(EXIT_SECONDS)
-
-
-def _processes_with(mark):
-    """Living processes whose environment holds ``mark``."""
-    found = []
-    for process in psutil.process_iter():
-        try:
-            if mark.encode() in Path(f"/proc/{process.pid}/environ").read_bytes():
-                found.append(" ".join(process.cmdline()))
-        except (OSError, psutil.Error):
-            continue
-    return found
 
 
 if __name__ == "__main__":
