@@ -74,8 +74,10 @@ class MissionsTest(unittest.TestCase):
         with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
             file.write(wrong)
             file.flush()
-            refused = subprocess.run(["rosrun", "pick_objects", "deliver", file.name], timeout=WALL_DEADLINE)
+            command = ["rosrun", "pick_objects", "deliver", file.name]
+            refused = subprocess.run(command, stderr=subprocess.PIPE, text=True, timeout=WALL_DEADLINE)
         self.assertEqual(refused.returncode, 2)
+        self.assertIn(f"error: {file.name}:9: deliveries[2].to names no place: sofaa", refused.stderr)
         self.client.send_goal(DeliverGoal(mission=wrong))
         self._wait("the refusal", lambda: goal_is_over(self.client))
         self.assertEqual(self.client.get_state(), GoalStatus.ABORTED)

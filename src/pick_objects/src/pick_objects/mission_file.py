@@ -13,6 +13,7 @@ from planar.yaml_table import Table, parse_table, read_table
 
 Places = Mapping[str, Place]
 WIDEST_SOLID = 0.25
+NAME_OF_TEXT = "mission"  # that stands where else the name of the file does
 
 
 def load_mission(
@@ -36,7 +37,7 @@ def parse_mission(
     grid: Optional[OccupancyGrid] = None,
 ) -> Mission:
     """The mission of a text, as load_mission of a file."""
-    return _mission(parse_table(text, "mission"), "mission", known_places, defaults, grid)
+    return _mission(parse_table(text, NAME_OF_TEXT), NAME_OF_TEXT, known_places, defaults, grid)
 
 
 def _mission(

@@ -13,6 +13,7 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 from home_service_msgs.msg import DeliverAction, DeliverGoal, DeliveryState
 
+from pick_objects.mission_file import NAME_OF_TEXT
 from planar_ros.actions import goal_is_over, server_is_ready
 
 POLL_SECONDS, TELL_SECONDS, CANCEL_SECONDS = 0.1, 2.0, 10.0
@@ -39,7 +40,8 @@ def main(arguments: Optional[List[str]] = None) -> int:
         if time.monotonic() > deadline or interrupted.is_set():
             return _complain(f"no action {rospy.resolve_name('deliver')} within {options.server_timeout:g} s")
         time.sleep(POLL_SECONDS)
-    return _follow(client, DeliverGoal(mission=mission), interrupted, time.monotonic() + options.timeout)
+    deadline = time.monotonic() + options.timeout
+    return _follow(client, DeliverGoal(mission=mission), str(options.mission), interrupted, deadline)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -54,7 +56,8 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _follow(client, goal: DeliverGoal, interrupted: threading.Event, deadline: float) -> int:
+def _follow(client, goal: DeliverGoal, name: str, interrupted: threading.Event, deadline: float) -> int:
+    """Sends the goal, tells how it goes; ``name``: the file it was read from."""
     latest = [0.0]
 
     def tell(feedback):
@@ -75,13 +78,13 @@ def _follow(client, goal: DeliverGoal, interrupted: threading.Event, deadline: f
     deliveries = getattr(client.get_result(), "deliveries", ())  # a server that is gone leaves no result
     for state in deliveries:
         _tell_end(state)
-    print(client.get_goal_status_text(), flush=True)
+    text = client.get_goal_status_text()
+    if client.get_state() == GoalStatus.ABORTED and not deliveries:
+        return _complain(text.replace(NAME_OF_TEXT, name, 1))
+    print(text, flush=True)
     if interrupted.is_set():
         return INTERRUPTED
-    if client.get_state() == GoalStatus.SUCCEEDED:
-        return SUCCESS
-    is_refused = client.get_state() == GoalStatus.ABORTED and not deliveries
-    return BAD_INPUT if is_refused else FAILURE
+    return SUCCESS if client.get_state() == GoalStatus.SUCCEEDED else FAILURE
 
 
 def _tell_end(state: DeliveryState) -> None:
