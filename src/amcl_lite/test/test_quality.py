@@ -6,7 +6,7 @@ import pytest
 from amcl_lite.beams import Beams
 from amcl_lite.likelihood_field import likelihood_field
 from amcl_lite.particles import FreeSpace
-from amcl_lite.quality import LostDetector, Quality, quality_of
+from amcl_lite.quality import LOST_BELOW, LostDetector, Quality, quality_of
 from amcl_lite.recovery import find_hypotheses
 from amcl_lite.scan_matching import matched
 from planar import OccupancyGrid, Pose2, grid_from_picture, wrap
@@ -64,11 +64,22 @@ def test_people_in_the_way_do_not_make_the_robot_lost():
     assert quality_of(HERE, crowded, FIELD, GRID).probability > 0.9
 
 
-def test_a_scan_that_met_nothing_proves_nothing():
+def test_beams_through_walls_speak_against_a_pose():
     blind = Beams(np.full(9, MAX_RANGE), np.linspace(-1.0, 1.0, 9), MAX_RANGE, np.zeros(2))
-    assert quality_of(HERE, blind, FIELD, GRID).probability == 0.0
-    nothing = Beams(np.empty(0), np.empty(0), MAX_RANGE, np.zeros(2))
-    assert quality_of(HERE, nothing, FIELD, GRID).probability == 0.0
+    assert quality_of(HERE, blind, FIELD, GRID).probability < 0.01
+
+
+def test_a_scan_that_measured_nothing_proves_nothing():
+    nothing = Beams(np.empty(0), np.empty(0), MAX_RANGE, np.zeros(2), unmeasured=90)
+    assert quality_of(HERE, nothing, FIELD, GRID).probability == 0.5
+
+
+def test_a_few_beams_on_something_unmapped_do_not_make_a_robot_lost():
+    beams = beams_at(HERE, count=6)
+    cut_short = Beams(0.5 * beams.ranges, beams.directions, MAX_RANGE, beams.start_xy, unmeasured=60)
+    quality = quality_of(HERE, cut_short, FIELD, GRID)
+    assert quality.explained < 0.2
+    assert LOST_BELOW < quality.probability < 0.5
 
 
 def of(probability):

@@ -2,7 +2,8 @@
 """Sets out, changes its mind, turns round, backs up, and starts with a clean slate."""
 
 import math
-import time
+
+import rospy
 
 from home_service import Commander, Result
 
@@ -11,7 +12,7 @@ if not robot.is_ready(timeout=60.0):
     raise SystemExit(f"error: still waiting for {', '.join(robot.waiting_for)}")
 
 robot.go_to(2.0, 3.0)
-time.sleep(2.0)
+rospy.sleep(2.0)  # of simulated time
 robot.cancel()
 outcomes = [robot.wait()]
 robot.spin(math.pi)

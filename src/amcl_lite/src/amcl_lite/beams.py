@@ -19,13 +19,15 @@ class Beams:
     """Some beams of one scan in the base frame.
 
     ``ranges``: (N,), metres, ``max_range`` where nothing was met. ``directions``: (N,), radians.
-    ``start_xy``: (2,), where the laser sits in the base frame.
+    ``start_xy``: (2,), where the laser sits in the base frame. ``unmeasured``: how many more were looked at
+    and left out, being NaN.
     """
 
     ranges: np.ndarray
     directions: np.ndarray
     max_range: float
     start_xy: np.ndarray
+    unmeasured: int = 0
 
     @cached_property
     def ends_xy(self) -> np.ndarray:
@@ -59,7 +61,8 @@ def _beams(scan: Scan, settings: LocalizerSettings, step: int) -> Beams:
     ranges, directions = _measured(
         scan.ranges[::step].astype(np.float64), angles + scan.laser_in_base.yaw, min_range, max_range
     )
-    return Beams(ranges, directions, max_range, np.array([scan.laser_in_base.x, scan.laser_in_base.y]))
+    start_xy = np.array([scan.laser_in_base.x, scan.laser_in_base.y])
+    return Beams(ranges, directions, max_range, start_xy, len(angles) - len(ranges))
 
 
 def _step(count: int, settings: LocalizerSettings) -> int:

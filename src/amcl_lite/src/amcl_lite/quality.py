@@ -43,28 +43,28 @@ class Quality:
 
 
 def quality_of(base_in_map: Pose2, beams: Beams, field: LikelihoodField, grid: OccupancyGrid) -> Quality:
-    """Judges a pose by a scan's beams; the probability is 0 if no beam met anything."""
+    """Judges a pose by the beams of a scan; the fewer of them met anything, the less they tell."""
     laser_in_map = base_in_map @ Pose2(beams.start_xy[0], beams.start_xy[1], 0.0)
     expected = cast_rays(grid, laser_in_map, beams.directions, beams.max_range)
     x, y, yaw = base_in_map.x, base_in_map.y, base_in_map.yaw
     explained, through, mean_distance = _judged(
         x, y, yaw, beams.ends_xy, beams.ranges, expected, field.into_cells, field.fit, field.sigma
     )
-    if math.isinf(mean_distance):
-        return Quality(0.0, explained, through, mean_distance)
-    evidence = _BIAS + _PER_EXPLAINED * explained + _PER_THROUGH * through
+    looked_at = max(len(beams.ranges) + beams.unmeasured, 1)
+    met, through = len(beams.ends_xy) / looked_at, through / looked_at
+    evidence = met * (_BIAS + _PER_EXPLAINED * explained) + _PER_THROUGH * through
     return Quality(1.0 / (1.0 + math.exp(-evidence)), explained, through, mean_distance)
 
 
 @numba.njit(cache=True)
 def _judged(x, y, yaw, ends_xy, ranges, expected, into_cells, fit, sigma):
-    """How well beams are explained, the share through walls, the mean distance (inf: no beam met)."""
+    """How well beams are explained, how many went through walls, the mean distance (inf: no beam met)."""
     through = 0
     for i in range(ranges.size):
         through += ranges[i] > expected[i] + _THROUGH
-    share_through, met = through / max(ranges.size, 1), ends_xy.shape[0]
+    met = ends_xy.shape[0]
     if met == 0:
-        return 0.0, share_through, np.inf
+        return 0.0, through, np.inf
     col, row, c, s = placed(x, y, yaw, into_cells)
     explained, distance = 0.0, 0.0
     for i in range(met):
@@ -73,7 +73,7 @@ def _judged(x, y, yaw, ends_xy, ranges, expected, into_cells, fit, sigma):
         squared = max(-2.0 * sigma**2 * math.log(max(value, _TINY)), 0.0)
         distance += math.sqrt(squared)
         explained += math.exp(-0.5 * squared / _EXPLAINED_WITHIN**2)
-    return explained / met, share_through, distance / met
+    return explained / met, through, distance / met
 
 
 class LostDetector:

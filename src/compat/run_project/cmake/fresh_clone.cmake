@@ -14,6 +14,17 @@ if(_text MATCHES "generate_messages" AND NOT _text MATCHES "message_generation")
   find_package(message_generation QUIET)
 endif()
 
+# boost's _1, _2 ... were global, and came with ros.h.
+file(GLOB_RECURSE _sources "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp" "${CMAKE_CURRENT_SOURCE_DIR}/*.h*")
+set(_text "")
+foreach(_source IN LISTS _sources)
+  file(READ "${_source}" _source)
+  string(APPEND _text "${_source}")
+endforeach()
+if(_text MATCHES "boost::bind *\\([^;]*[ ,]_[1-9]" AND NOT _text MATCHES "placeholders")
+  add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:SHELL:-include boost/bind.hpp -DBOOST_BIND_GLOBAL_PLACEHOLDERS>")
+endif()
+
 # Tests are not built here; roslaunch_add_file_check asks for one all the same.
 if(NOT CATKIN_ENABLE_TESTING AND NOT COMMAND catkin_run_tests_target)
   function(catkin_run_tests_target)

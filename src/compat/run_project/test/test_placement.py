@@ -61,6 +61,7 @@ def test_the_workspace_below_a_repository_stays_below_it():
         ("SRC=`pwd`\nWORLD=${SRC}/src/world/home.world", "."),
         ('xterm -e "cd $(pwd)/../.. ; source devel/setup.bash" &', "src/scripts"),
         ("cd ../..\nxterm -e 'roslaunch a b world_file:=$(pwd)/src/world/home.world'", "src/scripts"),
+        ("cd $(pwd)/../..\nroot=$(pwd)\nxterm -e 'source ${root}/devel/setup.bash'", "src/scripts"),
         ('xterm -e " roslaunch a b world_file:="$PWD"/src/world/home.world " &', "."),
         ("rosparam load scripts/../world/home.world", "src"),
     ],

@@ -65,6 +65,14 @@ def test_the_goal_of_a_third_round_does_not_count():
     assert verdict.reason.startswith("4 of 4 goals reached")
 
 
+def test_of_a_marker_that_goes_with_the_robot_the_ends_are_told():
+    ledger = ledger_of(SUCCEEDED)
+    for step in range(20):
+        ledger.see_marker(float(step), ("parcel", 0), (float(step), 0.0))
+    reason = judge(ledger).reason
+    assert "shown at (3.00, 0.00), ... 12 more ..., shown at (16.00, 0.00)" in reason
+
+
 def test_a_run_that_was_cut_short_is_a_failure():
     assert not judge(ledger_of(SUCCEEDED), "interrupted").success
 

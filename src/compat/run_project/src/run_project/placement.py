@@ -25,7 +25,7 @@ ROOT = "/@"
 
 _NAME = r"[\w@%+.-]+"
 _ABSOLUTE = re.compile(rf"(?<![\w}})~.:/-])((?:~|\$HOME|\$\{{HOME\}})?(?:/(?:{_NAME}|\$USER|\$\{{USER\}}))+)")
-_ASSIGNMENT = re.compile(r"^\s*(?:export\s+|readonly\s+)?(\w+)=(\"[^\"]*\"|'[^']*'|[^\s;&]*)", re.MULTILINE)
+_ASSIGNMENT = re.compile(r"^\s*(?:export\s+|readonly\s+)?(\w+)=(\"[^\"]*\"|'[^']*'|[^\s;&]*)")
 _SCRIPT_FOLDER = re.compile(r"[$`(]+\s*dirname\s+[\"']?\$\{?(?:0|BASH_SOURCE(?:\[0\])?)\}?[\"']?\s*[)`]")
 _CD_PWD = re.compile(
     r"\$\(\s*cd\s+(?:-P\s+)?(?:--\s+)?[\"']?([^\"'\s;&>]+)[\"']?[^()]*&&\s*pwd(?:\s+-P)?\s*\)"
@@ -117,10 +117,9 @@ def paths_named(text: str, start: str, script_folder: str, packages: Mapping[str
     text = _QUOTED_PIECE.sub(r"\2", _replaced(_SCRIPT_FOLDER, script_folder, text))
     text = _CD_PWD.sub(lambda match: _joined(start, match.group(1)), text)
     text = _ROSPACK.sub(lambda match: packages.get(match.group(1) or match.group(2), "?"), text)
-    text = _with_values(text, start)
-    folder = start
+    folder, values = start, Values()
     for line in text.splitlines():
-        line = _replaced(_WORKING_FOLDER, folder, line.split("#", 1)[0])
+        line = values.put_into(_replaced(_WORKING_FOLDER, folder, line.split("#", 1)[0]))
         here, at = folder, 0
         for change in _CD.finditer(line):
             yield from _paths_in(line[at : change.start()], here)
@@ -128,6 +127,22 @@ def paths_named(text: str, start: str, script_folder: str, packages: Mapping[str
         yield from _paths_in(line[at:], here)
         if line.lstrip().startswith("cd "):
             folder = here
+
+
+class Values:
+    """The variables that a script has assigned so far."""
+
+    def __init__(self):
+        self._values: Dict[str, str] = {}
+
+    def put_into(self, line: str) -> str:
+        """The line with the variables replaced; what it assigns itself is known from then on."""
+        for name, value in self._values.items():
+            line = _replaced(re.compile(rf"\$(?:{name}\b|\{{{name}\}})"), value, line)
+        assigned = _ASSIGNMENT.match(line)
+        if assigned:
+            self._values[assigned.group(1)] = assigned.group(2).strip("\"'")
+        return line
 
 
 def mounts_to(path: str, mounts: Mapping[str, Path]) -> Optional[Path]:
@@ -140,14 +155,6 @@ def mounts_to(path: str, mounts: Mapping[str, Path]) -> Optional[Path]:
 
 def _tried(path: Optional[Path]) -> str:
     return os.path.normpath(f"{ROOT}/{path}")
-
-
-def _with_values(text: str, start: str) -> str:
-    """The text with the variables replaced that it assigns itself."""
-    for name, value in _ASSIGNMENT.findall(text):
-        value = _replaced(_WORKING_FOLDER, start, value.strip("\"'"))
-        text = _replaced(re.compile(rf"\$(?:{name}\b|\{{{name}\}})"), value, text)
-    return text
 
 
 def _replaced(pattern: Pattern[str], value: str, text: str) -> str:

@@ -22,6 +22,7 @@ SAME_PLACE = 0.1
 JUMP = 0.5
 # Metres from a goal within which a project may call it reached, and cancel it, by its own measure.
 NEAR = 0.5
+MOST_TOLD = 8
 
 
 @dataclass
@@ -156,10 +157,18 @@ def judge(ledger: Ledger, failure: Optional[str] = None, is_errand: bool = False
         return Verdict(False, f"{failure}; {reached} of {len(goals)} goals reached")
     if failed:
         return Verdict(False, f"{reached} of {len(goals)} goals reached; {'; '.join(failed)}")
-    story = f"markers: {', '.join(ledger.markers)}" if ledger.markers else "no marker shown"
+    story = f"markers: {', '.join(_shortened(ledger.markers))}" if ledger.markers else "no marker shown"
     if goals:
         return Verdict(True, f"{reached} of {len(goals)} goals reached; {story}")
     return Verdict(bool(ledger.markers) and not is_errand, f"no goal sent; {story}")
+
+
+def _shortened(events: List[str]) -> List[str]:
+    """Without the middle, where a marker went with the robot."""
+    if len(events) <= MOST_TOLD:
+        return events
+    half = MOST_TOLD // 2
+    return [*events[:half], f"... {len(events) - MOST_TOLD} more ...", *events[-half:]]
 
 
 def _was_reached_later(goal: Goal, later: List[Goal]) -> bool:
