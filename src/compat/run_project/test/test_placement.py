@@ -35,10 +35,16 @@ def test_a_checkout_that_was_cloned_into_src_is_put_there_by_its_name():
     assert placement.mounts == {"/home/author/catkin_ws": Path()}
 
 
-def test_the_scripts_own_folder_tells_how_deep_the_checkout_lay():
-    own = 'WS="$( cd "$( dirname "${BASH_SOURCE[0]}" )/../../.." >/dev/null && pwd )"'
+@pytest.mark.parametrize(
+    ("own", "checkout"),
+    [
+        ('WS="$( cd "$( dirname "${BASH_SOURCE[0]}" )/../../.." >/dev/null && pwd )"', "src/repo"),
+        ('WS=$( cd $(dirname "$0")/../../; pwd -P )', "src"),
+    ],
+)
+def test_the_scripts_own_folder_tells_how_deep_the_checkout_lay(own, checkout):
     text = f"{own}\nsource $WS/devel/setup.bash\n"
-    assert placed(sources(*FILES), "scripts/home_service.sh", text).checkout == Path("src/repo")
+    assert placed(sources(*FILES), "scripts/home_service.sh", text).checkout == Path(checkout)
 
 
 def test_a_home_is_meant_whoever_lives_there():
@@ -62,6 +68,7 @@ def test_the_workspace_below_a_repository_stays_below_it():
         ('xterm -e "cd $(pwd)/../.. ; source devel/setup.bash" &', "src/scripts"),
         ("cd ../..\nxterm -e 'roslaunch a b world_file:=$(pwd)/src/world/home.world'", "src/scripts"),
         ("cd $(pwd)/../..\nroot=$(pwd)\nxterm -e 'source ${root}/devel/setup.bash'", "src/scripts"),
+        ("xterm -e 'cd ..; cd world/; roslaunch home.launch'", "src/scripts"),
         ('xterm -e " roslaunch a b world_file:="$PWD"/src/world/home.world " &', "."),
         ("rosparam load scripts/../world/home.world", "src"),
     ],

@@ -28,7 +28,7 @@ _ABSOLUTE = re.compile(rf"(?<![\w}})~.:/-])((?:~|\$HOME|\$\{{HOME\}})?(?:/(?:{_N
 _ASSIGNMENT = re.compile(r"^\s*(?:export\s+|readonly\s+)?(\w+)=(\"[^\"]*\"|'[^']*'|[^\s;&]*)")
 _SCRIPT_FOLDER = re.compile(r"[$`(]+\s*dirname\s+[\"']?\$\{?(?:0|BASH_SOURCE(?:\[0\])?)\}?[\"']?\s*[)`]")
 _CD_PWD = re.compile(
-    r"\$\(\s*cd\s+(?:-P\s+)?(?:--\s+)?[\"']?([^\"'\s;&>]+)[\"']?[^()]*&&\s*pwd(?:\s+-P)?\s*\)"
+    r"\$\(\s*cd\s+(?:-P\s+)?(?:--\s+)?[\"']?([^\"'\s;&>]+)[\"']?[^()]*?(?:&&|;)\s*pwd(?:\s+-P)?\s*\)"
 )
 _WORKING_FOLDER = re.compile(r"\$\(\s*pwd\s*\)|`\s*pwd\s*`|\$PWD\b|\$\{PWD\}")
 _ROSPACK = re.compile(r"(?:\$\(\s*rospack\s+find\s+([\w-]+)\s*\)|`\s*rospack\s+find\s+([\w-]+)\s*`)")
@@ -109,7 +109,7 @@ def absolute_paths(text: str, home: str, user: str) -> Set[str]:
 
 
 def paths_named(text: str, start: str, script_folder: str, packages: Mapping[str, str]) -> Iterator[str]:
-    """The relative paths that a shell script names, resolved as if it was started in the folder ``start``.
+    """The paths that a shell script names or goes to, resolved as if it was started in the folder ``start``.
 
     Not a shell: knows ``cd``, assignments, ``$(pwd)``, the script's own folder and ``rospack find``.
     All folders, also those of the packages, are given absolute.
@@ -124,6 +124,7 @@ def paths_named(text: str, start: str, script_folder: str, packages: Mapping[str
         for change in _CD.finditer(line):
             yield from _paths_in(line[at : change.start()], here)
             here, at = _joined(here, change.group(1)), change.end()
+            yield here
         yield from _paths_in(line[at:], here)
         if line.lstrip().startswith("cd "):
             folder = here
