@@ -10,8 +10,8 @@ import numpy as np
 from sim_bridge.slicing import cut
 from sim_bridge.world import Body
 
-# Metres or radians of movement below which an outline is not drawn anew: bodies at rest tremble, and drawing a mesh
-# takes its time.
+# Metres or radians of movement below which an outline is not drawn anew: bodies at rest tremble, and meshes
+# take their time.
 STILL = 5e-4
 
 
