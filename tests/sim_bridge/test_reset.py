@@ -17,17 +17,19 @@ from waiting import wait_until
 
 NODES = ("/sim_bridge", "/robot_state_publisher", "/map_server", "/amcl", "/move_base")
 
+PATIENCE_SECONDS = 60.0
+
 
 class TestReset(unittest.TestCase):
     def setUp(self):
         self.truth = []
         rospy.Subscriber("base_pose_ground_truth", Odometry, self.truth.append, queue_size=1000)
         self.initial_pose = rospy.Publisher("initialpose", PoseWithCovarianceStamped, queue_size=1)
-        wait_until("the simulation", lambda: self.truth)
+        wait_until("the simulation", lambda: self.truth, PATIENCE_SECONDS)
 
     def test_reset_world_in_the_middle_of_a_goal(self):
         self.start_goal(2.0, 3.0)
-        wait_until("the robot to set off", lambda: self.distance_from(0.0, 0.0) > 0.7)
+        wait_until("the robot to set off", lambda: self.distance_from(0.0, 0.0) > 0.7, PATIENCE_SECONDS)
         self.reset("/gazebo/reset_world")
         self.assertLess(self.distance_from(0.0, 0.0), 0.5)
         stamps = [message.header.stamp.to_sec() for message in self.truth]
@@ -37,9 +39,9 @@ class TestReset(unittest.TestCase):
 
     def test_reset_simulation_in_the_middle_of_a_goal(self):
         self.start_goal(2.0, 3.0)
-        wait_until("the robot to set off", lambda: self.distance_from(0.0, 0.0) > 0.7)
+        wait_until("the robot to set off", lambda: self.distance_from(0.0, 0.0) > 0.7, PATIENCE_SECONDS)
         self.reset("/gazebo/reset_simulation")
-        wait_until("time to begin anew", lambda: self.truth[-1].header.stamp.to_sec() < 5.0)
+        wait_until("time to begin anew", lambda: self.truth[-1].header.stamp.to_sec() < 5.0, PATIENCE_SECONDS)
         self.assertLess(self.distance_from(0.0, 0.0), 0.5)
         self.assert_status_is_told()
         self.tell_initial_pose()
@@ -49,12 +51,12 @@ class TestReset(unittest.TestCase):
         """Several times: an old timer ends at its first sleep after the jump."""
         told = []
         rospy.Subscriber("move_base/status", GoalStatusArray, told.append, queue_size=10)
-        wait_until("the status of move_base", lambda: len(told) >= 5)
+        wait_until("the status of move_base", lambda: len(told) >= 5, PATIENCE_SECONDS)
 
     def start_goal(self, x, y):
         """A client of its own: one that has lived through a jump of time has forgotten nothing of it."""
         client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
-        wait_until("move_base", lambda: client.wait_for_server(rospy.Duration(0.1)))
+        wait_until("move_base", lambda: client.wait_for_server(rospy.Duration(0.1)), PATIENCE_SECONDS)
         goal = MoveBaseGoal()
         goal.target_pose.header.frame_id = "map"
         goal.target_pose.pose.position.x, goal.target_pose.pose.position.y = x, y
@@ -69,7 +71,7 @@ class TestReset(unittest.TestCase):
 
     def tell_initial_pose(self):
         """Where the robot was a moment ago, as a person would click it: its goal goes on meanwhile."""
-        wait_until("amcl", self.initial_pose.get_num_connections)
+        wait_until("amcl", self.initial_pose.get_num_connections, PATIENCE_SECONDS)
         last = self.truth[-1]
         message = PoseWithCovarianceStamped()
         message.header.stamp, message.header.frame_id = last.header.stamp, "map"
@@ -82,7 +84,11 @@ class TestReset(unittest.TestCase):
         for name in NODES:
             self.assertTrue(rosnode.rosnode_ping(name, max_count=1), f"{name} is gone")
         client = self.start_goal(1.0, 0.3)
-        wait_until("the goal", lambda: client.get_state() not in (GoalStatus.PENDING, GoalStatus.ACTIVE))
+        wait_until(
+            "the goal",
+            lambda: client.get_state() not in (GoalStatus.PENDING, GoalStatus.ACTIVE),
+            PATIENCE_SECONDS,
+        )
         self.assertEqual(client.get_state(), GoalStatus.SUCCEEDED, client.get_goal_status_text())
         self.assertLess(self.distance_from(1.0, 0.3), 0.3)
 

@@ -16,7 +16,7 @@ from planar import Pose2
 from planar_ros.actions import server_is_ready
 from planar_ros.messages import LaserScanArrays, pose2_from_msg, pose2_to_msg
 
-RESULT_SECONDS = 120.0
+WALL_DEADLINE = 120.0
 ARRIVAL_TOLERANCE = 0.25
 GOALS = {"alice": Pose2(-2.0, 1.0, 3.14), "bob": Pose2(2.0, 3.0, 0.0)}
 
@@ -63,14 +63,13 @@ class TwoRobotsTest(unittest.TestCase):
         wait_until(
             "two robots",
             lambda: all(server_is_ready(one.client) and one.truth and one.frames for one in robots.values()),
+            WALL_DEADLINE,
         )
         for name, one in robots.items():
             one.send(GOALS[name])
-        wait_until("both to drive", lambda: all(one.distance > 0.3 for one in robots.values()))
+        wait_until("both to drive", lambda: all(one.distance > 0.3 for one in robots.values()), WALL_DEADLINE)
         self.assertTrue(all(one.is_active() for one in robots.values()), "both drive at once")
-        wait_until(
-            "both results", lambda: not any(one.is_active() for one in robots.values()), RESULT_SECONDS
-        )
+        wait_until("both results", lambda: not any(one.is_active() for one in robots.values()), WALL_DEADLINE)
         for name, one in robots.items():
             self.assertEqual(one.client.get_state(), GoalStatus.SUCCEEDED, one.client.get_goal_status_text())
             error = one.truth.distance_to(GOALS[name])

@@ -42,7 +42,9 @@ class KeyboardTeleopTest(unittest.TestCase):
         run.stdin.write(b"i:0.5\n")
         run.stdin.flush()
         wait_until(
-            "driving and a stop", lambda: (0.0, 0.0) in self.velocities[-1:] and max(self.velocities)[0] > 0.0
+            "driving and a stop",
+            lambda: (0.0, 0.0) in self.velocities[-1:] and max(self.velocities)[0] > 0.0,
+            EXIT_SECONDS,
         )
         run.stdin.write(b"l:0.5")
         run.stdin.close()
@@ -89,7 +91,7 @@ class KeyboardTeleopTest(unittest.TestCase):
             os.write(keyboard, b"u")
             return self.velocities and self.velocities[-1][0] >= 0.1
 
-        wait_until("motion", is_moving)
+        wait_until("motion", is_moving, EXIT_SECONDS)
         end(run, keyboard)
         code = run.wait(EXIT_SECONDS)
         self.assertEqual(self.velocities[-1], (0.0, 0.0))
