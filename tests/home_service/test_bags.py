@@ -2,6 +2,7 @@
 """A recorded run, localized anew from its bag, is as good as it was; a killed run leaves a closed bag."""
 
 import json
+import math
 import os
 import signal
 import subprocess
@@ -19,6 +20,7 @@ SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 RUN_SECONDS, CLOSE_SECONDS = 140.0, 15.0
 # Live and replayed errors are a few millimetres each, on so short a way.
 LARGEST_RMSE = 0.02
+STANDING = 0.05
 
 
 class BagsTest(unittest.TestCase):
@@ -32,6 +34,7 @@ class BagsTest(unittest.TestCase):
         bag = self.folder / "live/bag/inputs_0.bag"
         with rosbag.Bag(str(bag)) as recorded:
             self.assertGreater(recorded.get_message_count("/scan"), 20)
+            self.assertLess(self._distance_before_the_first_scan(recorded), STANDING)
         before = bag.read_bytes()
         replayed = self._run("replay.sh", str(self.folder / "live"))
         print(f"rmse live {live['localization_error']}, replayed {replayed['localization_error']}")
@@ -64,6 +67,13 @@ class BagsTest(unittest.TestCase):
         with rosbag.Bag(str(next(self.folder.glob("*/bag/*.bag")))) as bag:
             print(f"{bag.get_message_count()} messages")
             self.assertGreater(bag.get_message_count("/base_pose_ground_truth"), 0)
+
+    def _distance_before_the_first_scan(self, recorded):
+        """How far the robot had come from where it starts, the origin, in metres."""
+        first = next(scan.header.stamp for _, scan, _ in recorded.read_messages(["/scan"]))
+        truths = (truth for _, truth, _ in recorded.read_messages(["/base_pose_ground_truth"]))
+        position = next(truth for truth in truths if truth.header.stamp >= first).pose.pose.position
+        return math.hypot(position.x, position.y)
 
     def _run(self, script, *arguments):
         """Runs a script to its success; returns its result. Its folder becomes ``live`` or ``replay``."""

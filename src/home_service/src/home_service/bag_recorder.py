@@ -10,12 +10,14 @@ from typing import List
 import roslib.packages
 
 from home_service.errors import LaunchError
+from home_service.node_api import hears_all
 
 PROFILES = {
     "inputs": ["/clock", "/tf", "/tf_static", "/odom", "/scan", "/base_pose_ground_truth"],
     "all": ["--all"],
 }
 """What is recorded: what localization and mapping work on, with the truth; or everything."""
+NODE = "bag_recorder"
 SPLIT_MEGABYTES = 128
 MOST_SPLITS = 8
 CLOSE_SECONDS = 5.0
@@ -41,13 +43,17 @@ class BagRecorder:
         command += ["--repeat-latched", "--output-name", str(folder / profile), *PROFILES[profile]]
         with (folder / "record.log").open("wb") as log:
             self._process = subprocess.Popen(
-                [*command, "__name:=bag_recorder"],
+                [*command, f"__name:={NODE}"],
                 stdin=subprocess.DEVNULL,
                 stdout=log,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
                 preexec_fn=_end_with_parent,
             )
+
+    def is_ready(self) -> bool:
+        """Whether the inputs that are published reach it; one that has ended is not waited for."""
+        return self._process.poll() is not None or hears_all(f"/{NODE}", PROFILES["inputs"])
 
     def close(self) -> List[str]:
         """Ends the recording; returns what is missing of it."""

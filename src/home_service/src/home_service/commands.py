@@ -106,6 +106,7 @@ def _drive_through(run: Run, goals) -> Verdict:
         name = f"goal {number} ({pose.x:g}, {pose.y:g}, {pose.yaw:g})"
         if failure is None and client.get_state() != GoalStatus.SUCCEEDED:
             failure = f"{name}: {client.get_goal_status_text()}"
+        failure = failure or run.watch_truth()
         if failure is None:
             error = run.referee.truth.distance_to(pose)
             run.display.say(f"{name}: reached, truly {error:.3f} m from it")

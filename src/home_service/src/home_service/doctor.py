@@ -2,9 +2,7 @@
 
 import json
 import os
-import socket
 import time
-import xmlrpc.client
 from argparse import Namespace
 from typing import Callable, Dict, List
 
@@ -16,12 +14,12 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
 from home_service.diagnosis import Findings, Node, Topic, as_json, as_text, problems
+from home_service.node_api import answers
 from home_service.versions import versions
 from planar_ros.messages import frame_name
 from planar_ros.waiting import TOPIC as WAITING_TOPIC
 
 HEALTHY, ILL, NOTHING_RUNS = 0, 1, 3
-ANSWER_SECONDS = 1.0
 MEASURED_TOPICS = ("/clock", "/scan", "/odom", "/joint_states", "/tf", "/cmd_vel")
 SILENT_WHILE_IDLE = ("/cmd_vel",)
 
@@ -51,24 +49,7 @@ def running_masters() -> List[str]:
         command = process.info["cmdline"] or []
         if any(part.endswith("rosmaster") for part in command) and "-p" in command:
             found.append(f"http://127.0.0.1:{command[command.index('-p') + 1]}")
-    return [uri for uri in dict.fromkeys(found) if uri and _answers(uri)]
-
-
-class _TimedTransport(xmlrpc.client.Transport):
-    """A transport that gives up on a node that hangs."""
-
-    def make_connection(self, host):
-        connection = super().make_connection(host)
-        connection.timeout = ANSWER_SECONDS
-        return connection
-
-
-def _answers(uri: str) -> bool:
-    try:
-        proxy = xmlrpc.client.ServerProxy(uri, transport=_TimedTransport())
-        return proxy.getPid("/doctor")[0] == 1
-    except (OSError, xmlrpc.client.Error, socket.timeout):
-        return False
+    return [uri for uri in dict.fromkeys(found) if uri and answers(uri)]
 
 
 def _examine(findings: Findings, seconds: float) -> None:
@@ -81,7 +62,7 @@ def _examine(findings: Findings, seconds: float) -> None:
         name for part in (publishers, subscribers, services) for names in part.values() for name in names
     ]
     findings.nodes = [
-        Node(name, is_alive=_answers(master.lookupNode(name))) for name in sorted({*everybody} - {myself})
+        Node(name, is_alive=answers(master.lookupNode(name))) for name in sorted({*everybody} - {myself})
     ]
     findings.topics = [
         Topic(name, sorted(publishers.get(name, [])), sorted({*subscribers.get(name, [])} - {myself}))

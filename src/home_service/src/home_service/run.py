@@ -8,6 +8,7 @@ from typing import Any, Callable, Dict, List, Optional
 
 import psutil
 import rospy
+from rosgraph_msgs.msg import Clock
 
 from home_service.bag_recorder import BagRecorder
 from home_service.display import Display
@@ -66,6 +67,8 @@ class Run:
             self._recorder = Recorder(self._options.places)
             if "world" in self._options:
                 self._wait("ground truth from the simulator", lambda: self.referee.truth is not None)
+            if self._bags is not None:
+                self._wait("the recorder of bags", self._bags.is_ready)
         except BaseException as error:
             self.__exit__(type(error), error, None)
             raise
@@ -105,6 +108,14 @@ class Run:
             self.display.show(self._progress())
             time.sleep(POLL_SECONDS)
         return None
+
+    def watch_truth(self) -> Optional[str]:
+        """Shows progress until the ground truth of this moment has come; returns as ``watch``."""
+        moments: List[float] = []
+        clock = rospy.Subscriber("/clock", Clock, lambda message: moments.append(message.clock.to_sec()))
+        failure = self.watch(lambda: bool(moments) and self.referee.simulated_time >= moments[0])
+        clock.unregister()
+        return failure
 
     def conclude(self, verdict: Verdict, **findings) -> int:
         """Keeps the findings for result.json, prints the verdict, and returns the exit code it deserves."""

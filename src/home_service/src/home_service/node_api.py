@@ -1,0 +1,50 @@
+"""What the master and the nodes answer when asked by XML-RPC, none of which is waited for long."""
+
+import socket
+import xmlrpc.client
+from itertools import chain
+from typing import Container, Set, Tuple
+
+import rosgraph
+
+CALLER = "/home_service"
+ANSWER_SECONDS = 1.0
+_SILENCE = (OSError, xmlrpc.client.Error, rosgraph.MasterException, socket.timeout)
+
+
+class _TimedTransport(xmlrpc.client.Transport):
+    """A transport that gives up on a node that hangs."""
+
+    def make_connection(self, host):
+        connection = super().make_connection(host)
+        connection.timeout = ANSWER_SECONDS
+        return connection
+
+
+def answers(uri: str) -> bool:
+    """Whether the master or node at ``uri`` is alive."""
+    try:
+        return _proxy(uri).getPid(CALLER)[0] == 1
+    except _SILENCE:
+        return False
+
+
+def hears_all(node: str, topics: Container[str]) -> bool:
+    """Whether each publisher of ``topics`` sends to ``node`` by now."""
+    try:
+        master = rosgraph.Master(CALLER)
+        publishers = {topic: nodes for topic, nodes in master.getSystemState()[0] if topic in topics}
+        receivers = {name: _receivers(master.lookupNode(name)) for name in {*chain(*publishers.values())}}
+    except _SILENCE:
+        return False
+    return all((topic, node) in receivers[name] for topic, names in publishers.items() for name in names)
+
+
+def _receivers(uri: str) -> Set[Tuple[str, str]]:
+    """Each topic that a node sends, with the node that it is sent to."""
+    _code, _status, connections = _proxy(uri).getBusInfo(CALLER)
+    return {(topic, peer) for _, peer, direction, _, topic, *_ in connections if direction == "o"}
+
+
+def _proxy(uri: str) -> xmlrpc.client.ServerProxy:
+    return xmlrpc.client.ServerProxy(uri, transport=_TimedTransport())
