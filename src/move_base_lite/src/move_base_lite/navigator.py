@@ -7,7 +7,7 @@ from typing import Optional, Sequence
 import numpy as np
 
 from move_base_lite.config import NavigatorSettings
-from move_base_lite.control import Controller
+from move_base_lite.control import Controller, Situation
 from move_base_lite.costmap import LayeredCostmap, Sighting, sighting_of_scan
 from move_base_lite.costmaps import TIME_TOLERANCE, Costmaps
 from move_base_lite.decision import (
@@ -248,12 +248,14 @@ class Navigator:
             return Decision(pursuit.status, Twist2(), plan_xy=plan_xy)
         try:
             control = self._controller.control(
-                base_in_map,
-                base_in_odom,
-                twist,
-                self.local_costmap,
-                self._speed_limit(pursuit, base_in_odom),
-                self._movers.at(now),
+                Situation(
+                    base_in_map,
+                    base_in_odom,
+                    twist,
+                    self.local_costmap,
+                    self._speed_limit(pursuit, base_in_odom),
+                    self._movers.at(now),
+                )
             )
         except ControlError as error:
             self._be_patient_with_control(pursuit, now, error)

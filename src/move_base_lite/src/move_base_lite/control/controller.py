@@ -1,7 +1,7 @@
 """The local planner: turns to the plan, follows it, stops at the end and turns as the goal says."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Optional
 
 import numpy as np
@@ -24,6 +24,21 @@ STOPPING_STEP = 0.05
 STOPPING_MARGIN = 1.3
 # Seconds for which a robot that stands still looks out for what moves, and metres at which that is to pass.
 SOON, PASSING = 3.0, 0.3
+
+
+@dataclass(frozen=True, eq=False)
+class Situation:
+    """What a velocity is chosen from: the robot's poses and speed, obstacles, limits, and what moves.
+
+    ``highest``: what anything but the settings allows. ``movers``: in the local frame (see Movers).
+    """
+
+    base_in_map: Pose2
+    base_in_local: Pose2
+    twist: Twist2
+    costmap: LayeredCostmap
+    highest: Twist2
+    movers: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,25 +105,14 @@ class Controller:
         """What the last control() chose from, also in vain; None if it was another way."""
         return self._follower.exploration
 
-    def control(
-        self,
-        base_in_map: Pose2,
-        base_in_local: Pose2,
-        twist: Twist2,
-        costmap: LayeredCostmap,
-        highest: Twist2,
-        movers: np.ndarray,
-    ) -> Control:
-        """The velocity for the next period, within the settings and the ``highest`` speeds.
-
-        ``movers``: what moves, in the local frame (see Movers).
+    def control(self, situation: Situation) -> Control:
+        """The velocity for the next period, within the settings and the highest speeds.
 
         Raises ControlError if none is safe.
         """
         told, self._omega_told = self._omega_told, None
         self._follower.exploration = None
-        twist = self._as_told(twist, told)
-        control = self._choose(base_in_map, base_in_local, twist, costmap, highest, movers)
+        control = self._choose(replace(situation, twist=self._as_told(situation.twist, told)))
         self._omega_told = control.command.omega
         return control
 
@@ -123,52 +127,46 @@ class Controller:
             return twist
         return Twist2(twist.v, math.copysign(told, twist.omega))
 
-    def _choose(
-        self,
-        base_in_map: Pose2,
-        base_in_local: Pose2,
-        twist: Twist2,
-        costmap: LayeredCostmap,
-        highest: Twist2,
-        movers: np.ndarray,
-    ) -> Control:
+    def _choose(self, situation: Situation) -> Control:
         assert self._tracking is not None, "control() needs a plan"
+        base_in_map, base_in_local = situation.base_in_map, situation.base_in_local
         self._tracking.advance(base_in_map.x, base_in_map.y)
         if self._is_near(base_in_map):
-            return self._turn_at_goal(base_in_map, base_in_local, twist, costmap)
+            return self._turn_at_goal(situation)
         map_in_local = base_in_local @ base_in_map.inverse()
-        plan_xy = _within(costmap, map_in_local.transform_points(self._tracking.ahead_xy))
+        plan_xy = _within(situation.costmap, map_in_local.transform_points(self._tracking.ahead_xy))
         error = self._tracking.heading_error(
             base_in_map.x, base_in_map.y, base_in_map.yaw, self._settings.heading_lookahead
         )
         turn = None
-        if self._should_turn(error) and not self._is_in_the_way(base_in_local, twist, costmap, movers):
-            turn = self._turn(error, base_in_local, twist, costmap, plan_xy)
+        if self._should_turn(error) and not self._is_in_the_way(situation):
+            turn = self._turn(error, situation, plan_xy)
         if turn is not None:
             return turn
         try:
             trajectory = self._follower.follow(
-                costmap,
+                situation.costmap,
                 base_in_local,
-                twist,
+                situation.twist,
                 plan_xy,
-                self._within_limits(highest),
+                self._within_limits(situation.highest),
                 self.distance_left,
-                movers,
+                situation.movers,
             )
         except ControlError:
-            return self._find_another_way(error, base_in_local, twist, costmap, plan_xy)
+            return self._find_another_way(error, situation, plan_xy)
         return Control(trajectory.command, trajectory.poses, plan_xy)
 
-    def _find_another_way(self, error, base_in_local, twist, costmap, plan_xy) -> Control:
+    def _find_another_way(self, error: float, situation: Situation, plan_xy: np.ndarray) -> Control:
         """Where no way on is free: turns to the plan, or backs out of a contact. Raises ControlError."""
         turn = None
         if abs(error) > FOLLOWED_ANGLE:
-            turn = self._turn(error, base_in_local, twist, costmap, plan_xy)
-        return turn or self._back_out(base_in_local, costmap, plan_xy)
+            turn = self._turn(error, situation, plan_xy)
+        return turn or self._back_out(situation, plan_xy)
 
-    def _back_out(self, base_in_local, costmap, plan_xy) -> Control:
+    def _back_out(self, situation: Situation, plan_xy: np.ndarray) -> Control:
         """Leaves a contact the way that lessens it. Raises ControlError if it cannot."""
+        costmap, base_in_local = situation.costmap, situation.base_in_local
         command = way_out(costmap, base_in_local) if costmap.contacts(base_in_local) else None
         if command is None:
             raise ControlError("every velocity within reach leads into an obstacle")
@@ -188,46 +186,46 @@ class Controller:
         self._is_turning = abs(error) > (min(ALIGNED_ANGLE, threshold) if self._is_turning else threshold)
         return self._is_turning
 
-    def _turn_at_goal(self, base_in_map, base_in_local, twist, costmap) -> Control:
-        settings = self._settings
-        here = base_in_local.as_array()[None, :]
-        error = wrap(self._goal_in_map.yaw - base_in_map.yaw)
+    def _turn_at_goal(self, situation: Situation) -> Control:
+        settings, twist = self._settings, situation.twist
+        here = situation.base_in_local.as_array()[None, :]
+        error = wrap(self._goal_in_map.yaw - situation.base_in_map.yaw)
         if abs(error) <= settings.yaw_goal_tolerance or abs(twist.v) > settings.trans_stopped_vel:
             return Control(stopping(settings, twist, self._period), here, here[:, :2])
-        turn = self._turn(error, base_in_local, twist, costmap, here[:, :2])
-        return turn or self._back_out(base_in_local, costmap, here[:, :2])
+        turn = self._turn(error, situation, here[:, :2])
+        return turn or self._back_out(situation, here[:, :2])
 
-    def _turn(self, error, base_in_local, twist, costmap, plan_xy) -> Optional[Control]:
+    def _turn(self, error: float, situation: Situation, plan_xy: np.ndarray) -> Optional[Control]:
         """Turns on the spot, the other way round if this one is obstructed; None if there is no room.
 
         A robot that drives has to come to a standstill first, and there must be room for that too.
         """
-        if not self._can_stop(base_in_local, twist, costmap):
+        if not self._can_stop(situation):
             return None
         for angle in (error, error - math.copysign(2.0 * math.pi, error)):
-            if costmap.has_room_to_turn(base_in_local, angle):
-                command = rotation_towards(self._settings, angle, twist, self._period)
-                return Control(command, base_in_local.as_array()[None, :], plan_xy)
+            if situation.costmap.has_room_to_turn(situation.base_in_local, angle):
+                command = rotation_towards(self._settings, angle, situation.twist, self._period)
+                return Control(command, situation.base_in_local.as_array()[None, :], plan_xy)
         return None
 
-    def _is_in_the_way(
-        self, base_in_local: Pose2, twist: Twist2, costmap: LayeredCostmap, movers: np.ndarray
-    ) -> bool:
+    def _is_in_the_way(self, situation: Situation) -> bool:
         """Whether something that moves would soon come near the robot if that stopped here."""
-        here = base_in_local @ Pose2(self._stopping_distance(twist), 0.0)
+        movers = situation.movers
+        here = situation.base_in_local @ Pose2(self._stopping_distance(situation.twist), 0.0)
         offsets, velocities = movers[:, :2] - (here.x, here.y), movers[:, 2:4]
         closest_at = -(offsets * velocities).sum(axis=1) / np.maximum((velocities**2).sum(axis=1), 1e-6)
         passing = offsets + velocities * np.clip(closest_at, 0.0, SOON)[:, None]
-        reach = movers[:, 4] + costmap.footprint.circumscribed_radius + PASSING
+        reach = movers[:, 4] + situation.costmap.footprint.circumscribed_radius + PASSING
         return bool((np.hypot(passing[:, 0], passing[:, 1]) < reach).any())
 
     def _stopping_distance(self, twist: Twist2) -> float:
         """Metres, negative backwards."""
         return twist.v * (self._period + abs(twist.v) / (2.0 * self._settings.acc_lim_x))
 
-    def _can_stop(self, base_in_local: Pose2, twist: Twist2, costmap: LayeredCostmap) -> bool:
+    def _can_stop(self, situation: Situation) -> bool:
         """Whether the robot touches nothing new where it would stand after braking."""
-        way = STOPPING_MARGIN * self._stopping_distance(twist)
+        costmap, base_in_local = situation.costmap, situation.base_in_local
+        way = STOPPING_MARGIN * self._stopping_distance(situation.twist)
         if abs(way) < costmap.window.resolution:
             return True
         touching = costmap.contacts(base_in_local)
