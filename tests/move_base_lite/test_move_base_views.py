@@ -62,7 +62,9 @@ class TestMoveBaseViews(MoveBaseTestCase):
         grid = potential.wait()
         self.assertEqual((grid.header.frame_id, grid.info.width, grid.info.height), ("map", 128, 80))
         cells = np.array(grid.data).reshape(80, 128)
-        at_robot, at_goal, in_wall = cells[40, 20], cells[40, 104], cells[20, 64]
+        robot = self.stage.base_in_map
+        at_robot = cells[int(robot.y / grid.info.resolution), int(robot.x / grid.info.resolution)]
+        at_goal, in_wall = cells[40, 104], cells[20, 64]
         self.assertEqual((at_robot, in_wall, cells.max()), (0, -1, PUBLISH_SCALE))
         self.assertGreater(at_goal, cells[40, 64])
 
