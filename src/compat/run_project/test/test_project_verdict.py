@@ -107,6 +107,15 @@ def test_a_marker_tells_where_it_is_shown_and_when_it_is_hidden():
     assert ledger.markers[-1] == "hidden"
 
 
+def test_an_object_is_away_between_its_being_picked_up_and_set_down():
+    ledger = Ledger()
+    away = [ledger.is_object_away]
+    for place in (A, None, B):
+        ledger.see_marker(0.0, ("", 0), place)
+        away.append(ledger.is_object_away)
+    assert away == [False, False, True, False]
+
+
 def test_distance_leaves_out_where_the_robot_was_put():
     ledger = Ledger()
     for position in ((0.0, 0.0), (0.3, 0.2), (9.0, 9.0), (9.1, 9.0)):

@@ -137,7 +137,7 @@ class ProjectRun:
         quiet_simulated = self.observer.simulated_time - ledger.latest_news
         if ledger.goals:
             enough_wall, enough_simulated = QUIET_SECONDS, QUIET_SIMULATED
-            if not self.observer.has_goal_clients:
+            if not self.observer.has_goal_clients and not ledger.is_object_away:
                 enough_wall, enough_simulated = UNATTENDED_SECONDS, UNATTENDED_SIMULATED
             return ledger.is_quiet and quiet_wall > enough_wall and quiet_simulated > enough_simulated
         # A goal may still come: bringing up localization and navigation takes a while on a busy machine.

@@ -116,6 +116,11 @@ class Ledger:
         return bool(self.goals) and all(goal.status in FINAL for goal in self.goals.values())
 
     @property
+    def is_object_away(self) -> bool:
+        """Whether markers have been shown and none is now: what was picked up is still to be set down."""
+        return bool(self.markers) and not self._shown
+
+    @property
     def two_rounds(self) -> int:
         """The number of goals after which it had been through the same places twice; 0 if it has not."""
         goals = list(self.goals.values())
