@@ -3,10 +3,11 @@
 import argparse
 import contextlib
 import math
+import signal
 import sys
 import time
 from pathlib import Path
-from typing import Dict, List, Tuple
+from typing import Dict, Iterator, List, Tuple
 
 import rospy
 from gazebo_msgs.msg import ModelStates
@@ -15,12 +16,14 @@ from geometry_msgs.msg import Point, Pose, Quaternion
 from std_srvs.srv import Empty
 
 from gazebo_ros.gazebo_interface import (
+    SERVICE_SECONDS,
     set_model_configuration_client,
     spawn_sdf_model_client,
     spawn_urdf_model_client,
 )
 
 PARAMETER_SECONDS = 30.0
+INTERRUPTS = (signal.SIGINT, signal.SIGTERM)
 
 
 class SpawnError(Exception):
@@ -69,12 +72,16 @@ def spawn(options: argparse.Namespace) -> None:
         Point(options.x, options.y, options.z), Quaternion(*quaternion(options.R, options.P, options.Y))
     )
     xml = _model_xml(options)
-    if options.wait:
-        _wait_for_model(options.wait, options.gazebo_namespace)
     client = spawn_urdf_model_client if options.urdf else spawn_sdf_model_client
     namespace, joints = options.gazebo_namespace, _joints(options)
-    if not client(options.model, xml, options.robot_namespace, pose, options.reference_frame, namespace):
-        raise SpawnError(f"{options.model} is not spawned")
+    if options.wait:
+        _wait_for_model(options.wait, namespace)
+    rospy.wait_for_service(f"{namespace}/spawn_{'urdf' if options.urdf else 'sdf'}_model", SERVICE_SECONDS)
+    with _deferring_interrupts():
+        if not client(options.model, xml, options.robot_namespace, pose, options.reference_frame, namespace):
+            raise SpawnError(f"{options.model} is not spawned")
+        if options.b:
+            rospy.on_shutdown(lambda: _delete(options.model, namespace))
     if joints and not set_model_configuration_client(
         options.model, options.param or "", list(joints), list(joints.values()), namespace
     ):
@@ -82,8 +89,21 @@ def spawn(options: argparse.Namespace) -> None:
     if options.unpause:
         rospy.ServiceProxy(f"{namespace}/unpause_physics", Empty)()
     if options.b:
-        rospy.on_shutdown(lambda: _delete(options.model, namespace))
         rospy.spin()
+
+
+@contextlib.contextmanager
+def _deferring_interrupts() -> Iterator[None]:
+    """What interrupts is heard only at the end: nobody else knows what has been spawned meanwhile."""
+    heard: List[int] = []
+    before = {number: signal.signal(number, lambda *_: heard.append(1)) for number in INTERRUPTS}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    if heard:
+        raise KeyboardInterrupt
 
 
 def _joints(options) -> Dict[str, float]:
@@ -128,11 +148,17 @@ def _wait_for_model(name: str, namespace: str) -> None:
 
 
 def main() -> None:
-    """Exit code 0 if the model is there, 1 if not."""
+    """Exit code 0 if the model is there, 1 if not, 130 if interrupted before that was known."""
     options = parse(rospy.myargv()[1:])
-    rospy.init_node("spawn_model", anonymous=True)
+    # rospy's own handler may wait for ever for a lock that is held by what it interrupts.
+    rospy.init_node("spawn_model", anonymous=True, disable_signals=True)
+    for number in INTERRUPTS:
+        signal.signal(number, signal.default_int_handler)
     try:
         spawn(options)
+    except KeyboardInterrupt:
+        rospy.signal_shutdown("interrupted")
+        sys.exit(130)
     except (SpawnError, rospy.ROSException, rospy.ServiceException) as error:
         print(f"[spawn_model] error: {error}", file=sys.stderr)
         sys.exit(1)
