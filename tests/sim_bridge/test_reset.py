@@ -12,6 +12,7 @@ from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Empty
 from waiting import wait_until
 
@@ -31,7 +32,7 @@ class TestReset(unittest.TestCase):
         self.start_goal(2.0, 3.0)
         wait_until("the robot to set off", lambda: self.distance_from(0.0, 0.0) > 0.7, PATIENCE_SECONDS)
         self.reset("/gazebo/reset_world")
-        self.assertLess(self.distance_from(0.0, 0.0), 0.5)
+        wait_until("the robot's return", lambda: self.distance_from(0.0, 0.0) < 0.5, PATIENCE_SECONDS)
         stamps = [message.header.stamp.to_sec() for message in self.truth]
         self.assertEqual(stamps, sorted(stamps), "time goes on")
         self.tell_initial_pose()
@@ -90,6 +91,8 @@ class TestReset(unittest.TestCase):
             PATIENCE_SECONDS,
         )
         self.assertEqual(client.get_state(), GoalStatus.SUCCEEDED, client.get_goal_status_text())
+        now = rospy.wait_for_message("/clock", Clock, PATIENCE_SECONDS).clock
+        wait_until("the truth of now", lambda: self.truth[-1].header.stamp >= now, PATIENCE_SECONDS)
         self.assertLess(self.distance_from(1.0, 0.3), 0.3)
 
     def distance_from(self, x, y):

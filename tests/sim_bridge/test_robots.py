@@ -169,6 +169,7 @@ class TestRobots(unittest.TestCase):
         self.assertAlmostEqual(
             self.command([self.inputs["navi"]], 0.0, 0.5).twist.twist.angular.z, 0.0, delta=0.05
         )
+        wait_until("silence", lambda: self.active.messages[-1].data == "idle")
         self.motors.publish(MotorPower(MotorPower.ON))
         self.reset.publish()
         wait_until("odometry at zero", lambda: abs(self.odom.next().pose.pose.orientation.z) < 0.01)
