@@ -10,7 +10,7 @@ from move_base_client import Heard, MoveBaseTestCase, points_of, pose_at
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.srv import GetPlan
 from sensor_msgs.msg import PointCloud2
-from std_srvs.srv import SetBool
+from std_srvs.srv import Empty, SetBool
 from visualization_msgs.msg import MarkerArray
 
 OFFICIAL = {
@@ -125,10 +125,13 @@ class TestMoveBaseTuning(MoveBaseTestCase):
 
     def test_a_layer_is_switched_off_and_on(self):
         plan = rospy.ServiceProxy("move_base/make_plan", GetPlan)
-        through_walls = pose_at(0.0, 0.0), pose_at(2.0, 3.0), 0.0
-        length = len(plan(*through_walls).plan.poses)
+        rospy.ServiceProxy("move_base/clear_costmaps", Empty)()
+        through_a_wall_out_of_sight = pose_at(-2.0, 1.0), pose_at(-2.0, 3.0), 0.0
+        length = len(plan(*through_a_wall_out_of_sight).plan.poses)
         self.tune("move_base/global_costmap/static_layer", enabled=False)
-        self.assertLess(len(plan(*through_walls).plan.poses), length)
+        self.assertLess(len(plan(*through_a_wall_out_of_sight).plan.poses), 0.5 * length)
+        self.tune("move_base/global_costmap/static_layer", enabled=True)
+        self.assertEqual(len(plan(*through_a_wall_out_of_sight).plan.poses), length)
 
     def test_a_new_footprint_is_taken_from_its_topic_and_shown(self):
         shown = Heard("move_base/local_costmap/footprint", PolygonStamped)

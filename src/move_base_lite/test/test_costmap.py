@@ -137,6 +137,18 @@ def test_the_map_stays_when_obstacles_are_forgotten():
     assert cost_at(costmap, 0.5, 2.5) == LETHAL
 
 
+def test_a_costmap_keeps_the_size_of_a_map_that_is_switched_off_and_on():
+    grid = grid_from_picture("#....\n.....\n.....", 1.0)
+    settings = CostmapSettings(static=StaticSettings(), robot_radius=0.2, obstacles=OBSTACLES)
+    costmap = LayeredCostmap(settings, grid)
+    see(costmap, Pose2(0.5, 0.5), scan_of(2.0))
+    without_map = costmap.changed_to(replace(settings, static=StaticSettings(enabled=False)))
+    without_map = without_map.changed_to(replace(without_map.settings, height=7.0))
+    assert without_map.window == costmap.window
+    assert (cost_at(without_map, 2.5, 0.5), cost_at(without_map, 0.5, 2.5)) == (LETHAL, FREE)
+    np.testing.assert_array_equal(without_map.changed_to(settings).costs, costmap.costs)
+
+
 def test_clearing_outside_a_square_keeps_what_is_near():
     costmap = LayeredCostmap(ROLLING)
     see(costmap, Pose2(), scan_of(0.6, 1.8, angle_increment=math.pi / 2))

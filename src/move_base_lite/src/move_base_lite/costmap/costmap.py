@@ -61,12 +61,19 @@ class LayeredCostmap:
     Only what can have changed is computed anew: the block that was seen, grown by the inflation radius.
     """
 
-    def __init__(self, settings: CostmapSettings, grid: Optional[OccupancyGrid] = None):
+    def __init__(
+        self,
+        settings: CostmapSettings,
+        grid: Optional[OccupancyGrid] = None,
+        map_window: Optional[Window] = None,
+    ):
+        """``map_window``: a size to keep, that of a map whose layer has been switched off since."""
         self.settings = settings
         self.footprint: Footprint = footprint_from(
             settings.footprint, settings.robot_radius, settings.footprint_padding
         )
-        self.window = _window_of(settings, grid)
+        self._map_window = map_window or _window_of_map(settings, grid)
+        self.window: Window = self._map_window or _window_of(settings)
         self.outline_xy = self.footprint.outline_xy(0.8 * self.window.resolution)
         self._inflation = Inflation(
             settings.inflation, self.footprint.inscribed_radius, self.window.resolution
@@ -126,7 +133,7 @@ class LayeredCostmap:
         """This costmap with other settings; it keeps what was seen unless its cells are others."""
         if settings == self.settings:
             return self
-        changed = LayeredCostmap(settings, self._map)
+        changed = LayeredCostmap(settings, self._map, self._map_window)
         changed._zones = self._zones.anew()
         seen, kept = self._obstacles, changed._obstacles
         if seen is not None and kept is not None and self.window.is_like(changed.window):
@@ -192,9 +199,13 @@ class LayeredCostmap:
         return self.window.everything
 
 
-def _window_of(settings: CostmapSettings, grid: Optional[OccupancyGrid]) -> Window:
-    if settings.static.enabled and grid is not None and not settings.rolling_window:
-        return Window(grid.rows, grid.cols, grid.resolution, grid.origin.x, grid.origin.y)
+def _window_of_map(settings: CostmapSettings, grid: Optional[OccupancyGrid]) -> Optional[Window]:
+    if not settings.static.enabled or grid is None or settings.rolling_window:
+        return None
+    return Window(grid.rows, grid.cols, grid.resolution, grid.origin.x, grid.origin.y)
+
+
+def _window_of(settings: CostmapSettings) -> Window:
     rows, cols = round(settings.height / settings.resolution), round(settings.width / settings.resolution)
     return Window(rows, cols, settings.resolution, settings.origin_x, settings.origin_y)
 
