@@ -1,6 +1,5 @@
 """What the master and the nodes answer when asked by XML-RPC, none of which is waited for long."""
 
-import socket
 import xmlrpc.client
 from itertools import chain
 from typing import Container, Set, Tuple
@@ -9,7 +8,7 @@ import rosgraph
 
 CALLER = "/home_service"
 ANSWER_SECONDS = 1.0
-_SILENCE = (OSError, xmlrpc.client.Error, rosgraph.MasterException, socket.timeout)
+_SILENCE = (OSError, xmlrpc.client.Error)
 
 
 class _TimedTransport(xmlrpc.client.Transport):
@@ -32,9 +31,11 @@ def answers(uri: str) -> bool:
 def hears_all(node: str, topics: Container[str]) -> bool:
     """Whether each publisher of ``topics`` sends to ``node`` by now."""
     try:
-        master = rosgraph.Master(CALLER)
-        publishers = {topic: nodes for topic, nodes in master.getSystemState()[0] if topic in topics}
-        receivers = {name: _receivers(master.lookupNode(name)) for name in {*chain(*publishers.values())}}
+        master = _proxy(rosgraph.get_master_uri())
+        _code, _status, (published, *_) = master.getSystemState(CALLER)
+        publishers = {topic: nodes for topic, nodes in published if topic in topics}
+        uris = {name: master.lookupNode(CALLER, name)[2] for name in {*chain(*publishers.values())}}
+        receivers = {name: _receivers(uri) for name, uri in uris.items()}
     except _SILENCE:
         return False
     return all((topic, node) in receivers[name] for topic, names in publishers.items() for name in names)

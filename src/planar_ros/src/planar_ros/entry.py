@@ -4,7 +4,9 @@ import importlib
 import os
 import signal
 from contextlib import contextmanager
-from typing import Any, Iterator
+from typing import Any, Callable, Iterator
+
+INTERRUPTS = (signal.SIGINT, signal.SIGTERM)
 
 
 def call(function: str, *arguments: object) -> Any:
@@ -18,7 +20,14 @@ def call(function: str, *arguments: object) -> Any:
 @contextmanager
 def leaving_when_interrupted() -> Iterator[None]:
     """SIGINT and SIGTERM end the process at once, where nothing has to be taken down yet."""
-    before = {number: signal.signal(number, _leave) for number in (signal.SIGINT, signal.SIGTERM)}
+    with handling_interrupts(_leave):
+        yield
+
+
+@contextmanager
+def handling_interrupts(handle: Callable[[int, Any], object]) -> Iterator[None]:
+    """SIGINT and SIGTERM are handled by ``handle``, afterwards as they were before."""
+    before = {number: signal.signal(number, handle) for number in INTERRUPTS}
     try:
         yield
     finally:

@@ -21,9 +21,9 @@ from gazebo_ros.gazebo_interface import (
     spawn_sdf_model_client,
     spawn_urdf_model_client,
 )
+from planar_ros.entry import INTERRUPTS, handling_interrupts
 
 PARAMETER_SECONDS = 30.0
-INTERRUPTS = (signal.SIGINT, signal.SIGTERM)
 
 
 class SpawnError(Exception):
@@ -96,12 +96,8 @@ def spawn(options: argparse.Namespace) -> None:
 def _deferring_interrupts() -> Iterator[None]:
     """What interrupts is heard only at the end: nobody else knows what has been spawned meanwhile."""
     heard: List[int] = []
-    before = {number: signal.signal(number, lambda *_: heard.append(1)) for number in INTERRUPTS}
-    try:
+    with handling_interrupts(lambda number, _frame: heard.append(number)):
         yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
     if heard:
         raise KeyboardInterrupt
 
