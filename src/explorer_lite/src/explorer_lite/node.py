@@ -17,7 +17,7 @@ from explorer_lite.explorer import Explorer, ExplorerState, Finish, GoalReached,
 from explorer_lite.markers import frontier_markers
 from explorer_lite.warming import warm_up
 from planar import OccupancyGrid, Pose2
-from planar_ros.actions import ActionServer, server_is_ready
+from planar_ros.actions import ActionServer, goal_is_over, server_is_ready
 from planar_ros.messages import LaserScanArrays, OccupancyGridArrays, grid_from_msg, pose2_to_msg
 from planar_ros.parameters import read_settings
 from planar_ros.shell import run
@@ -27,14 +27,6 @@ from planar_ros.waiting import Waiting
 POLL_SECONDS = 0.02
 FEEDBACK_SECONDS = 1.0
 STOP_SECONDS = 2.0
-FINAL = (
-    GoalStatus.SUCCEEDED,
-    GoalStatus.ABORTED,
-    GoalStatus.PREEMPTED,
-    GoalStatus.REJECTED,
-    GoalStatus.RECALLED,
-    GoalStatus.LOST,
-)
 
 
 class Explore:
@@ -129,7 +121,7 @@ class Explore:
         self._pending = True
 
     def _next_event(self):
-        if not self._pending or self._client.get_state() not in FINAL:
+        if not self._pending or not goal_is_over(self._client):
             return None
         self._pending = False
         if self._client.get_state() == GoalStatus.SUCCEEDED:
@@ -144,7 +136,7 @@ class Explore:
             return
         self._client.cancel_goal()
         deadline = time.monotonic() + STOP_SECONDS
-        while self._client.get_state() not in FINAL and time.monotonic() < deadline:
+        while not goal_is_over(self._client) and time.monotonic() < deadline:
             time.sleep(POLL_SECONDS)
         self._pending = False
 

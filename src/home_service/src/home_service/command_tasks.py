@@ -17,7 +17,7 @@ from move_base_msgs.msg import MoveBaseGoal
 from nav_msgs.msg import Odometry
 
 from planar import OccupancyGrid, Pose2, wrap
-from planar_ros.actions import server_is_ready
+from planar_ros.actions import goal_is_over, server_is_ready
 from planar_ros.messages import OccupancyGridArrays, grid_from_msg, pose2_from_msg, pose2_to_msg
 
 POLL_SECONDS = 0.02
@@ -123,7 +123,7 @@ class Drive(Task):
         message.target_pose.pose = pose2_to_msg(self.goal)
         self._client.send_goal(message, feedback_cb=self._keep_pose)
         outcome = self._wait(self._look)
-        if self._client.get_state() in (GoalStatus.PENDING, GoalStatus.ACTIVE):
+        if not goal_is_over(self._client):
             self._client.cancel_goal()
         return outcome
 
@@ -132,15 +132,15 @@ class Drive(Task):
         return Feedback(self._seconds, left, self._pose)
 
     def _look(self) -> Optional[Outcome]:
+        if not goal_is_over(self._client):
+            return self._notice_loss()
         state = self._client.get_state()
         text = self._client.get_goal_status_text()
         if state == GoalStatus.SUCCEEDED:
             return Outcome(Result.SUCCEEDED, text or "goal reached")
         if state in (GoalStatus.PREEMPTED, GoalStatus.RECALLED):
             return Outcome(Result.CANCELLED, text or "another goal took its place")
-        if state not in (GoalStatus.PENDING, GoalStatus.ACTIVE):
-            return Outcome(Result.FAILED, text or GoalStatus.to_string(state).lower())
-        return self._notice_loss()
+        return Outcome(Result.FAILED, text or GoalStatus.to_string(state).lower())
 
     def _notice_loss(self) -> Optional[Outcome]:
         if server_is_ready(self._client):

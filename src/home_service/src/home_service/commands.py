@@ -14,7 +14,7 @@ from home_service.following import FollowWatch
 from home_service.run import Run
 from home_service.verdict import ARRIVAL_TOLERANCE, DEMO, ERRAND, MARKERS, OBJECTS, Verdict
 from planar import Pose2
-from planar_ros.actions import server_is_ready
+from planar_ros.actions import goal_is_over, server_is_ready
 from planar_ros.messages import pose2_to_msg
 
 
@@ -102,7 +102,7 @@ def _drive_through(run: Run, goals) -> Verdict:
         goal.target_pose.header.stamp = rospy.Time.from_sec(run.referee.simulated_time)
         goal.target_pose.pose = pose2_to_msg(pose)
         client.send_goal(goal)
-        failure = run.watch(lambda: client.get_state() not in (GoalStatus.PENDING, GoalStatus.ACTIVE))
+        failure = run.watch(lambda: goal_is_over(client))
         name = f"goal {number} ({pose.x:g}, {pose.y:g}, {pose.yaw:g})"
         if failure is None and client.get_state() != GoalStatus.SUCCEEDED:
             failure = f"{name}: {client.get_goal_status_text()}"

@@ -15,7 +15,7 @@ from home_service.run import Run
 from home_service.verdict import ARRIVAL_TOLERANCE, Verdict
 from planar import OccupancyGrid, Pose2, SettingsError, load_map
 from planar.map_score import MapScore, score_map
-from planar_ros.actions import server_is_ready
+from planar_ros.actions import goal_is_over, server_is_ready
 from sim_bridge import RobotProfile
 from sim_bridge.true_map import true_map
 from sim_bridge.world import World
@@ -61,7 +61,7 @@ def _explore(run: Run) -> Optional[str]:
         )
 
     client.send_goal(ExploreGoal(return_to_start=True), feedback_cb=show)
-    failure = run.watch(lambda: client.get_state() not in (GoalStatus.PENDING, GoalStatus.ACTIVE))
+    failure = run.watch(lambda: goal_is_over(client))
     if failure is None and client.get_state() != GoalStatus.SUCCEEDED:
         failure = client.get_goal_status_text()
     run.display.say(f"{client.get_goal_status_text()}, {run.referee.simulated_seconds:.0f} s simulated")

@@ -14,7 +14,7 @@ from pick_objects.approach import GoTo
 from pick_objects.errand import MeasureWays, WaysMeasured
 from planar import Pose2
 from planar.driving import GoalReached, GoalRefused
-from planar_ros.actions import server_is_ready
+from planar_ros.actions import goal_is_over, server_is_ready
 from planar_ros.messages import pose2_from_msg, pose2_to_msg
 from planar_ros.services import ServiceError, call_service
 
@@ -44,12 +44,10 @@ class Driver:
 
     def event(self) -> Union[None, GoalReached, GoalRefused]:
         """What came of the last goal, told once; None while it is pursued."""
-        if self._order is None:
-            return None
-        status = self._client.get_state()
-        if status in (GoalStatus.PENDING, GoalStatus.ACTIVE):
+        if self._order is None or not goal_is_over(self._client):
             return None
         order, self._order = self._order, None
+        status = self._client.get_state()
         if status == GoalStatus.SUCCEEDED:
             return GoalReached()
         text = self._client.get_goal_status_text() or GoalStatus.to_string(status)
