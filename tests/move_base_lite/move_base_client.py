@@ -9,6 +9,7 @@ from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from geometry_msgs.msg import PoseStamped, Quaternion, Twist
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import Odometry
+from waiting import wait_until
 
 LEVEL = (0.0, 0.0, 0.0, 1.0)
 
@@ -38,6 +39,11 @@ class Heard:
     def _on_message(self, message):
         self.times.append(rospy.get_time())
         self.messages.append(message)
+
+    def connected(self):
+        """Itself, once there is a publisher that sends to it: what is published only once is not missed."""
+        wait_until("a publisher", lambda: self._subscriber.get_num_connections() > 0)
+        return self
 
     def close(self):
         self._subscriber.unregister()

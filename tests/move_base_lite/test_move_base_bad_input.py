@@ -80,7 +80,7 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
 
     def test_cancel_while_planning(self):
         self.stage_wall(True)
-        plan = Heard("move_base/NavfnROS/plan", Path)
+        plan = Heard("move_base/NavfnROS/plan", Path).connected()
         self.client.send_goal(MoveBaseGoal(pose_at(*NEXT_ROOM)))
         self.wait_until(lambda: plan.messages and not plan.messages[-1].poses)
         self.assert_stops_when_cancelled()
@@ -94,8 +94,7 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
         self.addCleanup(self.stage.show_map)
         self.stage_wall(True)
         self.stage.show_map()
-        started = Heard("move_base/recovery_status", RecoveryStatus)
-        rospy.sleep(0.5)
+        started = Heard("move_base/recovery_status", RecoveryStatus).connected()
         for number, name in enumerate(RECOVERIES):
             started.messages.clear()
             self.client.send_goal(MoveBaseGoal(pose_at(*NEXT_ROOM)))
@@ -119,7 +118,7 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
             cells[24:32, 62:66] = cells[48:56, 62:66] = 100
 
     def test_stamps_far_in_the_past_or_future_do_not_matter(self):
-        goals = Heard("move_base/current_goal", PoseStamped)
+        goals = Heard("move_base/current_goal", PoseStamped).connected()
         for stamp in (0.5, rospy.get_time() + 1e4):
             for frame, x in (("map", 1.4), ("base_footprint", 0.4)):
                 goals.messages.clear()

@@ -38,12 +38,11 @@ class TestMoveBaseContract(MoveBaseTestCase):
 
     def test_a_goal_is_reached_and_says_so_in_the_official_words(self):
         current_goal, plan = (
-            Heard("move_base/current_goal", PoseStamped),
-            Heard("move_base/NavfnROS/plan", Path),
+            Heard("move_base/current_goal", PoseStamped).connected(),
+            Heard("move_base/NavfnROS/plan", Path).connected(),
         )
-        local_plan = Heard("move_base/DWAPlannerROS/local_plan", Path)
-        global_plan = Heard("move_base/DWAPlannerROS/global_plan", Path)
-        rospy.sleep(0.5)
+        local_plan = Heard("move_base/DWAPlannerROS/local_plan", Path).connected()
+        global_plan = Heard("move_base/DWAPlannerROS/global_plan", Path).connected()
         self.assertEqual(self.end_of(pose_at(0.8, 0.3)), (GoalStatus.SUCCEEDED, "Goal reached."))
         self.wait_until(lambda: self.commands.messages[-1] == Twist(), seconds=1.0)
         self.assertEqual(current_goal.wait().pose.position.x, 0.8)
@@ -70,8 +69,8 @@ class TestMoveBaseContract(MoveBaseTestCase):
             self.assertTrue(said.startswith(text), said)
 
     def test_the_outcome_is_told_in_move_base_flex_numbers(self):
-        feedback = Heard("move_base/nav_feedback", DiagnosticStatus)
-        outcomes = Heard("move_base/outcome", DiagnosticStatus)
+        feedback = Heard("move_base/nav_feedback", DiagnosticStatus).connected()
+        outcomes = Heard("move_base/outcome", DiagnosticStatus).connected()
         for pose, code, reason in [
             (pose_at(*NEAR), "0", "SUCCESS"),
             (pose_at(*IN_A_WALL), "15", "GOAL_BLOCKED"),
@@ -109,13 +108,12 @@ class TestMoveBaseContract(MoveBaseTestCase):
 
     def test_the_simple_topic_sends_a_goal(self):
         publisher = rospy.Publisher("move_base_simple/goal", PoseStamped, queue_size=1)
-        current_goal = Heard("move_base/current_goal", PoseStamped)
+        current_goal = Heard("move_base/current_goal", PoseStamped).connected()
         relayed, feedback = (
-            Heard("move_base/goal", MoveBaseActionGoal),
-            Heard("move_base/feedback", MoveBaseActionFeedback),
+            Heard("move_base/goal", MoveBaseActionGoal).connected(),
+            Heard("move_base/feedback", MoveBaseActionFeedback).connected(),
         )
         self.wait_until(publisher.get_num_connections)
-        rospy.sleep(0.5)
         publisher.publish(pose_at(*NEAR))
         self.assertEqual(current_goal.wait().pose.position.x, NEAR[0])
         self.assertEqual(relayed.wait().goal.target_pose.pose.position.x, NEAR[0])
@@ -126,8 +124,7 @@ class TestMoveBaseContract(MoveBaseTestCase):
         self.assertLess(error, 0.3, "localization, and what was driven meanwhile")
 
     def test_make_plan_plans_while_idle_and_is_refused_while_active(self):
-        potential = Heard("move_base/NavfnROS/potential", PointCloud2)
-        rospy.sleep(0.5)
+        potential = Heard("move_base/NavfnROS/potential", PointCloud2).connected()
         plan = self.make_plan(PoseStamped(), pose_at(*IN_THE_NEXT_ROOM), 0.0).plan
         self.assertGreater(len(plan.poses), 50)
         self.assertEqual(plan.header.frame_id, "")
@@ -164,8 +161,7 @@ class TestMoveBaseContract(MoveBaseTestCase):
         self.assertEqual(len(footprint.wait().polygon.points), 16)
 
     def test_a_goal_without_a_way_tries_the_recoveries_before_it_is_aborted(self):
-        recoveries = Heard("move_base/recovery_status", RecoveryStatus)
-        rospy.sleep(0.5)
+        recoveries = Heard("move_base/recovery_status", RecoveryStatus).connected()
         state, text = self.end_of(pose_at(*INSIDE_THE_TABLE))
         self.assertEqual(state, GoalStatus.ABORTED)
         self.assertTrue(text.startswith(f"{NO_PLAN} [code=NO_PATH: "), text)

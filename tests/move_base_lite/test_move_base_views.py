@@ -55,9 +55,8 @@ class TestMoveBaseViews(MoveBaseTestCase):
         return message.data[row * info.width + col]
 
     def test_the_wave_of_a_plan_is_a_grid(self):
-        potential = Heard("move_base/GlobalPlanner/potential", OccupancyGrid)
+        potential = Heard("move_base/GlobalPlanner/potential", OccupancyGrid).connected()
         make_plan = rospy.ServiceProxy("move_base/GlobalPlanner/make_plan", GetPlan)
-        rospy.sleep(0.5)
         self.assertTrue(make_plan(PoseStamped(), pose_at(*NEXT_ROOM), 0.0).plan.poses)
         grid = potential.wait()
         self.assertEqual((grid.header.frame_id, grid.info.width, grid.info.height), ("map", 128, 80))
@@ -69,8 +68,8 @@ class TestMoveBaseViews(MoveBaseTestCase):
         self.assertGreater(at_goal, cells[40, 64])
 
     def test_the_costs_of_cells_are_shown_while_driving(self):
-        plan = Heard("move_base/GlobalPlanner/plan", Path)
-        costs = Heard("move_base/TrajectoryPlannerROS/cost_cloud", PointCloud2)
+        plan = Heard("move_base/GlobalPlanner/plan", Path).connected()
+        costs = Heard("move_base/TrajectoryPlannerROS/cost_cloud", PointCloud2).connected()
         self.drive(pose_at(*NEXT_ROOM))
         self.assertEqual(costs.wait().header.frame_id, "odom")
         self.assertLess(rospy.get_time() - costs.wait().header.stamp.to_sec(), 1.0)
