@@ -42,6 +42,8 @@ class SlamContractTest(unittest.TestCase):
         cls.truth = room()
         cls.transforms = Transforms()
         cls.scans = rospy.Publisher("scan", LaserScanArrays, queue_size=10)
+        cls.words = []
+        rospy.Subscriber("/rosout", Log, lambda message: cls.words.append(message.msg))
         cls.first_odom_in_map = cls.wait_for(lambda: cls.transforms.lookup("map", "odom"))
         cls.early_map = cls.call_dynamic_map()
         cls.wait_for(lambda: cls.scans.get_num_connections() > 0)
@@ -142,8 +144,6 @@ class SlamContractTest(unittest.TestCase):
         self.assertTrue(pause(False).success)
 
     def test_a_laser_that_is_not_mounted_planar_is_refused(self):
-        words = []
-        rospy.Subscriber("/rosout", Log, lambda message: words.append(message.msg))
         before = self.newest_map().header.stamp
         stamp = rospy.Time.now()
         tilted = transform_msg(Pose2(), "base_link", "tilted", stamp)
@@ -152,7 +152,7 @@ class SlamContractTest(unittest.TestCase):
         self.transforms.send(circle(0.0), "odom", "base_link", stamp)
         self.scans.publish(sweep(self.truth, circle(0.0), stamp, "tilted"))
         reason = "the z coordinate of its axis has to be 1 or -1, not 0.00000"
-        self.wait_for(lambda: f"laser tilted has to be mounted planar: {reason}" in words)
+        self.wait_for(lambda: f"laser tilted has to be mounted planar: {reason}" in self.words)
         self.assertEqual(self.newest_map().header.stamp, before)
 
     def test_a_senseless_parameter_ends_the_node_with_its_name(self):
