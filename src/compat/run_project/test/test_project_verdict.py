@@ -52,7 +52,15 @@ A, B, C = (1.0, 2.0), (3.0, 4.0), (5.0, 6.0)
 
 @pytest.mark.parametrize(
     ("places", "goals"),
-    [((A, B, A, B), 4), ((A, B, A, B, A), 4), ((A, B, C) * 2, 6), ((A, B, C, A, C), 0), ((A, A, A, A), 0)],
+    [
+        ((A, B, A, B), 4),
+        ((A, B, A, B, A), 4),
+        ((A, B, C) * 2, 6),
+        ((A, B, C, A, C), 0),
+        ((A, A, A, A), 0),
+        ((C, A, B, A, B), 5),
+        ((C, A, A, B, A, A, A, B, B), 8),
+    ],
 )
 def test_a_project_that_goes_its_rounds_for_ever_is_recognized_after_two(places, goals):
     assert ledger_of(*[SUCCEEDED] * len(places), places=places).two_rounds == goals

@@ -44,6 +44,22 @@ class Goal:
 
 
 @dataclass
+class _Visit:
+    """Goals at one place, one after the other."""
+
+    goals: List[Goal]
+
+    @property
+    def tries(self) -> int:
+        """How many goals it took to get there; 0 if the robot did not."""
+        return next((number for number, goal in enumerate(self.goals, 1) if goal.is_reached), 0)
+
+    @property
+    def is_reached(self) -> bool:
+        return self.tries > 0
+
+
+@dataclass
 class Ledger:
     """What has been seen of a run, by simulated time. Each ``see`` returns the news in words, or None."""
 
@@ -122,12 +138,18 @@ class Ledger:
 
     @property
     def two_rounds(self) -> int:
-        """The number of goals after which it had been through the same places twice; 0 if it has not."""
-        goals = list(self.goals.values())
-        for round_length in range(2, len(goals) // 2 + 1):
-            first, second = goals[:round_length], goals[round_length : 2 * round_length]
-            if all(map(_is_reached_again, first, second)) and not _is_one_place(first):
-                return 2 * round_length
+        """The number of goals after which it had been through some places twice; 0 if it has not.
+
+        Goals at one place in a row count as one, and none may have been in vain until then.
+        """
+        visits = _visits(list(self.goals.values()))
+        for end, visit in enumerate(visits, 1):
+            if not visit.is_reached:
+                return 0
+            for length in range(2, end // 2 + 1):
+                first, second = visits[end - 2 * length : end - length], visits[end - length : end]
+                if all(_is_same_place(a.goals[0], b.goals[0]) for a, b in zip(first, second)):
+                    return sum(len(earlier.goals) for earlier in visits[: end - 1]) + visit.tries
         return 0
 
     def _goal(self, now: float, name: str) -> Goal:
@@ -180,12 +202,14 @@ def _was_reached_later(goal: Goal, later: List[Goal]) -> bool:
     return any(other.is_reached and _is_same_place(goal, other) for other in later)
 
 
-def _is_reached_again(goal: Goal, later: Goal) -> bool:
-    return goal.is_reached and later.is_reached and _is_same_place(goal, later)
-
-
-def _is_one_place(goals: List[Goal]) -> bool:
-    return all(_is_same_place(goals[0], goal) for goal in goals)
+def _visits(goals: List[Goal]) -> List[_Visit]:
+    visits: List[_Visit] = []
+    for goal in goals:
+        if visits and _is_same_place(visits[-1].goals[0], goal):
+            visits[-1].goals.append(goal)
+        else:
+            visits.append(_Visit([goal]))
+    return visits
 
 
 def _is_same_place(goal: Goal, other: Goal) -> bool:
