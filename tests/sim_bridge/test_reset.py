@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Resets in the middle of a goal: every node survives them and reaches the next goal."""
 
+import math
 import time
 import unittest
 
@@ -16,6 +17,8 @@ from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Empty
 from waiting import wait_until
 
+from planar_ros.transforms import Transforms
+
 NODES = ("/sim_bridge", "/robot_state_publisher", "/map_server", "/amcl", "/move_base")
 
 PATIENCE_SECONDS = 60.0
@@ -23,7 +26,7 @@ PATIENCE_SECONDS = 60.0
 
 class TestReset(unittest.TestCase):
     def setUp(self):
-        self.truth = []
+        self.truth, self.transforms = [], Transforms()
         rospy.Subscriber("base_pose_ground_truth", Odometry, self.truth.append, queue_size=1000)
         self.initial_pose = rospy.Publisher("initialpose", PoseWithCovarianceStamped, queue_size=1)
         wait_until("the simulation", lambda: self.truth, PATIENCE_SECONDS)
@@ -80,6 +83,14 @@ class TestReset(unittest.TestCase):
         message.pose.covariance[0] = message.pose.covariance[7] = 0.05
         message.pose.covariance[35] = 0.03
         self.initial_pose.publish(message)
+        wait_until("localization", lambda: self.estimate_error() < 0.3, PATIENCE_SECONDS)
+        later = self.truth[-1].header.stamp + rospy.Duration(0.5)
+        wait_until("move_base to know", lambda: self.truth[-1].header.stamp >= later, PATIENCE_SECONDS)
+
+    def estimate_error(self):
+        """How far from the truth localization takes the robot to be, metres; unknown is infinitely far."""
+        estimate = self.transforms.lookup("map", "base_footprint")
+        return math.inf if estimate is None else self.distance_from(estimate.x, estimate.y)
 
     def assert_nodes_work(self):
         for name in NODES:

@@ -64,7 +64,7 @@ class TestSimBridge(unittest.TestCase):
 
     def test_simulated_time_passes_at_the_speed_asked_for(self):
         factor = self.real_time_factor.next()
-        self.assertAlmostEqual(factor.data, 3.0, delta=0.5)
+        self.assertAlmostEqual(factor.data, 1.5, delta=0.25)
 
     def test_frames_are_those_of_a_turtlebot(self):
         odometry = self.odom.next()

@@ -118,10 +118,6 @@ class MoveBaseNode:
             except rospy.ROSTimeMovedBackwardsException:
                 due = rospy.Time(0)
                 self._start_afresh()
-            except rospy.ROSException:  # also of a topic that the shutdown closes under a tick
-                if rospy.is_shutdown():
-                    return
-                raise
 
     def _start_afresh(self):
         rospy.logwarn("time has jumped back: forgetting goal, obstacles and transforms")

@@ -35,6 +35,7 @@ def run(node_name: str, start: Callable[[], object]) -> None:
         sys.exit(2)
     is_ending, is_over = threading.Event(), threading.Event()
     rospy.on_shutdown(is_ending.set)
+    threading.excepthook = _quiet_once(is_ending)
     # Called after rospy's own hooks: then the master and all peers have been told.
     rospy.core.add_shutdown_hook(lambda _reason: is_over.set())
     try:
@@ -57,6 +58,17 @@ def fail(text: str, exit_code: int = 2) -> None:
     print(f"[{rospy.get_name()}] error: {text}", file=sys.stderr, flush=True)
     rospy.signal_shutdown(text)
     sys.exit(exit_code)
+
+
+def _quiet_once(is_ending: threading.Event) -> Callable[[threading.ExceptHookArgs], None]:
+    """A hook for threads that tells of all exceptions but those of topics closed under them at the end."""
+    tell_all = threading.excepthook
+
+    def tell(failure: threading.ExceptHookArgs) -> None:
+        if not (is_ending.is_set() and issubclass(failure.exc_type, rospy.ROSException)):
+            tell_all(failure)
+
+    return tell
 
 
 class _Forgiving:
