@@ -14,7 +14,7 @@ from sensor_msgs.msg import LaserScan
 from tf2_msgs.msg import TFMessage
 
 from planar import OccupancyGrid, Pose2
-from planar.ray_casting import cast_rays
+from planar.geometry.ray_casting import cast_rays
 from planar_ros.messages import pose2_to_msg, time_of, transform_msg
 
 BASE_FRAME = "base_footprint"

@@ -9,7 +9,7 @@ from typing import List, Optional, Tuple
 import numpy as np
 
 from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, Scan, Twist2, wrap
-from planar.distance_field import distance_field
+from planar.geometry.distance_field import distance_field
 from sim_bridge import Simulation, SimulationSettings, robot_named
 from sim_bridge.world import World
 

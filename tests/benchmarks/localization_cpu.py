@@ -23,7 +23,7 @@ from drives import random_drive
 from localization import NOISES, PARAMETERS, installed_nodes, places
 from lockstep import Node
 
-from planar.map_file import save_map
+from planar.maps.map_file import save_map
 
 FIRST_PORT = 11390
 CLOCK_RATE = 50

@@ -26,8 +26,8 @@ from home_service.verdict import ARRIVAL_TOLERANCE
 from move_base_lite import Decision, Navigator, Status, load_settings
 from pick_objects import load_mission
 from planar import OccupancyGrid, PlanarError, Pose2, Twist2, save_map
-from planar.map_score import MapScore
-from planar.settings_file import settings_from_yaml
+from planar.config.settings_file import settings_from_yaml
+from planar.maps.map_score import MapScore
 from sim_bridge import RobotProfile, Simulation, load_world, robot_named
 from sim_bridge.world import World
 from slam_lite.config import NodeSettings

@@ -24,7 +24,7 @@ from move_base_lite import Navigator, NavigatorSettings, PlanningError, Status, 
 from move_base_lite.costmap import LayeredCostmap
 from move_base_lite.warming import warm_up
 from planar import FREE, OccupancyGrid, Pose2, load_map, wrap
-from planar.settings_file import settings_from_yaml
+from planar.config.settings_file import settings_from_yaml
 from sim_bridge import ROBOTS, Simulation, load_world
 from sim_bridge.world import World
 

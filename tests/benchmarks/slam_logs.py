@@ -21,7 +21,7 @@ from bags import START, write_bag
 from drives import Sighting
 
 from planar import OCCUPIED, OccupancyGrid, Pose2, Scan, wrap
-from planar.ray_casting import cast_rays
+from planar.geometry.ray_casting import cast_rays
 
 RESOLUTION, WALL, CORRIDOR, DOOR = 0.025, 0.15, 2.2, 0.95
 PERIOD, SPEED, TURN_SPEED = 0.2, 0.5, 0.7

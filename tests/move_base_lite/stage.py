@@ -19,7 +19,7 @@ from std_msgs.msg import Header
 from tf2_msgs.msg import TFMessage
 
 from planar import OccupancyGrid, Pose2, grid_from_picture
-from planar.ray_casting import cast_rays
+from planar.geometry.ray_casting import cast_rays
 from planar_ros.messages import LaserScanArrays, grid_to_msg, pose2_to_msg, transform_msg
 from planar_ros.progress import TOPIC as PROGRESS_TOPIC
 

@@ -18,7 +18,7 @@ from tf2_msgs.msg import TFMessage
 from toy_room import circle, room
 
 from planar import OCCUPIED, Pose2, load_map
-from planar.ray_casting import cast_rays
+from planar.geometry.ray_casting import cast_rays
 from planar_ros.messages import transform_msg
 
 SCANS, START, PERIOD = 120, 1000.0, 0.2

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from planar import OCCUPIED, OccupancyGrid, Pose2
-from planar.ray_casting import cast_rays
+from planar.geometry.ray_casting import cast_rays
 from planar_ros.messages import LaserScanArrays
 
 RESOLUTION, RANGE_MAX = 0.05, 10.0

@@ -9,7 +9,7 @@ import rostest
 
 from home_service.referee import Referee
 from home_service.verdict import ERRAND, MARKERS, judge
-from planar.places import places_of_errand
+from planar.maps.places import places_of_errand
 
 SIMULATED_DEADLINE = 240.0
 WALL_DEADLINE = 240.0

@@ -5,7 +5,7 @@ import yaml
 
 from add_markers import CarriedParcel, MarkerSettings, TimedParcel
 from planar import Pose2, SettingsError
-from planar.places import Place
+from planar.maps.places import Place
 
 PICKUP, DROPOFF = Place("pickup", Pose2(2.0, 3.0), 0.4), Place("dropoff", Pose2(-2.0, 1.0), 0.4)
 ELSEWHERE = Pose2(0.0, 0.0)

@@ -5,7 +5,7 @@ import yaml
 
 from amcl_lite.config import InitialPose, LocalizerSettings, NodeSettings, advice, as_yaml, defaults
 from planar import SettingsError
-from planar.settings import official_names, settings_from
+from planar.config.settings import official_names, settings_from
 
 CONFIG = Path(__file__).resolve().parents[1] / "config"
 

@@ -6,7 +6,7 @@ import pytest
 
 from amcl_lite import LocalizationError, Localizer, LocalizerSettings
 from planar import OccupancyGrid, Pose2, Scan, grid_from_picture, wrap
-from planar.ray_casting import cast_rays
+from planar.geometry.ray_casting import cast_rays
 
 HOME = """
 ##############################

@@ -10,7 +10,7 @@ from amcl_lite.quality import LOST_BELOW, LostDetector, Quality, quality_of
 from amcl_lite.recovery import find_hypotheses
 from amcl_lite.scan_matching import matched
 from planar import OccupancyGrid, Pose2, grid_from_picture, wrap
-from planar.ray_casting import cast_rays
+from planar.geometry.ray_casting import cast_rays
 
 FLAT = """
 ####################

@@ -7,7 +7,7 @@ from explorer_lite.frontiers import Frontier
 from explorer_lite.travel import travel_distances
 from explorer_lite.viewpoints import viewpoint_of
 from planar import OCCUPIED, Pose2, grid_from_picture
-from planar.distance_field import distance_field
+from planar.geometry.distance_field import distance_field
 
 WALL = """
 .........

@@ -1,7 +1,7 @@
 from home_service.delivery_watch import DeliveryWatch
 from pick_objects import Delivery, Stage
 from planar import Pose2
-from planar.places import Place
+from planar.maps.places import Place
 
 KITCHEN = Place("kitchen", Pose2(0.0, 0.0))
 DESK = Place("desk", Pose2(5.0, 0.0), approaches=(Pose2(5.0, 1.0),))

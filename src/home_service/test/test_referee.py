@@ -6,7 +6,7 @@ from visualization_msgs.msg import Marker
 
 from home_service.referee import Referee
 from planar import Pose2
-from planar.places import Place
+from planar.maps.places import Place
 
 PLACES = {name: Place(name, Pose2(x, 0.0)) for name, x in (("hall", 2.0), ("door", 5.0))}
 

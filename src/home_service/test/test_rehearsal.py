@@ -3,7 +3,7 @@ from pathlib import Path
 from home_service.rehearsal import Rehearsal
 from pick_objects import errand_mission, parse_mission
 from planar import load_map
-from planar.places import places_of_errand
+from planar.maps.places import places_of_errand
 from sim_bridge import load_world, robot_named
 
 MAP = Path(__file__).resolve().parents[3] / "map"

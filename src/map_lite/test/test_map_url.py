@@ -1,7 +1,7 @@
 import pytest
 
 from map_lite.map_url import path_of
-from planar.map_file import MapMissingError
+from planar.maps.map_file import MapMissingError
 
 
 def packages(name):

@@ -8,7 +8,7 @@ import numpy as np
 
 from move_base_lite import Status, load_settings
 from planar import OCCUPIED, OccupancyGrid, Pose2, Scan, Twist2, wrap
-from planar.ray_casting import cast_rays
+from planar.geometry.ray_casting import cast_rays
 
 PRESET = Path(__file__).parents[1] / "config" / "turtlebot.yaml"
 SETTINGS = load_settings(PRESET)

@@ -9,7 +9,7 @@ from robot_in_picture import PERSON_RADIUS, room, scan_with_people, two_rooms, w
 from move_base_lite.costmap import sighting_of_scan
 from move_base_lite.movers import Movers
 from planar import Pose2
-from planar.ray_casting import cast_rays
+from planar.geometry.ray_casting import cast_rays
 
 PERIOD = 0.1
 

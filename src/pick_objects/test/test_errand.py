@@ -21,7 +21,7 @@ from pick_objects import (
 )
 from pick_objects.config import NodeSettings
 from planar import Pose2, SettingsError
-from planar.places import Place
+from planar.maps.places import Place
 
 PICKUP, DROPOFF = Place("pickup", Pose2(2.0, 3.0)), Place("dropoff", Pose2(-2.0, 1.0))
 

@@ -2,7 +2,7 @@ import pytest
 
 from pick_objects import Delivery, ErrandSettings, load_mission, parse_mission
 from planar import Pose2, SettingsError, grid_from_picture
-from planar.places import Place
+from planar.maps.places import Place
 
 GOOD = """\
 name: evening

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from planar import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, PlanarError, Pose2, grid_from_picture
-from planar.distance_field import distance_field
-from planar.ray_casting import cast_rays
+from planar.geometry.distance_field import distance_field
+from planar.geometry.ray_casting import cast_rays
 
 
 def test_the_lowest_line_of_a_picture_is_row_zero():

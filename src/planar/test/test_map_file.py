@@ -4,7 +4,17 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from planar import FREE, OCCUPIED, UNKNOWN, MapFileError, Pose2, grid_from_picture, load_map, save_map
+from planar import (
+    FREE,
+    OCCUPIED,
+    UNKNOWN,
+    FileWriteError,
+    MapFileError,
+    Pose2,
+    grid_from_picture,
+    load_map,
+    save_map,
+)
 
 GOOD = """image: a.pgm
 resolution: 0.05
@@ -71,7 +81,7 @@ def test_a_malformed_map_is_refused_naming_file_line_and_key(tmp_path, before, a
 
 
 def test_a_failed_save_leaves_the_old_map_alone(tmp_path):
-    with pytest.raises(MapFileError, match="cannot be written"):
+    with pytest.raises(FileWriteError, match="cannot be written"):
         save_map(grid_from_picture("#"), tmp_path / "nowhere" / "home")
     assert list(tmp_path.iterdir()) == []
 
@@ -82,7 +92,7 @@ def test_a_disk_that_is_full_after_the_image_leaves_the_old_pair_alone(tmp_path)
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (64, limits[1]))  # enough for the image alone
     try:
-        with pytest.raises(MapFileError, match=f"{yaml_path}: cannot be written"):
+        with pytest.raises(FileWriteError, match=f"{yaml_path}: cannot be written"):
             save_map(grid_from_picture("."), tmp_path / "home")
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from planar import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, PlanarError, Pose2
-from planar.map_score import score_map, visible_walls
+from planar.maps.map_score import score_map, visible_walls
 
 RESOLUTION = 0.05
 ORIGIN = Pose2(-2.0, -1.0)

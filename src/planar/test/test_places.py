@@ -1,7 +1,7 @@
 import pytest
 
 from planar import Pose2, SettingsError, grid_from_picture
-from planar.places import Place, load_places, places_of_errand, why_unreachable
+from planar.maps.places import Place, load_places, places_of_errand, why_unreachable
 
 
 def write(folder, text):

@@ -3,7 +3,7 @@ from dataclasses import dataclass
 import pytest
 
 from planar import SettingsError
-from planar.settings import check, nearest_name, settings_from
+from planar.config.settings import check, nearest_name, settings_from
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 import pytest
 
 from planar import PlanarError, SettingsError
-from planar.yaml_table import parse_table, read_table
+from planar.config.yaml_table import parse_table, read_table
 
 TEXT = """\
 name: tea

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from planar import MapFileError
+from planar import FileWriteError
 from run_report import RecordError, RunRecord, load_record, summary, write_report, writing
 from run_report.charts import nice_ticks
 from run_report.figures import localization_errors, real_time_factors
@@ -110,7 +110,7 @@ def test_a_folder_gets_every_file_and_trajectories_that_other_tools_read(record,
 def test_what_a_full_disk_keeps_from_being_written_is_told_by_the_page(record, result, tmp_path, monkeypatch):
     def write(path, data):
         if path.suffix != ".html":
-            raise MapFileError(f"{path}: cannot be written (No space left on device)")
+            raise FileWriteError(f"{path}: cannot be written (No space left on device)")
         path.write_bytes(data)
 
     monkeypatch.setattr(writing, "write_atomically", write)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from planar import Pose2, grid_from_picture
-from planar.ray_casting import cast_rays
+from planar.geometry.ray_casting import cast_rays
 from sim_bridge.pose3 import pose3
 from sim_bridge.section import Section, cast_beams
 from sim_bridge.shapes import Box, Cylinder, Sphere

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from planar import FREE, OCCUPIED, UNKNOWN, load_map
-from planar.map_score import score_map
+from planar.maps.map_score import score_map
 from sim_bridge.errors import WorldError
 from sim_bridge.pose3 import pose3
 from sim_bridge.sdf import load_world

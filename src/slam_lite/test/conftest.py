@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, Scan
-from planar.ray_casting import cast_rays
+from planar.geometry.ray_casting import cast_rays
 
 RESOLUTION = 0.05
 CORRIDOR = [(2.0, 2.0), (14.0, 2.0), (14.0, 9.0), (2.0, 9.0), (2.0, 2.0)]

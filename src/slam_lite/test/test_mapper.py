@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from planar import OCCUPIED, OccupancyGrid, Pose2, wrap
-from planar.map_score import score_map
+from planar.maps.map_score import score_map
 from slam_lite.config import MapperSettings
 from slam_lite.mapper import Follower, Mapper
 from slam_lite.rendering import MapRenderer, beams_of

@@ -4,7 +4,7 @@ import pytest
 import yaml
 
 from planar import SettingsError
-from planar.settings import official_names, settings_from
+from planar.config.settings import official_names, settings_from
 from slam_lite.config import WITHOUT_EFFECT, NodeSettings, defaults
 
 CONFIG = Path(__file__).resolve().parents[1] / "config"

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from planar import MapFileError
+from planar import FileWriteError
 from slam_lite.mapper import Mapper
 from slam_lite.state import StateFileError, load_state, save_state
 
@@ -31,7 +31,7 @@ def test_an_empty_state_comes_back_too(tmp_path):
 
 
 def test_a_folder_that_is_not_there_is_an_error_and_the_old_file_stays(state, tmp_path):
-    with pytest.raises(MapFileError, match="cannot be written"):
+    with pytest.raises(FileWriteError, match="cannot be written"):
         save_state(state, tmp_path / "nowhere" / "map.npz")
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Dict, List, Optional, Sequence, Tuple, Union
 
 from planar import Pose2
-from planar.grid import FREE, OccupancyGrid
+from planar.geometry.grid import FREE, OccupancyGrid
 
 GAP = 0.4
 """Between the middle of the robot and the box that it picks up or has set down, metres: room to turn."""

@@ -3,7 +3,7 @@
 from typing import Optional
 
 from planar import Pose2
-from planar.places import Place
+from planar.maps.places import Place
 
 
 class CarriedParcel:

@@ -1,4 +1,4 @@
-"""Adaptive Monte-Carlo localization in a known map, without ROS; the node is in ``amcl_lite.node``."""
+"""Adaptive Monte-Carlo localization in a known map, without ROS; the node is in ``amcl_lite.ros.node``."""
 
 from amcl_lite.config import LocalizerSettings
 from amcl_lite.localizer import Estimate, Localizer

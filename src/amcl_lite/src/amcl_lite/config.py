@@ -12,7 +12,7 @@ from typing import Any, Dict, List, Tuple
 import numpy as np
 
 from planar import Pose2
-from planar.settings import check, check_parameters, parameter
+from planar.config.settings import check, check_parameters, parameter
 
 MOTION_MODELS = ("diff", "omni", "diff-corrected", "omni-corrected")
 SENSOR_MODELS = ("likelihood_field", "likelihood_field_prob", "beam")

@@ -9,7 +9,7 @@ import numba
 import numpy as np
 
 from planar import OCCUPIED, OccupancyGrid, Pose2
-from planar.distance_field import distance_field
+from planar.geometry.distance_field import distance_field
 
 
 class IntoCells(NamedTuple):

@@ -9,7 +9,7 @@ import numpy as np
 from amcl_lite.beams import Beams
 from amcl_lite.likelihood_field import LikelihoodField, fit_at, placed
 from planar import OccupancyGrid, Pose2
-from planar.ray_casting import cast_rays
+from planar.geometry.ray_casting import cast_rays
 
 # Distance, metres, at which a beam's end is half-heartedly explained by the map (one standard deviation).
 _EXPLAINED_WITHIN = 0.1

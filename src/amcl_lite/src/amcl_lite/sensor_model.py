@@ -12,7 +12,7 @@ from amcl_lite.beams import Beams
 from amcl_lite.config import LocalizerSettings
 from amcl_lite.likelihood_field import LikelihoodField, fit_at, placed
 from planar import OccupancyGrid
-from planar.ray_casting import cast_rays_from_many
+from planar.geometry.ray_casting import cast_rays_from_many
 
 
 def log_likelihood_field(

@@ -12,8 +12,8 @@ from explorer_lite.frontiers import Frontier, find_frontiers, known_part
 from explorer_lite.travel import travel_distances
 from explorer_lite.viewpoints import view_from_here, viewpoint_of
 from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, wrap
-from planar.distance_field import distance_field
 from planar.driving import Finish, GoalReached, GoalRefused
+from planar.geometry.distance_field import distance_field
 
 PROGRESS_DISTANCE = 0.1
 ALL_AROUND = math.radians(300.0)

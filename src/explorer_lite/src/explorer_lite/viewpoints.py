@@ -7,7 +7,7 @@ import numpy as np
 
 from explorer_lite.frontiers import Frontier
 from planar import OccupancyGrid, Pose2
-from planar.ray_casting import cast_rays
+from planar.geometry.ray_casting import cast_rays
 
 
 def viewpoint_of(

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from planar.settings import check_parameters, parameter
+from planar.config.settings import check_parameters, parameter
 
 
 @dataclass(frozen=True)

@@ -52,7 +52,7 @@ def read_inputs(options) -> None:
     """Reads everything that was named, so that a mistake is told before anything is started."""
     from pick_objects import errand_mission, load_mission
     from planar import load_map
-    from planar.places import load_places, places_of_errand
+    from planar.maps.places import load_places, places_of_errand
     from sim_bridge import load_world, robot_named
 
     options.loaded_world = load_world(options.world)

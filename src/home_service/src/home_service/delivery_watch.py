@@ -5,7 +5,7 @@ from typing import Callable, Dict, List, Mapping, Optional
 from home_service.verdict import DeliveryRecord
 from pick_objects import Delivery, Stage
 from planar import Pose2
-from planar.places import Place
+from planar.maps.places import Place
 
 
 class DeliveryWatch:

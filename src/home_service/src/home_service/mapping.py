@@ -14,7 +14,7 @@ from home_service.errors import LaunchError
 from home_service.run import Run
 from home_service.verdict import ARRIVAL_TOLERANCE, Verdict
 from planar import OccupancyGrid, Pose2, SettingsError, load_map
-from planar.map_score import MapScore, score_map
+from planar.maps.map_score import MapScore, score_map
 from planar_ros.actions import goal_is_over, server_is_ready
 from sim_bridge import RobotProfile
 from sim_bridge.true_map import true_map

@@ -18,7 +18,7 @@ from home_service.delivery_watch import DeliveryWatch
 from home_service.verdict import Ledger
 from pick_objects import Delivery, Stage
 from planar import Pose2
-from planar.places import Place
+from planar.maps.places import Place
 from planar_ros.messages import pose2_from_msg
 
 MOTION_DISTANCE = 0.02

@@ -19,7 +19,7 @@ from home_service.verdict import ERRAND, MARKERS, Ledger, Verdict, judge
 from move_base_lite import Decision, NavigationError, Navigator, Status, load_settings
 from pick_objects import Errand, Finish, GoalReached, GoalRefused, GoTo, MeasureWays, Mission, WaysMeasured
 from planar import OccupancyGrid, Pose2, Twist2
-from planar.settings_file import settings_from_yaml
+from planar.config.settings_file import settings_from_yaml
 from sim_bridge import Observation, RobotProfile, Simulation
 from sim_bridge.world import World
 

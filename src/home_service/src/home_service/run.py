@@ -20,7 +20,7 @@ from home_service.referee import Referee
 from home_service.run_folder import create_run_folder, write_result
 from home_service.verdict import DeliveryRecord, Verdict, judge
 from home_service.versions import versions
-from planar import MapFileError, PlanarError
+from planar import FileWriteError, PlanarError
 from run_report import RunRecord, summary, write_report
 
 POLL_SECONDS = 0.05
@@ -178,7 +178,7 @@ class Run:
     def _write_result(self) -> None:
         try:
             write_result(self.folder, {**self._result, "missing": self.missing})
-        except MapFileError as error:
+        except FileWriteError as error:
             self.missing.append(f"result.json: {str(error).rpartition(': ')[2]}")
 
     def _report(self) -> None:

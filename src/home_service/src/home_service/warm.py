@@ -9,7 +9,7 @@ from home_service.cli import read_inputs
 from home_service.options import parse
 from home_service.rehearsal import LOCALIZATION_CONFIG, NAVIGATION_CONFIG
 from home_service.rehearse import rehearse
-from planar.settings_file import settings_from_yaml
+from planar.config.settings_file import settings_from_yaml
 
 
 def main() -> int:

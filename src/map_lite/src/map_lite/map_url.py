@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Callable
 
-from planar.map_file import MapMissingError
+from planar.maps.map_file import MapMissingError
 
 
 def path_of(map_url: str, package_path: Callable[[str], str]) -> Path:

@@ -13,7 +13,7 @@ import numpy as np
 
 from move_base_lite.costmap import Footprint, footprint_from
 from planar import Twist2
-from planar.settings import check
+from planar.config.settings import check
 
 STEPS = 20
 # Metres that the robot must come closer by to count as doing so: a circle is a polygon here.

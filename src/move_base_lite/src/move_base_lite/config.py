@@ -7,7 +7,7 @@ from move_base_lite.control import ControllerSettings, DwaSettings
 from move_base_lite.costmap import CostmapSettings
 from move_base_lite.planning import PlannerSettings
 from move_base_lite.recovery import RecoverySettings
-from planar.settings import check
+from planar.config.settings import check
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ import numpy as np
 
 from move_base_lite.costmap import Polygon
 from planar import Pose2
-from planar.yaml_table import Table, read_table
+from planar.config.yaml_table import Table, read_table
 
 KEEP_OUT, SPEED = "keep_out", "speed"
 

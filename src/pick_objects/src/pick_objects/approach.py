@@ -6,7 +6,7 @@ from typing import Optional, Union
 from pick_objects.config import ErrandSettings
 from planar import Pose2
 from planar.driving import GoalReached, GoalRefused
-from planar.places import Place
+from planar.maps.places import Place
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from pick_objects.mission import Delivery, Mission, MissionError
 from pick_objects.ordering import shortest_order
 from planar import Pose2
 from planar.driving import Finish, GoalReached, GoalRefused
-from planar.places import Place
+from planar.maps.places import Place
 
 NO_WAY = 1e6
 """Metres that a way counts which no planner has found: it is left for last."""

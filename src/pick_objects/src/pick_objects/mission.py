@@ -6,7 +6,7 @@ from typing import Mapping, Optional, Tuple
 
 from pick_objects.config import ErrandSettings
 from planar import PlanarError
-from planar.places import Place
+from planar.maps.places import Place
 
 ORANGE = (0.9, 0.4, 0.1)
 

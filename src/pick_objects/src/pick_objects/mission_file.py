@@ -6,10 +6,10 @@ from typing import Dict, List, Mapping, Optional, Set, Tuple
 
 from pick_objects.config import ErrandSettings
 from pick_objects.mission import ORANGE, Delivery, Mission, Thing
-from planar.grid import OccupancyGrid
-from planar.places import Place, obstruction_at, place_from
-from planar.settings import nearest_name, settings_from
-from planar.yaml_table import Table, parse_table, read_table
+from planar.config.settings import nearest_name, settings_from
+from planar.config.yaml_table import Table, parse_table, read_table
+from planar.geometry.grid import OccupancyGrid
+from planar.maps.places import Place, obstruction_at, place_from
 
 Places = Mapping[str, Place]
 WIDEST_SOLID = 0.25

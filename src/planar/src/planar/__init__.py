@@ -7,15 +7,17 @@ Pure: numpy, scipy and numba only. Lengths are metres, angles radians (REP 103);
 """
 
 from planar.errors import PlanarError, SettingsError
-from planar.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, grid_from_picture
-from planar.map_file import MapFileError, load_map, save_map, write_atomically
-from planar.pose import Pose2, Twist2, wrap
-from planar.scan import Scan
+from planar.files.atomically import FileWriteError, write_atomically
+from planar.geometry.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, grid_from_picture
+from planar.geometry.pose import Pose2, Twist2, wrap
+from planar.geometry.scan import Scan
+from planar.maps.map_file import MapFileError, load_map, save_map
 
 __all__ = [
     "FREE",
     "OCCUPIED",
     "UNKNOWN",
+    "FileWriteError",
     "MapFileError",
     "OccupancyGrid",
     "PlanarError",

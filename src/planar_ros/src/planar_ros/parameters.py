@@ -7,7 +7,7 @@ import rosgraph
 import rospy
 
 from planar import SettingsError
-from planar.settings import nearest_name, settings_from
+from planar.config.settings import nearest_name, settings_from
 
 # What dynamic_reconfigure leaves beside a node's parameters.
 RESTORE = "restore_defaults"
@@ -21,7 +21,7 @@ def read_settings(
     ignore: Iterable[str] = (),
     defaults: Mapping[str, Any] = {},
 ) -> T:
-    """The dataclass ``kind`` filled from the parameters below ``namespace`` (see planar.settings).
+    """The dataclass ``kind`` filled from the parameters below ``namespace`` (see planar.config.settings).
 
     ``defaults`` hold for the parameters that are not set, before those of ``kind``.
     Names that neither ``kind`` nor ``ignore`` knows are warned of, with the nearest known one; with

@@ -1,4 +1,4 @@
-"""dynamic_reconfigure without compiled .cfg files: its parameters are tunables (planar.settings)."""
+"""dynamic_reconfigure without compiled .cfg files: its parameters are tunables (planar.config.settings)."""
 
 import dataclasses
 from types import SimpleNamespace
@@ -7,7 +7,7 @@ from typing import Any, Callable, Dict, Mapping, Sequence
 from dynamic_reconfigure.encoding import extract_params
 from dynamic_reconfigure.server import Server
 
-from planar.settings import Tunable, tunables_of
+from planar.config.settings import Tunable, tunables_of
 from planar_ros.parameters import RESTORE, ParameterWriter
 
 KINDS = {bool: "bool", int: "int", float: "double", str: "str"}
@@ -62,7 +62,7 @@ class Tuning:
 
 
 class Reconfiguration(Tuning):
-    """Serves ``~set_parameters`` for the dynamic fields (planar.settings.parameter) of ``settings``."""
+    """Serves ``~set_parameters`` for the dynamic fields of ``settings``."""
 
     def __init__(self, settings: Any, change: Callable[[Dict[str, Any]], Dict[str, Any]]):
         super().__init__(tunables_of(type(settings)), dynamic_values(settings), change)

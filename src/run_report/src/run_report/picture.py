@@ -7,7 +7,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from planar import OccupancyGrid, Pose2
-from planar.ray_casting import cast_rays
+from planar.geometry.ray_casting import cast_rays
 from run_report.grid_image import grid_image, view_of
 from run_report.map_view import thinned
 from run_report.record import Marking, RunRecord

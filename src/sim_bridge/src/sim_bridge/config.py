@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from planar.settings import check, check_parameters, parameter
+from planar.config.settings import check, check_parameters, parameter
 from sim_bridge.noise import NoiseSettings
 
 # Hertz; with more, a single period of the odometry would take seconds.

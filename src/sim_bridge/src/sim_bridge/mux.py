@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Dict, Mapping, Optional, Sequence, Tuple
 
 from planar import SettingsError, Twist2
-from planar.yaml_table import Table, parse_table, read_table
+from planar.config.yaml_table import Table, parse_table, read_table
 
 IDLE = "idle"
 

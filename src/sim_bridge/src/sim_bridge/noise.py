@@ -4,7 +4,7 @@ from dataclasses import asdict, dataclass, fields
 from typing import Any, Dict
 
 from planar import SettingsError
-from planar.settings import check, nearest_name
+from planar.config.settings import check, nearest_name
 
 
 @dataclass(frozen=True)

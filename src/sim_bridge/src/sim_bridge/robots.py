@@ -4,7 +4,7 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 from typing import Dict, Tuple
 
-from planar.settings import nearest_name
+from planar.config.settings import nearest_name
 from sim_bridge.description import RobotProfile, read_robot_file, read_urdf_robot
 from sim_bridge.description.urdf import FindFile, no_file
 from sim_bridge.errors import RobotError

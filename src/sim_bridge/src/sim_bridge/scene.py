@@ -6,7 +6,7 @@ from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 import numpy as np
 
 from planar import Pose2, Twist2
-from planar.settings import nearest_name
+from planar.config.settings import nearest_name
 from sim_bridge.config import SimulationSettings
 from sim_bridge.description import RobotProfile
 from sim_bridge.drawing import Drawing

@@ -7,7 +7,7 @@ import dataclasses
 from dataclasses import dataclass
 from typing import Any, Dict, Tuple
 
-from planar.settings import check, check_parameters, parameter
+from planar.config.settings import check, check_parameters, parameter
 
 # Parameters of gmapping that steer its particle filter and have no counterpart in a pose graph.
 WITHOUT_EFFECT = (

@@ -7,8 +7,7 @@ from typing import List, Sequence
 
 import numpy as np
 
-from planar import PlanarError, Pose2
-from planar.map_file import write_atomically
+from planar import PlanarError, Pose2, write_atomically
 from slam_lite.pose_graph import Edges
 from slam_lite.rendering import Beams
 from slam_lite.surface import Surface
@@ -33,7 +32,7 @@ class MapState:
 
 
 def save_state(state: MapState, path) -> None:
-    """Writes a state, whole or not at all. Raises MapFileError."""
+    """Writes a state, whole or not at all. Raises FileWriteError."""
     file = io.BytesIO()
     np.savez_compressed(
         file,

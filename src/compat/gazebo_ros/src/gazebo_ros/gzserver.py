@@ -33,7 +33,7 @@ def found(world: str, folders: List[Path]) -> Path:
 
 def main() -> None:
     """Becomes sim_bridge without a robot."""
-    from sim_bridge.node import main as simulate
+    from sim_bridge.ros.node import main as simulate
 
     folders = [Path(folder) for folder in os.environ.get("GAZEBO_RESOURCE_PATH", "").split(":") if folder]
     world = found(world_of(sys.argv[1:]) or EMPTY_WORLD.name, folders)

@@ -18,12 +18,12 @@ from planar import PlanarError
 from run_project.building import Workspace, build, copy_checkout, environment
 from run_project.complaints import complaints_in
 from run_project.errors import BuildError, ProjectError
-from run_project.headless_rviz import SHOWN
 from run_project.layout import Checkout, choose_script, is_errand, read_checkout
 from run_project.options import parse
 from run_project.placement import READ_SUFFIXES, Placement, place
 from run_project.private_root import prefix
-from run_project.running import Job, ProjectRun
+from run_project.ros.headless_rviz import SHOWN
+from run_project.ros.running import Job, ProjectRun
 from run_project.stand_ins import PACKAGE_FOLDER
 from run_project.terminal import LOGS
 from run_project.verdict import Ledger, Verdict, judge

@@ -13,7 +13,7 @@ from move_base_lite.costmap import LETHAL, LayeredCostmap
 from move_base_lite.errors import ControlError
 from move_base_lite.planning.wavefront import NEUTRAL, cost_to_go
 from planar import Pose2, Twist2
-from planar.distance_field import distance_field
+from planar.geometry.distance_field import distance_field
 
 # Points in time at which the speeds of a sample are drawn; between them they change evenly.
 KNOTS = 5

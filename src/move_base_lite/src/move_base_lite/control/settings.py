@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from planar.settings import check
+from planar.config.settings import check
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from move_base_lite.costmap.static_layer import StaticSettings, static_costs, st
 from move_base_lite.costmap.window import NO_CELLS, Bounds, Window, union
 from move_base_lite.costmap.zone_layer import ZoneLayer
 from planar import OccupancyGrid, Pose2
-from planar.settings import check
+from planar.config.settings import check
 
 # Radians between the headings at which a turn on the spot is checked.
 TURN_STEP = 0.1

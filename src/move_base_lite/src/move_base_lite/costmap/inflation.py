@@ -8,7 +8,7 @@ import numpy as np
 
 from move_base_lite.costmap.costs import FREE, INSCRIBED, LETHAL, UNKNOWN
 from move_base_lite.costmap.window import Bounds, Window
-from planar.settings import check
+from planar.config.settings import check
 
 
 @dataclass(frozen=True)

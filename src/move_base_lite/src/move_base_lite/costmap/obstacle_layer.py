@@ -13,7 +13,7 @@ from move_base_lite.costmap.polygon import Polygon
 from move_base_lite.costmap.sighting import Sighting
 from move_base_lite.costmap.window import NO_CELLS, Bounds, Window, union
 from planar import Pose2
-from planar.settings import check
+from planar.config.settings import check
 
 DATA_TYPES = ("LaserScan", "PointCloud", "PointCloud2")
 OVERWRITE, MAXIMUM, NOTHING = 0, 1, 99

@@ -9,7 +9,7 @@ import numpy as np
 from move_base_lite.costmap.costs import FREE, LETHAL, UNKNOWN
 from move_base_lite.costmap.window import Window
 from planar import OccupancyGrid, Pose2
-from planar.settings import check
+from planar.config.settings import check
 
 
 @dataclass(frozen=True)

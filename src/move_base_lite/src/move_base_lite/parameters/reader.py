@@ -3,7 +3,7 @@
 from dataclasses import fields
 from typing import Any, Dict, Iterable, List, Mapping
 
-from planar.settings import nearest_name, settings_from
+from planar.config.settings import nearest_name, settings_from
 
 
 class Reader:

@@ -11,7 +11,7 @@ from move_base_lite.errors import GoalBlocked, NoPath, OutOfMap, StartBlocked
 from move_base_lite.planning.nearest import passable_ends
 from move_base_lite.planning.shortcuts import shortened
 from move_base_lite.planning.wavefront import FACTOR, NEUTRAL, descend, spread, traversal_costs
-from planar.settings import check
+from planar.config.settings import check
 
 STEP_CELLS = 0.5
 # Cells that a shortcut may span: any number at any angle; otherwise what evens out the steps of the gradient.

@@ -6,7 +6,7 @@ from typing import Callable, Optional
 
 from move_base_lite.costmap import LayeredCostmap
 from planar import Pose2, SettingsError, Twist2, wrap
-from planar.settings import check
+from planar.config.settings import check
 
 LOOKAHEAD_ANGLE = 0.4
 

@@ -6,7 +6,7 @@ from typing import Tuple
 
 import numpy as np
 
-from planar.settings import check
+from planar.config.settings import check
 from sim_bridge.pose3 import inverse
 from sim_bridge.sensors.rasterizer import Projection, draw
 

@@ -5,7 +5,7 @@ from typing import Optional
 
 import numpy as np
 
-from planar.settings import check
+from planar.config.settings import check
 from sim_bridge.engine import Motion
 
 

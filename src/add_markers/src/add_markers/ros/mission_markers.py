@@ -1,0 +1,76 @@
+"""A marker for each object of a mission: where it stands, or on the robot that carries it."""
+
+from typing import Dict
+
+import rospy
+from home_service_msgs.msg import MissionState, ObjectState
+from visualization_msgs.msg import Marker
+
+from add_markers.bodies import HEIGHT, RIDING_HEIGHT
+from add_markers.config import MarkerSettings
+from add_markers.ros.mission_bodies import MissionBodies
+from planar import Pose2
+from planar_ros.messages import pose2_from_msg, pose2_to_msg
+from planar_ros.waiting import Waiting
+
+STATE_TOPIC = "pick_objects/mission_state"
+
+
+class MissionMarkers:
+    """A marker's name space is its object's name; solid objects become bodies in the simulator, too."""
+
+    def __init__(self, settings: MarkerSettings):
+        self._base_frame = settings.base_frame_id
+        self._bodies = MissionBodies(settings)
+        self._standing: Dict[str, Pose2] = {}
+        self._shown: Dict[str, ObjectState] = {}
+        self._frame_id = ""
+        # Subscribers that come late get the latest marker of each object, not of one of them alone.
+        self._publisher = rospy.Publisher(
+            "visualization_marker", Marker, subscriber_listener=_Repeater(self), queue_size=50
+        )
+        self._has_state = False
+        rospy.Subscriber(STATE_TOPIC, MissionState, self._follow, queue_size=50)
+        Waiting({f"a mission on {rospy.resolve_name(STATE_TOPIC)}": lambda: self._has_state})
+
+    def repeat(self, publish) -> None:
+        for state in list(self._shown.values()):
+            publish(self._marker(state))
+
+    def _follow(self, message: MissionState) -> None:
+        self._has_state, self._frame_id = True, message.header.frame_id
+        objects = {state.name: state for state in message.objects}
+        self._standing = self._bodies.follow(message.objects)
+        for name in [name for name in self._shown if name not in objects]:
+            self._publisher.publish(Marker(ns=name, action=Marker.DELETE))
+            del self._shown[name]
+        for name, state in objects.items():
+            before = self._shown.get(name)
+            if state != before:
+                if before is not None and before.is_carried:
+                    # rviz 1.14 dies of a marker that is no longer locked to its frame.
+                    self._publisher.publish(Marker(ns=name, action=Marker.DELETE))
+                self._shown[name] = state
+                self._publisher.publish(self._marker(state))
+
+    def _marker(self, state: ObjectState) -> Marker:
+        marker = Marker(ns=state.name, id=0, type=Marker.CUBE, action=Marker.ADD, color=state.color)
+        marker.scale.x = marker.scale.y = state.size
+        marker.scale.z = HEIGHT if state.is_solid else state.size
+        marker.pose.orientation.w = 1.0
+        if state.is_carried:
+            marker.header.frame_id, marker.frame_locked = self._base_frame, True
+            marker.pose.position.z = RIDING_HEIGHT + marker.scale.z / 2.0
+        else:
+            marker.header.frame_id = self._frame_id
+            marker.pose = pose2_to_msg(self._standing.get(state.name) or pose2_from_msg(state.pose))
+            marker.pose.position.z = marker.scale.z / 2.0
+        return marker
+
+
+class _Repeater(rospy.SubscribeListener):
+    def __init__(self, markers: MissionMarkers):
+        self._markers = markers
+
+    def peer_subscribe(self, topic_name, topic_publish, peer_publish):
+        self._markers.repeat(peer_publish)

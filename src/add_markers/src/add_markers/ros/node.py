@@ -1,0 +1,114 @@
+"""The ROS node of add_markers: shows the objects of an errand or a mission as cubes in rviz."""
+
+import time
+
+import rospy
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from nav_msgs.msg import Odometry
+from std_msgs.msg import String
+from visualization_msgs.msg import Marker, MarkerArray
+
+from add_markers.config import MarkerSettings
+from add_markers.parcel import CarriedParcel, TimedParcel
+from add_markers.ros.mission_markers import MissionMarkers
+from add_markers.ros.zones import zone_markers
+from planar.maps.places import places_of_errand
+from planar_ros.messages import pose2_from_msg, pose2_to_msg
+from planar_ros.parameters import read_settings
+from planar_ros.shell import run
+from planar_ros.transforms import Transforms
+from planar_ros.waiting import Waiting
+
+UPDATE_SECONDS = 0.1
+NOWHERE_YET = object()
+# Where the mission state of pick_objects puts the robot.
+PICKING_UP, DELIVERED = "picking up", "delivered"
+
+
+class AddMarkers:
+    """Publishes the marker whenever it appears, moves or disappears; latched, it waits for nobody."""
+
+    def __init__(self, settings: MarkerSettings):
+        self._settings = settings
+        self._pickup, self._dropoff = places = places_of_errand(settings.zones_file)
+        self._robot = None
+        self._shown_at = NOWHERE_YET
+        self._publisher = rospy.Publisher("visualization_marker", Marker, queue_size=10, latch=True)
+        self._zones = rospy.Publisher("zones", MarkerArray, queue_size=1, latch=True)
+        self._zones.publish(zone_markers(places, settings.frame_id))
+        if settings.mode == "demo":
+            self._parcel = TimedParcel(*places, settings.show_seconds, settings.hide_seconds)
+            self._locate = lambda: None
+        else:
+            self._parcel = CarriedParcel(*places, settings.pickup_seconds)
+            self._locate = self._locator(settings.pose_source)
+        Waiting(self._conditions())
+
+    def work(self):
+        """Follows the parcel until shutdown."""
+        latest = None
+        while not rospy.is_shutdown():
+            now = rospy.get_time()
+            if now > 0.0 and (latest is None or abs(now - latest) >= UPDATE_SECONDS):
+                latest = now
+                self._robot = self._locate()
+                self._show(self._parcel.update(now, self._robot))
+            time.sleep(UPDATE_SECONDS / 5)
+
+    def _locator(self, source):
+        if source == "tf":
+            transforms = Transforms()
+            return lambda: transforms.lookup(self._settings.frame_id, self._settings.base_frame_id)
+        latest = [None]
+
+        def keep_pose(message):
+            latest[0] = pose2_from_msg(message.pose.pose)
+
+        def keep_state(message):
+            place = {PICKING_UP: self._pickup, DELIVERED: self._dropoff}.get(message.data)
+            latest[0] = place.pose if place else None
+
+        if source == "state":
+            rospy.Subscriber("pick_objects/state", String, keep_state, queue_size=10)
+        elif source == "odom":
+            rospy.Subscriber("odom", Odometry, keep_pose, queue_size=1)
+        else:
+            rospy.Subscriber("amcl_pose", PoseWithCovarianceStamped, keep_pose, queue_size=1)
+        return lambda: latest[0]
+
+    def _conditions(self):
+        settings = self._settings
+        if settings.mode == "demo" or settings.pose_source == "state":
+            return {"the clock": lambda: rospy.get_time() > 0.0}
+        if settings.pose_source == "tf":
+            name = f"the transform {settings.frame_id} to {settings.base_frame_id}"
+        else:
+            name = f"a pose on {rospy.resolve_name(settings.pose_source)}"
+        return {name: lambda: self._robot is not None}
+
+    def _show(self, pose):
+        if pose == self._shown_at:
+            return
+        self._shown_at = pose
+        marker = Marker(ns="parcel", id=0, type=Marker.CUBE)
+        marker.header.frame_id = self._settings.frame_id
+        marker.pose = pose2_to_msg(pose if pose is not None else self._pickup.pose)
+        marker.pose.position.z = marker.scale.x = marker.scale.y = marker.scale.z = self._settings.size
+        marker.pose.position.z /= 2.0
+        marker.color.r, marker.color.g, marker.color.b, marker.color.a = 0.9, 0.4, 0.1, 1.0
+        marker.action = Marker.ADD if pose is not None else Marker.DELETE
+        self._publisher.publish(marker)
+        if pose is None:
+            rospy.loginfo("marker hidden")
+        else:
+            rospy.loginfo("marker shown at (%g, %g)", pose.x, pose.y)
+
+
+def main():
+    def start():
+        settings = read_settings(MarkerSettings)
+        if settings.mode == "mission":
+            return MissionMarkers(settings)
+        return AddMarkers(settings).work()
+
+    run("add_markers", start)

@@ -1,0 +1,238 @@
+"""A project's script, run under a master of its own and watched until its work is done."""
+
+import contextlib
+import os
+import signal
+import subprocess
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Dict, List, Mapping, Optional
+
+import psutil
+import rospy
+
+from home_service.display import Display
+from home_service.errors import LaunchError
+from home_service.graph import adopt_orphans, end_descendants, free_port, is_master_online
+from run_project.ros.observer import Observer
+from run_project.terminal import WindowLogs
+
+POLL_SECONDS = 0.2
+MASTER_SECONDS = 30.0
+ENTER_SECONDS = 5.0
+SIGINT_SECONDS = 4.0
+# Seconds of wall time without any news, and of simulated time, after which all is done.
+SETTLED_SECONDS = 3.0
+QUIET_SECONDS, QUIET_SIMULATED = 25.0, 30.0
+# The same once no node is left that could send a goal: a marker may still be moved.
+UNATTENDED_SECONDS, UNATTENDED_SIMULATED = 8.0, 10.0
+# The same before the first goal.
+IDLE_SECONDS, IDLE_SIMULATED = 90.0, 60.0
+# Seconds of wall time in which some simulated time has to pass.
+STALLED_SECONDS = 90.0
+# A process that has taken so much of a core for so many seconds spins; how nice it has to be then.
+SPINNING_SHARE, SPINNING_SECONDS, SPINNING_NICENESS = 0.3, 5.0, 15
+SHELLS = ("", "bash", "sh", "dash", "zsh")
+# Runs in a project's workspace whenever that is sourced.
+SETUP_TOOL = "_setup_util.py"
+
+
+@dataclass(frozen=True)
+class Job:
+    """A command in a folder, with an environment; ``work`` is where the project's own files are."""
+
+    command: List[str]
+    folder: Path
+    environment: Mapping[str, str]
+    work: Path
+
+
+class ProjectRun:
+    """Context of a run: entering starts a master, leaving ends every process of the run."""
+
+    def __init__(self, job: Job, logs: Path, parameters: Mapping[str, object], display: Display):
+        self._job = job
+        self._logs = logs
+        self._display = display
+        self._parameters = parameters
+        self.observer: Optional[Observer] = None
+        self._helpers: List[subprocess.Popen] = []
+        self._script: Optional[subprocess.Popen] = None
+        self._windows = WindowLogs(logs)
+        self._news_wall = time.monotonic()
+
+    def __enter__(self) -> "ProjectRun":
+        adopt_orphans()
+        port = free_port()
+        os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{port}"
+        os.environ["ROS_LOG_DIR"] = str(self._logs / "ros")
+        try:
+            self._start_helper("master", ["roscore", "--port", str(port)])
+            self._wait_for_master()
+            for name, value in self._parameters.items():
+                rospy.set_param(name, value)
+            rospy.init_node("run_project", anonymous=True, disable_signals=True, log_level=rospy.ERROR)
+            self.observer = Observer(self._tell)
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def __exit__(self, *_):
+        rospy.signal_shutdown("the run is over")
+        others = _others(self._helpers)
+        for process in others:
+            with contextlib.suppress(psutil.NoSuchProcess):
+                process.send_signal(signal.SIGINT)
+        psutil.wait_procs(others, SIGINT_SECONDS)
+        for helper in self._helpers:
+            helper.send_signal(signal.SIGINT)
+        psutil.wait_procs(psutil.Process().children(recursive=True), SIGINT_SECONDS)
+        end_descendants(2.0)
+
+    def record(self, bag: Path) -> None:
+        """Records everything but pictures into a bag, from now on."""
+        command = ["rosbag", "record", "--all", "--exclude", "(.*)camera(.*)", "--output-name", str(bag)]
+        self._start_helper("record", command)
+
+    def watch(self, timeout: float) -> Optional[str]:
+        """Runs the script until its work is done; returns why it was cut short, or None."""
+        deadline = time.monotonic() + timeout
+        self._script = self._start_script()
+        observer, has_worked, latest_enter = self.observer, False, time.monotonic()
+        moved_wall, moved_time = time.monotonic(), -1.0
+        while True:
+            now = time.monotonic()
+            observer.look_around()
+            for window in self._windows.opened():
+                self._tell(f"{observer.simulated_time:7.1f} s  window {window}")
+            self._display.show(observer.status())
+            if observer.simulated_time != moved_time:
+                moved_wall, moved_time = now, observer.simulated_time
+            if now - latest_enter > ENTER_SECONDS:
+                latest_enter = now
+                self._press_enter()
+            own = self._project_processes()
+            _put_spinners_last(own)
+            is_working = bool(own)
+            has_worked = has_worked or is_working
+            if self._is_done(now - self._news_wall, has_worked and not is_working):
+                return None
+            if now > deadline:
+                return f"not done within {timeout:g} s of wall time"
+            if now - moved_wall > STALLED_SECONDS:
+                return f"no simulated time has passed for {STALLED_SECONDS:g} s"
+            if not is_master_online():
+                return "the ROS master has ended"
+            time.sleep(POLL_SECONDS)
+
+    def _is_done(self, quiet_wall: float, nodes_are_gone: bool) -> bool:
+        ledger = self.observer.ledger
+        script_is_over = self._script.poll() is not None
+        if (script_is_over and not _others(self._helpers)) or ledger.two_rounds:
+            return True
+        if nodes_are_gone and script_is_over:
+            return quiet_wall > (SETTLED_SECONDS if ledger.goals or ledger.markers else QUIET_SECONDS)
+        quiet_simulated = self.observer.simulated_time - ledger.latest_news
+        if ledger.goals:
+            enough_wall, enough_simulated = QUIET_SECONDS, QUIET_SIMULATED
+            if not self.observer.has_goal_clients and not ledger.is_object_away:
+                enough_wall, enough_simulated = UNATTENDED_SECONDS, UNATTENDED_SIMULATED
+            return ledger.is_quiet and quiet_wall > enough_wall and quiet_simulated > enough_simulated
+        # A goal may still come: bringing up localization and navigation takes a while on a busy machine.
+        return quiet_wall > IDLE_SECONDS and quiet_simulated > IDLE_SIMULATED
+
+    def _tell(self, news: str) -> None:
+        self._news_wall = time.monotonic()
+        self._display.say(news)
+
+    def _start_helper(self, name: str, command: List[str]) -> None:
+        with (self._logs / f"{name}.log").open("w") as log:
+            self._helpers.append(
+                subprocess.Popen(
+                    command,
+                    stdin=subprocess.DEVNULL,
+                    stdout=log,
+                    stderr=subprocess.STDOUT,
+                    start_new_session=True,
+                )
+            )
+
+    def _start_script(self) -> subprocess.Popen:
+        environment: Dict[str, str] = dict(self._job.environment)
+        for name in ("ROS_MASTER_URI", "ROS_LOG_DIR"):
+            environment[name] = os.environ[name]
+        with (self._logs / "script.log").open("w") as log:
+            return subprocess.Popen(
+                self._job.command,
+                cwd=str(self._job.folder),
+                env=environment,
+                stdin=subprocess.PIPE,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
+
+    def _press_enter(self) -> None:
+        """Some scripts wait for a person to press Enter between two windows."""
+        with contextlib.suppress(OSError):
+            self._script.stdin.write(b"\n")
+            self._script.stdin.flush()
+
+    def _wait_for_master(self) -> None:
+        deadline = time.monotonic() + MASTER_SECONDS
+        while not is_master_online():
+            if time.monotonic() > deadline or self._helpers[0].poll() is not None:
+                raise LaunchError(f"no ROS master came up, see {self._logs / 'master.log'}")
+            time.sleep(0.05)
+
+    def _project_processes(self) -> List[psutil.Process]:
+        """Processes of programs that are the project's own: neither shells nor tools of ROS."""
+        found = []
+        for process in psutil.Process().children(recursive=True):
+            with contextlib.suppress(psutil.NoSuchProcess):
+                program = _program(process.cmdline())
+                if str(self._job.work) in program and not program.endswith(SETUP_TOOL):
+                    found.append(process)
+        return found
+
+
+def _put_spinners_last(processes: List[psutil.Process]) -> None:
+    """Some nodes never sleep: the core that they take must not be missing where the robot is simulated."""
+    for process in processes:
+        with contextlib.suppress(psutil.Error):
+            times, age = process.cpu_times(), time.time() - process.create_time()
+            is_spinning = age > SPINNING_SECONDS and times.user + times.system > SPINNING_SHARE * age
+            if is_spinning and process.nice() < SPINNING_NICENESS:
+                process.nice(SPINNING_NICENESS)
+                _put_session_last(process)
+
+
+def _put_session_last(process: psutil.Process) -> None:
+    """Linux may share out the cores by sessions, one a node; niceness counts only within a session."""
+    with contextlib.suppress(OSError):
+        Path(f"/proc/{process.pid}/autogroup").write_text(f"{SPINNING_NICENESS}\n")
+
+
+def _program(command: List[str]) -> str:
+    """The file that a process runs; empty for a shell."""
+    name = Path(command[0]).name if command else ""
+    if name in SHELLS:
+        return ""
+    return command[1] if name.startswith("python") and len(command) > 1 else "".join(command[:1])
+
+
+def _others(helpers: List[subprocess.Popen]) -> List[psutil.Process]:
+    """The processes of the run but for the master's and the recorder's."""
+    own = set()
+    for helper in helpers:
+        with contextlib.suppress(psutil.NoSuchProcess):
+            process = psutil.Process(helper.pid)
+            own |= {process, *process.children(recursive=True)}
+    found = []
+    for process in psutil.Process().children(recursive=True):
+        with contextlib.suppress(psutil.NoSuchProcess):
+            if process not in own and process.status() != psutil.STATUS_ZOMBIE:
+                found.append(process)
+    return found

@@ -1,0 +1,169 @@
+"""The ROS node of explorer_lite: the action ``explore``, carried out with move_base on the growing map."""
+
+import time
+from dataclasses import replace
+from typing import Optional
+
+import actionlib
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from geometry_msgs.msg import Point, PoseStamped
+from home_service_msgs.msg import ExploreAction, ExploreFeedback, ExploreResult
+from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
+from visualization_msgs.msg import MarkerArray
+
+from explorer_lite.config import ExplorerSettings, NodeSettings
+from explorer_lite.explorer import Explorer, ExplorerState, Finish, GoalReached, GoalRefused, GoTo
+from explorer_lite.ros.markers import frontier_markers
+from explorer_lite.warming import warm_up
+from planar import OccupancyGrid, Pose2
+from planar_ros.actions import ActionServer, goal_is_over, server_is_ready
+from planar_ros.messages import LaserScanArrays, OccupancyGridArrays, grid_from_msg, pose2_to_msg
+from planar_ros.parameters import read_settings
+from planar_ros.shell import run
+from planar_ros.transforms import Transforms
+from planar_ros.waiting import Waiting
+
+POLL_SECONDS = 0.02
+FEEDBACK_SECONDS = 1.0
+STOP_SECONDS = 2.0
+
+
+class Explore:
+    """Serves the action ``explore``; orders of the explorer become move_base goals."""
+
+    def __init__(self):
+        node_fields, explorer_fields = (
+            kind.__dataclass_fields__ for kind in (NodeSettings, ExplorerSettings)
+        )
+        self._settings = read_settings(NodeSettings, ignore=explorer_fields)
+        self._explorer_settings = read_settings(ExplorerSettings, ignore=node_fields)
+        warm_up()
+        self._map: Optional[OccupancyGrid] = None
+        self._field_of_view = 0.0
+        self._transforms = Transforms()
+        self._markers = rospy.Publisher("~frontiers", MarkerArray, queue_size=1, latch=True)
+        self._client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
+        self._pending = False
+        rospy.Subscriber("map", OccupancyGridArrays, self._keep_map, queue_size=1, tcp_nodelay=True)
+        self._scans = rospy.Subscriber("scan", LaserScanArrays, self._measure_view, queue_size=1)
+        rospy.on_shutdown(self._client.cancel_all_goals)
+        frames = f"{self._settings.global_frame} to {self._settings.robot_base_frame}"
+        self._conditions = {
+            f"a map on {rospy.resolve_name('map')}": lambda: self._map is not None,
+            f"the transform {frames}": lambda: self._robot() is not None,
+            f"the action {rospy.resolve_name('move_base')}": lambda: server_is_ready(self._client),
+        }
+        Waiting(self._conditions)
+        self._server = ActionServer("explore", ExploreAction, self._execute, auto_start=False)
+        self._server.start()
+
+    def _execute(self, goal):
+        settings = self._explorer_settings
+        if settings.field_of_view == 0.0:
+            settings = replace(settings, field_of_view=self._field_of_view)
+        if self._field_of_view > 0.0:
+            self._scans.unregister()
+        explorer = Explorer(settings, goal.return_to_start)
+        start = rospy.get_time()
+        rospy.loginfo("exploring")
+        end = self._explore(explorer)
+        self._stop()
+        result = ExploreResult(
+            explored_area=explorer.explored_area,
+            duration=rospy.Duration(max(0.0, rospy.get_time() - start)),
+            unreachable=[Point(*frontier.middle_xy, 0.0) for frontier in explorer.unreachable],
+        )
+        if end is None:
+            rospy.loginfo("exploration cancelled")
+            self._server.set_preempted(result, "cancelled")
+        elif end.success:
+            rospy.loginfo("%s", end.reason)
+            self._server.set_succeeded(result, end.reason)
+        else:
+            rospy.logwarn("%s", end.reason)
+            self._server.set_aborted(result, end.reason)
+
+    def _explore(self, explorer: Explorer) -> Optional[Finish]:
+        """Explores to the end; None if it was cancelled before."""
+        seen_map, event, goal = None, None, None
+        next_feedback = 0.0
+        complete_at = time.monotonic()
+        while not (rospy.is_shutdown() or self._server.is_preempt_requested()):
+            missing = [name for name, is_met in self._conditions.items() if not is_met()]
+            if not missing:
+                complete_at = time.monotonic()
+            elif time.monotonic() - complete_at > self._settings.server_timeout:
+                text = f"{' and '.join(missing)} missing for {self._settings.server_timeout:g} s"
+                return Finish(False, text)
+            now, grid, robot = rospy.get_time(), self._map, self._robot()
+            order = None
+            if not missing and robot is not None:
+                order = explorer.advance(now, None if grid is seen_map else grid, robot, event)
+                seen_map, event = grid, None
+            if isinstance(order, Finish):
+                return order
+            if isinstance(order, GoTo):
+                goal = order.pose
+                self._send(goal)
+            if explorer.state is not ExplorerState.READY and now >= next_feedback:
+                next_feedback = now + FEEDBACK_SECONDS
+                self._tell(explorer, goal)
+            time.sleep(POLL_SECONDS)
+            event = event or self._next_event()
+        return None
+
+    def _robot(self) -> Optional[Pose2]:
+        return self._transforms.lookup(self._settings.global_frame, self._settings.robot_base_frame)
+
+    def _send(self, pose: Pose2):
+        self._client.send_goal(MoveBaseGoal(self._stamped(pose)))
+        self._pending = True
+
+    def _next_event(self):
+        if not self._pending or not goal_is_over(self._client):
+            return None
+        self._pending = False
+        if self._client.get_state() == GoalStatus.SUCCEEDED:
+            return GoalReached()
+        text = self._client.get_goal_status_text() or GoalStatus.to_string(self._client.get_state())
+        rospy.loginfo("goal given up: %s", text)
+        return GoalRefused(text)
+
+    def _stop(self):
+        """Has move_base stop the robot, and waits until it says that it has."""
+        if not self._pending:
+            return
+        self._client.cancel_goal()
+        deadline = time.monotonic() + STOP_SECONDS
+        while not goal_is_over(self._client) and time.monotonic() < deadline:
+            time.sleep(POLL_SECONDS)
+        self._pending = False
+
+    def _tell(self, explorer: Explorer, goal: Optional[Pose2]):
+        self._server.publish_feedback(
+            ExploreFeedback(
+                explored_area=explorer.explored_area,
+                frontiers=len(explorer.frontiers),
+                goal=self._stamped(goal) if goal else PoseStamped(),
+                state=explorer.state.value,
+            )
+        )
+        self._markers.publish(
+            frontier_markers(explorer.frontiers, explorer.unreachable, self._settings.global_frame)
+        )
+
+    def _stamped(self, pose: Pose2) -> PoseStamped:
+        stamped = PoseStamped(pose=pose2_to_msg(pose))
+        stamped.header.frame_id, stamped.header.stamp = self._settings.global_frame, rospy.Time.now()
+        return stamped
+
+    def _measure_view(self, scan):
+        self._field_of_view = len(scan.ranges) * abs(scan.angle_increment)
+
+    def _keep_map(self, message):
+        self._map = grid_from_msg(message)
+
+
+def main():
+    run("explore", Explore)

@@ -1,0 +1,91 @@
+"""The node ``map_server``: serves a map file, as map_server 1.17 does.
+
+    map_server MAP.yaml
+    map_server IMAGE RESOLUTION      (deprecated)
+
+A map that cannot be loaded ends it with exit code 2 (the official one: 255) and a line naming file and key.
+"""
+
+import argparse
+
+import numpy as np
+import rospkg
+import rospy
+from nav_msgs.msg import MapMetaData
+from nav_msgs.srv import LoadMapResponse
+
+from map_lite.config import ServerSettings
+from map_lite.map_url import path_of
+from planar import MapFileError, OccupancyGrid, Pose2, load_map
+from planar.maps.map_file import MapDescriptionError, MapImageError, MapMissingError, cells_from_image
+from planar_ros.messages import GetMapArrays, LoadMapArrays, OccupancyGridArrays, grid_to_msg
+from planar_ros.parameters import read_settings
+from planar_ros.shell import run
+
+RESULTS = {
+    MapMissingError: LoadMapResponse.RESULT_MAP_DOES_NOT_EXIST,
+    MapImageError: LoadMapResponse.RESULT_INVALID_MAP_DATA,
+    MapDescriptionError: LoadMapResponse.RESULT_INVALID_MAP_METADATA,
+}
+
+
+class MapServerNode:
+    """Publishes one map, latched, and serves it; change_map puts another in its place."""
+
+    def __init__(self, arguments):
+        self._settings = read_settings(ServerSettings)
+        grid = self._load(arguments)
+        self._map_publisher = rospy.Publisher("map", OccupancyGridArrays, queue_size=1, latch=True)
+        self._metadata_publisher = rospy.Publisher("map_metadata", MapMetaData, queue_size=1, latch=True)
+        self._show(grid)
+        rospy.Service("static_map", GetMapArrays, lambda request: {"map": self._map})
+        rospy.Service("change_map", LoadMapArrays, self._on_change_map)
+
+    def _load(self, arguments) -> OccupancyGrid:
+        path = path_of(arguments.map, _package_folder)
+        if arguments.resolution is None:
+            return load_map(path)
+        rospy.logwarn("an image and a resolution for a map are deprecated: write a YAML file")
+        settings = self._settings
+        cells = cells_from_image(
+            path, bool(settings.negate), settings.occupied_thresh, settings.free_thresh, "trinary"
+        )
+        return OccupancyGrid(cells, arguments.resolution, Pose2())
+
+    def _show(self, grid: OccupancyGrid):
+        self._map = grid_to_msg(grid, rospy.Time.now(), self._settings.frame_id)
+        self._map.info.map_load_time = self._map.header.stamp
+        self._map_publisher.publish(self._map)
+        self._metadata_publisher.publish(self._map.info)
+        rospy.loginfo("Read a %d X %d map @ %.3f m/cell", grid.cols, grid.rows, grid.resolution)
+
+    def _on_change_map(self, request):
+        try:
+            self._show(load_map(path_of(request.map_url, _package_folder)))
+        except MapFileError as error:
+            rospy.logerr("%s", error)
+            nothing = OccupancyGridArrays(data=np.zeros(0, dtype=np.int8))
+            result = RESULTS.get(type(error), LoadMapResponse.RESULT_UNDEFINED_FAILURE)
+            return {"map": nothing, "result": result}
+        return {"map": self._map, "result": LoadMapResponse.RESULT_SUCCESS}
+
+
+def _package_folder(package: str) -> str:
+    try:
+        return rospkg.RosPack().get_path(package)
+    except rospkg.ResourceNotFound as error:
+        raise LookupError(package) from error
+
+
+def main():
+    arguments = _arguments(rospy.myargv()[1:])
+    run("map_server", lambda: MapServerNode(arguments))
+
+
+def _arguments(words):
+    parser = argparse.ArgumentParser(prog="map_server", description="Serves a map file.")
+    parser.add_argument("map", help="YAML file of the map, or (deprecated) its image")
+    parser.add_argument(
+        "resolution", nargs="?", type=float, help="metres per pixel, with an image (deprecated)"
+    )
+    return parser.parse_args(words)

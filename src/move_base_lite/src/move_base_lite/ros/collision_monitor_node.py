@@ -1,0 +1,99 @@
+"""The node ``collision_monitor``: between whoever commands the robot and its wheels."""
+
+import threading
+from typing import Optional
+
+import numpy as np
+import rospy
+import yaml
+from geometry_msgs.msg import Twist
+from std_msgs.msg import String
+
+from move_base_lite.collision_monitor import STOPPED, CollisionMonitor, MonitorSettings, Verdict
+from planar import SettingsError, Twist2
+from planar.config.settings import settings_from
+from planar_ros.messages import LaserScanArrays, frame_name, scan_from_msg
+from planar_ros.parameters import parameters_below
+from planar_ros.shell import run
+from planar_ros.transforms import Transforms
+
+WARN_SECONDS = 5.0
+SILENT = "silent"
+
+
+class CollisionMonitorNode:
+    """Passes ``cmd_vel_in`` on to ``cmd_vel_out`` as far as ``scan`` allows; ``~state`` says how far."""
+
+    def __init__(self):
+        parameters = parameters_below("~")
+        self._base_frame = frame_name(parameters.pop("base_frame", "base_footprint"))
+        self._settings = _settings_from(parameters)
+        self._monitor = CollisionMonitor(self._settings)
+        self._monitor.judge(Twist2(0.1), np.zeros((1, 2)))  # compiled before it matters
+        self._transforms = Transforms()
+        self._lock = threading.Lock()
+        self._points_xy: Optional[np.ndarray] = None
+        self._seen = rospy.Time(0)
+        self._command, self._passed, self._told_at = Twist2(), Twist2(), rospy.Time(0)
+        self._reason = ""
+        self._state = rospy.Publisher("~state", String, queue_size=1, latch=True)
+        self._out = rospy.Publisher("cmd_vel_out", Twist, queue_size=1, tcp_nodelay=True)
+        rospy.Subscriber("scan", LaserScanArrays, self._on_scan, queue_size=1, tcp_nodelay=True)
+        rospy.Subscriber("cmd_vel_in", Twist, self._on_command, queue_size=1, tcp_nodelay=True)
+
+    def _on_scan(self, message):
+        mounting = self._transforms.mounting(self._base_frame, frame_name(message.header.frame_id))
+        if mounting is None:
+            frames = f"{self._base_frame} -> {message.header.frame_id}"
+            rospy.logwarn_throttle(WARN_SECONDS, f"waiting for the transform {frames}")
+            return
+        with self._lock:
+            self._points_xy = scan_from_msg(message, *mounting).hit_points_in_base()
+            self._seen = rospy.Time.now()
+            is_fresh = (self._seen - self._told_at).to_sec() < self._settings.scan_timeout
+            if is_fresh and self._verdict().command != self._passed:
+                self._pass(self._verdict())
+
+    def _on_command(self, message):
+        with self._lock:
+            self._command = Twist2(message.linear.x, message.angular.z)
+            self._told_at = rospy.Time.now()
+            self._pass(self._verdict())
+
+    def _verdict(self) -> Verdict:
+        if self._points_xy is None or (rospy.Time.now() - self._seen).to_sec() > self._settings.scan_timeout:
+            return Verdict(Twist2(), SILENT)
+        if not self._command.is_finite():
+            return Verdict(Twist2(), STOPPED)
+        return self._monitor.judge(self._command, self._points_xy)
+
+    def _pass(self, verdict: Verdict):
+        self._passed = verdict.command
+        message = Twist()
+        message.linear.x, message.angular.z = verdict.command.v, verdict.command.omega
+        self._out.publish(message)
+        if verdict.reason == SILENT:
+            silent = f"no scans on {rospy.resolve_name('scan')}: the robot is stopped"
+            rospy.logwarn_throttle(WARN_SECONDS, silent)
+        if verdict.reason != self._reason:
+            self._reason = verdict.reason
+            self._state.publish(verdict.reason)
+
+
+def _settings_from(parameters) -> MonitorSettings:
+    where = rospy.get_name() + "/"
+    if "footprint" in parameters:
+        value = parameters["footprint"]
+        try:
+            points = yaml.safe_load(value) if isinstance(value, str) else value
+            parameters["footprint"] = tuple((float(x), float(y)) for x, y in points)
+        except (yaml.YAMLError, TypeError, ValueError):
+            raise SettingsError(f"{where}footprint must be a list of points [x, y], got {value!r}") from None
+    settings, unknown = settings_from(MonitorSettings, parameters, where=where)
+    for name in unknown:
+        rospy.logwarn("unknown parameter %s", where + name)
+    return settings
+
+
+def main():
+    run("collision_monitor", CollisionMonitorNode)

@@ -1,0 +1,85 @@
+"""What the Navigator decides, as topics."""
+
+from typing import Optional
+
+import numpy as np
+import rospy
+from diagnostic_msgs.msg import DiagnosticStatus
+from geometry_msgs.msg import Twist
+from move_base_msgs.msg import RecoveryStatus
+from nav_msgs.msg import Path
+
+from move_base_lite.decision import Decision, Outcome
+from move_base_lite.ros.exploration_topics import ExplorationTopics
+from move_base_lite.ros.plan_messages import path_msg, plan_msg, pose_msg, trajectory_msg
+from move_base_lite.ros.status_messages import outcome_msg, progress_msg
+from planar import Pose2, Twist2
+
+FEEDBACK_PERIOD = rospy.Duration(0.2)
+# Where rviz's configurations look for the plans of any local planner.
+USUAL_LOCAL_PLANNER = "DWAPlannerROS"
+OFFICIAL_LOCAL_PLANNERS = (USUAL_LOCAL_PLANNER, "TrajectoryPlannerROS")
+
+
+class DecisionTopics:
+    """Velocities, plans, recoveries, how a goal stands and how it ended."""
+
+    def __init__(self, global_planner: str, local_planner: str, map_frame: str, odom_frame: str):
+        self._map_frame, self._odom_frame = map_frame, odom_frame
+        self._next_feedback = rospy.Time(0)
+        local = local_planner if local_planner in OFFICIAL_LOCAL_PLANNERS else USUAL_LOCAL_PLANNER
+        self._command = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True)
+        self._outcome = rospy.Publisher("~outcome", DiagnosticStatus, queue_size=1, latch=True)
+        self._feedback = rospy.Publisher("~nav_feedback", DiagnosticStatus, queue_size=1)
+        self._recovery = rospy.Publisher("move_base/recovery_status", RecoveryStatus, queue_size=1)
+        self._plan = rospy.Publisher(f"~{global_planner}/plan", Path, queue_size=1)
+        self._global_plan = rospy.Publisher(f"~{local}/global_plan", Path, queue_size=1)
+        self._local_plan = rospy.Publisher(f"~{local}/local_plan", Path, queue_size=1)
+        self._exploration = ExplorationTopics(local, odom_frame)
+
+    def command(self, command: Twist2) -> None:
+        message = Twist()
+        message.linear.x, message.angular.z = command.v, command.omega
+        self._command.publish(message)
+
+    def outcome(self, outcome: Outcome) -> None:
+        self._outcome.publish(outcome_msg(outcome))
+
+    def forget_time(self) -> None:
+        """Time has jumped back: the next occasion is now."""
+        self._next_feedback = rospy.Time(0)
+
+    def publish(
+        self, now: rospy.Time, decision: Decision, base_in_map: Pose2, goal: Pose2, orientation_mode: int
+    ) -> None:
+        """All of a decision but the end of the action."""
+        if decision.command is not None:
+            self.command(decision.command)
+        if decision.plan_xy is not None and self._plan.get_num_connections():
+            plan = plan_msg(
+                decision.plan_xy, now, self._map_frame, orientation_mode, base_in_map.yaw, goal.yaw
+            )
+            self._plan.publish(plan)
+        self._publish_followed(now, decision.followed_xy)
+        if decision.trajectory is not None and self._local_plan.get_num_connections():
+            self._local_plan.publish(trajectory_msg(decision.trajectory, now, self._odom_frame))
+        if decision.exploration is not None:
+            self._exploration.publish(now, decision.exploration)
+        if decision.recovery is not None:
+            self._tell_recovery(now, decision, base_in_map)
+        if decision.progress is not None and now >= self._next_feedback:
+            self._next_feedback = now + FEEDBACK_PERIOD
+            self._feedback.publish(progress_msg(decision))
+        if decision.outcome is not None:
+            self.outcome(decision.outcome)
+
+    def _publish_followed(self, now: rospy.Time, path_xy: Optional[np.ndarray]):
+        if path_xy is not None and self._global_plan.get_num_connections():
+            level = np.zeros(len(path_xy))
+            self._global_plan.publish(path_msg(path_xy, now, self._odom_frame, level))
+
+    def _tell_recovery(self, now: rospy.Time, decision: Decision, base_in_map: Pose2):
+        recovery = decision.recovery
+        rospy.logwarn("recovery behavior %s (%d of %d)", recovery.name, recovery.index + 1, recovery.total)
+        pose = pose_msg(base_in_map, now, self._map_frame)
+        self._recovery.publish(RecoveryStatus(pose, recovery.index, recovery.total, recovery.name))

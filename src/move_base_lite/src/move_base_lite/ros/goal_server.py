@@ -1,0 +1,86 @@
+"""Goals: move_base's action, and the topic on which rviz sends them."""
+
+import threading
+from typing import Callable, Optional
+
+import rospy
+from actionlib.action_server import ServerGoalHandle
+from geometry_msgs.msg import PoseStamped
+from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseFeedback
+
+from move_base_lite.decision import Status
+from move_base_lite.ros.goals import goal_from_msg
+from move_base_lite.ros.plan_messages import pose_msg
+from planar import Pose2
+from planar_ros.actions import ActionServer
+from planar_ros.transforms import Transforms
+
+
+class GoalServer:
+    """One goal at a time; a new one preempts the old one.
+
+    ``on_cancel`` is called in a thread of its own when a client wants the goal under way to be left.
+    """
+
+    def __init__(self, map_frame: str, transforms: Transforms, on_cancel: Callable[[], None]):
+        self._map_frame, self._transforms = map_frame, transforms
+        self._server = ActionServer("move_base", MoveBaseAction, auto_start=False)
+        self._server.register_preempt_callback(
+            lambda: threading.Thread(target=on_cancel, daemon=True).start()
+        )
+        self._current_goal = rospy.Publisher("~current_goal", PoseStamped, queue_size=1)
+        self._action_goal = rospy.Publisher("move_base/goal", MoveBaseActionGoal, queue_size=1)
+        rospy.Subscriber("move_base_simple/goal", PoseStamped, self._on_simple_goal, queue_size=1)
+
+    def start(self) -> None:
+        """From now on clients find the action."""
+        self._server.start()
+
+    @property
+    def is_active(self) -> bool:
+        return self._server.is_active()
+
+    @property
+    def is_cancelled(self) -> bool:
+        """Whether the goal under way is to be left without another one to take over."""
+        server = self._server
+        return server.is_active() and server.is_preempt_requested() and not server.is_new_goal_available()
+
+    def take(self, now: rospy.Time) -> Optional[Pose2]:
+        """A goal that has come, in the map; it is accepted, and the old one preempted. None if there is none.
+
+        Raises NavigationError for a goal that means nothing; it has been accepted all the same.
+        """
+        with self._server.action_server.lock, self._server.lock:
+            if not self._server.is_new_goal_available():
+                return None
+            message = self._server.accept_new_goal().target_pose
+        goal = goal_from_msg(message, self._map_frame, self._transforms)
+        self._current_goal.publish(pose_msg(goal, now, self._map_frame))
+        return goal
+
+    def tell_pose(self, base_in_map: Pose2, now: rospy.Time) -> None:
+        """Feedback: where the robot is."""
+        if self._server.is_active():
+            self._server.publish_feedback(MoveBaseFeedback(pose_msg(base_in_map, now, self._map_frame)))
+
+    def end(self, status: Status, text: str) -> None:
+        """The goal under way has ended so."""
+        if status is Status.SUCCEEDED:
+            self._server.set_succeeded(text=text)
+        elif status is Status.CANCELLED:
+            self._server.set_preempted()
+        else:
+            self._server.set_aborted(text=text)
+
+    def forget_time(self) -> None:
+        """Time has jumped back: a goal is not old for being stamped before the last one."""
+        with self._server.action_server.lock, self._server.lock:
+            self._server.current_goal = self._server.next_goal = ServerGoalHandle()
+            self._server.new_goal = False
+
+    def _on_simple_goal(self, message):
+        goal = MoveBaseActionGoal()
+        goal.header.stamp = rospy.Time.now()
+        goal.goal.target_pose = message
+        self._action_goal.publish(goal)

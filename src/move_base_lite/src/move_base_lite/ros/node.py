@@ -1,0 +1,257 @@
+"""The node ``move_base``: a Navigator behind move_base's action, topics and services."""
+
+import threading
+from typing import Optional
+
+import rospy
+
+from move_base_lite.config import NavigatorSettings
+from move_base_lite.decision import Decision, Outcome, Status, Trigger, with_reason
+from move_base_lite.errors import NavigationError, RobotLost
+from move_base_lite.navigator import Navigator
+from move_base_lite.parameters import settings_from_parameters
+from move_base_lite.ros.costmap_topics import CostmapTopics
+from move_base_lite.ros.decision_topics import DecisionTopics
+from move_base_lite.ros.goal_server import GoalServer
+from move_base_lite.ros.goals import InvalidGoal
+from move_base_lite.ros.plan_services import PlanServices
+from move_base_lite.ros.potential_topic import PotentialTopic
+from move_base_lite.ros.surroundings import Surroundings, View
+from move_base_lite.ros.tuning import ParameterTree
+from move_base_lite.ros.zone_topics import ZoneTopics
+from move_base_lite.warming import warm_up
+from move_base_lite.zones import Zones, load_zones
+from planar import Pose2, SettingsError, Twist2
+from planar_ros.clock import sleep_until
+from planar_ros.messages import OccupancyGridArrays, frame_name, grid_from_msg
+from planar_ros.parameters import parameters_below
+from planar_ros.progress import Progress
+from planar_ros.shell import run
+from planar_ros.transforms import Transforms
+from planar_ros.waiting import Waiting
+
+WARN_SECONDS = 5.0
+KILLED_TEXT = "Aborting on the goal because the node has been killed"
+TIME_JUMP_TEXT = "Aborting on the goal because time has jumped back"
+
+
+class MoveBaseNode:
+    """Callbacks store; one thread ticks the Navigator in ROS time and publishes what it decides.
+
+    As with the official node, the action and the services come up when the map and the transforms are there.
+    """
+
+    def __init__(self):
+        parameters = parameters_below("~")
+        self._settings = _checked_settings(parameters)
+        zones_file = parameters.get("zones_file", "")
+        self._zones = load_zones(zones_file) if zones_file else Zones()
+        warm_up(self._settings)
+        self._map_frame = frame_name(self._settings.global_costmap.global_frame)
+        odom_frame = frame_name(self._settings.local_costmap.global_frame)
+        self._global_planner = _short_name(parameters, "base_global_planner", "navfn/NavfnROS")
+        local_planner = _short_name(parameters, "base_local_planner", "")
+        self._lock = threading.RLock()
+        self._new_map: Optional[OccupancyGridArrays] = None
+        self._navigator: Optional[Navigator] = None
+        self._view: Optional[View] = None
+        self._goal = Pose2()
+        self._lost_since = rospy.Time(0)
+        self._is_up = False
+        self._topics = DecisionTopics(self._global_planner, local_planner, self._map_frame, odom_frame)
+        self._potential = PotentialTopic(self._global_planner, self._map_frame)
+        self._global_topics = CostmapTopics("global_costmap")
+        self._local_topics = CostmapTopics("local_costmap")
+        self._transforms = Transforms()
+        self._goals = GoalServer(self._map_frame, self._transforms, self._on_cancel)
+        odom_topic = parameters.get("DWAPlannerROS", {}).get("odom_topic", "odom")
+        self._surroundings = Surroundings(self._settings, self._transforms, odom_topic)
+        self._tree = ParameterTree(parameters, self._change)
+        self._progress = Progress()
+        self._await_inputs()
+        rospy.on_shutdown(self._on_shutdown)
+        threading.Thread(target=self._control, daemon=True).start()
+
+    def _await_inputs(self):
+        base_frame = frame_name(self._settings.local_costmap.robot_base_frame)
+        odom_frame = frame_name(self._settings.local_costmap.global_frame)
+        conditions = {
+            f"the transforms {self._map_frame} -> {odom_frame} -> {base_frame}": lambda: self._view
+            is not None,
+        }
+        for topic in self._surroundings.topics:
+            heard = f"a message on {topic}"
+            conditions[heard] = lambda topic=topic: topic not in self._surroundings.silent_topics
+        static = self._settings.global_costmap.static
+        if static.enabled:
+            conditions[f"a map on {rospy.resolve_name(static.map_topic)}"] = self._has_map
+            rospy.Subscriber(static.map_topic, OccupancyGridArrays, self._on_map, queue_size=1)
+        else:
+            self._navigator = Navigator(self._settings, None, self._zones)
+        Waiting(conditions)
+
+    def _has_map(self) -> bool:
+        return self._new_map is not None or self._navigator is not None
+
+    def _on_map(self, message):
+        self._new_map = message
+
+    def _change(self, settings: NavigatorSettings):
+        with self._lock:
+            self._settings = settings
+            self._surroundings.change(settings)
+            if self._navigator is not None:
+                self._navigator.change(settings)
+
+    def _control(self):
+        """Ticks in ROS time; a jump back of time starts afresh."""
+        due = rospy.Time(0)
+        while not rospy.is_shutdown():
+            period = rospy.Duration(1.0 / self._settings.move_base.controller_frequency)
+            try:
+                if due - rospy.Time.now() > 2 * period:
+                    raise rospy.ROSTimeMovedBackwardsException((due - rospy.Time.now()).to_sec())
+                now = sleep_until(due)
+                self._tick(now)
+                self._progress.report(now)
+                due = max(due + period, now) if due != rospy.Time(0) else now + period
+            except rospy.ROSTimeMovedBackwardsException:
+                due = rospy.Time(0)
+                self._start_afresh()
+
+    def _start_afresh(self):
+        rospy.logwarn("time has jumped back: forgetting goal, obstacles and transforms")
+        with self._lock:
+            self._surroundings.forget()
+            for topics in (self._topics, self._global_topics, self._local_topics):
+                topics.forget_time()
+            if self._navigator is not None:
+                self._navigator.forget()
+            if self._goals.is_active:
+                self._goals.end(Status.ABORTED, TIME_JUMP_TEXT)
+                self._topics.command(Twist2())
+            self._goals.forget_time()
+
+    def _tick(self, now: rospy.Time):
+        with self._lock:
+            self._take_map()
+            if self._navigator is None:
+                return
+            view = self._surroundings.view(now)
+            if view is None:
+                self._stand_still(now)
+                return
+            self._view, self._lost_since = view, now
+            if not self._is_up:
+                self._come_up()
+            self._take_goal(now)
+            decision = self._navigator.tick(
+                now.to_sec(), view.base_in_map, view.base_in_odom, view.twist, None, view.sightings
+            )
+            self._act(now, view, decision)
+            self._potential.publish(now, self._navigator.potential, self._settings.planner.publish_scale)
+            self._global_topics.publish(now, self._navigator.global_costmap, view.base_in_map)
+            self._local_topics.publish(now, self._navigator.local_costmap, view.base_in_odom)
+
+    def _take_map(self):
+        message, self._new_map = self._new_map, None
+        if message is None:
+            return
+        grid = grid_from_msg(message)
+        if self._navigator is None:
+            self._navigator = Navigator(self._settings, grid, self._zones)
+        else:
+            self._navigator.set_map(grid)
+
+    def _come_up(self):
+        self._is_up = True
+        PlanServices(
+            self._navigator,
+            self._lock,
+            self._transforms,
+            lambda: self._goals.is_active,
+            lambda: self._view and self._view.base_in_map,
+            self._global_planner,
+        )
+        ZoneTopics(self._zones, self._map_frame)
+        self._goals.start()
+        # Takes a while, for it talks to the parameter server a lot.
+        threading.Thread(target=self._tree.serve, daemon=True).start()
+        rospy.loginfo("odom received, map received: ready for goals")
+
+    def _stand_still(self, now: rospy.Time):
+        """Without transforms nothing is safe but standing; goals still come, are cancelled and given up."""
+        missing = f"waiting for {self._surroundings.missing_transform(now)}"
+        rospy.logwarn_throttle(WARN_SECONDS, missing)
+        self._take_goal(now)
+        if not self._goals.is_active:
+            self._lost_since = now
+            return
+        self._topics.command(Twist2())
+        if (now - self._lost_since).to_sec() > self._settings.move_base.sensor_patience:
+            lost = RobotLost(missing)
+            self._refuse(with_reason(Trigger.CONTROLLING.value, lost), lost)
+
+    def _take_goal(self, now: rospy.Time):
+        """Accepts a new goal, if one has come."""
+        try:
+            goal = self._goals.take(now)
+        except InvalidGoal as error:
+            self._refuse(str(error), error)
+        except NavigationError as error:
+            self._refuse(with_reason(Trigger.PLANNING.value, error), error)
+        else:
+            if goal is not None:
+                self._goal = goal
+                self._navigator.set_goal(goal)
+
+    def _on_cancel(self):
+        """Does not wait for the next tick."""
+        with self._lock:
+            if self._goals.is_cancelled:
+                decision = self._navigator.cancel(rospy.get_time())
+                self._topics.command(decision.command)
+                self._topics.outcome(decision.outcome)
+                self._goals.end(decision.status, decision.text)
+
+    def _refuse(self, text: str, error: NavigationError):
+        rospy.logerr(text)
+        self._topics.outcome(Outcome(error.outcome, error.code, text))
+        self._navigator.forget_goal()
+        self._topics.command(Twist2())
+        self._goals.end(Status.ABORTED, text)
+
+    def _act(self, now: rospy.Time, view: View, decision: Decision):
+        mode = self._settings.planner.orientation_mode
+        self._topics.publish(now, decision, view.base_in_map, self._goal, mode)
+        self._goals.tell_pose(view.base_in_map, now)
+        if decision.status.is_final:
+            if decision.status is Status.ABORTED:
+                rospy.logerr(decision.text)
+            self._goals.end(decision.status, decision.text)
+        elif decision.text:
+            rospy.logwarn_throttle(WARN_SECONDS, decision.text)
+
+    def _on_shutdown(self):
+        with self._lock:
+            if self._goals.is_active:
+                self._topics.command(Twist2())
+                self._goals.end(Status.ABORTED, KILLED_TEXT)
+
+
+def _checked_settings(parameters) -> NavigatorSettings:
+    settings, warnings = settings_from_parameters(parameters, rospy.get_name() + "/")
+    for warning in warnings:
+        if warning.startswith("unknown parameter") and parameters.get("strict_params", False):
+            raise SettingsError(warning)
+        rospy.logwarn(warning)
+    return settings
+
+
+def _short_name(parameters, key: str, default: str) -> str:
+    """The name of a plugin without its package."""
+    return str(parameters.get(key, default)).rpartition("/")[2]
+
+
+def main():
+    run("move_base", MoveBaseNode)

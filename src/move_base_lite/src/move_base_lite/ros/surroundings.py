@@ -1,0 +1,190 @@
+"""What the robot's transforms, odometry and sensors say at a control tick."""
+
+import threading
+from collections import deque
+from dataclasses import dataclass, replace
+from typing import Deque, Dict, List, Optional, Tuple
+
+import numpy as np
+import rospy
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import PointCloud, PointCloud2
+
+from move_base_lite.config import NavigatorSettings
+from move_base_lite.costmap import Sighting, sighting_of_points, sighting_of_scan
+from move_base_lite.costmap.obstacle_layer import SourceSettings
+from move_base_lite.ros.clouds import points_of
+from move_base_lite.ros.sensor_checks import check_message
+from planar import Pose2, Twist2
+from planar_ros.messages import LaserScanArrays, frame_name, scan_from_msg
+from planar_ros.transforms import Transforms
+
+KEPT = 5
+WARN_SECONDS = 5.0
+MESSAGES = {"LaserScan": LaserScanArrays, "PointCloud": PointCloud, "PointCloud2": PointCloud2}
+
+
+@dataclass(frozen=True)
+class View:
+    """The robot now; ``sightings``: those not given before, as seen from the present pose."""
+
+    base_in_map: Pose2
+    base_in_odom: Pose2
+    twist: Twist2
+    sightings: Tuple[Sighting, ...]
+
+
+class Surroundings:
+    """Callbacks store; :meth:`view` puts together what there is."""
+
+    def __init__(self, settings: NavigatorSettings, transforms: Transforms, odom_topic: str):
+        self._transforms = transforms
+        self._global_frame = frame_name(settings.global_costmap.global_frame)
+        self._local_frame = frame_name(settings.local_costmap.global_frame)
+        self._base_frame = frame_name(settings.local_costmap.robot_base_frame)
+        self.change(settings)
+        self._twist = Twist2()
+        self._lock = threading.Lock()
+        rospy.Subscriber(odom_topic, Odometry, self._on_odometry, queue_size=1, tcp_nodelay=True)
+        self._sensors = [
+            _Sensor(source, transforms, self._local_frame, self._base_frame)
+            for source in _sources_of(settings).values()
+        ]
+
+    def change(self, settings: NavigatorSettings) -> None:
+        """Transforms may be as old as other settings say."""
+        costmaps = (settings.global_costmap, settings.local_costmap)
+        self._tolerances = tuple(costmap.transform_tolerance for costmap in costmaps)
+
+    @property
+    def silent_topics(self) -> List[str]:
+        """Topics of sensors from which nothing has come yet."""
+        return [sensor.topic for sensor in self._sensors if not sensor.has_spoken]
+
+    @property
+    def topics(self) -> List[str]:
+        """Topics of all sensors."""
+        return [sensor.topic for sensor in self._sensors]
+
+    def view(self, now: rospy.Time) -> Optional[View]:
+        """The robot as far as it is known at ``now``; None if its transforms are missing or too old."""
+        if self.missing_transform(now) is not None:
+            return None
+        base_in_odom = self._transforms.lookup(self._local_frame, self._base_frame)
+        odom_in_map = self._transforms.lookup(self._global_frame, self._local_frame)
+        if base_in_odom is None or odom_in_map is None:
+            return None
+        newest = (sensor.newest(base_in_odom) for sensor in self._sensors)
+        sightings = tuple(sighting for sighting in newest if sighting is not None)
+        return View(odom_in_map @ base_in_odom, base_in_odom, self._twist, sightings)
+
+    def missing_transform(self, now: rospy.Time) -> Optional[str]:
+        """Which transform is not known or too old, for people; None if all are well."""
+        pairs = (self._global_frame, self._local_frame), (self._local_frame, self._base_frame)
+        for (parent, child), tolerance in zip(pairs, self._tolerances):
+            latest = self._transforms.latest_stamp(parent, child)
+            if latest is None:
+                return f"the transform {parent} -> {child}"
+            if parent != child and latest != rospy.Time(0) and (now - latest).to_sec() > tolerance:
+                return f"a transform {parent} -> {child} that is not {(now - latest).to_sec():.1f} s old"
+        return None
+
+    def forget(self) -> None:
+        """Time has jumped back: what was heard is worthless."""
+        for sensor in self._sensors:
+            sensor.forget()
+        self._transforms.clear()
+
+    def _on_odometry(self, message):
+        self._twist = Twist2(message.twist.twist.linear.x, message.twist.twist.angular.z)
+
+
+class _Sensor:
+    """The newest messages of one topic, made into sightings as soon as tf knows where they were taken."""
+
+    def __init__(self, source: SourceSettings, transforms: Transforms, local_frame: str, base_frame: str):
+        self._source = source
+        self._transforms = transforms
+        self._local_frame, self._base_frame = local_frame, base_frame
+        self._messages: Deque = deque(maxlen=KEPT)
+        self._lock = threading.Lock()
+        self._mountings: Dict[str, np.ndarray] = {}
+        self.has_spoken = False
+        rospy.Subscriber(
+            source.topic, MESSAGES[source.data_type], self._on_message, queue_size=KEPT, tcp_nodelay=True
+        )
+
+    @property
+    def topic(self) -> str:
+        return rospy.resolve_name(self._source.topic)
+
+    def newest(self, base_in_odom: Pose2) -> Optional[Sighting]:
+        """The newest message not given before, as if taken from the present pose; None if there is none."""
+        with self._lock:
+            waiting = list(self._messages)
+        for message in reversed(waiting):
+            sighting = self._seen_from(base_in_odom, message)
+            if sighting is None:
+                self._complain_of(message)
+            else:
+                with self._lock:
+                    while self._messages and self._messages[0].header.stamp <= message.header.stamp:
+                        self._messages.popleft()
+                return sighting
+        return None
+
+    def forget(self) -> None:
+        with self._lock:
+            self._messages.clear()
+
+    def _complain_of(self, message) -> None:
+        """A message that cannot be used for long, or not at all, is told of."""
+        frame = frame_name(self._source.sensor_frame or message.header.frame_id)
+        if frame not in self._mountings:
+            rospy.logwarn_throttle(
+                WARN_SECONDS, f"{self.topic}: no transform from its frame '{frame}' to {self._base_frame}"
+            )
+
+    def _on_message(self, message):
+        try:
+            check_message(message)
+        except ValueError as error:
+            rospy.logwarn_throttle(WARN_SECONDS, f"{self.topic}: {error}")
+            return
+        self.has_spoken = True
+        with self._lock:
+            self._messages.append(message)
+
+    def _seen_from(self, base_in_odom: Pose2, message) -> Optional[Sighting]:
+        """None as long as it is not known where the message was taken."""
+        frame = frame_name(self._source.sensor_frame or message.header.frame_id)
+        base_then = self._transforms.lookup(self._local_frame, self._base_frame, message.header.stamp)
+        if frame not in self._mountings:
+            mounting = self._transforms.matrix(self._base_frame, frame)
+            if mounting is None:
+                return None
+            self._mountings[frame] = mounting
+        if base_then is None:
+            return None
+        sensor_in_base = self._mountings[frame]
+        sighting = self._sighting(message, sensor_in_base)
+        moved = base_in_odom.inverse() @ base_then
+        return replace(sighting, sensor_in_base=moved @ sighting.sensor_in_base)
+
+    def _sighting(self, message, sensor_in_base: np.ndarray) -> Sighting:
+        x, y, height = sensor_in_base[:3, 3]
+        yaw = float(np.arctan2(sensor_in_base[1, 0], sensor_in_base[0, 0]))
+        if self._source.data_type == "LaserScan":
+            upside_down = bool(sensor_in_base[2, 2] < 0.0)
+            scan = scan_from_msg(message, Pose2(float(x), float(y), yaw), upside_down)
+            return sighting_of_scan(self._source.topic, scan, float(height))
+        points = points_of(message) @ sensor_in_base[:3, :3].T + sensor_in_base[:3, 3]
+        return sighting_of_points(
+            self._source.topic, message.header.stamp.to_sec(), Pose2(float(x), float(y)), points
+        )
+
+
+def _sources_of(settings: NavigatorSettings) -> Dict[str, SourceSettings]:
+    """One source for each topic that any costmap listens to."""
+    costmaps = (settings.global_costmap, settings.local_costmap)
+    return {source.topic: source for costmap in costmaps for source in costmap.obstacles.sources}

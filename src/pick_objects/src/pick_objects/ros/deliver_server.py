@@ -1,0 +1,69 @@
+"""The action ``deliver``: missions for a running robot."""
+
+import time
+from typing import Callable, Optional
+
+import rospy
+from home_service_msgs.msg import DeliverAction, DeliverFeedback, DeliverGoal, DeliverResult
+
+from pick_objects.errand import Errand
+from pick_objects.mission import Mission
+from pick_objects.ros.mission_topics import MissionTopics, delivery_states
+from planar import PlanarError
+from planar.driving import Finish
+from planar_ros.actions import ActionServer
+
+FEEDBACK_SECONDS = 0.2
+
+
+class DeliverServer:
+    """Takes one goal after the other; a new one cancels the one before.
+
+    ``understand`` makes a goal a mission or raises PlanarError; ``carry_out`` does it, calling what it is
+    given with the errand as it goes on.
+    """
+
+    def __init__(
+        self,
+        topics: MissionTopics,
+        understand: Callable[[DeliverGoal], Mission],
+        carry_out: Callable[[Mission, Callable[[Errand], None]], Finish],
+    ):
+        self._topics, self._understand, self._carry_out = topics, understand, carry_out
+        self._errand: Optional[Errand] = None
+        self._latest_feedback = 0.0
+        self._server = ActionServer("deliver", DeliverAction, auto_start=False)
+        self._server.start()
+
+    def serve(self, poll_seconds: float) -> None:
+        """Until shutdown."""
+        while not rospy.is_shutdown():
+            if self._server.is_new_goal_available():
+                self._do(self._server.accept_new_goal())
+            time.sleep(poll_seconds)
+
+    def _do(self, goal: DeliverGoal) -> None:
+        start, self._errand = rospy.Time.now(), None
+        try:
+            mission = self._understand(goal)
+        except PlanarError as error:
+            rospy.logwarn("a mission is refused: %s", error)
+            self._server.set_aborted(DeliverResult(reason=str(error)), str(error))
+            return
+        outcome = self._carry_out(mission, self._watch)
+        states = delivery_states(self._errand) if self._errand else []
+        result = DeliverResult(outcome.reason, states, rospy.Time.now() - start)
+        if outcome.success:
+            self._server.set_succeeded(result, outcome.reason)
+        elif self._server.is_preempt_requested():
+            self._server.set_preempted(result, outcome.reason)
+        else:
+            self._server.set_aborted(result, outcome.reason)
+
+    def _watch(self, errand: Errand) -> None:
+        self._errand = errand
+        if self._server.is_preempt_requested():
+            errand.cancel()
+        if time.monotonic() - self._latest_feedback >= FEEDBACK_SECONDS:
+            self._latest_feedback = time.monotonic()
+            self._server.publish_feedback(DeliverFeedback(self._topics.message(errand)))

@@ -1,0 +1,177 @@
+"""The ROS node of pick_objects: carries missions out with move_base."""
+
+import sys
+import threading
+import time
+from typing import Callable, List, Optional
+
+import rospy
+from home_service_msgs.msg import DeliverGoal
+from home_service_msgs.srv import AddDelivery, AddDeliveryResponse, CancelDelivery, CancelDeliveryResponse
+
+from pick_objects.approach import GoTo
+from pick_objects.config import ErrandSettings, NodeSettings
+from pick_objects.errand import Errand, MeasureWays
+from pick_objects.mission import Mission, MissionError, errand_mission
+from pick_objects.mission_file import load_mission, parse_mission
+from pick_objects.ros.deliver_server import DeliverServer
+from pick_objects.ros.driver import Driver
+from pick_objects.ros.mission_topics import MissionTopics, delivery_from_msg
+from planar import OccupancyGrid
+from planar.driving import Finish
+from planar.maps.places import load_places, places_of_errand, why_unreachable
+from planar_ros.messages import OccupancyGridArrays, grid_from_msg
+from planar_ros.parameters import read_settings
+from planar_ros.shell import fail, run
+from planar_ros.waiting import Readiness, Waiting
+
+POLL_SECONDS = 0.02
+
+
+class PickObjects:
+    """Carries out the mission of a file, or the errand between the two zones, or what the action is sent."""
+
+    def __init__(self):
+        self._settings = read_settings(NodeSettings, ignore=ErrandSettings.__dataclass_fields__)
+        self._defaults = read_settings(ErrandSettings, ignore=NodeSettings.__dataclass_fields__)
+        self._map: Optional[OccupancyGrid] = None
+        self._zones = load_places(self._settings.zones_file)
+        self._mission = self._read_mission()
+        self._errand: Optional[Errand] = None
+        self._lock = threading.Lock()
+        self._driver = Driver(self._settings.frame_id)
+        self._topics = MissionTopics(self._settings.frame_id, lambda: self._driver.robot_in_map)
+        rospy.Subscriber("map", OccupancyGridArrays, self._keep_map, queue_size=1)
+        rospy.Service("~add_delivery", AddDelivery, self._on_add)
+        rospy.Service("~cancel_delivery", CancelDelivery, self._on_cancel)
+        self._required = {f"the action {rospy.resolve_name('move_base')}": self._driver.is_ready}
+        for name in map(rospy.resolve_name, self._settings.wait_for.split()):
+            self._required[f"{name} to be ready"] = Readiness(name)
+        Waiting({f"a map on {rospy.resolve_name('map')}": lambda: self._map is not None, **self._required})
+
+    def work(self) -> Finish:
+        """Carries the mission out and says how it ended; one that serves goes on until shutdown."""
+        outcome = Finish(True, "served")
+        if self._mission is not None:
+            self._topics.show(Errand(self._mission))
+        obstacle = self._why_not_to_start()
+        if obstacle:
+            return Finish(False, obstacle)
+        if self._mission is not None:
+            self._mission = self._read_mission()  # now against the map
+            outcome = self._carry_out(self._mission)
+        if self._settings.serve:
+            DeliverServer(self._topics, self._understand, self._carry_out).serve(POLL_SECONDS)
+        return outcome
+
+    def _read_mission(self) -> Optional[Mission]:
+        settings = self._settings
+        if settings.mission_file:
+            return load_mission(settings.mission_file, self._zones, self._defaults, self._map)
+        if settings.serve:
+            return None
+        return errand_mission(*places_of_errand(settings.zones_file), self._defaults)
+
+    def _carry_out(self, mission: Mission, watch: Callable[[Errand], None] = lambda errand: None) -> Finish:
+        obstacle = self._why_impossible(mission)
+        if obstacle:
+            return Finish(False, obstacle)
+        self._errand, event = Errand(mission), None
+        while not rospy.is_shutdown():
+            with self._lock:
+                order = self._errand.advance(rospy.get_time(), event)
+                self._topics.show(self._errand)
+                if isinstance(order, Finish):
+                    self._driver.stop()
+                    return order
+                watch(self._errand)
+            if isinstance(order, GoTo):
+                self._driver.send(order)
+            if isinstance(order, MeasureWays):
+                event = self._driver.measure(order)
+            else:
+                time.sleep(POLL_SECONDS)
+                event = self._driver.event()
+        return Finish(False, "interrupted")
+
+    def _why_not_to_start(self) -> Optional[str]:
+        settings = self._settings
+        if not _wait_for(lambda: self._map is not None, settings.map_timeout):
+            rospy.logwarn("no map within %g s: the places are not checked", settings.map_timeout)
+        if not _wait_for(lambda: not self._missing(), settings.server_timeout):
+            return f"waited {settings.server_timeout:g} s in vain for {', '.join(self._missing())}"
+        return None
+
+    def _missing(self) -> List[str]:
+        return [what for what, is_met in self._required.items() if not is_met()]
+
+    def _why_impossible(self, mission: Mission) -> Optional[str]:
+        names = dict.fromkeys(name for d in mission.deliveries for name in (d.source, d.destination))
+        problems: List[Optional[str]] = [
+            why_unreachable(mission.places[name], self._map) for name in names if self._map is not None
+        ]
+        return next((problem for problem in problems if problem), None)
+
+    def _understand(self, goal: DeliverGoal) -> Mission:
+        places = {**self._zones, **(self._mission.places if self._mission else {})}
+        if goal.mission:
+            if goal.deliveries:
+                raise MissionError("a goal holds either a mission or deliveries, not both")
+            return parse_mission(goal.mission, places, self._defaults, self._map)
+        if not goal.deliveries:
+            raise MissionError("the goal holds neither a mission nor deliveries")
+        settings = ErrandSettings(
+            **{
+                **vars(self._defaults),
+                "order": "shortest" if goal.shortest_order else "given",
+                "on_failure": "continue" if goal.continue_on_failure else "stop",
+            }
+        )
+        things = self._mission.things if self._mission else {}
+        mission = Mission("deliveries", places, (), things, settings)
+        for message in goal.deliveries:
+            mission = mission.with_delivery(delivery_from_msg(message))
+        return mission
+
+    def _on_add(self, request):
+        return self._change(
+            AddDeliveryResponse, lambda errand: errand.add(delivery_from_msg(request.delivery))
+        )
+
+    def _on_cancel(self, request):
+        return self._change(CancelDeliveryResponse, lambda errand: errand.cancel(request.name))
+
+    def _change(self, response_kind, change: Callable[[Errand], object]):
+        try:
+            with self._lock:
+                if self._errand is None:
+                    raise MissionError("no mission is running")
+                change(self._errand)
+        except MissionError as error:
+            return response_kind(False, str(error))
+        return response_kind(True, "")
+
+    def _keep_map(self, message):
+        self._map = grid_from_msg(message)
+
+
+def _wait_for(is_there: Callable[[], bool], seconds: float) -> bool:
+    """Waits at most so many wall-clock seconds; whether it is there then."""
+    deadline = time.monotonic() + seconds
+    while not is_there() and time.monotonic() < deadline and not rospy.is_shutdown():
+        time.sleep(POLL_SECONDS)
+    return is_there()
+
+
+def main():
+    def start():
+        outcome = PickObjects().work()
+        if rospy.is_shutdown():
+            return
+        if not outcome.success:
+            fail(outcome.reason, exit_code=1)
+        rospy.loginfo("%s", outcome.reason)
+        rospy.signal_shutdown("mission done")
+
+    run("pick_objects", start)
+    sys.exit(0)

@@ -1,0 +1,1 @@
+"""Settings: YAML files and parameters made into checked values."""

@@ -1,0 +1,232 @@
+"""Tables out of YAML files; every mistake in them is told with file, line and key."""
+
+import math
+from pathlib import Path
+from typing import Any, Dict, Iterable, Iterator, List, Optional, Set, Tuple, Type
+
+import yaml
+
+from planar.config.settings import nearest_name
+from planar.errors import PlanarError, SettingsError
+
+_REQUIRED: Any = object()
+
+
+def read_table(
+    path, error: Type[PlanarError] = SettingsError, missing: Optional[Type[PlanarError]] = None
+) -> "Table":
+    """The table that a YAML file holds.
+
+    Raises ``missing`` (by default ``error``) if there is no such file, else ``error``, here and for whatever
+    is wrong with a value read from the table later on.
+    """
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise (missing or error)(f"{path}: no such file") from None
+    except (OSError, UnicodeDecodeError) as problem:
+        raise error(f"{path}: cannot be read ({problem})") from None
+    return parse_table(text, str(path), error)
+
+
+def parse_table(text: str, source: str, error: Type[PlanarError] = SettingsError) -> "Table":
+    """The table that a YAML text holds; ``source`` is what errors call the text. Raises ``error``."""
+    try:
+        loader = yaml.SafeLoader(text)
+        node = loader.get_single_node()
+    except (yaml.YAMLError, RecursionError) as problem:
+        mark = getattr(problem, "problem_mark", None)
+        where = source if mark is None else f"{source}:{mark.line + 1}"
+        what = getattr(problem, "problem", None) or "nested too deeply"
+        raise error(f"{where}: not valid YAML ({what})") from None
+    if not isinstance(node, yaml.MappingNode):
+        raise error(f"{source}:1: expected a table of keys and values")
+    document = _Document(source, loader, error)
+    _check_keys(document, node)
+    return Table(document, node, "")
+
+
+class _Document:
+    """What all tables of one text share."""
+
+    def __init__(self, source: str, loader: yaml.SafeLoader, error: Type[PlanarError]):
+        self.source, self.loader, self.error = source, loader, error
+
+    def complaint(self, node: yaml.Node, text: str) -> PlanarError:
+        return self.error(self.place_of(node) + text)
+
+    def place_of(self, node: yaml.Node) -> str:
+        return f"{self.source}:{node.start_mark.line + 1}: "
+
+
+class Table:
+    """A table of a YAML text that knows the line of each of its values. Its methods raise the text's error.
+
+    ``name``: the keys that lead to it, joined by dots; empty for the outermost one.
+    A key without a value counts as missing.
+    """
+
+    def __init__(self, document: _Document, node: yaml.MappingNode, name: str):
+        self.name = name
+        self._document, self._node = document, node
+        self._entries: Dict[str, Tuple[yaml.Node, yaml.Node]] = {}
+        try:
+            document.loader.flatten_mapping(node)
+        except yaml.YAMLError:
+            raise document.complaint(node, "'<<' merges no table") from None
+        for key, value in node.value:
+            self._entries[key.value] = (key, value)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._entries)
+
+    def __contains__(self, key: str) -> bool:
+        return self.value(key) is not None
+
+    def value(self, key: str) -> Any:
+        """Whatever stands there, as plain Python objects; None if it is missing."""
+        if key not in self._entries:
+            return None
+        try:
+            return self._document.loader.construct_object(self._entries[key][1], deep=True)
+        except (yaml.YAMLError, ValueError, OverflowError, RecursionError) as problem:
+            what = getattr(problem, "problem", None) or problem
+            raise self.complaint(key, f"cannot be understood ({what})") from None
+
+    def values(self) -> Dict[str, Any]:
+        """The whole table as plain Python objects."""
+        return {key: self.value(key) for key in self}
+
+    def number(self, key: str, default: float = _REQUIRED) -> float:
+        """A finite number."""
+        return self._as_number(key, self._needed(key, default))
+
+    def numbers(self, key: str, names: str) -> Tuple[float, ...]:
+        """A list of finite numbers, as many as ``names`` names, e.g. "x, y, yaw"."""
+        values = self._needed(key)
+        if not isinstance(values, list) or len(values) != len(names.split(", ")):
+            raise self.complaint(key, f"must be [{names}], got {values!r}")
+        return tuple(self._as_number(key, value) for value in values)
+
+    def count(self, key: str, default: int = _REQUIRED) -> int:
+        """A whole number from 1."""
+        value = self._needed(key, default)
+        if isinstance(value, bool) or not isinstance(value, int) or value < 1:
+            raise self.complaint(key, f"must be a whole number from 1, got {value!r}")
+        return value
+
+    def flag(self, key: str, default: bool = _REQUIRED) -> bool:
+        value = self._needed(key, default)
+        if not isinstance(value, bool):
+            raise self.complaint(key, f"must be true or false, got {value!r}")
+        return value
+
+    def text(self, key: str, default: str = _REQUIRED) -> str:
+        """A name or other text that is not empty; a number counts as a text."""
+        value = self._needed(key, default)
+        if isinstance(value, (bool, dict, list)) or not str(value).strip():
+            raise self.complaint(key, f"must be a text, got {value!r}")
+        return str(value)
+
+    def texts(self, key: str) -> List[str]:
+        """A list of texts, or a single one; none if the key is missing."""
+        values = self.value(key) or []
+        values = values if isinstance(values, list) else [values]
+        if any(isinstance(value, (bool, dict, list)) or value is None for value in values):
+            raise self.complaint(key, f"must be a list of texts, got {values!r}")
+        return [str(value) for value in values]
+
+    def choice(self, key: str, choices: Iterable[str], default: str = _REQUIRED) -> str:
+        value = self._needed(key, default)
+        if value not in choices:
+            raise self.complaint(key, f"must be one of {', '.join(choices)}, got {value!r}")
+        return value
+
+    def table(self, key: str) -> "Table":
+        """The table below ``key``."""
+        self._needed(key)
+        node = self._entries[key][1]
+        if not isinstance(node, yaml.MappingNode):
+            raise self.complaint(key, f"must be a table of keys and values, got {self.value(key)!r}")
+        return Table(self._document, node, self._full(key))
+
+    def tables(self, key: str) -> List["Table"]:
+        """The list of tables below ``key``; none if the key is missing."""
+        node = self._entries[key][1] if key in self else yaml.SequenceNode("", [])
+        if not isinstance(node, yaml.SequenceNode):
+            raise self.complaint(key, "must be a list of tables")
+        for number, item in enumerate(node.value, 1):
+            if not isinstance(item, yaml.MappingNode):
+                text = f"{self._full(key)}[{number}] must be a table of keys and values"
+                raise self._document.complaint(item, text)
+        return [
+            Table(self._document, item, f"{self._full(key)}[{number}]")
+            for number, item in enumerate(node.value, 1)
+        ]
+
+    def allow_only(self, *known: str) -> None:
+        """Complains of the first key that is none of ``known``."""
+        for key in self:
+            if key not in known:
+                nearest = nearest_name(key, known)
+                hint = f"did you mean {nearest}?" if nearest else f"known are {', '.join(known)}"
+                raise self.complaint(key, f"is not known; {hint}")
+
+    def check(self, condition: bool, key: str, requirement: str) -> None:
+        """Complains that ``key`` must be ``requirement`` unless ``condition`` holds."""
+        if not condition:
+            raise self.complaint(key, f"must be {requirement}, got {self.value(key)!r}")
+
+    def complaint(self, key: str, text: str) -> PlanarError:
+        """The error "<file>:<line>: <key> <text>"; the line is the table's own if it lacks the key."""
+        return self._document.complaint(self._node_of(key), f"{self._full(key)} {text}")
+
+    def place_of(self, key: str) -> str:
+        """What stands before ``key`` in a complaint: file, line, and the keys that lead to it."""
+        return self._document.place_of(self._node_of(key)) + self._full("")
+
+    def _node_of(self, key: str) -> yaml.Node:
+        return self._entries[key][0] if key in self._entries else self._node
+
+    def _full(self, key: str) -> str:
+        return f"{self.name}.{key}" if self.name else key
+
+    def _needed(self, key: str, default: Any = _REQUIRED) -> Any:
+        value = self.value(key)
+        if value is not None:
+            return value
+        if default is _REQUIRED:
+            raise self.complaint(key, "is missing")
+        return default
+
+    def _as_number(self, key: str, value: Any) -> float:
+        try:  # 1e-3 is a text in YAML 1.1
+            number = float(value)
+        except (TypeError, ValueError):
+            number = math.nan
+        if isinstance(value, bool) or not math.isfinite(number):
+            raise self.complaint(key, f"must be a number, got {value!r}")
+        return number
+
+
+def _check_keys(document: _Document, root: yaml.Node) -> None:
+    """Complains of keys that are no texts, or given twice, of which YAML libraries silently take the last."""
+    waiting: List[yaml.Node] = [root]
+    met: Set[int] = set()
+    while waiting:
+        node = waiting.pop()
+        if id(node) in met or isinstance(node, yaml.ScalarNode):
+            continue
+        met.add(id(node))
+        if isinstance(node, yaml.SequenceNode):
+            waiting.extend(node.value)
+            continue
+        seen: Dict[str, int] = {}
+        for key, value in node.value:
+            waiting.append(value)
+            if not isinstance(key, yaml.ScalarNode):
+                raise document.complaint(key, "a key must be a plain text")
+            if key.value in seen:
+                raise document.complaint(key, f"{key.value} is given twice, first in line {seen[key.value]}")
+            seen[key.value] = key.start_mark.line + 1

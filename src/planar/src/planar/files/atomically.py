@@ -1,0 +1,36 @@
+"""Files written whole or not at all."""
+
+import os
+import tempfile
+from pathlib import Path
+from typing import Dict, Mapping
+
+from planar.errors import PlanarError
+
+
+class FileWriteError(PlanarError):
+    """A file cannot be written; what was there before still is. The text names it."""
+
+
+def write_atomically(path, data: bytes) -> None:
+    """Writes beside ``path``, then renames, so that no reader sees half a file. Raises FileWriteError."""
+    write_together({Path(path): data})
+
+
+def write_together(files: Mapping[Path, bytes]) -> None:
+    """Writes all files beside their paths, then renames them: on a full disk the old ones stay."""
+    written: Dict[Path, Path] = {}
+    try:
+        for path, data in files.items():
+            descriptor, name = tempfile.mkstemp(dir=str(path.parent), prefix=path.name + ".")
+            written[path] = Path(name)
+            with os.fdopen(descriptor, "wb") as file:
+                file.write(data)
+            written[path].chmod(0o644)
+        for path in files:
+            written[path].replace(path)
+    except OSError as error:
+        raise FileWriteError(f"{path}: cannot be written ({error.strerror})") from None
+    finally:
+        for beside in written.values():
+            beside.unlink(missing_ok=True)

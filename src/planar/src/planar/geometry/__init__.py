@@ -1,0 +1,1 @@
+"""Poses, scans and rays in the plane."""

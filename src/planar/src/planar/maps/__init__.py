@@ -1,0 +1,1 @@
+"""Occupancy grids, their files, and places in them."""

@@ -1,0 +1,100 @@
+"""Map files: the YAML and image pair of map_server (contract of ROS 1 navigation 1.17)."""
+
+from pathlib import Path
+
+import numpy as np
+from PIL import Image, UnidentifiedImageError
+
+from planar.config.yaml_table import read_table
+from planar.errors import PlanarError
+from planar.files.atomically import write_together
+from planar.geometry.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
+from planar.geometry.pose import Pose2
+
+MODES = ("trinary", "scale", "raw")
+
+
+class MapFileError(PlanarError):
+    """A map file cannot be read or written; the text names the file and the key."""
+
+
+class MapMissingError(MapFileError):
+    """There is no such map file."""
+
+
+class MapImageError(MapFileError):
+    """The image of a map is missing or cannot be read."""
+
+
+class MapDescriptionError(MapFileError):
+    """The YAML file of a map cannot be read, or a key of it is missing or senseless."""
+
+
+def load_map(path) -> OccupancyGrid:
+    """The grid described by a map_server YAML file. Raises MapFileError."""
+    path = Path(path)
+    table = read_table(path, error=MapDescriptionError, missing=MapMissingError)
+    resolution = table.number("resolution")
+    table.check(resolution > 0.0, "resolution", "positive")
+    mode = table.choice("mode", MODES, "trinary")
+    negate = table.value("negate")
+    table.check(negate in (0, 1) and not isinstance(negate, bool), "negate", "0 or 1")
+    cells = cells_from_image(
+        path.parent / table.text("image"),
+        negate=bool(negate),
+        occupied_thresh=table.number("occupied_thresh"),
+        free_thresh=table.number("free_thresh"),
+        mode=mode,
+    )
+    return OccupancyGrid(cells, resolution, Pose2(*table.numbers("origin", "x, y, yaw")))
+
+
+def cells_from_image(
+    image_path, negate=False, occupied_thresh=0.65, free_thresh=0.196, mode="trinary"
+) -> np.ndarray:
+    """Cells int8 (rows, cols), row 0 lowest, of an image read as map_server reads it."""
+    try:
+        with Image.open(image_path) as image:
+            pixels = np.asarray(image.convert("RGBA" if "A" in image.getbands() else "RGB"), dtype=np.float64)
+    except FileNotFoundError:
+        raise MapImageError(f"{image_path}: no such map image") from None
+    except (OSError, UnidentifiedImageError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
+        raise MapImageError(f"{image_path}: not a readable image ({error})") from None
+    channels = pixels if mode == "trinary" else pixels[:, :, :3]
+    shade = np.flipud(channels.mean(axis=2))
+    if negate:
+        shade = 255.0 - shade
+    if mode == "raw":
+        return np.rint(shade).astype(np.uint8).astype(np.int8)
+    occupancy = (255.0 - shade) / 255.0
+    cells = np.full(occupancy.shape, UNKNOWN, dtype=np.int8)
+    if mode == "scale":
+        between = 1.0 + 98.0 * (occupancy - free_thresh) / (occupied_thresh - free_thresh)
+        opaque = np.flipud(pixels[:, :, 3]) >= 255.0 if pixels.shape[2] == 4 else np.True_
+        cells = np.where(opaque, between, UNKNOWN).astype(np.int8)
+    cells[occupancy > occupied_thresh] = OCCUPIED
+    cells[occupancy < free_thresh] = FREE
+    return cells
+
+
+def save_map(grid: OccupancyGrid, stem, occupied_at: int = 65, free_at: int = 25) -> Path:
+    """Writes ``stem``.pgm and ``stem``.yaml as map_saver does, both or none; returns the YAML.
+
+    Cells of 0..free_at become free, occupied_at..100 occupied, all others unknown. The YAML names the image
+    without a folder, so that the pair can be moved together.
+    """
+    stem = Path(stem)
+    image = np.full(grid.cells.shape, 205, dtype=np.uint8)
+    image[(grid.cells >= 0) & (grid.cells <= free_at)] = 254
+    image[grid.cells >= occupied_at] = 0
+    header = f"P5\n# {grid.resolution:.3f} m/pix\n{grid.cols} {grid.rows}\n255\n"
+    pgm_path, yaml_path = stem.with_name(stem.name + ".pgm"), stem.with_name(stem.name + ".yaml")
+    description = (
+        f"image: {pgm_path.name}\n"
+        f"resolution: {grid.resolution:f}\n"
+        f"origin: [{grid.origin.x:f}, {grid.origin.y:f}, {grid.origin.yaw:f}]\n"
+        "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n\n"
+    )
+    pgm = header.encode("ascii") + np.flipud(image).tobytes()
+    write_together({pgm_path: pgm, yaml_path: description.encode("ascii")})
+    return yaml_path

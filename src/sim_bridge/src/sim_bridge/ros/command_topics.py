@@ -1,0 +1,142 @@
+"""The topics that a robot takes its velocity from."""
+
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+
+import rospy
+from geometry_msgs.msg import Twist
+from std_msgs.msg import String
+
+from planar import SettingsError, Twist2
+from planar.config.settings import Tunable
+from planar_ros.reconfigure import Tuning
+from sim_bridge.mux import TURTLEBOT_INPUTS, Mux, MuxInput, Smoother, parse_inputs, read_inputs
+
+MUX = "cmd_vel_mux"
+MUX_FILE, MUX_TEXT = "yaml_cfg_file", "yaml_cfg_data"
+RAW_TOPIC = "navigation_velocity_smoother/raw_cmd_vel"
+# What smoothed commands count as.
+SMOOTHED_INPUT = "input/navi"
+# Seconds of silence after which raw commands begin anew, and for which the first may accelerate.
+LONGEST_PERIOD = 0.6
+FIRST_PERIOD = 0.05
+
+
+class CommandTopics:
+    """The last command on any of some plain topics."""
+
+    def __init__(self, robot: str, namespace: str, topics):
+        self._robot = robot
+        self._command: Optional[Twist2] = None
+        self._connections: List = []
+        for topic in topics:
+            self._connections.append(self._subscribed(namespace, topic, self._on_command))
+
+    def take(self, _now: float) -> Optional[Twist2]:
+        """The command that has come since the last call, if any."""
+        command, self._command = self._command, None
+        return command
+
+    def close(self) -> None:
+        for connection in self._connections:
+            connection.unregister()
+
+    def _subscribed(self, namespace: str, topic: str, callback: Callable, *arguments) -> rospy.Subscriber:
+        name = rospy.names.ns_join(namespace, topic)
+        return rospy.Subscriber(
+            name, Twist, lambda message: callback(self._twist(message), *arguments), queue_size=1,
+            tcp_nodelay=True,
+        )  # fmt: skip
+
+    def _twist(self, message: Twist) -> Twist2:
+        twist = Twist2(message.linear.x, message.angular.z)
+        if not twist.is_finite():
+            rospy.logwarn_throttle(1.0, f"{self._robot}: velocity command is not finite: the robot stops")
+        return twist
+
+    def _on_command(self, twist: Twist2) -> None:
+        self._command = twist
+
+
+class MuxTopics(CommandTopics):
+    """Beside plain topics the inputs of cmd_vel_mux, those of the file that its parameter names if it is set.
+
+    What comes on the smoother's topic counts as navigation's. As with the official mux dynamic_reconfigure
+    brings other inputs, of a file or a text. Raises SettingsError.
+    """
+
+    def __init__(self, robot: str, namespace: str, topics):
+        super().__init__(robot, namespace, topics)
+        self._where = where = rospy.names.ns_join(namespace, MUX)
+        file = rospy.get_param(f"{where}/{MUX_FILE}", "")
+        self._smoother = Smoother()
+        self._arrived: Dict[str, Twist2] = {}
+        self._raw: Optional[Twist2] = None
+        self._raw_stamp = 0.0
+        self._told = ""
+        self._active = rospy.Publisher(f"{where}/active", String, queue_size=1, latch=True)
+        self._inputs: List[rospy.Subscriber] = []
+        self._listen_to(self._inputs_of(file))
+        self._connections += [self._active, self._subscribed(namespace, RAW_TOPIC, self._on_raw)]
+        self._tuning = self._tuned({MUX_FILE: file, MUX_TEXT: ""})
+
+    def close(self) -> None:
+        super().close()
+        if self._tuning is not None:
+            self._tuning.close()
+        for one in self._inputs:
+            one.unregister()
+
+    def take(self, now: float) -> Optional[Twist2]:
+        arrived, self._arrived = self._arrived, {}
+        raw, self._raw = self._raw, None
+        if raw is not None and self._smoothed_name:
+            arrived[self._smoothed_name] = self._smoothed(raw, now)
+        chosen = self._mux.choose(now, arrived)
+        active = self._mux.active(now)
+        if active != self._told:
+            self._told = active
+            self._active.publish(active)
+        return chosen or super().take(now)
+
+    def _smoothed(self, raw: Twist2, now: float) -> Twist2:
+        seconds, self._raw_stamp = now - self._raw_stamp, now
+        if not 0.0 <= seconds < LONGEST_PERIOD:  # the robot has come to rest since
+            self._smoother, seconds = Smoother(), FIRST_PERIOD
+        return self._smoother.smooth(raw, seconds)
+
+    def _tuned(self, values: Dict[str, str]) -> Optional[Tuning]:
+        tunables = (
+            Tunable(MUX_FILE, "", "path of a YAML file of the mux's inputs"),
+            Tunable(MUX_TEXT, "", "the inputs as YAML, instead of a file"),
+        )
+        try:
+            return Tuning(tunables, values, self._on_reconfigure, self._where)
+        except rospy.ServiceException:  # there is one for all robots of a namespace
+            return None
+
+    def _listen_to(self, inputs: Sequence[MuxInput]) -> None:
+        for one in self._inputs:
+            one.unregister()
+        self._mux = Mux(inputs)
+        self._smoothed_name = next((one.name for one in inputs if one.topic == SMOOTHED_INPUT), "")
+        self._inputs = [self._subscribed(self._where, one.topic, self._on_input, one.name) for one in inputs]
+
+    def _on_reconfigure(self, values: Dict[str, Any]) -> Dict[str, Any]:
+        """Goes on with the inputs there are if the new ones make no sense."""
+        try:
+            self._listen_to(self._inputs_of(values[MUX_FILE], values[MUX_TEXT]))
+        except SettingsError as error:
+            rospy.logerr("%s", error)
+        return values
+
+    def _inputs_of(self, file: str, text: str = "") -> Tuple[MuxInput, ...]:
+        """Those of the text, else of the file, else a TurtleBot's."""
+        if text:
+            return parse_inputs(text, f"{self._where}/{MUX_TEXT}")
+        return read_inputs(file) if file else TURTLEBOT_INPUTS
+
+    def _on_input(self, twist: Twist2, name: str) -> None:
+        self._arrived[name] = twist
+
+    def _on_raw(self, twist: Twist2) -> None:
+        self._raw = twist

@@ -1,0 +1,71 @@
+"""Joints, told and set."""
+
+import gazebo_msgs.srv as srv
+import numpy as np
+
+from sim_bridge.errors import UnknownEntityError
+from sim_bridge.ros.gazebo.server import Server
+from sim_bridge.scene import Scene
+
+KINDS = {
+    "revolute": srv.GetJointPropertiesResponse.REVOLUTE,
+    "prismatic": srv.GetJointPropertiesResponse.PRISMATIC,
+    "fixed": srv.GetJointPropertiesResponse.FIXED,
+}
+
+
+class JointServices:
+    """Joints are known by their own name or as ``model::joint``, as in Gazebo."""
+
+    def __init__(self, scene: Scene, server: Server):
+        self._scene = scene
+        server.serve("get_joint_properties", srv.GetJointProperties, self._on_get)
+        server.serve("set_joint_properties", srv.SetJointProperties, self._on_set)
+        server.serve("set_model_configuration", srv.SetModelConfiguration, self._on_set_configuration)
+
+    def _on_get(self, request):
+        try:
+            joint = self._scene.joint(self._scene.full_joint_name(request.joint_name))
+        except UnknownEntityError:
+            return srv.GetJointPropertiesResponse(
+                success=False, status_message="GetJointProperties: joint not found"
+            )
+        response = srv.GetJointPropertiesResponse(
+            type=KINDS[joint.kind], success=True, status_message="GetJointProperties: got properties"
+        )
+        if joint.kind != "fixed":
+            state = self._scene.joint_state(joint.name)
+            response.damping = [joint.damping]
+            response.position, response.rate = [state.position], [state.speed]
+        return response
+
+    def _on_set(self, request):
+        """Damping and limits; what else ODE's joints have is without meaning here."""
+        answer, config = srv.SetJointPropertiesResponse, request.ode_joint_config
+        try:
+            name = self._scene.full_joint_name(request.joint_name)
+        except UnknownEntityError:
+            return answer(False, "SetJointProperties: joint not found")
+        joint = self._scene.joint(name)
+        damping = config.damping[0] if config.damping else joint.damping
+        lower = config.loStop[0] if config.loStop else joint.lower
+        upper = config.hiStop[0] if config.hiStop else joint.upper
+        if not (0.0 <= damping < np.inf and lower <= upper):
+            return answer(False, "SetJointProperties: damping must not be negative, loStop not above hiStop")
+        self._scene.set_joint_limits(name, lower, upper, damping)
+        return answer(True, "SetJointProperties: properties set")
+
+    def _on_set_configuration(self, request):
+        answer, scene, model = srv.SetModelConfigurationResponse, self._scene, request.model_name
+        if model not in scene.model_names():
+            return answer(False, "SetModelConfiguration: model does not exist")
+        if len(request.joint_names) != len(request.joint_positions):
+            text = "SetModelConfiguration: joint name and position list have different lengths"
+            return answer(False, text)
+        if not np.isfinite(request.joint_positions).all():
+            return answer(False, "SetModelConfiguration: a position is not finite")
+        names = [name if "::" in name else f"{model}::{name}" for name in request.joint_names]
+        known = scene.joint_names(model)
+        positions = dict(zip(names, request.joint_positions))
+        scene.set_joints({name: positions[name] for name in names if name in known})
+        return answer(True, "SetModelConfiguration: success")

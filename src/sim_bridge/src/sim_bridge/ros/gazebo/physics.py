@@ -1,0 +1,106 @@
+"""Time, gravity and the world as a whole."""
+
+from typing import Any, Dict
+
+import gazebo_msgs.srv as srv
+import numpy as np
+import rospy
+from gazebo_msgs.msg import ODEPhysics
+from geometry_msgs.msg import Vector3
+from std_srvs.srv import Empty, EmptyResponse
+
+from planar import PlanarError
+from planar.config.settings import Tunable
+from planar_ros.reconfigure import Tuning
+from sim_bridge.config import HIGHEST_PHYSICS_RATE
+from sim_bridge.errors import WorldError
+from sim_bridge.ros.gazebo.server import NAMESPACE, Server
+from sim_bridge.ros.time_control import TimeControl
+from sim_bridge.scene import Scene
+
+# What dynamic_reconfigure offers (Physics.cfg of gazebo_ros), but for ODE's own.
+TUNABLES = (
+    Tunable("time_step", 0.005, "s of simulated time in a step of physics", 0.0, 10.0),
+    Tunable("max_update_rate", 200.0, "steps a second of real time; 0: as fast as possible", 0.0, 1000.0),
+    *(Tunable(f"gravity_{axis}", 0.0, f"gravity along {axis}, m/s^2", -100.0, 100.0) for axis in "xyz"),
+)
+
+
+class PhysicsServices:
+    def __init__(self, scene: Scene, time_control: TimeControl, server: Server):
+        self._scene = scene
+        self._time = time_control
+        for name, do in (
+            ("pause_physics", time_control.pause),
+            ("unpause_physics", time_control.unpause),
+            ("reset_world", time_control.reset_world),
+            ("reset_simulation", time_control.reset_simulation),
+        ):
+            server.serve(name, Empty, lambda _request, do=do: (do(), EmptyResponse())[1])
+        server.serve("get_world_properties", srv.GetWorldProperties, self._on_get_world)
+        server.serve("get_physics_properties", srv.GetPhysicsProperties, self._on_get_physics)
+        server.serve("set_physics_properties", srv.SetPhysicsProperties, self._on_set_physics)
+        self._server = server
+        Tuning(TUNABLES, self._values(), self._on_reconfigure, NAMESPACE)
+
+    def _on_get_world(self, _request):
+        return srv.GetWorldPropertiesResponse(
+            sim_time=self._scene.stamp,
+            model_names=self._scene.model_names(),
+            rendering_enabled=True,
+            success=True,
+            status_message="GetWorldProperties: got properties",
+        )
+
+    def _on_get_physics(self, _request):
+        values = self._values()
+        return srv.GetPhysicsPropertiesResponse(
+            time_step=values["time_step"],
+            pause=self._time.is_paused,
+            max_update_rate=values["max_update_rate"],
+            gravity=Vector3(*(values[f"gravity_{axis}"] for axis in "xyz")),
+            ode_config=ODEPhysics(),
+            success=True,
+            status_message="GetPhysicsProperties: got properties",
+        )
+
+    def _on_set_physics(self, request):
+        try:
+            self._set(request.time_step, request.max_update_rate, request.gravity)
+        except PlanarError as error:
+            return srv.SetPhysicsPropertiesResponse(False, f"SetPhysicsProperties: {error}")
+        return srv.SetPhysicsPropertiesResponse(True, "physics engine updated")
+
+    def _on_reconfigure(self, values: Dict[str, Any]) -> Dict[str, Any]:
+        """Goes on as before if the values make no sense."""
+        gravity = Vector3(*(values[f"gravity_{axis}"] for axis in "xyz"))
+
+        def change():
+            try:
+                self._set(values["time_step"], values["max_update_rate"], gravity)
+            except PlanarError as error:
+                rospy.logerr("%sset_parameters: %s", NAMESPACE, error)
+            return self._values()
+
+        return self._server.between_steps(change)
+
+    def _set(self, time_step: float, max_update_rate: float, gravity: Vector3) -> None:
+        """A target of 0 updates a second means as fast as possible, here as there. Raises PlanarError."""
+        if gravity.x or gravity.y or not np.isfinite(gravity.z):
+            raise WorldError("gravity must point along the z axis")
+        if not (time_step * HIGHEST_PHYSICS_RATE >= 1.0 and 0.0 <= max_update_rate < np.inf):
+            least = 1.0 / HIGHEST_PHYSICS_RATE
+            raise WorldError(f"time_step must be at least {least:g}, max_update_rate not negative")
+        self._scene.set_physics_rate(round(1.0 / time_step))
+        self._scene.set_gravity(-gravity.z)
+        self._time.set_speed(max_update_rate * time_step)
+
+    def _values(self) -> Dict[str, float]:
+        rate = self._scene.settings.physics_rate
+        return {
+            "time_step": 1.0 / rate,
+            "max_update_rate": rate * self._time.speed,
+            "gravity_x": 0.0,
+            "gravity_y": 0.0,
+            "gravity_z": -self._scene.gravity,
+        }

@@ -1,0 +1,95 @@
+"""What models and links are made of."""
+
+import gazebo_msgs.srv as srv
+import numpy as np
+from geometry_msgs.msg import Point, Pose, Quaternion
+
+from sim_bridge.errors import UnknownEntityError
+from sim_bridge.pose3 import position
+from sim_bridge.ros.gazebo.server import SCOPE_HINT, Server
+from sim_bridge.ros.messages import vector_from_msg
+from sim_bridge.scene import Scene
+
+# Of moments of inertia, and metres of a centre of mass, below which two are the same.
+NEGLIGIBLE = 1e-6
+
+
+class PropertyServices:
+    def __init__(self, scene: Scene, server: Server):
+        self._scene = scene
+        server.serve("get_model_properties", srv.GetModelProperties, self._on_get_model)
+        server.serve("get_link_properties", srv.GetLinkProperties, self._on_get_link)
+        server.serve("set_link_properties", srv.SetLinkProperties, self._on_set_link)
+
+    def _on_get_model(self, request):
+        scene, model = self._scene, request.model_name
+        if model not in scene.model_names():
+            return srv.GetModelPropertiesResponse(
+                success=False, status_message="GetModelProperties: model does not exist"
+            )
+        links = [_inside(model, link) for link in scene.links_of(model)]
+        return srv.GetModelPropertiesResponse(
+            canonical_body_name=links[0],
+            body_names=[link for link in links if "::" not in link],
+            geom_names=scene.solids_of(model),
+            joint_names=[_inside(model, joint) for joint in scene.joint_names(model)],
+            child_model_names=sorted({link.split("::", 1)[0] for link in links if "::" in link}),
+            is_static=scene.is_static(model),
+            success=True,
+            status_message="GetModelProperties: got properties",
+        )
+
+    def _on_get_link(self, request):
+        try:
+            mass = self._scene.mass_properties(self._scene.full_link_name(request.link_name))
+        except UnknownEntityError:
+            return srv.GetLinkPropertiesResponse(
+                success=False, status_message=f"GetLinkProperties: link not found, {SCOPE_HINT}"
+            )
+        axes = mass.centre[:3, :3]
+        inertia = axes @ np.diag(mass.moments) @ axes.T
+        return srv.GetLinkPropertiesResponse(
+            com=Pose(Point(*position(mass.centre)), Quaternion(w=1.0)),
+            gravity_mode=mass.has_weight,
+            mass=mass.mass,
+            ixx=inertia[0, 0],
+            ixy=inertia[0, 1],
+            ixz=inertia[0, 2],
+            iyy=inertia[1, 1],
+            iyz=inertia[1, 2],
+            izz=inertia[2, 2],
+            success=True,
+            status_message="GetLinkProperties: got properties",
+        )
+
+    def _on_set_link(self, request):
+        """Mass, moments about the axes that the link has, and weight; its centre of mass stays."""
+        answer = srv.SetLinkPropertiesResponse
+        try:
+            link = self._scene.full_link_name(request.link_name)
+            kept = self._scene.mass_properties(link)
+        except UnknownEntityError:
+            return answer(False, f"SetLinkProperties: link not found, {SCOPE_HINT}")
+        inertia = np.array(
+            [
+                [request.ixx, request.ixy, request.ixz],
+                [request.ixy, request.iyy, request.iyz],
+                [request.ixz, request.iyz, request.izz],
+            ]
+        )
+        axes = kept.centre[:3, :3]
+        about_axes = axes.T @ inertia @ axes
+        moments = np.diag(about_axes)
+        if not (request.mass > 0.0 and np.isfinite(inertia).all() and (moments > 0.0).all()):
+            return answer(False, "SetLinkProperties: mass and moments of inertia must be positive")
+        if np.abs(about_axes - np.diag(moments)).max() > NEGLIGIBLE * moments.max():
+            return answer(False, "SetLinkProperties: the principal axes of inertia cannot be turned")
+        if np.abs(vector_from_msg(request.com.position) - kept.centre[:3, 3]).max() > NEGLIGIBLE:
+            return answer(False, "SetLinkProperties: the centre of mass cannot be moved")
+        self._scene.set_mass(link, request.mass, moments.tolist(), request.gravity_mode)
+        return answer(True, "SetLinkProperties: properties set")
+
+
+def _inside(model: str, name: str) -> str:
+    """A full name without that of its model."""
+    return name[len(model) + 2 :]

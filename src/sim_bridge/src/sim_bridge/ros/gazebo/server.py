@@ -1,0 +1,76 @@
+"""How Gazebo's services are offered, and in which frames they are told of."""
+
+from typing import Callable, Optional, TypeVar
+
+import numpy as np
+import rospy
+
+from sim_bridge.engine import Motion
+from sim_bridge.errors import UnknownEntityError
+from sim_bridge.pose3 import inverse
+from sim_bridge.ros.orders import Orders
+from sim_bridge.scene import Scene
+
+T = TypeVar("T")
+
+NAMESPACE = "/gazebo/"
+# Names that all mean the world.
+WORLD_NAMES = ("", "world", "map", "/map")
+SCOPE_HINT = "did you forget to scope the link by model name?"
+
+
+class Server:
+    """Answers calls, and takes what comes by topic, between two steps of the simulation."""
+
+    def __init__(self, orders: Orders):
+        self._orders = orders
+
+    def serve(self, name: str, kind, answer: Callable) -> None:
+        """The service ``name``, below /gazebo unless it begins with a slash."""
+        full_name = rospy.names.ns_join(NAMESPACE, name)
+        rospy.Service(full_name, kind, lambda request: self.between_steps(lambda: answer(request)))
+
+    def between_steps(self, do: Callable[[], T]) -> T:
+        """Has ``do`` called between two steps and returns what it returns."""
+        return self._orders.ask(do)
+
+    def listen(self, name: str, kind, take: Callable) -> None:
+        """The topic /gazebo/``name``; ``take`` is called with a message and what tells a failure."""
+
+        def on_message(message):
+            self._orders.leave(lambda: take(message, _tell_failure))
+
+        rospy.Subscriber(NAMESPACE + name, kind, on_message, queue_size=10)
+
+
+def frame_named(scene: Scene, name: str) -> Optional[Motion]:
+    """The motion of the model or link of that name, or of the world; None if there is none."""
+    if name in WORLD_NAMES:
+        return Motion(np.eye(4), np.zeros(3), np.zeros(3))
+    try:
+        if name in scene.model_names():
+            return scene.model_motion(name)
+        return scene.link_motion(scene.full_link_name(name))
+    except UnknownEntityError:
+        return None
+
+
+def relative(motion: Motion, frame: Motion) -> Motion:
+    """A motion in the world as seen from a frame."""
+    turned_back = frame.pose[:3, :3].T
+    return Motion(
+        inverse(frame.pose) @ motion.pose,
+        turned_back @ (motion.linear - frame.linear),
+        turned_back @ (motion.angular - frame.angular),
+    )
+
+
+def absolute(motion: Motion, frame: Motion) -> Motion:
+    """A motion given in a frame as seen from the world; only the axes of its velocities are the frame's."""
+    turned = frame.pose[:3, :3]
+    return Motion(frame.pose @ motion.pose, turned @ motion.linear, turned @ motion.angular)
+
+
+def _tell_failure(success: bool, text: str) -> None:
+    if not success:
+        rospy.logwarn("%s", text)

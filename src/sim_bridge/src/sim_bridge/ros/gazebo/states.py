@@ -1,0 +1,121 @@
+"""Where models and links are, told and set."""
+
+from collections import Counter
+
+import gazebo_msgs.srv as srv
+import rospy
+from gazebo_msgs.msg import LinkState, LinkStates, ModelState, ModelStates
+
+from sim_bridge.errors import UnknownEntityError, WorldError
+from sim_bridge.ros.gazebo.server import NAMESPACE, SCOPE_HINT, Server, absolute, frame_named, relative
+from sim_bridge.ros.messages import motion_from_msgs, motion_to_msgs
+from sim_bridge.scene import Scene
+
+
+class StateServices:
+    def __init__(self, scene: Scene, server: Server):
+        self._scene = scene
+        self._asked: Counter = Counter()
+        self._models = rospy.Publisher(NAMESPACE + "model_states", ModelStates, queue_size=10)
+        self._links = rospy.Publisher(NAMESPACE + "link_states", LinkStates, queue_size=10)
+        server.serve("get_model_state", srv.GetModelState, self._on_get_model)
+        server.serve("get_link_state", srv.GetLinkState, self._on_get_link)
+        server.serve(
+            "set_model_state",
+            srv.SetModelState,
+            lambda request: self._set_model(request.model_state, srv.SetModelStateResponse),
+        )
+        server.serve(
+            "set_link_state",
+            srv.SetLinkState,
+            lambda request: self._set_link(request.link_state, srv.SetLinkStateResponse),
+        )
+        server.listen("set_model_state", ModelState, self._set_model)
+        server.listen("set_link_state", LinkState, self._set_link)
+
+    def publish(self) -> None:
+        """Where all models and links are, for those who have subscribed."""
+        scene = self._scene
+        if self._models.get_num_connections():
+            message = ModelStates(name=scene.model_names())
+            _fill(message, [scene.model_motion(name) for name in message.name])
+            self._models.publish(message)
+        if self._links.get_num_connections():
+            message = LinkStates(
+                name=[link for model in scene.model_names() for link in scene.links_of(model)]
+            )
+            _fill(message, [scene.link_motion(name) for name in message.name])
+            self._links.publish(message)
+
+    def _on_get_model(self, request):
+        response = srv.GetModelStateResponse()
+        response.header.stamp = rospy.Time.from_sec(self._scene.stamp)
+        response.header.frame_id = request.relative_entity_name
+        try:
+            motion = self._scene.model_motion(request.model_name)
+        except UnknownEntityError:
+            response.status_message = "GetModelState: model does not exist"
+            return response
+        self._asked[request.model_name] += 1
+        response.header.seq = self._asked[request.model_name]
+        frame = frame_named(self._scene, request.relative_entity_name)
+        if frame is None:
+            response.status_message = (
+                "GetModelState: reference relative_entity_name not found, "
+                "did you forget to scope the body by model name?"
+            )
+            return response
+        response.pose, response.twist = motion_to_msgs(relative(motion, frame))
+        response.success, response.status_message = True, "GetModelState: got properties"
+        return response
+
+    def _on_get_link(self, request):
+        response = srv.GetLinkStateResponse()
+        response.link_state.link_name = request.link_name
+        response.link_state.reference_frame = request.reference_frame
+        try:
+            motion = self._scene.link_motion(self._scene.full_link_name(request.link_name))
+        except UnknownEntityError:
+            response.status_message = f"GetLinkState: link not found, {SCOPE_HINT}"
+            return response
+        frame = frame_named(self._scene, request.reference_frame)
+        if frame is None:
+            response.status_message = f"GetLinkState: reference reference_frame not found, {SCOPE_HINT}"
+            return response
+        response.link_state.pose, response.link_state.twist = motion_to_msgs(relative(motion, frame))
+        response.success, response.status_message = True, "GetLinkState: got state"
+        return response
+
+    def _set_model(self, state: ModelState, answer):
+        if state.model_name not in self._scene.model_names():
+            return answer(False, "SetModelState: model does not exist")
+        frame = frame_named(self._scene, state.reference_frame)
+        if frame is None:
+            return answer(False, "SetModelState: specified reference frame entity does not exist")
+        try:
+            motion = absolute(motion_from_msgs(state.pose, state.twist), frame)
+            self._scene.set_model_motion(state.model_name, motion)
+        except WorldError as error:
+            return answer(False, f"SetModelState: {error}")
+        return answer(True, "SetModelState: set model state done")
+
+    def _set_link(self, state: LinkState, answer):
+        try:
+            link = self._scene.full_link_name(state.link_name)
+        except UnknownEntityError:
+            return answer(False, "SetLinkState: link does not exist")
+        frame = frame_named(self._scene, state.reference_frame)
+        if frame is None:
+            return answer(False, "SetLinkState: failed")
+        try:
+            self._scene.set_link_motion(link, absolute(motion_from_msgs(state.pose, state.twist), frame))
+        except WorldError as error:
+            return answer(False, f"SetLinkState: {error}")
+        return answer(True, "SetLinkState: success")
+
+
+def _fill(message, motions) -> None:
+    for motion in motions:
+        pose, twist = motion_to_msgs(motion)
+        message.pose.append(pose)
+        message.twist.append(twist)

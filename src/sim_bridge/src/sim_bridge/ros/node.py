@@ -1,0 +1,129 @@
+"""The node ``sim_bridge``: a Scene with Gazebo's topics and services, and simulated time."""
+
+import dataclasses
+from typing import Any, Dict, Mapping
+
+import rospy
+from rosgraph_msgs.msg import Clock
+from visualization_msgs.msg import Marker
+
+from planar import Pose2
+from planar.config.settings import check
+from planar_ros.messages import pose2_from_msg, time_of
+from planar_ros.parameters import parameters_below, read_settings
+from planar_ros.prompt_sending import send_promptly
+from planar_ros.shell import run
+from sim_bridge.config import BridgeSettings, RobotSettings, SimulationSettings
+from sim_bridge.description import read_sdf_robot
+from sim_bridge.errors import WorldError
+from sim_bridge.noise import noise_named
+from sim_bridge.pacing import Pacer
+from sim_bridge.pose3 import to_pose2
+from sim_bridge.robots import robot_named
+from sim_bridge.ros.cli import find_file, model_folders
+from sim_bridge.ros.fleet import Fleet
+from sim_bridge.ros.gazebo import GazeboInterface
+from sim_bridge.ros.gazebo.server import NAMESPACE
+from sim_bridge.ros.orders import Orders
+from sim_bridge.ros.performance import Performance
+from sim_bridge.ros.time_control import TimeControl
+from sim_bridge.scene import Scene
+from sim_bridge.sdf import load_world
+from sim_bridge.simulation import ROBOT_NAME, box_on_floor
+
+
+class Bridge:
+    """Steps a scene as fast as it may, in one thread; callbacks of other threads leave it their orders."""
+
+    def __init__(self):
+        settings, robot = (_read(kind) for kind in (BridgeSettings, RobotSettings))
+        simulation_settings = _read(SimulationSettings, noise_named(settings.noise))
+        rate = simulation_settings.odometry_rate
+        self._clock_steps = _steps_between(settings.clock_rate, rate, "clock_rate")
+        joint_steps = _steps_between(settings.joint_state_rate, rate, "joint_state_rate")
+        robots = _robots_asked_for(robot)
+        world = load_world(settings.world, model_folders(), settings.strict)
+        for warning in world.warnings:
+            rospy.logwarn("%s", warning)
+        self._scene = Scene(world, simulation_settings, settings.seed)
+        self._orders = Orders()
+        self._steps = 0
+        pacer = Pacer(settings.speed, [name.lstrip("/") for name in settings.wait_for.split()])
+        self._clock = rospy.Publisher("/clock", Clock, queue_size=10, latch=True, tcp_nodelay=True)
+        self._performance = Performance()
+        self._time = TimeControl(self._scene, pacer, self._orders)
+        self._fleet = Fleet(self._scene, self._orders, joint_steps)
+        for name, one in robots.items():
+            profile, start = robot_named(one.robot, find_file), Pose2(one.x, one.y, one.yaw)
+            self._fleet.add(name, profile, start, namespace=one.namespace)
+        for model in world.robots:
+            profile, pose = read_sdf_robot(model)
+            self._fleet.add(model.name, profile, to_pose2(pose), float(pose[2, 3]))
+        # As Gazebo does: those that start from now on go by our clock.
+        if not rospy.has_param("/use_sim_time"):
+            rospy.set_param("/use_sim_time", True)
+        self._gazebo = GazeboInterface(self._scene, self._fleet, self._time, self._orders, model_folders())
+        if rospy.resolve_name("~") != NAMESPACE:  # else what Gazebo itself offers has that name
+            self._time.offer_speed()
+        rospy.Subscriber("~add_box", Marker, self._on_box, queue_size=10)
+
+    def run(self) -> None:
+        """Steps until shutdown."""
+        try:
+            while not rospy.is_shutdown():
+                self._orders.carry_out()
+                self._time.expect_odometry(self._fleet.odometry_seconds)
+                if not self._time.wait_for_turn():
+                    continue
+                self._step()
+                self._performance.report(self._scene.stamp, self._fleet.publishers)
+        finally:
+            self._time.close()
+            self._orders.close()
+            self._scene.close()
+
+    def _step(self):
+        self._fleet.step()
+        self._gazebo.publish()
+        # Last, so that what it wakes up finds the data of this moment.
+        self._steps += 1
+        if self._steps % self._clock_steps == 0:
+            self._clock.publish(time_of(self._scene.stamp))
+        self._time.count_step()
+
+    def _on_box(self, message):
+        self._orders.leave(lambda: self._add_box(message))
+
+    def _add_box(self, message):
+        size = (message.scale.x, message.scale.y, message.scale.z)
+        name = message.ns or f"box_{message.id}"
+        try:
+            self._scene.add([box_on_floor(name, size, pose2_from_msg(message.pose))])
+            rospy.loginfo("%s added", name)
+        except WorldError as error:
+            rospy.logwarn("box not added: %s", error)
+
+
+def _read(kind: type, defaults: Mapping[str, Any] = {}) -> Any:
+    """Settings of one of the kinds that are all among the node's private parameters."""
+    kinds = (BridgeSettings, SimulationSettings, RobotSettings)
+    known = {field.name for each in kinds for field in dataclasses.fields(each)}
+    return read_settings(kind, ignore=known, defaults=defaults)
+
+
+def _robots_asked_for(robot: RobotSettings) -> Dict[str, RobotSettings]:
+    """The robots by their names: those below ~robots if there are any, else the one of ``robot``."""
+    names = parameters_below("~robots")
+    if names:
+        return {name: read_settings(RobotSettings, namespace=f"~robots/{name}") for name in sorted(names)}
+    return {ROBOT_NAME: robot} if robot.robot else {}
+
+
+def _steps_between(rate: int, step_rate: int, name: str) -> int:
+    check(step_rate % rate == 0, f"~{name}", f"a divisor of odometry_rate ({step_rate})", rate)
+    return step_rate // rate
+
+
+def main():
+    send_promptly()
+    run("sim_bridge", lambda: Bridge().run())

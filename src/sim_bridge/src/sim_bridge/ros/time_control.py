@@ -1,0 +1,130 @@
+"""Pausing, stepping and resetting a scene, and how fast its time passes."""
+
+import time
+from concurrent.futures import CancelledError, Future
+from dataclasses import dataclass
+from typing import List
+
+import rospy
+from sim_bridge_msgs.srv import Step, StepResponse
+from std_msgs.msg import Header
+
+from planar_ros.messages import time_of
+from planar_ros.progress import TOPIC as PROGRESS_TOPIC
+from planar_ros.reconfigure import Reconfiguration
+from planar_ros.waiting import Waiting
+from sim_bridge.config import RunTimeSettings
+from sim_bridge.pacing import Pacer
+from sim_bridge.ros.orders import Orders
+from sim_bridge.scene import Scene
+
+# So that a shutdown is noticed soon.
+LONGEST_WAIT_SECONDS = 0.05
+
+
+@dataclass
+class _Grant:
+    """Steps that a paused simulation may take; ``done`` gets the time after the last of them."""
+
+    steps_left: int
+    done: Future
+
+
+class TimeControl:
+    """Says when the next step is due; its methods are called in the thread that owns the scene."""
+
+    def __init__(self, scene: Scene, pacer: Pacer, orders: Orders):
+        self.is_paused = False
+        self._scene = scene
+        self._pacer = pacer
+        self._orders = orders
+        self._grants: List[_Grant] = []
+        rospy.Subscriber(PROGRESS_TOPIC, Header, self._on_progress, queue_size=100, tcp_nodelay=True)
+        rospy.Service("~step", Step, self._on_step)
+        Waiting({f"{name} on {PROGRESS_TOPIC}": self._follows(name) for name in pacer.wait_for})
+
+    @property
+    def speed(self) -> float:
+        return self._pacer.speed
+
+    def set_speed(self, speed: float) -> None:
+        """``speed``: times real time, 0 for as fast as possible."""
+        self._pacer.speed = speed
+
+    def offer_speed(self) -> None:
+        """Lets dynamic_reconfigure change the speed, below the node's own name."""
+        Reconfiguration(RunTimeSettings(self.speed), self._on_reconfigure)
+
+    def expect_odometry(self, seconds: float) -> None:
+        """Each robot tells its odometry at least every ``seconds``."""
+        self._pacer.odometry_delay = max(0.0, seconds - self._scene.step_seconds)
+
+    def wait_for_turn(self) -> bool:
+        """Waits until the next step may be taken, or something else is to be done first (then False)."""
+        if self.is_paused and not self._grants:
+            self._orders.wait(LONGEST_WAIT_SECONDS)
+            return False
+        wall, stamp = time.monotonic(), self._scene.stamp + self._scene.step_seconds
+        delay = self._pacer.delay(stamp, wall, is_limited=not self.is_paused)
+        if delay <= 0.0:
+            return True
+        for name in self._pacer.give_up(stamp, wall):
+            rospy.logwarn("no progress of %s: the simulation goes on without it in real time", name)
+        self._orders.wait(min(delay, LONGEST_WAIT_SECONDS))
+        return False
+
+    def count_step(self) -> None:
+        """A step has been taken."""
+        if self._grants:
+            grant = self._grants[0]
+            grant.steps_left -= 1
+            self._end_grants()
+
+    def pause(self) -> None:
+        self.is_paused = True
+
+    def unpause(self) -> None:
+        self.is_paused = False
+
+    def reset_world(self) -> None:
+        self._scene.reset_poses()
+        rospy.loginfo("all models are back where they started")
+
+    def reset_simulation(self) -> None:
+        self._scene.reset()
+        self._pacer.restart()
+        rospy.loginfo("the simulation starts again at time 0")
+
+    def close(self) -> None:
+        """Lets go those who wait for steps."""
+        for grant in self._grants:
+            grant.done.cancel()
+
+    def _on_step(self, request) -> StepResponse:
+        """Pauses, and steps as fast as possible, but leaves no node behind that is waited for."""
+        grant = _Grant(request.steps, Future())
+        self._orders.ask(lambda: self._allow(grant))
+        try:
+            return StepResponse(time_of(grant.done.result()))
+        except CancelledError:
+            raise rospy.ServiceException("the simulation is shutting down") from None
+
+    def _on_reconfigure(self, values):
+        self._orders.leave(lambda: self.set_speed(values["speed"]))
+        return values
+
+    def _allow(self, grant: _Grant) -> None:
+        self.is_paused = True
+        self._grants.append(grant)
+        self._end_grants()
+
+    def _end_grants(self) -> None:
+        while self._grants and self._grants[0].steps_left == 0:
+            self._grants.pop(0).done.set_result(self._scene.stamp)
+
+    def _on_progress(self, message):
+        name, stamp = message.frame_id.lstrip("/"), message.stamp.to_sec()
+        self._orders.leave(lambda: self._pacer.report(name, stamp))
+
+    def _follows(self, name):
+        return lambda: not self._pacer.is_missing(name)
