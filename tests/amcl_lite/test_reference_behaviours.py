@@ -18,7 +18,7 @@ from bag_stage import BagStage
 
 from planar import Pose2, wrap
 from sim_bridge import load_world
-from sim_bridge.true_map import true_map
+from sim_bridge.views.true_map import true_map
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "benchmarks"))

@@ -24,7 +24,7 @@ from worlds import HALLWAY, OFFICE, world_from_picture
 from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, wrap
 from sim_bridge import SimulationSettings, load_world
 from sim_bridge.noise import noise_named
-from sim_bridge.true_map import true_map
+from sim_bridge.views.true_map import true_map
 from sim_bridge.world import World
 
 ROOT = Path(__file__).resolve().parents[2]

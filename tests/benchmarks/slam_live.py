@@ -32,7 +32,7 @@ from planar import Pose2
 from planar_ros.messages import LaserScanArrays, OccupancyGridArrays, transform_msg
 from planar_ros.progress import TOPIC as PROGRESS
 from planar_ros.transforms import Transforms
-from sim_bridge.true_map import true_map
+from sim_bridge.views.true_map import true_map
 
 START = Pose2(1.0, 1.0, 0.0)
 MAP_INTERVAL, BEGIN, START_SECONDS = 2.0, 10.0, 60.0

@@ -8,9 +8,9 @@ import numpy as np
 from move_base_lite import Navigator, NavigatorSettings
 from planar import OccupancyGrid, Pose2
 from sim_bridge import Simulation
-from sim_bridge.engine import Motion
-from sim_bridge.pose3 import from_pose2
-from sim_bridge.shapes import Cylinder
+from sim_bridge.geometry.pose3 import from_pose2
+from sim_bridge.geometry.shapes import Cylinder
+from sim_bridge.physics.engine import Motion
 from sim_bridge.world import Body, Collision
 
 RADIUS, HEIGHT = 0.2, 1.6

@@ -5,8 +5,8 @@ from typing import List, Tuple
 import numpy as np
 
 from planar import Pose2
-from sim_bridge.pose3 import from_pose2
-from sim_bridge.shapes import Box, Plane
+from sim_bridge.geometry.pose3 import from_pose2
+from sim_bridge.geometry.shapes import Box, Plane
 from sim_bridge.world import Body, Collision, World
 
 CELL_METRES, WALL_HEIGHT = 0.5, 1.0

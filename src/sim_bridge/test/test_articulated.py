@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from sim_bridge import Scene, SimulationSettings
-from sim_bridge.engine import Motion
 from sim_bridge.errors import WorldError
-from sim_bridge.pose3 import pose3
+from sim_bridge.geometry.pose3 import pose3
+from sim_bridge.physics.engine import Motion
 from sim_bridge.scene import JointPush
 from sim_bridge.sdf import read_model
 

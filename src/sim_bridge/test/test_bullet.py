@@ -7,7 +7,7 @@ import sys
 SIMULATE = """
 from sim_bridge import Simulation
 from sim_bridge.world import Body, Collision, World
-from sim_bridge.shapes import Plane
+from sim_bridge.geometry.shapes import Plane
 import numpy
 floor = World("floor", (Body("floor::link", numpy.eye(4), (Collision(Plane(), numpy.eye(4)),)),))
 print(Simulation(floor).step().stamp)

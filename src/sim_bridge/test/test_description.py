@@ -8,7 +8,7 @@ import pytest
 from sim_bridge import ROBOTS, RobotError, robot_named
 from sim_bridge.description import read_sdf_robot, read_urdf_robot
 from sim_bridge.errors import NoDriveError
-from sim_bridge.pose3 import pose3
+from sim_bridge.geometry.pose3 import pose3
 from sim_bridge.sdf import load_world
 
 BODY = """

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from planar import Pose2
+from sim_bridge.geometry.pose3 import pose3
 from sim_bridge.noise import NOISES
-from sim_bridge.pose3 import pose3
 from sim_bridge.robots import ROBOTS
 from sim_bridge.sensors.lidar import Lidar
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from sim_bridge.errors import WorldError
-from sim_bridge.meshes import load_mesh
-from sim_bridge.shapes import MeshFile
+from sim_bridge.geometry.meshes import load_mesh
+from sim_bridge.geometry.shapes import MeshFile
 
 TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n"
 COLLADA = """<?xml version="1.0"?>
@@ -49,7 +49,7 @@ def test_a_converted_mesh_is_taken_from_the_cache_until_its_file_changes(tmp_pat
     path.write_text(TETRAHEDRON)
     first = load_mesh(MeshFile(path, (2.0, 2.0, 2.0)), cache)
     (cached,) = cache.iterdir()
-    monkeypatch.setattr("sim_bridge.meshes._convert", lambda file: pytest.fail("converted again"))
+    monkeypatch.setattr("sim_bridge.geometry.meshes._convert", lambda file: pytest.fail("converted again"))
     again = load_mesh(MeshFile(path, (2.0, 2.0, 2.0)), cache)
     assert np.array_equal(first.vertices, again.vertices)
     assert load_mesh(MeshFile(path), cache).vertices.max() == 1.0, "the scale is no part of what is cached"

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from planar import SettingsError, Twist2
-from sim_bridge.mux import TURTLEBOT_INPUTS, Mux, Smoother, read_inputs
+from sim_bridge.driving.mux import TURTLEBOT_INPUTS, Mux, Smoother, read_inputs
 
 SLOW, FAST = Twist2(0.1, 0.0), Twist2(0.5, 0.0)
 

@@ -7,12 +7,12 @@ import pytest
 
 from planar import Pose2, SettingsError, Twist2
 from sim_bridge import ROBOTS, Scene, SimulationSettings, WorldError
-from sim_bridge.engine import Motion
 from sim_bridge.errors import UnknownEntityError
-from sim_bridge.pose3 import pose3
+from sim_bridge.geometry.pose3 import pose3
+from sim_bridge.geometry.shapes import Box, Plane
+from sim_bridge.physics.engine import Motion
 from sim_bridge.scene import Push
 from sim_bridge.sdf import read_model
-from sim_bridge.shapes import Box, Plane
 from sim_bridge.world import Body, Collision, World
 
 LIDAR = ROBOTS["turtlebot_lidar"]

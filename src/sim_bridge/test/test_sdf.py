@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from sim_bridge.errors import WorldError
-from sim_bridge.pose3 import pose3
+from sim_bridge.geometry.pose3 import pose3
+from sim_bridge.geometry.shapes import Box, Cylinder, Mesh, Plane, Sphere
 from sim_bridge.sdf import load_world, read_model
-from sim_bridge.shapes import Box, Cylinder, Mesh, Plane, Sphere
 
 UNIT_BOX = "<geometry><box><size>1 1 1</size></box></geometry>"
 

@@ -7,9 +7,9 @@ import pytest
 
 from planar import Pose2, grid_from_picture
 from planar.geometry.ray_casting import cast_rays
-from sim_bridge.pose3 import pose3
-from sim_bridge.section import Section, cast_beams
-from sim_bridge.shapes import Box, Cylinder, Sphere
+from sim_bridge.geometry.pose3 import pose3
+from sim_bridge.geometry.shapes import Box, Cylinder, Sphere
+from sim_bridge.views.section import Section, cast_beams
 from sim_bridge.world import Body, Collision
 
 SQUARE = np.array([[1, -1, 1, 1], [1, 1, -1, 1], [-1, 1, -1, -1], [-1, -1, 1, -1]], dtype=float)

@@ -7,14 +7,14 @@ import pytest
 
 from planar import SettingsError
 from sim_bridge import ROBOTS, Simulation, SimulationSettings
-from sim_bridge.drawing import Drawing
-from sim_bridge.engine import Motion
+from sim_bridge.geometry.pose3 import pose3, transform_points
+from sim_bridge.geometry.shapes import Box, Cylinder, MeshFile, Plane, Sphere
 from sim_bridge.noise import noise_named
-from sim_bridge.pose3 import pose3, transform_points
+from sim_bridge.physics.engine import Motion
 from sim_bridge.sensors.bumper import CENTRE, LEFT, RIGHT, pressed
 from sim_bridge.sensors.camera import Camera, CameraSettings, DepthCameraSettings, points_of
 from sim_bridge.sensors.imu import Imu, ImuSettings
-from sim_bridge.shapes import Box, Cylinder, MeshFile, Plane, Sphere
+from sim_bridge.views.drawing import Drawing
 from sim_bridge.world import Body, Collision, Visual, World
 
 SMALL = CameraSettings(width=160, height=120)

@@ -8,7 +8,7 @@ import pytest
 from planar import load_map
 from sim_bridge import load_world
 from sim_bridge.ros.cli import render_map, robot_description
-from sim_bridge.true_map import true_map
+from sim_bridge.views.true_map import true_map
 
 HOME = Path(__file__).resolve().parents[3] / "map" / "home.world"
 

@@ -9,11 +9,11 @@ import pytest
 
 from planar import Pose2, Twist2, wrap
 from sim_bridge import ROBOTS, Simulation, SimulationSettings, WorldError, load_world
-from sim_bridge.pose3 import pose3
-from sim_bridge.section import Section, cast_beams
+from sim_bridge.geometry.pose3 import pose3
+from sim_bridge.geometry.shapes import Box, Plane
 from sim_bridge.sensors.bumper import CENTRE
 from sim_bridge.sensors.kobuki import KobukiReading
-from sim_bridge.shapes import Box, Plane
+from sim_bridge.views.section import Section, cast_beams
 from sim_bridge.world import Body, Collision, World
 
 HOME = Path(__file__).resolve().parents[3] / "map" / "home.world"

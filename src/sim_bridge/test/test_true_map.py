@@ -9,10 +9,10 @@ import pytest
 from planar import FREE, OCCUPIED, UNKNOWN, load_map
 from planar.maps.map_score import score_map
 from sim_bridge.errors import WorldError
-from sim_bridge.pose3 import pose3
+from sim_bridge.geometry.pose3 import pose3
+from sim_bridge.geometry.shapes import Box, Cylinder, Mesh, Plane, Sphere
 from sim_bridge.sdf import load_world
-from sim_bridge.shapes import Box, Cylinder, Mesh, Plane, Sphere
-from sim_bridge.true_map import true_map
+from sim_bridge.views.true_map import true_map
 from sim_bridge.world import Body, Collision, World
 
 HOME_MAP = Path(__file__).resolve().parents[3] / "map"

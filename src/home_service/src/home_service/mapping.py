@@ -17,7 +17,7 @@ from planar import OccupancyGrid, Pose2, SettingsError, load_map
 from planar.maps.map_score import MapScore, score_map
 from planar_ros.actions import goal_is_over, server_is_ready
 from sim_bridge import RobotProfile
-from sim_bridge.true_map import true_map
+from sim_bridge.views.true_map import true_map
 from sim_bridge.world import World
 
 LEAST_RECALL = LEAST_PRECISION = 0.95

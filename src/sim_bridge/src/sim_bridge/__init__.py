@@ -1,4 +1,4 @@
-"""A headless simulator of a wheeled robot in SDF worlds; pure but for node.py."""
+"""A headless simulator of a wheeled robot in SDF worlds; only ``ros`` knows of ROS."""
 
 from sim_bridge.config import SimulationSettings
 from sim_bridge.errors import RobotError, WorldError

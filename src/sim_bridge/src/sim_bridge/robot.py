@@ -9,14 +9,14 @@ import numpy as np
 from planar import Pose2, Scan, Twist2
 from sim_bridge.config import SimulationSettings
 from sim_bridge.description import LaserProfile, RobotProfile
-from sim_bridge.drive import Drive
-from sim_bridge.engine import Contact, Engine
-from sim_bridge.odometry import DeadReckoning, Moved, Odometry, TrueOdometry
-from sim_bridge.pose3 import to_pose2
-from sim_bridge.section import Section
+from sim_bridge.driving.drive import Drive
+from sim_bridge.geometry.pose3 import to_pose2
+from sim_bridge.physics.engine import Contact, Engine
+from sim_bridge.physics.vehicle import Vehicle, twist_in_base
 from sim_bridge.sensors.kobuki import KobukiReading, KobukiSensors
 from sim_bridge.sensors.lidar import Lidar
-from sim_bridge.vehicle import Vehicle, twist_in_base
+from sim_bridge.sensors.odometry import DeadReckoning, Moved, Odometry, TrueOdometry
+from sim_bridge.views.section import Section
 from sim_bridge.world import Body
 
 

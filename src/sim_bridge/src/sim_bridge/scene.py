@@ -9,14 +9,14 @@ from planar import Pose2, Twist2
 from planar.config.settings import nearest_name
 from sim_bridge.config import SimulationSettings
 from sim_bridge.description import RobotProfile
-from sim_bridge.drawing import Drawing
-from sim_bridge.engine import Engine, JointState, MassProperties, Motion
 from sim_bridge.errors import UnknownEntityError, WorldError
-from sim_bridge.pose3 import cross, from_pose2, inverse
+from sim_bridge.geometry.pose3 import cross, from_pose2, inverse
+from sim_bridge.physics.engine import Engine, JointState, MassProperties, Motion
 from sim_bridge.robot import Observation, Robot
 from sim_bridge.sensors.camera import Picture
 from sim_bridge.sensors.imu import ImuReading
 from sim_bridge.sensors.mounted import MountedSensors
+from sim_bridge.views.drawing import Drawing
 from sim_bridge.world import Body, Joint, World
 
 # Metres above a robot's start from which on a floor is looked for.

@@ -8,11 +8,11 @@ import numpy as np
 from planar import Pose2, Twist2
 from sim_bridge.config import SimulationSettings
 from sim_bridge.errors import WorldError
-from sim_bridge.pose3 import from_pose2
+from sim_bridge.geometry.pose3 import from_pose2
+from sim_bridge.geometry.shapes import Box
 from sim_bridge.robot import Observation
 from sim_bridge.robots import ROBOTS, RobotProfile
 from sim_bridge.scene import Scene
-from sim_bridge.shapes import Box
 from sim_bridge.world import Body, Collision, World
 
 # Gazebo's TurtleBot is called so.

@@ -5,8 +5,8 @@ from typing import Any, Optional, Tuple
 
 import numpy as np
 
-from sim_bridge.pose3 import IDENTITY
-from sim_bridge.shapes import Look, Shape
+from sim_bridge.geometry.pose3 import IDENTITY
+from sim_bridge.geometry.shapes import Look, Shape
 
 Colour = Tuple[float, float, float]
 

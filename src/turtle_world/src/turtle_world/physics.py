@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from sim_bridge.bullet import BulletClient, pybullet
+from sim_bridge.physics.bullet import BulletClient, pybullet
 from turtle_world.canvas import SIDE
 
 # turtlesim's timer, seconds.

@@ -1,38 +1,9 @@
-"""Calls of Gazebo's services, as other people's scripts import them."""
+"""Calls of Gazebo's services, by the name that other people's scripts import them by."""
 
-import rospy
-from gazebo_msgs.srv import SetModelConfiguration, SpawnModel
+from gazebo_ros.ros.services import (
+    set_model_configuration_client,
+    spawn_sdf_model_client,
+    spawn_urdf_model_client,
+)
 
-SERVICE_SECONDS = 60.0
-
-
-def spawn_sdf_model_client(
-    model_name, model_xml, robot_namespace, initial_pose, reference_frame, gazebo_namespace
-):
-    """Spawns an SDF model; returns whether it is there."""
-    request = (model_name, model_xml, robot_namespace, initial_pose, reference_frame)
-    return _call(f"{gazebo_namespace}/spawn_sdf_model", SpawnModel, request)
-
-
-def spawn_urdf_model_client(
-    model_name, model_xml, robot_namespace, initial_pose, reference_frame, gazebo_namespace
-):
-    """Spawns a URDF model; returns whether it is there."""
-    request = (model_name, model_xml, robot_namespace, initial_pose, reference_frame)
-    return _call(f"{gazebo_namespace}/spawn_urdf_model", SpawnModel, request)
-
-
-def set_model_configuration_client(
-    model_name, model_param_name, joint_names, joint_positions, gazebo_namespace
-):
-    """Sets joint positions; returns whether they are set."""
-    request = (model_name, model_param_name, joint_names, joint_positions)
-    return _call(f"{gazebo_namespace}/set_model_configuration", SetModelConfiguration, request)
-
-
-def _call(service, kind, request):
-    rospy.wait_for_service(service, SERVICE_SECONDS)
-    response = rospy.ServiceProxy(service, kind)(*request)
-    tell = rospy.loginfo if response.success else rospy.logerr
-    tell("%s", response.status_message)
-    return response.success
+__all__ = ["set_model_configuration_client", "spawn_sdf_model_client", "spawn_urdf_model_client"]

@@ -23,10 +23,10 @@ from sim_bridge.description.sensors import (
     scan_of,
 )
 from sim_bridge.description.structure import Structure
-from sim_bridge.description.values import flag, length, number, text
-from sim_bridge.pose3 import IDENTITY
+from sim_bridge.geometry.pose3 import IDENTITY
 from sim_bridge.sdf.element import Element
 from sim_bridge.sdf.plugins import plugin_name
+from sim_bridge.sdf.values import flag, length, number, text
 
 ODOMETRY_SOURCES = ("encoder", "world", "gyro")
 LASER_PLUGINS = ("gazebo_ros_laser", "gazebo_ros_gpu_laser")

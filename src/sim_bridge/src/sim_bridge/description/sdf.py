@@ -6,8 +6,8 @@ import numpy as np
 
 from sim_bridge.description.blocks import Blocks
 from sim_bridge.description.structure import Joint, Link, Structure
-from sim_bridge.pose3 import inverse, transform_points
-from sim_bridge.shapes import outline
+from sim_bridge.geometry.pose3 import inverse, transform_points
+from sim_bridge.geometry.shapes import outline
 from sim_bridge.world import Body, DrivenModel
 
 

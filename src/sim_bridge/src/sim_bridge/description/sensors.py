@@ -6,9 +6,9 @@ from typing import Any, Dict, Optional
 from planar import SettingsError
 from sim_bridge.description.profile import CameraProfile, ImuProfile, LaserProfile
 from sim_bridge.description.structure import Structure
-from sim_bridge.description.values import number, text
-from sim_bridge.pose3 import IDENTITY
+from sim_bridge.geometry.pose3 import IDENTITY
 from sim_bridge.sdf.element import Element
+from sim_bridge.sdf.values import number, text
 from sim_bridge.sensors.camera import CameraSettings, DepthCameraSettings
 
 CAMERA_PLUGINS = ("gazebo_ros_camera", "gazebo_ros_multicamera")

@@ -6,8 +6,8 @@ from typing import Dict, Iterable, List, Sequence, Tuple
 import numpy as np
 
 from sim_bridge.errors import RobotError
-from sim_bridge.pose3 import IDENTITY, transform_points
-from sim_bridge.shapes import outline
+from sim_bridge.geometry.pose3 import IDENTITY, transform_points
+from sim_bridge.geometry.shapes import outline
 from sim_bridge.world import Collision
 
 

@@ -10,10 +10,10 @@ from defusedxml.common import DefusedXmlException
 from sim_bridge.description.blocks import Blocks
 from sim_bridge.description.structure import Joint, Link, Structure
 from sim_bridge.errors import RobotError, WorldError
-from sim_bridge.meshes import load_mesh
-from sim_bridge.pose3 import IDENTITY, pose3
+from sim_bridge.geometry.meshes import load_mesh
+from sim_bridge.geometry.pose3 import IDENTITY, pose3
+from sim_bridge.geometry.shapes import Box, Cylinder, MeshFile, Shape, Sphere
 from sim_bridge.sdf.element import Element
-from sim_bridge.shapes import Box, Cylinder, MeshFile, Shape, Sphere
 from sim_bridge.world import Collision
 
 FindFile = Callable[[str], Optional[Path]]

@@ -13,11 +13,11 @@ from PIL import Image
 from rospkg import ResourceNotFound, RosPack
 
 from planar import PlanarError, save_map, write_atomically
-from sim_bridge.picture import picture_from_above
 from sim_bridge.robots import ROBOTS, robot_named
 from sim_bridge.sdf import load_world
 from sim_bridge.sdf.includes import resolve
-from sim_bridge.true_map import true_map
+from sim_bridge.views.picture import picture_from_above
+from sim_bridge.views.true_map import true_map
 
 
 def model_folders() -> List[Path]:

@@ -6,9 +6,9 @@ from typing import List, Sequence, Tuple
 import numpy as np
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
 
-from sim_bridge.engine import Motion
 from sim_bridge.errors import WorldError
-from sim_bridge.pose3 import from_quaternion, position, quaternion
+from sim_bridge.geometry.pose3 import from_quaternion, position, quaternion
+from sim_bridge.physics.engine import Motion
 
 
 def pose3_to_msg(pose: np.ndarray) -> Pose:

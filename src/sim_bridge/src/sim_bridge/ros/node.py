@@ -16,9 +16,9 @@ from planar_ros.shell import run
 from sim_bridge.config import BridgeSettings, RobotSettings, SimulationSettings
 from sim_bridge.description import read_sdf_robot
 from sim_bridge.errors import WorldError
+from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.noise import noise_named
 from sim_bridge.pacing import Pacer
-from sim_bridge.pose3 import to_pose2
 from sim_bridge.robots import robot_named
 from sim_bridge.ros.cli import find_file, model_folders
 from sim_bridge.ros.fleet import Fleet

@@ -7,7 +7,7 @@ from geometry_msgs.msg import Quaternion, Vector3
 from sensor_msgs.msg import Imu
 
 from sim_bridge.description.profile import ImuProfile
-from sim_bridge.pose3 import quaternion
+from sim_bridge.geometry.pose3 import quaternion
 from sim_bridge.ros.camera_topics import CameraTopics
 from sim_bridge.ros.messages import covariance_of
 from sim_bridge.scene import Scene

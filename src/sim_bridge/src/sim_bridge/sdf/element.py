@@ -9,7 +9,7 @@ import numpy as np
 from defusedxml.common import DefusedXmlException
 
 from sim_bridge.errors import WorldError
-from sim_bridge.pose3 import pose3
+from sim_bridge.geometry.pose3 import pose3
 
 
 class Element:

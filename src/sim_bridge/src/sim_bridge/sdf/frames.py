@@ -4,7 +4,7 @@ from typing import Callable, Dict, Optional, Set, Tuple
 
 import numpy as np
 
-from sim_bridge.pose3 import IDENTITY, inverse
+from sim_bridge.geometry.pose3 import IDENTITY, inverse
 from sim_bridge.sdf.element import Element
 
 ROOT_NAMES = ("", "__model__", "world")

@@ -5,11 +5,11 @@ from typing import Callable, Dict, List, Optional, Sequence
 
 import numpy as np
 
+from sim_bridge.geometry.shapes import Box, Cylinder, Look, Mesh, MeshFile, Plane, Sphere
 from sim_bridge.sdf.element import Element
 from sim_bridge.sdf.footprints import footprint_of
 from sim_bridge.sdf.includes import resolve
 from sim_bridge.sdf.prism import prism
-from sim_bridge.shapes import Box, Cylinder, Look, Mesh, MeshFile, Plane, Sphere
 
 # SDF's own default, metres.
 POLYLINE_HEIGHT = 1.0

@@ -5,7 +5,7 @@ from typing import Dict, List, Optional, Sequence
 
 import numpy as np
 
-from sim_bridge.pose3 import inverse
+from sim_bridge.geometry.pose3 import inverse
 from sim_bridge.sdf.element import Element
 from sim_bridge.sdf.frames import Frames
 from sim_bridge.sdf.models import Model

@@ -5,7 +5,7 @@ from typing import Sequence
 import mapbox_earcut
 import numpy as np
 
-from sim_bridge.shapes import Mesh
+from sim_bridge.geometry.shapes import Mesh
 
 
 def prism(rings: Sequence[np.ndarray], bottom: float, top: float) -> Mesh:

@@ -5,8 +5,9 @@ from typing import List, Optional, Sequence, Tuple, cast
 
 import numpy as np
 
-from sim_bridge.meshes import load_mesh
-from sim_bridge.pose3 import inverse
+from sim_bridge.geometry.meshes import load_mesh
+from sim_bridge.geometry.pose3 import inverse
+from sim_bridge.geometry.shapes import Look, MeshFile, Plane, Shape, scaled
 from sim_bridge.sdf.colours import read_colour
 from sim_bridge.sdf.element import Element, parse, parse_text
 from sim_bridge.sdf.frames import Frames
@@ -17,7 +18,6 @@ from sim_bridge.sdf.lights import read_lights
 from sim_bridge.sdf.models import Model, ModelReader, declare_frames
 from sim_bridge.sdf.state import ModelState, read_states
 from sim_bridge.sdf.warnings import Warnings
-from sim_bridge.shapes import Look, MeshFile, Plane, Shape, scaled
 from sim_bridge.world import Body, Collision, DrivenModel, Inertia, Joint, Light, Surface, Visual, World
 
 DEFAULT_GRAVITY = 9.8

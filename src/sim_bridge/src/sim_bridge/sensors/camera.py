@@ -7,8 +7,8 @@ from typing import Tuple
 import numpy as np
 
 from planar.config.settings import check
-from sim_bridge.pose3 import inverse
-from sim_bridge.sensors.rasterizer import Projection, draw
+from sim_bridge.geometry.pose3 import inverse
+from sim_bridge.views.rasterizer import Projection, draw
 
 # From the frame that a camera looks along x of to the optical frame (REP 103): z ahead, x right, y down.
 OPTICAL_IN_CAMERA = np.array(
@@ -87,7 +87,7 @@ class Camera:
         self._rng = rng
 
     def measure(self, triangles_xyz: np.ndarray, shades: np.ndarray, camera_in_world: np.ndarray) -> Picture:
-        """What is seen from ``camera_in_world``, (4, 4), along its x axis (see sim_bridge.drawing)."""
+        """What is seen from ``camera_in_world``, (4, 4), along its x axis (see sim_bridge.views.drawing)."""
         world_in_optical = inverse(camera_in_world @ OPTICAL_IN_CAMERA)
         seen = triangles_xyz @ world_in_optical[:3, :3].T + world_in_optical[:3, 3]
         rgb, depth = draw(seen, shades, self.settings.projection())

@@ -6,7 +6,7 @@ from typing import Optional
 import numpy as np
 
 from planar.config.settings import check
-from sim_bridge.engine import Motion
+from sim_bridge.physics.engine import Motion
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,8 @@ from typing import Dict, FrozenSet, List, Tuple
 
 import numpy as np
 
-from sim_bridge.engine import Engine
-from sim_bridge.pose3 import transform_points
+from sim_bridge.geometry.pose3 import transform_points
+from sim_bridge.physics.engine import Engine
 from sim_bridge.sensors.bumper import CENTRE, LEFT, RIGHT, pressed
 
 # Where the cliff sensors look down from, in the base frame, m (kobuki_description).

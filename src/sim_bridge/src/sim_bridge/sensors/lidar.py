@@ -4,9 +4,9 @@ import numpy as np
 
 from planar import Pose2, Scan
 from sim_bridge.description import LaserProfile
+from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.noise import NoiseSettings
-from sim_bridge.pose3 import to_pose2
-from sim_bridge.section import cast_beams
+from sim_bridge.views.section import cast_beams
 
 
 class Lidar:

@@ -8,7 +8,7 @@ import numpy as np
 
 from sim_bridge.config import SimulationSettings
 from sim_bridge.description.profile import CameraProfile, ImuProfile, RobotProfile
-from sim_bridge.engine import Motion
+from sim_bridge.physics.engine import Motion
 from sim_bridge.sensors.camera import Camera, CameraSettings, DepthCameraSettings, Picture
 from sim_bridge.sensors.imu import Imu, ImuReading, ImuSettings
 
@@ -33,7 +33,7 @@ class MountedSensors:
     def picture(
         self, number: int, triangles_xyz: np.ndarray, shades: np.ndarray, base_in_world: np.ndarray
     ) -> Picture:
-        """Of the robot's camera of that number (see sim_bridge.drawing); ``base_in_world``: (4, 4)."""
+        """Of the robot's camera of that number (see sim_bridge.views.drawing); ``base_in_world``: (4, 4)."""
         pose = base_in_world @ self._profile.cameras[number].pose_in_base
         return self._cameras[number].measure(triangles_xyz, shades, pose)
 

@@ -6,7 +6,7 @@ import gazebo_msgs.srv as srv
 import numpy as np
 
 from sim_bridge.errors import UnknownEntityError
-from sim_bridge.pose3 import cross
+from sim_bridge.geometry.pose3 import cross
 from sim_bridge.ros.gazebo.server import WORLD_NAMES, Server, frame_named
 from sim_bridge.ros.messages import vector_from_msg
 from sim_bridge.scene import JointPush, Push, Scene

@@ -5,7 +5,7 @@ import numpy as np
 from geometry_msgs.msg import Point, Pose, Quaternion
 
 from sim_bridge.errors import UnknownEntityError
-from sim_bridge.pose3 import position
+from sim_bridge.geometry.pose3 import position
 from sim_bridge.ros.gazebo.server import SCOPE_HINT, Server
 from sim_bridge.ros.messages import vector_from_msg
 from sim_bridge.scene import Scene

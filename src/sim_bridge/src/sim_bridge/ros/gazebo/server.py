@@ -5,9 +5,9 @@ from typing import Callable, Optional, TypeVar
 import numpy as np
 import rospy
 
-from sim_bridge.engine import Motion
 from sim_bridge.errors import UnknownEntityError
-from sim_bridge.pose3 import inverse
+from sim_bridge.geometry.pose3 import inverse
+from sim_bridge.physics.engine import Motion
 from sim_bridge.ros.orders import Orders
 from sim_bridge.scene import Scene
 

@@ -9,7 +9,7 @@ import rospy
 from planar import PlanarError
 from sim_bridge.description import RobotProfile, read_prop, read_sdf_robot, read_urdf_robot
 from sim_bridge.errors import NoDriveError, UnknownEntityError, WorldError
-from sim_bridge.pose3 import to_pose2
+from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.ros.cli import find_file
 from sim_bridge.ros.fleet import Fleet
 from sim_bridge.ros.gazebo.server import SCOPE_HINT, Server, frame_named

@@ -8,12 +8,12 @@ from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tu
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from sim_bridge.bullet import BulletClient, pybullet
 from sim_bridge.description.structure import RobotModel
 from sim_bridge.errors import WorldError
-from sim_bridge.multibody import Tree, grow
-from sim_bridge.pose3 import IDENTITY, cross, inverse, position, quaternion, transform_points
-from sim_bridge.shapes import Box, Cylinder, Mesh, Plane, Shape, Sphere
+from sim_bridge.geometry.pose3 import IDENTITY, cross, inverse, position, quaternion, transform_points
+from sim_bridge.geometry.shapes import Box, Cylinder, Mesh, Plane, Shape, Sphere
+from sim_bridge.physics.bullet import BulletClient, pybullet
+from sim_bridge.physics.multibody import Tree, grow
 from sim_bridge.world import Body, Collision, Joint
 
 # Bits of Bullet's collision groups: it puts what moves into 1 and what does not into 2.

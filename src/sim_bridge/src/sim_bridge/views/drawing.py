@@ -7,10 +7,10 @@ from typing import Callable, Dict, List, Optional, Sequence, Tuple
 import numpy as np
 
 from sim_bridge.errors import WorldError
-from sim_bridge.meshes import load_mesh
-from sim_bridge.pose3 import transform_points
-from sim_bridge.sensors.rasterizer import shades
-from sim_bridge.shapes import Box, Cylinder, Look, Mesh, MeshFile, Plane, Sphere
+from sim_bridge.geometry.meshes import load_mesh
+from sim_bridge.geometry.pose3 import transform_points
+from sim_bridge.geometry.shapes import Box, Cylinder, Look, Mesh, MeshFile, Plane, Sphere
+from sim_bridge.views.rasterizer import shades
 from sim_bridge.world import Body, Colour, Visual
 
 GREY: Colour = (0.7, 0.7, 0.7)

@@ -15,7 +15,7 @@ from gazebo_msgs.srv import DeleteModel
 from geometry_msgs.msg import Point, Pose, Quaternion
 from std_srvs.srv import Empty
 
-from gazebo_ros.gazebo_interface import (
+from gazebo_ros.ros.services import (
     SERVICE_SECONDS,
     set_model_configuration_client,
     spawn_sdf_model_client,

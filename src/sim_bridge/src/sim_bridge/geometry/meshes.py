@@ -13,7 +13,7 @@ from typing import Any, Optional
 import numpy as np
 
 from sim_bridge.errors import WorldError
-from sim_bridge.shapes import Mesh, MeshFile
+from sim_bridge.geometry.shapes import Mesh, MeshFile
 
 # Part of the name of what is cached: to be raised when the conversion changes.
 CACHE_VERSION = 1

@@ -6,9 +6,9 @@ import numpy as np
 
 from planar import Twist2
 from sim_bridge.description import RobotProfile
-from sim_bridge.engine import Contact, Engine, Motion
 from sim_bridge.errors import WorldError
-from sim_bridge.pose3 import position
+from sim_bridge.geometry.pose3 import position
+from sim_bridge.physics.engine import Contact, Engine, Motion
 
 # Metres that a robot at its start may reach into what it stands on.
 START_DEPTH = 0.01

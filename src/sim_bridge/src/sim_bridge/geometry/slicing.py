@@ -6,8 +6,8 @@ from typing import Iterator, Union
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from sim_bridge.pose3 import transform_points
-from sim_bridge.shapes import Box, Cylinder, Mesh, Plane, Shape, Sphere
+from sim_bridge.geometry.pose3 import transform_points
+from sim_bridge.geometry.shapes import Box, Cylinder, Mesh, Plane, Shape, Sphere
 
 # Circles become polygons that lie within this, in metres, of them.
 CIRCLE_DEVIATION = 5e-4

@@ -4,11 +4,11 @@ from typing import Callable, Tuple
 
 import numpy as np
 
-from sim_bridge.drawing import Drawing, visible_parts
 from sim_bridge.errors import WorldError
-from sim_bridge.sensors.rasterizer import Projection, draw
-from sim_bridge.shapes import Plane
-from sim_bridge.slicing import cut
+from sim_bridge.geometry.shapes import Plane
+from sim_bridge.geometry.slicing import cut
+from sim_bridge.views.drawing import Drawing, visible_parts
+from sim_bridge.views.rasterizer import Projection, draw
 from sim_bridge.world import World
 
 # Pixels of the longer side, and metres around what there is.

@@ -8,7 +8,7 @@ from scipy.ndimage import label
 
 from planar import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Pose2
 from sim_bridge.errors import WorldError
-from sim_bridge.slicing import cut
+from sim_bridge.geometry.slicing import cut
 from sim_bridge.world import World
 
 # A solid that reaches less far than this, in cells, into a cell only touches it (1.5708 is not quite pi/2).

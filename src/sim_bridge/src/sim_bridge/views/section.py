@@ -7,7 +7,7 @@ from typing import Callable, Dict, Optional, Tuple
 import numba
 import numpy as np
 
-from sim_bridge.slicing import cut
+from sim_bridge.geometry.slicing import cut
 from sim_bridge.world import Body
 
 # Metres or radians of movement below which an outline is not drawn anew: bodies at rest tremble, and meshes

@@ -1,0 +1,1 @@
+"""Rigid bodies in PyBullet, and the wheeled robots among them."""
