@@ -1,61 +1,80 @@
 #!/usr/bin/env python3
-"""Writes the pages of docs/ that follow from other files; with --check only says which are stale."""
+"""Writes src/*/config/*.yaml from the settings of packages, and pages of docs/; with --check only says
+which are stale.
+"""
 
 import argparse
+import importlib
 import json
 import re
 import sys
 from pathlib import Path
-from typing import Any, Dict, List, NamedTuple
+from typing import Any, Dict, Iterable, List, Sequence
 
 ROOT = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(path) for path in ROOT.glob("src/*/src")]
+
+from planar.config.listing import Row, Section, rows_of, yaml_of  # noqa: E402
+
 SCHEMA = ROOT / "src/home_service/config/result.schema.json"
-MADE_BY = "<!-- Made by docs/generate.py; do not edit. -->\n"
+MADE_BY = "Made by docs/generate.py; do not edit."
 KEY = re.compile(
     r"^(?P<indent> *)(?P<off># )?(?P<name>[A-Za-z_]\w*)(?P<colon>:)?(?P<value>[^#]*)(#(?P<comment>.*))?$"
 )
 
 
-class Entry(NamedTuple):
-    """A parameter, or a table of some (then ``value`` is None)."""
-
-    name: str
-    value: str
-    meaning: str
-
-
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument(
-        "--check", action="store_true", help="exit with 1 if a page is not as it would be written"
+        "--check", action="store_true", help="exit with 1 if a file is not as it would be written"
     )
     options = parser.parse_args()
-    pages = {"parameters.md": parameters_page(), "result.md": result_page()}
-    stale = [name for name, text in pages.items() if not is_written(ROOT / "docs" / name, text)]
-    if options.check:
-        for name in stale:
-            print(f"docs/{name} is stale: run docs/generate.py", file=sys.stderr)
-        return 1 if stale else 0
-    for name in stale:
-        (ROOT / "docs" / name).write_text(pages[name], encoding="utf-8")
-        print(f"docs/{name} written")
-    return 0
+    stale = {path: text for path, text in files().items() if not is_written(path, text)}
+    for path, text in stale.items():
+        name = path.relative_to(ROOT)
+        if options.check:
+            print(f"{name} is stale: run docs/generate.py", file=sys.stderr)
+        else:
+            path.write_text(text, encoding="utf-8")
+            print(f"{name} written")
+    return 1 if options.check and stale else 0
 
 
 def is_written(path: Path, text: str) -> bool:
     return path.is_file() and path.read_text(encoding="utf-8") == text
 
 
-def parameters_page() -> str:
-    """Every parameter of every node, with default and meaning, from the commented YAML files."""
+def files() -> Dict[Path, str]:
+    """Every file that is made from others, and its text."""
+    declared = declared_files()
+    return {
+        **{path: f"# {MADE_BY}\n{yaml_of(section)}" for path, section in declared.items()},
+        ROOT / "docs/parameters.md": parameters_page(declared),
+        ROOT / "docs/result.md": result_page(),
+    }
+
+
+def declared_files() -> Dict[Path, Section]:
+    """The YAML files that packages declare in their ``config`` (see planar.config.listing)."""
+    found = {}
+    for package in sorted(path.parent for path in ROOT.glob("src/*/config")):
+        if (package / "src" / package.name / "config.py").is_file():
+            module = importlib.import_module(f"{package.name}.config")
+            for name, section in getattr(module, "CONFIG_FILES", {}).items():
+                found[package / "config" / name] = section
+    return found
+
+
+def parameters_page(declared: Dict[Path, Section]) -> str:
+    """Every parameter of every node: default, unit and meaning."""
     parts = [
-        MADE_BY,
+        f"<!-- {MADE_BY} -->\n",
         "# Parameters\n",
         "Names are the official nodes' where they have them. A wrong type or a senseless value stops a node",
         "with the full name of the parameter; an unknown name is a warning that tells the nearest known one,",
         "and with `~strict_params: true` an error. Presets for robots lie beside; they hold what differs.\n",
     ]
-    for path in sorted(ROOT.glob("src/*/config/*.yaml")):
+    for path in sorted({*ROOT.glob("src/*/config/*.yaml"), *declared}):
         package = path.parents[1].name
         if path.stem != package:
             continue
@@ -64,7 +83,11 @@ def parameters_page() -> str:
         parts.append(
             f"From [`{path.relative_to(ROOT)}`](../{path.relative_to(ROOT)})" + _presets(presets) + ".\n"
         )
-        parts.append(table(("parameter", "default", "meaning"), entries(path.read_text(encoding="utf-8"))))
+        rows = rows_of(declared[path]) if path in declared else entries(path.read_text(encoding="utf-8"))
+        heads = ("parameter", "default", "unit", "meaning")
+        parts.append(
+            table(heads, [(_code(row.name), _code(row.value), row.unit, row.meaning) for row in rows])
+        )
     return "\n".join(parts)
 
 
@@ -72,9 +95,9 @@ def _presets(names: List[str]) -> str:
     return f"; beside it {', '.join(f'`{name}`' for name in names)}" if names else ""
 
 
-def entries(text: str) -> List[Entry]:
+def entries(text: str) -> List[Row]:
     """The parameters of a YAML file whose comments stand beside, above or, going on, below them."""
-    found: List[Entry] = []
+    found: List[Row] = []
     above: List[str] = []
     tables: List[str] = []
     anchors: Dict[str, str] = {}
@@ -100,7 +123,7 @@ def entries(text: str) -> List[Entry]:
             meaning = (match["comment"] or " ".join(above)).strip()
             if value.startswith("*"):
                 value, meaning = "", f"the same keys and defaults as `{anchors[value[1:]]}`"
-            found.append(Entry(name.replace(".", "/"), value, meaning))
+            found.append(Row(name.replace(".", "/"), value, "", meaning))
         above = []
     return found
 
@@ -108,10 +131,10 @@ def entries(text: str) -> List[Entry]:
 def result_page() -> str:
     """The keys of result.json, from its schema."""
     schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
-    rows = [Entry(name, _kind(field), field["description"]) for name, field in schema["properties"].items()]
+    rows = [(_code(name), _kind(field), field["description"]) for name, field in schema["properties"].items()]
     return "\n".join(
         [
-            MADE_BY,
+            f"<!-- {MADE_BY} -->\n",
             "# result.json\n",
             schema["description"],
             f"The schema, for programs: [`{SCHEMA.name}`](../{SCHEMA.relative_to(ROOT)}).\n",
@@ -129,16 +152,17 @@ def _kind(field: Dict[str, Any]) -> str:
     return kind
 
 
-def table(heads, rows: List[Entry]) -> str:
-    lines = ["| " + " | ".join(heads) + " |", "| --- | --- | --- |"]
-    for row in rows:
-        value = row.value if heads[1] == "type" else (f"`{row.value}`" if row.value else "")
-        lines.append(f"| `{row.name}` | {_cell(value)} | {_cell(row.meaning)} |")
+def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    lines = [_line(heads), _line(["---"] * len(heads)), *map(_line, rows)]
     return "\n".join(lines) + "\n"
 
 
-def _cell(text: str) -> str:
-    return text.replace("|", "\\|")
+def _line(cells: Sequence[str]) -> str:
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+
+def _code(text: str) -> str:
+    return f"`{text}`" if text else ""
 
 
 if __name__ == "__main__":

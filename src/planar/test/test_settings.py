@@ -3,7 +3,8 @@ from dataclasses import dataclass
 import pytest
 
 from planar import SettingsError
-from planar.config.settings import check, nearest_name, settings_from
+from planar.config.hints import nearest_name
+from planar.config.settings import check, settings_from
 
 
 @dataclass(frozen=True)

@@ -2,20 +2,21 @@
 
 from dataclasses import dataclass
 
-from planar.config.settings import check_parameters, parameter
+from planar.config.listing import Section
+from planar.config.parameters import Bounds, check_parameters, parameter
 
 
 @dataclass(frozen=True)
 class FollowSettings:
     """Metres, radians and seconds."""
 
-    gap: float = parameter("gap", 0.7, "how far behind the leader to stay, along its way, m", 0.1)
+    gap: float = parameter(0.7, "how far behind the leader to stay, along its way", "m", Bounds(0.1))
     slack: float = parameter(
-        "slack", 0.2, "how much farther a leader may go before one sets off after it, m", 0.0
+        0.2, "how much farther a leader may go before one sets off after it", "m", Bounds(0.0)
     )
-    goal_shift: float = parameter("goal_shift", 0.1, "a goal that has moved by this is sent anew, m", 0.01)
-    goal_turn: float = parameter("goal_turn", 0.5, "a goal that has turned by this is sent anew, rad", 0.05)
-    goal_period: float = parameter("goal_period", 0.2, "how often to look where the leader is, s", 0.05)
+    goal_shift: float = parameter(0.1, "a goal that has moved by this is sent anew", "m", Bounds(0.01))
+    goal_turn: float = parameter(0.5, "a goal that has turned by this is sent anew", "rad", Bounds(0.05))
+    goal_period: float = parameter(0.2, "how often to look where the leader is", "s", Bounds(0.05))
 
     def __post_init__(self):
         check_parameters(self)
@@ -25,6 +26,11 @@ class FollowSettings:
 class NodeSettings(FollowSettings):
     """What the node needs besides."""
 
-    map_frame: str = parameter("map_frame", "map", "frame of the goals")
-    base_frame: str = parameter("base_frame", "base_footprint", "frame of the robot that follows")
-    leader_frame: str = parameter("leader_frame", "leader/base_footprint", "frame of the robot it follows")
+    map_frame: str = parameter("map", "frame of the goals")
+    base_frame: str = parameter("base_footprint", "frame of the robot that follows")
+    leader_frame: str = parameter("leader/base_footprint", "frame of the robot it follows")
+
+
+CONFIG_FILES = {
+    "follow_me.yaml": Section("", NodeSettings, about="Every parameter of follow_me with its default."),
+}

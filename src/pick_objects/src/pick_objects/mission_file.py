@@ -6,7 +6,8 @@ from typing import Dict, List, Mapping, Optional, Set, Tuple
 
 from pick_objects.config import ErrandSettings
 from pick_objects.mission import ORANGE, Delivery, Mission, Thing
-from planar.config.settings import nearest_name, settings_from
+from planar.config.hints import hint_or_all
+from planar.config.settings import settings_from
 from planar.config.yaml_table import Table, parse_table, read_table
 from planar.geometry.grid import OccupancyGrid
 from planar.maps.places import Place, obstruction_at, place_from
@@ -137,9 +138,7 @@ def _delivery(entry: Table, number: int, places: Places, things: Mapping[str, Th
 def _check_name(entry: Table, key: str, names, known, kind: str) -> None:
     for name in names:
         if name not in known:
-            nearest = nearest_name(name, known)
-            hint = f"did you mean {nearest}?" if nearest else f"known are {', '.join(known)}"
-            raise entry.complaint(key, f"names no {kind}: {name}; {hint}")
+            raise entry.complaint(key, f"names no {kind}: {name}{hint_or_all(name, known)}")
 
 
 def _check_cycles(deliveries: List[Delivery], lines: Mapping[str, Table]) -> None:

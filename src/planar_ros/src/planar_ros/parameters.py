@@ -7,7 +7,8 @@ import rosgraph
 import rospy
 
 from planar import SettingsError
-from planar.config.settings import nearest_name, settings_from
+from planar.config.hints import hint
+from planar.config.settings import settings_from
 
 # What dynamic_reconfigure leaves beside a node's parameters.
 RESTORE = "restore_defaults"
@@ -34,7 +35,7 @@ def read_settings(
     known = {*names, *kind.__dataclass_fields__, *ignore, "strict_params", RESTORE}  # type: ignore[attr-defined]
     for name in unknown:
         if name not in known:
-            _report_unknown(where + name, nearest_name(name, known))
+            _report_unknown(f"unknown parameter {where}{name}{hint(name, known)}")
     return settings
 
 
@@ -57,8 +58,7 @@ class ParameterWriter:
         calls()
 
 
-def _report_unknown(name: str, nearest: str) -> None:
-    text = f"unknown parameter {name}" + (f", did you mean {nearest}?" if nearest else "")
+def _report_unknown(text: str) -> None:
     if rospy.get_param("~strict_params", False):
         raise SettingsError(text)
     rospy.logwarn("%s", text)

@@ -1,13 +1,12 @@
 """dynamic_reconfigure without compiled .cfg files: its parameters are tunables (planar.config.settings)."""
 
-import dataclasses
 from types import SimpleNamespace
 from typing import Any, Callable, Dict, Mapping, Sequence
 
 from dynamic_reconfigure.encoding import extract_params
 from dynamic_reconfigure.server import Server
 
-from planar.config.settings import Tunable, tunables_of
+from planar.config.parameters import Tunable, parameters_of, tunables_of
 from planar_ros.parameters import RESTORE, ParameterWriter
 
 KINDS = {bool: "bool", int: "int", float: "double", str: "str"}
@@ -71,9 +70,9 @@ class Reconfiguration(Tuning):
 def dynamic_values(settings: Any) -> Dict[str, Any]:
     """The values of the dynamic fields, by official name."""
     return {
-        field.metadata["name"]: getattr(settings, field.name)
-        for field in dataclasses.fields(settings)
-        if field.metadata["dynamic"] is not None
+        each.name: getattr(settings, each.field)
+        for each in parameters_of(type(settings))
+        if each.dynamic is not None
     }
 
 

@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from planar.config.settings import check, check_parameters, parameter
+from planar.config.parameters import Bounds, check_parameters, parameter
+from planar.config.settings import check
 from sim_bridge.noise import NoiseSettings
 
 # Hertz; with more, a single period of the odometry would take seconds.
@@ -72,7 +73,7 @@ class RunTimeSettings:
     """What dynamic_reconfigure may change."""
 
     speed: float = parameter(
-        "speed", 1.0, "times real time; 0: as fast as the nodes of wait_for keep up", low=0.0, dynamic=100.0
+        1.0, "times real time; 0: as fast as the nodes of wait_for keep up", bounds=Bounds(0.0), dynamic=100.0
     )
 
     def __post_init__(self):

@@ -4,7 +4,8 @@ from dataclasses import asdict, dataclass, fields
 from typing import Any, Dict
 
 from planar import SettingsError
-from planar.config.settings import check, nearest_name
+from planar.config.hints import hint
+from planar.config.settings import check
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,5 @@ NOISES: Dict[str, NoiseSettings] = {
 def noise_named(name: str) -> Dict[str, Any]:
     """The values of a noise profile by their names. Raises SettingsError."""
     if name not in NOISES:
-        nearest = nearest_name(name, NOISES)
-        hint = f", did you mean {nearest}?" if nearest else ""
-        raise SettingsError(f"noise must be one of {', '.join(NOISES)}, got {name!r}{hint}")
+        raise SettingsError(f"noise must be one of {', '.join(NOISES)}, got {name!r}{hint(name, NOISES)}")
     return asdict(NOISES[name])

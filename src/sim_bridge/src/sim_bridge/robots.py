@@ -4,7 +4,7 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 from typing import Dict, Tuple
 
-from planar.config.settings import nearest_name
+from planar.config.hints import hint
 from sim_bridge.description import RobotProfile, read_robot_file, read_urdf_robot
 from sim_bridge.description.urdf import FindFile, no_file
 from sim_bridge.errors import RobotError
@@ -40,6 +40,5 @@ def robot_named(name: str, find_file: FindFile = no_file) -> RobotProfile:
         return ROBOTS[name]
     if name.endswith(FILE_ENDINGS):
         return read_robot_file(Path(name).expanduser(), find_file)
-    nearest = nearest_name(name, ROBOTS)
-    hint = f", did you mean {nearest}?" if nearest else ""
-    raise RobotError(f"unknown robot {name!r}{hint} (known: {', '.join(ROBOTS)}, or a .urdf or .xacro file)")
+    known = f"known: {', '.join(ROBOTS)}, or a .urdf or .xacro file"
+    raise RobotError(f"unknown robot {name!r}{hint(name, ROBOTS)} ({known})")

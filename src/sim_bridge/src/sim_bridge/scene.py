@@ -6,7 +6,7 @@ from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 import numpy as np
 
 from planar import Pose2, Twist2
-from planar.config.settings import nearest_name
+from planar.config.hints import hint
 from sim_bridge.config import SimulationSettings
 from sim_bridge.description import RobotProfile
 from sim_bridge.errors import UnknownEntityError, WorldError
@@ -408,5 +408,4 @@ def _found(table: Mapping, name: str, kind: str):
 
 
 def _unknown(kind: str, name: str, known) -> str:
-    nearest: Optional[str] = nearest_name(name, known)
-    return f"no {kind} named {name!r}" + (f", did you mean {nearest}?" if nearest else "")
+    return f"no {kind} named {name!r}{hint(name, known)}"

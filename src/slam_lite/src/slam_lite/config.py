@@ -3,11 +3,12 @@
 Names and defaults are those of gmapping 1.4 where it has the parameter.
 """
 
-import dataclasses
 from dataclasses import dataclass
-from typing import Any, Dict, Tuple
+from typing import Tuple
 
-from planar.config.settings import check, check_parameters, parameter
+from planar.config.listing import Section
+from planar.config.parameters import Bounds, check_parameters, parameter
+from planar.config.settings import check
 
 # Parameters of gmapping that steer its particle filter and have no counterpart in a pose graph.
 WITHOUT_EFFECT = (
@@ -36,42 +37,58 @@ WITHOUT_EFFECT = (
 class MapperSettings:
     """How scans are matched, loops closed and the map drawn; metres and radians."""
 
-    resolution: float = parameter("delta", 0.05, "size of a cell, m", 0.01, 1.0)
+    resolution: float = parameter(0.05, "size of a cell", "m", Bounds(0.01, 1.0), name="delta")
     occupied_threshold: float = parameter(
-        "occ_thresh", 0.25, "share of hits among a cell's beams from which on it is occupied", 0.0, 1.0
+        0.25,
+        "share of hits among a cell's beams from which on it is occupied",
+        bounds=Bounds(0.0, 1.0),
+        name="occ_thresh",
     )
     max_range: float = parameter(
-        "maxRange", 0.0, "readings above this, m, are dropped; 0: the scan's range_max - 0.01", 0.0
+        0.0,
+        "readings above this are dropped; 0: the scan's range_max - 0.01",
+        "m",
+        Bounds(0.0),
+        name="maxRange",
     )
     usable_range: float = parameter(
-        "maxUrange",
         0.0,
-        "readings above this, m, clear the way so far and mark nothing; 0: as maxRange",
-        0.0,
+        "readings above this clear the way so far and mark nothing; 0: as maxRange",
+        "m",
+        Bounds(0.0),
+        name="maxUrange",
     )
-    odom_xy_per_distance: float = parameter("srr", 0.1, "odometry's position error, m per m", 0.0)
-    odom_yaw_per_distance: float = parameter("srt", 0.2, "odometry's heading error, rad per m", 0.0)
-    odom_xy_per_turn: float = parameter("str", 0.1, "odometry's position error, m per rad", 0.0)
-    odom_yaw_per_turn: float = parameter("stt", 0.2, "odometry's heading error, rad per rad", 0.0)
-    key_distance: float = parameter("key_distance", 0.2, "way after which a scan is kept, m", 0.01)
-    key_angle: float = parameter("key_angle", 0.2, "turn after which a scan is kept, rad", 0.01)
+    odom_xy_per_distance: float = parameter(
+        0.1, "odometry's position error", "m per m", Bounds(0.0), name="srr"
+    )
+    odom_yaw_per_distance: float = parameter(
+        0.2, "odometry's heading error", "rad per m", Bounds(0.0), name="srt"
+    )
+    odom_xy_per_turn: float = parameter(
+        0.1, "odometry's position error", "m per rad", Bounds(0.0), name="str"
+    )
+    odom_yaw_per_turn: float = parameter(
+        0.2, "odometry's heading error", "rad per rad", Bounds(0.0), name="stt"
+    )
+    key_distance: float = parameter(0.2, "way after which a scan is kept", "m", Bounds(0.01))
+    key_angle: float = parameter(0.2, "turn after which a scan is kept", "rad", Bounds(0.01))
     still_interval: float = parameter(
-        "still_interval", 0.5, "how often scans are matched while the robot stands still, s", 0.0
+        0.5, "how often scans are matched while the robot stands still", "s", Bounds(0.0)
     )
-    window_keys: int = parameter("window_keys", 50, "most kept scans that a new one is matched to", 2)
-    point_spacing: float = parameter("point_spacing", 0.03, "least distance between a scan's points, m", 0.0)
+    window_keys: int = parameter(50, "most kept scans that a new one is matched to", bounds=Bounds(2))
+    point_spacing: float = parameter(0.03, "least distance between a scan's points", "m", Bounds(0.0))
     min_response: float = parameter(
-        "min_response", 0.2, "share of a scan that must fit; otherwise odometry is believed", 0.0, 1.0
+        0.2, "share of a scan that must fit; otherwise odometry is believed", bounds=Bounds(0.0, 1.0)
     )
-    close_loops: bool = parameter("close_loops", True, "recognise places seen before and mend the map")
+    close_loops: bool = parameter(True, "recognise places seen before and mend the map")
     closure_interval: int = parameter(
-        "closure_interval", 3, "kept scans from one search for closures to the next", 1
+        3, "kept scans from one search for closures to the next", bounds=Bounds(1)
     )
     closure_min_response: float = parameter(
-        "closure_min_response", 0.6, "share of the recent scans that must fit for a closure", 0.0, 1.0
+        0.6, "share of the recent scans that must fit for a closure", bounds=Bounds(0.0, 1.0)
     )
     closure_min_detour: float = parameter(
-        "closure_min_detour", 4.0, "way since a place was seen from which on a closure is worth while, m", 0.0
+        4.0, "way since a place was seen from which on a closure is worth while", "m", Bounds(0.0)
     )
 
     def __post_init__(self):
@@ -85,26 +102,24 @@ class MapperSettings:
 class NodeSettings(MapperSettings):
     """What the node needs besides."""
 
-    map_frame: str = parameter("map_frame", "map", "frame of the map")
-    odom_frame: str = parameter("odom_frame", "odom", "frame of the odometry")
-    base_frame: str = parameter("base_frame", "base_link", "frame of the robot")
-    throttle_scans: int = parameter("throttle_scans", 1, "process one of so many scans", 1)
+    map_frame: str = parameter("map", "frame of the map")
+    odom_frame: str = parameter("odom", "frame of the odometry")
+    base_frame: str = parameter("base_link", "frame of the robot")
+    throttle_scans: int = parameter(1, "process one of so many scans", bounds=Bounds(1))
     transform_publish_period: float = parameter(
-        "transform_publish_period", 0.05, "how often map->odom is published, s; 0: not at all", 0.0
+        0.05, "how often map->odom is published; 0: not at all", "s", Bounds(0.0)
     )
     tf_delay: float = parameter(
-        "tf_delay", -1.0, "how far map->odom is post-dated, s; -1: transform_publish_period", -1.0
+        -1.0, "how far map->odom is post-dated; -1: transform_publish_period", "s", Bounds(-1.0)
     )
-    map_update_interval: float = parameter(
-        "map_update_interval", 5.0, "time of scans from one map to the next, s", 0.0
-    )
-    xmin: float = parameter("xmin", -100.0, "least extent of the published map, m")
-    ymin: float = parameter("ymin", -100.0, "least extent of the published map, m")
-    xmax: float = parameter("xmax", 100.0, "least extent of the published map, m")
-    ymax: float = parameter("ymax", 100.0, "least extent of the published map, m")
-    state: str = parameter("state", "", "file of a saved state to go on from; empty: a new map")
+    map_update_interval: float = parameter(5.0, "time of scans from one map to the next", "s", Bounds(0.0))
+    xmin: float = parameter(-100.0, "least extent of the published map", "m")
+    ymin: float = parameter(-100.0, "least extent of the published map", "m")
+    xmax: float = parameter(100.0, "least extent of the published map", "m")
+    ymax: float = parameter(100.0, "least extent of the published map", "m")
+    state: str = parameter("", "file of a saved state to go on from; empty: a new map")
     localization_only: bool = parameter(
-        "localization_only", False, "follow the robot in the loaded map and leave the map as it is"
+        False, "follow the robot in the loaded map and leave the map as it is"
     )
 
     def __post_init__(self):
@@ -119,9 +134,11 @@ class NodeSettings(MapperSettings):
         return self.xmin, self.ymin, self.xmax, self.ymax
 
 
-def defaults() -> Dict[str, Tuple[Any, str]]:
-    """Every parameter of the node by its official name: default and meaning."""
-    return {
-        field.metadata["name"]: (field.default, field.metadata["meaning"])
-        for field in dataclasses.fields(NodeSettings)
-    }
+CONFIG_FILES = {
+    "slam_lite.yaml": Section(
+        "",
+        NodeSettings,
+        about="Every parameter of slam_lite with its default: the official gmapping's names and values, "
+        "then its own.",
+    )
+}

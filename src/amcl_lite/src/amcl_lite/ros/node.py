@@ -16,12 +16,14 @@ from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.srv import SetMapResponse
 from std_srvs.srv import Empty, EmptyResponse
 
-from amcl_lite.config import MOTION_MODELS, SENSOR_MODELS, InitialPose, NodeSettings, advice, as_yaml
+from amcl_lite.config import CONFIG_FILES, MOTION_MODELS, SENSOR_MODELS, InitialPose, NodeSettings, advice
 from amcl_lite.localizer import Estimate, Localizer, warm_up
 from amcl_lite.ros.start_pose import PoseKeeper, read_start_pose
 from amcl_lite.ros.views import Views
 from planar import PlanarError, Pose2, SettingsError
-from planar.config.settings import official_names, settings_from
+from planar.config.listing import yaml_of
+from planar.config.parameters import official_names
+from planar.config.settings import settings_from
 from planar_ros.messages import (
     GetMapArrays,
     OccupancyGridArrays,
@@ -351,7 +353,7 @@ def main():
     parser.add_argument("--global-localization", action="store_true", help="of the bag the start is unknown")
     arguments = parser.parse_args(rospy.myargv()[1:])
     if arguments.explain_params:
-        print(as_yaml(), end="")
+        print(yaml_of(CONFIG_FILES["amcl_lite.yaml"]), end="")
         return
     run("amcl", lambda: _start(arguments))
 

@@ -10,7 +10,7 @@ import numpy as np
 from amcl_lite.config import InitialPose, NodeSettings
 from amcl_lite.localizer import LocalizationError, Localizer
 from planar import PlanarError, Pose2, load_map, wrap, write_atomically
-from planar.config.settings import official_names
+from planar.config.parameters import official_names
 from planar.config.settings_file import settings_from_yaml
 from planar.files.tum import tum_text
 from planar_ros.scan_log import BagError, ScanLog

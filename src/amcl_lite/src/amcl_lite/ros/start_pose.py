@@ -7,7 +7,7 @@ import rospy
 
 from amcl_lite.config import InitialPose, NodeSettings
 from planar import Pose2
-from planar.config.settings import official_names
+from planar.config.parameters import official_names
 from planar_ros.parameters import ParameterWriter, read_settings
 from planar_ros.reconfigure import RESTORE
 

@@ -8,7 +8,7 @@ from move_base_lite.control import MppiSettings
 from move_base_lite.parameters.costmaps import layers_of, with_plugins
 from move_base_lite.parameters.planners import OLD_NAMES
 from move_base_lite.parameters.reader import Reader, below
-from planar.config.settings import Tunable
+from planar.config.parameters import Tunable
 
 Tree = Mapping[str, Any]
 

@@ -3,7 +3,8 @@
 from dataclasses import fields
 from typing import Any, Dict, Iterable, List, Mapping
 
-from planar.config.settings import nearest_name, settings_from
+from planar.config.hints import hint
+from planar.config.settings import settings_from
 
 
 class Reader:
@@ -27,9 +28,7 @@ class Reader:
     def report_unknown(self, names: Iterable[str], prefix: str, known: Iterable[str]) -> None:
         known = list(known)
         for name in names:
-            nearest = nearest_name(name, known)
-            hint = f", did you mean {nearest}?" if nearest else ""
-            self.warnings.append(f"unknown parameter {self.where}{prefix}{name}{hint}")
+            self.warnings.append(f"unknown parameter {self.where}{prefix}{name}{hint(name, known)}")
 
 
 def below(parameters: Mapping[str, Any], name: str) -> Mapping[str, Any]:

@@ -1,10 +1,9 @@
 """Settings: a flat table of named values made into a frozen dataclass, checked by name and type."""
 
 import dataclasses
-import difflib
 import math
 import typing
-from typing import Any, Callable, Dict, List, Mapping, Sequence, Tuple, Type, TypeVar, Union
+from typing import Any, Callable, Dict, List, Mapping, Tuple, Type, TypeVar, Union
 
 from planar.errors import SettingsError
 
@@ -46,82 +45,10 @@ def settings_from(
         raise SettingsError(place_of(name) + text.replace(first, name, 1)) from None
 
 
-def nearest_name(name: str, known: typing.Iterable[str]) -> str:
-    """The known name most like ``name``, or an empty string if none is alike."""
-    matches = difflib.get_close_matches(name, list(known), n=1)
-    return matches[0] if matches else ""
-
-
 def check(condition: bool, name: str, requirement: str, value: Any) -> None:
     """Raises SettingsError "<name> must be <requirement>, got <value>" unless ``condition`` holds."""
     if not condition:
         raise SettingsError(f"{name} must be {requirement}, got {value!r}")
-
-
-def parameter(
-    name: str,
-    default: Any,
-    meaning: str,
-    low: float = -math.inf,
-    high: float = math.inf,
-    choices: Sequence[str] = (),
-    dynamic: Union[None, bool, float] = None,
-) -> Any:
-    """A field of a settings dataclass that knows its parameter's official name, meaning and bounds.
-
-    ``dynamic``: whether dynamic_reconfigure may change it while the node runs (True); for a number, the
-    largest value that it then offers.
-    """
-    metadata = {
-        "name": name,
-        "meaning": meaning,
-        "low": low,
-        "high": high,
-        "choices": tuple(choices),
-        "dynamic": dynamic,
-    }
-    return dataclasses.field(default=default, metadata=metadata)
-
-
-@dataclasses.dataclass(frozen=True)
-class Tunable:
-    """A value that may be changed while a node runs; its type is that of the ``default``."""
-
-    name: str
-    default: Any
-    meaning: str
-    low: float = -math.inf
-    high: float = math.inf
-    choices: Tuple[str, ...] = ()
-
-
-def tunables_of(kind: type) -> Tuple[Tunable, ...]:
-    """The fields of a settings dataclass that ``parameter`` says are dynamic."""
-    dynamic = [field for field in dataclasses.fields(kind) if field.metadata["dynamic"] is not None]
-    return tuple(_tunable(field.default, **field.metadata) for field in dynamic)
-
-
-def _tunable(
-    default: Any, name: str, meaning: str, low: float, choices: Sequence[str], dynamic, **_
-) -> Tunable:
-    high = math.inf if isinstance(dynamic, bool) else dynamic
-    return Tunable(name, default, meaning, low, high, tuple(choices))
-
-
-def check_parameters(settings: Any) -> None:
-    """Raises SettingsError for the first field made by ``parameter`` that is out of its bounds."""
-    for field in dataclasses.fields(settings):
-        value, bounds = getattr(settings, field.name), field.metadata
-        if bounds["choices"]:
-            check(value in bounds["choices"], field.name, "one of " + ", ".join(bounds["choices"]), value)
-        elif isinstance(value, (int, float)):
-            within = f"between {bounds['low']:g} and {bounds['high']:g}"
-            check(bounds["low"] <= value <= bounds["high"], field.name, within, value)
-
-
-def official_names(kind: type) -> Dict[str, str]:
-    """The table official parameter name -> field of a dataclass whose fields are made by ``parameter``."""
-    return {field.metadata["name"]: field.name for field in dataclasses.fields(kind)}
 
 
 def _converted(kind: Any, value: Any, name: str) -> Any:

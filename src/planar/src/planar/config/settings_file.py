@@ -3,7 +3,8 @@
 from pathlib import Path
 from typing import List, Tuple, Type, TypeVar
 
-from planar.config.settings import official_names, settings_from
+from planar.config.parameters import official_names
+from planar.config.settings import settings_from
 from planar.config.yaml_table import read_table
 
 T = TypeVar("T")

@@ -6,7 +6,7 @@ from typing import Any, Dict, Iterable, Iterator, List, Optional, Set, Tuple, Ty
 
 import yaml
 
-from planar.config.settings import nearest_name
+from planar.config.hints import hint_or_all
 from planar.errors import PlanarError, SettingsError
 
 _REQUIRED: Any = object()
@@ -169,9 +169,7 @@ class Table:
         """Complains of the first key that is none of ``known``."""
         for key in self:
             if key not in known:
-                nearest = nearest_name(key, known)
-                hint = f"did you mean {nearest}?" if nearest else f"known are {', '.join(known)}"
-                raise self.complaint(key, f"is not known; {hint}")
+                raise self.complaint(key, f"is not known{hint_or_all(key, known)}")
 
     def check(self, condition: bool, key: str, requirement: str) -> None:
         """Complains that ``key`` must be ``requirement`` unless ``condition`` holds."""

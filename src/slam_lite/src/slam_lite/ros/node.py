@@ -13,7 +13,7 @@ from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, SetBoolResponse
 
 from planar import PlanarError, Pose2, save_map
-from planar.config.settings import official_names
+from planar.config.parameters import official_names
 from planar_ros.messages import (
     GetMapArrays,
     OccupancyGridArrays,

@@ -1,0 +1,139 @@
+"""The commented YAML file of a package's parameters, made from the settings that say them.
+
+A package declares the file in its ``config`` module; ``docs/generate.py`` writes it, and docs/parameters.md::
+
+    CONFIG_FILES = {
+        "tea.yaml": Section(
+            "",
+            TeaSettings,                               # its parameters, in the order of its fields
+            Parameter("cups", 2, "that are filled"),   # one that stands in no settings
+            Section("sugar", SugarSettings),           # a nested table
+            Section("honey", SugarSettings(lumps=0)),  # an object's values instead of the class's defaults
+            Section("syrup", same_as="honey"),         # the same keys and values once more
+            about="Every parameter of tea with its default.",
+        ),
+    }
+"""
+
+from typing import Any, Dict, Iterator, List, NamedTuple, Union
+
+import yaml
+
+from planar.config.parameters import Parameter, in_unit, parameters_of
+
+LINE_LENGTH = 110
+# A longer entry does not push the comments of its neighbours to the right.
+LONGEST_ALIGNED = 44
+
+
+class Section:
+    """A table of a YAML file: parameters, and tables below it; ``about`` is a comment."""
+
+    def __init__(self, name: str, *parts: Any, about: str = "", same_as: str = ""):
+        self.name, self.about, self.same_as = name, about, same_as
+        self.parts = tuple(part for given in parts for part in _parts(given))
+
+
+class Row(NamedTuple):
+    """A parameter of a file by its full name, parents first, e.g. "sugar/lumps"."""
+
+    name: str
+    value: str
+    unit: str
+    meaning: str
+
+
+def rows_of(section: Section, above: str = "") -> Iterator[Row]:
+    """The parameters of a file and their defaults as they stand there, for tables; see Section."""
+    for part in section.parts:
+        name = above + part.name
+        if isinstance(part, Parameter):
+            value = "" if part.required else _in_line(part.default)
+            yield Row(name, value, part.unit, _meaning(part))
+        elif part.same_as:
+            yield Row(name, "", "", f"the same keys and defaults as `{part.same_as}`")
+        else:
+            yield from rows_of(part, name + "/")
+
+
+def yaml_of(section: Section) -> str:
+    """The text of the file, whose comments tell unit, meaning and choices."""
+    anchors = {part.same_as for part in section.parts if isinstance(part, Section)}
+    lines = [f"# {line}" for line in section.about.splitlines()]
+    return "\n".join([*lines, *_lines(section, "", anchors)]) + "\n"
+
+
+def _lines(section: Section, indent: str, anchors) -> List[str]:
+    lines: List[str] = []
+    group: List[Parameter] = []
+    for part in section.parts:
+        if isinstance(part, Section) or part.heading:
+            lines += _aligned(group, indent)
+            group = []
+        if isinstance(part, Parameter):
+            lines += ["", f"{indent}# {part.heading}"] if part.heading else []
+            group.append(part)
+        else:
+            lines += [*([] if indent else [""]), _head(part, indent, anchors)]
+            lines += _lines(part, indent + "  ", anchors)
+    return lines + _aligned(group, indent)
+
+
+def _head(section: Section, indent: str, anchors) -> str:
+    mark = f" &{section.name}" if section.name in anchors else ""
+    mark = f" *{section.same_as}" if section.same_as else mark
+    about = f"  # {section.about}" if section.about else ""
+    return f"{indent}{section.name}:{mark}{about}"
+
+
+def _aligned(group: List[Parameter], indent: str) -> List[str]:
+    """The lines of parameters whose comments begin in one column."""
+    entries = [_entry(part, indent) for part in group]
+    lengths = [len(entry[0]) for entry in entries if len(entry[0]) <= LONGEST_ALIGNED]
+    column = max(lengths, default=0) + 2
+    lines = []
+    for part, entry in zip(group, entries):
+        comment = in_unit(part.unit, _meaning(part))
+        lines += [*_commented(entry[0], comment, column), *entry[1:]]
+    return lines
+
+
+def _entry(part: Parameter, indent: str) -> List[str]:
+    """A key and its value; a list of tables takes a line for each."""
+    if part.required:
+        return [f"{indent}# {part.name}"]
+    if isinstance(part.default, (list, tuple)) and any(isinstance(item, dict) for item in part.default):
+        return [f"{indent}{part.name}:", *(f"{indent}  - {_in_line(item)}" for item in part.default)]
+    return [f"{indent}{part.name}: {_in_line(part.default)}"]
+
+
+def _commented(entry: str, comment: str, column: int) -> List[str]:
+    """The entry with its comment beside, and below as far as it is too long for one line."""
+    start = max(column, len(entry) + 2)
+    lines, words = [""], comment.split()
+    for word in words:
+        if lines[-1] and start + 3 + len(lines[-1]) + len(word) > LINE_LENGTH:
+            lines.append("")
+        lines[-1] += f" {word}"
+    beside = [f"{text:<{start}}#{line}" for text, line in zip([entry, *[""] * len(lines)], lines)]
+    return beside if comment else [entry]
+
+
+def _meaning(part: Parameter) -> str:
+    return ("required: " if part.required else "") + part.meaning_and_choices
+
+
+def _in_line(value: Any) -> str:
+    plain = list(value) if isinstance(value, tuple) else value
+    return yaml.safe_dump([plain], default_flow_style=True, width=10**6, sort_keys=False).strip()[1:-1]
+
+
+def _parts(given: Any) -> List[Union[Parameter, Section]]:
+    if isinstance(given, (Parameter, Section)):
+        return [given]
+    if isinstance(given, type):
+        return list(parameters_of(given))
+    return [each.with_default(getattr(given, each.field)) for each in parameters_of(type(given))]
+
+
+ConfigFiles = Dict[str, Section]
