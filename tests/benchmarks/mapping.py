@@ -20,9 +20,9 @@ from typing import List, Optional
 import numpy as np
 
 from explorer_lite import Explorer, ExplorerSettings, Finish, GoalReached, GoalRefused, GoTo
-from home_service.mapping import LEAST_PRECISION, LEAST_RECALL, score_against_world
+from home_service.judging.map_truth import LEAST_PRECISION, LEAST_RECALL, score_against_world
+from home_service.judging.verdict import ARRIVAL_TOLERANCE
 from home_service.rehearsal import NAVIGATION_CONFIG, Rehearsal
-from home_service.verdict import ARRIVAL_TOLERANCE
 from move_base_lite import Decision, Navigator, Status, load_settings
 from pick_objects import load_mission
 from planar import OccupancyGrid, PlanarError, Pose2, Twist2, save_map

@@ -9,7 +9,7 @@ import rospy
 import rostest
 
 from home_service import Commander, CommanderError, Result
-from home_service.referee import Referee
+from home_service.ros.referee import Referee
 from planar import Pose2, wrap
 
 WALL_DEADLINE = 60.0

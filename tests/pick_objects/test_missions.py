@@ -16,8 +16,8 @@ from home_service_msgs.msg import DeliverAction, DeliverGoal, Delivery, Delivery
 from home_service_msgs.srv import AddDelivery, CancelDelivery
 from visualization_msgs.msg import Marker
 
-from home_service.referee import Referee
-from home_service.verdict import ERRAND, OBJECTS, judge
+from home_service.judging.verdict import ERRAND, OBJECTS, judge
+from home_service.ros.referee import Referee
 from pick_objects import parse_mission
 from planar import Pose2
 from planar_ros.actions import goal_is_over, server_is_ready

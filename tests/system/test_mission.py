@@ -7,8 +7,8 @@ import unittest
 import rospy
 import rostest
 
-from home_service.referee import Referee
-from home_service.verdict import ERRAND, MARKERS, judge
+from home_service.judging.verdict import ERRAND, MARKERS, judge
+from home_service.ros.referee import Referee
 from planar.maps.places import places_of_errand
 
 SIMULATED_DEADLINE = 240.0

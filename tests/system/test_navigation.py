@@ -11,7 +11,7 @@ from actionlib_msgs.msg import GoalStatus
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from visualization_msgs.msg import Marker
 
-from home_service.referee import Referee
+from home_service.ros.referee import Referee
 from planar import Pose2
 from planar_ros.actions import server_is_ready
 from planar_ros.messages import pose2_to_msg

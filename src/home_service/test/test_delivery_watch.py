@@ -1,4 +1,4 @@
-from home_service.delivery_watch import DeliveryWatch
+from home_service.judging.delivery_watch import DeliveryWatch
 from pick_objects import Delivery, Stage
 from planar import Pose2
 from planar.maps.places import Place

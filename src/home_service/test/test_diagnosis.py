@@ -2,7 +2,7 @@ import json
 
 import pytest
 
-from home_service.diagnosis import Findings, Node, Topic, as_json, as_text, branches, chain, problems
+from home_service.doctor.diagnosis import Findings, Node, Topic, as_json, as_text, branches, chain, problems
 
 
 def healthy_graph():

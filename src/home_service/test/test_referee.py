@@ -4,7 +4,7 @@ from home_service_msgs.msg import Delivery, DeliveryState, MissionState
 from nav_msgs.msg import Odometry
 from visualization_msgs.msg import Marker
 
-from home_service.referee import Referee
+from home_service.ros.referee import Referee
 from planar import Pose2
 from planar.maps.places import Place
 

@@ -1,6 +1,6 @@
 import pytest
 
-from home_service.verdict import DEMO, ERRAND, MARKERS, OBJECTS, DeliveryRecord, Ledger, judge
+from home_service.judging.verdict import DEMO, ERRAND, MARKERS, OBJECTS, DeliveryRecord, Ledger, judge
 
 STORY = ["shown at pickup", "hidden", "shown at dropoff"]
 

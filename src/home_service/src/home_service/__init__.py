@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from home_service.commander import Commander, CommanderError, Outcome, Result
+    from home_service.ros.commander import Commander, CommanderError, Outcome, Result
 
 __all__ = ["Commander", "CommanderError", "Outcome", "Result"]
 
@@ -12,6 +12,6 @@ def __getattr__(name: str):
     """The commander's names, imported when they are first asked for: ROS takes its time."""
     if name not in __all__:
         raise AttributeError(f"module {__name__} has no attribute {name}")
-    from home_service import commander
+    from home_service.ros import commander
 
     return getattr(commander, name)

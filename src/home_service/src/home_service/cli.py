@@ -4,20 +4,20 @@ import importlib
 from argparse import Namespace
 from typing import Callable, List, Optional
 
-from home_service.display import complain
-from home_service.errors import LaunchError
-from home_service.interruption import INTERRUPTED, RunInterruptedError, raise_when_interrupted
 from home_service.options import MAPPING_COMMANDS, REPORT_COMMANDS, parse
 from planar import PlanarError
 from planar_ros.entry import leaving_when_interrupted
+from supervision.display import complain
+from supervision.errors import LaunchError
+from supervision.interruption import INTERRUPTED, RunInterruptedError, raise_when_interrupted
 
 FAILURE, BAD_INPUT = 1, 2
 MODULES = {
     "rehearse": "rehearse",
-    "doctor": "doctor",
-    "replay": "replaying",
+    "doctor": "ros.doctor",
+    "replay": "ros.replaying",
     **dict.fromkeys(REPORT_COMMANDS, "reports"),
-    **dict.fromkeys(MAPPING_COMMANDS, "mapping"),
+    **dict.fromkeys(MAPPING_COMMANDS, "ros.mapping"),
 }  # of the commands that are not in the module commands
 
 
@@ -44,7 +44,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
 
 def find_command(name: str) -> Callable[[Namespace], int]:
     """The function of that name; no more than it needs is imported, which takes time enough."""
-    module = importlib.import_module(f"home_service.{MODULES.get(name, 'commands')}")
+    module = importlib.import_module(f"home_service.{MODULES.get(name, 'ros.commands')}")
     return getattr(module, name)
 
 

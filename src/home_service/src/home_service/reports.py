@@ -5,10 +5,10 @@ from argparse import Namespace
 from rich.console import Console
 from rich.table import Table
 
-from home_service.run_folder import write_result
 from planar import write_atomically
 from run_report import summary, write_report
 from run_report.comparison import compared_figures, comparison_html, load_run
+from supervision.run_folder import write_result
 
 
 def report(options: Namespace) -> int:

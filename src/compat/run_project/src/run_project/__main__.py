@@ -1,4 +1,4 @@
-from home_service.interruption import leave
 from planar_ros.entry import call
+from supervision.interruption import leave
 
 leave(call("run_project.cli:main"))

@@ -9,11 +9,6 @@ import time
 from pathlib import Path
 from typing import Dict, List, Optional
 
-from home_service.display import Display, complain
-from home_service.errors import LaunchError
-from home_service.interruption import INTERRUPTED, RunInterruptedError, raise_when_interrupted
-from home_service.run_folder import create_run_folder, write_result
-from home_service.versions import versions
 from planar import PlanarError
 from run_project.building import Workspace, build, copy_checkout, environment
 from run_project.complaints import complaints_in
@@ -27,6 +22,11 @@ from run_project.ros.running import Job, ProjectRun
 from run_project.stand_ins import PACKAGE_FOLDER
 from run_project.terminal import LOGS
 from run_project.verdict import Ledger, Verdict, judge
+from supervision.display import Display, complain
+from supervision.errors import LaunchError
+from supervision.interruption import INTERRUPTED, RunInterruptedError, raise_when_interrupted
+from supervision.run_folder import create_run_folder, write_result
+from supervision.versions import versions
 
 FAILURE, BAD_INPUT = 1, 2
 WORK = PACKAGE_FOLDER.parents[2] / "build" / "projects"

@@ -12,11 +12,12 @@ from typing import Dict, List, Mapping, Optional
 import psutil
 import rospy
 
-from home_service.display import Display
-from home_service.errors import LaunchError
-from home_service.graph import adopt_orphans, end_descendants, free_port, is_master_online
 from run_project.ros.observer import Observer
 from run_project.terminal import WindowLogs
+from supervision.display import Display
+from supervision.errors import LaunchError
+from supervision.processes import adopt_orphans, end_descendants, free_port
+from supervision.ros.node_api import is_master_online
 
 POLL_SECONDS = 0.2
 MASTER_SECONDS = 30.0

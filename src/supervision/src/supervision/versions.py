@@ -21,6 +21,6 @@ def versions() -> Dict[str, str]:
 
 
 def project_version() -> str:
-    """The version in this package's package.xml."""
+    """The version in this package.xml, as in those of the project's other packages."""
     package_xml = Path(__file__).resolve().parents[2] / "package.xml"
     return ElementTree.parse(package_xml).findtext("version", "unknown")

@@ -2,7 +2,7 @@
 
 from typing import Callable, Dict, List, Mapping, Optional
 
-from home_service.verdict import DeliveryRecord
+from home_service.judging.verdict import DeliveryRecord
 from pick_objects import Delivery, Stage
 from planar import Pose2
 from planar.maps.places import Place

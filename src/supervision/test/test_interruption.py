@@ -4,7 +4,7 @@ from contextlib import suppress
 
 import pytest
 
-from home_service import interruption
+from supervision import interruption
 
 
 @pytest.fixture(autouse=True)

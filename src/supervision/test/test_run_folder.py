@@ -2,8 +2,8 @@ import json
 
 import pytest
 
-from home_service.run_folder import create_run_folder, write_result
 from planar import SettingsError
+from supervision.run_folder import create_run_folder, write_result
 
 
 def test_two_runs_in_one_second_get_folders_of_their_own(tmp_path):

@@ -10,18 +10,19 @@ import psutil
 import rospy
 from rosgraph_msgs.msg import Clock
 
-from home_service.bag_recorder import BagRecorder
-from home_service.display import Display
-from home_service.errors import LaunchError
-from home_service.graph import RosGraph, is_master_online
-from home_service.interruption import RunInterruptedError, raise_if_interrupted
-from home_service.recorder import Recorder
-from home_service.referee import Referee
-from home_service.run_folder import create_run_folder, write_result
-from home_service.verdict import DeliveryRecord, Verdict, judge
-from home_service.versions import versions
+from home_service.judging.verdict import DeliveryRecord, Verdict, judge
+from home_service.ros.bags.rosbag_process import RosbagProcess
+from home_service.ros.referee import Referee
+from home_service.ros.run_recorder import RunRecorder
 from planar import FileWriteError, PlanarError
 from run_report import RunRecord, summary, write_report
+from supervision.display import Display
+from supervision.errors import LaunchError
+from supervision.interruption import RunInterruptedError, raise_if_interrupted
+from supervision.ros.graph import RosGraph
+from supervision.ros.node_api import is_master_online
+from supervision.run_folder import create_run_folder, write_result
+from supervision.versions import versions
 
 POLL_SECONDS = 0.05
 BRING_UP_SECONDS = 60.0
@@ -48,8 +49,8 @@ class Run:
         self.display = Display()
         self.referee: Optional[Referee] = None
         self.missing: List[str] = []
-        self._recorder: Optional[Recorder] = None
-        self._bags: Optional[BagRecorder] = None
+        self._recorder: Optional[RunRecorder] = None
+        self._bags: Optional[RosbagProcess] = None
         self._graph: Optional[RosGraph] = None
         self._result: Dict[str, Any] = {}
 
@@ -62,9 +63,9 @@ class Run:
             rospy.init_node("referee", disable_signals=True, anonymous=True, log_level=rospy.ERROR)
             if getattr(self._options, "record", None):
                 self._wait("simulated time", lambda: rospy.has_param("/use_sim_time"))
-                self._bags = BagRecorder(self._options.record, self.folder / "bag")
+                self._bags = RosbagProcess(self._options.record, self.folder / "bag")
             self.referee = Referee(self._options.places, self.display.say)
-            self._recorder = Recorder(self._options.places)
+            self._recorder = RunRecorder(self._options.places)
             if "world" in self._options:
                 self._wait("ground truth from the simulator", lambda: self.referee.truth is not None)
             if self._bags is not None:

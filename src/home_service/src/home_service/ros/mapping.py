@@ -10,18 +10,14 @@ import actionlib
 from actionlib_msgs.msg import GoalStatus
 from home_service_msgs.msg import ExploreAction, ExploreGoal
 
-from home_service.errors import LaunchError
-from home_service.run import Run
-from home_service.verdict import ARRIVAL_TOLERANCE, Verdict
-from planar import OccupancyGrid, Pose2, SettingsError, load_map
-from planar.maps.map_score import MapScore, score_map
+from home_service.judging.map_truth import LEAST_PRECISION, LEAST_RECALL, score_against_world
+from home_service.judging.verdict import ARRIVAL_TOLERANCE, Verdict
+from home_service.ros.run import Run
+from planar import Pose2, SettingsError, load_map
+from planar.maps.map_score import MapScore
 from planar_ros.actions import goal_is_over, server_is_ready
-from sim_bridge import RobotProfile
-from sim_bridge.views.true_map import true_map
-from sim_bridge.world import World
+from supervision.errors import LaunchError
 
-LEAST_RECALL = LEAST_PRECISION = 0.95
-FINE_RESOLUTION = 0.01
 SAVE_SECONDS = 30.0
 TELEOP = ["rosrun", "teleop_lite", "turtlebot_teleop_key", "turtlebot_teleop_keyboard/cmd_vel:=cmd_vel"]
 
@@ -98,13 +94,6 @@ def save_map(run: Run, stem: Optional[Path]) -> Path:
     if saver.returncode != 0:
         raise LaunchError(f"map_saver: {' '.join(saver.stderr.split()) or 'failed'}")
     return stem.with_name(stem.name + ".yaml")
-
-
-def score_against_world(grid: OccupancyGrid, world: World, robot: RobotProfile) -> MapScore:
-    """A map against what the robot's laser could have seen of the world from where the robot can get."""
-    height = float(robot.laser.pose_in_base[2, 3])
-    truth, fine_truth = (true_map(world, height, resolution) for resolution in (0.05, FINE_RESOLUTION))
-    return score_map(grid, truth, robot_radius=robot.radius, sight=robot.laser.sight, fine_truth=fine_truth)
 
 
 def _judge(failure: Optional[str], run: Run, score: MapScore, way_home: float) -> Verdict:

@@ -13,11 +13,11 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
-from home_service.diagnosis import Findings, Node, Topic, as_json, as_text, problems
-from home_service.node_api import answers
-from home_service.versions import versions
+from home_service.doctor.diagnosis import Findings, Node, Topic, as_json, as_text, problems
 from planar_ros.messages import frame_name
 from planar_ros.waiting import TOPIC as WAITING_TOPIC
+from supervision.ros.node_api import answers
+from supervision.versions import versions
 
 HEALTHY, ILL, NOTHING_RUNS = 0, 1, 3
 MEASURED_TOPICS = ("/clock", "/scan", "/odom", "/joint_states", "/tf", "/cmd_vel")

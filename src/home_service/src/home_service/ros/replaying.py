@@ -8,10 +8,10 @@ import rospy
 from std_msgs.msg import String
 
 from home_service.bag_files import LASER_SCAN, Recording
-from home_service.bag_player_node import BROKEN, ENDED
-from home_service.mapping import save_map
-from home_service.run import Run
-from home_service.verdict import Verdict
+from home_service.judging.verdict import Verdict
+from home_service.ros.bags.player import BROKEN, ENDED
+from home_service.ros.mapping import save_map
+from home_service.ros.run import Run
 from planar import load_map
 from planar_ros.scan_log import BagError
 

@@ -23,14 +23,12 @@ from move_base_msgs.msg import MoveBaseAction
 from nav_msgs.srv import LoadMap, LoadMapResponse
 from std_srvs.srv import Empty
 
-from home_service.command_tasks import Drive, Feedback, Motion, Outcome, Result, Task, Waypoints
+from home_service.ros.commander.tasks import Drive, Feedback, Motion, Outcome, Task, Waypoints
 from planar import PlanarError, Pose2
 from planar_ros.actions import server_is_ready
 from planar_ros.messages import pose2_to_msg
 from planar_ros.services import call_service
 from planar_ros.transforms import Transforms
-
-__all__ = ["Commander", "CommanderError", "Feedback", "Outcome", "Result"]
 
 POLL_SECONDS = 0.05
 # Variances of a pose given by hand: m^2, m^2, rad^2 (as rviz gives them).

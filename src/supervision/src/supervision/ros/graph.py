@@ -1,25 +1,21 @@
 """A ROS graph of its own: a master on a free port and everything that a launch file starts."""
 
 import contextlib
-import ctypes
 import os
 import re
 import signal
-import socket
 import subprocess
 import threading
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Dict, List, Mapping, Optional
+from typing import IO, Dict, Mapping, Optional
 
 import psutil
-import rosgraph
 
-from home_service.errors import LaunchError
-from home_service.interruption import raise_if_interrupted
+from supervision.errors import LaunchError
+from supervision.processes import adopt_orphans, end_descendants, free_port
 
-PR_SET_CHILD_SUBREAPER = 36
 SIGINT_SECONDS = 8.0
 HEARING_SECONDS = 2.0
 SIGTERM_SECONDS = 2.0
@@ -122,45 +118,3 @@ class RosGraph:
             node, code = death.group("node"), int(death.group("code"))
             text = self._complaints.get(node, f"died with exit code {code}, see {self._log_folder}")
             self._failure = NodeFailure(f"{node}: {text}", code == BAD_INPUT)
-
-
-def is_master_online() -> bool:
-    """As rosgraph's function of that name, but what interrupts it is not lost."""
-    is_online = rosgraph.is_master_online()
-    raise_if_interrupted()
-    return is_online
-
-
-def free_port() -> int:
-    """A TCP port on the loopback interface that nobody listens on right now."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
-def adopt_orphans() -> None:
-    """Makes this process the parent of every descendant whose own parent dies, so that none can hide."""
-    ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
-
-
-def end_descendants(patience: float) -> None:
-    """Terminates and, after ``patience`` seconds, kills every descendant of this process, however deep."""
-    deadline = time.monotonic() + patience
-    descendants: List[psutil.Process] = psutil.Process().children(recursive=True)
-    for process in descendants:
-        _signal(process, signal.SIGTERM)
-    while descendants:
-        psutil.wait_procs(descendants, timeout=0.1)
-        descendants = [
-            process
-            for process in psutil.Process().children(recursive=True)
-            if process.status() != psutil.STATUS_ZOMBIE
-        ]
-        if time.monotonic() > deadline:
-            for process in descendants:
-                _signal(process, signal.SIGKILL)
-
-
-def _signal(process: psutil.Process, number: int) -> None:
-    with contextlib.suppress(psutil.NoSuchProcess):
-        process.send_signal(number)

@@ -12,7 +12,7 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker
 
-from home_service.referee import CONNECTION_CHATTER
+from home_service.ros.referee import CONNECTION_CHATTER
 from planar import Pose2
 from planar.maps.places import Place
 from planar_ros.messages import OccupancyGridArrays, frame_name, grid_from_msg, pose2_from_msg, yaw_of
@@ -23,7 +23,7 @@ ENOUGH_WARNINGS = 200
 MAP_FRAME, ODOM_FRAME = "map", "odom"
 
 
-class Recorder:
+class RunRecorder:
     """Samples truth, estimate and odometry ten times a simulated second, and notes every event."""
 
     def __init__(self, places: Mapping[str, Place]):

@@ -14,8 +14,8 @@ from rosgraph_msgs.msg import Log
 from std_msgs.msg import String
 from visualization_msgs.msg import Marker
 
-from home_service.delivery_watch import DeliveryWatch
-from home_service.verdict import Ledger
+from home_service.judging.delivery_watch import DeliveryWatch
+from home_service.judging.verdict import Ledger
 from pick_objects import Delivery, Stage
 from planar import Pose2
 from planar.maps.places import Place

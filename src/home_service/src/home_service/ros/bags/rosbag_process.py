@@ -9,8 +9,8 @@ from typing import List
 
 import roslib.packages
 
-from home_service.errors import LaunchError
-from home_service.node_api import hears_all
+from supervision.errors import LaunchError
+from supervision.ros.node_api import hears_all
 
 PROFILES = {
     "inputs": ["/clock", "/tf", "/tf_static", "/odom", "/scan", "/base_pose_ground_truth"],
@@ -27,7 +27,7 @@ PAUSED = "Disabling recording"
 PR_SET_PDEATHSIG = 1
 
 
-class BagRecorder:
+class RosbagProcess:
     """Writes ``folder``/<profile>_<number>.bag, at most the latest gigabyte.
 
     Should this process be killed, the recorder closes its bag and ends. Raises LaunchError.

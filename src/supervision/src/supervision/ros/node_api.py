@@ -6,6 +6,8 @@ from typing import Container, Set, Tuple
 
 import rosgraph
 
+from supervision.interruption import raise_if_interrupted
+
 CALLER = "/home_service"
 ANSWER_SECONDS = 1.0
 _SILENCE = (OSError, xmlrpc.client.Error)
@@ -18,6 +20,13 @@ class _TimedTransport(xmlrpc.client.Transport):
         connection = super().make_connection(host)
         connection.timeout = ANSWER_SECONDS
         return connection
+
+
+def is_master_online() -> bool:
+    """As rosgraph's function of that name, but what interrupts it is not lost."""
+    is_online = rosgraph.is_master_online()
+    raise_if_interrupted()
+    return is_online
 
 
 def answers(uri: str) -> bool:

@@ -13,9 +13,9 @@ import numpy as np
 
 from add_markers import CarriedParcel
 from amcl_lite import Localizer, LocalizerSettings
-from home_service.delivery_watch import DeliveryWatch
-from home_service.rehearsed_bodies import RehearsedBodies
-from home_service.verdict import ERRAND, MARKERS, Ledger, Verdict, judge
+from home_service.judging.delivery_watch import DeliveryWatch
+from home_service.judging.verdict import ERRAND, MARKERS, Ledger, Verdict, judge
+from home_service.rehearsal.bodies import RehearsedBodies
 from move_base_lite import Decision, NavigationError, Navigator, Status, load_settings
 from pick_objects import Errand, Finish, GoalReached, GoalRefused, GoTo, MeasureWays, Mission, WaysMeasured
 from planar import OccupancyGrid, Pose2, Twist2
@@ -23,7 +23,7 @@ from planar.config.settings_file import settings_from_yaml
 from sim_bridge import Observation, RobotProfile, Simulation
 from sim_bridge.world import World
 
-PACKAGES = Path(__file__).resolve().parents[3]
+PACKAGES = Path(__file__).resolve().parents[4]
 LOCALIZATION_CONFIG = PACKAGES / "amcl_lite/config/turtlebot.yaml"
 NAVIGATION_CONFIG = PACKAGES / "move_base_lite/config/turtlebot.yaml"
 

@@ -10,9 +10,9 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 
-from home_service.following import FollowWatch
-from home_service.run import Run
-from home_service.verdict import ARRIVAL_TOLERANCE, DEMO, ERRAND, MARKERS, OBJECTS, Verdict
+from home_service.judging.verdict import ARRIVAL_TOLERANCE, DEMO, ERRAND, MARKERS, OBJECTS, Verdict
+from home_service.ros.following import FollowWatch
+from home_service.ros.run import Run
 from planar import Pose2
 from planar_ros.actions import goal_is_over, server_is_ready
 from planar_ros.messages import pose2_to_msg

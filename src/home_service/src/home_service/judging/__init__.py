@@ -1,0 +1,1 @@
+"""Whether a run did what it promised, by ground truth. No ROS."""

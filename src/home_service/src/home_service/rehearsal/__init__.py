@@ -1,0 +1,5 @@
+"""The whole mission in one process, without ROS."""
+
+from home_service.rehearsal.rehearsal import LOCALIZATION_CONFIG, NAVIGATION_CONFIG, Rehearsal, Rehearsed
+
+__all__ = ["LOCALIZATION_CONFIG", "NAVIGATION_CONFIG", "Rehearsal", "Rehearsed"]

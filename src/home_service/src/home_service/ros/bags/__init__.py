@@ -1,0 +1,1 @@
+"""Bags made and played as processes and nodes of their own."""

@@ -1,0 +1,122 @@
+"""Short motions by odometry: a turn on the spot, a way straight back."""
+
+import math
+import threading
+import time
+from typing import Optional
+
+import numpy as np
+import rospy
+from geometry_msgs.msg import Twist
+from map_msgs.msg import OccupancyGridUpdate
+from nav_msgs.msg import Odometry
+
+from home_service.ros.commander.outcomes import Feedback, Outcome, Result
+from home_service.ros.commander.task import PATIENCE_SECONDS, Task
+from planar import OccupancyGrid, Pose2, wrap
+from planar_ros.messages import OccupancyGridArrays, grid_from_msg, pose2_from_msg
+
+SLOW_DOWN = 1.5
+"""A motion's speed is at most so many times what is left of it, per second."""
+INSCRIBED = 99
+"""Cells of a published costmap from here on are too close to an obstacle for the robot's centre."""
+
+
+class Motion:
+    """What short motions need: odometry, the local costmap, and the way to the wheels."""
+
+    def __init__(self) -> None:
+        self.base_in_odom: Optional[Pose2] = None
+        self.seen_at = 0.0
+        self._grid: Optional[OccupancyGrid] = None
+        self._lock = threading.Lock()
+        self._commands = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True)
+        costmap = "move_base/local_costmap/costmap"
+        rospy.Subscriber("odom", Odometry, self._keep_pose, queue_size=1, tcp_nodelay=True)
+        rospy.Subscriber(costmap, OccupancyGridArrays, self._keep_grid, queue_size=1)
+        rospy.Subscriber(costmap + "_updates", OccupancyGridUpdate, self._update_grid, queue_size=10)
+
+    def turn(self, angle: float, speed: float, timeout: float) -> "Stretch":
+        return Stretch(self, angle, speed, timeout, is_turn=True)
+
+    def back(self, distance: float, speed: float, timeout: float) -> "Stretch":
+        return Stretch(self, -abs(distance), speed, timeout, is_turn=False)
+
+    def command(self, linear: float, angular: float) -> None:
+        message = Twist()
+        message.linear.x, message.angular.z = linear, angular
+        self._commands.publish(message)
+
+    def is_blocked(self, pose: Pose2) -> bool:
+        """Whether the local costmap, which is in the odometry's frame, shows an obstacle there."""
+        with self._lock:
+            if self._grid is None:
+                return False
+            cell = self._grid.cells_of([[pose.x, pose.y]])
+            return bool(self._grid.contains(cell)[0] and self._grid.cells[tuple(cell[0])] >= INSCRIBED)
+
+    def _keep_pose(self, message) -> None:
+        self.base_in_odom, self.seen_at = pose2_from_msg(message.pose.pose), time.monotonic()
+
+    def _keep_grid(self, message) -> None:
+        with self._lock:
+            grid = grid_from_msg(message)
+            self._grid = OccupancyGrid(np.array(grid.cells), grid.resolution, grid.origin)
+
+    def _update_grid(self, message) -> None:
+        with self._lock:
+            if self._grid is not None:
+                rows, cols = (
+                    slice(message.y, message.y + message.height),
+                    slice(message.x, message.x + message.width),
+                )
+                part = np.array(message.data, dtype=np.int8).reshape(message.height, message.width)
+                self._grid.cells[rows, cols] = part
+
+
+class Stretch(Task):
+    """A turn on the spot (radians) or a straight way (metres), measured by odometry."""
+
+    LOOK_AHEAD = 0.2
+
+    def __init__(self, motion: Motion, amount: float, speed: float, timeout: float, is_turn: bool):
+        super().__init__(timeout)
+        self._motion, self._amount, self._speed, self._is_turn = motion, amount, abs(speed), is_turn
+        self._latest: Optional[Pose2] = None
+        self._done = 0.0
+
+    def run(self) -> Outcome:
+        if not math.isfinite(self._amount) or not 0.0 < self._speed < math.inf:
+            return Outcome(Result.FAILED, "the way and the speed must be numbers, the speed not zero")
+        self._motion.seen_at = time.monotonic()
+        try:
+            return self._wait(self._move)
+        finally:
+            self._motion.command(0.0, 0.0)
+
+    def feedback(self) -> Feedback:
+        return Feedback(self._seconds, abs(self._amount - self._done), self._motion.base_in_odom)
+
+    def _move(self) -> Optional[Outcome]:
+        if time.monotonic() - self._motion.seen_at > PATIENCE_SECONDS:
+            return Outcome(Result.FAILED, f"no odometry on {rospy.resolve_name('odom')}")
+        pose = self._motion.base_in_odom
+        if pose is None:
+            return None
+        self._note(pose)
+        left = self._amount - self._done
+        direction = math.copysign(1.0, self._amount)
+        if left * direction <= 0.01:
+            return Outcome(Result.SUCCEEDED, f"{'turned' if self._is_turn else 'drove'} {self._done:.2f}")
+        ahead = Pose2(direction * min(self.LOOK_AHEAD, abs(left)), 0.0)
+        if not self._is_turn and self._motion.is_blocked(pose @ ahead):
+            return Outcome(Result.FAILED, f"an obstacle is in the way, {abs(left):.2f} m before the end")
+        velocity = direction * min(self._speed, SLOW_DOWN * abs(left))
+        self._motion.command(*((0.0, velocity) if self._is_turn else (velocity, 0.0)))
+        return None
+
+    def _note(self, pose: Pose2) -> None:
+        if self._latest is not None:
+            step = self._latest.inverse() @ pose
+            self._done += float(wrap(step.yaw)) if self._is_turn else step.x
+        self._latest = pose

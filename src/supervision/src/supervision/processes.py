@@ -1,0 +1,47 @@
+"""The processes below this one: none may hide, and none may be left."""
+
+import contextlib
+import ctypes
+import signal
+import socket
+import time
+from typing import List
+
+import psutil
+
+PR_SET_CHILD_SUBREAPER = 36
+
+
+def free_port() -> int:
+    """A TCP port on the loopback interface that nobody listens on right now."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def adopt_orphans() -> None:
+    """Makes this process the parent of every descendant whose own parent dies, so that none can hide."""
+    ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+
+
+def end_descendants(patience: float) -> None:
+    """Terminates and, after ``patience`` seconds, kills every descendant of this process, however deep."""
+    deadline = time.monotonic() + patience
+    descendants: List[psutil.Process] = psutil.Process().children(recursive=True)
+    for process in descendants:
+        _signal(process, signal.SIGTERM)
+    while descendants:
+        psutil.wait_procs(descendants, timeout=0.1)
+        descendants = [
+            process
+            for process in psutil.Process().children(recursive=True)
+            if process.status() != psutil.STATUS_ZOMBIE
+        ]
+        if time.monotonic() > deadline:
+            for process in descendants:
+                _signal(process, signal.SIGKILL)
+
+
+def _signal(process: psutil.Process, number: int) -> None:
+    with contextlib.suppress(psutil.NoSuchProcess):
+        process.send_signal(number)
