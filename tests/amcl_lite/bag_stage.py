@@ -14,7 +14,7 @@ from std_srvs.srv import Empty
 from tf2_msgs.msg import TFMessage
 
 from planar import OccupancyGrid, Pose2
-from planar_ros.messages import (
+from planar_ros.messages.conversion import (
     GetMapArrays,
     grid_to_msg,
     pose2_from_msg,

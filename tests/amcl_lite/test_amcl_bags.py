@@ -15,7 +15,7 @@ import rostest
 from bag_stage import BagStage
 
 from planar import FREE, UNKNOWN, OccupancyGrid, Pose2, save_map, wrap
-from planar_ros.messages import OccupancyGridArrays, grid_to_msg
+from planar_ros.messages.conversion import OccupancyGridArrays, grid_to_msg
 from sim_bridge import load_world
 from sim_bridge.views.true_map import true_map
 

@@ -16,7 +16,7 @@ from tf2_msgs.msg import TFMessage
 from toy_robot import BEAMS, ToyRobot
 
 from planar import Pose2, wrap
-from planar_ros.messages import SetMapArrays, frame_name, pose2_from_msg, pose2_to_msg
+from planar_ros.messages.conversion import SetMapArrays, frame_name, pose2_from_msg, pose2_to_msg
 
 START = Pose2(1.2, 1.5, 0.0)
 STEP = Pose2(0.2, 0.0, 0.0)

@@ -12,7 +12,7 @@ from nav_msgs.msg import Odometry
 from toy_robot import room
 
 from planar import wrap
-from planar_ros.messages import SetMapArrays, grid_to_msg, pose2_from_msg
+from planar_ros.messages.conversion import SetMapArrays, grid_to_msg, pose2_from_msg
 
 NEAR = 0.15  # metres
 

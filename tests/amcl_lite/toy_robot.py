@@ -8,8 +8,8 @@ import rospy
 from planar import OccupancyGrid as Grid
 from planar import Pose2, grid_from_picture
 from planar.geometry.ray_casting import cast_rays
-from planar_ros.messages import GetMapArrays, LaserScanArrays, grid_to_msg
-from planar_ros.transforms import Transforms
+from planar_ros.messages.conversion import GetMapArrays, LaserScanArrays, grid_to_msg
+from planar_ros.messages.transforms import Transforms
 
 ROOM = """
 ####################

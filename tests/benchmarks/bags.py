@@ -15,7 +15,7 @@ from tf2_msgs.msg import TFMessage
 
 from planar import OccupancyGrid, Pose2
 from planar.geometry.ray_casting import cast_rays
-from planar_ros.messages import pose2_to_msg, time_of, transform_msg
+from planar_ros.messages.conversion import pose2_to_msg, time_of, transform_msg
 
 BASE_FRAME = "base_footprint"
 # Bags start here, so that no stamp is 0.

@@ -19,7 +19,7 @@ from tf2_msgs.msg import TFMessage
 from tf2_ros import StaticTransformBroadcaster
 
 from planar import OccupancyGrid, Pose2
-from planar_ros.messages import (
+from planar_ros.messages.conversion import (
     GetMapArrays,
     LaserScanArrays,
     grid_to_msg,

@@ -24,8 +24,8 @@ from tf2_msgs.msg import TFMessage
 from tf2_ros import StaticTransformBroadcaster
 
 from planar import OccupancyGrid, Pose2, Twist2
-from planar_ros.actions import server_is_ready
-from planar_ros.messages import LaserScanArrays, grid_to_msg, pose2_to_msg, transform_msg
+from planar_ros.calls.actions import server_is_ready
+from planar_ros.messages.conversion import LaserScanArrays, grid_to_msg, pose2_to_msg, transform_msg
 from sim_bridge import Simulation
 
 START_SECONDS = 60.0

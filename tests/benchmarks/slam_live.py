@@ -29,9 +29,9 @@ from tf2_ros import StaticTransformBroadcaster
 from worlds import OFFICE, world_from_picture
 
 from planar import Pose2
-from planar_ros.messages import LaserScanArrays, OccupancyGridArrays, transform_msg
-from planar_ros.progress import TOPIC as PROGRESS
-from planar_ros.transforms import Transforms
+from planar_ros.messages.conversion import LaserScanArrays, OccupancyGridArrays, transform_msg
+from planar_ros.messages.transforms import Transforms
+from planar_ros.node.progress import TOPIC as PROGRESS
 from sim_bridge.views.true_map import true_map
 
 START = Pose2(1.0, 1.0, 0.0)

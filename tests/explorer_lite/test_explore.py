@@ -13,9 +13,9 @@ from move_base_msgs.msg import MoveBaseAction
 from waiting import wait_until
 
 from planar import Pose2, grid_from_picture
-from planar_ros.actions import goal_is_over, server_is_ready
-from planar_ros.messages import OccupancyGridArrays, grid_to_msg, pose2_from_msg
-from planar_ros.transforms import Transforms
+from planar_ros.calls.actions import goal_is_over, server_is_ready
+from planar_ros.messages.conversion import OccupancyGridArrays, grid_to_msg, pose2_from_msg
+from planar_ros.messages.transforms import Transforms
 
 HALF_KNOWN = grid_from_picture("######??\n#....???\n#....???\n#....???\n######??", resolution=0.5)
 KNOWN = grid_from_picture("########\n#......#\n#......#\n#......#\n########", resolution=0.5)

@@ -13,7 +13,7 @@ from nav_msgs.msg import MapMetaData, OccupancyGrid
 from nav_msgs.srv import GetMap, LoadMap, LoadMapResponse
 
 from planar import UNKNOWN, Pose2, grid_from_picture, load_map, save_map
-from planar_ros.messages import OccupancyGridArrays, grid_from_msg, grid_to_msg
+from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg, grid_to_msg
 
 HOME = grid_from_picture("####\n#..#\n#?.#\n####", resolution=0.5, origin=Pose2(-1.0, -2.0, 0.5))
 OTHER = grid_from_picture("##\n#.", resolution=0.25)

@@ -19,7 +19,7 @@ from sensor_msgs.msg import PointCloud2
 from stage import Stage
 
 from planar import Pose2
-from planar_ros.actions import server_is_ready
+from planar_ros.calls.actions import server_is_ready
 
 STALE = "Sensor data is out of date, we're not going to allow commanding of the base for safety"
 NO_CONTROL = "Failed to find a valid control. Even after executing recovery behaviors."

@@ -20,8 +20,8 @@ from home_service.judging.verdict import ERRAND, OBJECTS, judge
 from home_service.ros.referee import Referee
 from pick_objects import parse_mission
 from planar import Pose2
-from planar_ros.actions import goal_is_over, server_is_ready
-from planar_ros.messages import pose2_from_msg, pose2_to_msg
+from planar_ros.calls.actions import goal_is_over, server_is_ready
+from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
 
 WALL_DEADLINE = 400.0  # of a machine that has other things to do
 MISSION = """\

@@ -19,7 +19,7 @@ from std_msgs.msg import String
 from std_srvs.srv import Empty
 from waiting import PATIENCE_SECONDS, wait_until
 
-from planar_ros.messages import quaternion_of
+from planar_ros.messages.conversion import quaternion_of
 
 INPUTS = {
     "input/navi": "Navigation",

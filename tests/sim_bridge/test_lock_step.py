@@ -9,8 +9,8 @@ import rostest
 from std_msgs.msg import Float64
 from waiting import wait_until
 
-from planar_ros.messages import LaserScanArrays
-from planar_ros.progress import Progress
+from planar_ros.messages.conversion import LaserScanArrays
+from planar_ros.node.progress import Progress
 
 PERIOD = 0.1
 

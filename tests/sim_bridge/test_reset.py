@@ -17,7 +17,7 @@ from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Empty
 from waiting import wait_until
 
-from planar_ros.transforms import Transforms
+from planar_ros.messages.transforms import Transforms
 
 NODES = ("/sim_bridge", "/robot_state_publisher", "/map_server", "/amcl", "/move_base")
 

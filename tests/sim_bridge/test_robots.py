@@ -18,7 +18,7 @@ from std_msgs.msg import Empty, String
 from tf2_msgs.msg import TFMessage
 from waiting import PATIENCE_SECONDS, wait_until
 
-from planar_ros.messages import LaserScanArrays, quaternion_of
+from planar_ros.messages.conversion import LaserScanArrays, quaternion_of
 from sim_bridge import robot_named
 
 WHEEL = """<link name="{side}"><inertial><mass value="0.5"/>

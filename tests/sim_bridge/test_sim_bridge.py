@@ -18,8 +18,8 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker
 from waiting import wait_until
 
-from planar_ros.messages import LaserScanArrays
-from planar_ros.transforms import Transforms
+from planar_ros.messages.conversion import LaserScanArrays
+from planar_ros.messages.transforms import Transforms
 
 
 def periods(messages):

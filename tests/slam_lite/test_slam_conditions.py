@@ -19,7 +19,7 @@ from tf2_msgs.msg import TFMessage
 from toy_room import circle, room, sweep
 
 from planar import Pose2
-from planar_ros.messages import LaserScanArrays, frame_name, transform_msg, yaw_of
+from planar_ros.messages.conversion import LaserScanArrays, frame_name, transform_msg, yaw_of
 
 STEPS, STEP = 24, 0.15
 # Scans at the end of a drive, so that those that wait in vain for a transform are overtaken by as many.

@@ -20,7 +20,7 @@ from tf2_msgs.msg import TFMessage
 from toy_room import RESOLUTION, circle, room, sweep
 
 from planar import OCCUPIED, Pose2, load_map
-from planar_ros.messages import (
+from planar_ros.messages.conversion import (
     GetMapArrays,
     LaserScanArrays,
     OccupancyGridArrays,
@@ -28,7 +28,7 @@ from planar_ros.messages import (
     grid_from_msg,
     transform_msg,
 )
-from planar_ros.transforms import Transforms
+from planar_ros.messages.transforms import Transforms
 
 WAIT_SECONDS = 20.0
 STEPS = 24

@@ -19,7 +19,7 @@ from toy_room import circle, room
 
 from planar import OCCUPIED, Pose2, load_map
 from planar.geometry.ray_casting import cast_rays
-from planar_ros.messages import transform_msg
+from planar_ros.messages.conversion import transform_msg
 
 SCANS, START, PERIOD = 120, 1000.0, 0.2
 LASER_IN_BASE = Pose2(0.1, 0.0, 0.0)

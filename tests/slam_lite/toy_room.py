@@ -6,7 +6,7 @@ import numpy as np
 
 from planar import OCCUPIED, OccupancyGrid, Pose2
 from planar.geometry.ray_casting import cast_rays
-from planar_ros.messages import LaserScanArrays
+from planar_ros.messages.conversion import LaserScanArrays
 
 RESOLUTION, RANGE_MAX = 0.05, 10.0
 

@@ -13,8 +13,8 @@ from visualization_msgs.msg import Marker
 
 from home_service.ros.referee import Referee
 from planar import Pose2
-from planar_ros.actions import server_is_ready
-from planar_ros.messages import pose2_to_msg
+from planar_ros.calls.actions import server_is_ready
+from planar_ros.messages.conversion import pose2_to_msg
 
 ARRIVAL_TOLERANCE = 0.25
 SIMULATED_DEADLINE = 120.0

@@ -13,8 +13,8 @@ from std_msgs.msg import String
 from waiting import wait_until
 
 from planar import Pose2
-from planar_ros.actions import server_is_ready
-from planar_ros.messages import LaserScanArrays, pose2_from_msg, pose2_to_msg
+from planar_ros.calls.actions import server_is_ready
+from planar_ros.messages.conversion import LaserScanArrays, pose2_from_msg, pose2_to_msg
 
 WALL_DEADLINE = 120.0
 ARRIVAL_TOLERANCE = 0.25

@@ -5,7 +5,7 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
 
 from home_service.bag_files import LASER_SCAN, Recording, bag_paths
-from planar_ros.scan_log import BagError
+from planar_ros.bags.scan_log import BagError
 
 
 def write_bag(path, start, count):

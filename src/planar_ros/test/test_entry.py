@@ -25,7 +25,7 @@ def main(text):
 
 def start(folder, code, *arguments):
     (folder / "some_module.py").write_text(code)
-    call = f"from planar_ros.entry import call; print(call('some_module:main', *{arguments}))"
+    call = f"from planar_ros.node.entry import call; print(call('some_module:main', *{arguments}))"
     return subprocess.Popen(
         [sys.executable, "-c", call],
         env={**os.environ, "PYTHONPATH": os.pathsep.join([str(folder), *sys.path])},

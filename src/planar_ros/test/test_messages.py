@@ -7,7 +7,7 @@ rospy = pytest.importorskip("rospy")
 from geometry_msgs.msg import Quaternion  # noqa: E402
 
 from planar import Pose2, grid_from_picture  # noqa: E402
-from planar_ros import messages  # noqa: E402
+from planar_ros.messages import conversion as messages  # noqa: E402
 
 
 def test_a_pose_survives_the_journey_through_a_message():

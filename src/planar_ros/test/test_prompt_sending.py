@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from planar_ros.prompt_sending import PromptConnection
+from planar_ros.node.prompt_sending import PromptConnection
 
 
 class Transport:

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Iterator, List, NamedTuple, Sequence, Set, Tuple
 
-from planar_ros.scan_log import BagError, open_bag
+from planar_ros.bags.scan_log import BagError, open_bag
 
 LASER_SCAN = "sensor_msgs/LaserScan"
 INPUT_TYPES = {LASER_SCAN, "sensor_msgs/PointCloud2", "nav_msgs/Odometry", "tf2_msgs/TFMessage"}

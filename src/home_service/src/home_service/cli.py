@@ -6,7 +6,7 @@ from typing import Callable, List, Optional
 
 from home_service.options import MAPPING_COMMANDS, REPORT_COMMANDS, parse
 from planar import PlanarError
-from planar_ros.entry import leaving_when_interrupted
+from planar_ros.node.entry import leaving_when_interrupted
 from supervision.display import complain
 from supervision.errors import LaunchError
 from supervision.interruption import INTERRUPTED, RunInterruptedError, raise_when_interrupted

@@ -19,8 +19,8 @@ from std_msgs.msg import ColorRGBA
 from add_markers.bodies import HEIGHT, MASS, RIDING_HEIGHT, Bodies, Move, Solid, Vanish
 from add_markers.config import MarkerSettings
 from planar import Pose2
-from planar_ros.messages import OccupancyGridArrays, grid_from_msg, pose2_from_msg, pose2_to_msg
-from planar_ros.services import ServiceError, call_service
+from planar_ros.calls.services import ServiceError, call_service
+from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg, pose2_from_msg, pose2_to_msg
 
 START_SECONDS, ANSWER_SECONDS = 20.0, 5.0
 LINK = "link"

@@ -10,8 +10,8 @@ from add_markers.bodies import HEIGHT, RIDING_HEIGHT
 from add_markers.config import MarkerSettings
 from add_markers.ros.mission_bodies import MissionBodies
 from planar import Pose2
-from planar_ros.messages import pose2_from_msg, pose2_to_msg
-from planar_ros.waiting import Waiting
+from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
+from planar_ros.node.waiting import Waiting
 
 STATE_TOPIC = "pick_objects/mission_state"
 

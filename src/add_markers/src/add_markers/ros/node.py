@@ -13,11 +13,11 @@ from add_markers.parcel import CarriedParcel, TimedParcel
 from add_markers.ros.mission_markers import MissionMarkers
 from add_markers.ros.zones import zone_markers
 from planar.maps.places import places_of_errand
-from planar_ros.messages import pose2_from_msg, pose2_to_msg
-from planar_ros.parameters import read_settings
-from planar_ros.shell import run
-from planar_ros.transforms import Transforms
-from planar_ros.waiting import Waiting
+from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
+from planar_ros.messages.transforms import Transforms
+from planar_ros.node.parameters import read_settings
+from planar_ros.node.shell import run
+from planar_ros.node.waiting import Waiting
 
 UPDATE_SECONDS = 0.1
 NOWHERE_YET = object()

@@ -7,9 +7,9 @@ import rospy
 from tf2_msgs.msg import TFMessage
 
 from planar import PlanarError
-from planar_ros.messages import LaserScanArrays
-from planar_ros.scan_queue import ScanQueue
-from planar_ros.transforms import Transforms
+from planar_ros.messages.conversion import LaserScanArrays
+from planar_ros.messages.scan_queue import ScanQueue
+from planar_ros.messages.transforms import Transforms
 
 TF_TOPICS = ("tf", "/tf", "/tf_static")
 POLL_SECONDS = 0.01

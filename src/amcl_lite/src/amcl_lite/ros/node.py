@@ -24,7 +24,7 @@ from planar import PlanarError, Pose2, SettingsError
 from planar.config.listing import yaml_of
 from planar.config.parameters import official_names
 from planar.config.settings import settings_from
-from planar_ros.messages import (
+from planar_ros.messages.conversion import (
     GetMapArrays,
     OccupancyGridArrays,
     SetMapArrays,
@@ -32,13 +32,13 @@ from planar_ros.messages import (
     grid_from_msg,
     pose2_from_msg,
 )
-from planar_ros.parameters import read_settings
-from planar_ros.progress import Progress
-from planar_ros.reconfigure import RESTORE, Reconfiguration, dynamic_values
-from planar_ros.scan_queue import ScanQueue
-from planar_ros.shell import run
-from planar_ros.transforms import Transforms
-from planar_ros.waiting import Waiting
+from planar_ros.messages.scan_queue import ScanQueue
+from planar_ros.messages.transforms import Transforms
+from planar_ros.node.parameters import read_settings
+from planar_ros.node.progress import Progress
+from planar_ros.node.reconfigure import RESTORE, Reconfiguration, dynamic_values
+from planar_ros.node.shell import run
+from planar_ros.node.waiting import Waiting
 
 SCAN_ALARM_SECONDS = 15.0
 MAP_RETRY_SECONDS = 0.5

@@ -13,7 +13,7 @@ from planar import PlanarError, Pose2, load_map, wrap, write_atomically
 from planar.config.parameters import official_names
 from planar.config.settings_file import settings_from_yaml
 from planar.files.tum import tum_text
-from planar_ros.scan_log import BagError, ScanLog
+from planar_ros.bags.scan_log import BagError, ScanLog
 
 
 def main(arguments: Optional[List[str]] = None) -> int:

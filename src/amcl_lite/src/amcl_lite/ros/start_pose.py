@@ -8,8 +8,8 @@ import rospy
 from amcl_lite.config import InitialPose, NodeSettings
 from planar import Pose2
 from planar.config.parameters import official_names
-from planar_ros.parameters import ParameterWriter, read_settings
-from planar_ros.reconfigure import RESTORE
+from planar_ros.node.parameters import ParameterWriter, read_settings
+from planar_ros.node.reconfigure import RESTORE
 
 
 def read_start_pose() -> InitialPose:

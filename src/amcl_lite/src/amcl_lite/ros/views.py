@@ -10,7 +10,13 @@ from visualization_msgs.msg import Marker
 from amcl_lite.config import NodeSettings
 from amcl_lite.localizer import Estimate, Localizer
 from planar import OccupancyGrid
-from planar_ros.messages import OccupancyGridArrays, PosesMsg, frame_name, grid_to_msg, pose2_to_msg
+from planar_ros.messages.conversion import (
+    OccupancyGridArrays,
+    PosesMsg,
+    frame_name,
+    grid_to_msg,
+    pose2_to_msg,
+)
 
 DIAGNOSTICS_PERIOD = 1.0
 # The weighted particles are drawn as lines of this length, metres, and at most so many of them.

@@ -17,12 +17,12 @@ from explorer_lite.explorer import Explorer, ExplorerState, Finish, GoalReached,
 from explorer_lite.ros.markers import frontier_markers
 from explorer_lite.warming import warm_up
 from planar import OccupancyGrid, Pose2
-from planar_ros.actions import ActionServer, goal_is_over, server_is_ready
-from planar_ros.messages import LaserScanArrays, OccupancyGridArrays, grid_from_msg, pose2_to_msg
-from planar_ros.parameters import read_settings
-from planar_ros.shell import run
-from planar_ros.transforms import Transforms
-from planar_ros.waiting import Waiting
+from planar_ros.calls.actions import ActionServer, goal_is_over, server_is_ready
+from planar_ros.messages.conversion import LaserScanArrays, OccupancyGridArrays, grid_from_msg, pose2_to_msg
+from planar_ros.messages.transforms import Transforms
+from planar_ros.node.parameters import read_settings
+from planar_ros.node.shell import run
+from planar_ros.node.waiting import Waiting
 
 POLL_SECONDS = 0.02
 FEEDBACK_SECONDS = 1.0

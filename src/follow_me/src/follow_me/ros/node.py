@@ -8,14 +8,14 @@ from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 
 from follow_me.config import NodeSettings
 from follow_me.follower import Follower
-from planar_ros.actions import server_is_ready
-from planar_ros.clock import sleep_until
-from planar_ros.messages import pose2_to_msg
-from planar_ros.parameters import read_settings
-from planar_ros.progress import Progress
-from planar_ros.shell import run
-from planar_ros.transforms import Transforms
-from planar_ros.waiting import Waiting
+from planar_ros.calls.actions import server_is_ready
+from planar_ros.messages.conversion import pose2_to_msg
+from planar_ros.messages.transforms import Transforms
+from planar_ros.node.clock import sleep_until
+from planar_ros.node.parameters import read_settings
+from planar_ros.node.progress import Progress
+from planar_ros.node.shell import run
+from planar_ros.node.waiting import Waiting
 
 
 class FollowMe:

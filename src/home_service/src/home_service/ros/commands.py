@@ -14,8 +14,8 @@ from home_service.judging.verdict import ARRIVAL_TOLERANCE, DEMO, ERRAND, MARKER
 from home_service.ros.following import FollowWatch
 from home_service.ros.run import Run
 from planar import Pose2
-from planar_ros.actions import goal_is_over, server_is_ready
-from planar_ros.messages import pose2_to_msg
+from planar_ros.calls.actions import goal_is_over, server_is_ready
+from planar_ros.messages.conversion import pose2_to_msg
 
 
 def launch(options: Namespace) -> int:

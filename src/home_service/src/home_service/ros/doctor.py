@@ -14,8 +14,8 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
 from home_service.doctor.diagnosis import Findings, Node, Topic, as_json, as_text, problems
-from planar_ros.messages import frame_name
-from planar_ros.waiting import TOPIC as WAITING_TOPIC
+from planar_ros.messages.conversion import frame_name
+from planar_ros.node.waiting import TOPIC as WAITING_TOPIC
 from supervision.ros.node_api import answers
 from supervision.versions import versions
 

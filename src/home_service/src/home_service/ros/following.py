@@ -9,7 +9,7 @@ from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 
 from planar import Pose2
-from planar_ros.messages import pose2_from_msg
+from planar_ros.messages.conversion import pose2_from_msg
 
 # A follower is with its leader within this distance, metres, and must be for this share of the time.
 WITH_LEADER, REQUIRED_SHARE = 1.5, 0.9

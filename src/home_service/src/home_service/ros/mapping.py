@@ -15,7 +15,7 @@ from home_service.judging.verdict import ARRIVAL_TOLERANCE, Verdict
 from home_service.ros.run import Run
 from planar import Pose2, SettingsError, load_map
 from planar.maps.map_score import MapScore
-from planar_ros.actions import goal_is_over, server_is_ready
+from planar_ros.calls.actions import goal_is_over, server_is_ready
 from supervision.errors import LaunchError
 
 SAVE_SECONDS = 30.0

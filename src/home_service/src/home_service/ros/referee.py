@@ -19,7 +19,7 @@ from home_service.judging.verdict import Ledger
 from pick_objects import Delivery, Stage
 from planar import Pose2
 from planar.maps.places import Place
-from planar_ros.messages import pose2_from_msg
+from planar_ros.messages.conversion import pose2_from_msg
 
 MOTION_DISTANCE = 0.02
 NUMBER = re.compile(r"\d[\d.]*")

@@ -13,7 +13,7 @@ from home_service.ros.bags.player import BROKEN, ENDED
 from home_service.ros.mapping import save_map
 from home_service.ros.run import Run
 from planar import load_map
-from planar_ros.scan_log import BagError
+from planar_ros.bags.scan_log import BagError
 
 
 def replay(options: Namespace) -> int:

@@ -15,7 +15,13 @@ from visualization_msgs.msg import Marker
 from home_service.ros.referee import CONNECTION_CHATTER
 from planar import Pose2
 from planar.maps.places import Place
-from planar_ros.messages import OccupancyGridArrays, frame_name, grid_from_msg, pose2_from_msg, yaw_of
+from planar_ros.messages.conversion import (
+    OccupancyGridArrays,
+    frame_name,
+    grid_from_msg,
+    pose2_from_msg,
+    yaw_of,
+)
 from run_report import Collision, Goal, Marking, RunRecord, State, Warned, Zone
 
 SAMPLES_PER_SECOND = 10.0

@@ -15,9 +15,9 @@ import rospy
 
 from map_lite.config import SaverSettings
 from planar import UNKNOWN, PlanarError, SettingsError, save_map
-from planar_ros.messages import OccupancyGridArrays, grid_from_msg
-from planar_ros.shell import fail
-from planar_ros.waiting import Waiting
+from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg
+from planar_ros.node.shell import fail
+from planar_ros.node.waiting import Waiting
 
 
 class NothingToSaveError(PlanarError):

@@ -18,9 +18,9 @@ from map_lite.config import ServerSettings
 from map_lite.map_url import path_of
 from planar import MapFileError, OccupancyGrid, Pose2, load_map
 from planar.maps.map_file import MapDescriptionError, MapImageError, MapMissingError, cells_from_image
-from planar_ros.messages import GetMapArrays, LoadMapArrays, OccupancyGridArrays, grid_to_msg
-from planar_ros.parameters import read_settings
-from planar_ros.shell import run
+from planar_ros.messages.conversion import GetMapArrays, LoadMapArrays, OccupancyGridArrays, grid_to_msg
+from planar_ros.node.parameters import read_settings
+from planar_ros.node.shell import run
 
 RESULTS = {
     MapMissingError: LoadMapResponse.RESULT_MAP_DOES_NOT_EXIST,

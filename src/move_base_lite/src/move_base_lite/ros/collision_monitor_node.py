@@ -12,10 +12,10 @@ from std_msgs.msg import String
 from move_base_lite.collision_monitor import STOPPED, CollisionMonitor, MonitorSettings, Verdict
 from planar import SettingsError, Twist2
 from planar.config.settings import settings_from
-from planar_ros.messages import LaserScanArrays, frame_name, scan_from_msg
-from planar_ros.parameters import parameters_below
-from planar_ros.shell import run
-from planar_ros.transforms import Transforms
+from planar_ros.messages.conversion import LaserScanArrays, frame_name, scan_from_msg
+from planar_ros.messages.transforms import Transforms
+from planar_ros.node.parameters import parameters_below
+from planar_ros.node.shell import run
 
 WARN_SECONDS = 5.0
 SILENT = "silent"

@@ -8,7 +8,7 @@ from rospy.numpy_msg import numpy_msg
 
 from move_base_lite.costmap import LayeredCostmap, occupancy_of
 from planar import OccupancyGrid, Pose2
-from planar_ros.messages import OccupancyGridArrays, frame_name, grid_to_msg
+from planar_ros.messages.conversion import OccupancyGridArrays, frame_name, grid_to_msg
 
 OccupancyGridUpdateArrays = numpy_msg(OccupancyGridUpdate)
 

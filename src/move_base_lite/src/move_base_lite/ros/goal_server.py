@@ -12,8 +12,8 @@ from move_base_lite.decision import Status
 from move_base_lite.ros.goals import goal_from_msg
 from move_base_lite.ros.plan_messages import pose_msg
 from planar import Pose2
-from planar_ros.actions import ActionServer
-from planar_ros.transforms import Transforms
+from planar_ros.calls.actions import ActionServer
+from planar_ros.messages.transforms import Transforms
 
 
 class GoalServer:

@@ -7,8 +7,8 @@ from geometry_msgs.msg import PoseStamped
 
 from move_base_lite.errors import NavigationError
 from planar import Pose2
-from planar_ros.messages import frame_name, pose2_from_msg
-from planar_ros.transforms import Transforms
+from planar_ros.messages.conversion import frame_name, pose2_from_msg
+from planar_ros.messages.transforms import Transforms
 
 INVALID_QUATERNION = "Aborting on goal because it was sent with an invalid quaternion"
 SHORTEST_SQUARED = 1e-6

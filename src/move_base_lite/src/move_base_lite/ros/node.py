@@ -22,13 +22,13 @@ from move_base_lite.ros.zone_topics import ZoneTopics
 from move_base_lite.warming import warm_up
 from move_base_lite.zones import Zones, load_zones
 from planar import Pose2, SettingsError, Twist2
-from planar_ros.clock import sleep_until
-from planar_ros.messages import OccupancyGridArrays, frame_name, grid_from_msg
-from planar_ros.parameters import parameters_below
-from planar_ros.progress import Progress
-from planar_ros.shell import run
-from planar_ros.transforms import Transforms
-from planar_ros.waiting import Waiting
+from planar_ros.messages.conversion import OccupancyGridArrays, frame_name, grid_from_msg
+from planar_ros.messages.transforms import Transforms
+from planar_ros.node.clock import sleep_until
+from planar_ros.node.parameters import parameters_below
+from planar_ros.node.progress import Progress
+from planar_ros.node.shell import run
+from planar_ros.node.waiting import Waiting
 
 WARN_SECONDS = 5.0
 KILLED_TEXT = "Aborting on the goal because the node has been killed"

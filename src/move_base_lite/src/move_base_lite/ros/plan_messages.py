@@ -8,7 +8,7 @@ from std_msgs.msg import Header
 
 from move_base_lite.planning import headings_along
 from planar import Pose2
-from planar_ros.messages import pose2_to_msg
+from planar_ros.messages.conversion import pose2_to_msg
 
 
 def plan_msg(

@@ -14,8 +14,8 @@ from move_base_lite.navigator import Navigator
 from move_base_lite.ros.goals import goal_from_msg
 from move_base_lite.ros.plan_messages import plan_msg
 from planar import Pose2
-from planar_ros.messages import frame_name
-from planar_ros.transforms import Transforms
+from planar_ros.messages.conversion import frame_name
+from planar_ros.messages.transforms import Transforms
 
 INACTIVE_TEXT = "move_base must be in an inactive state to make a plan for an external user"
 NO_START_TEXT = "move_base cannot make a plan for you because it could not get the start pose of the robot"

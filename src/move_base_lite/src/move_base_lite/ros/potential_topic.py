@@ -8,8 +8,8 @@ from sensor_msgs.msg import PointCloud2
 
 from move_base_lite.planning import Potential
 from planar import OccupancyGrid, Pose2
-from planar_ros.clouds import cloud_msg
-from planar_ros.messages import OccupancyGridArrays, grid_to_msg
+from planar_ros.messages.clouds import cloud_msg
+from planar_ros.messages.conversion import OccupancyGridArrays, grid_to_msg
 
 CLOUD_FIELDS = ("x", "y", "z", "pot")
 # Metres up in navfn's cloud at which the goal is.

@@ -16,8 +16,8 @@ from move_base_lite.costmap.obstacle_layer import SourceSettings
 from move_base_lite.ros.clouds import points_of
 from move_base_lite.ros.sensor_checks import check_message
 from planar import Pose2, Twist2
-from planar_ros.messages import LaserScanArrays, frame_name, scan_from_msg
-from planar_ros.transforms import Transforms
+from planar_ros.messages.conversion import LaserScanArrays, frame_name, scan_from_msg
+from planar_ros.messages.transforms import Transforms
 
 KEPT = 5
 WARN_SECONDS = 5.0

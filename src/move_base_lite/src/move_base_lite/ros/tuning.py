@@ -12,7 +12,7 @@ from move_base_lite.parameters import settings_from_parameters
 from move_base_lite.parameters.dynamic import changed, servers
 from move_base_lite.parameters.planners import GLOBAL_PLANNERS, LOCAL_PLANNERS
 from planar import SettingsError
-from planar_ros.reconfigure import Tuning
+from planar_ros.node.reconfigure import Tuning
 
 PLANNERS = {"base_global_planner": GLOBAL_PLANNERS, "base_local_planner": LOCAL_PLANNERS}
 

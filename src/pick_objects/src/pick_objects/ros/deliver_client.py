@@ -14,7 +14,7 @@ from actionlib_msgs.msg import GoalStatus
 from home_service_msgs.msg import DeliverAction, DeliverGoal, DeliveryState
 
 from pick_objects.mission_file import NAME_OF_TEXT
-from planar_ros.actions import goal_is_over, server_is_ready
+from planar_ros.calls.actions import goal_is_over, server_is_ready
 
 POLL_SECONDS, TELL_SECONDS, CANCEL_SECONDS = 0.1, 2.0, 10.0
 SUCCESS, FAILURE, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130

@@ -11,7 +11,7 @@ from pick_objects.mission import Mission
 from pick_objects.ros.mission_topics import MissionTopics, delivery_states
 from planar import PlanarError
 from planar.driving import Finish
-from planar_ros.actions import ActionServer
+from planar_ros.calls.actions import ActionServer
 
 FEEDBACK_SECONDS = 0.2
 

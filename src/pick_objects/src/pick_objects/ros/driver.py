@@ -14,9 +14,9 @@ from pick_objects.approach import GoTo
 from pick_objects.errand import MeasureWays, WaysMeasured
 from planar import Pose2
 from planar.driving import GoalReached, GoalRefused
-from planar_ros.actions import goal_is_over, server_is_ready
-from planar_ros.messages import pose2_from_msg, pose2_to_msg
-from planar_ros.services import ServiceError, call_service
+from planar_ros.calls.actions import goal_is_over, server_is_ready
+from planar_ros.calls.services import ServiceError, call_service
+from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
 
 PLAN_SECONDS = 5.0
 

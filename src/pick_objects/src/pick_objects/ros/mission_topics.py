@@ -10,7 +10,7 @@ from pick_objects.errand import Errand
 from pick_objects.job import ErrandState, Job
 from pick_objects.mission import Delivery
 from planar import Pose2
-from planar_ros.messages import pose2_to_msg
+from planar_ros.messages.conversion import pose2_to_msg
 
 
 class MissionTopics:

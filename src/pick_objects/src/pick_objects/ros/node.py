@@ -20,10 +20,10 @@ from pick_objects.ros.mission_topics import MissionTopics, delivery_from_msg
 from planar import OccupancyGrid
 from planar.driving import Finish
 from planar.maps.places import load_places, places_of_errand, why_unreachable
-from planar_ros.messages import OccupancyGridArrays, grid_from_msg
-from planar_ros.parameters import read_settings
-from planar_ros.shell import fail, run
-from planar_ros.waiting import Readiness, Waiting
+from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg
+from planar_ros.node.parameters import read_settings
+from planar_ros.node.shell import fail, run
+from planar_ros.node.waiting import Readiness, Waiting
 
 POLL_SECONDS = 0.02
 

@@ -6,7 +6,7 @@ import numpy as np
 import rospy
 from sensor_msgs.msg import PointCloud2
 
-from planar_ros.clouds import cloud_msg
+from planar_ros.messages.clouds import cloud_msg
 from sim_bridge.sensors.bumper import CENTRE, LEFT, RIGHT
 from sim_bridge.sensors.kobuki import KobukiReading
 

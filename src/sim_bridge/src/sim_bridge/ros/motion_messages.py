@@ -7,7 +7,7 @@ from nav_msgs.msg import Odometry
 from tf2_msgs.msg import TFMessage
 
 from planar import Pose2, Twist2
-from planar_ros.messages import pose2_to_msg, quaternion_of
+from planar_ros.messages.conversion import pose2_to_msg, quaternion_of
 
 _POSE = struct.Struct("<7d")
 _TWIST = struct.Struct("<6d")

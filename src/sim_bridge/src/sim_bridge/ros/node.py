@@ -9,10 +9,10 @@ from visualization_msgs.msg import Marker
 
 from planar import Pose2
 from planar.config.settings import check
-from planar_ros.messages import pose2_from_msg, time_of
-from planar_ros.parameters import parameters_below, read_settings
-from planar_ros.prompt_sending import send_promptly
-from planar_ros.shell import run
+from planar_ros.messages.conversion import pose2_from_msg, time_of
+from planar_ros.node.parameters import parameters_below, read_settings
+from planar_ros.node.prompt_sending import send_promptly
+from planar_ros.node.shell import run
 from sim_bridge.config import BridgeSettings, RobotSettings, SimulationSettings
 from sim_bridge.description import read_sdf_robot
 from sim_bridge.errors import WorldError

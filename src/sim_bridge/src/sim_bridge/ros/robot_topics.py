@@ -8,7 +8,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
 from planar import Scan, Twist2
-from planar_ros.messages import LaserScanArrays, time_of
+from planar_ros.messages.conversion import LaserScanArrays, time_of
 from sim_bridge.robot import Observation
 from sim_bridge.ros.command_topics import CommandTopics, MuxTopics
 from sim_bridge.ros.kobuki_topics import KobukiTopics

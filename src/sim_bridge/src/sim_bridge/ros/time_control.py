@@ -9,10 +9,10 @@ import rospy
 from sim_bridge_msgs.srv import Step, StepResponse
 from std_msgs.msg import Header
 
-from planar_ros.messages import time_of
-from planar_ros.progress import TOPIC as PROGRESS_TOPIC
-from planar_ros.reconfigure import Reconfiguration
-from planar_ros.waiting import Waiting
+from planar_ros.messages.conversion import time_of
+from planar_ros.node.progress import TOPIC as PROGRESS_TOPIC
+from planar_ros.node.reconfigure import Reconfiguration
+from planar_ros.node.waiting import Waiting
 from sim_bridge.config import RunTimeSettings
 from sim_bridge.pacing import Pacer
 from sim_bridge.ros.orders import Orders

@@ -14,7 +14,7 @@ from std_srvs.srv import SetBool, SetBoolResponse
 
 from planar import PlanarError, Pose2, save_map
 from planar.config.parameters import official_names
-from planar_ros.messages import (
+from planar_ros.messages.conversion import (
     GetMapArrays,
     OccupancyGridArrays,
     frame_name,
@@ -22,12 +22,12 @@ from planar_ros.messages import (
     pose2_from_msg,
     scan_from_msg,
 )
-from planar_ros.parameters import read_settings
-from planar_ros.progress import Progress
-from planar_ros.scan_queue import ScanQueue
-from planar_ros.shell import run
-from planar_ros.transforms import Transforms
-from planar_ros.waiting import Waiting
+from planar_ros.messages.scan_queue import ScanQueue
+from planar_ros.messages.transforms import Transforms
+from planar_ros.node.parameters import read_settings
+from planar_ros.node.progress import Progress
+from planar_ros.node.shell import run
+from planar_ros.node.waiting import Waiting
 from slam_lite.config import WITHOUT_EFFECT, NodeSettings
 from slam_lite.mapper import Follower, Mapper
 from slam_lite.rendering import MapRenderer, on_canvas

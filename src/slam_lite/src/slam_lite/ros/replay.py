@@ -11,7 +11,7 @@ from rich.progress import Progress
 from planar import PlanarError, save_map, write_atomically
 from planar.config.settings_file import settings_from_yaml
 from planar.files.tum import tum_text
-from planar_ros.scan_log import BagError, ScanLog
+from planar_ros.bags.scan_log import BagError, ScanLog
 from slam_lite.config import NodeSettings
 from slam_lite.mapper import Mapper
 from slam_lite.trajectory import Trajectory

@@ -11,10 +11,10 @@ import rospy
 from geometry_msgs.msg import Twist
 
 from planar import PlanarError, Twist2
-from planar_ros.parameters import read_settings
-from planar_ros.progress import Progress
-from planar_ros.shell import run
-from planar_ros.waiting import Waiting
+from planar_ros.node.parameters import read_settings
+from planar_ros.node.progress import Progress
+from planar_ros.node.shell import run
+from planar_ros.node.waiting import Waiting
 from teleop_lite.config import TeleopSettings
 from teleop_lite.key_script import KeyScript, parse
 from teleop_lite.teleop import TICK_SECONDS, Teleop

@@ -6,7 +6,7 @@ import rospy
 from geometry_msgs.msg import Twist
 
 from planar import PlanarError
-from planar_ros.shell import run
+from planar_ros.node.shell import run
 from teleop_lite.terminal import CTRL_C, Terminal
 
 # How the arrow keys end, as terminals send them: shares of full speed ahead and to the left.

@@ -21,7 +21,7 @@ from gazebo_ros.ros.services import (
     spawn_sdf_model_client,
     spawn_urdf_model_client,
 )
-from planar_ros.entry import INTERRUPTS, handling_interrupts
+from planar_ros.node.entry import INTERRUPTS, handling_interrupts
 
 PARAMETER_SECONDS = 30.0
 

@@ -19,10 +19,10 @@ from tf2_msgs.msg import TFMessage
 
 from home_service.bag_files import INPUT_TYPES, LASER_SCAN, Played, Recording
 from planar import SettingsError
-from planar_ros.messages import frame_name, time_of
-from planar_ros.progress import TOPIC as PROGRESS_TOPIC
-from planar_ros.scan_log import BagError
-from planar_ros.shell import run
+from planar_ros.bags.scan_log import BagError
+from planar_ros.messages.conversion import frame_name, time_of
+from planar_ros.node.progress import TOPIC as PROGRESS_TOPIC
+from planar_ros.node.shell import run
 from sim_bridge.pacing import Pacer
 
 PLAYING, ENDED, BROKEN = "playing", "ended", "broken: "

@@ -25,10 +25,10 @@ from std_srvs.srv import Empty
 
 from home_service.ros.commander.tasks import Drive, Feedback, Motion, Outcome, Task, Waypoints
 from planar import PlanarError, Pose2
-from planar_ros.actions import server_is_ready
-from planar_ros.messages import pose2_to_msg
-from planar_ros.services import call_service
-from planar_ros.transforms import Transforms
+from planar_ros.calls.actions import server_is_ready
+from planar_ros.calls.services import call_service
+from planar_ros.messages.conversion import pose2_to_msg
+from planar_ros.messages.transforms import Transforms
 
 POLL_SECONDS = 0.05
 # Variances of a pose given by hand: m^2, m^2, rad^2 (as rviz gives them).

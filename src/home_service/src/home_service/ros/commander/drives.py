@@ -12,8 +12,8 @@ from move_base_msgs.msg import MoveBaseGoal
 from home_service.ros.commander.outcomes import Feedback, Outcome, Result
 from home_service.ros.commander.task import PATIENCE_SECONDS, Task
 from planar import Pose2
-from planar_ros.actions import goal_is_over, server_is_ready
-from planar_ros.messages import pose2_from_msg, pose2_to_msg
+from planar_ros.calls.actions import goal_is_over, server_is_ready
+from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
 
 
 class Drive(Task):

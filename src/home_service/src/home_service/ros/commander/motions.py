@@ -14,7 +14,7 @@ from nav_msgs.msg import Odometry
 from home_service.ros.commander.outcomes import Feedback, Outcome, Result
 from home_service.ros.commander.task import PATIENCE_SECONDS, Task
 from planar import OccupancyGrid, Pose2, wrap
-from planar_ros.messages import OccupancyGridArrays, grid_from_msg, pose2_from_msg
+from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg, pose2_from_msg
 
 SLOW_DOWN = 1.5
 """A motion's speed is at most so many times what is left of it, per second."""

@@ -11,7 +11,7 @@ from std_srvs.srv import Empty, EmptyResponse
 
 from planar import PlanarError
 from planar.config.settings import Tunable
-from planar_ros.reconfigure import Tuning
+from planar_ros.node.reconfigure import Tuning
 from sim_bridge.config import HIGHEST_PHYSICS_RATE
 from sim_bridge.errors import WorldError
 from sim_bridge.ros.gazebo.server import NAMESPACE, Server

@@ -8,8 +8,8 @@ import rospy
 from tf2_msgs.msg import TFMessage
 
 from planar import Pose2, Scan
-from planar_ros.messages import LaserScanArrays, frame_name, scan_from_msg
-from planar_ros.transforms import Transforms
+from planar_ros.messages.conversion import LaserScanArrays, frame_name, scan_from_msg
+from planar_ros.messages.transforms import Transforms
 
 # A stamp this much older than the one before it means that time has jumped back: a bag's loop, a reset.
 JUMP_BACK_SECONDS = 1.0

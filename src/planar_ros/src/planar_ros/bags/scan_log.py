@@ -16,7 +16,7 @@ from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
 from std_msgs.msg import Header
 
 from planar import PlanarError, Pose2, Scan
-from planar_ros.messages import frame_name, pose2_from_msg, scan_from_msg, yaw_of
+from planar_ros.messages.conversion import frame_name, pose2_from_msg, scan_from_msg, yaw_of
 
 # Odometry may lag behind or start after a scan by this much, seconds of the bag's time.
 _PATIENCE = 2.0

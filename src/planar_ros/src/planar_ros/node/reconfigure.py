@@ -7,7 +7,7 @@ from dynamic_reconfigure.encoding import extract_params
 from dynamic_reconfigure.server import Server
 
 from planar.config.parameters import Tunable, parameters_of, tunables_of
-from planar_ros.parameters import RESTORE, ParameterWriter
+from planar_ros.node.parameters import RESTORE, ParameterWriter
 
 KINDS = {bool: "bool", int: "int", float: "double", str: "str"}
 LARGEST_INT = 2**31 - 1

@@ -8,7 +8,7 @@ import tf2_ros
 from scipy.spatial.transform import Rotation
 
 from planar import Pose2
-from planar_ros.messages import frame_name, transform_msg, yaw_of
+from planar_ros.messages.conversion import frame_name, transform_msg, yaw_of
 
 
 class Transforms:

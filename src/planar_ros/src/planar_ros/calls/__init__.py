@@ -1,0 +1,1 @@
+"""Actions and services of other nodes, called so that nothing hangs."""

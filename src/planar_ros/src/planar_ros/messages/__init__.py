@@ -1,0 +1,1 @@
+"""Messages and transforms made into planar types, and back."""
