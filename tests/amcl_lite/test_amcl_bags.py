@@ -22,8 +22,8 @@ from sim_bridge.views.true_map import true_map
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "benchmarks"))
 
-from bags import BASE_FRAME, write_bag  # noqa: E402
-from drives import random_drive  # noqa: E402
+from helpers.bags import BASE_FRAME, write_bag  # noqa: E402
+from helpers.drives import random_drive  # noqa: E402
 
 NEAR, NEAR_ANGLE = 0.15, 0.1
 SECONDS = 20.0

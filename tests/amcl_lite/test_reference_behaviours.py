@@ -23,9 +23,9 @@ from sim_bridge.views.true_map import true_map
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "benchmarks"))
 
-from bags import Laser, write_bag  # noqa: E402
-from drives import Crazy, RandomDriver, Tour, drive  # noqa: E402
-from worlds import HALLWAY, OFFICE, world_from_picture  # noqa: E402
+from helpers.bags import Laser, write_bag  # noqa: E402
+from helpers.drives import Crazy, RandomDriver, Tour, drive  # noqa: E402
+from helpers.worlds import HALLWAY, OFFICE, world_from_picture  # noqa: E402
 
 # Metres and radians, at the end of a bag.
 NEAR, NEAR_ANGLE = 0.15, 0.1

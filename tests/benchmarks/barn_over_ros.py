@@ -22,7 +22,7 @@ from barn import (
     score,
     worlds_in,
 )
-from robot_over_ros import RobotOverRos, add_node_options, client_with_goal, is_under_way, move_base
+from helpers.robot_over_ros import RobotOverRos, add_node_options, client_with_goal, is_under_way, move_base
 
 from sim_bridge import ROBOTS, Simulation, load_world
 

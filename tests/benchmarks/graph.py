@@ -77,6 +77,7 @@ def _drive(options, folder: str) -> NodeMeter:
     meter, is_under_way = NodeMeter(psutil.Process(run.pid)), threading.Event()
 
     def show() -> None:
+        assert run.stdout is not None
         for line in run.stdout:
             print(line, end="", flush=True)
             if line.startswith("goal 1"):

@@ -9,30 +9,17 @@ scan, against the truth; CPU is that of the whole process.
 """
 
 import argparse
-import subprocess
 import time
-from dataclasses import dataclass
-from pathlib import Path
 from typing import Dict, List, Optional, Tuple
 
 import numpy as np
-import yaml
-from drives import Sighting, random_drive
-from lockstep import Master, Node, Player
-from worlds import HALLWAY, OFFICE, world_from_picture
+from helpers.drives import Sighting, random_drive
+from helpers.localization_cases import NOISES, PARAMETERS, TURTLEBOT, Place, installed_nodes, places
+from helpers.lockstep import Master, Node, Player
 
 from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, wrap
-from sim_bridge import SimulationSettings, load_world
-from sim_bridge.noise import noise_named
-from sim_bridge.views.true_map import true_map
-from sim_bridge.world import World
 
-ROOT = Path(__file__).resolve().parents[2]
 PORT = 11399
-NOISES = {name: SimulationSettings(**noise_named(name)) for name in ("turtlebot", "bad")}
-FRAMES = {"base_frame_id": "base_footprint"}
-TURTLEBOT = yaml.safe_load((ROOT / "src/amcl_lite/config/turtlebot.yaml").read_text())
-PARAMETERS = {"turtlebot": TURTLEBOT, "default": FRAMES}
 SCANS_PER_SECOND = 10
 # A distance, metres, that no robot drives.
 NEVER = 1000.0
@@ -40,16 +27,6 @@ NEVER = 1000.0
 RECOVERED_WITHIN, RECOVERED_SCANS = 0.25, 20
 DEADLINES = {"global": 30, "kidnapped": 30, "wrong by 1 m, 30 deg": 10}
 SECTIONS = ("accuracy", "updates", "recovery", "memory")
-
-
-@dataclass(frozen=True)
-class Place:
-    """A world, its true map, and where the robot starts."""
-
-    name: str
-    world: World
-    grid: OccupancyGrid
-    start: Pose2
 
 
 def main():
@@ -83,18 +60,6 @@ def main():
             memory(player, commands, first)
     finally:
         master.close()
-
-
-def places() -> List[Place]:
-    """The home first."""
-    worlds = (
-        ("home", load_world(str(ROOT / "map" / "home.world")), Pose2()),
-        ("hallway", world_from_picture("hallway", HALLWAY), Pose2(2.0, 3.75)),
-        ("office", world_from_picture("office", OFFICE), Pose2(1.0, 1.0)),
-    )
-    return [
-        Place(name, world, true_map(world, inside=(start.x, start.y)), start) for name, world, start in worlds
-    ]
 
 
 def accuracy(
@@ -250,7 +215,9 @@ def memory(player: Player, commands: Dict[str, str], drive: List[Sighting]) -> N
             node.close()
 
 
-def _measure(player: Player, command: str, parameters: dict, drive: List[Sighting], waiting: list = None):
+def _measure(
+    player: Player, command: str, parameters: dict, drive: List[Sighting], waiting: Optional[list] = None
+):
     """Errors (N, 2) of position and heading, and CPU seconds a scan; ``waiting`` gets the wall seconds."""
     node: Node = player.start_node([command], parameters)
     try:
@@ -269,19 +236,6 @@ def _measure(player: Player, command: str, parameters: dict, drive: List[Sightin
         return np.array(errors), (node.cpu_seconds() - cpu_before) / len(drive)
     finally:
         node.close()
-
-
-def installed_nodes() -> Dict[str, str]:
-    """The programs of the nodes to compare; says so if the official one is not installed."""
-    lite = {"amcl_lite": str(ROOT / "src" / "amcl_lite" / "nodes" / "amcl_lite")}
-    found = subprocess.run(["catkin_find", "amcl", "amcl"], stdout=subprocess.PIPE, check=False)
-    # This workspace has a package amcl too, an alias of amcl_lite.
-    programs = [path for path in found.stdout.decode().split() if ROOT not in Path(path).resolve().parents]
-    official = [path for path in programs if Path(path).is_file()]
-    if not official:
-        print("amcl is not installed")
-        return lite
-    return {"amcl": official[0], **lite}
 
 
 def _figures(errors: np.ndarray, cpu: float) -> str:

@@ -18,10 +18,10 @@ from pathlib import Path
 from typing import Callable
 
 import rosgraph
-from bags import write_bag
-from drives import random_drive
-from localization import NOISES, PARAMETERS, installed_nodes, places
-from lockstep import Node
+from helpers.bags import write_bag
+from helpers.drives import random_drive
+from helpers.localization_cases import NOISES, PARAMETERS, installed_nodes, places
+from helpers.lockstep import Node
 
 from planar.maps.map_file import save_map
 

@@ -13,8 +13,8 @@ from dataclasses import replace
 from typing import List, Tuple
 
 import numpy as np
-from drives import Sighting, random_drive
-from localization import Place, places
+from helpers.drives import Sighting, random_drive
+from helpers.localization_cases import Place, places
 from scipy.stats import rankdata
 
 from amcl_lite.beams import all_beams, evenly_spaced_beams

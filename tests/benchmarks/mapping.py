@@ -163,12 +163,12 @@ def judge(run: MappingRun, end: Finish, score: MapScore, seed: int, cpu: float, 
         "; ".join(reasons) or end.reason,
         run.now,
         cpu,
-        *asdict(score).values(),
-        way_home,
-        run.collisions,
-        float(errors.mean()),
-        float(errors.max()),
-        mission,
+        **asdict(score),
+        way_home=way_home,
+        collisions=run.collisions,
+        mean_error=float(errors.mean()),
+        max_error=float(errors.max()),
+        mission=mission,
     )
 
 

@@ -8,30 +8,27 @@ It localizes itself from scans and drifting odometry; the truth is for the start
 
 import argparse
 import json
-import math
 import sys
 import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import List, Optional
+from typing import List, Optional, Set
 
 import numpy as np
-from walkers import MOVING, Walker, add_walkers
+from helpers.home_scenes import add_box, places
+from helpers.walkers import MOVING, Walker, add_walkers
 
 from amcl_lite import Localizer, LocalizerSettings
 from amcl_lite.config import InitialPose
-from move_base_lite import Navigator, NavigatorSettings, PlanningError, Status, load_settings
-from move_base_lite.costmap import LayeredCostmap
+from move_base_lite import Navigator, NavigatorSettings, Status, load_settings
 from move_base_lite.warming import warm_up
-from planar import FREE, OccupancyGrid, Pose2, load_map, wrap
+from planar import OccupancyGrid, Pose2, load_map, wrap
 from planar.config.settings_file import settings_from_yaml
 from sim_bridge import ROBOTS, Simulation, load_world
 from sim_bridge.world import World
 
 ROOT = Path(__file__).resolve().parents[2]
 LOCALIZATION_CONFIG = ROOT / "src" / "amcl_lite" / "config" / "turtlebot.yaml"
-BOX_SIZE = (0.35, 0.35, 0.5)
-BOX_CLEARANCE = 1.0
 # Steps of the simulation for which a person stays where it is.
 STEPS_OF_WALKERS = 2
 
@@ -113,7 +110,10 @@ def _pursue(
     period = round(1.0 / options.rate / simulation.step_seconds)
     observation = simulation.step()
     start_stamp, last, driven, planned = observation.stamp, observation.base_in_world, 0.0, 0.0
-    touched, bumped_into, recoveries, tick_ms = set(), set(), 0, []
+    touched: Set[str] = set()
+    bumped_into: Set[str] = set()
+    tick_ms: List[float] = []
+    recoveries = 0
     people = {f"{walker.name}::link" for walker in walkers}
     scan, decision = None, None
     navigator.set_goal(goal)
@@ -160,39 +160,6 @@ def _pursue(
         bumped_into=sorted(bumped_into),
         tick_ms=tick_ms,
     )
-
-
-def places(settings: NavigatorSettings, grid: OccupancyGrid, rng, count: int) -> List[Pose2]:
-    """Random poses in the part of the map that the robot can reach from the map's origin."""
-    costmap = LayeredCostmap(settings.global_costmap, grid)
-    navigator = Navigator(settings, grid)
-    places: List[Pose2] = []
-    free = np.argwhere((costmap.costs_of_map < 128) & (grid.cells == FREE))
-    while len(places) < count:
-        x, y = grid.points_of(free[rng.integers(len(free), size=1)])[0]
-        place = Pose2(float(x), float(y), float(rng.uniform(-math.pi, math.pi)))
-        if _is_connected(navigator, place):
-            places.append(place)
-    return places
-
-
-def _is_connected(navigator: Navigator, place: Pose2) -> bool:
-    try:
-        return len(navigator.make_plan(Pose2(), place)) > 0
-    except PlanningError:
-        return False
-
-
-def add_box(simulation, name, settings, grid, rng, keep_free) -> None:
-    """Puts a box that the map does not show somewhere off the ends of the way and off narrow places."""
-    costmap = LayeredCostmap(settings.global_costmap, grid)
-    open_cells = np.argwhere(costmap.costs_of_map == 0)
-    while True:
-        x, y = grid.points_of(open_cells[rng.integers(len(open_cells), size=1)])[0]
-        box = Pose2(float(x), float(y), float(rng.uniform(-math.pi, math.pi)))
-        if all(box.distance_to(place) > BOX_CLEARANCE for place in keep_free):
-            simulation.add_box(name, BOX_SIZE, box)
-            return
 
 
 def _length(path_xy: np.ndarray) -> float:

@@ -13,13 +13,13 @@ import json
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import List
+from typing import List, Set
 
 import actionlib
 import numpy as np
 import psutil
-from navigation import add_box, places
-from robot_over_ros import RobotOverRos, add_node_options, client_with_goal, is_under_way, move_base
+from helpers.home_scenes import add_box, places
+from helpers.robot_over_ros import RobotOverRos, add_node_options, client_with_goal, is_under_way, move_base
 
 from move_base_lite import load_settings
 from planar import Pose2, load_map
@@ -62,7 +62,8 @@ def main() -> int:
 def _pursue(robot: RobotOverRos, goal: Pose2, process: psutil.Process, limit: float) -> Run:
     client = client_with_goal(robot, "map", goal)
     cpu, began = sum(process.cpu_times()[:2]), robot.now
-    last, driven, touched = robot.observation.base_in_world, 0.0, set()
+    last, driven = robot.observation.base_in_world, 0.0
+    touched: Set[str] = set()
     while robot.now - began < limit and is_under_way(client):
         robot.step()
         touched.update(robot.observation.contacts)

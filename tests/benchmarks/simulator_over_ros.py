@@ -17,7 +17,7 @@ from pathlib import Path
 
 import rospy
 from geometry_msgs.msg import Twist
-from lockstep import Master, Node
+from helpers.lockstep import Master, Node
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import LaserScan

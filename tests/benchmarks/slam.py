@@ -17,7 +17,7 @@ import sys
 import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import List, Tuple
+from typing import List, Optional, Tuple
 
 import matplotlib
 import numpy as np
@@ -75,7 +75,7 @@ def find_logs(folder: Path) -> List[Tuple[Path, Path]]:
     return pairs
 
 
-def score_log(bag: Path, relations_path: Path, out: Path, config: Path = None) -> Score:
+def score_log(bag: Path, relations_path: Path, out: Path, config: Optional[Path] = None) -> Score:
     """Replays a bag, keeps its map and trajectory in ``out``, and scores the trajectory."""
     stem = out / relations_path.stem
     tum = stem.with_suffix(".tum")

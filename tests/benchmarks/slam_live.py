@@ -14,19 +14,19 @@ import json
 import sys
 import time
 from pathlib import Path
-from typing import Dict, List
+from typing import Any, Dict, List
 
 import numpy as np
 import rospy
-from drives import Sighting, random_drive
-from lockstep import Master, Node
+from helpers.drives import Sighting, random_drive
+from helpers.lockstep import Master, Node
+from helpers.worlds import OFFICE, world_from_picture
 from rich.console import Console
 from rich.table import Table
 from rosgraph_msgs.msg import Clock
 from roslib.packages import find_node
 from std_msgs.msg import Header
 from tf2_ros import StaticTransformBroadcaster
-from worlds import OFFICE, world_from_picture
 
 from planar import Pose2
 from planar_ros.messages.conversion import LaserScanArrays, OccupancyGridArrays, transform_msg
@@ -121,7 +121,7 @@ def _tell(test: LiveTest, drive: List[Sighting], cpu: float, memory_mb: float, p
     table = Table(title=f"{len(drive)} scans of {len(drive[0].scan.ranges)} beams, ms")
     for heading in ("", "count", "median", "p99", "max"):
         table.add_column(heading, justify="right")
-    figures = {"cpu_share": cpu / drive[-1].scan.stamp, "memory_mb": memory_mb}
+    figures: Dict[str, Any] = {"cpu_share": cpu / drive[-1].scan.stamp, "memory_mb": memory_mb}
     for name, delays in (("scan inserted", test.inserted), ("map redrawn", test.redrawn)):
         spread = [1e3 * float(np.percentile(delays, share)) for share in (50, 99, 100)]
         table.add_row(name, str(len(delays)), *(f"{value:.1f}" for value in spread))

@@ -14,13 +14,13 @@ import math
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, Iterator, List, Tuple
+from typing import Dict, Iterator, List, Optional, Tuple
 
 import numpy as np
-from bags import START, write_bag
-from drives import Sighting
+from helpers.bags import START, write_bag
+from helpers.drives import Sighting
 
-from planar import OCCUPIED, OccupancyGrid, Pose2, Scan, wrap
+from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, Scan, wrap
 from planar.geometry.ray_casting import cast_rays
 
 RESOLUTION, WALL, CORRIDOR, DOOR = 0.025, 0.15, 2.2, 0.95
@@ -66,8 +66,9 @@ class Site:
         self._size = self._pitch * [plan.columns, plan.rows] + CORRIDOR
         shape = np.ceil((self._size + 2.0 * WALL) / RESOLUTION).astype(int)[::-1]
         self._cells = np.zeros(shape, dtype=np.int8)
-        self._fill(-WALL, -WALL, *(self._size + WALL))
-        self._fill(0.0, 0.0, *self._size, 0)
+        width, depth = self._size
+        self._fill(-WALL, -WALL, width + WALL, depth + WALL)
+        self._fill(0.0, 0.0, width, depth, FREE)
         # Inside each room, the way (3, 2) from the corridor in.
         self.rooms: List[np.ndarray] = []
         for column in range(plan.columns):
@@ -207,7 +208,8 @@ class Person:
 def sightings_of(site: Site, poses: Iterator[Pose2], plan: Building, rng) -> Iterator[Sighting]:
     """What the robot measures on its way."""
     angles = -0.5 * math.pi + math.pi / BEAMS * np.arange(BEAMS)
-    odometry, last, person = DriftingOdometry(plan, rng), None, Person(rng)
+    odometry, person = DriftingOdometry(plan, rng), Person(rng)
+    last: Optional[Pose2] = None
     for i, pose in enumerate(poses):
         in_odom = odometry.move(Pose2() if last is None else last.inverse() @ pose)
         last, laser = pose, pose @ LASER_IN_BASE
@@ -223,21 +225,23 @@ def sightings_of(site: Site, poses: Iterator[Pose2], plan: Building, rng) -> Ite
 
 def relations_of(sightings: List[Sighting]) -> np.ndarray:
     """Rows ``t1 t2 x y z roll pitch yaw`` of the laser: to the place before, and to earlier visits."""
-    rows, places = [], []
+    rows: List[Tuple[float, ...]] = []
+    places: List[Tuple[float, Pose2]] = []
     for sighting in sightings:
         laser = sighting.base_in_map @ sighting.scan.laser_in_base
         if places and places[-1][1].distance_to(laser) < RELATION_STEP:
             continue
         stamp = START + sighting.scan.stamp
-        rows += [_relation(*place, stamp, laser) for place in places[-1:]]
+        rows += [_relation(place, (stamp, laser)) for place in places[-1:]]
         visits = [place for place in places if place[0] < stamp - REVISIT_SECONDS]
         again = [place for place in visits if place[1].distance_to(laser) < REVISIT_RADIUS]
-        rows += [_relation(*place, stamp, laser) for place in again[:1] + again[-1:]]
+        rows += [_relation(place, (stamp, laser)) for place in again[:1] + again[-1:]]
         places.append((stamp, laser))
     return np.array(rows)
 
 
-def _relation(t1: float, first: Pose2, t2: float, second: Pose2) -> Tuple[float, ...]:
+def _relation(earlier: Tuple[float, Pose2], later: Tuple[float, Pose2]) -> Tuple[float, ...]:
+    (t1, first), (t2, second) = earlier, later
     x, y, yaw = (first.inverse() @ second).as_array()
     return t1, t2, x, y, 0.0, 0.0, 0.0, yaw
 

@@ -213,7 +213,11 @@ def main() -> int:
     parser.add_argument("names", nargs="*", metavar="NAME", help="only test files whose paths contain it")
     options = parser.parse_args()
 
-    unit_paths = [*ROOT.glob("src/**/test/test_*.py"), *ROOT.glob("tests/runner/test_*.py")]
+    unit_paths = [
+        *ROOT.glob("src/**/test/test_*.py"),
+        *ROOT.glob("tests/runner/test_*.py"),
+        *ROOT.glob("tests/repository/test_*.py"),
+    ]
     unit = matching(unit_paths, options.names) if options.kind in ("unit", "all") else []
     ros = matching(ROOT.glob("tests/**/*.test"), options.names) if options.kind in ("ros", "all") else []
     if not unit and not ros:

@@ -81,8 +81,8 @@ def add_walkers(
     navigator = Navigator(settings, grid)
     walkers = []
     for number in range(count):
-        ends = sorted(places[2 * number : 2 * number + 2], key=robot.distance_to, reverse=True)
-        path_xy = navigator.make_plan(*ends)
+        far, near = sorted(places[2 * number : 2 * number + 2], key=robot.distance_to, reverse=True)
+        path_xy = navigator.make_plan(far, near)
         speed = rng.uniform(SLOWEST, FASTEST)
         walkers.append(Walker(simulation, f"walker_{number}", path_xy, speed, are_heedless))
     return walkers

@@ -2,17 +2,17 @@
 
 import math
 from dataclasses import dataclass
-from typing import List, Sequence
+from typing import List, Optional, Sequence
 
 import numpy as np
 import rosbag
 import rospy
-from drives import Sighting
 from geometry_msgs.msg import Quaternion, TransformStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
 from tf2_msgs.msg import TFMessage
 
+from helpers.drives import Sighting
 from planar import OccupancyGrid, Pose2
 from planar.geometry.ray_casting import cast_rays
 from planar_ros.messages.conversion import pose2_to_msg, time_of, transform_msg
@@ -36,13 +36,13 @@ def write_bag(
     path: str,
     sightings: List[Sighting],
     scan_topic: str = "scan",
-    grid: OccupancyGrid = None,
+    grid: Optional[OccupancyGrid] = None,
     lasers: Sequence[Laser] = (),
     base_frame: str = BASE_FRAME,
 ) -> None:
     """Writes what a robot with a laser measured, beside the truth.
 
-    If ``lasers`` are given, they take the place of the drive's own, and measure the map ``grid``.
+    If ``grid`` is given, ``lasers`` take the place of the drive's own, and measure that map.
     """
     rng = np.random.default_rng(0)
     own = Laser("laser", sightings[0].scan.laser_in_base)
@@ -61,8 +61,9 @@ def write_bag(
             truth.header.stamp, truth.header.frame_id = stamp, "world"
             truth.pose.pose = pose2_to_msg(sighting.base_in_map)
             bag.write("/base_pose_ground_truth", truth, stamp)
-            if not lasers:
+            if grid is None:
                 bag.write("/" + scan_topic, _own_scan(sighting, own, stamp), stamp)
+                continue
             for laser in lasers:
                 bag.write("/" + scan_topic, _measured(grid, sighting.base_in_map, laser, stamp, rng), stamp)
 

@@ -11,13 +11,13 @@ import numpy as np
 import psutil
 import rosgraph
 import rospy
-from drives import Sighting
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Empty
 from tf2_msgs.msg import TFMessage
 from tf2_ros import StaticTransformBroadcaster
 
+from helpers.drives import Sighting
 from planar import OccupancyGrid, Pose2
 from planar_ros.messages.conversion import (
     GetMapArrays,

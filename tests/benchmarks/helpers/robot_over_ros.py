@@ -13,7 +13,6 @@ import rospy
 import yaml
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped, Twist
-from lockstep import Master
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import OccupancyGrid as OccupancyGridMsg
 from nav_msgs.msg import Odometry
@@ -23,6 +22,7 @@ from std_srvs.srv import Empty
 from tf2_msgs.msg import TFMessage
 from tf2_ros import StaticTransformBroadcaster
 
+from helpers.lockstep import Master
 from planar import OccupancyGrid, Pose2, Twist2
 from planar_ros.calls.actions import server_is_ready
 from planar_ros.messages.conversion import LaserScanArrays, grid_to_msg, pose2_to_msg, transform_msg
@@ -76,7 +76,7 @@ class RobotOverRos:
         self._odom = rospy.Publisher("odom", Odometry, queue_size=10, tcp_nodelay=True)
         self._scan = rospy.Publisher("scan", LaserScanArrays, queue_size=10, tcp_nodelay=True)
         self._static = StaticTransformBroadcaster()
-        self._command = None
+        self._command: Optional[Twist2] = None
         rospy.Subscriber("cmd_vel", Twist, self._on_command, queue_size=1, tcp_nodelay=True)
         if grid is not None:
             self._map = rospy.Publisher("map", OccupancyGridMsg, queue_size=1, latch=True)
