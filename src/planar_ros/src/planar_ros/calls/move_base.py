@@ -1,0 +1,108 @@
+"""The client of move_base: goals and plans as planar types."""
+
+import math
+import time
+from typing import Optional
+
+import actionlib
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from geometry_msgs.msg import PoseStamped
+from move_base_msgs.msg import MoveBaseAction, MoveBaseFeedback, MoveBaseGoal
+from nav_msgs.srv import GetPlan, GetPlanRequest
+
+from planar import Pose2
+from planar.driving import DriveOutcome
+from planar_ros.calls.actions import goal_is_over, server_is_ready
+from planar_ros.calls.services import call_service
+from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
+
+PLAN_SECONDS = 5.0
+POLL_SECONDS = 0.02
+
+
+class MoveBase:
+    """Has move_base drive, one goal at a time. Goals and plans are in the frame ``frame_id``.
+
+    ``robot``: the robot's pose in move_base's global frame by the latest feedback, None before the first.
+    """
+
+    def __init__(self, frame_id: str = "map"):
+        self.robot: Optional[Pose2] = None
+        self._frame_id = frame_id
+        self._is_driving = False
+        self._lost_since: Optional[float] = None
+        self._client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
+
+    @property
+    def name(self) -> str:
+        """What to call it to people: "the action /move_base"."""
+        return f"the action {rospy.resolve_name('move_base')}"
+
+    def is_ready(self) -> bool:
+        """Whether it is there, hears and answers."""
+        return server_is_ready(self._client)
+
+    def send(self, goal: Pose2, stamp: Optional[rospy.Time] = None) -> None:
+        """Drives there instead of to any earlier goal. ``stamp``: of the goal, by default now."""
+        message = MoveBaseGoal(target_pose=self._stamped(goal))
+        message.target_pose.header.stamp = rospy.Time.now() if stamp is None else stamp
+        self._client.send_goal(message, feedback_cb=self._keep_pose)
+        self._is_driving, self._lost_since = True, None
+
+    def outcome(self) -> Optional[DriveOutcome]:
+        """What came of the last goal, told once; None while it is pursued."""
+        if not self._is_driving or not goal_is_over(self._client):
+            return None
+        self._is_driving = False
+        status = GoalStatus.to_string(self._client.get_state())
+        return DriveOutcome(status, self._client.get_goal_status_text())
+
+    def is_lost(self, patience: float) -> bool:
+        """Whether it has been gone for so many wall-clock seconds, if asked all along."""
+        now = time.monotonic()
+        if self.is_ready():
+            self._lost_since = None
+        elif self._lost_since is None:
+            self._lost_since = now
+        return self._lost_since is not None and now - self._lost_since > patience
+
+    def cancel(self) -> None:
+        """Gives the goal up if it is still pursued."""
+        if self._is_driving and not goal_is_over(self._client):
+            self._client.cancel_goal()
+        self._is_driving = False
+
+    def stop(self, patience: float) -> None:
+        """The same, and waits at most so many wall-clock seconds until it has been given up."""
+        self.cancel()
+        deadline = time.monotonic() + patience
+        while not goal_is_over(self._client) and time.monotonic() < deadline:
+            time.sleep(POLL_SECONDS)
+
+    def cancel_all(self) -> None:
+        """Gives all goals up, also those of others."""
+        self._is_driving = False
+        self._client.cancel_all_goals()
+
+    def plan_length(self, start: Optional[Pose2], end: Pose2) -> Optional[float]:
+        """Metres of its plan from ``start``, or from the robot, to ``end``; None if it finds no way.
+
+        Raises ServiceError if it does not answer.
+        """
+        request = GetPlanRequest(goal=self._stamped(end))
+        if start is not None:
+            request.start = self._stamped(start)
+        points = call_service("move_base/make_plan", GetPlan, request, PLAN_SECONDS).plan.poses
+        if not points:
+            return None
+        corners = [(point.pose.position.x, point.pose.position.y) for point in points]
+        return sum(math.dist(a, b) for a, b in zip(corners, corners[1:]))
+
+    def _stamped(self, pose: Pose2) -> PoseStamped:
+        message = PoseStamped(pose=pose2_to_msg(pose))
+        message.header.frame_id = self._frame_id
+        return message
+
+    def _keep_pose(self, feedback: MoveBaseFeedback) -> None:
+        self.robot = pose2_from_msg(feedback.base_position.pose)
