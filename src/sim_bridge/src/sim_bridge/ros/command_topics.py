@@ -7,7 +7,7 @@ from geometry_msgs.msg import Twist
 from std_msgs.msg import String
 
 from planar import SettingsError, Twist2
-from planar.config.settings import Tunable
+from planar.config.parameters import Tunable
 from planar_ros.node.reconfigure import Tuning
 from sim_bridge.driving.mux import TURTLEBOT_INPUTS, Mux, MuxInput, Smoother, parse_inputs, read_inputs
 

@@ -10,7 +10,7 @@ from geometry_msgs.msg import Vector3
 from std_srvs.srv import Empty, EmptyResponse
 
 from planar import PlanarError
-from planar.config.settings import Tunable
+from planar.config.parameters import Tunable
 from planar_ros.node.reconfigure import Tuning
 from sim_bridge.config import HIGHEST_PHYSICS_RATE
 from sim_bridge.errors import WorldError
