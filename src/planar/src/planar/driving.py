@@ -1,6 +1,8 @@
 """What a task and whoever drives the robot for it tell each other; pure, so that both can be rehearsed."""
 
+import enum
 from dataclasses import dataclass
+from typing import Union
 
 
 @dataclass(frozen=True)
@@ -21,3 +23,39 @@ class GoalRefused:
     """Event: the robot gave the last order up, and why."""
 
     reason: str
+
+
+class DriveResult(enum.Enum):
+    REACHED = "reached"
+    REPLACED = "replaced"
+    """Another goal took its place, or somebody cancelled it."""
+    FAILED = "failed"
+
+
+_RESULTS = {
+    "SUCCEEDED": DriveResult.REACHED,
+    "PREEMPTED": DriveResult.REPLACED,
+    "RECALLED": DriveResult.REPLACED,
+}
+
+
+@dataclass(frozen=True)
+class DriveOutcome:
+    """How a drive to a goal ended.
+
+    ``status``: the name of its last status in actionlib_msgs/GoalStatus. ``text``: why, if that was told.
+    """
+
+    status: str
+    text: str
+
+    @property
+    def result(self) -> DriveResult:
+        return _RESULTS.get(self.status, DriveResult.FAILED)
+
+    @property
+    def event(self) -> Union[GoalReached, GoalRefused]:
+        """The same for a task that only cares whether the robot has arrived."""
+        if self.result is DriveResult.REACHED:
+            return GoalReached()
+        return GoalRefused(self.text or self.status)

@@ -2,14 +2,11 @@
 
 import time
 from dataclasses import replace
-from typing import Optional
+from typing import Optional, Union
 
-import actionlib
 import rospy
-from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Point, PoseStamped
 from home_service_msgs.msg import ExploreAction, ExploreFeedback, ExploreResult
-from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from visualization_msgs.msg import MarkerArray
 
 from explorer_lite.config import ExplorerSettings, NodeSettings
@@ -17,7 +14,8 @@ from explorer_lite.explorer import Explorer, ExplorerState, Finish, GoalReached,
 from explorer_lite.ros.markers import frontier_markers
 from explorer_lite.warming import warm_up
 from planar import OccupancyGrid, Pose2
-from planar_ros.calls.actions import ActionServer, goal_is_over, server_is_ready
+from planar_ros.calls.actions import ActionServer
+from planar_ros.calls.move_base import MoveBase
 from planar_ros.messages.conversion import LaserScanArrays, OccupancyGridArrays, grid_from_msg, pose2_to_msg
 from planar_ros.messages.transforms import Transforms
 from planar_ros.node.parameters import read_settings
@@ -43,16 +41,15 @@ class Explore:
         self._field_of_view = 0.0
         self._transforms = Transforms()
         self._markers = rospy.Publisher("~frontiers", MarkerArray, queue_size=1, latch=True)
-        self._client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
-        self._pending = False
+        self._move_base = MoveBase(self._settings.global_frame)
         rospy.Subscriber("map", OccupancyGridArrays, self._keep_map, queue_size=1, tcp_nodelay=True)
         self._scans = rospy.Subscriber("scan", LaserScanArrays, self._measure_view, queue_size=1)
-        rospy.on_shutdown(self._client.cancel_all_goals)
+        rospy.on_shutdown(self._move_base.cancel_all)
         frames = f"{self._settings.global_frame} to {self._settings.robot_base_frame}"
         self._conditions = {
             f"a map on {rospy.resolve_name('map')}": lambda: self._map is not None,
             f"the transform {frames}": lambda: self._robot() is not None,
-            f"the action {rospy.resolve_name('move_base')}": lambda: server_is_ready(self._client),
+            self._move_base.name: self._move_base.is_ready,
         }
         Waiting(self._conditions)
         self._server = ActionServer("explore", ExploreAction, self._execute, auto_start=False)
@@ -68,7 +65,7 @@ class Explore:
         start = rospy.get_time()
         rospy.loginfo("exploring")
         end = self._explore(explorer)
-        self._stop()
+        self._move_base.stop(STOP_SECONDS)
         result = ExploreResult(
             explored_area=explorer.explored_area,
             duration=rospy.Duration(max(0.0, rospy.get_time() - start)),
@@ -105,7 +102,7 @@ class Explore:
                 return order
             if isinstance(order, GoTo):
                 goal = order.pose
-                self._send(goal)
+                self._move_base.send(goal)
             if explorer.state is not ExplorerState.READY and now >= next_feedback:
                 next_feedback = now + FEEDBACK_SECONDS
                 self._tell(explorer, goal)
@@ -116,29 +113,12 @@ class Explore:
     def _robot(self) -> Optional[Pose2]:
         return self._transforms.lookup(self._settings.global_frame, self._settings.robot_base_frame)
 
-    def _send(self, pose: Pose2):
-        self._client.send_goal(MoveBaseGoal(self._stamped(pose)))
-        self._pending = True
-
-    def _next_event(self):
-        if not self._pending or not goal_is_over(self._client):
-            return None
-        self._pending = False
-        if self._client.get_state() == GoalStatus.SUCCEEDED:
-            return GoalReached()
-        text = self._client.get_goal_status_text() or GoalStatus.to_string(self._client.get_state())
-        rospy.loginfo("goal given up: %s", text)
-        return GoalRefused(text)
-
-    def _stop(self):
-        """Has move_base stop the robot, and waits until it says that it has."""
-        if not self._pending:
-            return
-        self._client.cancel_goal()
-        deadline = time.monotonic() + STOP_SECONDS
-        while not goal_is_over(self._client) and time.monotonic() < deadline:
-            time.sleep(POLL_SECONDS)
-        self._pending = False
+    def _next_event(self) -> Union[None, GoalReached, GoalRefused]:
+        outcome = self._move_base.outcome()
+        event = None if outcome is None else outcome.event
+        if isinstance(event, GoalRefused):
+            rospy.loginfo("goal given up: %s", event.reason)
+        return event
 
     def _tell(self, explorer: Explorer, goal: Optional[Pose2]):
         self._server.publish_feedback(

@@ -2,14 +2,11 @@
 
 import threading
 
-import actionlib
 import rospy
-from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 
 from follow_me.config import NodeSettings
 from follow_me.follower import Follower
-from planar_ros.calls.actions import server_is_ready
-from planar_ros.messages.conversion import pose2_to_msg
+from planar_ros.calls.move_base import MoveBase
 from planar_ros.messages.transforms import Transforms
 from planar_ros.node.clock import sleep_until
 from planar_ros.node.parameters import read_settings
@@ -26,11 +23,11 @@ class FollowMe:
         self._follower = Follower(self._settings)
         self._transforms = Transforms()
         self._progress = Progress()
-        self._move_base = actionlib.SimpleActionClient("move_base", MoveBaseAction)
+        self._move_base = MoveBase(self._settings.map_frame)
         frames = (self._settings.leader_frame, self._settings.base_frame)
         Waiting(
             {
-                f"the action {rospy.resolve_name('move_base')}": self._is_heard,
+                self._move_base.name: self._move_base.is_ready,
                 **{
                     f"the transform {self._settings.map_frame} -> {frame}": lambda frame=frame: (
                         self._in_map(frame) is not None
@@ -58,21 +55,14 @@ class FollowMe:
 
     def _follow(self):
         leader, follower = self._in_map(self._settings.leader_frame), self._in_map(self._settings.base_frame)
-        if leader is None or follower is None or not self._is_heard():
+        if leader is None or follower is None or not self._move_base.is_ready():
             return
         goal = self._follower.goal(leader, follower)
         if goal is not None:
-            message = MoveBaseGoal()
-            header = message.target_pose.header
-            header.stamp, header.frame_id = rospy.Time.now(), self._settings.map_frame
-            message.target_pose.pose = pose2_to_msg(goal)
-            self._move_base.send_goal(message)
+            self._move_base.send(goal)
 
     def _in_map(self, frame):
         return self._transforms.lookup(self._settings.map_frame, frame)
-
-    def _is_heard(self):
-        return server_is_ready(self._move_base)
 
 
 def main():

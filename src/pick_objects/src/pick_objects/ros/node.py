@@ -44,7 +44,7 @@ class PickObjects:
         rospy.Subscriber("map", OccupancyGridArrays, self._keep_map, queue_size=1)
         rospy.Service("~add_delivery", AddDelivery, self._on_add)
         rospy.Service("~cancel_delivery", CancelDelivery, self._on_cancel)
-        self._required = {f"the action {rospy.resolve_name('move_base')}": self._driver.is_ready}
+        self._required = {self._driver.move_base.name: self._driver.move_base.is_ready}
         for name in map(rospy.resolve_name, self._settings.wait_for.split()):
             self._required[f"{name} to be ready"] = Readiness(name)
         Waiting({f"a map on {rospy.resolve_name('map')}": lambda: self._map is not None, **self._required})
@@ -82,7 +82,7 @@ class PickObjects:
                 order = self._errand.advance(rospy.get_time(), event)
                 self._topics.show(self._errand)
                 if isinstance(order, Finish):
-                    self._driver.stop()
+                    self._driver.move_base.cancel_all()
                     return order
                 watch(self._errand)
             if isinstance(order, GoTo):
