@@ -20,6 +20,7 @@ class CommanderTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.referee = Referee({}, print)
+        cls.referee.start()
         cls.robot = Commander()
 
     def setUp(self):

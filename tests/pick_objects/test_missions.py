@@ -67,6 +67,7 @@ class MissionsTest(unittest.TestCase):
 
     def setUp(self):
         self.referee = Referee(self.places, print)
+        self.referee.start()
         self._wait("the robot", lambda: server_is_ready(self.client) and self.referee.truth)
 
     def test_1_a_mission_with_a_mistake_is_refused_naming_line_and_key(self):

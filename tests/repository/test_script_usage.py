@@ -6,13 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from home_service.options import COMMANDS, parse
+from home_service import commands
+from home_service.cli import parse
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 OPTION = re.compile(r"--[a-z][a-z-]*")
 
 
-@pytest.mark.parametrize("command", sorted(COMMANDS))
+@pytest.mark.parametrize("command", sorted(commands.names()))
 def test_a_script_tells_the_options_that_its_command_takes(command, capsys):
     with pytest.raises(SystemExit):
         parse([command, "--help"])

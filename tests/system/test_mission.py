@@ -20,6 +20,7 @@ class MissionTest(unittest.TestCase):
     def test_the_object_is_fetched_and_delivered(self):
         places = {place.name: place for place in places_of_errand(rospy.get_param("~zones_file"))}
         referee = Referee(places, print)
+        referee.start()
         wall_deadline = time.monotonic() + WALL_DEADLINE
         while not referee.ledger.is_complete(EXPECTED):
             self.assertLess(referee.simulated_seconds, SIMULATED_DEADLINE, f"state '{referee.state}'")

@@ -26,6 +26,7 @@ class NavigationTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.referee = Referee({}, print)
+        cls.referee.start()
         cls.client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
         cls.boxes = rospy.Publisher("sim_bridge/add_box", Marker, queue_size=10)
 

@@ -3,8 +3,10 @@ from argparse import ArgumentTypeError
 
 import pytest
 
-from home_service.cli import main
-from home_service.options import goal_list, parse, speed_factor
+from home_service import commands
+from home_service.cli import main, parse
+from home_service.commands.test_navigation import goal_list
+from home_service.options import speed_factor
 
 
 def test_goals_are_read_from_a_line():
@@ -42,11 +44,14 @@ def test_every_command_explains_itself(command, capsys):
         (["launch"], math.inf),
         (["test_navigation"], math.inf),
         (["test_navigation", "--goals", "1 2 3"], 900.0),
-        (["rehearse"], 600.0),
     ],
 )
 def test_what_a_person_ends_has_no_time_out_of_its_own(arguments, expected):
-    assert parse(arguments).timeout == expected
+    assert parse(arguments).time_limit == expected
+
+
+def test_a_rehearsal_ends_by_simulated_time():
+    assert parse(["rehearse"]).timeout == 600.0
 
 
 @pytest.mark.parametrize("option", ["world", "map", "zones"])
@@ -56,3 +61,24 @@ def test_a_missing_file_is_named_and_nothing_is_started(option, tmp_path, capsys
     assert code == 2
     assert str(missing) in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("command", commands.names())
+def test_nonsense_is_answered_in_the_name_of_the_script_that_was_called(command, capsys):
+    needed = {"compare": ["a", "b"], "report": ["run"], "replay": ["bag"]}.get(command, [])
+    with pytest.raises(SystemExit) as stop:
+        main([command, *needed, "--nonsense"])
+    assert stop.value.code == 2
+    told = capsys.readouterr().err
+    assert told.startswith(f"usage: {command}.sh ")
+    assert told.endswith(f"{command}.sh: error: unrecognized arguments: --nonsense\n")
+
+
+def test_every_command_has_a_class_that_says_what_it_is_for_and_runs(capsys):
+    with pytest.raises(SystemExit) as stop:
+        parse(["--help"])
+    assert stop.value.code == 0
+    told = capsys.readouterr().out
+    for name in commands.names():
+        assert callable(commands.find(name).run)
+        assert f"  {name} " in told

@@ -1,194 +1,18 @@
-"""The command line of each command."""
+"""What commands are told: the options that several of them share, as frozen dataclasses to inherit from."""
 
 import argparse
 import math
+from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import List, Optional
+from typing import Any, Dict, Mapping, Optional
+
+from supervision.command_line import option
 
 ROOT = Path(__file__).resolve().parents[4]
 MAX_SPEED = 1000.0
 RUN_SECONDS = 900.0
-
-COMMANDS = {
-    "launch": "Starts the simulated home with the robot in it, until Ctrl-C.",
-    "test_navigation": "Starts home, localization and navigation; goals by hand or from --goals.",
-    "pick_objects": "Carries out a mission, by default from the pick-up to the drop-off zone.",
-    "add_marker": "Shows the object at pick-up, hides it, and shows it at drop-off, by the clock.",
-    "home_service": "Fetches the object at the pick-up zone and delivers it at the drop-off zone.",
-    "follow": "Lets a second robot follow the first, while that does its errand.",
-    "test_slam": "Starts home and SLAM, driven with keys (terminal or pipe), or by itself; saves the map.",
-    "map_home": "Lets the robot explore the world, saves its map, and scores it against the true one.",
-    "report": "Makes the report of a run anew, from what its folder holds.",
-    "compare": "Puts two runs side by side: a table here, and a page.",
-    "doctor": "Says what is running, what each node waits for, and what is wrong.",
-    "replay": "Plays recorded bags to localization or mapping, and measures what they make of them.",
-    "rehearse": "Plays the home-service mission in one process, without ROS: fast and repeatable.",
-}
-MAPPING_COMMANDS = {"test_slam", "map_home"}
-REPORT_COMMANDS = {"report", "compare"}
-ROS_COMMANDS = set(COMMANDS) - REPORT_COMMANDS - {"rehearse", "doctor", "replay"}
-
-
-def parse(arguments: Optional[List[str]]) -> argparse.Namespace:
-    """The options of the command that ``arguments`` name; ends the process on --help and on nonsense."""
-    parser = argparse.ArgumentParser(prog="home_service", description="The commands behind the scripts.")
-    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for name, text in COMMANDS.items():
-        command = commands.add_parser(
-            name,
-            prog=f"{name}.sh",
-            description=text,
-            help=text,
-            formatter_class=argparse.ArgumentDefaultsHelpFormatter,
-        )
-        if name in REPORT_COMMANDS:
-            _add_report_options(name, command)
-            continue
-        if name == "replay":
-            _add_replay_options(command)
-            continue
-        if name == "doctor":
-            _add_doctor_options(command)
-            continue
-        _add_world_options(command)
-        if name in ROS_COMMANDS:
-            _add_graph_options(command)
-        _add_own_options(name, command)
-    options = parser.parse_args(arguments)
-    if "timeout" not in options:
-        options.timeout = math.inf if _ends_with_ctrl_c(options) else RUN_SECONDS
-    return options
-
-
-def _ends_with_ctrl_c(options: argparse.Namespace) -> bool:
-    """Whether it is a person who ends the run."""
-    return (
-        options.command == "launch"
-        or (options.command == "home_service" and options.serve)
-        or (options.command == "test_navigation" and options.goals is None)
-        or (options.command == "test_slam" and options.drive == "keys")
-    )
-
-
-def _add_report_options(name: str, parser: argparse.ArgumentParser) -> None:
-    if name == "report":
-        parser.add_argument("run", type=Path, metavar="RUN", help="folder of a run")
-        parser.add_argument("--gif", action="store_true", help="also make run.gif, the run as an animation")
-    else:
-        parser.add_argument("first", type=Path, metavar="A", help="folder of a run")
-        parser.add_argument("second", type=Path, metavar="B", help="folder of another run")
-        parser.add_argument("--page", type=Path, metavar="FILE", help="where the page goes, not to B")
-
-
-def _add_replay_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "bags", type=Path, nargs="+", metavar="BAG", help="bags, or folders of them or of runs"
-    )
-    parser.add_argument(
-        "--with",
-        dest="estimator",
-        choices=("amcl", "slam", "recorded"),
-        default="amcl",
-        help="localize, map, or only show what was recorded",
-    )
-    parser.add_argument("--map", type=Path, default=ROOT / "map/home.yaml", help="for amcl: the map")
-    parser.add_argument(
-        "--start",
-        type=float,
-        nargs=3,
-        default=(0.0, 0.0, 0.0),
-        metavar=("X", "Y", "YAW"),
-        help="for amcl: where the robot starts in the map",
-    )
-    parser.add_argument("--seed", type=seed, default=0, help="of every particle")
-    parser.add_argument("--save", type=Path, metavar="STEM", help="for slam: where to save the map")
-    _add_run_options(parser)
-
-
-def _add_doctor_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--json", action="store_true", help="print for programs")
-    parser.add_argument("--master", metavar="URI", help="of the graph to look at, if there are several")
-    parser.add_argument("--seconds", type=seconds, default=2.0, help="how long rates are measured")
-
-
-def _add_world_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--world", type=Path, default=ROOT / "map/home.world", help="SDF world")
-    parser.add_argument("--robot", default="turtlebot_lidar", help="robot profile of sim_bridge")
-    parser.add_argument("--seed", type=seed, default=0, help="seed of every noise and every particle")
-
-
-def _add_graph_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--record", choices=("inputs", "all"), help="record bags: scans, odometry and truth, or everything"
-    )
-    _add_run_options(parser)
-
-
-def _add_run_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--speed",
-        type=speed_factor,
-        default=argparse.SUPPRESS,
-        help="1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz 1)",
-    )
-    parser.add_argument("--rviz", action="store_true", help="show the run in rviz, where there is a display")
-    parser.add_argument(
-        "--timeout",
-        type=seconds,
-        default=argparse.SUPPRESS,
-        help=f"wall-clock seconds a run may take (default: {RUN_SECONDS:g}; none for what Ctrl-C ends)",
-    )
-    parser.add_argument("--gif", action="store_true", help="also leave run.gif, the run as an animation")
-    parser.add_argument("--output", type=Path, default=Path("runs"), help="where run folders are made")
-
-
-def _add_own_options(name: str, parser: argparse.ArgumentParser) -> None:
-    if name in MAPPING_COMMANDS:
-        parser.add_argument(
-            "--save", type=Path, metavar="STEM", help="write STEM.pgm and STEM.yaml, not to the run folder"
-        )
-    else:
-        parser.add_argument("--map", type=Path, default=ROOT / "map/home.yaml", help="map of that world")
-    if name == "test_slam":
-        parser.add_argument("--drive", choices=("keys", "auto"), default="keys", help="who drives the robot")
-    if name in ("home_service", "pick_objects", "add_marker", "follow", "rehearse"):
-        parser.add_argument("--zones", type=Path, default=ROOT / "map/zones.yaml", help="YAML of zones")
-    if name in ("home_service", "pick_objects", "rehearse"):
-        parser.add_argument("--mission", type=Path, metavar="FILE", help="YAML of deliveries")
-    if name == "home_service":
-        parser.add_argument(
-            "--serve", action="store_true", help="wait for missions sent to the action deliver, until Ctrl-C"
-        )
-    if name == "test_navigation":
-        parser.add_argument(
-            "--goals", type=goal_list, metavar='"X Y YAW; X Y YAW"', help="drive to these poses, then end"
-        )
-    if name == "home_service":
-        parser.add_argument(
-            "--marker-source",
-            choices=("tf", "amcl_pose", "odom", "state"),
-            default="tf",
-            help="what tells the marker where the robot is",
-        )
-    if name == "rehearse":
-        parser.add_argument("--runs", type=count, default=1, help="how many runs, each with the next seed")
-        parser.add_argument("--timeout", type=seconds, default=600.0, help="simulated seconds a run may take")
-
-
-def goal_list(text: str) -> List[List[float]]:
-    """Poses from "x y yaw; x y yaw" in metres and radians."""
-    goals = []
-    for part in filter(str.strip, text.split(";")):
-        try:
-            goal = [float(number) for number in part.split()]
-        except ValueError:
-            raise argparse.ArgumentTypeError(f"'{part.strip()}' is not three numbers") from None
-        if len(goal) != 3:
-            raise argparse.ArgumentTypeError(f"'{part.strip()}' is not three numbers: x, y, yaw")
-        goals.append(goal)
-    if not goals:
-        raise argparse.ArgumentTypeError("no goal given")
-    return goals
+# The options that result.json tells, under their names.
+TOLD = ("seed", "world", "robot", "map", "mission")
 
 
 def speed_factor(text: str) -> float:
@@ -224,3 +48,127 @@ def _whole_number(text: str, least: int) -> int:
     if not text.isascii() or not text.isdigit() or int(text) < least:
         raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from {least}")
     return int(text)
+
+
+@dataclass(frozen=True)
+class WorldOptions:
+    """The simulated world."""
+
+    world: Path = option(ROOT / "map/home.world", "SDF world", type=Path)
+    robot: str = option("turtlebot_lidar", "robot profile of sim_bridge")
+    seed: int = option(0, "seed of every noise and every particle", type=seed)
+
+
+@dataclass(frozen=True)
+class HomeOptions(WorldOptions):
+    """A world with a map."""
+
+    map: Path = option(ROOT / "map/home.yaml", "map of that world", type=Path)
+
+    def files(self) -> Dict[str, Path]:
+        """The files as launch files name them."""
+        return {"map_file": self.map.resolve()}
+
+
+@dataclass(frozen=True)
+class ErrandOptions(HomeOptions):
+    """A home with zones."""
+
+    zones: Path = option(ROOT / "map/zones.yaml", "YAML of zones", type=Path)
+
+    def files(self) -> Dict[str, Path]:
+        return {**super().files(), "zones_file": self.zones.resolve()}
+
+
+@dataclass(frozen=True)
+class MissionOptions(ErrandOptions):
+    """A home in which a mission may take the place of the errand between the zones."""
+
+    mission: Optional[Path] = option(None, "YAML of deliveries", type=Path, metavar="FILE")
+
+    def files(self) -> Dict[str, Path]:
+        mission = {} if self.mission is None else {"mission_file": self.mission.resolve()}
+        return {**super().files(), **mission}
+
+
+@dataclass(frozen=True)
+class LaunchPlan:
+    """What a run starts.
+
+    ``is_simulated``: whether a simulator is in it. ``bags``: the profile of what is recorded, if any.
+    """
+
+    file: str
+    arguments: Mapping[str, object]
+    is_simulated: bool = True
+    bags: Optional[str] = None
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """A run of a graph, which leaves a folder."""
+
+    speed: Optional[float] = option(
+        None,
+        "1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz 1)",
+        type=speed_factor,
+    )
+    rviz: bool = option(False, "show the run in rviz, where there is a display")
+    timeout: Optional[float] = option(
+        None,
+        f"wall-clock seconds a run may take (default: {RUN_SECONDS:g}; none for what Ctrl-C ends)",
+        type=seconds,
+    )
+    gif: bool = option(False, "also leave run.gif, the run as an animation")
+    output: Path = option(Path("runs"), "where run folders are made", type=Path)
+
+    @property
+    def name(self) -> str:
+        """The command's name, which is its module's."""
+        return type(self).__module__.rpartition(".")[2]
+
+    @property
+    def is_ended_by_a_person(self) -> bool:
+        return False
+
+    @property
+    def time_limit(self) -> float:
+        """Wall-clock seconds that the run may take."""
+        if self.timeout is not None:
+            return self.timeout
+        return math.inf if self.is_ended_by_a_person else RUN_SECONDS
+
+    @property
+    def wanted_speed(self) -> float:
+        """Simulated seconds per second; 0: as fast as the nodes keep up."""
+        return float(self.rviz) if self.speed is None else self.speed
+
+    def told(self) -> Dict[str, Any]:
+        """The options that belong into result.json."""
+        given = {item.name: getattr(self, item.name) for item in fields(self) if item.name in TOLD}
+        paths = {name: str(value) for name, value in given.items() if isinstance(value, Path)}
+        told = {name: value for name, value in {**given, **paths}.items() if value is not None}
+        return {**told, "speed": self.wanted_speed}
+
+
+@dataclass(frozen=True)
+class GraphOptions(RunOptions, WorldOptions):
+    """A run in the simulated world."""
+
+    record: Optional[str] = option(
+        None, "record bags: scans, odometry and truth, or everything", choices=("inputs", "all")
+    )
+
+    def launch(self, file: str, **arguments: object) -> LaunchPlan:
+        """What is started: a launch file of home_service with this world, robot and seed."""
+        world = {"world_file": self.world.resolve(), "robot": self.robot, "seed": self.seed}
+        return LaunchPlan(file, {**world, **arguments}, bags=self.record)
+
+
+@dataclass(frozen=True)
+class MappingOptions(GraphOptions):
+    """A run that leaves a map."""
+
+    save: Optional[Path] = option(
+        None, "write STEM.pgm and STEM.yaml, not to the run folder", type=Path, metavar="STEM"
+    )

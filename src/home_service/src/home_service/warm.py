@@ -5,10 +5,8 @@ import move_base_lite.warming
 import slam_lite.warming
 from amcl_lite import LocalizerSettings
 from amcl_lite.localizer import warm_up as warm_up_localizer
-from home_service.cli import read_inputs
-from home_service.options import parse
+from home_service.commands.rehearse import Rehearse
 from home_service.rehearsal import LOCALIZATION_CONFIG, NAVIGATION_CONFIG
-from home_service.rehearse import rehearse
 from planar.config.settings_file import settings_from_yaml
 
 
@@ -18,9 +16,7 @@ def main() -> int:
     move_base_lite.warming.warm_up(move_base_lite.load_settings(NAVIGATION_CONFIG))
     explorer_lite.warming.warm_up()
     slam_lite.warming.warm_up()
-    options = parse(["rehearse"])
-    read_inputs(options)
-    return rehearse(options)
+    return Rehearse().run()
 
 
 if __name__ == "__main__":

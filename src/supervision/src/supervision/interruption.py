@@ -18,6 +18,15 @@ class RunInterruptedError(KeyboardInterrupt):
         super().__init__("interrupted")
 
 
+def leave_when_interrupted() -> None:
+    """From now on SIGINT or SIGTERM ends the process at once: nothing has to be taken down yet.
+
+    Libraries that are being imported catch whatever is raised.
+    """
+    for number in SIGNALS:
+        signal.signal(number, _leave)
+
+
 def raise_when_interrupted() -> None:
     """From now on the first SIGINT or SIGTERM raises RunInterruptedError, and further ones are ignored."""
     for number in SIGNALS:
@@ -34,6 +43,11 @@ def leave(code: int) -> NoReturn:
     """Ends the process without waiting for threads of ROS that still listen to a master that is gone."""
     sys.stdout.flush()
     os._exit(code)
+
+
+def _leave(_number, _frame):
+    os.write(sys.stderr.fileno(), b"error: interrupted\n")
+    os._exit(INTERRUPTED)
 
 
 def _raise(_number, _frame):

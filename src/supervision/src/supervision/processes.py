@@ -12,6 +12,11 @@ import psutil
 PR_SET_CHILD_SUBREAPER = 36
 
 
+def start_of_this_process() -> float:
+    """When this process began, in seconds of the wall clock as ``time.time`` tells them."""
+    return psutil.Process().create_time()
+
+
 def free_port() -> int:
     """A TCP port on the loopback interface that nobody listens on right now."""
     with socket.socket() as probe:

@@ -1,7 +1,7 @@
 """Was the mission really done? Judged by ground truth, not by what the robot believes."""
 
 from dataclasses import dataclass, field
-from typing import Dict, List, Optional, Set
+from typing import Any, Dict, List, Optional, Sequence, Set
 
 ARRIVAL_TOLERANCE = 0.25
 ERRAND, MARKERS, OBJECTS, DEMO = "errand", "markers", "objects", "demo"
@@ -22,6 +22,20 @@ class DeliveryRecord:
     reason: str = ""
     pickup_error: Optional[float] = None
     dropoff_error: Optional[float] = None
+
+    def findings(self) -> Dict[str, Any]:
+        """As it stands in result.json; metres."""
+        return {
+            "name": self.name,
+            "object": self.object,
+            "from": self.source,
+            "to": self.destination,
+            "state": self.state,
+            "attempts": self.attempts,
+            "reason": self.reason,
+            "pickup_error": self.pickup_error and round(self.pickup_error, 4),
+            "dropoff_error": self.dropoff_error and round(self.dropoff_error, 4),
+        }
 
     @property
     def complaint(self) -> Optional[str]:
@@ -60,6 +74,16 @@ class Ledger:
         for record in self.deliveries:
             errors[record.source], errors[record.destination] = record.pickup_error, record.dropoff_error
         return {place: error for place, error in errors.items() if error is not None}
+
+    def findings(self) -> Dict[str, Any]:
+        """What belongs into result.json; metres."""
+        return {
+            "position_error": {place: round(error, 4) for place, error in self.position_errors.items()},
+            "deliveries": [record.findings() for record in self.deliveries],
+            "collisions": self.collisions,
+            "markers": self.markers,
+            "final_state": self.final_state,
+        }
 
     def is_complete(self, expected: Set[str]) -> bool:
         """Whether everything expected has been seen, or can no longer come."""
@@ -101,9 +125,13 @@ def judge(ledger: Ledger, expected: Set[str]) -> Verdict:
         complaint = (
             f"the marker was {', '.join(ledger.markers) or 'never shown'}, not {', '.join(MARKER_STORY)}"
         )
-    if complaint is None and ledger.collisions:
-        complaint = f"collided with {', '.join(sorted(set(ledger.collisions)))}"
+    complaint = complaint or collision(ledger.collisions)
     return Verdict(complaint is None, complaint or _praise(ledger, expected))
+
+
+def collision(touched: Sequence[str]) -> Optional[str]:
+    """What was collided with, in words; None if nothing was touched."""
+    return f"collided with {', '.join(sorted(set(touched)))}" if touched else None
 
 
 def _complaint_about_errand(ledger: Ledger) -> Optional[str]:

@@ -1,5 +1,11 @@
 """The whole mission in one process, without ROS."""
 
-from home_service.rehearsal.rehearsal import LOCALIZATION_CONFIG, NAVIGATION_CONFIG, Rehearsal, Rehearsed
+from home_service.rehearsal.rehearsal import (
+    LOCALIZATION_CONFIG,
+    NAVIGATION_CONFIG,
+    Rehearsal,
+    Rehearsed,
+    parcel_of,
+)
 
-__all__ = ["LOCALIZATION_CONFIG", "NAVIGATION_CONFIG", "Rehearsal", "Rehearsed"]
+__all__ = ["LOCALIZATION_CONFIG", "NAVIGATION_CONFIG", "Rehearsal", "Rehearsed", "parcel_of"]

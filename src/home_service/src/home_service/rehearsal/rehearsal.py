@@ -166,6 +166,12 @@ class Rehearsal:
             self._ledger.markers.append(event)
 
 
+def parcel_of(errand: Mission) -> CarriedParcel:
+    """The marker of the errand between the two zones."""
+    pickup, dropoff = errand.places.values()
+    return CarriedParcel(pickup, dropoff, errand.settings.pickup_seconds)
+
+
 def _event_of(decision: Decision):
     if decision.status is Status.SUCCEEDED:
         return GoalReached()

@@ -2,14 +2,21 @@
 
 import threading
 from collections import OrderedDict
-from typing import Any, Dict, List, Optional
+from typing import Any, Dict, List, Mapping, Optional
 
 import rospy
 from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 
+from home_service.judging.verdict import ERRAND, Verdict
+from home_service.options import LaunchPlan, RunOptions
+from home_service.ros.referee import Referee
+from home_service.ros.run import Run
+from home_service.ros.run_recorder import RunRecorder
 from planar import Pose2
+from planar.maps.places import Place
 from planar_ros.messages.conversion import pose2_from_msg
+from supervision.display import Display
 
 # A follower is with its leader within this distance, metres, and must be for this share of the time.
 WITH_LEADER, REQUIRED_SHARE = 1.5, 0.9
@@ -83,3 +90,17 @@ class FollowWatch:
 
     def _see_contacts(self, message):
         self.collisions += message.data.splitlines()
+
+
+def let_follow(options: RunOptions, launch: LaunchPlan, places: Mapping[str, Place]) -> int:
+    """Runs an errand that another robot follows; returns the exit code."""
+    display = Display()
+    referee = Referee(places, display.say)
+    with Run(options, launch, referee, RunRecorder(places), display) as run:
+        following = FollowWatch("follower")
+        failure = run.watch(lambda: referee.has_seen({ERRAND}))
+        verdict = referee.verdict({ERRAND}, failure)
+        if verdict.success:
+            complaint = following.complaint
+            verdict = Verdict(complaint is None, complaint or f"{verdict.reason}; {following.praise}")
+        return run.conclude(verdict, **following.findings())

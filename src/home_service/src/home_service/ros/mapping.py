@@ -1,7 +1,6 @@
-"""The commands that map a world: by hand, or by a robot that explores it, with a score against the truth."""
+"""Maps made by hand, or by a robot that explores the world."""
 
 import subprocess
-from argparse import Namespace
 from dataclasses import asdict
 from pathlib import Path
 from typing import Optional
@@ -10,41 +9,49 @@ import actionlib
 from actionlib_msgs.msg import GoalStatus
 from home_service_msgs.msg import ExploreAction, ExploreGoal
 
-from home_service.judging.map_truth import LEAST_PRECISION, LEAST_RECALL, score_against_world
-from home_service.judging.verdict import ARRIVAL_TOLERANCE, Verdict
+from home_service.judging.map_truth import judge_map, score_against_world
+from home_service.judging.verdict import Verdict
+from home_service.options import LaunchPlan, MappingOptions
+from home_service.ros.referee import Referee
 from home_service.ros.run import Run
+from home_service.ros.run_recorder import RunRecorder
+from home_service.stage import Stage
 from planar import Pose2, SettingsError, load_map
-from planar.maps.map_score import MapScore
 from planar_ros.calls.actions import goal_is_over, server_is_ready
+from supervision.display import Display
 from supervision.errors import LaunchError
 
 SAVE_SECONDS = 30.0
 TELEOP = ["rosrun", "teleop_lite", "turtlebot_teleop_key", "turtlebot_teleop_keyboard/cmd_vel:=cmd_vel"]
 
 
-def test_slam(options: Namespace) -> int:
-    by_itself = options.drive == "auto"
-    if not by_itself and "speed" not in options:
-        options.speed = 1.0
-    _check_place_to_save(options)
-    with Run(options, "mapping.launch" if by_itself else "slam.launch") as run:
-        failure = _explore(run) if by_itself else _drive_by_keys(run)
-        path = save_map(run, options.save)
+def make_map(options: MappingOptions, launch: LaunchPlan, by_keys: bool) -> int:
+    """Runs SLAM, driven by keys or by the explorer, and saves the map; returns the exit code."""
+    _check_place_to_save(options.save)
+    display = Display()
+    referee = Referee({}, display.say)
+    with Run(options, launch, referee, RunRecorder({}), display) as run:
+        failure = _drive_by_keys(run) if by_keys else _explore(run, referee)
+        path = save_map(run.folder, options.save)
         return run.conclude(Verdict(failure is None, failure or f"map saved in {path}"))
 
 
-def map_home(options: Namespace) -> int:
-    _check_place_to_save(options)
-    with Run(options, "mapping.launch") as run:
-        failure = _explore(run)
-        path = save_map(run, options.save)
-        way_home = run.referee.truth.distance_to(Pose2())
-        score = score_against_world(load_map(path), options.loaded_world, options.loaded_robot)
-        run.display.say(f"map saved in {path}")
-        return run.conclude(_judge(failure, run, score, way_home), map=str(path), **asdict(score))
+def make_scored_map(options: MappingOptions, launch: LaunchPlan, stage: Stage) -> int:
+    """Runs SLAM and the explorer, saves the map, and judges it by the world; returns the exit code."""
+    _check_place_to_save(options.save)
+    display = Display()
+    referee = Referee({}, display.say)
+    with Run(options, launch, referee, RunRecorder({}), display) as run:
+        failure = _explore(run, referee)
+        path = save_map(run.folder, options.save)
+        way_home = referee.distance_from(Pose2())
+        score = score_against_world(load_map(path), stage.world, stage.robot)
+        display.say(f"map saved in {path}")
+        verdict = judge_map(score, way_home, failure, referee.collision)
+        return run.conclude(verdict, map=str(path), **asdict(score))
 
 
-def _explore(run: Run) -> Optional[str]:
+def _explore(run: Run, referee: Referee) -> Optional[str]:
     """Has the robot explore and return; why that failed, or None."""
     client = actionlib.SimpleActionClient("explore", ExploreAction)
     failure = run.watch(lambda: server_is_ready(client))
@@ -52,7 +59,7 @@ def _explore(run: Run) -> Optional[str]:
         return failure
 
     def show(feedback):
-        run.referee.state = (
+        referee.state = (
             f"{feedback.state}, {feedback.explored_area:.0f} m2 known, {feedback.frontiers} frontiers"
         )
 
@@ -60,7 +67,7 @@ def _explore(run: Run) -> Optional[str]:
     failure = run.watch(lambda: goal_is_over(client))
     if failure is None and client.get_state() != GoalStatus.SUCCEEDED:
         failure = client.get_goal_status_text()
-    run.display.say(f"{client.get_goal_status_text()}, {run.referee.simulated_seconds:.0f} s simulated")
+    run.display.say(f"{client.get_goal_status_text()}, {referee.simulated_seconds:.0f} s simulated")
     return failure
 
 
@@ -74,14 +81,14 @@ def _drive_by_keys(run: Run) -> Optional[str]:
     return failure
 
 
-def _check_place_to_save(options: Namespace) -> None:
-    if options.save and not options.save.resolve().parent.is_dir():
-        raise SettingsError(f"{options.save.resolve().parent}: no such folder to save the map in")
+def _check_place_to_save(stem: Optional[Path]) -> None:
+    if stem and not stem.resolve().parent.is_dir():
+        raise SettingsError(f"{stem.resolve().parent}: no such folder to save the map in")
 
 
-def save_map(run: Run, stem: Optional[Path]) -> Path:
-    """Saves the map that is published, into the run folder if no ``stem`` is given; returns its YAML."""
-    stem = (stem or run.folder / "map").resolve()
+def save_map(folder: Path, stem: Optional[Path]) -> Path:
+    """Saves the map that is published, into the ``folder`` if no ``stem`` is given; returns its YAML."""
+    stem = (stem or folder / "map").resolve()
     saver = subprocess.run(
         ["rosrun", "map_lite", "map_saver", "-f", str(stem)],
         stdin=subprocess.DEVNULL,
@@ -94,21 +101,3 @@ def save_map(run: Run, stem: Optional[Path]) -> Path:
     if saver.returncode != 0:
         raise LaunchError(f"map_saver: {' '.join(saver.stderr.split()) or 'failed'}")
     return stem.with_name(stem.name + ".yaml")
-
-
-def _judge(failure: Optional[str], run: Run, score: MapScore, way_home: float) -> Verdict:
-    collisions = run.referee.ledger.collisions
-    complaints = [
-        (failure is not None, failure),
-        (way_home > ARRIVAL_TOLERANCE, f"the robot truly stands {way_home:.2f} m from where it started"),
-        (score.recall < LEAST_RECALL, f"recall below {LEAST_RECALL}"),
-        (score.precision < LEAST_PRECISION, f"precision below {LEAST_PRECISION}"),
-        (score.doubled_walls > 0, "walls are doubled"),
-        (bool(collisions), f"collided with {', '.join(sorted(set(collisions)))}"),
-    ]
-    figures = (
-        f"recall {score.recall:.3f}, precision {score.precision:.3f}, {score.doubled_walls} doubled walls, "
-        f"back {way_home:.2f} m from the start"
-    )
-    reasons = [text for is_wrong, text in complaints if is_wrong]
-    return Verdict(not reasons, f"{'; '.join(reasons)} ({figures})" if reasons else figures)

@@ -5,7 +5,7 @@ import re
 import threading
 import time
 from collections import deque
-from typing import Callable, Deque, Iterable, Mapping, Optional, Set, Tuple
+from typing import Any, Callable, Deque, Dict, Iterable, Mapping, Optional, Set, Tuple
 
 import rospy
 from home_service_msgs.msg import MissionState
@@ -15,11 +15,12 @@ from std_msgs.msg import String
 from visualization_msgs.msg import Marker
 
 from home_service.judging.delivery_watch import DeliveryWatch
-from home_service.judging.verdict import Ledger
+from home_service.judging.verdict import Ledger, Verdict, collision, judge
 from pick_objects import Delivery, Stage
 from planar import Pose2
 from planar.maps.places import Place
 from planar_ros.messages.conversion import pose2_from_msg
+from supervision.processes import start_of_this_process
 
 MOTION_DISTANCE = 0.02
 NUMBER = re.compile(r"\d[\d.]*")
@@ -32,7 +33,7 @@ SPOKEN_NODES = ("/pick_objects", "/add_markers")
 
 
 class Referee:
-    """Fills a ledger from topics. Simulated time is that of the ground truth's stamps.
+    """A judge that fills a ledger from topics. Simulated time is that of the ground truth's stamps.
 
     ``say`` is called with each line worth a person's attention.
     """
@@ -55,6 +56,11 @@ class Referee:
         self._deliveries = DeliveryWatch(places, self.ledger.deliveries, say)
         self._told: Set[str] = set()
         self._lock = threading.Lock()
+        self._has_started = False
+
+    def start(self) -> None:
+        """Subscribes to what it judges by; this process is a node by then."""
+        self._has_started = True
         truth = "base_pose_ground_truth"
         rospy.Subscriber(truth, Odometry, self._see_truth, queue_size=REMEMBERED, tcp_nodelay=True)
         rospy.Subscriber("contacts", String, self._see_contact, queue_size=50)
@@ -63,6 +69,50 @@ class Referee:
         rospy.Subscriber("visualization_marker", Marker, self._see_marker, queue_size=10)
         rospy.Subscriber("move_base/NavfnROS/plan", Path, self._see_plan, queue_size=1)
         rospy.Subscriber("/rosout_agg", Log, self._hear, queue_size=50)
+
+    def has_begun(self) -> bool:
+        """Whether the truth about the robot has been seen."""
+        return self.truth is not None
+
+    def has_seen(self, expected: Set[str]) -> bool:
+        """Whether everything expected has been seen, or can no longer come."""
+        return self.ledger.is_complete(expected)
+
+    def verdict(self, expected: Set[str], failure: Optional[str] = None) -> Verdict:
+        """Whether all that was expected truly came about; ``failure``: why the run was cut short, if so."""
+        self.ledger.failure = failure or self.ledger.failure
+        return judge(self.ledger, expected)
+
+    def distance_from(self, pose: Pose2) -> float:
+        """How far the robot truly is from a pose of the world, metres; it has begun by then."""
+        assert self.truth is not None
+        return self.truth.distance_to(pose)
+
+    @property
+    def collision(self) -> Optional[str]:
+        """What the robot has collided with, in words; None if with nothing."""
+        return collision(self.ledger.collisions)
+
+    def status(self) -> str:
+        """How things stand, in a line."""
+        to_go = "" if self.distance_to_go is None else f"{self.distance_to_go:.1f} m to go, "
+        return (
+            f"{self.state or 'running'}: {to_go}simulated {self.simulated_seconds:.1f} s, "
+            f"{self.real_time_factor:.1f} x real time"
+        )
+
+    def findings(self) -> Dict[str, Any]:
+        """What belongs into result.json; nothing if it was not started."""
+        if not self._has_started:
+            return {}
+        first_motion = self.first_motion_wall
+        return {
+            "first_motion_wall_seconds": first_motion and round(first_motion - start_of_this_process(), 3),
+            "simulated_seconds": round(self.simulated_seconds, 3),
+            "real_time_factor": round(self.real_time_factor, 3),
+            "distance_driven": round(self.distance_driven, 3),
+            **self.ledger.findings(),
+        }
 
     @property
     def simulated_seconds(self) -> float:

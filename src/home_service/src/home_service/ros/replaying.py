@@ -1,45 +1,45 @@
-"""The command that plays a recording to localization or mapping and measures what they make of it."""
+"""A recording, played to localization or mapping, and what they make of it."""
 
-import os
-from argparse import Namespace
-from typing import Optional
+from pathlib import Path
+from typing import Optional, Sequence
 
 import rospy
 from std_msgs.msg import String
 
 from home_service.bag_files import LASER_SCAN, Recording
 from home_service.judging.verdict import Verdict
+from home_service.options import LaunchPlan, RunOptions
 from home_service.ros.bags.player import BROKEN, ENDED
 from home_service.ros.mapping import save_map
+from home_service.ros.referee import Referee
 from home_service.ros.run import Run
-from planar import load_map
+from home_service.ros.run_recorder import RunRecorder
 from planar_ros.bags.scan_log import BagError
+from supervision.display import Display
+from supervision.interruption import raise_when_interrupted
 
 
-def replay(options: Namespace) -> int:
-    options.places = {}
-    recording = Recording(options.bags)
-    if options.estimator == "amcl":
-        load_map(options.map)  # so that a mistake is told before anything is started
-    if options.estimator != "recorded" and not recording.topics_of(LASER_SCAN):
+def open_recording(paths: Sequence[Path], needs_scans: bool) -> Recording:
+    """The bags that are named. Raises BagError, also if there are no scans where scans are needed."""
+    raise_when_interrupted()  # what is broken is mended in a copy, which must not stay
+    recording = Recording(paths)
+    if needs_scans and not recording.topics_of(LASER_SCAN):
         there = ", ".join(sorted(recording.types)) or "none"
         raise BagError(f"{recording.paths[0]}: no laser scans; topics: {there}")
-    x, y, yaw = options.start
-    arguments = {
-        "bags": os.pathsep.join(str(path.resolve()) for path in recording.paths),
-        "estimator": options.estimator,
-        "map_file": options.map.resolve(),
-        "x": x,
-        "y": y,
-        "yaw": yaw,
-    }
-    with Run(options, "replay.launch", **arguments) as run:
-        run.missing += recording.gaps
+    return recording
+
+
+def play(
+    options: RunOptions, launch: LaunchPlan, recording: Recording, saves_map: bool, stem: Optional[Path]
+) -> int:
+    """Runs the graph that plays it to its end; the map goes to ``stem`` or the run folder. The exit code."""
+    display = Display()
+    with Run(options, launch, Referee({}, display.say), RunRecorder({}), display) as run:
+        run.result.missing += recording.gaps
         failure = _play(run)
-        if failure is None and options.estimator == "slam":
-            run.display.say(f"map saved in {save_map(run, options.save)}")
-        seconds = recording.end - recording.start
-        verdict = Verdict(failure is None, failure or f"{seconds:.1f} s replayed")
+        if failure is None and saves_map:
+            display.say(f"map saved in {save_map(run.folder, stem)}")
+        verdict = Verdict(failure is None, failure or f"{recording.end - recording.start:.1f} s replayed")
         return run.conclude(verdict, bags=[str(path) for path in recording.paths])
 
 

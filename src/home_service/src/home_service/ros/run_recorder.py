@@ -33,9 +33,8 @@ class RunRecorder:
     """Samples truth, estimate and odometry ten times a simulated second, and notes every event."""
 
     def __init__(self, places: Mapping[str, Place]):
-        self._record = RunRecord(
-            zones=[Zone(place.name, *place.pose.as_array(), place.radius) for place in places.values()]
-        )
+        self._places = places
+        self._record = RunRecord()
         self._start_wall: Optional[float] = None
         self._now = 0.0
         self._truth: List[Tuple[float, ...]] = []
@@ -44,6 +43,13 @@ class RunRecorder:
         self._odom_in_map: Optional[Pose2] = None
         self._map = None
         self._latest_markings: Dict[str, Marking] = {}
+
+    def start(self) -> None:
+        """Subscribes to what it keeps; this process is a node by then."""
+        self._record.zones = [
+            Zone(place.name, place.pose.x, place.pose.y, place.pose.yaw, place.radius)
+            for place in self._places.values()
+        ]
         subscribe = rospy.Subscriber
         subscribe("base_pose_ground_truth", Odometry, self._see_truth, queue_size=50, tcp_nodelay=True)
         subscribe("/tf", TFMessage, self._see_transforms, queue_size=100, tcp_nodelay=True)

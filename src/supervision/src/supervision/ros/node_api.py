@@ -2,7 +2,7 @@
 
 import xmlrpc.client
 from itertools import chain
-from typing import Container, Set, Tuple
+from typing import Any, Container, Set, Tuple
 
 import rosgraph
 
@@ -32,18 +32,19 @@ def is_master_online() -> bool:
 def answers(uri: str) -> bool:
     """Whether the master or node at ``uri`` is alive."""
     try:
-        return _proxy(uri).getPid(CALLER)[0] == 1
+        code, _pid = _ask(uri, "getPid")
     except _SILENCE:
         return False
+    return code == 1
 
 
 def hears_all(node: str, topics: Container[str]) -> bool:
     """Whether each publisher of ``topics`` sends to ``node`` by now."""
+    master = rosgraph.get_master_uri()
     try:
-        master = _proxy(rosgraph.get_master_uri())
-        _code, _status, (published, *_) = master.getSystemState(CALLER)
+        _code, (published, *_) = _ask(master, "getSystemState")
         publishers = {topic: nodes for topic, nodes in published if topic in topics}
-        uris = {name: master.lookupNode(CALLER, name)[2] for name in {*chain(*publishers.values())}}
+        uris = {name: _ask(master, "lookupNode", name)[1] for name in {*chain(*publishers.values())}}
         receivers = {name: _receivers(uri) for name, uri in uris.items()}
     except _SILENCE:
         return False
@@ -52,9 +53,12 @@ def hears_all(node: str, topics: Container[str]) -> bool:
 
 def _receivers(uri: str) -> Set[Tuple[str, str]]:
     """Each topic that a node sends, with the node that it is sent to."""
-    _code, _status, connections = _proxy(uri).getBusInfo(CALLER)
+    _code, connections = _ask(uri, "getBusInfo")
     return {(topic, peer) for _, peer, direction, _, topic, *_ in connections if direction == "o"}
 
 
-def _proxy(uri: str) -> xmlrpc.client.ServerProxy:
-    return xmlrpc.client.ServerProxy(uri, transport=_TimedTransport())
+def _ask(uri: str, question: str, *arguments: str) -> Tuple[int, Any]:
+    """The code and the value of what a master or node answers."""
+    proxy: Any = xmlrpc.client.ServerProxy(uri, transport=_TimedTransport())
+    code, _status, value = getattr(proxy, question)(CALLER, *arguments)
+    return code, value

@@ -1,10 +1,8 @@
-"""The command that says what is running and what it lacks."""
+"""What is running, found by asking the master and the nodes and by listening for a while."""
 
-import json
 import os
 import time
-from argparse import Namespace
-from typing import Callable, Dict, List
+from typing import Callable, Dict, List, Optional
 
 import psutil
 import rosgraph
@@ -13,31 +11,24 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 
-from home_service.doctor.diagnosis import Findings, Node, Topic, as_json, as_text, problems
+from home_service.doctor.diagnosis import Findings, Node, Topic
 from planar_ros.messages.conversion import frame_name
 from planar_ros.node.waiting import TOPIC as WAITING_TOPIC
 from supervision.ros.node_api import answers
 from supervision.versions import versions
 
-HEALTHY, ILL, NOTHING_RUNS = 0, 1, 3
 MEASURED_TOPICS = ("/clock", "/scan", "/odom", "/joint_states", "/tf", "/cmd_vel")
 SILENT_WHILE_IDLE = ("/cmd_vel",)
 
 
-def doctor(options: Namespace) -> int:
-    """Prints what was found within ``options.seconds``; returns whether it is healthy as an exit code."""
+def examine(master: Optional[str], seconds: float) -> Findings:
+    """What there is to say of the graph of ``master``, or of the newest one, listened to for ``seconds``."""
     findings = Findings(versions=versions())
-    masters = [options.master] if options.master else running_masters()
+    masters = [master] if master else running_masters()
     if masters:
         findings.master, findings.other_masters = masters[0], masters[1:]
-        _examine(findings, options.seconds)
-    if options.json:
-        print(json.dumps(as_json(findings), indent=2))
-    else:
-        print("\n".join(as_text(findings)))
-    if findings.master is None:
-        return NOTHING_RUNS
-    return ILL if problems(findings) else HEALTHY
+        _examine(findings, masters[0], seconds)
+    return findings
 
 
 def running_masters() -> List[str]:
@@ -52,10 +43,10 @@ def running_masters() -> List[str]:
     return [uri for uri in dict.fromkeys(found) if uri and answers(uri)]
 
 
-def _examine(findings: Findings, seconds: float) -> None:
-    os.environ["ROS_MASTER_URI"] = findings.master
+def _examine(findings: Findings, uri: str, seconds: float) -> None:
+    os.environ["ROS_MASTER_URI"] = uri
     rospy.init_node("doctor", anonymous=True, disable_signals=True, log_level=rospy.FATAL)
-    myself, master = rospy.get_name(), rosgraph.Master(rospy.get_name(), findings.master)
+    myself, master = rospy.get_name(), rosgraph.Master(rospy.get_name(), uri)
     findings.uses_simulated_time = bool(rospy.get_param("/use_sim_time", False))
     publishers, subscribers, services = map(dict, master.getSystemState())
     everybody = [

@@ -1,0 +1,30 @@
+import json
+from dataclasses import dataclass
+from typing import Optional
+
+from home_service.options import seconds
+from supervision.command_line import option
+
+HEALTHY, ILL, NOTHING_RUNS = 0, 1, 3
+
+
+@dataclass(frozen=True)
+class Doctor:
+    """Says what is running, what each node waits for, and what is wrong."""
+
+    json: bool = option(False, "print for programs")
+    master: Optional[str] = option(None, "of the graph to look at, if there are several", metavar="URI")
+    seconds: float = option(2.0, "how long rates are measured", type=seconds)
+
+    def run(self) -> int:
+        from home_service.doctor.diagnosis import as_json, as_text, problems
+        from home_service.ros.examination import examine
+
+        findings = examine(self.master, self.seconds)
+        if self.json:
+            print(json.dumps(as_json(findings), indent=2))
+        else:
+            print("\n".join(as_text(findings)))
+        if findings.master is None:
+            return NOTHING_RUNS
+        return ILL if problems(findings) else HEALTHY

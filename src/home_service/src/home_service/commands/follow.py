@@ -1,0 +1,15 @@
+from dataclasses import dataclass
+
+from home_service.options import ErrandOptions, GraphOptions
+
+
+@dataclass(frozen=True)
+class Follow(GraphOptions, ErrandOptions):
+    """Lets a second robot follow the first, while that does its errand."""
+
+    def run(self) -> int:
+        from home_service.ros.following import let_follow
+        from home_service.stage import read_errand
+
+        launch = self.launch("follow.launch", **self.files())
+        return let_follow(self, launch, read_errand(self).places)

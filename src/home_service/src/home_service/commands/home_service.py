@@ -1,0 +1,35 @@
+from dataclasses import dataclass
+
+from home_service.judging.verdict import ERRAND, MARKERS, OBJECTS
+from home_service.options import GraphOptions, MissionOptions
+from supervision.command_line import option
+
+
+@dataclass(frozen=True)
+class HomeService(GraphOptions, MissionOptions):
+    """Fetches the object at the pick-up zone and delivers it at the drop-off zone."""
+
+    serve: bool = option(False, "wait for missions sent to the action deliver, until Ctrl-C")
+    marker_source: str = option(
+        "tf", "what tells the marker where the robot is", choices=("tf", "amcl_pose", "odom", "state")
+    )
+
+    @property
+    def is_ended_by_a_person(self) -> bool:
+        return self.serve
+
+    def run(self) -> int:
+        from home_service.ros.conducting import carry_out, stay_open
+        from home_service.stage import read_mission
+
+        places = read_mission(self).places
+        launch = self.launch(
+            "home_service.launch",
+            **self.files(),
+            marker_source=self.marker_source,
+            marker_mode="mission" if self.mission or self.serve else "service",
+            serve=str(self.serve).lower(),
+        )
+        if self.serve:
+            return stay_open(self, launch, "send missions to the action deliver; Ctrl-C ends", places)
+        return carry_out(self, launch, places, {ERRAND, OBJECTS if self.mission else MARKERS})

@@ -1,0 +1,15 @@
+from dataclasses import dataclass
+
+from home_service.options import MappingOptions
+
+
+@dataclass(frozen=True)
+class MapHome(MappingOptions):
+    """Lets the robot explore the world, saves its map, and scores it against the true one."""
+
+    def run(self) -> int:
+        from home_service.ros.mapping import make_scored_map
+        from home_service.stage import read_stage
+
+        stage = read_stage(self)
+        return make_scored_map(self, self.launch("mapping.launch"), stage)

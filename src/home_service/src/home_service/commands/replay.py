@@ -1,0 +1,52 @@
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Optional, Tuple
+
+from home_service.options import ROOT, LaunchPlan, RunOptions, seed
+from supervision.command_line import argument, option
+
+
+@dataclass(frozen=True)
+class Replay(RunOptions):
+    """Plays recorded bags to localization or mapping, and measures what they make of them."""
+
+    bags: Tuple[Path, ...] = argument(
+        "bags, or folders of them or of runs", default=(), type=Path, nargs="+", metavar="BAG"
+    )
+    estimator: str = option(
+        "amcl",
+        "localize, map, or only show what was recorded",
+        flag="--with",
+        choices=("amcl", "slam", "recorded"),
+    )
+    map: Path = option(ROOT / "map/home.yaml", "for amcl: the map", type=Path)
+    start: Tuple[float, float, float] = option(
+        (0.0, 0.0, 0.0),
+        "for amcl: where the robot starts in the map",
+        type=float,
+        nargs=3,
+        metavar=("X", "Y", "YAW"),
+    )
+    seed: int = option(0, "of every particle", type=seed)
+    save: Optional[Path] = option(None, "for slam: where to save the map", type=Path, metavar="STEM")
+
+    def run(self) -> int:
+        from home_service.ros.replaying import open_recording, play
+        from planar import load_map
+
+        recording = open_recording(self.bags, needs_scans=self.estimator != "recorded")
+        if self.estimator == "amcl":
+            load_map(self.map)  # so that a mistake is told before anything is started
+        x, y, yaw = self.start
+        arguments = {
+            "bags": os.pathsep.join(str(path.resolve()) for path in recording.paths),
+            "estimator": self.estimator,
+            "map_file": self.map.resolve(),
+            "x": x,
+            "y": y,
+            "yaw": yaw,
+            "seed": self.seed,
+        }
+        launch = LaunchPlan("replay.launch", arguments, is_simulated=False)
+        return play(self, launch, recording, saves_map=self.estimator == "slam", stem=self.save)

@@ -1,0 +1,48 @@
+import argparse
+from dataclasses import dataclass
+from typing import List, Optional, Sequence, Tuple
+
+from home_service.options import GraphOptions, HomeOptions
+from supervision.command_line import option
+
+
+def goal_list(text: str) -> List[List[float]]:
+    """Poses from "x y yaw; x y yaw" in metres and radians."""
+    goals = []
+    for part in filter(str.strip, text.split(";")):
+        try:
+            goal = [float(number) for number in part.split()]
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"'{part.strip()}' is not three numbers") from None
+        if len(goal) != 3:
+            raise argparse.ArgumentTypeError(f"'{part.strip()}' is not three numbers: x, y, yaw")
+        goals.append(goal)
+    if not goals:
+        raise argparse.ArgumentTypeError("no goal given")
+    return goals
+
+
+@dataclass(frozen=True)
+class TestNavigation(GraphOptions, HomeOptions):
+    """Starts home, localization and navigation; goals by hand or from --goals."""
+
+    goals: Optional[Tuple[Sequence[float], ...]] = option(
+        None, "drive to these poses, then end", type=goal_list, metavar='"X Y YAW; X Y YAW"'
+    )
+
+    @property
+    def is_ended_by_a_person(self) -> bool:
+        return self.goals is None
+
+    def run(self) -> int:
+        from home_service.ros.conducting import stay_open
+        from home_service.ros.driving import drive_through
+        from home_service.stage import read_home
+        from planar import Pose2
+
+        read_home(self)
+        launch = self.launch("navigation.launch", **self.files())
+        if self.goals is None:
+            hint = "send goals to /move_base_simple/goal or to the action /move_base; Ctrl-C ends"
+            return stay_open(self, launch, hint)
+        return drive_through(self, launch, [Pose2(*goal) for goal in self.goals])

@@ -1,0 +1,32 @@
+"""How runs go: until what is expected has come about, or until a person ends them."""
+
+import os
+from typing import Mapping, Set
+
+from home_service.judging.verdict import Verdict
+from home_service.options import LaunchPlan, RunOptions
+from home_service.ros.referee import Referee
+from home_service.ros.run import Run
+from home_service.ros.run_recorder import RunRecorder
+from planar.maps.places import Place
+from supervision.display import Display
+
+
+def carry_out(
+    options: RunOptions, launch: LaunchPlan, places: Mapping[str, Place], expected: Set[str]
+) -> int:
+    """Runs a graph that does its work by itself; returns the exit code."""
+    display = Display()
+    referee = Referee(places, display.say)
+    with Run(options, launch, referee, RunRecorder(places), display) as run:
+        failure = run.watch(lambda: referee.has_seen(expected))
+        return run.conclude(referee.verdict(expected, failure))
+
+
+def stay_open(options: RunOptions, launch: LaunchPlan, hint: str, places: Mapping[str, Place] = {}) -> int:
+    """Runs a graph for people to work with, who are told where its master is; returns the exit code."""
+    display = Display()
+    with Run(options, launch, Referee(places, display.say), RunRecorder(places), display) as run:
+        display.say(f"ROS_MASTER_URI={os.environ['ROS_MASTER_URI']}")
+        display.say(hint)
+        return run.conclude(Verdict(False, run.watch(lambda: False) or ""))

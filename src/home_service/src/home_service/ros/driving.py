@@ -1,0 +1,66 @@
+"""Goals of move_base, driven to one after the other and judged by where the robot truly stood."""
+
+from typing import List, Optional, Sequence
+
+import actionlib
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
+from rosgraph_msgs.msg import Clock
+
+from home_service.judging.verdict import ARRIVAL_TOLERANCE, Verdict
+from home_service.options import LaunchPlan, RunOptions
+from home_service.ros.referee import Referee
+from home_service.ros.run import Run
+from home_service.ros.run_recorder import RunRecorder
+from planar import Pose2
+from planar_ros.calls.actions import goal_is_over, server_is_ready
+from planar_ros.messages.conversion import pose2_to_msg
+from supervision.display import Display
+
+
+def drive_through(options: RunOptions, launch: LaunchPlan, goals: Sequence[Pose2]) -> int:
+    """Runs a graph that navigates, and drives to the goals, in the map's frame; returns the exit code."""
+    display = Display()
+    referee = Referee({}, display.say)
+    with Run(options, launch, referee, RunRecorder({}), display) as run:
+        failure = _drive_to_all(run, referee, goals) or referee.collision
+        reached = f"{len(goals)} of {len(goals)} goals reached, no collision"
+        return run.conclude(Verdict(failure is None, failure or reached))
+
+
+def _drive_to_all(run: Run, referee: Referee, goals: Sequence[Pose2]) -> Optional[str]:
+    """Why it could not come to the last goal, or None."""
+    client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
+    failure = run.watch(lambda: server_is_ready(client))
+    for number, pose in enumerate(goals, 1):
+        if failure is None:
+            name = f"goal {number} ({pose.x:g}, {pose.y:g}, {pose.yaw:g})"
+            failure = _drive_to(run, referee, client, pose, name)
+    return failure
+
+
+def _drive_to(run: Run, referee: Referee, client, pose: Pose2, name: str) -> Optional[str]:
+    goal = MoveBaseGoal()
+    goal.target_pose.header.frame_id = "map"
+    goal.target_pose.header.stamp = rospy.Time.from_sec(referee.simulated_time)
+    goal.target_pose.pose = pose2_to_msg(pose)
+    client.send_goal(goal)
+    failure = run.watch(lambda: goal_is_over(client))
+    if failure is None and client.get_state() != GoalStatus.SUCCEEDED:
+        failure = f"{name}: {client.get_goal_status_text()}"
+    failure = failure or _watch_truth(run, referee)
+    if failure is not None:
+        return failure
+    error = referee.distance_from(pose)
+    run.display.say(f"{name}: reached, truly {error:.3f} m from it")
+    return f"{name}: the robot truly stood {error:.2f} m off" if error > ARRIVAL_TOLERANCE else None
+
+
+def _watch_truth(run: Run, referee: Referee) -> Optional[str]:
+    """Shows progress until the ground truth of this moment has come; returns as Run.watch."""
+    moments: List[float] = []
+    clock = rospy.Subscriber("/clock", Clock, lambda message: moments.append(message.clock.to_sec()))
+    failure = run.watch(lambda: bool(moments) and referee.simulated_time >= moments[0])
+    clock.unregister()
+    return failure

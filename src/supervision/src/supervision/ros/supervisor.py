@@ -1,0 +1,72 @@
+"""A graph under supervision: brought up, watched until its work is done, ended."""
+
+import time
+from pathlib import Path
+from typing import Callable, Mapping, Optional
+
+from supervision.display import Display
+from supervision.errors import LaunchError
+from supervision.interruption import raise_if_interrupted
+from supervision.ros.graph import RosGraph
+
+POLL_SECONDS = 0.05
+BRING_UP_SECONDS = 60.0
+
+
+class Supervisor:
+    """Starts a graph, waits for its parts, and notices when it cannot go on; Ctrl-C is heard meanwhile."""
+
+    def __init__(self, display: Display, log_folder: Path, time_limit: float):
+        """``time_limit``: wall-clock seconds from now after which a watch gives up."""
+        self._display, self._log_folder, self._time_limit = display, log_folder, time_limit
+        self._deadline = time.monotonic() + time_limit
+        self._graph: Optional[RosGraph] = None
+
+    def start(self, package: str, launch_file: str, arguments: Mapping[str, object]) -> None:
+        """Launches the graph. Raises LaunchError."""
+        self._graph = RosGraph(package, launch_file, arguments, self._log_folder)
+
+    def wait_for(self, what: str, is_there: Callable[[], bool]) -> None:
+        """Waits for a part of the graph. Raises LaunchError if it does not come."""
+        deadline = time.monotonic() + BRING_UP_SECONDS
+        while not is_there():
+            failure = self._failure(f" before {what} was there")
+            if failure is None and time.monotonic() > deadline:
+                failure = f"no {what} within {BRING_UP_SECONDS:g} s, see {self._log_folder}"
+            if failure:
+                raise LaunchError(failure)
+            self._display.show(f"waiting for {what}")
+            time.sleep(POLL_SECONDS)
+
+    def watch(self, is_over: Callable[[], bool], status: Callable[[], str]) -> Optional[str]:
+        """Shows how things stand until ``is_over``; returns why it cannot come to that, or None."""
+        while not is_over():
+            failure = self._failure()
+            if failure is None and time.monotonic() > self._deadline:
+                failure = f"not done within {self._time_limit:g} s of wall-clock time"
+            if failure:
+                return failure
+            self._display.show(status())
+            time.sleep(POLL_SECONDS)
+        return None
+
+    def end(self) -> None:
+        """Ends every process of the graph."""
+        if self._graph is not None:
+            self._graph.close()
+
+    @property
+    def log_gap(self) -> Optional[str]:
+        """What is missing of the graph's log, and why."""
+        return None if self._graph is None else self._graph.log_gap
+
+    def _failure(self, when: str = "") -> Optional[str]:
+        """Why the graph cannot go on. Raises LaunchError if a node refused its input."""
+        raise_if_interrupted()
+        assert self._graph is not None, "start() comes first"
+        failure = self._graph.failure
+        if failure is not None and failure.is_bad_input:
+            raise LaunchError(failure.text, is_bad_input=True)
+        if failure is not None:
+            return failure.text
+        return None if self._graph.is_running else f"roslaunch ended{when}, see {self._log_folder}"
