@@ -1,7 +1,4 @@
-from pathlib import Path
-
 import pytest
-import yaml
 
 from add_markers import CarriedParcel, MarkerSettings, TimedParcel
 from planar import Pose2, SettingsError
@@ -51,10 +48,3 @@ def test_the_demo_follows_the_clock():
 def test_an_unknown_source_of_the_pose_is_refused():
     with pytest.raises(SettingsError, match="pose_source must be one of tf"):
         MarkerSettings(zones_file="x", pose_source="gps")
-
-
-def test_the_shipped_configuration_is_the_default_one():
-    shipped = yaml.safe_load((Path(__file__).parents[1] / "config/add_markers.yaml").read_text())
-    defaults = vars(MarkerSettings(zones_file="x")).copy()
-    del defaults["zones_file"]
-    assert shipped == defaults

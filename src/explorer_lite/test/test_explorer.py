@@ -1,11 +1,8 @@
 import math
-from pathlib import Path
 
 import pytest
-import yaml
 
 from explorer_lite import Explorer, ExplorerSettings, ExplorerState, Finish, GoalReached, GoalRefused, GoTo
-from explorer_lite.config import NodeSettings
 from planar import Pose2, SettingsError, grid_from_picture
 
 SETTINGS = ExplorerSettings(
@@ -169,8 +166,3 @@ def test_a_robot_in_no_free_space_waits_for_a_better_map_but_not_for_ever():
 def test_senseless_settings_are_refused(name, value):
     with pytest.raises(SettingsError, match=name):
         ExplorerSettings(**{name: value})
-
-
-def test_the_shipped_configuration_is_the_default_one():
-    shipped = yaml.safe_load((Path(__file__).parents[1] / "config/explorer_lite.yaml").read_text())
-    assert shipped == {**vars(ExplorerSettings()), **vars(NodeSettings())}

@@ -1,14 +1,10 @@
 """A follower stays behind its leader, on the leader's own way."""
 
 import math
-from dataclasses import fields
-from pathlib import Path
 
 import pytest
-import yaml
 
 from follow_me import Follower, FollowSettings
-from follow_me.config import NodeSettings
 from planar import Pose2
 
 GAP, SLACK = 0.8, 0.2
@@ -67,8 +63,3 @@ def test_a_leader_that_turns_round_does_not_call_the_follower_upon_itself():
         leader = Pose2(2.0 - 0.1 * step, 0.0, math.pi)
         goal = guide.goal(leader, BEHIND)
         assert goal is None or goal.distance_to(leader) > 0.5 * GAP
-
-
-def test_the_yaml_documents_every_parameter_with_its_default():
-    path = Path(__file__).resolve().parents[1] / "config" / "follow_me.yaml"
-    assert yaml.safe_load(path.read_text()) == {one.name: one.default for one in fields(NodeSettings)}

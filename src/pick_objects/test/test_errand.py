@@ -1,7 +1,4 @@
-from pathlib import Path
-
 import pytest
-import yaml
 
 from pick_objects import (
     Delivery,
@@ -19,7 +16,6 @@ from pick_objects import (
     WaysMeasured,
     errand_mission,
 )
-from pick_objects.config import NodeSettings
 from planar import Pose2, SettingsError
 from planar.maps.places import Place
 
@@ -78,13 +74,6 @@ def test_attempts_are_counted_for_each_place_anew():
 def test_senseless_patience_is_refused():
     with pytest.raises(SettingsError, match="attempts must be at least 1"):
         errand(attempts=0)
-
-
-def test_the_shipped_configuration_is_the_default_one():
-    shipped = yaml.safe_load((Path(__file__).parents[1] / "config/pick_objects.yaml").read_text())
-    defaults = {**vars(ErrandSettings()), **vars(NodeSettings(zones_file="x"))}
-    del defaults["zones_file"]
-    assert shipped == defaults
 
 
 KITCHEN = Place("kitchen", Pose2(0.0, 0.0), approaches=(Pose2(0.0, 1.0), Pose2(1.0, 0.0)))

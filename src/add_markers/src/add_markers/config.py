@@ -2,32 +2,51 @@
 
 from dataclasses import dataclass
 
-from planar.config.settings import check
-
-MODES = ("service", "mission", "demo")
-SOURCES = ("tf", "amcl_pose", "odom", "state")
+from planar.config.listing import Section
+from planar.config.parameters import POSITIVE, ZERO_OR_MORE, check_parameters, parameter
 
 
 @dataclass(frozen=True)
 class MarkerSettings:
-    """Which story the marker tells, and what tells it where the robot is. Seconds are simulated."""
+    """Which story the marker tells, and what tells it where the robot is."""
 
-    zones_file: str = ""
-    mode: str = "service"
-    pose_source: str = "tf"
-    show_seconds: float = 5.0
-    hide_seconds: float = 5.0
-    pickup_seconds: float = 5.0
-    frame_id: str = "map"
-    base_frame_id: str = "base_footprint"
-    size: float = 0.2
-    robot_model: str = "mobile_base"
+    zones_file: str = parameter(
+        "",
+        "path of the YAML file with the places pickup and dropoff",
+        required="the path of a YAML file of zones",
+    )
+    mode: str = parameter(
+        "service",
+        "service: the errand's object; mission: each object of a mission; demo: by the clock",
+        choices=("service", "mission", "demo"),
+    )
+    pose_source: str = parameter(
+        "tf",
+        "what tells where the robot is: tf, amcl_pose, odom, or state (of pick_objects)",
+        choices=("tf", "amcl_pose", "odom", "state"),
+    )
+    show_seconds: float = parameter(5.0, "demo: how long the marker is shown at pick-up", "s", ZERO_OR_MORE)
+    hide_seconds: float = parameter(
+        5.0, "demo: how long it is hidden before it is shown at drop-off", "s", ZERO_OR_MORE
+    )
+    pickup_seconds: float = parameter(
+        5.0, "service: how long the robot stays at pick-up until it has the object", "s", ZERO_OR_MORE
+    )
+    frame_id: str = parameter("map", "frame in which the zones are given")
+    base_frame_id: str = parameter("base_footprint", "the robot's frame, for pose_source tf")
+    size: float = parameter(0.2, "edge of the cube", "m", POSITIVE)
+    robot_model: str = parameter(
+        "mobile_base", "mission: the model of the robot in the simulator, that carries solid objects"
+    )
 
     def __post_init__(self):
-        check(bool(self.zones_file), "zones_file", "the path of a YAML file of zones", self.zones_file)
-        check(self.mode in MODES, "mode", f"one of {', '.join(MODES)}", self.mode)
-        check(self.pose_source in SOURCES, "pose_source", f"one of {', '.join(SOURCES)}", self.pose_source)
-        check(self.show_seconds >= 0.0, "show_seconds", "zero or more", self.show_seconds)
-        check(self.hide_seconds >= 0.0, "hide_seconds", "zero or more", self.hide_seconds)
-        check(self.pickup_seconds >= 0.0, "pickup_seconds", "zero or more", self.pickup_seconds)
-        check(self.size > 0.0, "size", "positive", self.size)
+        check_parameters(self)
+
+
+CONFIG_FILES = {
+    "add_markers.yaml": Section(
+        "",
+        MarkerSettings,
+        about="Every parameter of add_markers with its default. Seconds are simulated seconds.",
+    )
+}

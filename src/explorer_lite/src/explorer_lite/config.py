@@ -2,72 +2,96 @@
 
 from dataclasses import dataclass
 
+from planar.config.listing import Section
+from planar.config.parameters import POSITIVE, ZERO_OR_MORE, at_least, check_parameters, parameter
 from planar.config.settings import check
 
 
 @dataclass(frozen=True)
 class ExplorerSettings:
-    """What is worth going to, and how patient the explorer is. Metres, radians and simulated seconds.
-
-    ``field_of_view``: how much the sensor sees at once, 0 if that has to be found out; one that does not see
-    all around is turned to the frontiers within ``reach`` before the robot drives on.
+    """What is worth going to, and how patient the explorer is. Seconds are simulated seconds.
 
     The cost of a frontier is ``potential_scale`` times the way there, plus ``orientation_scale`` times the
     turn towards it, less ``gain_scale`` times its length; the cheapest is next.
     """
 
-    min_frontier_size: float = 0.5
-    max_frontier_size: float = 2.0
-    clearance: float = 0.25
-    goal_clearance: float = 0.35
-    reach: float = 1.5
-    field_of_view: float = 0.0
-    potential_scale: float = 1.0
-    orientation_scale: float = 0.5
-    gain_scale: float = 0.5
-    switch_gain: float = 1.0
-    planner_frequency: float = 1.0
-    progress_timeout: float = 10.0
-    map_patience: float = 6.0
-    attempts: int = 2
-    blacklist_radius: float = 0.4
+    planner_frequency: float = parameter(1.0, "how often the frontiers are looked over", "Hz", POSITIVE)
+    min_frontier_size: float = parameter(0.5, "shorter frontiers are not worth going to", "m", POSITIVE)
+    max_frontier_size: float = parameter(2.0, "longer frontiers are taken in parts", "m")
+    clearance: float = parameter(
+        0.25,
+        "between the robot's centre and the next obstacle on the way; more than its radius",
+        "m",
+        ZERO_OR_MORE,
+    )
+    goal_clearance: float = parameter(
+        0.35, "the same where the robot is sent; also to the unknown, if possible", "m", ZERO_OR_MORE
+    )
+    reach: float = parameter(1.5, "a frontier is looked at from no further than this", "m", POSITIVE)
+    field_of_view: float = parameter(
+        0.0,
+        "what the laser sees at once; 0: as the first scan on scan says. One that does not see all around is "
+        "turned to the frontiers within reach before the robot drives on",
+        "rad",
+        ZERO_OR_MORE,
+    )
+    potential_scale: float = parameter(
+        1.0,
+        "cost of a metre of the way there",
+        bounds=ZERO_OR_MORE,
+        heading="The frontier with the lowest cost is next.",
+    )
+    orientation_scale: float = parameter(
+        0.5, "cost of a radian that the robot has to turn", bounds=ZERO_OR_MORE
+    )
+    gain_scale: float = parameter(0.5, "what a metre of the frontier's length is worth", bounds=ZERO_OR_MORE)
+    switch_gain: float = parameter(
+        1.0, "by how much another frontier must be cheaper than the one under way", bounds=ZERO_OR_MORE
+    )
+    progress_timeout: float = parameter(
+        10.0,
+        "a goal that has come no nearer for so long is given up",
+        "s",
+        POSITIVE,
+        heading="How patient it is.",
+    )
+    map_patience: float = parameter(
+        6.0, "how long to wait at a goal for a map that shows what is seen there", "s", ZERO_OR_MORE
+    )
+    attempts: int = parameter(
+        2, "viewpoints from which a frontier is tried before it is given up", bounds=at_least(1)
+    )
+    blacklist_radius: float = parameter(0.4, "places nearer than this count as the same", "m", POSITIVE)
 
     def __post_init__(self):
-        for name in (
-            "min_frontier_size",
-            "reach",
-            "planner_frequency",
-            "progress_timeout",
-            "blacklist_radius",
-        ):
-            check(getattr(self, name) > 0.0, name, "positive", getattr(self, name))
-        for name in (
-            "clearance",
-            "goal_clearance",
-            "potential_scale",
-            "orientation_scale",
-            "gain_scale",
-            "switch_gain",
-            "map_patience",
-            "field_of_view",
-        ):
-            check(getattr(self, name) >= 0.0, name, "zero or more", getattr(self, name))
+        check_parameters(self)
         check(
             self.max_frontier_size > self.min_frontier_size,
             "max_frontier_size",
             f"more than min_frontier_size ({self.min_frontier_size:g})",
             self.max_frontier_size,
         )
-        check(self.attempts >= 1, "attempts", "at least 1", self.attempts)
 
 
 @dataclass(frozen=True)
 class NodeSettings:
-    """Frames, and how long the node waits for others, in wall-clock seconds."""
+    """Frames, and how long the node waits for others."""
 
-    global_frame: str = "map"
-    robot_base_frame: str = "base_footprint"
-    server_timeout: float = 60.0
+    global_frame: str = parameter("map", "frame of the map and of the goals")
+    robot_base_frame: str = parameter("base_footprint", "frame of the robot")
+    server_timeout: float = parameter(
+        60.0, "how long map, transform or move_base may be missing, by the wall clock", "s", POSITIVE
+    )
 
     def __post_init__(self):
-        check(self.server_timeout > 0.0, "server_timeout", "positive", self.server_timeout)
+        check_parameters(self)
+
+
+CONFIG_FILES = {
+    "explorer_lite.yaml": Section(
+        "",
+        NodeSettings,
+        ExplorerSettings,
+        about="Every parameter of explorer_lite with its default. Seconds are simulated seconds.",
+    )
+}

@@ -2,52 +2,71 @@
 
 from dataclasses import dataclass
 
-from planar.config.settings import check
-
-FAILURE_POLICIES = ("stop", "continue")
-ORDERS = ("given", "shortest")
+from planar.config.listing import Section
+from planar.config.parameters import POSITIVE, ZERO_OR_MORE, at_least, check_parameters, parameter
 
 
 @dataclass(frozen=True)
 class ErrandSettings:
-    """How long things take, how patient the robot is, and what it makes of failures. Simulated seconds.
+    """How long things take, how patient the robot is, and what it makes of failures."""
 
-    ``attempts``: how often a place is tried; each attempt goes to the next of its poses.
-    ``on_failure``: whether a delivery that fails ends the mission. ``order``: of the deliveries.
-    """
-
-    pickup_seconds: float = 5.0
-    dropoff_seconds: float = 0.0
-    goal_timeout: float = 180.0
-    attempts: int = 3
-    retry_seconds: float = 1.0
-    on_failure: str = "stop"
-    order: str = "given"
+    pickup_seconds: float = parameter(5.0, "how long picking up takes", "s", ZERO_OR_MORE)
+    dropoff_seconds: float = parameter(0.0, "how long setting down takes", "s", ZERO_OR_MORE)
+    goal_timeout: float = parameter(180.0, "a goal not reached by then has failed", "s", POSITIVE)
+    attempts: int = parameter(
+        3,
+        "how often a place is tried, each time from the next of its poses, before it is given up",
+        bounds=at_least(1),
+    )
+    retry_seconds: float = parameter(1.0, "pause before a place is tried again", "s", ZERO_OR_MORE)
+    on_failure: str = parameter(
+        "stop",
+        "after a delivery that failed: stop, or continue with the next one",
+        choices=("stop", "continue"),
+    )
+    order: str = parameter(
+        "given",
+        "of the deliveries: given, or shortest (by the lengths of move_base's plans)",
+        choices=("given", "shortest"),
+    )
 
     def __post_init__(self):
-        check(self.pickup_seconds >= 0.0, "pickup_seconds", "zero or more", self.pickup_seconds)
-        check(self.dropoff_seconds >= 0.0, "dropoff_seconds", "zero or more", self.dropoff_seconds)
-        check(self.goal_timeout > 0.0, "goal_timeout", "positive", self.goal_timeout)
-        check(self.attempts >= 1, "attempts", "at least 1", self.attempts)
-        check(self.retry_seconds >= 0.0, "retry_seconds", "zero or more", self.retry_seconds)
-        policies = ", ".join(FAILURE_POLICIES)
-        check(self.on_failure in FAILURE_POLICIES, "on_failure", f"one of {policies}", self.on_failure)
-        check(self.order in ORDERS, "order", f"one of {', '.join(ORDERS)}", self.order)
+        check_parameters(self)
 
 
 @dataclass(frozen=True)
 class NodeSettings:
-    """What the node carries out, and where it finds what it needs. Waits are in wall-clock seconds."""
+    """What the node carries out, and where it finds what it needs."""
 
-    zones_file: str = ""
-    mission_file: str = ""
-    serve: bool = False
-    wait_for: str = ""
-    frame_id: str = "map"
-    server_timeout: float = 60.0
-    map_timeout: float = 10.0
+    zones_file: str = parameter(
+        "",
+        "path of the YAML file with the places pickup and dropoff, and any others",
+        required="the path of a YAML file of zones",
+    )
+    mission_file: str = parameter(
+        "", "YAML file of a mission; empty: from the place pickup to the place dropoff"
+    )
+    serve: bool = parameter(False, "whether to wait for missions sent to the action deliver, until shutdown")
+    wait_for: str = parameter(
+        "", "nodes of ours, by spaces, that are to be ready too before the mission begins"
+    )
+    frame_id: str = parameter("map", "frame in which the places are given")
+    server_timeout: float = parameter(
+        60.0, "how long to wait for move_base and those nodes, by the wall clock", "s", POSITIVE
+    )
+    map_timeout: float = parameter(
+        10.0, "how long to wait for a map to check the places against, by the wall clock", "s", POSITIVE
+    )
 
     def __post_init__(self):
-        check(bool(self.zones_file), "zones_file", "the path of a YAML file of zones", self.zones_file)
-        check(self.server_timeout > 0.0, "server_timeout", "positive", self.server_timeout)
-        check(self.map_timeout > 0.0, "map_timeout", "positive", self.map_timeout)
+        check_parameters(self)
+
+
+CONFIG_FILES = {
+    "pick_objects.yaml": Section(
+        "",
+        ErrandSettings,
+        NodeSettings,
+        about="Every parameter of pick_objects with its default. Seconds are simulated seconds.",
+    )
+}

@@ -1,18 +1,27 @@
 """Settings of the keyboard teleop."""
 
+import sys
 from dataclasses import dataclass
 
-from planar.config.settings import check
+from planar.config.listing import Section
+from planar.config.parameters import POSITIVE, check_parameters, parameter
+
+_SPEED = POSITIVE._replace(high=sys.float_info.max)
 
 
 @dataclass(frozen=True)
 class TeleopSettings:
-    """Speeds that full forward and full left mean at the start: m/s and rad/s."""
+    """Speeds that full forward and full left mean at the start."""
 
-    scale_linear: float = 0.2
-    scale_angular: float = 1.0
+    scale_linear: float = parameter(0.2, "speed at the start", "m/s", _SPEED)
+    scale_angular: float = parameter(1.0, "turn rate at the start", "rad/s", _SPEED)
 
     def __post_init__(self):
-        for name in ("scale_linear", "scale_angular"):
-            value = getattr(self, name)
-            check(0.0 < value < float("inf"), name, "positive", value)
+        check_parameters(self)
+
+
+CONFIG_FILES = {
+    "teleop_lite.yaml": Section(
+        "", TeleopSettings, about="Every parameter of the keyboard teleop with its default."
+    )
+}

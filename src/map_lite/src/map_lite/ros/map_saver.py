@@ -15,6 +15,7 @@ import rospy
 
 from map_lite.config import SaverSettings
 from planar import UNKNOWN, PlanarError, SettingsError, save_map
+from planar.config.parameters import parameters_of
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg
 from planar_ros.node.shell import fail
 from planar_ros.node.waiting import Waiting
@@ -28,7 +29,7 @@ def main():
     parser = _parser()
     arguments = parser.parse_args(rospy.myargv()[1:])
     try:
-        settings = SaverSettings(arguments.occ, arguments.free)
+        settings = SaverSettings(arguments.occupied_at, arguments.free_at)
     except SettingsError as error:
         parser.error(str(error))
     rospy.init_node("map_saver")
@@ -74,12 +75,11 @@ def _parser() -> argparse.ArgumentParser:
     parser = _Parser(
         prog="map_saver", description="Saves the map on the topic map to a .pgm and a .yaml file."
     )
-    parser.add_argument(
-        "--occ", type=int, default=65, metavar="PERCENT", help="from this on occupied (%(default)s)"
-    )
-    parser.add_argument(
-        "--free", type=int, default=25, metavar="PERCENT", help="up to this free (%(default)s)"
-    )
+    for each in parameters_of(SaverSettings):
+        text = f"{each.meaning} (%(default)s)"
+        parser.add_argument(
+            each.name, dest=each.field, type=int, default=each.default, metavar=each.unit.upper(), help=text
+        )
     parser.add_argument(
         "-f", dest="name", default="map", help="path of the files without ending (%(default)s)"
     )

@@ -65,7 +65,10 @@ class Parameter:
 
     @property
     def meaning_and_choices(self) -> str:
-        return ": ".join([self.meaning, *([", ".join(self.choices)] if self.choices else [])])
+        """The meaning, and behind it the choices unless it names them all."""
+        if all(choice in self.meaning for choice in self.choices):
+            return self.meaning
+        return f"{self.meaning}: {', '.join(self.choices)}"
 
     def with_default(self, default: Any) -> "Parameter":
         return dataclasses.replace(self, default=default)
