@@ -11,8 +11,11 @@ root=$(cd -P -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pw
 readonly root
 # shellcheck disable=SC2034 # used by setup.sh
 readonly noetic=/opt/ros/noetic
+# shellcheck source=scripts/setup/environment.sh
+. "$root/scripts/setup/environment.sh"
 step_pid=
 clock_pid=
+aside_pid=
 
 say() { printf '%s\n' "$*"; }
 
@@ -73,17 +76,26 @@ step() { # TITLE LOG COMMAND...: runs the command, shows how long it takes, retu
     return "$status"
 }
 
-ros_environment() { # what ROS needs in the environment, every socket on the loopback interface
-    unset PYTHONHOME ROS_DISTRO
-    export ROS_MASTER_URI=${ROS_MASTER_URI:-http://127.0.0.1:11311}
-    [[ -n ${ROS_HOSTNAME:-} ]] || export ROS_IP=${ROS_IP:-127.0.0.1}
+start_aside() { # LOG COMMAND...: goes on beside the next steps, until finish_aside
+    trap 'end_group "$aside_pid"' EXIT
+    set -m
+    "${@:2}" >>"$1" 2>&1 </dev/null &
+    aside_pid=$!
+    set +m
+}
+
+finish_aside() { # TITLE: waits, and returns the exit code of what was started aside
+    local status=0
+    step "$1" /dev/null tail --pid="$aside_pid" --follow /dev/null
+    wait "$aside_pid" || status=$?
+    aside_pid=
+    return "$status"
+}
+
+enter_workspace() {
     set +u
-    # shellcheck source=/dev/null
-    . "$root/devel/setup.bash"
+    ros_environment "$root"
     set -u
-    export PATH="$root/.venv/bin:$PATH"
-    export ROS_HOME=${ROS_HOME:-$root/logs/ros}
-    export ROS_LOG_DIR=${ROS_LOG_DIR:-$ROS_HOME/log}
 }
 
 answer_help() { # ARGUMENT...
@@ -98,6 +110,6 @@ run_command() { # NAME ARGUMENT...: a command of home_service, after the set-up 
     local extras=()
     if is_among --rviz "$@" && [[ -n ${DISPLAY:-} ]]; then extras=(rviz); fi
     set_up "${extras[@]}"
-    ros_environment
+    enter_workspace
     exec python3 -m home_service "$@"
 }

@@ -22,5 +22,5 @@ answer_help "$@"
 extras=(projects)
 if is_among --rviz "$@"; then extras+=(rviz); fi
 set_up "${extras[@]}"
-ros_environment
+enter_workspace
 exec python3 -m run_project "$@"

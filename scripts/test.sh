@@ -11,7 +11,7 @@
 . "$(dirname -- "$(readlink -f -- "$0")")/setup.sh"
 answer_help "$@"
 set_up
-ros_environment
+enter_workspace
 export ROS_PACKAGE_PATH="$root/tests:$ROS_PACKAGE_PATH"
 export PYTHONPATH="$root/tests/shared:$PYTHONPATH"
 exec python3 "$root/tests/runner/run_tests.py" "$@"

@@ -1,9 +1,10 @@
 """Scripts of Kinetic's time are in Python 2: the same in Python 3."""
 
 import warnings
-from lib2to3.pgen2.parse import ParseError
-from lib2to3.pgen2.tokenize import TokenError
-from lib2to3.refactor import RefactoringTool, get_fixers_from_package
+
+from fissix.pgen2.parse import ParseError
+from fissix.pgen2.tokenize import TokenError
+from fissix.refactor import RefactoringTool, get_fixers_from_package
 
 # As wide as Python 2 took them.
 TAB = 8
@@ -16,7 +17,7 @@ def in_python3(source: str) -> str:
     without_tabs = source.expandtabs(TAB)
     if _is_python3(without_tabs):
         return without_tabs
-    tool = RefactoringTool(get_fixers_from_package("lib2to3.fixes"))
+    tool = RefactoringTool(get_fixers_from_package("fissix.fixes"))
     try:
         converted = str(tool.refactor_string(without_tabs.rstrip() + "\n", "script"))
     except (ParseError, TokenError, IndentationError):

@@ -1,0 +1,82 @@
+# shellcheck shell=bash disable=SC2154,SC2034 # variables of lib.sh and setup.sh
+# The Python packages in .venv: fetched beside Debian's, each as a wheel, then installed without network.
+
+missing_requirements() { # FILE...: those that .venv does not hold
+    local file
+    for file; do
+        grep -qsxF "$(requirement_stamp "$file")" "$root/.venv/.set-up" || say "$file"
+    done
+}
+
+requirement_stamp() { # FILE
+    say "$(sha256sum "$1") $root $(readlink /usr/bin/python3)"
+}
+
+requirement_names() {
+    local files
+    mapfile -t files <<<"$requirements"
+    (cd "$root/scripts" && sed -n 's/==.*//p' "${files[@]}" | uniq | paste -sd, | sed 's/,/, /g')
+}
+
+make_venv() {
+    check_python
+    : >"$logs/python.log"
+    is_venv_whole || step "Creating .venv" "$logs/python.log" \
+        /usr/bin/python3 -m venv --clear --system-site-packages "$root/.venv" ||
+        give_up "the virtual environment could not be created" "$logs/python.log"
+    rm -f "$root/.venv/.set-up"
+}
+
+is_venv_whole() { # made here, with this Python, and never left half installed
+    grep -qs " $root $(readlink /usr/bin/python3)\$" "$root/.venv/.set-up"
+}
+
+fetch_requirements() { # into .venv/wheels
+    [[ -z $(missing_wheel) ]] || build_wheel || return
+    local files=("${requirement_files[@]/#/--requirement=$root/scripts/}")
+    pip wheel --wheel-dir "$root/.venv/wheels" --find-links "$wheels" "${files[@]}"
+}
+
+install_requirements() {
+    local log=$logs/python.log stamp=$root/.venv/.set-up files file
+    finish_aside "Fetching Python packages" || give_up "the Python packages could not be fetched" "$log"
+    files=("${requirement_files[@]/#/--requirement=$root/scripts/}")
+    step "Installing Python packages" "$log" pip install --no-index --find-links "$root/.venv/wheels" "${files[@]}" ||
+        give_up "pip failed" "$log"
+    rm -rf "$root/.venv/wheels"
+    (cd "$root/scripts" && for file in "${requirement_files[@]}"; do requirement_stamp "$file"; done) >"$stamp.new"
+    mv "$stamp.new" "$stamp"
+}
+
+pip() { pip_of "$root/.venv" "$@"; }
+
+pip_of() { # VENV COMMAND ARGUMENT...
+    env -u PYTHONHOME -u PYTHONPATH "$1/bin/python3" -m pip "$2" --no-input --disable-pip-version-check \
+        --retries 3 "${@:3}"
+}
+
+# -- PyBullet, where its makers have no wheel: built once, for all workspaces of this user ---------------
+
+wheels=${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/home-service-robot/wheels/$(getconf GNU_LIBC_VERSION | tr ' ' -)
+
+missing_wheel() { # its name, if neither PyPI nor the cache has one for this machine
+    local tag
+    tag=$(/usr/bin/python3 -c 'import sys; print("cp%d%d" % sys.version_info[:2])') || return 0
+    if [[ $(uname -m) == x86_64 ]] && is_among "$tag" cp38 cp39 cp310 cp311; then return 0; fi
+    [[ -n $(compgen -G "$wheels/pybullet-$(pybullet_version)-$tag-*$(uname -m).whl") ]] || say "pybullet for $tag"
+}
+
+pybullet_version() { sed -n 's/^pybullet==//p' "$root/scripts/requirements.txt"; }
+
+build_wheel() ( # moved into the cache when it is whole
+    work=
+    trap '[[ -z $work ]] || rm -rf "$work"' EXIT
+    mkdir -p "$wheels" && work=$(mktemp -d "$wheels/.building.XXXXXX") || exit
+    /usr/bin/python3 -m venv "$work/venv" &&
+        pip_of "$work/venv" install --constraint "$root/scripts/requirements.txt" numpy \
+            --requirement "$root/scripts/requirements-wheel.txt" &&
+        CFLAGS='-Wno-error=incompatible-pointer-types -O2' CXXFLAGS=-O2 MAX_JOBS=$(nproc) \
+            pip_of "$work/venv" wheel --no-deps --no-build-isolation --no-binary pybullet \
+            --wheel-dir "$work" "pybullet==$(pybullet_version)" &&
+        mv "$work"/pybullet-*.whl "$wheels"
+)

@@ -1,0 +1,166 @@
+# shellcheck shell=bash disable=SC2154,SC2034 # variables of lib.sh and setup.sh
+# The catkin build. The last build that went well stays in use until the next one has.
+
+readonly last=$root/build/.last # where the last good build waits while the next one is made
+
+build_inputs() { # two lines: which packages there are, and what the build reads
+    cd "$root" || return
+    find -L src -name package.xml | sort | cat - <(say "$root" "$(readlink /usr/bin/python3)") <(ignored_packages) | sha256sum
+    find -L src -mindepth 2 -type f \( -name package.xml -o -name CMakeLists.txt -o -name setup.py -o -path '*/nodes/*' \
+        -o -name '*.msg' -o -name '*.srv' -o -name '*.action' -o -name '*.cfg' \
+        -o -name '*.c' -o -name '*.cpp' -o -name '*.h' -o -name '*.hpp' \) ! -path '*/__pycache__/*' -print0 |
+        sort -z | xargs -0 sha256sum | sha256sum
+}
+
+build_workspace() {
+    local log=$logs/build.log stamp=$root/build/.set-up
+    (cd "$root" && check_names)
+    : >"$log"
+    restore_last_build
+    trap restore_last_build EXIT
+    clear_build
+    # A build that was made elsewhere, or holds packages that have gone, is made anew.
+    if [[ $(head -n 1 "$last/build/.set-up" 2>/dev/null) == "${inputs%%$'\n'*}" ]]; then
+        cp -a "$last/build" "$last/devel" "$root"
+        rm "$stamp"
+    fi
+    if step "Building the workspace" "$log" catkin_build; then
+        say "$inputs" >"$stamp"
+        rm -rf "$last" "$root/build/.failed"
+    else
+        restore_last_build
+        tail -n 20 "$log" | sed 's/^/  | /' >&2
+        failure="$(fault_in "$log") (see $log)"
+        [[ -e $stamp ]] || give_up "$failure" /dev/null
+        printf '%s\n' "$inputs" "$failure" >"$root/build/.failed"
+    fi
+    trap - EXIT
+}
+
+last_failure() { # the sentence, if just these sources have failed to build while an earlier build is in use
+    [[ -e $root/build/.set-up && -e $root/build/.failed ]] || return 0
+    [[ $(head -n 2 "$root/build/.failed") != "$inputs" ]] || tail -n +3 "$root/build/.failed"
+}
+
+# -- the last good build -------------------------------------------------------------------------------
+
+clear_build() { # but for other people's projects that run at this moment: each holds the lock in its folder
+    local folder
+    for folder in "$root"/build/projects/*/; do
+        [[ ! -d $folder ]] || flock --nonblock "$folder/lock" rm -rf "$folder" ||
+            say "left alone, in use: $folder"
+    done
+    mkdir -p "$last/build"
+    parts_of_build "$root/build" -exec mv -t "$last/build" {} +
+    [[ ! -d $root/devel ]] || mv "$root/devel" "$last"
+    : >"$last/whole"
+}
+
+restore_last_build() { # after one that failed or was cut short
+    [[ -d $last ]] || return 0
+    if [[ -e $last/whole ]]; then
+        parts_of_build "$root/build" -exec rm -rf {} +
+        rm -rf "$root/devel"
+    fi
+    if [[ -e $last/build/.set-up ]]; then
+        [[ ! -d $last/devel ]] || mv "$last/devel" "$root"
+        parts_of_build "$last/build" -exec mv -t "$root/build" {} +
+    fi
+    rm -rf "$last"
+}
+
+parts_of_build() { # FOLDER ACTION...: what catkin made in it
+    find "$1" -mindepth 1 -maxdepth 1 ! -name projects ! -name .last ! -name .failed "${@:2}"
+}
+
+# -- catkin --------------------------------------------------------------------------------------------
+
+catkin_build() {
+    # The workspace stands alone: another one that is sourced here must not become part of it.
+    unset CMAKE_PREFIX_PATH LD_LIBRARY_PATH PKG_CONFIG_PATH PYTHONHOME PYTHONPATH "${!ROS_@}"
+    if [[ -d $noetic ]]; then
+        set +u
+        # shellcheck source=/dev/null
+        . "$noetic/setup.bash"
+        set -u
+    fi
+    cd "$root" || return
+    rm -f src/compat/*/CATKIN_IGNORE src/tutorials/*/CATKIN_IGNORE
+    ignored_packages | xargs -I{} touch {}/CATKIN_IGNORE
+    export ROS_LANG_DISABLE=genlisp:geneus:gennodejs # bindings of the messages that nobody asks for
+    # Without -j it would pass -l as well, and on a loaded machine make would wait for the load to sink.
+    catkin_make -j"$(nproc)" -DPYTHON_EXECUTABLE="$root/.venv/bin/python3" -DCATKIN_ENABLE_TESTING=OFF
+}
+
+# What is in these folders gives way to packages of the same name that the system or the user has.
+readonly giving_way='src/(compat|tutorials)/'
+
+ignored_packages() { # folders
+    local packages name folder
+    packages=$(packages_in_source)
+    while read -r name folder; do
+        if is_of_system "$name" && [[ $folder == src/compat/* ]] || of_user <<<"$packages" | grep -q "^$name "; then
+            say "$folder"
+        fi
+    done < <(grep -E " ${giving_way}[^/]+\$" <<<"$packages")
+}
+
+packages_in_source() { # NAME FOLDER, one package a line
+    find -L src -name package.xml -exec awk '
+        FNR == 1 { is_found = 0 }
+        !is_found && match($0, /<name>[^<]+/) {
+            is_found = 1
+            name = substr($0, RSTART + 6, RLENGTH - 6)
+            gsub(/[ \t]/, "", name)
+            folder = FILENAME
+            sub(/\/package\.xml$/, "", folder)
+            print name, folder
+        }' {} + | sort
+}
+
+of_user() { grep -vE " $giving_way" || true; }
+
+is_of_system() { [[ -e $noetic/share/$1/package.xml || -e /usr/share/$1/package.xml ]]; } # NAME
+
+check_names() { # catkin builds nothing where two packages have one name
+    local packages name
+    packages=$(packages_in_source)
+    name=$(of_user <<<"$packages" | cut -d' ' -f1 | uniq --repeated | head -n 1)
+    [[ -z $name ]] || fail "two packages are named '$name' ($(sed -n "s/^$name //p" <<<"$packages" |
+        paste -sd' ' | sed 's/ / and /g')): rename or remove one"
+    while read -r name; do
+        name=${name##*/}
+        ! of_user <<<"$packages" | grep -q "^$name " || say "your package '$name' takes the place of the project's own"
+    done < <(ignored_packages)
+}
+
+fault_in() { # LOG: which package does not build, and of what it says that it lacks
+    local package lacks
+    package=$(sed -nE "s/^Error\(s\) in package '(.*)\/package.xml':.*/\1/p
+        s/^(CMake Error at | +)([^/ ][^ :]*)\/CMakeLists\.txt:[0-9]+ \(.*/\2/p
+        s/^make\[[0-9]+\]: \*\*\* \[([^ ]*)\/CMakeFiles\/.*/\1/p" "$1" | head -n 1)
+    lacks=$(sed -nE 's/.*Could not find a package configuration file provided by "([^"]*)".*/\1/p' "$1" | head -n 1)
+    if [[ -z $package ]]; then
+        say "the catkin build failed"
+    else
+        say "the package '$(basename "$package")' does not build${lacks:+: it needs $lacks, which is not installed" \
+            "(./scripts/setup.sh --projects installs what most packages in C++ need)}"
+    fi
+}
+
+# -- the numerical kernels -----------------------------------------------------------------------------
+
+kernel_inputs() { (cd "$root" && grep -rl --include='*.py' numba src | sort | xargs -r stat -c '%n %Y %s' | sha256sum); }
+
+compile_kernels() {
+    local log=$logs/kernels.log
+    : >"$log"
+    step "Compiling the numerical kernels" "$log" warm_kernels ||
+        say "warning: that did not end well; each is compiled when it is first needed (see $log)"
+    kernel_inputs >"$root/build/.kernels"
+}
+
+warm_kernels() {
+    enter_workspace
+    python3 -m home_service.warm
+}
