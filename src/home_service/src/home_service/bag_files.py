@@ -1,7 +1,7 @@
 """The bags of a recording, in the order of time."""
 
 from pathlib import Path
-from typing import Iterator, List, NamedTuple, Sequence, Set, Tuple
+from typing import Any, Iterator, List, NamedTuple, Sequence, Set, Tuple
 
 from planar_ros.bags.scan_log import BagError, open_bag
 
@@ -13,7 +13,7 @@ class Played(NamedTuple):
     """A message as it was recorded; ``stamp`` is when, in seconds."""
 
     topic: str
-    message: object
+    message: Any
     stamp: float
 
 

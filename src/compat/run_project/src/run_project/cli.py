@@ -14,7 +14,7 @@ from run_project.building import Workspace, build, copy_checkout, environment
 from run_project.complaints import complaints_in
 from run_project.errors import BuildError, ProjectError
 from run_project.layout import Checkout, choose_script, is_errand, read_checkout
-from run_project.options import parse
+from run_project.options import Options, parse
 from run_project.placement import READ_SUFFIXES, Placement, place
 from run_project.private_root import prefix
 from run_project.ros.headless_rviz import SHOWN
@@ -53,7 +53,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
         return BAD_INPUT
 
 
-def run(options) -> int:
+def run(options: Options) -> int:
     """Builds and runs the project that the options name."""
     if options.rviz and not os.environ.get("DISPLAY"):
         raise ProjectError("--rviz: there is no display (the variable DISPLAY is not set)")
@@ -77,7 +77,7 @@ def run(options) -> int:
         for target in sorted(placement.mounts):
             display.say(f"provides {target}, for this run alone")
         display.say(f"runs {script}; times are simulated:")
-        return _run_job(
+        return run_job(
             options, job, folder, workspace, display, {"project": str(checkout.root), "script": script}
         )
 
@@ -94,7 +94,13 @@ def read_texts(checkout: Checkout, script: str) -> Dict[str, str]:
 
 
 def _job(
-    options, workspace: Workspace, placement: Placement, texts, script: str, work: Path, logs: Path
+    options: Options,
+    workspace: Workspace,
+    placement: Placement,
+    texts: Dict[str, str],
+    script: str,
+    work: Path,
+    logs: Path,
 ) -> Job:
     tree = work / "tree"
     mounts = {Path(target): tree / source for target, source in placement.mounts.items()}
@@ -118,23 +124,21 @@ def _stand_in_for_ros(folder: Path, workspace: Workspace) -> Path:
     return folder
 
 
-def _run_job(options, job: Job, folder: Path, workspace: Workspace, display: Display, about: dict) -> int:
-    parameters = {
-        "/use_sim_time": True,
-        "/gazebo/speed": options.speed,
-        "/gazebo/seed": options.seed,
-        **{f"/gazebo/{name}": value for name, value in SIMULATOR.items()},
-    }
-    started, failure, run, is_interrupted = time.monotonic(), None, None, False
+def run_job(
+    options: Options, job: Job, folder: Path, workspace: Workspace, display: Display, about: Dict[str, str]
+) -> int:
+    """Runs the script, judges what it did, and writes that down; returns the exit code."""
+    started = time.monotonic()
+    run = ProjectRun(job, folder / "log", _parameters(options), display)
+    failure, is_interrupted = None, False
     try:
-        with ProjectRun(job, folder / "log", parameters, display) as run:
+        with run:
             if options.record:
                 run.record(folder / "run.bag")
             failure = run.watch(options.timeout)
     except RunInterruptedError as error:
         failure, is_interrupted = str(error), True
-    observer = run.observer if run is not None else None
-    ledger = observer.ledger if observer is not None else Ledger()
+    ledger = run.observer.ledger
     verdict = judge(ledger, failure, is_errand=is_errand(about["script"]))
     complaints = complaints_in(folder / "log")
     path = write_result(
@@ -144,22 +148,30 @@ def _run_job(options, job: Job, folder: Path, workspace: Workspace, display: Dis
             **about,
             "success": verdict.success,
             "reason": verdict.reason,
-            "goals": [vars(goal) for goal in ledger.goals.values()],
-            "markers": ledger.markers,
-            "distance_driven": round(ledger.distance_driven, 2),
-            "collisions": ledger.collisions,
-            "simulated_seconds": round(observer.simulated_time, 1) if observer else 0.0,
+            **ledger.findings(),
+            "simulated_seconds": round(run.observer.simulated_time, 1),
             "wall_seconds": round(time.monotonic() - started, 1),
-            "speed": options.speed,
+            "speed": options.wanted_speed,
             "seed": options.seed,
             "left_out": workspace.missing,
             "complaints": complaints,
             "versions": versions(),
+            "missing": [],
         },
     )
     _report(display, verdict, ledger, complaints)
     display.say(f"result in {path}, a log of each window in {folder / 'log'}")
     return INTERRUPTED if is_interrupted else 0 if verdict.success else FAILURE
+
+
+def _parameters(options: Options) -> Dict[str, object]:
+    """What the simulator is told; every other parameter is the project's own business."""
+    return {
+        "/use_sim_time": True,
+        "/gazebo/speed": options.wanted_speed,
+        "/gazebo/seed": options.seed,
+        **{f"/gazebo/{name}": value for name, value in SIMULATOR.items()},
+    }
 
 
 def _report(display: Display, verdict: Verdict, ledger: Ledger, complaints: List[str]) -> None:

@@ -2,7 +2,12 @@
 
 import argparse
 import math
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Optional, Sequence, Tuple
+
+from supervision import command_line
+from supervision.command_line import argument, option
 
 
 def _speed(text: str) -> float:
@@ -19,29 +24,36 @@ def _seconds(text: str) -> float:
     return value
 
 
-def parse(arguments=None) -> argparse.Namespace:
-    """Options as attributes; what stands after ``--`` is ``script_arguments``."""
-    parser = argparse.ArgumentParser(prog="run_project.sh", allow_abbrev=False)
-    parser.add_argument("path", metavar="PATH", type=Path, help="the project's checkout")
-    parser.add_argument(
-        "script", metavar="SCRIPT", nargs="?", help="the script to run (default: home_service.sh)"
+@dataclass(frozen=True)
+class Options:
+    """Runs somebody's home-service project, unmodified and headless.
+
+    ``script_arguments``: what stands after ``--``.
+    """
+
+    path: Path = argument("the project's checkout", metavar="PATH", type=Path)
+    script: Optional[str] = argument(
+        "the script to run, if it is not home_service.sh", default=None, metavar="SCRIPT", nargs="?"
     )
-    parser.add_argument(
-        "--speed", type=_speed, help="1 real time, N times that, 0 as fast as the nodes keep up"
+    speed: Optional[float] = option(
+        None, "1 real time, N times that, 0 as fast as the nodes keep up", type=_speed
     )
-    parser.add_argument("--seed", type=int, default=0, help="of every noise (default: 0)")
-    parser.add_argument("--timeout", type=_seconds, default=600.0, help="seconds of wall time")
-    parser.add_argument("--rviz", action="store_true", help="show it in rviz")
-    parser.add_argument("--record", action="store_true", help="record a bag into the run folder")
-    parser.add_argument("--build-only", action="store_true", help="end after the build")
-    parser.add_argument("--output", type=Path, default=Path("runs"), help="where the run folder is made")
-    words = list(arguments)
-    after = []
-    if "--" in words:
-        after = words[words.index("--") + 1 :]
-        words = words[: words.index("--")]
-    options = parser.parse_args(words)
-    options.script_arguments = after
-    if options.speed is None:
-        options.speed = float(options.rviz)
-    return options
+    seed: int = option(0, "of every noise", type=int)
+    timeout: float = option(600.0, "seconds of wall time", type=_seconds)
+    rviz: bool = option(False, "show it in rviz")
+    record: bool = option(False, "record a bag into the run folder")
+    build_only: bool = option(False, "end after the build")
+    output: Path = option(Path("runs"), "where the run folder is made", type=Path)
+    script_arguments: Tuple[str, ...] = ()
+
+    @property
+    def wanted_speed(self) -> float:
+        """Simulated seconds per second; 0: as fast as the nodes keep up."""
+        return float(self.rviz) if self.speed is None else self.speed
+
+
+def parse(words: Sequence[str]) -> Options:
+    """Ends the process on --help and on nonsense."""
+    end = words.index("--") if "--" in words else len(words)
+    options = command_line.parse(Options, words[:end], "run_project.sh", allow_abbreviations=False)
+    return replace(options, script_arguments=tuple(words[end + 1 :]))

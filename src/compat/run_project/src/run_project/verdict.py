@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import Dict, List, Optional, Tuple
+from typing import Any, Dict, List, Optional, Tuple
 
 STATUS = (
     "pending",
@@ -151,6 +151,15 @@ class Ledger:
                 if all(_is_same_place(a.goals[0], b.goals[0]) for a, b in zip(first, second)):
                     return sum(len(earlier.goals) for earlier in visits[: end - 1]) + visit.tries
         return 0
+
+    def findings(self) -> Dict[str, Any]:
+        """What belongs into result.json."""
+        return {
+            "goals": [vars(goal) for goal in self.goals.values()],
+            "markers": self.markers,
+            "distance_driven": round(self.distance_driven, 2),
+            "collisions": self.collisions,
+        }
 
     def _goal(self, now: float, name: str) -> Goal:
         if name not in self.goals:

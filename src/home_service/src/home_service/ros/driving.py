@@ -2,10 +2,7 @@
 
 from typing import List, Optional, Sequence
 
-import actionlib
 import rospy
-from actionlib_msgs.msg import GoalStatus
-from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from rosgraph_msgs.msg import Clock
 
 from home_service.judging.verdict import ARRIVAL_TOLERANCE, Verdict
@@ -14,8 +11,8 @@ from home_service.ros.referee import Referee
 from home_service.ros.run import Run
 from home_service.ros.run_recorder import RunRecorder
 from planar import Pose2
-from planar_ros.calls.actions import goal_is_over, server_is_ready
-from planar_ros.messages.conversion import pose2_to_msg
+from planar.driving import DriveOutcome, DriveResult
+from planar_ros.calls.move_base import MoveBase
 from supervision.display import Display
 
 
@@ -31,24 +28,27 @@ def drive_through(options: RunOptions, launch: LaunchPlan, goals: Sequence[Pose2
 
 def _drive_to_all(run: Run, referee: Referee, goals: Sequence[Pose2]) -> Optional[str]:
     """Why it could not come to the last goal, or None."""
-    client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
-    failure = run.watch(lambda: server_is_ready(client))
+    move_base = MoveBase()
+    failure = run.watch(move_base.is_ready)
     for number, pose in enumerate(goals, 1):
         if failure is None:
             name = f"goal {number} ({pose.x:g}, {pose.y:g}, {pose.yaw:g})"
-            failure = _drive_to(run, referee, client, pose, name)
+            failure = _drive_to(run, referee, move_base, pose, name)
     return failure
 
 
-def _drive_to(run: Run, referee: Referee, client, pose: Pose2, name: str) -> Optional[str]:
-    goal = MoveBaseGoal()
-    goal.target_pose.header.frame_id = "map"
-    goal.target_pose.header.stamp = rospy.Time.from_sec(referee.simulated_time)
-    goal.target_pose.pose = pose2_to_msg(pose)
-    client.send_goal(goal)
-    failure = run.watch(lambda: goal_is_over(client))
-    if failure is None and client.get_state() != GoalStatus.SUCCEEDED:
-        failure = f"{name}: {client.get_goal_status_text()}"
+def _drive_to(run: Run, referee: Referee, move_base: MoveBase, pose: Pose2, name: str) -> Optional[str]:
+    outcome: Optional[DriveOutcome] = None
+
+    def is_over() -> bool:
+        nonlocal outcome
+        outcome = move_base.outcome()
+        return outcome is not None
+
+    move_base.send(pose, rospy.Time.from_sec(referee.simulated_time))
+    failure = run.watch(is_over)
+    if outcome is not None and outcome.result is not DriveResult.REACHED:
+        failure = f"{name}: {outcome.text}"
     failure = failure or _watch_truth(run, referee)
     if failure is not None:
         return failure

@@ -2,7 +2,8 @@
 
 import struct
 import threading
-from typing import Callable, Dict, Optional, Set
+from functools import partial
+from typing import Callable, Dict, List, Optional, Set
 
 import rosgraph
 import rospy
@@ -35,7 +36,11 @@ class Observer:
         self._latest: Dict[str, bytes] = {}
         self._seen: Set[str] = set()
         self._goal_topics: Set[str] = set()
-        self._subscribers = [
+        self._subscribers: List[rospy.Subscriber] = []
+
+    def start(self) -> None:
+        """Subscribes to what there always is; this process is a node by then."""
+        self._subscribers += [
             rospy.Subscriber("/clock", Clock, self._see_clock, queue_size=1),
             rospy.Subscriber("/contacts", String, self._see_contacts, queue_size=50),
             rospy.Subscriber("/base_pose_ground_truth", Odometry, self._see_truth, queue_size=50),
@@ -114,7 +119,7 @@ class Observer:
             return
         self._latest[topic] = content
         for marker in MarkerArray().deserialize(data).markers if is_array else [Marker().deserialize(data)]:
-            self._note(lambda marker=marker: self._see_marker(marker))
+            self._note(partial(self._see_marker, marker))
 
     def _see_marker(self, marker: Marker) -> Optional[str]:
         now = self.simulated_time
@@ -135,7 +140,7 @@ class Observer:
 
     def _see_contacts(self, message):
         for name in message.data.splitlines():
-            self._note(lambda name=name: self.ledger.see_collision(name))
+            self._note(partial(self.ledger.see_collision, name))
 
     def _note(self, see: Callable[[], Optional[str]]):
         with self._lock:

@@ -57,9 +57,8 @@ class ProjectRun:
         self._logs = logs
         self._display = display
         self._parameters = parameters
-        self.observer: Optional[Observer] = None
+        self.observer = Observer(self._tell)
         self._helpers: List[subprocess.Popen] = []
-        self._script: Optional[subprocess.Popen] = None
         self._windows = WindowLogs(logs)
         self._news_wall = time.monotonic()
 
@@ -74,7 +73,7 @@ class ProjectRun:
             for name, value in self._parameters.items():
                 rospy.set_param(name, value)
             rospy.init_node("run_project", anonymous=True, disable_signals=True, log_level=rospy.ERROR)
-            self.observer = Observer(self._tell)
+            self.observer.start()
         except BaseException:
             self.__exit__()
             raise
@@ -100,7 +99,7 @@ class ProjectRun:
     def watch(self, timeout: float) -> Optional[str]:
         """Runs the script until its work is done; returns why it was cut short, or None."""
         deadline = time.monotonic() + timeout
-        self._script = self._start_script()
+        script = self._start_script()
         observer, has_worked, latest_enter = self.observer, False, time.monotonic()
         moved_wall, moved_time = time.monotonic(), -1.0
         while True:
@@ -113,12 +112,13 @@ class ProjectRun:
                 moved_wall, moved_time = now, observer.simulated_time
             if now - latest_enter > ENTER_SECONDS:
                 latest_enter = now
-                self._press_enter()
+                _press_enter(script)
             own = self._project_processes()
             _put_spinners_last(own)
             is_working = bool(own)
             has_worked = has_worked or is_working
-            if self._is_done(now - self._news_wall, has_worked and not is_working):
+            nodes_are_gone = has_worked and not is_working
+            if self._is_done(script.poll() is not None, now - self._news_wall, nodes_are_gone):
                 return None
             if now > deadline:
                 return f"not done within {timeout:g} s of wall time"
@@ -128,9 +128,8 @@ class ProjectRun:
                 return "the ROS master has ended"
             time.sleep(POLL_SECONDS)
 
-    def _is_done(self, quiet_wall: float, nodes_are_gone: bool) -> bool:
+    def _is_done(self, script_is_over: bool, quiet_wall: float, nodes_are_gone: bool) -> bool:
         ledger = self.observer.ledger
-        script_is_over = self._script.poll() is not None
         if (script_is_over and not _others(self._helpers)) or ledger.two_rounds:
             return True
         if nodes_are_gone and script_is_over:
@@ -160,7 +159,7 @@ class ProjectRun:
                 )
             )
 
-    def _start_script(self) -> subprocess.Popen:
+    def _start_script(self) -> "subprocess.Popen[bytes]":
         environment: Dict[str, str] = dict(self._job.environment)
         for name in ("ROS_MASTER_URI", "ROS_LOG_DIR"):
             environment[name] = os.environ[name]
@@ -174,12 +173,6 @@ class ProjectRun:
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
             )
-
-    def _press_enter(self) -> None:
-        """Some scripts wait for a person to press Enter between two windows."""
-        with contextlib.suppress(OSError):
-            self._script.stdin.write(b"\n")
-            self._script.stdin.flush()
 
     def _wait_for_master(self) -> None:
         deadline = time.monotonic() + MASTER_SECONDS
@@ -197,6 +190,14 @@ class ProjectRun:
                 if str(self._job.work) in program and not program.endswith(SETUP_TOOL):
                     found.append(process)
         return found
+
+
+def _press_enter(script: "subprocess.Popen[bytes]") -> None:
+    """Some scripts wait for a person to press Enter between two windows."""
+    if script.stdin is not None:
+        with contextlib.suppress(OSError):
+            script.stdin.write(b"\n")
+            script.stdin.flush()
 
 
 def _put_spinners_last(processes: List[psutil.Process]) -> None:

@@ -16,16 +16,14 @@ import time
 from pathlib import Path
 from typing import Callable, Dict, Iterable, List, Optional, Sequence
 
-import actionlib
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
-from move_base_msgs.msg import MoveBaseAction
 from nav_msgs.srv import LoadMap, LoadMapResponse
 from std_srvs.srv import Empty
 
 from home_service.ros.commander.tasks import Drive, Feedback, Motion, Outcome, Task, Waypoints
 from planar import PlanarError, Pose2
-from planar_ros.calls.actions import server_is_ready
+from planar_ros.calls.move_base import MoveBase
 from planar_ros.calls.services import call_service
 from planar_ros.messages.conversion import pose2_to_msg
 from planar_ros.messages.transforms import Transforms
@@ -59,7 +57,7 @@ class Commander:
         self._task: Optional[Task] = None
         self._worker: Optional[threading.Thread] = None
         self._outcome: Optional[Outcome] = None
-        self._client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
+        self._move_base = MoveBase(frame_id)
         self._transforms = Transforms()
         self._initial_pose = rospy.Publisher("initialpose", PoseWithCovarianceStamped, queue_size=1)
         self._motion = Motion()
@@ -72,7 +70,7 @@ class Commander:
         conditions: Dict[str, Callable[[], bool]] = {
             "a node that has started after /use_sim_time was set": _has_right_clock,
             "the clock": lambda: not rospy.Time.now().is_zero(),
-            f"the action {rospy.resolve_name('move_base')}": lambda: server_is_ready(self._client),
+            self._move_base.name: self._move_base.is_ready,
             f"the transform {self._frame_id} to {self._base_frame_id}": lambda: self.pose is not None,
         }
         deadline = time.monotonic() + timeout
@@ -89,7 +87,7 @@ class Commander:
 
     def go_to(self, x: float, y: float, yaw: float = 0.0, timeout: float = 180.0) -> None:
         """Drives to a pose."""
-        self._begin(Drive(self._client, self._frame_id, Pose2(x, y, yaw), timeout))
+        self._begin(Drive(self._move_base, Pose2(x, y, yaw), timeout))
 
     def follow_waypoints(
         self, poses: Iterable[Sequence[float]], stop_on_failure: bool = False, timeout: float = 180.0
@@ -98,7 +96,7 @@ class Commander:
 
         The outcome's ``missed`` are the numbers, from 0, of those that were not reached.
         """
-        drives = [Drive(self._client, self._frame_id, Pose2(*pose), timeout) for pose in poses]
+        drives = [Drive(self._move_base, Pose2(*pose), timeout) for pose in poses]
         if not drives:
             raise CommanderError("there are no waypoints to follow")
         self._begin(Waypoints(drives, stop_on_failure))

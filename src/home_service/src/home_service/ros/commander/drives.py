@@ -1,70 +1,55 @@
 """Drives by move_base, one or several."""
 
 import math
-import time
 from typing import List, Optional, Sequence
 
-import actionlib
 import rospy
-from actionlib_msgs.msg import GoalStatus
-from move_base_msgs.msg import MoveBaseGoal
 
 from home_service.ros.commander.outcomes import Feedback, Outcome, Result
 from home_service.ros.commander.task import PATIENCE_SECONDS, Task
 from planar import Pose2
-from planar_ros.calls.actions import goal_is_over, server_is_ready
-from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
+from planar.driving import DriveResult
+from planar_ros.calls.move_base import MoveBase
+
+# Of each result of move_base: what it is called here, and why it came about if move_base does not tell.
+RESULTS = {
+    DriveResult.REACHED: (Result.SUCCEEDED, "goal reached"),
+    DriveResult.REPLACED: (Result.CANCELLED, "another goal took its place"),
+}
 
 
 class Drive(Task):
     """A goal for move_base."""
 
-    def __init__(self, client: actionlib.SimpleActionClient, frame_id: str, goal: Pose2, timeout: float):
+    def __init__(self, move_base: MoveBase, goal: Pose2, timeout: float):
         super().__init__(timeout)
         self.goal = goal
-        self._client, self._frame_id = client, frame_id
-        self._pose: Optional[Pose2] = None
-        self._lost_since: Optional[float] = None
+        self._move_base = move_base
+        self._pose_before = move_base.robot
 
     def run(self) -> Outcome:
         if not all(map(math.isfinite, (self.goal.x, self.goal.y, self.goal.yaw))):
             return Outcome(Result.FAILED, f"the goal ({self.goal.x}, {self.goal.y}) is not a pose")
-        message = MoveBaseGoal()
-        message.target_pose.header.frame_id = self._frame_id
-        message.target_pose.header.stamp = rospy.Time.now()
-        message.target_pose.pose = pose2_to_msg(self.goal)
-        self._client.send_goal(message, feedback_cb=self._keep_pose)
+        self._pose_before = self._move_base.robot
+        self._move_base.send(self.goal)
         outcome = self._wait(self._look)
-        if not goal_is_over(self._client):
-            self._client.cancel_goal()
+        self._move_base.cancel()
         return outcome
 
     def feedback(self) -> Feedback:
-        left = None if self._pose is None else self._pose.distance_to(self.goal)
-        return Feedback(self._seconds, left, self._pose)
+        pose = self._move_base.robot
+        if pose is None or pose is self._pose_before:
+            return Feedback(self._seconds, None)
+        return Feedback(self._seconds, pose.distance_to(self.goal), pose)
 
     def _look(self) -> Optional[Outcome]:
-        if not goal_is_over(self._client):
-            return self._notice_loss()
-        state = self._client.get_state()
-        text = self._client.get_goal_status_text()
-        if state == GoalStatus.SUCCEEDED:
-            return Outcome(Result.SUCCEEDED, text or "goal reached")
-        if state in (GoalStatus.PREEMPTED, GoalStatus.RECALLED):
-            return Outcome(Result.CANCELLED, text or "another goal took its place")
-        return Outcome(Result.FAILED, text or GoalStatus.to_string(state).lower())
-
-    def _notice_loss(self) -> Optional[Outcome]:
-        if server_is_ready(self._client):
-            self._lost_since = None
-        elif self._lost_since is None:
-            self._lost_since = time.monotonic()
-        elif time.monotonic() - self._lost_since > PATIENCE_SECONDS:
-            return Outcome(Result.FAILED, f"the action {rospy.resolve_name('move_base')} is gone")
+        ended = self._move_base.outcome()
+        if ended is not None:
+            result, reason = RESULTS.get(ended.result, (Result.FAILED, ended.status.lower()))
+            return Outcome(result, ended.text or reason)
+        if self._move_base.is_lost(PATIENCE_SECONDS):
+            return Outcome(Result.FAILED, f"{self._move_base.name} is gone")
         return None
-
-    def _keep_pose(self, feedback) -> None:
-        self._pose = pose2_from_msg(feedback.base_position.pose)
 
 
 class Waypoints(Task):

@@ -1,0 +1,65 @@
+"""What is written of a project's run follows the schema of result.json."""
+
+import json
+from pathlib import Path
+from types import SimpleNamespace
+
+import fastjsonschema
+import pytest
+
+from run_project import cli
+from run_project.building import Workspace
+from run_project.options import parse
+from run_project.ros.running import Job
+from run_project.verdict import Ledger
+from supervision.display import Display
+from supervision.interruption import INTERRUPTED, RunInterruptedError
+
+SCHEMA = Path(__file__).resolve().parents[3] / "home_service/config/result.schema.json"
+
+
+class FakeRun:
+    """Stands for a run in which a goal is reached, or which is interrupted."""
+
+    def __init__(self, is_interrupted):
+        ledger = Ledger()
+        ledger.see_goal(1.0, "goal", (1.0, 0.5))
+        ledger.see_position((1.0, 0.6))
+        ledger.see_status(2.0, "goal", 3, "")
+        ledger.see_marker(3.0, ("cube", 0), (1.0, 0.5))
+        self.observer = SimpleNamespace(ledger=ledger, simulated_time=12.34)
+        self._is_interrupted = is_interrupted
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def watch(self, timeout):
+        if self._is_interrupted:
+            raise RunInterruptedError
+
+
+@pytest.mark.parametrize("is_interrupted, code", [(False, 0), (True, INTERRUPTED)])
+def test_the_result_of_a_project_follows_the_published_schema(is_interrupted, code, tmp_path, monkeypatch):
+    monkeypatch.setattr(cli, "ProjectRun", lambda *_: FakeRun(is_interrupted))
+    (tmp_path / "log").mkdir()
+    (tmp_path / "log/window.log").write_text("[ERROR] [12.0]: no map\n")
+    job = Job(["true"], tmp_path, {}, tmp_path)
+    workspace = Workspace(tmp_path, tmp_path, {}, tmp_path, missing={"rtabmap": "not there"})
+    about = {"project": "/home/somebody", "script": "home_service.sh"}
+    options = parse(["/home/somebody", "--seed", "4"])
+    assert cli.run_job(options, job, tmp_path, workspace, Display(), about) == code
+    result = json.loads((tmp_path / "result.json").read_text())
+    fastjsonschema.compile(json.loads(SCHEMA.read_text()))(result)
+    assert result["goals"][0]["status"] == "succeeded"
+    assert result["left_out"] == {"rtabmap": "not there"}
+    assert result["complaints"] == ["window: [ERROR] [12.0]: no map"]
+
+
+def test_what_stands_behind_two_dashes_is_for_the_script():
+    options = parse(["project", "--rviz", "--", "--seed", "4"])
+    assert options.script_arguments == ("--seed", "4")
+    assert options.seed == 0
+    assert options.wanted_speed == 1.0
