@@ -21,7 +21,10 @@ from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.srv import LoadMap, LoadMapResponse
 from std_srvs.srv import Empty
 
-from home_service.ros.commander.tasks import Drive, Feedback, Motion, Outcome, Task, Waypoints
+from home_service.ros.commander.drives import Drive, Waypoints
+from home_service.ros.commander.motions import Motion
+from home_service.ros.commander.outcomes import Feedback, Outcome
+from home_service.ros.commander.task import Task
 from planar import PlanarError, Pose2
 from planar_ros.calls.move_base import MoveBase
 from planar_ros.calls.services import call_service
