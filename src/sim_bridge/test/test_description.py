@@ -10,6 +10,8 @@ from sim_bridge.description import read_sdf_robot, read_urdf_robot
 from sim_bridge.errors import NoDriveError
 from sim_bridge.geometry.pose3 import pose3
 from sim_bridge.sdf import load_world
+from sim_bridge.sensors.imu import ImuProfile
+from sim_bridge.sensors.lidar import LaserProfile
 
 BODY = """
 <link name="chassis">
@@ -125,7 +127,7 @@ def test_a_laser_is_mounted_and_measures_as_its_sensor_says():
 def test_an_imu_says_how_noisy_its_plugin_makes_it():
     imu = """<gazebo><plugin name="i" filename="libgazebo_ros_imu.so"><bodyName>chassis</bodyName>
     <topicName>imu/data</topicName><updateRate>50</updateRate><gaussianNoise>0.1</gaussianNoise></plugin></gazebo>"""
-    (read,) = read_urdf_robot(urdf(DRIVE.format(more="") + imu), "mine.urdf").imus
+    (read,) = read_urdf_robot(urdf(DRIVE.format(more="") + imu), "mine.urdf").sensors_of(ImuProfile)
     assert (read.topic, read.frame, read.rate, read.noise) == ("imu/data", "chassis", 50.0, 0.1)
     assert read.turn_variances == read.orientation_variances == pytest.approx((0.01, 0.01, 0.01))
 
@@ -217,7 +219,7 @@ def test_a_robot_without_a_laser_scans_with_its_depth_camera(tmp_path):
     path = tmp_path / "rover.world"
     path.write_text(SDF_ROBOT.replace(laser, kinect))
     (model,) = load_world(path).robots
-    (scanner,) = read_sdf_robot(model)[0].lasers
+    (scanner,) = read_sdf_robot(model)[0].sensors_of(LaserProfile)
     assert (scanner.frame, scanner.topic, scanner.rate) == ("camera_depth_frame", "scan", 5.0)
     assert (scanner.beams, scanner.angle_increment, scanner.sight) == (101, pytest.approx(0.01), 4.0)
     assert scanner.pose_in_base[2, 3] == pytest.approx(0.3)

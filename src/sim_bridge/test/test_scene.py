@@ -10,8 +10,8 @@ from sim_bridge import ROBOTS, Scene, SimulationSettings, WorldError
 from sim_bridge.errors import UnknownEntityError
 from sim_bridge.geometry.pose3 import pose3
 from sim_bridge.geometry.shapes import Box, Plane
-from sim_bridge.physics.engine import Motion
-from sim_bridge.scene import Push
+from sim_bridge.physics.forces import Push
+from sim_bridge.physics.motion import Motion
 from sim_bridge.sdf import read_model
 from sim_bridge.world import Body, Collision, World
 
@@ -49,26 +49,26 @@ def drive(scene, seconds, commands={}):
 
 def test_a_models_pose_is_that_of_its_frame_not_of_its_first_link(scene):
     scene.add(read_model(BARBELL, "barbell", pose3(-2.0, 0.0, 0.2, yaw=math.pi / 2.0)).bodies)
-    assert scene.links_of("barbell") == ["barbell::a", "barbell::b"]
-    assert scene.model_motion("barbell").pose == pytest.approx(pose3(-2.0, 0.0, 0.2, yaw=math.pi / 2.0))
+    assert scene.models.links_of("barbell") == ["barbell::a", "barbell::b"]
+    assert scene.models.motion("barbell").pose == pytest.approx(pose3(-2.0, 0.0, 0.2, yaw=math.pi / 2.0))
     scene.set_model_motion("barbell", at_rest(pose3(1.0, 1.0, 0.2)))
-    assert scene.model_motion("barbell").pose == pytest.approx(pose3(1.0, 1.0, 0.2))
-    assert scene.link_motion("barbell::b").pose == pytest.approx(pose3(1.0, 0.0, 0.2))
+    assert scene.models.motion("barbell").pose == pytest.approx(pose3(1.0, 1.0, 0.2))
+    assert scene.models.link_motion("barbell::b").pose == pytest.approx(pose3(1.0, 0.0, 0.2))
 
 
 def test_a_model_in_motion_keeps_moving(scene):
     moving = Motion(pose3(0.0, -3.0, 2.0), np.array([1.0, 0.0, 0.0]), np.zeros(3))
     scene.set_model_motion("crate", moving)
     drive(scene, 0.2)
-    assert scene.model_motion("crate").pose[0, 3] == pytest.approx(0.2, abs=0.01)
-    assert scene.model_motion("crate").linear[2] == pytest.approx(-9.8 * 0.2, rel=0.05)
+    assert scene.models.motion("crate").pose[0, 3] == pytest.approx(0.2, abs=0.01)
+    assert scene.models.motion("crate").linear[2] == pytest.approx(-9.8 * 0.2, rel=0.05)
 
 
 def test_gravity_can_be_switched_off(scene):
     scene.set_gravity(0.0)
     scene.set_model_motion("crate", at_rest(pose3(0.0, -3.0, 2.0)))
     drive(scene, 0.5)
-    assert scene.model_motion("crate").pose[2, 3] == pytest.approx(2.0)
+    assert scene.models.motion("crate").pose[2, 3] == pytest.approx(2.0)
 
 
 def test_a_still_model_that_is_put_elsewhere_is_seen_there(scene):
@@ -78,14 +78,14 @@ def test_a_still_model_that_is_put_elsewhere_is_seen_there(scene):
     scene.remove_model("wall")
     assert math.isinf(drive(scene, 0.1)["r"].scan.ranges[180])
     with pytest.raises(UnknownEntityError, match="no model named 'wall'"):
-        scene.model_motion("wall")
+        scene.models.motion("wall")
 
 
 def test_names_that_are_not_there_are_refused_with_the_nearest(scene):
     with pytest.raises(UnknownEntityError, match="no model named 'crat', did you mean crate"):
         scene.remove_model("crat")
     with pytest.raises(UnknownEntityError, match="did you mean crate::link"):
-        scene.link_motion("crate::lnk")
+        scene.models.link_motion("crate::lnk")
     with pytest.raises(UnknownEntityError, match="no robot named 'r'"):
         scene.step({"r": Twist2()})
 
@@ -93,13 +93,13 @@ def test_names_that_are_not_there_are_refused_with_the_nearest(scene):
 def test_a_push_lasts_as_long_as_asked_and_can_be_stopped(scene):
     scene.set_gravity(0.0)
     scene.set_model_motion("crate", at_rest(pose3(0.0, -3.0, 2.0)))
-    scene.push(Push("crate::link", np.array([4.0, 0.0, 0.0]), np.zeros(3), 0.0, 0.5))
+    scene.forces.push(Push("crate::link", np.array([4.0, 0.0, 0.0]), np.zeros(3), 0.0, 0.5))
     drive(scene, 1.0)
-    assert scene.model_motion("crate").linear[0] == pytest.approx(4.0 / 2.0 * 0.5, rel=0.05)
-    scene.push(Push("crate::link", np.array([4.0, 0.0, 0.0]), np.zeros(3), 0.0, math.inf))
-    scene.stop_pushing("crate::link")
+    assert scene.models.motion("crate").linear[0] == pytest.approx(4.0 / 2.0 * 0.5, rel=0.05)
+    scene.forces.push(Push("crate::link", np.array([4.0, 0.0, 0.0]), np.zeros(3), 0.0, math.inf))
+    scene.forces.stop_pushing("crate::link")
     drive(scene, 1.0)
-    assert scene.model_motion("crate").linear[0] == pytest.approx(1.0, rel=0.1)
+    assert scene.models.motion("crate").linear[0] == pytest.approx(1.0, rel=0.1)
 
 
 def test_robots_see_and_do_not_pass_through_each_other(scene):
@@ -126,7 +126,7 @@ def test_a_robot_must_have_room_and_a_name_of_its_own(scene):
         scene.add_robot("one", LIDAR, Pose2(1.0, 0.0))
     with pytest.raises(WorldError, match="inside one::base_footprint"):
         scene.add_robot("two", LIDAR, Pose2(0.1, 0.0))
-    assert "two" not in scene.model_names()
+    assert "two" not in scene.models.names()
 
 
 def test_resetting_poses_puts_all_back_and_time_goes_on(scene):
@@ -138,7 +138,7 @@ def test_resetting_poses_puts_all_back_and_time_goes_on(scene):
     assert after.stamp > before.stamp
     assert after.base_in_world.distance_to(Pose2(1.0, 0.0)) < 0.01
     assert after.odometry.base_in_odom.distance_to(before.odometry.base_in_odom) < 0.02, "it never jumps"
-    assert scene.model_motion("crate").pose == pytest.approx(pose3(3.0, 2.0, 0.25), abs=1e-2)
+    assert scene.models.motion("crate").pose == pytest.approx(pose3(3.0, 2.0, 0.25), abs=1e-2)
 
 
 def test_a_reset_scene_repeats_itself_bit_for_bit():
@@ -172,16 +172,18 @@ def test_what_is_attached_to_a_robot_goes_with_it_until_it_is_let_go(scene):
     scene.add_robot("robot", LIDAR)
     scene.add([box("parcel", 0.0, mass=0.2)])
     scene.set_model_motion("parcel", at_rest(pose3(z=0.7)))
-    base = scene.links_of("robot")[0]
+    base = scene.models.links_of("robot")[0]
     scene.attach(base, "parcel::link")
     observation = drive(scene, 4.0, {"robot": Twist2(0.5, 0.4)})
-    parcel_in_base = np.linalg.inv(scene.link_motion(base).pose) @ scene.link_motion("parcel::link").pose
+    parcel_in_base = (
+        np.linalg.inv(scene.models.link_motion(base).pose) @ scene.models.link_motion("parcel::link").pose
+    )
     assert math.hypot(observation["robot"].base_in_world.x, observation["robot"].base_in_world.y) > 1.0
     np.testing.assert_allclose(parcel_in_base[:3, 3], (0.0, 0.0, 0.7), atol=0.01)
     assert observation["robot"].contacts == ()
     scene.detach(base, "parcel::link")
     scene.set_model_motion("parcel", at_rest(pose3(3.0, -2.0, 1.0)))
     drive(scene, 1.0)
-    assert scene.model_motion("parcel").pose[2, 3] == pytest.approx(0.25, abs=0.01)
+    assert scene.models.motion("parcel").pose[2, 3] == pytest.approx(0.25, abs=0.01)
     with pytest.raises(UnknownEntityError, match="parcel::link is not attached"):
         scene.detach(base, "parcel::link")

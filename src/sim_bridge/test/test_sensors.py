@@ -10,15 +10,16 @@ from sim_bridge import ROBOTS, Simulation, SimulationSettings
 from sim_bridge.geometry.pose3 import pose3, transform_points
 from sim_bridge.geometry.shapes import Box, Cylinder, MeshFile, Plane, Sphere
 from sim_bridge.noise import noise_named
-from sim_bridge.physics.engine import Motion
+from sim_bridge.physics.motion import Motion
 from sim_bridge.sensors.bumper import CENTRE, LEFT, RIGHT, pressed
-from sim_bridge.sensors.camera import Camera, CameraSettings, DepthCameraSettings, points_of
-from sim_bridge.sensors.imu import Imu, ImuSettings
+from sim_bridge.sensors.camera import Camera, CameraProfile, CameraSettings, DepthCameraSettings, points_of
+from sim_bridge.sensors.imu import Imu, ImuProfile, ImuSettings
 from sim_bridge.views.drawing import Drawing
 from sim_bridge.world import Body, Collision, Visual, World
 
 SMALL = CameraSettings(width=160, height=120)
 KINECT = DepthCameraSettings()
+AT_BASE = ImuProfile("imu", "base_link", np.eye(4))
 EXACT = SimulationSettings(**noise_named("ideal"))
 
 
@@ -30,10 +31,13 @@ def drawing_of(*shapes):
     return drawing.triangles(lambda name: np.eye(4))
 
 
+def camera(settings, seed=0):
+    profile = CameraProfile("optical", np.eye(4), settings, 10.0, "image_raw", "camera_info")
+    return Camera(settings, np.random.default_rng(seed), profile)
+
+
 def picture(settings, *shapes, at=None, seed=0):
-    return Camera(settings, np.random.default_rng(seed)).measure(
-        *drawing_of(*shapes), pose3(z=1.0) if at is None else at
-    )
+    return camera(settings, seed).picture(*drawing_of(*shapes), pose3(z=1.0) if at is None else at)
 
 
 WALL = (Box((0.2, 10.0, 10.0)), pose3(3.1), (1.0, 0.0, 0.0))
@@ -138,25 +142,25 @@ def at_rest(pose):
 
 
 def test_an_imu_at_rest_feels_what_keeps_it_from_falling():
-    imu = Imu(ImuSettings(), np.random.default_rng(0))
-    reading = imu.measure(at_rest(pose3(pitch=0.1)), 0.02, 9.8)
+    imu = Imu(ImuSettings(), np.random.default_rng(0), AT_BASE)
+    reading = imu.feel(at_rest(pose3(pitch=0.1)), 0.02, 9.8)
     assert reading.acceleration == pytest.approx([-9.8 * math.sin(0.1), 0.0, 9.8 * math.cos(0.1)])
     assert reading.turn_rates == pytest.approx(np.zeros(3))
 
 
 def test_an_imu_feels_turning_and_speeding_up_in_its_own_frame():
-    imu = Imu(ImuSettings(), np.random.default_rng(0))
+    imu = Imu(ImuSettings(), np.random.default_rng(0), AT_BASE)
     turned = pose3(yaw=math.pi / 2.0)
-    imu.measure(Motion(turned, np.zeros(3), np.zeros(3)), 0.1, 9.8)
-    reading = imu.measure(Motion(turned, np.array([0.0, 0.2, 0.0]), np.array([0.0, 0.0, 0.7])), 0.1, 9.8)
+    imu.feel(Motion(turned, np.zeros(3), np.zeros(3)), 0.1, 9.8)
+    reading = imu.feel(Motion(turned, np.array([0.0, 0.2, 0.0]), np.array([0.0, 0.0, 0.7])), 0.1, 9.8)
     assert reading.acceleration == pytest.approx([2.0, 0.0, 9.8])
     assert reading.turn_rates == pytest.approx([0.0, 0.0, 0.7])
 
 
 def test_an_imu_errs_as_asked_for():
     def readings(seed):
-        imu = Imu(ImuSettings(turn_noise=0.01, acceleration_noise=0.1), np.random.default_rng(seed))
-        return [imu.measure(at_rest(np.eye(4)), 0.02, 9.8) for _ in range(2000)]
+        imu = Imu(ImuSettings(turn_noise=0.01, acceleration_noise=0.1), np.random.default_rng(seed), AT_BASE)
+        return [imu.feel(at_rest(np.eye(4)), 0.02, 9.8) for _ in range(2000)]
 
     assert np.std([reading.turn_rates for reading in readings(0)]) == pytest.approx(0.01, rel=0.05)
     accelerations = [reading.acceleration - (0.0, 0.0, 9.8) for reading in readings(0)]
@@ -190,11 +194,9 @@ def test_the_depth_camera_and_the_laser_made_of_it_agree():
     robot = ROBOTS["turtlebot_kinect"]
     simulation = Simulation(room, robot, EXACT)
     scan = next(filter(None, (simulation.step().scan for _ in range(20))))
-    laser = simulation.scene.model_motion("mobile_base").pose @ robot.laser.pose_in_base
+    laser = simulation.scene.models.motion("mobile_base").pose @ robot.laser.pose_in_base
     settings = DepthCameraSettings(min_depth=robot.laser.range_min, max_depth=robot.laser.sight)
-    seen = Camera(settings, np.random.default_rng(0)).measure(
-        *simulation.scene.drawing(but="mobile_base"), laser
-    )
+    seen = camera(settings).picture(*simulation.scene.sight.triangles("mobile_base"), laser)
     middle = points_of(seen.depth, settings)[240]
     bearings, ranges = np.arctan2(-middle[:, 0], middle[:, 2]), np.hypot(middle[:, 0], middle[:, 2])
     at_bearings = np.interp(bearings[::-1], scan.angles, scan.ranges)[::-1]

@@ -10,7 +10,7 @@ from planar import OccupancyGrid, Pose2
 from sim_bridge import Simulation
 from sim_bridge.geometry.pose3 import from_pose2
 from sim_bridge.geometry.shapes import Cylinder
-from sim_bridge.physics.engine import Motion
+from sim_bridge.physics.motion import Motion
 from sim_bridge.world import Body, Collision
 
 RADIUS, HEIGHT = 0.2, 1.6

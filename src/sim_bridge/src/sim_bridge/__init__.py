@@ -2,7 +2,7 @@
 
 from sim_bridge.config import SimulationSettings
 from sim_bridge.errors import RobotError, WorldError
-from sim_bridge.robot import Observation
+from sim_bridge.robot import Fitting, Observation
 from sim_bridge.robots import ROBOTS, RobotProfile, robot_named
 from sim_bridge.scene import Scene
 from sim_bridge.sdf import load_world
@@ -10,6 +10,7 @@ from sim_bridge.simulation import Simulation
 
 __all__ = [
     "ROBOTS",
+    "Fitting",
     "Observation",
     "RobotError",
     "RobotProfile",

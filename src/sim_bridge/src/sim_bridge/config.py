@@ -1,10 +1,12 @@
-"""Settings of the simulation and of its node."""
+"""Settings of the simulation and of its node: every parameter once, with its default and meaning."""
 
+import sys
 from dataclasses import dataclass
 
-from planar.config.parameters import Bounds, check_parameters, parameter
+from planar.config.listing import Section
+from planar.config.parameters import POSITIVE, Bounds, check_parameters, parameter, parameters_of
 from planar.config.settings import check
-from sim_bridge.noise import NoiseSettings
+from sim_bridge.noise import NOISES, NOT_NEGATIVE, NoiseSettings
 
 # Hertz; with more, a single period of the odometry would take seconds.
 HIGHEST_PHYSICS_RATE = 100_000
@@ -14,14 +16,17 @@ HIGHEST_PHYSICS_RATE = 100_000
 class SimulationSettings(NoiseSettings):
     """Rates are in hertz of simulated time and must divide ``physics_rate``."""
 
-    physics_rate: int = 200
-    odometry_rate: int = 50
-    scan_rate: int = 10
+    physics_rate: int = parameter(
+        200,
+        "steps of physics a second; every other rate must divide it",
+        "Hz",
+        Bounds(1, HIGHEST_PHYSICS_RATE),
+    )
+    odometry_rate: int = parameter(50, "odom, /tf and base_pose_ground_truth", "Hz")
+    scan_rate: int = parameter(10, "scan", "Hz")
 
     def __post_init__(self):
         super().__post_init__()
-        is_sane = 0 < self.physics_rate <= HIGHEST_PHYSICS_RATE
-        check(is_sane, "physics_rate", f"between 1 and {HIGHEST_PHYSICS_RATE}", self.physics_rate)
         for name in ("odometry_rate", "scan_rate"):
             rate = getattr(self, name)
             divides = rate > 0 and self.physics_rate % rate == 0
@@ -29,52 +34,66 @@ class SimulationSettings(NoiseSettings):
 
 
 @dataclass(frozen=True)
-class BridgeSettings:
-    """``strict``: a mesh or model that the world lacks is an error.
-
-    ``noise``: a profile of sim_bridge.noise; single values of it may be set beside it.
-
-    ``wait_for``: names of nodes, separated by spaces; rates in hertz must divide the odometry's.
-    """
-
-    world: str = ""
-    strict: bool = False
-    seed: int = 0
-    speed: float = 1.0
-    noise: str = "turtlebot"
-    wait_for: str = ""
-    clock_rate: int = 50
-    joint_state_rate: int = 10
-
-    def __post_init__(self):
-        check(self.world != "", "world", "the path of an SDF file", self.world)
-        check(self.seed >= 0, "seed", "not negative", self.seed)
-        check(0.0 <= self.speed < float("inf"), "speed", "0 or a positive number", self.speed)
-        check(self.clock_rate > 0, "clock_rate", "positive", self.clock_rate)
-        check(self.joint_state_rate > 0, "joint_state_rate", "positive", self.joint_state_rate)
-
-
-@dataclass(frozen=True)
-class RobotSettings:
-    """``robot``: a profile's name (none: no robot). It starts at x, y, yaw in the world.
-
-    Its topics are below ``namespace``.
-    """
-
-    robot: str = "turtlebot_lidar"
-    x: float = 0.0
-    y: float = 0.0
-    yaw: float = 0.0
-    namespace: str = ""
-
-
-@dataclass(frozen=True)
 class RunTimeSettings:
     """What dynamic_reconfigure may change."""
 
     speed: float = parameter(
-        1.0, "times real time; 0: as fast as the nodes of wait_for keep up", bounds=Bounds(0.0), dynamic=100.0
+        1.0,
+        "times real time; 0: as fast as the nodes of wait_for keep up",
+        bounds=Bounds(0.0, sys.float_info.max, "0 or a positive number"),
+        dynamic=100.0,
     )
 
     def __post_init__(self):
         check_parameters(self)
+
+
+@dataclass(frozen=True)
+class BridgeSettings(RunTimeSettings):
+    """Of the node; single values of the noise may be set beside it."""
+
+    world: str = parameter("", "world that is simulated", required="the path of an SDF file")
+    seed: int = parameter(0, "all noise follows from it", bounds=NOT_NEGATIVE)
+    wait_for: str = parameter("", "names of nodes, by spaces, that the simulation stays in step with")
+    clock_rate: int = parameter(50, "/clock; must divide odometry_rate", "Hz", POSITIVE)
+    joint_state_rate: int = parameter(10, "joint_states; must divide odometry_rate", "Hz", POSITIVE)
+    strict: bool = parameter(
+        False, "a mesh or model that the world lacks is an error; otherwise it is named and left out"
+    )
+    noise: str = parameter(
+        "turtlebot",
+        f"how wrong the sensors are: {', '.join(NOISES)}; the values are those of noise.yaml, each of which "
+        "may also be set here by its name",
+    )
+
+
+@dataclass(frozen=True)
+class RobotSettings:
+    """A robot and where it starts in the world."""
+
+    robot: str = parameter("turtlebot_lidar", "name of a robot, or a URDF or xacro file; empty: no robot")
+    x: float = parameter(0.0, "where it starts in the world", "m")
+    y: float = parameter(0.0, "where it starts in the world", "m")
+    yaw: float = parameter(0.0, "its heading there", "rad")
+    namespace: str = parameter("", "of its topics")
+
+
+# What the arguments of the launch file set.
+ARGUMENTS = ("world", "seed", "speed", "wait_for")
+_NOISE_VALUES = {each.name for each in parameters_of(NoiseSettings)}
+
+CONFIG_FILES = {
+    "sim_bridge.yaml": Section(
+        "",
+        *(each for each in parameters_of(SimulationSettings) if each.name not in _NOISE_VALUES),
+        *(each for each in parameters_of(BridgeSettings) if each.name not in ARGUMENTS),
+        about="Settings of sim_bridge, but for the launch file's arguments. Rates are of simulated time.",
+    ),
+    "noise.yaml": Section(
+        "",
+        *(Section(name, noise) for name, noise in NOISES.items()),
+        about="The noise profiles of sim_bridge, to look up: its parameter noise names one of them.\n"
+        "ideal: what the sensors say is true. turtlebot: a Kobuki with a Kinect or a small lidar.\n"
+        "bad: what a localization should still bear.",
+    ),
+}

@@ -5,44 +5,46 @@ from typing import Any, Dict
 
 from planar import SettingsError
 from planar.config.hints import hint
+from planar.config.parameters import Bounds, check_parameters, parameter
 from planar.config.settings import check
+
+NOT_NEGATIVE = Bounds(0.0, words="not negative")
+
+
+def _error(default: float, meaning: str, unit: str = "") -> Any:
+    return parameter(default, meaning, unit, NOT_NEGATIVE)
 
 
 @dataclass(frozen=True)
 class NoiseSettings:
-    """Standard deviations, but for two shares and four variances.
+    """Standard deviations, but for two shares and four variances (Probabilistic Robotics, table 5.6)."""
 
-    ``range_noise``: of a laser's range, m; ``range_dropouts``, ``range_max_readings``: the shares of beams
-    that measure nothing, and that read the greatest range, whatever there is.
-    ``encoder_scale``, ``gyro_scale`` and ``gyro_bias`` (rad/s): of the relative error of each wheel's radius,
-    and of the gyro's errors, all drawn once a run. ``wheel_slip``: of the distance measured over 1 m, m;
-    grows with the root of the distance. ``gyro_noise``: density of the white noise, rad/sqrt(s).
-    ``alpha1`` to ``alpha4``: variances of odometry's heading, rad^2, for each rad turned and m driven, and of
-    its distance, m^2, for each m driven and rad turned (Probabilistic Robotics, table 5.6).
-    ``acceleration_noise``: of the IMU, m/s^2; ``colour_noise``: of a camera, 0 to 1; ``depth_noise``: of a
-    depth camera at 1 m, m, growing with the square of the depth.
-    """
-
-    range_noise: float = 0.01
-    range_dropouts: float = 0.0
-    range_max_readings: float = 0.0
-    encoder_scale: float = 0.02
-    wheel_slip: float = 0.01
-    gyro_scale: float = 0.01
-    gyro_bias: float = 0.001
-    gyro_noise: float = 0.0005
-    alpha1: float = 0.0
-    alpha2: float = 0.0
-    alpha3: float = 0.0
-    alpha4: float = 0.0
-    acceleration_noise: float = 0.02
-    colour_noise: float = 0.007
-    depth_noise: float = 0.002
+    range_noise: float = _error(0.01, "standard deviation of a laser range", "m")
+    range_dropouts: float = _error(0.0, "share of the laser's beams that measure nothing")
+    range_max_readings: float = _error(0.0, "share of the laser's beams that read the greatest range")
+    encoder_scale: float = _error(
+        0.02, "standard deviation of the relative error of each wheel's radius, drawn once a run"
+    )
+    wheel_slip: float = _error(
+        0.01, "standard deviation of the distance measured over 1 m; grows with the root of the distance", "m"
+    )
+    gyro_scale: float = _error(0.01, "standard deviation of the gyro's relative error, drawn once a run")
+    gyro_bias: float = _error(0.001, "standard deviation of the gyro's bias, drawn once a run", "rad/s")
+    gyro_noise: float = _error(0.0005, "density of the gyro's white noise", "rad/sqrt(s)")
+    alpha1: float = _error(0.0, "variance of odometry's heading for each rad turned", "rad^2")
+    alpha2: float = _error(0.0, "variance of odometry's heading for each m driven", "rad^2")
+    alpha3: float = _error(0.0, "variance of odometry's distance for each m driven", "m^2")
+    alpha4: float = _error(0.0, "variance of odometry's distance for each rad turned", "m^2")
+    acceleration_noise: float = _error(
+        0.02, "standard deviation of an acceleration measured by the IMU", "m/s^2"
+    )
+    colour_noise: float = _error(0.007, "standard deviation of a camera's colours, 0 to 1")
+    depth_noise: float = _error(
+        0.002, "standard deviation of a depth of 1 m; grows with the square of the depth", "m"
+    )
 
     def __post_init__(self):
-        for field in fields(NoiseSettings):
-            value = getattr(self, field.name)
-            check(value >= 0.0, field.name, "not negative", value)
+        check_parameters(self)
         shares = self.range_dropouts + self.range_max_readings
         check(shares <= 1.0, "range_dropouts", "with range_max_readings at most 1", shares)
 

@@ -1,89 +1,145 @@
 """A robot in its scene: it is commanded, it moves, it measures."""
 
-import math
+from collections import Counter
 from dataclasses import dataclass, replace
-from typing import Callable, Dict, Iterable, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, Iterator, Mapping, Optional, Sequence, Tuple
+from typing import Counter as CounterOf
 
 import numpy as np
 
 from planar import Pose2, Scan, Twist2
 from sim_bridge.config import SimulationSettings
-from sim_bridge.description import LaserProfile, RobotProfile
-from sim_bridge.driving.drive import Drive
-from sim_bridge.geometry.pose3 import to_pose2
-from sim_bridge.physics.engine import Contact, Engine
-from sim_bridge.physics.vehicle import Vehicle, twist_in_base
-from sim_bridge.sensors.kobuki import KobukiReading, KobukiSensors
-from sim_bridge.sensors.lidar import Lidar
-from sim_bridge.sensors.odometry import DeadReckoning, Moved, Odometry, TrueOdometry
-from sim_bridge.views.section import Section
+from sim_bridge.description import RobotProfile
+from sim_bridge.description.bodies import bodies_of
+from sim_bridge.driving.base import Drive
+from sim_bridge.driving.drive import RampedDrive
+from sim_bridge.physics.engine import Engine
+from sim_bridge.physics.vehicle import Vehicle
+from sim_bridge.sensors.base import Mounting, Reading, Sensor, SensorSpec
+from sim_bridge.sensors.kobuki import KobukiReading
+from sim_bridge.sensors.mount import Mount
+from sim_bridge.sensors.odometry import Odometer, Odometry
+from sim_bridge.sensors.surroundings import RobotSurroundings
+from sim_bridge.sensors.truth import ContactList, GroundTruth, JointEncoders, Truth, WheelState
+from sim_bridge.views.sight import Sight
 from sim_bridge.world import Body
+
+
+@dataclass(frozen=True)
+class Fitting:
+    """What is put before the sensors and the drive of a robot: each function gets one and gives one back."""
+
+    sensor: Callable[[Sensor[Any]], Sensor[Any]] = lambda sensor: sensor
+    drive: Callable[[Drive], Drive] = lambda drive: drive
 
 
 @dataclass(frozen=True, eq=False)
 class Observation:
     """What there is to know after a step.
 
-    ``stamp``: simulated seconds since the start. ``base_in_world`` and ``twist`` are the truth, ``odometry``
-    and ``scans`` (one of each range finder, None if none is due) what the robot measures. ``wheel_angles``,
-    ``wheel_speeds``: of the driven wheels, those on the left first, rad and rad/s. ``contacts``: names
-    (``model::link``) of what the robot has bumped into since the last step. ``tilt``: between the robot's
-    axis and the vertical, rad. ``kobuki``: what a Kobuki base feels, None of other robots.
+    ``stamp``: simulated seconds since the start. ``readings``: what each sensor has told since the last step,
+    by its name; ``scanner`` is that of the first range finder. The rest is the latest of what every robot
+    tells. ``contacts``: names (``model::link``) of what the robot has bumped into since the last step.
     """
 
     stamp: float
-    base_in_world: Pose2
-    twist: Twist2
+    readings: Mapping[str, Reading]
+    truth: Truth
     odometry: Odometry
-    scans: Tuple[Optional[Scan], ...]
+    wheels: WheelState
     contacts: Tuple[str, ...]
-    wheel_angles: Tuple[float, ...]
-    wheel_speeds: Tuple[float, ...]
-    tilt: float
-    kobuki: Optional[KobukiReading] = None
+    scanner: str = ""
+
+    @property
+    def base_in_world(self) -> Pose2:
+        """The truth."""
+        return self.truth.base_in_world
+
+    @property
+    def twist(self) -> Twist2:
+        """The truth."""
+        return self.truth.twist
+
+    @property
+    def tilt(self) -> float:
+        """Between the robot's axis and the vertical, rad."""
+        return self.truth.tilt
+
+    @property
+    def wheel_angles(self) -> Tuple[float, ...]:
+        """Of the driven wheels, those on the left first, rad."""
+        return self.wheels.angles
+
+    @property
+    def wheel_speeds(self) -> Tuple[float, ...]:
+        """Of the driven wheels, those on the left first, rad/s."""
+        return self.wheels.speeds
+
+    @property
+    def scans(self) -> Tuple[Scan, ...]:
+        """Of all range finders that were due."""
+        return tuple(told.value for told in self.readings.values() if isinstance(told.value, Scan))
 
     @property
     def scan(self) -> Optional[Scan]:
-        """Of the first range finder."""
-        return self.scans[0] if self.scans else None
+        """Of the first range finder, None if it was not due."""
+        told = self.readings.get(self.scanner)
+        return told.value if told else None
+
+    @property
+    def kobuki(self) -> Optional[KobukiReading]:
+        """What a Kobuki base feels, None of other robots."""
+        told = self.readings.get("kobuki")
+        return told.value if told else None
 
 
 class Robot:
-    """The robot ``name`` with its base at ``base_in_space``, (4, 4); ``seed``: of its sensors' noise."""
+    """The robot ``name`` with its base at ``base_in_space``, (4, 4).
+
+    ``seed``: of the simulation; with the ``number`` of the robot it makes the noise of its sensors.
+    """
 
     def __init__(
         self,
         engine: Engine,
+        sight: Sight,
         name: str,
         profile: RobotProfile,
         base_in_space: np.ndarray,
         settings: SimulationSettings,
-        seed: Sequence[int],
+        seed: int = 0,
+        number: int = 0,
+        fitting: Fitting = Fitting(),
     ):
-        odometry_rng, *laser_rngs = (
-            np.random.default_rng([*seed, stream]) for stream in range(1 + len(profile.lasers))
-        )
+        self.name = name
         self.profile = profile
-        self.vehicle = Vehicle(engine, name, profile, base_in_space)
-        self.settings = settings
-        self._engine = engine
-        self._drive = Drive(profile.drive)
-        self._odometer = _odometer(profile, settings, odometry_rng)
-        self._lookouts = [
-            Lookout(laser, float(base_in_space[2, 3]), settings, rng)
-            for laser, rng in zip(profile.lasers, laser_rngs)
-        ]
-        self._bumps: Dict[str, Contact] = {}
-        self._kobuki = _kobuki_sensors(engine, profile)
-
-    @property
-    def name(self) -> str:
-        return self.vehicle.name
+        drive = profile.drive
+        parts = bodies_of(profile.model, name)
+        self.vehicle = Vehicle(engine, name, *parts, len(drive.left_joints), drive.torque, base_in_space)
+        self._drive = fitting.drive(RampedDrive(drive))
+        self._around = RobotSurroundings(self.vehicle, sight)
+        mounting = Mounting(base_in_space, settings, seed, number)
+        self._odometer = Odometer(profile.odometry, profile.odometry.reckoning(drive, mounting))
+        standard: Dict[Sensor[Any], Any] = {
+            GroundTruth(): GroundTruth().measure(self._around),
+            self._odometer: Odometry(),
+            JointEncoders(): JointEncoders().measure(self._around),
+            ContactList(): (),
+        }
+        self._latest = {sensor.name: first for sensor, first in standard.items()}
+        self._mounts: Dict[str, Mount] = {}
+        for sensor in standard:
+            self._mount(fitting.sensor(sensor), settings)
+        # What its description has, by the names that they tell by.
+        self.specs: Dict[str, SensorSpec] = {
+            self._mount(fitting.sensor(sensor), settings): spec
+            for spec, sensor in _built(profile.sensors, mounting)
+        }
+        self._seconds = 1.0 / settings.physics_rate
 
     def body(self) -> Body:
         """The robot as other robots see it."""
-        vehicle = self.vehicle
-        return Body(vehicle.base, vehicle.motion().pose, vehicle.collisions, mass=1.0)
+        return self.vehicle.body()
 
     def command(self, twist: Twist2) -> None:
         """A new command; it holds until its time-out."""
@@ -99,96 +155,55 @@ class Robot:
     def reset_odometry(self) -> None:
         self._odometer.reset()
 
+    def retime(self, settings: SimulationSettings) -> None:
+        """The rates have changed."""
+        self._seconds = 1.0 / settings.physics_rate
+        for mount in self._mounts.values():
+            mount.retime(settings)
+
+    def want(self, name: str, is_wanted: bool = True) -> None:
+        """A sensor that measures only on demand is to do so from now on, or no longer."""
+        self._mounts[name].is_wanted = is_wanted
+
     def begin_step(self) -> None:
         """Before a step of physics: sets the motors."""
-        self.vehicle.drive(*self._drive.wheel_speeds(1.0 / self.settings.physics_rate))
+        self.vehicle.drive(*self._drive.wheel_speeds(self._seconds))
 
-    def end_step(self, steps: int, stamp: float) -> None:
-        """After the step of physics number ``steps``, at the time ``stamp``: feels and looks around."""
-        self._bumps.update((bump.link, bump) for bump in self.vehicle.bumps())
-        for lookout in self._lookouts:
-            if lookout.is_due(steps, self.settings):
-                lookout.look(stamp, self._engine.pose_of, self.vehicle.base)
+    def end_step(self, step: int, stamp: float) -> None:
+        """After the step of physics number ``step``, at the time ``stamp``: what is due measures."""
+        self._around.end_step(stamp)
+        for mount in self._mounts.values():
+            mount.end_step(step, self._around)
 
     def observe(self, stamp: float) -> Observation:
         """What has been measured since the last call."""
-        motion = self.vehicle.motion()
-        base_in_world, twist = to_pose2(motion.pose), twist_in_base(motion)
-        wheel_angles, wheel_speeds = self.vehicle.wheels()
-        bumps, self._bumps = self._bumps, {}
-        kobuki = None
-        if self._kobuki is not None:
-            kobuki = self._kobuki.read(motion.pose, [bump.point for bump in bumps.values()])
-        moved = Moved(base_in_world, twist, wheel_angles, 1.0 / self.settings.odometry_rate)
+        self._around.end_period()
+        told = {name: mount.take() for name, mount in self._mounts.items()}
+        readings = {name: reading for name, reading in told.items() if reading is not None}
+        self._latest.update({name: readings[name].value for name in self._latest if name in readings})
         return Observation(
-            stamp=stamp,
-            base_in_world=base_in_world,
-            twist=twist,
-            odometry=self._odometer.update(moved),
-            scans=tuple(lookout.take_scan() for lookout in self._lookouts),
-            contacts=tuple(sorted(bumps)),
-            wheel_angles=wheel_angles,
-            wheel_speeds=wheel_speeds,
-            tilt=math.acos(min(motion.pose[2, 2], 1.0)),
-            kobuki=kobuki,
+            stamp,
+            readings,
+            truth=self._latest[GroundTruth.name],
+            odometry=self._latest[Odometer.name],
+            wheels=self._latest[JointEncoders.name],
+            contacts=self._latest[ContactList.name],
+            scanner=self.profile.scanner,
         )
 
-    def look_at(self, bodies: Iterable[Body]) -> None:
-        """Adds bodies to what the range finders can see."""
-        for lookout in self._lookouts:
-            for body in bodies:
-                lookout.section.add(body)
-
-    def lose_sight(self, link: str) -> None:
-        """A link of the world is gone."""
-        for lookout in self._lookouts:
-            lookout.section.remove(link)
-
-    def see_moved(self, link: str, pose: np.ndarray) -> None:
-        """A link of the world has been put to another place, (4, 4)."""
-        for lookout in self._lookouts:
-            lookout.section.move(link, pose)
+    def _mount(self, sensor: Sensor[Any], settings: SimulationSettings) -> str:
+        """Returns the name that the sensor has here: those of the same name get numbers behind it."""
+        name, count = sensor.name, 1
+        while name in self._mounts:
+            count += 1
+            name = f"{sensor.name}_{count}"
+        self._mounts[name] = Mount(sensor, settings)
+        return name
 
 
-class Lookout:
-    """A range finder, the level section of the world that it sees, and its latest scan."""
-
-    def __init__(
-        self, laser: LaserProfile, base_height: float, settings: SimulationSettings, rng: np.random.Generator
-    ):
-        self.section = Section(height=base_height + float(laser.pose_in_base[2, 3]))
-        self._laser = laser
-        noise = settings
-        if laser.noise is not None and settings.range_noise > 0.0:  # else sensors are meant to be ideal
-            noise = replace(settings, range_noise=laser.noise)
-        self._lidar = Lidar(laser, noise, rng)
-        self._scan: Optional[Scan] = None
-
-    def is_due(self, steps: int, settings: SimulationSettings) -> bool:
-        """Whether a scan ends with the step of physics number ``steps``."""
-        rate = self._laser.rate or settings.scan_rate
-        return steps % max(round(settings.physics_rate / rate), 1) == 0
-
-    def look(self, stamp: float, pose_of: Callable[[str], np.ndarray], base: str) -> None:
-        segments, retros = self.section.segments(pose_of), self.section.retros()
-        self._scan = self._lidar.sweep(stamp, segments, retros, to_pose2(pose_of(base)))
-
-    def take_scan(self) -> Optional[Scan]:
-        """The scan since the last call, if any."""
-        scan, self._scan = self._scan, None
-        return scan
-
-
-def _odometer(
-    profile: RobotProfile, settings: SimulationSettings, rng: np.random.Generator
-) -> Union[TrueOdometry, DeadReckoning]:
-    if profile.odometry.source == "world":
-        return TrueOdometry()
-    return DeadReckoning(profile.drive, profile.odometry.source == "gyro", settings, rng)
-
-
-def _kobuki_sensors(engine: Engine, profile: RobotProfile) -> Optional[KobukiSensors]:
-    if profile.kobuki is None:
-        return None
-    hubs = np.array([profile.model.wheels[joint].origin_in_base[:3, 3] for joint in profile.drive.joints])
-    return KobukiSensors(engine, profile.kobuki.cliff_threshold, hubs, profile.drive.wheel_radius)
+def _built(specs: Sequence[SensorSpec], mounting: Mounting) -> Iterator[Tuple[SensorSpec, Sensor[Any]]]:
+    """Specs and their sensors; each knows how many of its kind came before."""
+    counts: CounterOf[type] = Counter()
+    for spec in specs:
+        yield spec, spec.build(replace(mounting, number=counts[type(spec)]))
+        counts[type(spec)] += 1

@@ -10,7 +10,7 @@ from sim_bridge.config import SimulationSettings
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import from_pose2
 from sim_bridge.geometry.shapes import Box
-from sim_bridge.robot import Observation
+from sim_bridge.robot import Fitting, Observation
 from sim_bridge.robots import ROBOTS, RobotProfile
 from sim_bridge.scene import Scene
 from sim_bridge.world import Body, Collision, World
@@ -22,7 +22,7 @@ ROBOT_NAME = "mobile_base"
 class Simulation:
     """A robot that starts at ``base_in_world``. The same seed and commands give the same observations.
 
-    Raises WorldError if the robot cannot stand there.
+    ``fitting``: what is put before its sensors and its drive. Raises WorldError if it cannot stand there.
     """
 
     def __init__(
@@ -32,14 +32,15 @@ class Simulation:
         settings: SimulationSettings = SimulationSettings(),
         seed: int = 0,
         base_in_world: Pose2 = Pose2(),
+        fitting: Fitting = Fitting(),
     ):
-        self.scene = Scene(world, settings, seed)
+        self.scene = Scene(world, settings, seed, fitting)
         self.scene.add_robot(ROBOT_NAME, robot, base_in_world)
 
     @property
     def base(self) -> str:
         """The name of the link that the robot's pose is told by."""
-        return self.scene.links_of(ROBOT_NAME)[0]
+        return self.scene.models.links_of(ROBOT_NAME)[0]
 
     @property
     def step_seconds(self) -> float:

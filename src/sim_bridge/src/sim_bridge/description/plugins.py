@@ -4,32 +4,26 @@ import math
 from dataclasses import dataclass, field
 from typing import Callable, Dict, List, Optional
 
+import numpy as np
+
 from sim_bridge.description.blocks import Blocks
-from sim_bridge.description.profile import (
-    CameraProfile,
-    DriveProfile,
-    ImuProfile,
-    JointStateProfile,
-    KobukiProfile,
-    LaserProfile,
-    OdometryProfile,
-)
-from sim_bridge.description.sensors import (
-    CAMERA_PLUGINS,
-    DEPTH_CAMERA_PLUGINS,
-    IMU_PLUGINS,
-    read_camera,
-    read_imu,
-    scan_of,
-)
+from sim_bridge.description.profile import JointStateProfile
 from sim_bridge.description.structure import Structure
+from sim_bridge.driving.profile import DriveProfile
 from sim_bridge.geometry.pose3 import IDENTITY
 from sim_bridge.sdf.element import Element
 from sim_bridge.sdf.plugins import plugin_name
 from sim_bridge.sdf.values import flag, length, number, text
+from sim_bridge.sensors.base import SensorSpec
+from sim_bridge.sensors.camera import CameraProfile, scan_of
+from sim_bridge.sensors.found import Found, namespace_of
+from sim_bridge.sensors.imu import ImuProfile
+from sim_bridge.sensors.kobuki import KobukiProfile
+from sim_bridge.sensors.lidar import LaserProfile
+from sim_bridge.sensors.odometry import OdometryProfile
+from sim_bridge.sensors.registry import BODY_SENSORS, SENSORS
 
 ODOMETRY_SOURCES = ("encoder", "world", "gyro")
-LASER_PLUGINS = ("gazebo_ros_laser", "gazebo_ros_gpu_laser")
 # They tell Gazebo what is true here anyhow.
 NEEDLESS_PLUGINS = {"gazebo_ros_p3d"}
 # Variances of z, roll and pitch that odometry does not measure.
@@ -44,11 +38,8 @@ class Equipment:
 
     drive: Optional[DriveProfile] = None
     odometry: OdometryProfile = OdometryProfile()
-    lasers: List[LaserProfile] = field(default_factory=list)
-    cameras: List[CameraProfile] = field(default_factory=list)
-    imus: List[ImuProfile] = field(default_factory=list)
+    sensors: List[SensorSpec] = field(default_factory=list)
     joint_states: Optional[JointStateProfile] = None
-    kobuki: Optional[KobukiProfile] = None
     namespace: str = ""
     warnings: List[str] = field(default_factory=list)
 
@@ -68,18 +59,14 @@ def read_equipment(structure: Structure, blocks: Blocks) -> Equipment:
             left_out.append(plugin)
     for link, sensor in blocks.sensors:
         for plugin in sensor.children("plugin"):
-            name = plugin_name(plugin)
-            if name in LASER_PLUGINS:
-                equipment.lasers.append(_read_laser(sensor, plugin, link, structure, equipment))
-            elif name in CAMERA_PLUGINS + DEPTH_CAMERA_PLUGINS:
-                is_depth = name in DEPTH_CAMERA_PLUGINS
-                equipment.cameras.append(read_camera(sensor, plugin, link, structure, is_depth))
-            elif name in IMU_PLUGINS:
-                equipment.imus.append(read_imu(sensor, plugin, link, structure))
+            read = SENSORS.get(plugin_name(plugin))
+            if read is not None:
+                equipment.sensors.append(read(_found(plugin, sensor, link, structure, equipment)))
             else:
                 left_out.append(plugin)
-    if not equipment.lasers:
-        equipment.lasers += [scan_of(camera) for camera in equipment.cameras if camera.depth_topic][:1]
+    if not any(isinstance(sensor, LaserProfile) for sensor in equipment.sensors):
+        cameras = [sensor for sensor in equipment.sensors if isinstance(sensor, CameraProfile)]
+        equipment.sensors += [scan_of(camera) for camera in cameras if camera.depth_topic][:1]
     names = dict.fromkeys(plugin.attribute("filename") for plugin in left_out)
     equipment.warnings += [f"robot {structure.name}: plugin {name} is left out" for name in names]
     return equipment
@@ -92,7 +79,7 @@ def _read_diff_drive(plugin: Element, structure: Structure, equipment: Equipment
     separation = length(plugin, "wheelSeparation", 0.34)
     acceleration = number(plugin, "wheelAcceleration", 0.0)
     joints = [text(plugin, "leftJoint", "left_joint"), text(plugin, "rightJoint", "right_joint")]
-    equipment.namespace = _namespace(plugin)
+    equipment.namespace = namespace_of(plugin)
     equipment.drive = _drive(
         plugin,
         structure,
@@ -120,7 +107,7 @@ def _read_diff_drive(plugin: Element, structure: Structure, equipment: Equipment
 def _read_skid_steer(plugin: Element, structure: Structure, equipment: Equipment) -> None:
     sides = ("leftFront", "leftRear", "rightFront", "rightRear")
     defaults = ("left_front", "left_rear", "right_front", "right_rear")
-    equipment.namespace = _namespace(plugin)
+    equipment.namespace = namespace_of(plugin)
     equipment.drive = _drive(
         plugin,
         structure,
@@ -148,7 +135,7 @@ def _read_skid_steer(plugin: Element, structure: Structure, equipment: Equipment
 
 def _read_kobuki(plugin: Element, structure: Structure, equipment: Equipment) -> None:
     joints = [plugin.required(f"{side}_wheel_joint_name").text for side in ("left", "right")]
-    equipment.namespace = _namespace(plugin)
+    equipment.namespace = namespace_of(plugin)
     equipment.drive = _drive(
         plugin,
         structure,
@@ -161,7 +148,7 @@ def _read_kobuki(plugin: Element, structure: Structure, equipment: Equipment) ->
     )
     equipment.odometry = OdometryProfile("gyro", sends_transform=plugin.flag("publish_tf"))
     equipment.joint_states = JointStateProfile(equipment.drive.joints)
-    equipment.imus.append(
+    equipment.sensors.append(
         ImuProfile(
             "mobile_base/sensors/imu_data",
             "base_link",
@@ -170,7 +157,9 @@ def _read_kobuki(plugin: Element, structure: Structure, equipment: Equipment) ->
             turn_variances=KOBUKI_IMU_VARIANCES,
         )
     )
-    equipment.kobuki = KobukiProfile(length(plugin, "cliff_detection_threshold", 0.04))
+    hubs = [structure.pose_in_base(structure.joints[name].child)[:3, 3] for name in equipment.drive.joints]
+    threshold = length(plugin, "cliff_detection_threshold", 0.04)
+    equipment.sensors.append(KobukiProfile(np.array(hubs), equipment.drive.wheel_radius, threshold))
 
 
 def _read_joint_states(plugin: Element, structure: Structure, equipment: Equipment) -> None:
@@ -183,38 +172,17 @@ def _read_joint_states(plugin: Element, structure: Structure, equipment: Equipme
     equipment.joint_states = JointStateProfile(tuple(names), rate)
 
 
-def _read_laser(
-    sensor: Element, plugin: Element, link: str, structure: Structure, equipment: Equipment
-) -> LaserProfile:
-    pose = sensor.raw_pose()
-    ray = sensor.child("ray") or sensor.required("lidar")
-    horizontal = ray.required("scan").required("horizontal")
-    beams = int(horizontal.required("samples").lengths(1)[0])
-    first, last = (horizontal.required(f"{end}_angle").numbers(1)[0] for end in ("min", "max"))
-    span = ray.required("range")
-    nearest, farthest = span.required("min").numbers(1)[0], span.required("max").lengths(1)[0]
-    if beams < 2 or last <= first or not 0.0 <= nearest < farthest:
-        raise sensor.error("a range finder needs two samples, min_angle < max_angle and 0 <= min < max range")
-    deviation = ray.child("noise", "stddev")
-    rate = number(sensor, "update_rate", 0.0)
-    return LaserProfile(
-        frame=text(plugin, "frameName", link),
-        topic=_topic(plugin, "topicName", "scan", equipment.namespace),
-        pose_in_base=structure.pose_in_base(link) @ (IDENTITY if pose is None else pose),
-        beams=beams,
-        angle_min=first,
-        angle_increment=(last - first) / (beams - 1),
-        range_min=nearest,
-        range_max=farthest,
-        sight=farthest,
-        rate=rate or None,
-        noise=deviation.numbers(1)[0] if deviation is not None else None,
-    )
-
-
-def _read_imu(plugin: Element, structure: Structure, equipment: Equipment) -> None:
+def _read_body_sensor(plugin: Element, structure: Structure, equipment: Equipment) -> None:
     """A plugin below the model that names its link."""
-    equipment.imus.append(read_imu(None, plugin, plugin.required("bodyName").text, structure))
+    link = plugin.required("bodyName").text
+    found = Found(plugin, plugin, link, structure.pose_in_base(link), equipment.namespace)
+    equipment.sensors.append(SENSORS[plugin_name(plugin)](found))
+
+
+def _found(plugin: Element, sensor: Element, link: str, structure: Structure, equipment: Equipment) -> Found:
+    pose = sensor.raw_pose()
+    in_base = structure.pose_in_base(link) @ (IDENTITY if pose is None else pose)
+    return Found(plugin, sensor, link, in_base, equipment.namespace)
 
 
 _PLUGINS: Dict[str, Callable[[Element, Structure, Equipment], None]] = {
@@ -222,7 +190,7 @@ _PLUGINS: Dict[str, Callable[[Element, Structure, Equipment], None]] = {
     "gazebo_ros_skid_steer_drive": _read_skid_steer,
     "gazebo_ros_kobuki": _read_kobuki,
     "gazebo_ros_joint_state_publisher": _read_joint_states,
-    **{name: _read_imu for name in IMU_PLUGINS},
+    **{name: _read_body_sensor for name in BODY_SENSORS},
     **{name: lambda *_: None for name in NEEDLESS_PLUGINS},
 }
 
@@ -246,15 +214,3 @@ def _drive(plugin: Element, structure: Structure, joints: List[str], **values) -
         if plugin.child(tag) is not None:
             values[key] = length(plugin, tag, math.inf)
     return DriveProfile(tuple(left), tuple(name for name in joints if name not in left), **values)
-
-
-def _namespace(plugin: Element) -> str:
-    return text(plugin, "robotNamespace", "").strip("/")
-
-
-def _topic(plugin: Element, tag: str, default: str, robots_namespace: str) -> str:
-    """A topic; absolute if the plugin has another namespace than its robot."""
-    topic, namespace = text(plugin, tag, default), _namespace(plugin)
-    if topic.startswith("/") or namespace in ("", robots_namespace):
-        return topic
-    return f"/{namespace}/{topic}"

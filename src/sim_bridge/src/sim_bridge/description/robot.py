@@ -59,11 +59,8 @@ def _profile(
         model=structure.assemble(equipment.drive.joints),
         drive=equipment.drive,
         odometry=equipment.odometry,
-        lasers=tuple(equipment.lasers),
-        cameras=tuple(equipment.cameras),
-        imus=tuple(equipment.imus),
+        sensors=tuple(equipment.sensors),
         joint_states=equipment.joint_states,
-        kobuki=equipment.kobuki,
         namespace=equipment.namespace,
         warnings=(*warnings, *equipment.warnings),
     )

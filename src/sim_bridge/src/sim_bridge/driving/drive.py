@@ -3,10 +3,10 @@
 from typing import Tuple
 
 from planar import Twist2
-from sim_bridge.description import DriveProfile
+from sim_bridge.driving.profile import DriveProfile
 
 
-class Drive:
+class RampedDrive:
     """Turns the last command into speeds of the wheels, as the base's own controller does."""
 
     def __init__(self, profile: DriveProfile):
@@ -17,13 +17,11 @@ class Drive:
         self._has_power = True
 
     def switch(self, on: bool) -> None:
-        """Without power the motors brake and no command is heard."""
         self._has_power = on
         if not on:
             self._target = Twist2()
 
     def command(self, twist: Twist2) -> None:
-        """Takes a new command; one that is not finite stops the robot."""
         limits = self._profile
         self._age = 0.0
         self._target = Twist2()
@@ -31,11 +29,9 @@ class Drive:
             self._target = Twist2(_clip(twist.v, limits.max_speed), _clip(twist.omega, limits.max_turn_rate))
 
     def halt(self) -> None:
-        """Forgets the command and stands still at once."""
         self._target = self._set = Twist2()
 
     def wheel_speeds(self, seconds: float) -> Tuple[float, float]:
-        """Speeds of the left and right wheel, rad/s, after ``seconds`` more."""
         limits = self._profile
         self._age += seconds
         if self._age > limits.command_timeout + 1e-9:

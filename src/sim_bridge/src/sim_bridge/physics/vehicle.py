@@ -1,14 +1,16 @@
 """A wheeled robot among the bodies of an engine."""
 
-from typing import List, Tuple
+from typing import List, Sequence, Tuple
 
 import numpy as np
 
 from planar import Twist2
-from sim_bridge.description import RobotProfile
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import position
-from sim_bridge.physics.engine import Contact, Engine, Motion
+from sim_bridge.physics.engine import Engine
+from sim_bridge.physics.motion import Motion
+from sim_bridge.physics.touch import Contact
+from sim_bridge.world import Body, Joint
 
 # Metres that a robot at its start may reach into what it stands on.
 START_DEPTH = 0.01
@@ -17,24 +19,37 @@ SUPPORTING_NORMAL_Z = 0.7
 
 
 class Vehicle:
-    """The robot ``name``; it starts with its base frame at ``base_in_space``, (4, 4)."""
+    """The robot ``name``: a base, the first of ``bodies``, and wheels on ``joints``, those on the left first.
 
-    def __init__(self, engine: Engine, name: str, robot: RobotProfile, base_in_space: np.ndarray):
-        model, drive = robot.model, robot.drive
-        engine.add_robot(name, model, base_in_space)
+    The base starts at ``base_in_space``, (4, 4), which the bodies' poses are seen from; ``left_count`` wheels
+    are on the left; ``torque``, N m, is what each motor has.
+    """
+
+    def __init__(
+        self,
+        engine: Engine,
+        name: str,
+        bodies: Sequence[Body],
+        joints: Sequence[Joint],
+        left_count: int,
+        torque: float,
+        base_in_space: np.ndarray,
+    ):
+        engine.add(bodies, joints, base_in_space)
         self.name = name
-        self.base = f"{name}::{model.base.name}"
-        self.links = (self.base, *(f"{name}::{wheel.part.name}" for wheel in model.wheels.values()))
-        self.collisions = model.base.collisions
-        self.left_count = len(drive.left_joints)
-        self._efforts = [drive.torque] * len(drive.joints)
+        self.links = tuple(body.name for body in bodies)
+        self.base = self.links[0]
+        engine.touch.make_robot(self.base)
+        self._collisions = bodies[0].collisions
+        self._left_count, self._right_count = left_count, len(joints) - left_count
+        self._efforts = [torque] * len(joints)
+        self._motors = engine.joints.motors([joint.name for joint in joints])
         self._engine = engine
 
     def drive(self, left_speed: float, right_speed: float) -> None:
         """The motors aim at these speeds of the wheels on the left and the right, rad/s."""
-        right_count = len(self._efforts) - self.left_count
-        speeds = [left_speed] * self.left_count + [right_speed] * right_count
-        self._engine.drive_wheels(self.base, speeds, self._efforts)
+        speeds = [left_speed] * self._left_count + [right_speed] * self._right_count
+        self._motors.drive(speeds, self._efforts)
 
     def motion(self) -> Motion:
         """Of the base frame."""
@@ -42,21 +57,35 @@ class Vehicle:
 
     def wheels(self) -> Tuple[Tuple[float, ...], Tuple[float, ...]]:
         """Angles, rad, and speeds, rad/s, of the wheels, those on the left first."""
-        return self._engine.wheels(self.base, len(self._efforts))
+        return self._motors.states()
+
+    def body(self) -> Body:
+        """The robot as others see it: its base, where it is now."""
+        return Body(self.base, self.motion().pose, self._collisions, mass=1.0)
 
     def bumps(self) -> List[Contact]:
         """Where the robot touches things; what it stands on is not among them."""
         return [
             contact
-            for contact in self._engine.contacts(self.base)
+            for contact in self._engine.touch.contacts(self.base)
             if contact.depth >= 0.0 and abs(contact.normal_z) < SUPPORTING_NORMAL_Z
         ]
 
+    def floors_below(self, points: Sequence[Sequence[float]]) -> List[float]:
+        """The heights of what is below points in space, -inf where there is nothing."""
+        return self._engine.touch.floors_below(points)
+
+    @property
+    def gravity(self) -> float:
+        """Downwards, m/s^2."""
+        return self._engine.gravity
+
     def check_start(self) -> None:
         """Raises WorldError if the robot stands in something."""
-        self._engine.find_contacts()
+        touch = self._engine.touch
+        touch.find_contacts()
         x, y, _ = position(self._engine.pose_of(self.base))
-        sunk = [contact for contact in self._engine.contacts(self.base) if contact.depth > START_DEPTH]
+        sunk = [contact for contact in touch.contacts(self.base) if contact.depth > START_DEPTH]
         inside = {contact.link for contact in sunk + self.bumps()}
         if inside:
             raise WorldError(f"the robot would start at ({x:g}, {y:g}), inside {', '.join(sorted(inside))}")

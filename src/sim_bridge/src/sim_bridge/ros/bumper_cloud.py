@@ -1,6 +1,7 @@
 """What a Kobuki's bumper and cliff sensors feel, as points that costmaps can mark (kobuki_bumper2pc)."""
 
 import math
+from typing import FrozenSet
 
 import numpy as np
 import rospy
@@ -20,7 +21,7 @@ class BumperCloud:
     """Makes a message as long as something is felt, and one more when nothing is any longer."""
 
     def __init__(self):
-        self._felt = frozenset()
+        self._felt: FrozenSet[int] = frozenset()
 
     def is_due(self, reading: KobukiReading) -> bool:
         before, self._felt = self._felt, reading.bumpers | reading.cliffs

@@ -6,34 +6,30 @@ import numpy as np
 import rospy
 from sensor_msgs.msg import CameraInfo, Image, PointCloud2, PointField
 
-from sim_bridge.description.profile import CameraProfile
-from sim_bridge.sensors.camera import CameraSettings, Picture, points_of
+from sim_bridge.ros.outlet import Outlet
+from sim_bridge.sensors.camera import CameraProfile, CameraSettings, Picture, points_of
 
 # As gazebo_plugins' openni_kinect lays out its points.
+POINT_OFFSETS = {"x": 0, "y": 4, "z": 8, "rgb": 16}
 POINT = np.dtype(
     {
-        "names": ["x", "y", "z", "rgb"],
+        "names": list(POINT_OFFSETS),
         "formats": ["<f4", "<f4", "<f4", "<u4"],
-        "offsets": [0, 4, 8, 16],
+        "offsets": list(POINT_OFFSETS.values()),
         "itemsize": 32,
     }
 )
 # Ten clouds of points would be 100 MB.
 QUEUE_SIZE = 2
-POINT_FIELDS = [PointField(name, POINT.fields[name][1], PointField.FLOAT32, 1) for name in POINT.names]
+POINT_FIELDS = [PointField(name, offset, PointField.FLOAT32, 1) for name, offset in POINT_OFFSETS.items()]
 
 
 class CameraTopics:
-    """Publishes of a camera's pictures what somebody has subscribed to; ``frame``: the optical one.
+    """Publishes of a camera's pictures what somebody has subscribed to."""
 
-    ``publisher`` makes a publisher of a topic, a type and a queue's length.
-    """
-
-    def __init__(
-        self, profile: CameraProfile, frame: str, publisher: Callable[[str, type, int], rospy.Publisher]
-    ):
+    def __init__(self, profile: CameraProfile, outlet: Outlet):
         self._settings = profile.settings
-        self._frame = frame
+        self._frame = outlet.frame(profile.frame)
         kinds = (
             (profile.image_topic, Image, _colour_msg),
             (profile.info_topic, CameraInfo, _info_msg),
@@ -42,7 +38,9 @@ class CameraTopics:
             (profile.points_topic, PointCloud2, _points_msg),
         )
         self._topics: List[Tuple[rospy.Publisher, Callable]] = [
-            (publisher(topic, kind, QUEUE_SIZE), message_of) for topic, kind, message_of in kinds if topic
+            (outlet.publisher(topic, kind, QUEUE_SIZE), message_of)
+            for topic, kind, message_of in kinds
+            if topic
         ]
 
     def are_wanted(self) -> bool:

@@ -8,7 +8,7 @@ from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
 
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import from_quaternion, position, quaternion
-from sim_bridge.physics.engine import Motion
+from sim_bridge.physics.motion import Motion
 
 
 def pose3_to_msg(pose: np.ndarray) -> Pose:

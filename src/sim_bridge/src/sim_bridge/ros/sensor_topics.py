@@ -1,76 +1,59 @@
-"""The topics of a robot's cameras and inertial sensors: they measure only while somebody has subscribed."""
+"""What ROS makes of sensors: which topics a description's sensor has, and the contract of such topics."""
 
-from typing import Callable
+from typing import Any, Callable, Dict, List, Protocol, Tuple
 
 import rospy
-from geometry_msgs.msg import Quaternion, Vector3
-from sensor_msgs.msg import Imu
 
-from sim_bridge.description.profile import ImuProfile
-from sim_bridge.geometry.pose3 import quaternion
+from planar_ros.messages.conversion import time_of
+from sim_bridge.robot import Observation, Robot
 from sim_bridge.ros.camera_topics import CameraTopics
-from sim_bridge.ros.messages import covariance_of
-from sim_bridge.scene import Scene
-from sim_bridge.sensors.imu import ImuReading
+from sim_bridge.ros.imu_topic import ImuTopic
+from sim_bridge.ros.kobuki_topics import KobukiTopics
+from sim_bridge.ros.laser_topic import LaserTopic
+from sim_bridge.ros.outlet import Outlet
+from sim_bridge.sensors.camera import CameraProfile
+from sim_bridge.sensors.imu import ImuProfile
+from sim_bridge.sensors.kobuki import KobukiProfile
+from sim_bridge.sensors.lidar import LaserProfile
 
-QUEUE_SIZE = 100
+
+class SensorTopics(Protocol):
+    """The topics of one sensor; made of its spec and an Outlet, which opens them."""
+
+    def are_wanted(self) -> bool:
+        """Whether anybody has subscribed; a sensor that takes long measures only then."""
+
+    def publish(self, value: Any, stamp: rospy.Time) -> None:
+        """Tells what was measured at ``stamp`` to those who have subscribed."""
 
 
-class SensorTopics:
-    """``publisher`` makes one of a topic, a type and a queue length; ``frame_of`` prefixes a frame's name."""
+# By the class of a sensor's spec (see sim_bridge.sensors.registry).
+TOPICS: Dict[type, Callable[[Any, Outlet], SensorTopics]] = {
+    LaserProfile: LaserTopic,
+    CameraProfile: CameraTopics,
+    ImuProfile: ImuTopic,
+    KobukiProfile: KobukiTopics,
+}
 
-    def __init__(
-        self,
-        scene: Scene,
-        name: str,
-        publisher: Callable[[str, type, int], rospy.Publisher],
-        frame_of: Callable[[str], str],
-    ):
-        self._scene = scene
-        self._name = name
-        profile = scene.robot(name).profile
-        self._cameras = [
-            (CameraTopics(camera, frame_of(camera.frame), publisher), self._steps_of(camera.rate))
-            for camera in profile.cameras
+
+class RobotSensors:
+    """The topics of all sensors of a robot's description."""
+
+    def __init__(self, robot: Robot, outlet: Outlet):
+        self._robot = robot
+        self._topics: List[Tuple[str, SensorTopics]] = [
+            (name, TOPICS[type(spec)](spec, outlet))
+            for name, spec in robot.specs.items()
+            if type(spec) in TOPICS
         ]
-        self._imus = [
-            (publisher(imu.topic, Imu, QUEUE_SIZE), imu, self._steps_of(_rate_of(imu, scene)))
-            for imu in profile.imus
-        ]
-        self._frame_of = frame_of
 
-    def publish(self, steps: int, stamp: rospy.Time) -> None:
-        """What is due after that many steps of the scene."""
-        for number, (topics, period) in enumerate(self._cameras):
-            if steps % period == 0 and topics.are_wanted():
-                topics.publish(self._scene.picture(self._name, number), stamp)
-                self._warn()
-        for number, (topic, imu, period) in enumerate(self._imus):
-            if steps % period == 0 and topic.get_num_connections():
-                reading = self._scene.inertia(self._name, number, period * self._scene.step_seconds)
-                message = _imu_msg(reading, imu)
-                message.header.stamp, message.header.frame_id = stamp, self._frame_of(imu.frame)
-                topic.publish(message)
+    def ask(self) -> None:
+        """Before a step: what takes long is measured only if it is wanted."""
+        for name, topics in self._topics:
+            self._robot.want(name, topics.are_wanted())
 
-    def _warn(self) -> None:
-        """Says once what the cameras cannot see."""
-        for text in self._scene.unseen:
-            rospy.logwarn_once(text)
-
-    def _steps_of(self, rate: float) -> int:
-        return max(round(1.0 / self._scene.step_seconds / rate), 1)
-
-
-def _rate_of(imu: ImuProfile, scene: Scene) -> float:
-    return imu.rate or scene.settings.odometry_rate
-
-
-def _imu_msg(reading: ImuReading, imu: ImuProfile) -> Imu:
-    return Imu(
-        orientation=Quaternion(*quaternion(reading.orientation)),
-        orientation_covariance=covariance_of(imu.orientation_variances),
-        angular_velocity=Vector3(*reading.turn_rates),
-        angular_velocity_covariance=covariance_of(imu.turn_variances),
-        linear_acceleration=Vector3(*reading.acceleration),
-        linear_acceleration_covariance=covariance_of(imu.acceleration_variances),
-    )
+    def publish(self, observation: Observation) -> None:
+        for name, topics in self._topics:
+            reading = observation.readings.get(name)
+            if reading is not None:
+                topics.publish(reading.value, time_of(reading.stamp))

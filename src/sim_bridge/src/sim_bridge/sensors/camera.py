@@ -1,15 +1,22 @@
 """Cameras for colour and depth, as Gazebo's camera and openni_kinect plugins have them."""
 
 import math
-from dataclasses import dataclass
-from typing import Tuple
+from dataclasses import dataclass, replace
+from typing import Any, Dict, Tuple
 
 import numpy as np
 
+from planar import SettingsError
 from planar.config.settings import check
+from sim_bridge.config import SimulationSettings
 from sim_bridge.geometry.pose3 import inverse
+from sim_bridge.sdf.values import number, text
+from sim_bridge.sensors.base import Mounting, Schedule, Surroundings, every
+from sim_bridge.sensors.found import Found
+from sim_bridge.sensors.lidar import LaserProfile
 from sim_bridge.views.rasterizer import Projection, draw
 
+STREAM = 100
 # From the frame that a camera looks along x of to the optical frame (REP 103): z ahead, x right, y down.
 OPTICAL_IN_CAMERA = np.array(
     [[0.0, 0.0, 1.0, 0.0], [-1.0, 0.0, 0.0, 0.0], [0.0, -1.0, 0.0, 0.0], [0, 0, 0, 1.0]]
@@ -79,25 +86,62 @@ class Picture:
     depth: np.ndarray
 
 
+@dataclass(frozen=True, eq=False)
+class CameraProfile:
+    """A camera that looks along x of ``pose_in_base`` (4, 4), ``rate`` times a second.
+
+    ``frame`` is the optical one. Topics of the colour picture and, if it measures depth, of the depth picture
+    and the points; a topic that is empty is not there.
+    """
+
+    frame: str
+    pose_in_base: np.ndarray
+    settings: CameraSettings
+    rate: float
+    image_topic: str
+    info_topic: str
+    depth_topic: str = ""
+    depth_info_topic: str = ""
+    points_topic: str = ""
+
+    def build(self, mounting: Mounting) -> "Camera":
+        noise = mounting.settings
+        settings = replace(self.settings, noise=noise.colour_noise)
+        if isinstance(settings, DepthCameraSettings):
+            settings = replace(settings, depth_noise=noise.depth_noise)
+        return Camera(settings, mounting.rng(STREAM), self)
+
+
 class Camera:
     """Takes pictures of triangles."""
 
-    def __init__(self, settings: CameraSettings, rng: np.random.Generator):
-        self.settings = settings
+    on_demand = True
+
+    def __init__(self, settings: CameraSettings, rng: np.random.Generator, profile: CameraProfile):
+        self.name, self.frame = profile.image_topic, profile.frame
+        self._profile = profile
+        self._settings = settings
         self._rng = rng
 
-    def measure(self, triangles_xyz: np.ndarray, shades: np.ndarray, camera_in_world: np.ndarray) -> Picture:
+    def schedule(self, settings: SimulationSettings) -> Schedule:
+        return every(self._profile.rate, settings)
+
+    def measure(self, around: Surroundings) -> Picture:
+        """What is seen along the x axis of the camera's place on the robot."""
+        return self.picture(*around.triangles(), around.base.pose @ self._profile.pose_in_base)
+
+    def picture(self, triangles_xyz: np.ndarray, shades: np.ndarray, camera_in_world: np.ndarray) -> Picture:
         """What is seen from ``camera_in_world``, (4, 4), along its x axis (see sim_bridge.views.drawing)."""
         world_in_optical = inverse(camera_in_world @ OPTICAL_IN_CAMERA)
         seen = triangles_xyz @ world_in_optical[:3, :3].T + world_in_optical[:3, 3]
-        rgb, depth = draw(seen, shades, self.settings.projection())
-        if self.settings.noise > 0.0:
-            noisy = rgb + 255.0 * self._rng.normal(0.0, self.settings.noise, rgb.shape)
+        rgb, depth = draw(seen, shades, self._settings.projection())
+        if self._settings.noise > 0.0:
+            noisy = rgb + 255.0 * self._rng.normal(0.0, self._settings.noise, rgb.shape)
             rgb = np.clip(np.rint(noisy), 0, 255).astype(np.uint8)
         return Picture(rgb, self._measured(depth))
 
     def _measured(self, depth: np.ndarray) -> np.ndarray:
-        settings = self.settings
+        settings = self._settings
         if not isinstance(settings, DepthCameraSettings):
             return depth
         if settings.depth_noise > 0.0:
@@ -115,3 +159,85 @@ def points_of(depth: np.ndarray, settings: CameraSettings) -> np.ndarray:
     columns = (np.arange(settings.width, dtype=np.float32) - np.float32(centre_x)) / np.float32(scale)
     rows = (np.arange(settings.height, dtype=np.float32) - np.float32(centre_y)) / np.float32(scale)
     return np.stack((columns[None, :] * depth, rows[:, None] * depth, depth), axis=2)
+
+
+def read_camera(found: Found) -> CameraProfile:
+    """Of gazebo_ros_camera. Raises WorldError."""
+    values, topics = _values_of(found)
+    try:
+        settings = CameraSettings(**values)
+    except SettingsError as error:
+        raise found.sensor.error(str(error)) from None
+    return CameraProfile(settings=settings, **topics)
+
+
+def read_depth_camera(found: Found) -> CameraProfile:
+    """Of gazebo_ros_openni_kinect. Raises WorldError."""
+    plugin, prefix = found.plugin, _prefix(found)
+    values, topics = _values_of(found)
+    try:
+        settings = DepthCameraSettings(
+            **values,
+            min_depth=number(plugin, "pointCloudCutoff", 0.4),
+            max_depth=number(plugin, "pointCloudCutoffMax", 5.0),
+        )
+    except SettingsError as error:
+        raise found.sensor.error(str(error)) from None
+    return CameraProfile(
+        settings=settings,
+        depth_topic=prefix + text(plugin, "depthImageTopicName", "depth/image_raw"),
+        depth_info_topic=prefix + text(plugin, "depthImageCameraInfoTopicName", "depth/camera_info"),
+        points_topic=prefix + text(plugin, "pointCloudTopicName", "points"),
+        **topics,
+    )
+
+
+def _values_of(found: Found) -> Tuple[Dict[str, Any], Dict[str, Any]]:
+    """What all cameras say: values of CameraSettings, and the rest of their profile."""
+    sensor, plugin, prefix = found.sensor, found.plugin, _prefix(found)
+    camera = sensor.child("camera") or sensor
+    values = {
+        "width": int(camera.number("image", "width", default=640.0)),
+        "height": int(camera.number("image", "height", default=480.0)),
+        "horizontal_fov": camera.number("horizontal_fov", default=math.radians(60.0)),
+        "near": camera.number("clip", "near", default=0.05),
+        "far": camera.number("clip", "far", default=100.0),
+    }
+    topics = {
+        "frame": text(plugin, "frameName", found.link),
+        "pose_in_base": found.pose_in_base,
+        "rate": number(plugin, "updateRate", 0.0) or found.update_rate or 10.0,
+        "image_topic": prefix + text(plugin, "imageTopicName", "image_raw"),
+        "info_topic": prefix + text(plugin, "cameraInfoTopicName", "camera_info"),
+    }
+    return values, topics
+
+
+def _prefix(found: Found) -> str:
+    namespace = text(found.plugin, "cameraName", "").strip("/")
+    return f"{namespace}/" if namespace else ""
+
+
+def scan_of(camera: CameraProfile) -> LaserProfile:
+    """The level scan that depthimage_to_laserscan makes of a depth camera, with a TurtleBot's defaults.
+
+    Its frame is beside the optical one and named after it: ``camera_depth_frame`` for
+    ``camera_depth_optical_frame``.
+    """
+    settings = camera.settings
+    assert isinstance(settings, DepthCameraSettings)
+    return LaserProfile(
+        frame=camera.frame.replace("_optical", ""),
+        topic="scan",
+        pose_in_base=camera.pose_in_base,
+        beams=settings.width,
+        angle_min=-settings.horizontal_fov / 2.0,
+        angle_increment=settings.horizontal_fov / (settings.width - 1),
+        range_min=0.45,
+        range_max=10.0,
+        sight=settings.max_depth,
+        no_return=math.nan,
+        too_near=math.nan,
+        scan_time=0.033,
+        rate=camera.rate,
+    )

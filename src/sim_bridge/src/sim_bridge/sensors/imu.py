@@ -1,12 +1,19 @@
 """An inertial measurement unit."""
 
+import math
 from dataclasses import dataclass
-from typing import Optional
+from typing import Optional, Tuple
 
 import numpy as np
 
 from planar.config.settings import check
-from sim_bridge.physics.engine import Motion
+from sim_bridge.config import SimulationSettings
+from sim_bridge.physics.motion import Motion
+from sim_bridge.sdf.values import number, text
+from sim_bridge.sensors.base import Mounting, Schedule, Surroundings, every
+from sim_bridge.sensors.found import Found
+
+STREAM = 200
 
 
 @dataclass(frozen=True)
@@ -38,16 +45,59 @@ class ImuReading:
     acceleration: np.ndarray
 
 
+@dataclass(frozen=True, eq=False)
+class ImuProfile:
+    """An inertial sensor at ``pose_in_base`` (4, 4).
+
+    ``rate`` in hertz and ``noise``, the standard deviation of what it measures in SI units, are None where
+    the simulation's settings decide. Variances, (3,) each, about and along its axes, are only told; 0 means
+    unknown (sensor_msgs/Imu).
+    """
+
+    topic: str
+    frame: str
+    pose_in_base: np.ndarray
+    rate: Optional[float] = None
+    noise: Optional[float] = None
+    orientation_variances: Tuple[float, ...] = (0.0, 0.0, 0.0)
+    turn_variances: Tuple[float, ...] = (0.0, 0.0, 0.0)
+    acceleration_variances: Tuple[float, ...] = (0.0, 0.0, 0.0)
+
+    def build(self, mounting: Mounting) -> "Imu":
+        """White noise of the turn rate is stronger the shorter it is looked at."""
+        settings = mounting.settings
+        rate = self.rate or settings.odometry_rate
+        turn_noise, acceleration_noise = settings.gyro_noise * math.sqrt(rate), settings.acceleration_noise
+        if self.noise is not None and turn_noise > 0.0:  # else sensors are meant to be ideal
+            turn_noise = acceleration_noise = self.noise
+        errors = ImuSettings(turn_noise, settings.gyro_bias, acceleration_noise)
+        return Imu(errors, mounting.rng(STREAM), self)
+
+
 class Imu:
     """Feels how it turns and how its velocity changes from one reading to the next."""
 
-    def __init__(self, settings: ImuSettings, rng: np.random.Generator):
+    on_demand = True
+
+    def __init__(self, settings: ImuSettings, rng: np.random.Generator, profile: ImuProfile):
+        self.name, self.frame = profile.topic, profile.frame
+        self._profile = profile
+        self._seconds = 0.0
         self._settings = settings
         self._rng = rng
         self._bias = rng.normal(0.0, settings.turn_bias, 3)
         self._velocity: Optional[np.ndarray] = None
 
-    def measure(self, sensor: Motion, seconds: float, gravity: float) -> ImuReading:
+    def schedule(self, settings: SimulationSettings) -> Schedule:
+        schedule = every(self._profile.rate, settings)
+        self._seconds = schedule.interval / settings.physics_rate
+        return schedule
+
+    def measure(self, around: Surroundings) -> ImuReading:
+        sensor = around.base.of_frame(self._profile.pose_in_base)
+        return self.feel(sensor, self._seconds, around.gravity)
+
+    def feel(self, sensor: Motion, seconds: float, gravity: float) -> ImuReading:
         """``sensor``: its motion in the world; ``seconds`` since the last reading; ``gravity``: downwards."""
         before = sensor.linear if self._velocity is None else self._velocity
         self._velocity = sensor.linear
@@ -63,3 +113,21 @@ class Imu:
 
     def _noise(self, deviation: float) -> np.ndarray:
         return self._rng.normal(0.0, deviation, 3)
+
+
+def read_imu(found: Found) -> ImuProfile:
+    """Of gazebo_ros_imu and its like, in a <sensor> or below the model. Raises WorldError."""
+    plugin = found.plugin
+    noise = plugin.child("gaussianNoise")
+    deviation = noise.numbers(1)[0] if noise is not None else None
+    variances = ((deviation or 0.0) ** 2,) * 3
+    return ImuProfile(
+        topic=text(plugin, "topicName", "imu"),
+        frame=text(plugin, "frameName", "") or text(plugin, "frameId", "") or found.link,
+        pose_in_base=found.pose_in_base,
+        rate=number(plugin, "updateRateHZ", 0.0) or number(plugin, "updateRate", 0.0) or None,
+        noise=deviation,
+        orientation_variances=variances,
+        turn_variances=variances,
+        acceleration_variances=variances,
+    )

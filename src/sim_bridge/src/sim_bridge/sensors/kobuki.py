@@ -1,12 +1,13 @@
 """What a Kobuki base feels besides its wheels: its bumper, cliffs and wheels that hang."""
 
 from dataclasses import dataclass
-from typing import Dict, FrozenSet, List, Tuple
+from typing import Dict, FrozenSet
 
 import numpy as np
 
+from sim_bridge.config import SimulationSettings
 from sim_bridge.geometry.pose3 import transform_points
-from sim_bridge.physics.engine import Engine
+from sim_bridge.sensors.base import Mounting, Schedule, Surroundings, every
 from sim_bridge.sensors.bumper import CENTRE, LEFT, RIGHT, pressed
 
 # Where the cliff sensors look down from, in the base frame, m (kobuki_description).
@@ -31,24 +32,43 @@ class KobukiReading:
     dropped: FrozenSet[int] = frozenset()
 
 
+@dataclass(frozen=True, eq=False)
+class KobukiProfile:
+    """``cliff_threshold``: of the range to the floor, m. ``hubs_xyz``: (2, 3), of the left and right wheel.
+
+    The hubs are seen from the base frame, with ``wheel_radius`` in m.
+    """
+
+    hubs_xyz: np.ndarray
+    wheel_radius: float
+    cliff_threshold: float = 0.04
+
+    def build(self, mounting: Mounting) -> "KobukiSensors":
+        return KobukiSensors(self)
+
+
 class KobukiSensors:
-    """Reads the sensors of a base; ``hubs_xyz``: (2, 3), of its left and right wheel, in the base frame."""
+    """Reads the sensors of a base."""
 
-    def __init__(self, engine: Engine, cliff_threshold: float, hubs_xyz: np.ndarray, wheel_radius: float):
-        self._engine = engine
-        self._downward_xyz = np.vstack([*CLIFF_SENSORS.values(), hubs_xyz])
-        self._limits = [cliff_threshold] * len(CLIFF_SENSORS) + [wheel_radius + WHEEL_DROP] * len(hubs_xyz)
+    name, frame, on_demand = "kobuki", "base_link", False
 
-    def read(
-        self, base_in_world: np.ndarray, contacts_xyz: List[Tuple[float, float, float]]
-    ) -> KobukiReading:
-        """``base_in_world``: (4, 4); ``contacts_xyz``: where the robot touches things, in the world."""
+    def __init__(self, profile: KobukiProfile):
+        self._downward_xyz = np.vstack([*CLIFF_SENSORS.values(), profile.hubs_xyz])
+        self._limits = [profile.cliff_threshold] * len(CLIFF_SENSORS)
+        self._limits += [profile.wheel_radius + WHEEL_DROP] * len(profile.hubs_xyz)
+
+    def schedule(self, settings: SimulationSettings) -> Schedule:
+        return every(None, settings)
+
+    def measure(self, around: Surroundings) -> KobukiReading:
+        base_in_world = around.base.pose
         points = transform_points(base_in_world, self._downward_xyz).tolist()
-        floors = self._engine.floors_below(points)
+        floors = around.floors_below(points)
         is_deep = [z - floor >= limit for (_, _, z), floor, limit in zip(points, floors, self._limits)]
         bumpers: FrozenSet[int] = frozenset()
-        if contacts_xyz:
-            bumpers = pressed(transform_points(np.linalg.inv(base_in_world), np.array(contacts_xyz)))
+        if around.bumps:
+            touched = np.array([bump.point for bump in around.bumps])
+            bumpers = pressed(transform_points(np.linalg.inv(base_in_world), touched))
         if not any(is_deep):
             return KobukiReading(bumpers)
         cliffs = (sector for sector, deep in zip(CLIFF_SENSORS, is_deep) if deep)

@@ -1,26 +1,79 @@
 """A planar range finder (Probabilistic Robotics, section 6.3, p_hit and p_max)."""
 
+import math
+from dataclasses import dataclass, replace
+from typing import Optional
+
 import numpy as np
 
 from planar import Pose2, Scan
-from sim_bridge.description import LaserProfile
+from sim_bridge.config import SimulationSettings
 from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.noise import NoiseSettings
+from sim_bridge.sdf.values import text
+from sim_bridge.sensors.base import Mounting, Schedule, Surroundings
+from sim_bridge.sensors.found import Found
 from sim_bridge.views.section import cast_beams
+
+STREAM = 1
+
+
+@dataclass(frozen=True, eq=False)
+class LaserProfile:
+    """A planar range finder, fixed at ``pose_in_base`` (4, 4); its readings are told in ``frame``.
+
+    A beam that meets nothing within ``sight`` metres reads ``no_return``, one that meets something nearer
+    than ``range_min`` reads ``too_near`` (REP 117). ``rate`` in hertz and ``noise``, the standard deviation
+    of a range in metres, are None where the simulation's settings decide. ``scan_time``, s, is only told.
+    """
+
+    frame: str
+    topic: str
+    pose_in_base: np.ndarray
+    beams: int
+    angle_min: float
+    angle_increment: float
+    range_min: float
+    range_max: float
+    sight: float
+    no_return: float = math.inf
+    too_near: float = -math.inf
+    scan_time: float = 0.0
+    rate: Optional[float] = None
+    noise: Optional[float] = None
+
+    def build(self, mounting: Mounting) -> "Lidar":
+        noise = mounting.settings
+        if self.noise is not None and noise.range_noise > 0.0:  # else sensors are meant to be ideal
+            noise = replace(noise, range_noise=self.noise)
+        return Lidar(self, noise, mounting.rng(STREAM), float(mounting.base_in_space[2, 3]))
 
 
 class Lidar:
-    """Sweeps a level section of the world; ``noise``: standard deviation of a range, metres.
+    """Sweeps a level section of the world; ``base_height``: of the base frame above the world's origin, m.
 
     Its beams stay level: on a floor the robot tilts by less than a fifth of a degree.
     """
 
-    def __init__(self, profile: LaserProfile, noise: NoiseSettings, rng: np.random.Generator):
+    on_demand = False
+
+    def __init__(
+        self, profile: LaserProfile, noise: NoiseSettings, rng: np.random.Generator, base_height: float = 0.0
+    ):
+        self.name, self.frame = profile.topic, profile.frame
+        self._height = base_height + float(profile.pose_in_base[2, 3])
         self._profile = profile
         self._laser_in_base = to_pose2(profile.pose_in_base)
         self._is_upside_down = profile.pose_in_base[2, 2] < 0.0
         self._noise = noise
         self._rng = rng
+
+    def schedule(self, settings: SimulationSettings) -> Schedule:
+        rate = self._profile.rate or settings.scan_rate
+        return Schedule(max(round(settings.physics_rate / rate), 1))
+
+    def measure(self, around: Surroundings) -> Scan:
+        return self.sweep(around.stamp, *around.section(self._height), to_pose2(around.base.pose))
 
     def sweep(self, stamp: float, segments: np.ndarray, retros: np.ndarray, base_in_world: Pose2) -> Scan:
         """All beams at one moment.
@@ -67,3 +120,30 @@ class Lidar:
             chance = self._rng.random(len(ranges))
             ranges[chance < dropouts] = self._profile.no_return
             ranges[chance > 1.0 - max_readings] = self._profile.range_max
+
+
+def read_laser(found: Found) -> LaserProfile:
+    """Of gazebo_ros_laser. Raises WorldError."""
+    sensor = found.sensor
+    ray = sensor.child("ray") or sensor.required("lidar")
+    horizontal = ray.required("scan").required("horizontal")
+    beams = int(horizontal.required("samples").lengths(1)[0])
+    first, last = (horizontal.required(f"{end}_angle").numbers(1)[0] for end in ("min", "max"))
+    span = ray.required("range")
+    nearest, farthest = span.required("min").numbers(1)[0], span.required("max").lengths(1)[0]
+    if beams < 2 or last <= first or not 0.0 <= nearest < farthest:
+        raise sensor.error("a range finder needs two samples, min_angle < max_angle and 0 <= min < max range")
+    deviation = ray.child("noise", "stddev")
+    return LaserProfile(
+        frame=text(found.plugin, "frameName", found.link),
+        topic=found.topic("topicName", "scan"),
+        pose_in_base=found.pose_in_base,
+        beams=beams,
+        angle_min=first,
+        angle_increment=(last - first) / (beams - 1),
+        range_min=nearest,
+        range_max=farthest,
+        sight=farthest,
+        rate=found.update_rate,
+        noise=deviation.numbers(1)[0] if deviation is not None else None,
+    )

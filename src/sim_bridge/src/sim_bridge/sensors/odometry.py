@@ -2,13 +2,20 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import Tuple
+from typing import Optional, Protocol, Tuple
 
 import numpy as np
 
 from planar import Pose2, Twist2
 from sim_bridge.config import SimulationSettings
-from sim_bridge.description import DriveProfile
+from sim_bridge.driving.profile import DriveProfile
+from sim_bridge.geometry.pose3 import to_pose2
+from sim_bridge.physics.vehicle import twist_in_base
+from sim_bridge.sensors.base import Mounting, Schedule, Surroundings, every
+
+STREAM = 0
+# x, y and yaw are measured, the rest is not (kobuki_gazebo_plugins).
+KOBUKI_VARIANCES = (0.1, 0.1, 1e6, 1e6, 1e6, 0.05)
 
 
 @dataclass(frozen=True)
@@ -27,6 +34,63 @@ class Moved:
     twist: Twist2
     wheel_angles: Tuple[float, ...]
     seconds: float
+
+
+class Reckoning(Protocol):
+    """Tells from how a robot moves where it believes to be."""
+
+    def reset(self) -> None:
+        """The odometry begins anew."""
+
+    def update(self, moved: Moved) -> Odometry:
+        """Moves on by one period."""
+
+
+@dataclass(frozen=True)
+class OdometryProfile:
+    """How a robot measures where it is.
+
+    ``source``: ``gyro`` (distance from the wheels, heading from a gyro), ``encoder`` (both from the wheels)
+    or ``world`` (the truth, in the frame of the world). ``rate`` in hertz, None for the simulation's.
+    ``variances``, which are only told: of x, y, z, m^2, roll, pitch and yaw, rad^2.
+    """
+
+    source: str = "encoder"
+    topic: str = "odom"
+    frame: str = "odom"
+    base_frame: str = "base_footprint"
+    sends_transform: bool = True
+    rate: Optional[float] = None
+    variances: Tuple[float, ...] = KOBUKI_VARIANCES
+
+    def reckoning(self, drive: DriveProfile, mounting: Mounting) -> Reckoning:
+        """How the robot with this drive measures."""
+        if self.source == "world":
+            return TrueOdometry()
+        return DeadReckoning(drive, self.source == "gyro", mounting.settings, mounting.rng(STREAM))
+
+
+class Odometer:
+    """Measures where the robot is, once a period."""
+
+    name, on_demand = "odometry", False
+
+    def __init__(self, profile: OdometryProfile, reckoning: Reckoning):
+        self.frame = profile.frame
+        self._reckoning = reckoning
+        self._seconds = 0.0
+
+    def reset(self) -> None:
+        self._reckoning.reset()
+
+    def schedule(self, settings: SimulationSettings) -> Schedule:
+        self._seconds = 1.0 / settings.odometry_rate
+        return every(None, settings)
+
+    def measure(self, around: Surroundings) -> Odometry:
+        angles, _ = around.wheels
+        base = around.base
+        return self._reckoning.update(Moved(to_pose2(base.pose), twist_in_base(base), angles, self._seconds))
 
 
 class TrueOdometry:

@@ -25,7 +25,7 @@ class JointServices:
 
     def _on_get(self, request):
         try:
-            joint = self._scene.joint(self._scene.full_joint_name(request.joint_name))
+            joint = self._scene.joints.get(self._scene.joints.full_name(request.joint_name))
         except UnknownEntityError:
             return srv.GetJointPropertiesResponse(
                 success=False, status_message="GetJointProperties: joint not found"
@@ -34,7 +34,7 @@ class JointServices:
             type=KINDS[joint.kind], success=True, status_message="GetJointProperties: got properties"
         )
         if joint.kind != "fixed":
-            state = self._scene.joint_state(joint.name)
+            state = self._scene.joints.state(joint.name)
             response.damping = [joint.damping]
             response.position, response.rate = [state.position], [state.speed]
         return response
@@ -43,21 +43,21 @@ class JointServices:
         """Damping and limits; what else ODE's joints have is without meaning here."""
         answer, config = srv.SetJointPropertiesResponse, request.ode_joint_config
         try:
-            name = self._scene.full_joint_name(request.joint_name)
+            name = self._scene.joints.full_name(request.joint_name)
         except UnknownEntityError:
             return answer(False, "SetJointProperties: joint not found")
-        joint = self._scene.joint(name)
+        joint = self._scene.joints.get(name)
         damping = config.damping[0] if config.damping else joint.damping
         lower = config.loStop[0] if config.loStop else joint.lower
         upper = config.hiStop[0] if config.hiStop else joint.upper
         if not (0.0 <= damping < np.inf and lower <= upper):
             return answer(False, "SetJointProperties: damping must not be negative, loStop not above hiStop")
-        self._scene.set_joint_limits(name, lower, upper, damping)
+        self._scene.joints.set_limits(name, lower, upper, damping)
         return answer(True, "SetJointProperties: properties set")
 
     def _on_set_configuration(self, request):
         answer, scene, model = srv.SetModelConfigurationResponse, self._scene, request.model_name
-        if model not in scene.model_names():
+        if model not in scene.models.names():
             return answer(False, "SetModelConfiguration: model does not exist")
         if len(request.joint_names) != len(request.joint_positions):
             text = "SetModelConfiguration: joint name and position list have different lengths"
@@ -65,7 +65,7 @@ class JointServices:
         if not np.isfinite(request.joint_positions).all():
             return answer(False, "SetModelConfiguration: a position is not finite")
         names = [name if "::" in name else f"{model}::{name}" for name in request.joint_names]
-        known = scene.joint_names(model)
+        known = scene.joints.moving_of(model)
         positions = dict(zip(names, request.joint_positions))
-        scene.set_joints({name: positions[name] for name in names if name in known})
+        scene.joints.set_positions({name: positions[name] for name in names if name in known})
         return answer(True, "SetModelConfiguration: success")

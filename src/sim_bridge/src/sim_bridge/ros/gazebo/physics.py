@@ -46,7 +46,7 @@ class PhysicsServices:
     def _on_get_world(self, _request):
         return srv.GetWorldPropertiesResponse(
             sim_time=self._scene.stamp,
-            model_names=self._scene.model_names(),
+            model_names=self._scene.models.names(),
             rendering_enabled=True,
             success=True,
             status_message="GetWorldProperties: got properties",

@@ -23,25 +23,25 @@ class PropertyServices:
 
     def _on_get_model(self, request):
         scene, model = self._scene, request.model_name
-        if model not in scene.model_names():
+        if model not in scene.models.names():
             return srv.GetModelPropertiesResponse(
                 success=False, status_message="GetModelProperties: model does not exist"
             )
-        links = [_inside(model, link) for link in scene.links_of(model)]
+        links = [_inside(model, link) for link in scene.models.links_of(model)]
         return srv.GetModelPropertiesResponse(
             canonical_body_name=links[0],
             body_names=[link for link in links if "::" not in link],
-            geom_names=scene.solids_of(model),
-            joint_names=[_inside(model, joint) for joint in scene.joint_names(model)],
+            geom_names=scene.models.solids_of(model),
+            joint_names=[_inside(model, joint) for joint in scene.joints.moving_of(model)],
             child_model_names=sorted({link.split("::", 1)[0] for link in links if "::" in link}),
-            is_static=scene.is_static(model),
+            is_static=scene.models.is_static(model),
             success=True,
             status_message="GetModelProperties: got properties",
         )
 
     def _on_get_link(self, request):
         try:
-            mass = self._scene.mass_properties(self._scene.full_link_name(request.link_name))
+            mass = self._scene.models.mass_properties(self._scene.models.full_link_name(request.link_name))
         except UnknownEntityError:
             return srv.GetLinkPropertiesResponse(
                 success=False, status_message=f"GetLinkProperties: link not found, {SCOPE_HINT}"
@@ -66,8 +66,8 @@ class PropertyServices:
         """Mass, moments about the axes that the link has, and weight; its centre of mass stays."""
         answer = srv.SetLinkPropertiesResponse
         try:
-            link = self._scene.full_link_name(request.link_name)
-            kept = self._scene.mass_properties(link)
+            link = self._scene.models.full_link_name(request.link_name)
+            kept = self._scene.models.mass_properties(link)
         except UnknownEntityError:
             return answer(False, f"SetLinkProperties: link not found, {SCOPE_HINT}")
         inertia = np.array(
@@ -86,7 +86,7 @@ class PropertyServices:
             return answer(False, "SetLinkProperties: the principal axes of inertia cannot be turned")
         if np.abs(vector_from_msg(request.com.position) - kept.centre[:3, 3]).max() > NEGLIGIBLE:
             return answer(False, "SetLinkProperties: the centre of mass cannot be moved")
-        self._scene.set_mass(link, request.mass, moments.tolist(), request.gravity_mode)
+        self._scene.models.set_mass(link, request.mass, moments.tolist(), request.gravity_mode)
         return answer(True, "SetLinkProperties: properties set")
 
 

@@ -7,7 +7,7 @@ import rospy
 
 from sim_bridge.errors import UnknownEntityError
 from sim_bridge.geometry.pose3 import inverse
-from sim_bridge.physics.engine import Motion
+from sim_bridge.physics.motion import Motion
 from sim_bridge.ros.orders import Orders
 from sim_bridge.scene import Scene
 
@@ -48,9 +48,9 @@ def frame_named(scene: Scene, name: str) -> Optional[Motion]:
     if name in WORLD_NAMES:
         return Motion(np.eye(4), np.zeros(3), np.zeros(3))
     try:
-        if name in scene.model_names():
-            return scene.model_motion(name)
-        return scene.link_motion(scene.full_link_name(name))
+        if name in scene.models.names():
+            return scene.models.motion(name)
+        return scene.models.link_motion(scene.models.full_link_name(name))
     except UnknownEntityError:
         return None
 

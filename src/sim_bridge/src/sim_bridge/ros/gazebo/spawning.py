@@ -50,7 +50,7 @@ class SpawnServices:
 
     def _spawn(self, request, spawn: Callable[[np.ndarray], None]):
         name, frame = request.model_name, request.reference_frame
-        if name in self._scene.model_names():
+        if name in self._scene.models.names():
             return srv.SpawnModelResponse(False, "SpawnModel: Failure - entity already exists.")
         in_world = frame_named(self._scene, frame)
         if in_world is None:

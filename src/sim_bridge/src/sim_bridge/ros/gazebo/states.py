@@ -37,14 +37,14 @@ class StateServices:
         """Where all models and links are, for those who have subscribed."""
         scene = self._scene
         if self._models.get_num_connections():
-            message = ModelStates(name=scene.model_names())
-            _fill(message, [scene.model_motion(name) for name in message.name])
+            message = ModelStates(name=scene.models.names())
+            _fill(message, [scene.models.motion(name) for name in message.name])
             self._models.publish(message)
         if self._links.get_num_connections():
             message = LinkStates(
-                name=[link for model in scene.model_names() for link in scene.links_of(model)]
+                name=[link for model in scene.models.names() for link in scene.models.links_of(model)]
             )
-            _fill(message, [scene.link_motion(name) for name in message.name])
+            _fill(message, [scene.models.link_motion(name) for name in message.name])
             self._links.publish(message)
 
     def _on_get_model(self, request):
@@ -52,7 +52,7 @@ class StateServices:
         response.header.stamp = rospy.Time.from_sec(self._scene.stamp)
         response.header.frame_id = request.relative_entity_name
         try:
-            motion = self._scene.model_motion(request.model_name)
+            motion = self._scene.models.motion(request.model_name)
         except UnknownEntityError:
             response.status_message = "GetModelState: model does not exist"
             return response
@@ -74,7 +74,7 @@ class StateServices:
         response.link_state.link_name = request.link_name
         response.link_state.reference_frame = request.reference_frame
         try:
-            motion = self._scene.link_motion(self._scene.full_link_name(request.link_name))
+            motion = self._scene.models.link_motion(self._scene.models.full_link_name(request.link_name))
         except UnknownEntityError:
             response.status_message = f"GetLinkState: link not found, {SCOPE_HINT}"
             return response
@@ -87,7 +87,7 @@ class StateServices:
         return response
 
     def _set_model(self, state: ModelState, answer):
-        if state.model_name not in self._scene.model_names():
+        if state.model_name not in self._scene.models.names():
             return answer(False, "SetModelState: model does not exist")
         frame = frame_named(self._scene, state.reference_frame)
         if frame is None:
@@ -101,14 +101,16 @@ class StateServices:
 
     def _set_link(self, state: LinkState, answer):
         try:
-            link = self._scene.full_link_name(state.link_name)
+            link = self._scene.models.full_link_name(state.link_name)
         except UnknownEntityError:
             return answer(False, "SetLinkState: link does not exist")
         frame = frame_named(self._scene, state.reference_frame)
         if frame is None:
             return answer(False, "SetLinkState: failed")
         try:
-            self._scene.set_link_motion(link, absolute(motion_from_msgs(state.pose, state.twist), frame))
+            self._scene.models.set_link_motion(
+                link, absolute(motion_from_msgs(state.pose, state.twist), frame)
+            )
         except WorldError as error:
             return answer(False, f"SetLinkState: {error}")
         return answer(True, "SetLinkState: success")

@@ -1,0 +1,41 @@
+"""A robot as bodies and joints, which physics builds as it builds any other model."""
+
+from typing import Tuple
+
+import numpy as np
+
+from sim_bridge.description.structure import RobotModel
+from sim_bridge.geometry.pose3 import IDENTITY
+from sim_bridge.world import Body, Inertia, Joint, Surface
+
+# The base slides: its casters roll any way, and its sides must not climb walls.
+SLIDING, ROLLING = Surface(friction=0.0), Surface(friction=1.0)
+
+
+def bodies_of(model: RobotModel, name: str) -> Tuple[Tuple[Body, ...], Tuple[Joint, ...]]:
+    """The base and the wheels of the robot ``name``, seen from its base frame, and the joints between them.
+
+    The mass of a wheel is at its hub.
+    """
+    base = model.base
+    centre = np.eye(4)
+    centre[:3, 3] = base.centre_of_mass
+    bodies = [
+        Body(
+            f"{name}::{base.name}",
+            IDENTITY,
+            base.collisions,
+            base.mass,
+            SLIDING,
+            inertia=Inertia(centre, base.inertia),
+        )
+    ]
+    joints = []
+    for joint_name, wheel in model.wheels.items():
+        link = f"{name}::{wheel.part.name}"
+        inertia = Inertia(moments=wheel.part.inertia)
+        bodies.append(
+            Body(link, wheel.origin_in_base, wheel.part.collisions, wheel.part.mass, ROLLING, inertia=inertia)
+        )
+        joints.append(Joint(f"{name}::{joint_name}", "revolute", bodies[0].name, link, IDENTITY, wheel.axis))
+    return tuple(bodies), tuple(joints)

@@ -1,0 +1,61 @@
+"""Links that are held together for a while, as by a gripper."""
+
+import itertools
+from typing import Dict, Tuple
+
+from sim_bridge.geometry.pose3 import inverse, position, quaternion
+from sim_bridge.physics.bullet import BulletClient, pybullet
+from sim_bridge.physics.frames import centre_of
+from sim_bridge.physics.register import Link, Register
+
+
+class Attachments:
+    """Pairs of links, the first of which holds the second."""
+
+    def __init__(self, bullet: BulletClient, register: Register):
+        self._bullet = bullet
+        self._register = register
+        self._constraints: Dict[Tuple[str, str], int] = {}
+
+    def attach(self, first: str, second: str) -> None:
+        """Holds two links together as they are now until they are detached; meanwhile they never collide."""
+        if (first, second) in self._constraints:
+            self.detach(first, second)
+        one, other = self._register.links[first], self._register.links[second]
+        other_in_one = inverse(centre_of(self._bullet, one)) @ centre_of(self._bullet, other)
+        self._constraints[first, second] = self._bullet.createConstraint(
+            one.number,
+            one.index,
+            other.number,
+            other.index,
+            pybullet.JOINT_FIXED,
+            [0.0, 0.0, 0.0],
+            position(other_in_one),
+            [0.0, 0.0, 0.0],
+            quaternion(other_in_one),
+        )
+        self._let_collide(one, other, False)
+
+    def are_attached(self, first: str, second: str) -> bool:
+        return (first, second) in self._constraints
+
+    def detach(self, first: str, second: str) -> None:
+        """Lets go what was attached in this order."""
+        self._bullet.removeConstraint(self._constraints.pop((first, second)))
+        self._let_collide(self._register.links[first], self._register.links[second], True)
+
+    def detach_all(self) -> None:
+        for pair in list(self._constraints):
+            self.detach(*pair)
+
+    def detach_from(self, number: int) -> None:
+        """Lets go all that is attached to what has that number in Bullet."""
+        for pair in list(self._constraints):
+            if number in (self._register.links[link].number for link in pair):
+                self.detach(*pair)
+
+    def _let_collide(self, one: Link, other: Link, may_collide: bool) -> None:
+        """All parts of the one with all parts of the other."""
+        parts = [self._register.parts_of(link) for link in (one, other)]
+        for first, second in itertools.product(*parts):
+            self._bullet.setCollisionFilterPair(one.number, other.number, first, second, int(may_collide))

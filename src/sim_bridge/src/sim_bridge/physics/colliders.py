@@ -1,0 +1,93 @@
+"""Solid shapes as Bullet's collision shapes."""
+
+from typing import Any, Dict, List, Sequence, Tuple
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from sim_bridge.geometry.pose3 import inverse, position, quaternion, transform_points
+from sim_bridge.geometry.shapes import Box, Cylinder, Mesh, Plane, Shape, Sphere
+from sim_bridge.physics.bullet import BulletClient, pybullet
+from sim_bridge.world import Collision
+
+# Bullet's limits: shapes of one compound, and triangles of one mesh (of its 131072 vertices each has three).
+COMPOUND_SIZE = 16
+MESH_SIZE = 40000
+NO_SHAPE = -1
+
+
+def make_colliders(
+    bullet: BulletClient, collisions: Sequence[Collision], moves: bool, origin: np.ndarray
+) -> List[int]:
+    """Bullet's numbers of shapes that together are the collisions seen from ``origin``, (4, 4).
+
+    There is at least one; that of nothing solid is NO_SHAPE.
+    """
+    to_origin = inverse(origin)
+    placed = [(part.shape, to_origin @ part.pose_in_body) for part in collisions]
+    meshes = [(shape, pose) for shape, pose in placed if isinstance(shape, Mesh)]
+    solids = [(shape, pose) for shape, pose in placed if not isinstance(shape, Mesh)]
+    groups = [solids[at : at + COMPOUND_SIZE] for at in range(0, len(solids), COMPOUND_SIZE)]
+    numbers = [_compound(bullet, group) for group in groups]
+    numbers += [number for mesh, pose in meshes for number in _mesh(bullet, mesh, pose, moves)]
+    return numbers or [NO_SHAPE]
+
+
+def _compound(bullet: BulletClient, group: Sequence[Tuple[Shape, np.ndarray]]) -> int:
+    if len(group) == 1:
+        ((shape, pose),) = group
+        return bullet.createCollisionShape(
+            **_arguments(shape),
+            collisionFramePosition=position(pose),
+            collisionFrameOrientation=quaternion(pose),
+        )
+    parts = [{**_UNUSED_ARGUMENTS, **_arguments(shape)} for shape, _ in group]
+    return bullet.createCollisionShapeArray(
+        shapeTypes=[part["shapeType"] for part in parts],
+        radii=[part["radius"] for part in parts],
+        halfExtents=[part["halfExtents"] for part in parts],
+        lengths=[part["height"] for part in parts],
+        planeNormals=[part["planeNormal"] for part in parts],
+        collisionFramePositions=[position(pose) for _, pose in group],
+        collisionFrameOrientations=[quaternion(pose) for _, pose in group],
+    )
+
+
+def _mesh(bullet: BulletClient, mesh: Mesh, pose: np.ndarray, moves: bool) -> List[int]:
+    """A mesh as it is, in pieces, if it stands still; its convex hull if it moves."""
+    vertices = transform_points(pose, mesh.vertices)
+    if moves:
+        hull = vertices[ConvexHull(vertices, qhull_options="QJ").vertices]
+        return [bullet.createCollisionShape(pybullet.GEOM_MESH, vertices=hull.tolist())]
+    pieces = []
+    for at in range(0, len(mesh.triangles), MESH_SIZE):
+        used, indices = np.unique(mesh.triangles[at : at + MESH_SIZE], return_inverse=True)
+        pieces.append(
+            bullet.createCollisionShape(
+                pybullet.GEOM_MESH,
+                vertices=vertices[used].tolist(),
+                indices=indices.ravel().tolist(),
+                flags=pybullet.GEOM_FORCE_CONCAVE_TRIMESH,
+            )
+        )
+    return pieces
+
+
+_UNUSED_ARGUMENTS: Dict[str, Any] = {
+    "radius": 1.0,
+    "halfExtents": [1.0, 1.0, 1.0],
+    "height": 1.0,
+    "planeNormal": [0.0, 0.0, 1.0],
+}
+
+
+def _arguments(shape: Shape) -> Dict[str, Any]:
+    if isinstance(shape, Box):
+        return {"shapeType": pybullet.GEOM_BOX, "halfExtents": [length / 2.0 for length in shape.size]}
+    if isinstance(shape, Cylinder):
+        return {"shapeType": pybullet.GEOM_CYLINDER, "radius": shape.radius, "height": shape.length}
+    if isinstance(shape, Sphere):
+        return {"shapeType": pybullet.GEOM_SPHERE, "radius": shape.radius}
+    if isinstance(shape, Plane):
+        return {"shapeType": pybullet.GEOM_PLANE, "planeNormal": list(shape.normal)}
+    raise TypeError(f"not a primitive shape: {shape}")

@@ -1,0 +1,33 @@
+"""Where things are and how they move."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim_bridge.geometry.pose3 import cross
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """Where a frame is and how it moves: ``pose`` (4, 4), velocities ``linear`` and ``angular`` (3,).
+
+    All in the world; the velocity is that of the frame's origin.
+    """
+
+    pose: np.ndarray
+    linear: np.ndarray
+    angular: np.ndarray
+
+    def of_frame(self, frame_in_this: np.ndarray) -> "Motion":
+        """The motion of a frame that is fixed at ``frame_in_this`` (4, 4)."""
+        return self.at(self.pose @ frame_in_this)
+
+    def at(self, pose: np.ndarray) -> "Motion":
+        """The motion of a frame that moves along with this one and now is at ``pose`` (4, 4) in the world."""
+        arm = pose[:3, 3] - self.pose[:3, 3]
+        return Motion(pose, self.linear + cross(self.angular, arm), self.angular)
+
+
+def at_rest(pose: np.ndarray) -> Motion:
+    """The frame at ``pose``, (4, 4) in the world, stands still."""
+    return Motion(pose, np.zeros(3), np.zeros(3))

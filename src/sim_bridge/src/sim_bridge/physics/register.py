@@ -1,0 +1,61 @@
+"""What has which number in Bullet."""
+
+from dataclasses import dataclass, field
+from typing import Dict, List, Tuple
+
+import numpy as np
+
+from sim_bridge.geometry.pose3 import inverse
+from sim_bridge.world import Joint
+
+
+@dataclass(frozen=True, eq=False)
+class Link:
+    """A link in Bullet's numbers; ``centre`` (4, 4): of its mass and principal axes in its own frame.
+
+    ``index`` is -1 for the root of what hangs together.
+    """
+
+    number: int
+    index: int
+    centre: np.ndarray
+    from_centre: np.ndarray = field(init=False)
+
+    def __post_init__(self):
+        object.__setattr__(self, "from_centre", inverse(self.centre))
+
+
+@dataclass(frozen=True, eq=False)
+class MovingJoint:
+    """A joint that is not fixed, in Bullet's numbers."""
+
+    number: int
+    index: int
+    joint: Joint
+
+
+class Register:
+    """Links and moving joints by their names, and whose each of Bullet's parts is."""
+
+    def __init__(self):
+        self.links: Dict[str, Link] = {}
+        self.joints: Dict[str, MovingJoint] = {}
+        self._owners: Dict[Tuple[int, int], str] = {}
+
+    def own(self, number: int, index: int, link: str) -> None:
+        """A part of Bullet's belongs to a link; a large one has several."""
+        self._owners[number, index] = link
+
+    def owner(self, number: int, index: int) -> str:
+        """The name of the link that a part of Bullet's belongs to."""
+        return self._owners[number, index]
+
+    def parts_of(self, link: Link) -> List[int]:
+        """The indices of all that hangs together with a link."""
+        return [index for number, index in self._owners if number == link.number]
+
+    def forget(self, number: int) -> None:
+        """All that hangs together under a number is gone."""
+        self.links = {name: link for name, link in self.links.items() if link.number != number}
+        self.joints = {name: joint for name, joint in self.joints.items() if joint.number != number}
+        self._owners = {part: link for part, link in self._owners.items() if part[0] != number}

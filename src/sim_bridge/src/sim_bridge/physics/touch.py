@@ -1,0 +1,60 @@
+"""What touches what, and what is below."""
+
+import math
+from typing import Iterator, List, NamedTuple, Optional, Sequence, Tuple
+
+from sim_bridge.physics.bullet import BulletClient
+from sim_bridge.physics.register import Register
+
+# Bits of Bullet's collision groups: it puts what moves into 1 and what does not into 2.
+WORLD_GROUPS = 1 | 2
+ROBOT_GROUP = 4
+# How far down a floor is looked for, metres.
+DEEPEST_FLOOR = 10.0
+
+
+class Contact(NamedTuple):
+    """Where a robot touches ``link``: z of the unit normal there, and how deep the two overlap, metres."""
+
+    link: str
+    point: Tuple[float, float, float]
+    normal_z: float
+    depth: float
+
+
+class Touch:
+    """Contacts, and rays cast downwards."""
+
+    def __init__(self, bullet: BulletClient, register: Register):
+        self._bullet = bullet
+        self._register = register
+
+    def contacts(self, base: str) -> Iterator[Contact]:
+        """What a robot touches, or nearly does (negative depth)."""
+        for _, _, other, _, index, _, point, (_, _, normal_z), distance, *_ in self._bullet.getContactPoints(
+            bodyA=self._register.links[base].number
+        ):
+            yield Contact(self._register.owner(other, index), point, normal_z, -distance)
+
+    def find_contacts(self) -> None:
+        """Looks for contacts without a step."""
+        self._bullet.performCollisionDetection()
+
+    def floor_below(self, x: float, y: float, z: float) -> Optional[float]:
+        """The height of the first of the world's bodies below a point, None if there is none."""
+        (floor,) = self.floors_below([(x, y, z)])
+        return floor if floor > -math.inf else None
+
+    def floors_below(self, points: Sequence[Sequence[float]]) -> List[float]:
+        """The heights of what is below points in space, -inf where there is nothing."""
+        ends = [(x, y, z - DEEPEST_FLOOR) for x, y, z in points]
+        hits = self._bullet.rayTestBatch(points, ends, collisionFilterMask=WORLD_GROUPS)
+        return [point[2] if number >= 0 else -math.inf for number, _, _, point, _ in hits]
+
+    def make_robot(self, base: str) -> None:
+        """Of what hangs together with a link: it feels the world and other robots, but is no floor."""
+        link = self._register.links[base]
+        for index in self._register.parts_of(link):
+            self._bullet.setCollisionFilterGroupMask(
+                link.number, index, ROBOT_GROUP, WORLD_GROUPS | ROBOT_GROUP
+            )

@@ -1,0 +1,45 @@
+"""What a Kobuki base is told below mobile_base (kobuki_gazebo_plugins), but for its velocity."""
+
+import rospy
+from kobuki_msgs.msg import Led, MotorPower, Sound
+from std_msgs.msg import Empty
+
+from sim_bridge.ros.kobuki_topics import NAMESPACE
+from sim_bridge.ros.orders import Orders
+from sim_bridge.scene import Scene
+
+
+class KobukiCommands:
+    """Commands for the motors and the odometry of the robot ``name``, below ``namespace``."""
+
+    def __init__(self, scene: Scene, name: str, namespace: str, orders: Orders):
+        self._scene = scene
+        self._name = name
+        self._orders = orders
+        self._where = rospy.names.ns_join(namespace, NAMESPACE)
+        self._subscribers = [
+            self._subscriber("motor_power", MotorPower, self._on_motor_power),
+            self._subscriber("reset_odometry", Empty, self._on_reset_odometry),
+            # There is nothing to light or to sound, but those who do so wait for somebody to listen.
+            *(self._subscriber(f"led{number}", Led, _ignore) for number in (1, 2)),
+            self._subscriber("sound", Sound, _ignore),
+        ]
+
+    def close(self) -> None:
+        for subscriber in self._subscribers:
+            subscriber.unregister()
+
+    def _subscriber(self, topic, kind, callback):
+        name = rospy.names.ns_join(self._where, f"commands/{topic}")
+        return rospy.Subscriber(name, kind, callback, queue_size=10)
+
+    def _on_motor_power(self, message):
+        is_on = message.state == MotorPower.ON
+        self._orders.leave(lambda: self._scene.robot(self._name).switch_motors(is_on))
+
+    def _on_reset_odometry(self, _message):
+        self._orders.leave(lambda: self._scene.robot(self._name).reset_odometry())
+
+
+def _ignore(_message):
+    pass

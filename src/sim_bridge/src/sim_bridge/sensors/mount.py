@@ -1,0 +1,39 @@
+"""A sensor on its robot: asked when it is due, heard when its delay is over."""
+
+from collections import deque
+from typing import Any, Deque, Optional, Tuple
+
+from sim_bridge.config import SimulationSettings
+from sim_bridge.sensors.base import Reading, Schedule, Sensor, Surroundings
+
+
+class Mount:
+    """Keeps the schedule of a sensor."""
+
+    def __init__(self, sensor: Sensor[Any], settings: SimulationSettings):
+        self.is_wanted = not sensor.on_demand
+        self._sensor = sensor
+        self._fresh: Optional[Reading] = None
+        self._on_their_way: Deque[Tuple[int, Reading]] = deque()
+        self._schedule = Schedule(1)
+        self.retime(settings)
+
+    def retime(self, settings: SimulationSettings) -> None:
+        """The rates have changed, and steps are counted anew."""
+        self._schedule = self._sensor.schedule(settings)
+        self._on_their_way.clear()
+
+    def end_step(self, step: int, around: Surroundings) -> None:
+        """After the step of physics number ``step``."""
+        interval, offset, delay = self._schedule
+        if self.is_wanted and step % interval == offset:
+            value = self._sensor.measure(around)
+            if value is not None:
+                self._on_their_way.append((step + delay, Reading(around.stamp, value)))
+        while self._on_their_way and self._on_their_way[0][0] <= step:
+            _, self._fresh = self._on_their_way.popleft()
+
+    def take(self) -> Optional[Reading]:
+        """The latest that has come since the last call, if any."""
+        reading, self._fresh = self._fresh, None
+        return reading

@@ -1,0 +1,64 @@
+"""A robot and the world as its sensors perceive them."""
+
+from typing import Dict, List, Optional, Sequence, Tuple
+
+import numpy as np
+
+from sim_bridge.physics.motion import Motion
+from sim_bridge.physics.touch import Contact
+from sim_bridge.physics.vehicle import Vehicle
+from sim_bridge.views.sight import Sight
+
+Wheels = Tuple[Tuple[float, ...], Tuple[float, ...]]
+
+
+class RobotSurroundings:
+    """Surroundings of a vehicle; what several sensors ask for is asked of physics once a step."""
+
+    def __init__(self, vehicle: Vehicle, sight: Sight):
+        self.stamp = 0.0
+        self._vehicle = vehicle
+        self._sight = sight
+        self._base: Optional[Motion] = None
+        self._wheels: Optional[Wheels] = None
+        self._bumps: Dict[str, Contact] = {}
+
+    def end_step(self, stamp: float) -> None:
+        """A step of physics is over: it is now ``stamp``, s."""
+        self.stamp = stamp
+        self._base = self._wheels = None
+        for bump in self._vehicle.bumps():
+            self._bumps[bump.link] = bump
+
+    def end_period(self) -> None:
+        """What has been touched so far has been told."""
+        self._bumps.clear()
+
+    @property
+    def gravity(self) -> float:
+        return self._vehicle.gravity
+
+    @property
+    def base(self) -> Motion:
+        if self._base is None:
+            self._base = self._vehicle.motion()
+        return self._base
+
+    @property
+    def wheels(self) -> Wheels:
+        if self._wheels is None:
+            self._wheels = self._vehicle.wheels()
+        return self._wheels
+
+    @property
+    def bumps(self) -> Sequence[Contact]:
+        return list(self._bumps.values())
+
+    def floors_below(self, points: Sequence[Sequence[float]]) -> List[float]:
+        return self._vehicle.floors_below(points)
+
+    def section(self, height: float) -> Tuple[np.ndarray, np.ndarray]:
+        return self._sight.section(self._vehicle.name, height)
+
+    def triangles(self) -> Tuple[np.ndarray, np.ndarray]:
+        return self._sight.triangles(self._vehicle.name)

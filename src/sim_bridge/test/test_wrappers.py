@@ -1,0 +1,118 @@
+"""What stands before a robot's sensors and its drive, without the robot knowing."""
+
+import math
+
+import numpy as np
+import pytest
+
+from planar import Twist2
+from sim_bridge import ROBOTS, Fitting, Simulation, SimulationSettings
+from sim_bridge.geometry.shapes import Box, Plane
+from sim_bridge.noise import noise_named
+from sim_bridge.sensors.base import SensorWrapper
+from sim_bridge.world import Body, Collision, World
+
+EXACT = SimulationSettings(**noise_named("ideal"))
+SCAN = ROBOTS["turtlebot_lidar"].scanner
+
+
+class Delayed(SensorWrapper):
+    """What a sensor tells comes so many steps of physics later."""
+
+    def __init__(self, sensor, steps):
+        super().__init__(sensor)
+        self._steps = steps
+
+    def schedule(self, settings):
+        own = super().schedule(settings)
+        return own._replace(delay=own.delay + self._steps)
+
+
+class DroppingOut(SensorWrapper):
+    """Of what a sensor tells only some is heard."""
+
+    def __init__(self, sensor, share, rng):
+        super().__init__(sensor)
+        self._share, self._rng = share, rng
+
+    def measure(self, around):
+        reading = super().measure(around)
+        return None if self._rng.random() < self._share else reading
+
+
+class Weak:
+    """A drive whose wheels turn more slowly than they are told."""
+
+    def __init__(self, drive, factor):
+        self._drive, self._factor = drive, factor
+        self.command, self.switch, self.halt = drive.command, drive.switch, drive.halt
+
+    def wheel_speeds(self, seconds):
+        left, right = self._drive.wheel_speeds(seconds)
+        return self._factor * left, self._factor * right
+
+
+@pytest.fixture
+def observations():
+    """Observations of so many seconds with a fitting and a speed."""
+    simulations = []
+
+    def run(seconds, fitting=Fitting(), speed=0.0):
+        floor = Body("floor::l", np.eye(4), (Collision(Plane(), np.eye(4)),))
+        at = np.eye(4)
+        at[:3, 3] = (4.0, 0.0, 0.5)
+        wall = Body("wall::l", at, (Collision(Box((0.2, 5.0, 1.0)), np.eye(4)),))
+        simulations.append(Simulation(World("w", (floor, wall)), settings=EXACT, fitting=fitting))
+        steps = round(seconds / simulations[-1].step_seconds)
+        return [simulations[-1].step(Twist2(speed, 0.0)) for _ in range(steps)]
+
+    yield run
+    for simulation in simulations:
+        simulation.close()
+
+
+def only(name, wrap):
+    """Wraps the sensor of that name alone."""
+    return Fitting(sensor=lambda sensor: wrap(sensor) if sensor.name == name else sensor)
+
+
+def told(seen):
+    """When scans came, and when they were measured."""
+    return [(one.stamp, one.readings[SCAN].stamp) for one in seen if SCAN in one.readings]
+
+
+def test_a_delayed_scan_comes_later_and_carries_the_stamp_of_its_measurement(observations):
+    delayed = told(observations(1.0, only(SCAN, lambda sensor: Delayed(sensor, steps=12))))
+    prompt = told(observations(1.0))
+    assert [measured for _, measured in delayed] == [measured for _, measured in prompt][: len(delayed)]
+    assert all(came - measured == pytest.approx(12 / EXACT.physics_rate) for came, measured in delayed)
+    assert all(came == pytest.approx(measured) for came, measured in prompt)
+
+
+def test_a_scanner_that_drops_out_leaves_all_else_as_it_was(observations):
+    rng = np.random.default_rng(0)
+    seen = observations(10.0, only(SCAN, lambda sensor: DroppingOut(sensor, 0.5, rng)), speed=0.2)
+    clean = observations(10.0, speed=0.2)
+    assert 0.3 < len(told(seen)) / len(told(clean)) < 0.7
+    assert [one.base_in_world for one in seen] == [one.base_in_world for one in clean]
+
+
+def test_odometry_that_drops_out_stays_what_it_was_last(observations):
+    seen = observations(1.0, only("odometry", lambda sensor: DroppingOut(sensor, 1.0, _Always())), speed=0.2)
+    assert seen[-1].base_in_world.x > 0.1
+    assert seen[-1].odometry.base_in_odom.x == 0.0
+    assert "odometry" not in seen[-1].readings
+
+
+def test_what_stands_before_a_drive_changes_how_the_robot_moves(observations):
+    whole = observations(3.0, speed=0.3)[-1].base_in_world.x
+    half = observations(3.0, Fitting(drive=lambda drive: Weak(drive, 0.5)), speed=0.3)[-1].base_in_world.x
+    assert math.isclose(half, 0.5 * whole, rel_tol=0.05)
+
+
+class _Always:
+    """A source of chance that always strikes."""
+
+    @staticmethod
+    def random():
+        return 0.0
