@@ -5,8 +5,6 @@ from dataclasses import dataclass, replace
 from typing import Any, Callable, Dict, Iterator, Mapping, Optional, Sequence, Tuple
 from typing import Counter as CounterOf
 
-import numpy as np
-
 from planar import Pose2, Scan, Twist2
 from sim_bridge.config import SimulationSettings
 from sim_bridge.description import RobotProfile
@@ -22,7 +20,6 @@ from sim_bridge.sensors.odometry import Odometer, Odometry
 from sim_bridge.sensors.surroundings import RobotSurroundings
 from sim_bridge.sensors.truth import ContactList, GroundTruth, JointEncoders, Truth, WheelState
 from sim_bridge.views.sight import Sight
-from sim_bridge.world import Body
 
 
 @dataclass(frozen=True)
@@ -94,10 +91,7 @@ class Observation:
 
 
 class Robot:
-    """The robot ``name`` with its base at ``base_in_space``, (4, 4).
-
-    ``seed``: of the simulation; with the ``number`` of the robot it makes the noise of its sensors.
-    """
+    """The robot ``name``, mounted as ``mounting`` says; ``fitting`` puts wrappers before what it has."""
 
     def __init__(
         self,
@@ -105,41 +99,31 @@ class Robot:
         sight: Sight,
         name: str,
         profile: RobotProfile,
-        base_in_space: np.ndarray,
-        settings: SimulationSettings,
-        seed: int = 0,
-        number: int = 0,
+        mounting: Mounting,
         fitting: Fitting = Fitting(),
     ):
         self.name = name
         self.profile = profile
-        drive = profile.drive
+        drive, place, self._settings = profile.drive, mounting.base_in_space, mounting.settings
         parts = bodies_of(profile.model, name)
-        self.vehicle = Vehicle(engine, name, *parts, len(drive.left_joints), drive.torque, base_in_space)
+        self.vehicle = Vehicle(engine, name, *parts, len(drive.left_joints), drive.torque, place)
         self._drive = fitting.drive(RampedDrive(drive))
         self._around = RobotSurroundings(self.vehicle, sight)
-        mounting = Mounting(base_in_space, settings, seed, number)
+        truth, wheels, contacts = GroundTruth(), JointEncoders(), ContactList()
         self._odometer = Odometer(profile.odometry, profile.odometry.reckoning(drive, mounting))
-        standard: Dict[Sensor[Any], Any] = {
-            GroundTruth(): GroundTruth().measure(self._around),
-            self._odometer: Odometry(),
-            JointEncoders(): JointEncoders().measure(self._around),
-            ContactList(): (),
+        self._latest: Dict[str, Any] = {
+            truth.name: truth.measure(self._around),
+            self._odometer.name: Odometry(),
+            wheels.name: wheels.measure(self._around),
+            contacts.name: (),
         }
-        self._latest = {sensor.name: first for sensor, first in standard.items()}
         self._mounts: Dict[str, Mount] = {}
-        for sensor in standard:
-            self._mount(fitting.sensor(sensor), settings)
+        for sensor in (truth, self._odometer, wheels, contacts):
+            self._mount(fitting.sensor(sensor))
         # What its description has, by the names that they tell by.
         self.specs: Dict[str, SensorSpec] = {
-            self._mount(fitting.sensor(sensor), settings): spec
-            for spec, sensor in _built(profile.sensors, mounting)
+            self._mount(fitting.sensor(sensor)): spec for spec, sensor in _built(profile.sensors, mounting)
         }
-        self._seconds = 1.0 / settings.physics_rate
-
-    def body(self) -> Body:
-        """The robot as other robots see it."""
-        return self.vehicle.body()
 
     def command(self, twist: Twist2) -> None:
         """A new command; it holds until its time-out."""
@@ -157,17 +141,17 @@ class Robot:
 
     def retime(self, settings: SimulationSettings) -> None:
         """The rates have changed."""
-        self._seconds = 1.0 / settings.physics_rate
+        self._settings = settings
         for mount in self._mounts.values():
             mount.retime(settings)
 
     def want(self, name: str, is_wanted: bool = True) -> None:
         """A sensor that measures only on demand is to do so from now on, or no longer."""
-        self._mounts[name].is_wanted = is_wanted
+        self._mounts[name].want(is_wanted)
 
     def begin_step(self) -> None:
         """Before a step of physics: sets the motors."""
-        self.vehicle.drive(*self._drive.wheel_speeds(self._seconds))
+        self.vehicle.drive(*self._drive.wheel_speeds(1.0 / self._settings.physics_rate))
 
     def end_step(self, step: int, stamp: float) -> None:
         """After the step of physics number ``step``, at the time ``stamp``: what is due measures."""
@@ -191,13 +175,13 @@ class Robot:
             scanner=self.profile.scanner,
         )
 
-    def _mount(self, sensor: Sensor[Any], settings: SimulationSettings) -> str:
+    def _mount(self, sensor: Sensor[Any]) -> str:
         """Returns the name that the sensor has here: those of the same name get numbers behind it."""
         name, count = sensor.name, 1
         while name in self._mounts:
             count += 1
             name = f"{sensor.name}_{count}"
-        self._mounts[name] = Mount(sensor, settings)
+        self._mounts[name] = Mount(sensor, self._settings)
         return name
 
 

@@ -17,6 +17,7 @@ from sim_bridge.physics.model_joints import ModelJoints
 from sim_bridge.physics.models import Models
 from sim_bridge.physics.motion import Motion, at_rest
 from sim_bridge.robot import Fitting, Observation, Robot
+from sim_bridge.sensors.base import Mounting
 from sim_bridge.views.sight import Sight
 from sim_bridge.world import Body, Joint, World
 
@@ -186,17 +187,8 @@ class Scene:
         self._starts: Dict[str, Tuple[RobotProfile, np.ndarray]] = {}
 
     def _add_robot(self, name: str, profile: RobotProfile, base_in_space: np.ndarray) -> None:
-        robot = Robot(
-            self._engine,
-            self.sight,
-            name,
-            profile,
-            base_in_space,
-            self.settings,
-            self._seed,
-            len(self._robots),
-            self._fitting,
-        )
+        mounting = Mounting(base_in_space, self.settings, self._seed, robot=len(self._robots))
+        robot = Robot(self._engine, self.sight, name, profile, mounting, self._fitting)
         self._robots[name] = robot
         self.models.add_vehicle(robot.vehicle)
         self._starts[name] = (profile, base_in_space)

@@ -22,7 +22,7 @@ class KobukiTopics:
         self._last = KobukiReading()
         self._frame = outlet.frame(FRAME)
         self._points = BumperCloud()
-        self._bumper, self._cliff, self._drop, self._state, self._cloud = (
+        self._bumper, self._cliff, self._drop, self._state, self._cloud = self._all = [
             outlet.publisher(f"{NAMESPACE}/{topic}", kind)
             for topic, kind in (
                 ("events/bumper", BumperEvent),
@@ -31,10 +31,10 @@ class KobukiTopics:
                 ("sensors/core", SensorState),
                 ("sensors/bumper_pointcloud", PointCloud2),
             )
-        )
+        ]
 
     def are_wanted(self) -> bool:
-        return True
+        return any(publisher.get_num_connections() for publisher in self._all)
 
     def publish(self, reading: KobukiReading, stamp: rospy.Time) -> None:
         last, self._last = self._last, reading

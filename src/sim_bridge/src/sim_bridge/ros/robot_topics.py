@@ -20,6 +20,7 @@ from sim_bridge.ros.outlet import Outlet
 from sim_bridge.ros.performance import CountingPublisher
 from sim_bridge.ros.sensor_topics import RobotSensors
 from sim_bridge.scene import Scene
+from sim_bridge.sensors.base import Reading
 from sim_bridge.sensors.kobuki import KobukiProfile
 from sim_bridge.sensors.odometry import Odometer
 
@@ -98,17 +99,20 @@ class RobotTopics:
         if self._kobuki is not None:
             self._kobuki.close()
 
-    def _publish_motion(self, observation: Observation, stamp) -> List[TransformMsg]:
-        if Odometer.name not in observation.readings:
+    def _publish_motion(self, observation: Observation, stamp: rospy.Time) -> List[TransformMsg]:
+        transforms = self._publish_odometry(observation.readings.get(Odometer.name))
+        if self._truth.get_num_connections():
+            self._truth_msg.fill(observation.base_in_world, observation.twist, stamp)
+            self._truth.publish(self._truth_msg)
+        return transforms
+
+    def _publish_odometry(self, told: Optional[Reading]) -> List[TransformMsg]:
+        if told is None:
             return []
-        odometry = observation.odometry
-        for publisher, message, base, twist in (
-            (self._odom, self._odom_msg, odometry.base_in_odom, odometry.twist),
-            (self._truth, self._truth_msg, observation.base_in_world, observation.twist),
-        ):
-            if publisher.get_num_connections():
-                message.fill(base, twist, stamp)
-                publisher.publish(message)
+        odometry, stamp = told.value, time_of(told.stamp)
+        if self._odom.get_num_connections():
+            self._odom_msg.fill(odometry.base_in_odom, odometry.twist, stamp)
+            self._odom.publish(self._odom_msg)
         if not self._profile.odometry.sends_transform:
             return []
         self._transform.fill(odometry.base_in_odom, stamp)

@@ -3,14 +3,14 @@
 from typing import Any, Callable, Dict, List, Protocol, Tuple
 
 import rospy
+from sensor_msgs.msg import Imu
 
-from planar_ros.messages.conversion import time_of
+from planar_ros.messages.conversion import LaserScanArrays, time_of
 from sim_bridge.robot import Observation, Robot
 from sim_bridge.ros.camera_topics import CameraTopics
-from sim_bridge.ros.imu_topic import ImuTopic
 from sim_bridge.ros.kobuki_topics import KobukiTopics
-from sim_bridge.ros.laser_topic import LaserTopic
 from sim_bridge.ros.outlet import Outlet
+from sim_bridge.ros.sensor_messages import imu_to_msg, scan_to_msg
 from sim_bridge.sensors.camera import CameraProfile
 from sim_bridge.sensors.imu import ImuProfile
 from sim_bridge.sensors.kobuki import KobukiProfile
@@ -27,17 +27,45 @@ class SensorTopics(Protocol):
         """Tells what was measured at ``stamp`` to those who have subscribed."""
 
 
+class OneTopic:
+    """All that a sensor tells, on the ``topic`` and in the ``frame`` of its spec; ``to_msg`` translates."""
+
+    def __init__(
+        self, spec: Any, outlet: Outlet, kind: type, to_msg: Callable[[Any, Any], Any], queue_size: int
+    ):
+        self._spec = spec
+        self._to_msg = to_msg
+        self._frame = outlet.frame(spec.frame)
+        self._publisher = outlet.publisher(spec.topic, kind, queue_size)
+
+    def are_wanted(self) -> bool:
+        return self._publisher.get_num_connections() > 0
+
+    def publish(self, value: Any, stamp: rospy.Time) -> None:
+        if self.are_wanted():
+            message = self._to_msg(value, self._spec)
+            message.header.stamp, message.header.frame_id = stamp, self._frame
+            self._publisher.publish(message)
+
+
+def one_topic(
+    kind: type, to_msg: Callable[[Any, Any], Any], queue_size: int = 10
+) -> Callable[[Any, Outlet], SensorTopics]:
+    """What makes the topic, of messages of a ``kind``, of a sensor that has just one."""
+    return lambda spec, outlet: OneTopic(spec, outlet, kind, to_msg, queue_size)
+
+
 # By the class of a sensor's spec (see sim_bridge.sensors.registry).
 TOPICS: Dict[type, Callable[[Any, Outlet], SensorTopics]] = {
-    LaserProfile: LaserTopic,
+    LaserProfile: one_topic(LaserScanArrays, scan_to_msg),
     CameraProfile: CameraTopics,
-    ImuProfile: ImuTopic,
+    ImuProfile: one_topic(Imu, imu_to_msg, queue_size=100),
     KobukiProfile: KobukiTopics,
 }
 
 
 class RobotSensors:
-    """The topics of all sensors of a robot's description."""
+    """The topics of all sensors of a robot's description that have some."""
 
     def __init__(self, robot: Robot, outlet: Outlet):
         self._robot = robot

@@ -1,7 +1,7 @@
 """From an SDF file to a World: models, links, collisions and their poses."""
 
 from pathlib import Path
-from typing import List, Optional, Sequence, Tuple, cast
+from typing import Iterator, List, Optional, Sequence, Tuple, cast
 
 import numpy as np
 
@@ -173,37 +173,42 @@ class _Reader:
         if not model.is_driven:
             self._warnings.check_children(link)
         in_model = model.frames.frame(link.name, link)
-        collisions = []
-        for part in link.children("collision"):
-            self._warnings.check_children(part)
-            shape = self._solid(part, model, state)
-            if shape is not None:
-                retro = part.number("laser_retro", default=0.0)
-                collisions.append(
-                    Collision(shape, _pose_in_link(part, link, model, in_model), retro, part.name)
-                )
-        visuals = []
-        for part in link.children("visual"):
-            self._warnings.check_children(part)
-            look = self._look(part, model, state)
-            if look is not None:
-                pose = _pose_in_link(part, link, model, in_model)
-                visuals.append(Visual(look, pose, read_colour(part)))
+        collisions = tuple(self._collisions(link, model, in_model, state))
+        visuals = tuple(self._visuals(link, model, in_model, state))
         fixed = model.is_static or link.flag("kinematic")
         fixed = fixed or any(isinstance(part.shape, Plane) for part in collisions)
         gravity = link.child("gravity")
         return Body(
             name,
             in_world,
-            tuple(collisions),
+            collisions,
             None if fixed else read_mass(link),
             self._surface(link),
             inverse(outermost) @ in_world,
-            tuple(visuals),
+            visuals,
             Inertia() if fixed else read_inertia(link, self._warnings),
             _damping(link),
             gravity is None or link.flag("gravity"),
         )
+
+    def _collisions(
+        self, link: Element, model: Model, in_model: np.ndarray, state: ModelState
+    ) -> Iterator[Collision]:
+        for part in link.children("collision"):
+            self._warnings.check_children(part)
+            shape = self._solid(part, model, state)
+            if shape is not None:
+                retro = part.number("laser_retro", default=0.0)
+                yield Collision(shape, _pose_in_link(part, link, model, in_model), retro, part.name)
+
+    def _visuals(
+        self, link: Element, model: Model, in_model: np.ndarray, state: ModelState
+    ) -> Iterator[Visual]:
+        for part in link.children("visual"):
+            self._warnings.check_children(part)
+            look = self._look(part, model, state)
+            if look is not None:
+                yield Visual(look, _pose_in_link(part, link, model, in_model), read_colour(part))
 
     def _look(self, part: Element, model: Model, state: ModelState) -> Optional[Look]:
         try:

@@ -11,8 +11,8 @@ class Mount:
     """Keeps the schedule of a sensor."""
 
     def __init__(self, sensor: Sensor[Any], settings: SimulationSettings):
-        self.is_wanted = not sensor.on_demand
         self._sensor = sensor
+        self._is_wanted = not sensor.on_demand
         self._fresh: Optional[Reading] = None
         self._on_their_way: Deque[Tuple[int, Reading]] = deque()
         self._schedule = Schedule(1)
@@ -23,10 +23,14 @@ class Mount:
         self._schedule = self._sensor.schedule(settings)
         self._on_their_way.clear()
 
+    def want(self, is_wanted: bool) -> None:
+        """Whether a sensor that measures on demand is to do so from now on; others always do."""
+        self._is_wanted = is_wanted or not self._sensor.on_demand
+
     def end_step(self, step: int, around: Surroundings) -> None:
         """After the step of physics number ``step``."""
         interval, offset, delay = self._schedule
-        if self.is_wanted and step % interval == offset:
+        if self._is_wanted and step % interval == offset:
             value = self._sensor.measure(around)
             if value is not None:
                 self._on_their_way.append((step + delay, Reading(around.stamp, value)))

@@ -6,9 +6,9 @@ import numpy as np
 
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.shapes import Plane
-from sim_bridge.geometry.slicing import cut
 from sim_bridge.views.drawing import Drawing, visible_parts
 from sim_bridge.views.rasterizer import Projection, draw
+from sim_bridge.views.true_map import outlines_of
 from sim_bridge.world import World
 
 # Pixels of the longer side, and metres around what there is.
@@ -51,9 +51,7 @@ def _caps(world: World, height: float) -> np.ndarray:
     """Triangles (T, 3, 3) that close the solids cut at a height."""
     fans = [
         np.stack((np.repeat(outline[:1], len(outline) - 2, axis=0), outline[1:-1], outline[2:]), axis=1)
-        for body in world.bodies
-        for part in body.collisions
-        for outline in cut(part.shape, body.pose_in_world @ part.pose_in_body, height, height)
+        for outline in outlines_of(world, height, height)
         if len(outline) > 2
     ]
     flat = np.concatenate([np.empty((0, 3, 2)), *fans])

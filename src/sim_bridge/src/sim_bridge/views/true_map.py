@@ -1,7 +1,7 @@
 """The exact occupancy grid of a world cut at a height: the map a perfect mapper would make."""
 
 import math
-from typing import Tuple
+from typing import List, Tuple
 
 import numpy as np
 from scipy.ndimage import label
@@ -31,12 +31,7 @@ def true_map(
     ``inside`` lies in a solid.
     """
     bottom, top = height - thickness / 2.0, height + thickness / 2.0
-    outlines = [
-        outline
-        for body in world.bodies
-        for part in body.collisions
-        for outline in cut(part.shape, body.pose_in_world @ part.pose_in_body, bottom, top)
-    ]
+    outlines = outlines_of(world, bottom, top)
     if not outlines:
         raise WorldError(f"world '{world.name}': nothing is solid at a height of {height:g} m")
     corners = np.vstack([*outlines, [inside]])
@@ -56,6 +51,16 @@ def true_map(
     cells[regions == regions[row, col]] = FREE
     cells[solid] = OCCUPIED
     return grid
+
+
+def outlines_of(world: World, bottom: float, top: float) -> List[np.ndarray]:
+    """The convex outlines (N, 2) of all that is solid between two heights, metres."""
+    return [
+        outline
+        for body in world.bodies
+        for part in body.collisions
+        for outline in cut(part.shape, body.pose_in_world @ part.pose_in_body, bottom, top)
+    ]
 
 
 def _fill(solid: np.ndarray, outline: np.ndarray) -> None:

@@ -1,0 +1,34 @@
+"""What single sensors tell, as messages; who publishes them fills in the header."""
+
+from geometry_msgs.msg import Quaternion, Vector3
+from sensor_msgs.msg import Imu
+
+from planar import Scan
+from planar_ros.messages.conversion import LaserScanArrays
+from sim_bridge.geometry.pose3 import quaternion
+from sim_bridge.ros.messages import covariance_of
+from sim_bridge.sensors.imu import ImuProfile, ImuReading
+from sim_bridge.sensors.lidar import LaserProfile
+
+
+def scan_to_msg(scan: Scan, profile: LaserProfile) -> LaserScanArrays:
+    message = LaserScanArrays()
+    message.angle_min = scan.angle_min
+    message.angle_increment = scan.angle_increment
+    message.angle_max = scan.angle_min + scan.angle_increment * (len(scan.ranges) - 1)
+    message.scan_time = profile.scan_time
+    message.range_min, message.range_max = scan.range_min, scan.range_max
+    message.ranges = scan.ranges
+    message.intensities = scan.intensities
+    return message
+
+
+def imu_to_msg(reading: ImuReading, profile: ImuProfile) -> Imu:
+    return Imu(
+        orientation=Quaternion(*quaternion(reading.orientation)),
+        orientation_covariance=covariance_of(profile.orientation_variances),
+        angular_velocity=Vector3(*reading.turn_rates),
+        angular_velocity_covariance=covariance_of(profile.turn_variances),
+        linear_acceleration=Vector3(*reading.acceleration),
+        linear_acceleration_covariance=covariance_of(profile.acceleration_variances),
+    )
