@@ -19,7 +19,7 @@ from scipy.ndimage import label
 
 from move_base_lite import settings_from_parameters
 from move_base_lite.costmap import LayeredCostmap
-from move_base_lite.planning import GlobalPlanner, PlannerSettings
+from move_base_lite.planning import Navfn, NavfnSettings
 from planar import OccupancyGrid, load_map
 
 # A TurtleBot's costmap.
@@ -36,10 +36,10 @@ PARAMETERS = {
 # Cost below which a place is free enough to start or end at.
 OPEN = 128
 HOW = {
-    "wavefront": PlannerSettings(),
-    "A*": PlannerSettings(use_astar=True),
-    "any angle": PlannerSettings(any_angle=True),
-    "A*, any angle": PlannerSettings(use_astar=True, any_angle=True),
+    "wavefront": NavfnSettings(),
+    "A*": NavfnSettings(use_astar=True),
+    "any angle": NavfnSettings(any_angle=True),
+    "A*, any angle": NavfnSettings(use_astar=True, any_angle=True),
 }
 
 
@@ -63,9 +63,9 @@ def main() -> int:
     return 0
 
 
-def _measure(costmap: LayeredCostmap, pairs: np.ndarray, settings: PlannerSettings):
+def _measure(costmap: LayeredCostmap, pairs: np.ndarray, settings: NavfnSettings):
     """CPU milliseconds (N,) and lengths in cells (N,) of the plans of all pairs."""
-    planner, window = GlobalPlanner(settings), costmap.window
+    planner, window = Navfn(settings), costmap.window
     times, lengths = [], []
     for number, ends in enumerate([pairs[0], *pairs]):
         start_xy, goal_xy = (

@@ -17,9 +17,9 @@ from move_base_lite.costmap import (
     sighting_of_points,
     sighting_of_scan,
 )
-from move_base_lite.costmap.inflation import InflationSettings
-from move_base_lite.costmap.obstacle_layer import ObstacleSettings, SourceSettings
-from move_base_lite.costmap.static_layer import StaticSettings
+from move_base_lite.costmap.layers.inflation import InflationSettings
+from move_base_lite.costmap.layers.obstacles import ObstacleSettings, SourceSettings
+from move_base_lite.costmap.layers.static import StaticSettings
 from planar import OccupancyGrid, Pose2, Scan, SettingsError, grid_from_picture
 
 INFLATION = InflationSettings(inflation_radius=0.5, cost_scaling_factor=5.0)

@@ -10,10 +10,10 @@ from move_base_lite import Navigator, NavigatorSettings, load_settings, settings
 from move_base_lite.config import MoveBaseSettings
 from move_base_lite.control import DwaSettings, MppiSettings
 from move_base_lite.costmap import CostmapSettings
-from move_base_lite.costmap.inflation import InflationSettings
-from move_base_lite.costmap.obstacle_layer import ObstacleSettings, SourceSettings
-from move_base_lite.costmap.static_layer import StaticSettings
-from move_base_lite.planning import PlannerSettings
+from move_base_lite.costmap.layers.inflation import InflationSettings
+from move_base_lite.costmap.layers.obstacles import ObstacleSettings, SourceSettings
+from move_base_lite.costmap.layers.static import StaticSettings
+from move_base_lite.planning import NavfnSettings
 from move_base_lite.recovery import RotateSettings, SlowSettings
 from planar import Pose2, SettingsError, grid_from_picture
 
@@ -26,11 +26,11 @@ DOCUMENTED = yaml.safe_load((CONFIG / "move_base_lite.yaml").read_text())
     "kind, keys, not_there",
     [
         (MoveBaseSettings, [], set()),
-        (PlannerSettings, ["NavfnROS"], {"use_astar"}),
+        (NavfnSettings, ["NavfnROS"], {"use_astar"}),
         (DwaSettings, ["DWAPlannerROS"], set()),
         (MppiSettings, ["MppiPlannerROS"], set()),
         (RotateSettings, ["TrajectoryPlannerROS"], set()),
-        (CostmapSettings, ["global_costmap"], {"static", "obstacles", "inflation"}),
+        (CostmapSettings, ["global_costmap"], {"static", "obstacles", "own_layers", "inflation"}),
         (StaticSettings, ["global_costmap", "static_layer"], set()),
         (ObstacleSettings, ["global_costmap", "obstacle_layer"], {"sources"}),
         (SourceSettings, ["global_costmap", "obstacle_layer", "scan"], {"topic"}),
@@ -190,7 +190,7 @@ def test_move_slow_and_clear_is_read():
     listed = [{"name": "slow", "type": "move_slow_and_clear/MoveSlowAndClear"}]
     slow = {"limited_trans_speed": 0.1, "max_trans_param_name": "max_vel_trans"}
     settings, warnings = settings_from_parameters({"recovery_behaviors": listed, "slow": slow})
-    assert settings.recoveries[0].slow == SlowSettings(limited_trans_speed=0.1)
+    assert settings.recoveries[0].settings == SlowSettings(limited_trans_speed=0.1)
     assert warnings == []
 
 
@@ -201,7 +201,7 @@ def test_recoveries_come_in_the_configured_order():
     ]
     settings, _ = settings_from_parameters({"recovery_behaviors": listed, "forget": {"reset_distance": 1.5}})
     assert [recovery.name for recovery in settings.recoveries] == ["look", "forget"]
-    assert settings.recoveries[1].reset_distance == 1.5
+    assert settings.recoveries[1].settings.reset_distance == 1.5
 
 
 def test_no_parameters_at_all_mean_the_official_defaults():

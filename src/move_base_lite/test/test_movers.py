@@ -7,7 +7,7 @@ import pytest
 from robot_in_picture import PERSON_RADIUS, room, scan_with_people, two_rooms, with_block
 
 from move_base_lite.costmap import sighting_of_scan
-from move_base_lite.movers import Movers
+from move_base_lite.people import Movers
 from planar import Pose2
 from planar.geometry.ray_casting import cast_rays
 

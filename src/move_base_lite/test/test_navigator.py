@@ -20,7 +20,7 @@ from robot_in_picture import (
 
 from move_base_lite import Navigator, Status, settings_from_parameters
 from move_base_lite.costmap import INSCRIBED
-from move_base_lite.recovery import RecoverySettings, SlowSettings
+from move_base_lite.recovery import NamedRecovery, SlowSettings
 from planar import Pose2, Twist2
 
 LOCAL_PLANNERS = ("dwa_local_planner/DWAPlannerROS", "move_base_lite/MppiPlannerROS")
@@ -203,7 +203,7 @@ def test_a_robot_pushed_against_a_wall_gets_away_from_it(settings):
 
 def test_after_move_slow_and_clear_the_robot_is_slow_until_it_has_moved_on(settings):
     slow = SlowSettings(limited_trans_speed=0.2, limited_distance=0.5)
-    recovery = RecoverySettings("slow", "move_slow_and_clear/MoveSlowAndClear", slow=slow)
+    recovery = NamedRecovery("slow", slow)
     navigator = Navigator(replace(settings, recoveries=(recovery,)), room(6.0, 4.0))
     robot = Robot(with_block(room(6.0, 4.0), 1.4, 0.0, 1.5, 4.0), Pose2(0.8, 2.0))
     navigator.set_goal(Pose2(5.4, 2.0))

@@ -6,7 +6,7 @@ from scipy.ndimage import label
 
 from move_base_lite import GoalBlocked, NoPath, OutOfMap, StartBlocked
 from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, Window
-from move_base_lite.planning import GlobalPlanner, PlannerSettings, path_cost
+from move_base_lite.planning import Navfn, NavfnSettings, path_cost
 from move_base_lite.planning.wavefront import descend, spread, traversal_costs
 
 PICTURES = {
@@ -90,7 +90,7 @@ def assert_is_free(path_xy, costs, window):
 @pytest.mark.parametrize("name", PICTURES)
 def test_each_free_cell_is_reached_from_each_that_is_connected_to_it(name, how):
     costs = costs_of(PICTURES[name])
-    window, planner = window_of(costs), GlobalPlanner(PlannerSettings(**how))
+    window, planner = window_of(costs), Navfn(NavfnSettings(**how))
     rooms, _ = label(costs == 0)
     free = np.argwhere(costs == 0)
     for start in map(tuple, free):
@@ -112,7 +112,7 @@ def test_a_plan_is_neither_longer_nor_dearer_than_the_bare_gradient():
     window, start, goal = Window(60, 60, 1.0), (5, 4), (50, 56)
     potential = spread(traversal_costs(costs, True), *start, *goal, False)
     bare = descend(potential, *start, *goal, 0.5)
-    plan = GlobalPlanner(PlannerSettings()).plan(costs, window, centre(window, start), centre(window, goal))
+    plan = Navfn(NavfnSettings()).plan(costs, window, centre(window, start), centre(window, goal))
     lengths = [np.linalg.norm(np.diff(path, axis=0), axis=1).sum() for path in (plan, bare)]
     assert lengths[0] < lengths[1]
     assert path_cost(costs, window, plan) <= path_cost(costs, window, bare)
@@ -122,7 +122,7 @@ def test_the_wave_of_a_plan_is_kept_if_it_is_to_be_seen():
     costs, ends = costs_of(PICTURES["two rooms"]), [(1, 1), (3, 3), (3, 7)]
     window = window_of(costs)
     start_xy, reached_xy, shut_xy = (centre(window, cell) for cell in ends)
-    planner = GlobalPlanner(PlannerSettings(visualize_potential=True))
+    planner = Navfn(NavfnSettings(visualize_potential=True))
     planner.plan(costs, window, start_xy, reached_xy)
     seen = planner.potential
     assert (seen.values[ends[0]], seen.values[ends[1]]) == (0.0, seen.at_goal)
@@ -131,7 +131,7 @@ def test_the_wave_of_a_plan_is_kept_if_it_is_to_be_seen():
         planner.plan(costs, window, start_xy, shut_xy)
     assert planner.potential is not seen
     assert np.isinf(planner.potential.at_goal)
-    unseen = GlobalPlanner(PlannerSettings())
+    unseen = Navfn(NavfnSettings())
     unseen.plan(costs, window, start_xy, reached_xy)
     assert unseen.potential is None
 
@@ -139,7 +139,7 @@ def test_the_wave_of_a_plan_is_kept_if_it_is_to_be_seen():
 @pytest.mark.parametrize("use_astar, excess", [(False, 1.01), (True, 1.03)])
 def test_a_path_over_open_ground_is_nearly_straight(use_astar, excess):
     costs = np.zeros((200, 200), dtype=np.uint8)
-    planner = GlobalPlanner(PlannerSettings(use_astar=use_astar))
+    planner = Navfn(NavfnSettings(use_astar=use_astar))
     for goal in [(180.5, 20.5), (180.5, 100.5), (150.5, 190.5)]:
         path_xy = planner.plan(costs, Window(200, 200, 1.0), (20.5, 10.5), goal)
         straight = np.hypot(goal[0] - 20.5, goal[1] - 10.5)
@@ -153,7 +153,7 @@ def test_at_any_angle_a_path_is_shorter_and_as_cheap():
         costs[row : row + 6, col : col + 6] = LETHAL
     window, ends = Window(120, 120, 0.1), ((0.55, 0.55), (11.45, 10.95))
     plain, any_angle = (
-        GlobalPlanner(PlannerSettings(any_angle=how)).plan(costs, window, *ends) for how in (False, True)
+        Navfn(NavfnSettings(any_angle=how)).plan(costs, window, *ends) for how in (False, True)
     )
     assert_is_free(any_angle, costs, window)
     plain_length, length = (
@@ -167,15 +167,13 @@ def test_a_way_round_is_preferred_to_one_along_an_obstacle():
     picture = "###########\n#.........#\n#.........#\n#.5555555.#\n#.5#####5.#\n#.5555555.#\n###########"
     costs = costs_of(picture)
     window = window_of(costs)
-    path_xy = GlobalPlanner(PlannerSettings()).plan(
-        costs, window, centre(window, (3, 1)), centre(window, (3, 9))
-    )
+    path_xy = Navfn(NavfnSettings()).plan(costs, window, centre(window, (3, 1)), centre(window, (3, 9)))
     assert path_xy[:, 1].max() > centre(window, (4, 0))[1]
 
 
 def test_a_goal_in_an_obstacle_is_refused_by_name():
     costs = costs_of("#####\n#.#i#\n#...#\n#####")
-    window, planner = window_of(costs), GlobalPlanner(PlannerSettings())
+    window, planner = window_of(costs), Navfn(NavfnSettings())
     start = centre(window, (1, 1))
     with pytest.raises(GoalBlocked, match=r"the goal at \(0.25, 3.25\) is in an obstacle"):
         planner.plan(costs, window, start, centre(window, (2, 2)))
@@ -185,7 +183,7 @@ def test_a_goal_in_an_obstacle_is_refused_by_name():
 
 def test_a_blocked_goal_gives_way_to_the_nearest_free_place_within_tolerance():
     costs = costs_of("######\n#..###\n#..###\n######")
-    window, planner = window_of(costs), GlobalPlanner(PlannerSettings())
+    window, planner = window_of(costs), Navfn(NavfnSettings())
     blocked = centre(window, (1, 4))
     path_xy = planner.plan(costs, window, centre(window, (1, 1)), blocked, tolerance=1.0)
     assert tuple(path_xy[-1]) == centre(window, (1, 2))
@@ -195,7 +193,7 @@ def test_a_blocked_goal_gives_way_to_the_nearest_free_place_within_tolerance():
 
 def test_a_start_in_an_obstacle_is_left_for_the_nearest_free_cell_or_refused():
     costs = costs_of("#######\n#ii...#\n#######")
-    window, planner = window_of(costs), GlobalPlanner(PlannerSettings())
+    window, planner = window_of(costs), Navfn(NavfnSettings())
     goal = centre(window, (1, 5))
     path_xy = planner.plan(costs, window, centre(window, (1, 2)), goal)
     assert tuple(path_xy[0]) == centre(window, (1, 2))
@@ -205,7 +203,7 @@ def test_a_start_in_an_obstacle_is_left_for_the_nearest_free_cell_or_refused():
 
 def test_a_blocked_end_does_not_give_way_to_a_place_to_which_nothing_leads():
     costs = costs_of("########\n#.#....#\n########")
-    window, planner = window_of(costs), GlobalPlanner(PlannerSettings())
+    window, planner = window_of(costs), Navfn(NavfnSettings())
     between, beyond, in_the_open = (centre(window, (1, col)) for col in (2, 3, 6))
     path_xy = planner.plan(costs, window, between, in_the_open)
     assert path_xy[:, 0].min() == between[0]
@@ -215,7 +213,7 @@ def test_a_blocked_end_does_not_give_way_to_a_place_to_which_nothing_leads():
 @pytest.mark.parametrize("outside", [(-5.0, 2.6), (0.0, 99.0)])
 def test_a_place_off_the_map_is_refused(outside):
     costs = costs_of(PICTURES["empty"])
-    window, planner = window_of(costs), GlobalPlanner(PlannerSettings())
+    window, planner = window_of(costs), Navfn(NavfnSettings())
     with pytest.raises(OutOfMap, match="the goal"):
         planner.plan(costs, window, centre(window, (1, 1)), outside)
     with pytest.raises(OutOfMap, match="the robot"):
@@ -226,14 +224,14 @@ def test_unknown_space_is_crossed_only_if_allowed():
     costs = costs_of("#######\n#..?..#\n#######")
     window = window_of(costs)
     ends = centre(window, (1, 1)), centre(window, (1, 5))
-    assert len(GlobalPlanner(PlannerSettings(allow_unknown=True)).plan(costs, window, *ends))
+    assert len(Navfn(NavfnSettings(allow_unknown=True)).plan(costs, window, *ends))
     with pytest.raises(NoPath):
-        GlobalPlanner(PlannerSettings(allow_unknown=False)).plan(costs, window, *ends)
+        Navfn(NavfnSettings(allow_unknown=False)).plan(costs, window, *ends)
 
 
 def test_being_there_already_is_a_plan():
     costs = costs_of(PICTURES["empty"])
     window = window_of(costs)
     here = centre(window, (2, 2))
-    path_xy = GlobalPlanner(PlannerSettings()).plan(costs, window, here, here)
+    path_xy = Navfn(NavfnSettings()).plan(costs, window, here, here)
     assert path_xy.tolist() == [list(here), list(here)]

@@ -6,7 +6,7 @@ import pytest
 from robot_in_picture import SETTINGS, Robot, assert_arrived, drive_to_end, room
 
 from move_base_lite import Navigator, Status
-from move_base_lite.zones import Zone, Zones, load_zones
+from move_base_lite.navigator.zones import Zone, Zones, load_zones
 from planar import Pose2, SettingsError
 
 MIDDLE = Zone("middle", "keep_out", ((2.4, 0.0), (3.6, 0.0), (3.6, 2.6), (2.4, 2.6)))

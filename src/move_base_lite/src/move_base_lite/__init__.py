@@ -1,7 +1,6 @@
 """Navigation after move_base: from a goal, poses and scans to velocities that reach it without collision."""
 
 from move_base_lite.config import NavigatorSettings
-from move_base_lite.decision import Decision, Status
 from move_base_lite.errors import (
     ControlError,
     GoalBlocked,
@@ -11,7 +10,7 @@ from move_base_lite.errors import (
     PlanningError,
     StartBlocked,
 )
-from move_base_lite.navigator import Navigator
+from move_base_lite.navigator import Decision, Navigator, Status
 from move_base_lite.parameters import load_settings, settings_from_parameters
 
 __all__ = [

@@ -13,6 +13,7 @@ import numpy as np
 
 from move_base_lite.costmap import Footprint, footprint_from
 from planar import Twist2
+from planar.config.parameters import POSITIVE, at_least, check_parameters, parameter
 from planar.config.settings import check
 
 STEPS = 20
@@ -25,25 +26,25 @@ CLEAR, SLOWED, STOPPED = "clear", "slowed", "stopped"
 
 @dataclass(frozen=True)
 class MonitorSettings:
-    """Metres and seconds.
+    """The robot's outline, and how near it is to come to anything."""
 
-    ``footprint``: corners (x, y) of the robot; if there are none, a circle of ``robot_radius``.
-    ``stop_distance``: clearance around it at which it is stopped, unless it moves away.
-    ``time_to_collision``: it is slowed so that it would take so long to come as close as that.
-    ``scan_timeout``: it is stopped if its sensor has been silent for so long.
-    """
-
-    footprint: Tuple[Tuple[float, float], ...] = ()
-    robot_radius: float = 0.18
-    stop_distance: float = 0.05
-    time_to_collision: float = 1.0
-    scan_timeout: float = 0.5
+    footprint: Tuple[Tuple[float, float], ...] = parameter(
+        (), "corners [x, y] in the base frame; empty: a circle of robot_radius", "m"
+    )
+    robot_radius: float = parameter(0.18, "of a round footprint", "m", POSITIVE)
+    stop_distance: float = parameter(
+        0.05,
+        "clearance around the robot at which it is stopped, unless it moves away",
+        "m",
+        at_least(0.0),
+    )
+    time_to_collision: float = parameter(
+        1.0, "the robot is slowed so that it would take so long to come as close as that", "s", POSITIVE
+    )
+    scan_timeout: float = parameter(0.5, "without a scan until it is stopped", "s", POSITIVE)
 
     def __post_init__(self):
-        check(self.robot_radius > 0.0, "robot_radius", "positive", self.robot_radius)
-        check(self.stop_distance >= 0.0, "stop_distance", "at least 0", self.stop_distance)
-        check(self.time_to_collision > 0.0, "time_to_collision", "positive", self.time_to_collision)
-        check(self.scan_timeout > 0.0, "scan_timeout", "positive", self.scan_timeout)
+        check_parameters(self)
         check(len(self.footprint) not in (1, 2), "footprint", "at least 3 points", self.footprint)
 
 

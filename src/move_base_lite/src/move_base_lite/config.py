@@ -1,63 +1,87 @@
-"""All settings of the Navigator."""
+"""All settings of the Navigator, and the file that lists them."""
 
 from dataclasses import dataclass, field
-from typing import Tuple
+from typing import Any, Tuple
 
-from move_base_lite.control import ControllerSettings, DwaSettings
+from move_base_lite.collision_monitor import MonitorSettings
+from move_base_lite.control import LOCAL_PLANNERS, ControllerSettings, DwaSettings
+from move_base_lite.control.dwa import DWA, TRAJECTORY
+from move_base_lite.control.mppi import MPPI
 from move_base_lite.costmap import CostmapSettings
-from move_base_lite.planning import PlannerSettings
-from move_base_lite.recovery import RecoverySettings
-from planar.config.settings import check
+from move_base_lite.costmap.layers.inflation import INFLATION, InflationSettings
+from move_base_lite.costmap.layers.obstacles import OBSTACLES, ObstacleSettings, SourceSettings
+from move_base_lite.costmap.layers.static import STATIC, StaticSettings
+from move_base_lite.planning import GLOBAL_PLANNERS, NavfnSettings, PlannerSettings
+from move_base_lite.planning.navfn import GLOBAL_PLANNER, NAVFN
+from move_base_lite.plugin import Plugin
+from move_base_lite.recovery import NamedRecovery, RotateSettings, SlowSettings
+from move_base_lite.recovery.move_slow import MOVE_SLOW
+from planar.config.listing import ConfigFiles, Section
+from planar.config.parameters import POSITIVE, Parameter, at_least, check_parameters, parameter
 
 
 @dataclass(frozen=True)
 class MoveBaseSettings:
-    """move_base's own parameters: Hz, seconds, metres.
+    """move_base's own parameters, and a few that it lacks."""
 
-    ``clearing_radius``: of the square that make_plan clears, 0 for the footprint's. ``sensor_patience``:
-    seconds after which a robot whose sensors are silent gives up its goal.
-    """
-
-    controller_frequency: float = 20.0
-    planner_frequency: float = 0.0
-    planner_patience: float = 5.0
-    controller_patience: float = 15.0
-    max_planning_retries: int = -1
-    oscillation_timeout: float = 0.0
-    oscillation_distance: float = 0.5
-    conservative_reset_dist: float = 3.0
-    clearing_rotation_allowed: bool = True
-    recovery_behavior_enabled: bool = True
-    make_plan_clear_costmap: bool = True
-    make_plan_add_unreachable_goal: bool = True
-    clearing_radius: float = 0.0
-    shutdown_costmaps: bool = False
-    sensor_patience: float = 10.0
+    controller_frequency: float = parameter(20.0, "velocities", "Hz", POSITIVE, dynamic=100.0)
+    planner_frequency: float = parameter(
+        0.0,
+        "plans while driving; 0: only for a new goal or when control fails",
+        "Hz",
+        at_least(0.0),
+        dynamic=100.0,
+    )
+    planner_patience: float = parameter(
+        5.0, "without a plan until recovery", "s", at_least(0.0), dynamic=100.0
+    )
+    controller_patience: float = parameter(
+        15.0, "without a safe velocity until recovery", "s", at_least(0.0), dynamic=100.0
+    )
+    max_planning_retries: int = parameter(
+        -1, "failed plans until recovery; -1: patience alone decides", dynamic=(-1, 1000)
+    )
+    oscillation_timeout: float = parameter(
+        0.0, "without progress until recovery; 0: never", "s", at_least(0.0), dynamic=60.0
+    )
+    oscillation_distance: float = parameter(0.5, "that count as progress", "m", at_least(0.0), dynamic=10.0)
+    conservative_reset_dist: float = parameter(
+        3.0, "side of the square that the first recovery keeps", "m", dynamic=(0.0, 50.0)
+    )
+    clearing_rotation_allowed: bool = parameter(
+        True, "whether the default recoveries may rotate", dynamic=True
+    )
+    recovery_behavior_enabled: bool = parameter(
+        True, "whether recovery is tried before a goal is given up", dynamic=True
+    )
+    make_plan_clear_costmap: bool = parameter(
+        True, "make_plan forgets obstacles where the robot stands", dynamic=True
+    )
+    make_plan_add_unreachable_goal: bool = parameter(
+        True, "make_plan ends at the goal even if only its tolerance was reached", dynamic=True
+    )
+    clearing_radius: float = parameter(
+        0.0, "around the robot that make_plan forgets; 0: that of the footprint", "m", at_least(0.0)
+    )
+    shutdown_costmaps: bool = parameter(False, "whether costmaps rest while there is no goal", dynamic=True)
+    sensor_patience: float = parameter(
+        10.0, "without scans or transforms until the goal is given up", "s", at_least(0.0)
+    )
 
     def __post_init__(self):
-        check(self.controller_frequency > 0.0, "controller_frequency", "positive", self.controller_frequency)
-        for name in (
-            "planner_frequency",
-            "planner_patience",
-            "controller_patience",
-            "oscillation_timeout",
-            "oscillation_distance",
-            "clearing_radius",
-            "sensor_patience",
-        ):
-            check(getattr(self, name) >= 0.0, name, "at least 0", getattr(self, name))
+        check_parameters(self)
 
 
 @dataclass(frozen=True)
 class NavigatorSettings:
-    """Everything the Navigator needs to know."""
+    """Everything the Navigator needs to know; who plans and controls follows from the kinds of settings."""
 
     move_base: MoveBaseSettings = field(default_factory=MoveBaseSettings)
-    planner: PlannerSettings = field(default_factory=PlannerSettings)
+    planner: PlannerSettings = field(default_factory=NavfnSettings)
     controller: ControllerSettings = field(default_factory=DwaSettings)
     global_costmap: CostmapSettings = field(default_factory=CostmapSettings)
     local_costmap: CostmapSettings = field(default_factory=CostmapSettings)
-    recoveries: Tuple[RecoverySettings, ...] = ()
+    recoveries: Tuple[NamedRecovery, ...] = ()
 
     @property
     def scan_topic(self) -> str:
@@ -67,3 +91,53 @@ class NavigatorSettings:
                 if source.data_type == "LaserScan":
                     return source.topic
         return "scan"
+
+
+_COSTMAP = Section(
+    "global_costmap",
+    CostmapSettings,
+    Parameter(
+        "plugins",
+        [
+            {"name": "static_layer", "type": STATIC.name},
+            {"name": "obstacle_layer", "type": OBSTACLES.name},
+            {"name": "inflation_layer", "type": INFLATION.name},
+        ],
+        "",
+    ),
+    Section("static_layer", StaticSettings),
+    Section(
+        "obstacle_layer",
+        ObstacleSettings,
+        Parameter("observation_sources", "scan", "names of sensors, separated by spaces"),
+        Section("scan", SourceSettings(topic="scan")),
+    ),
+    Section("inflation_layer", InflationSettings),
+)
+# The namespace of TrajectoryPlannerROS is listed for rotate_recovery, whose defaults are others.
+_MEMBERS: Tuple[Plugin[Any], ...] = (*GLOBAL_PLANNERS.members, *LOCAL_PLANNERS.members)
+_PLANNERS = [
+    Section(planner.short_name, planner.settings) for planner in _MEMBERS if planner is not TRAJECTORY
+]
+CONFIG_FILES: ConfigFiles = {
+    "move_base_lite.yaml": Section(
+        "",
+        Parameter(
+            "base_global_planner",
+            NAVFN.name,
+            f"or {GLOBAL_PLANNER.name}, whose use_dijkstra: false means A*",
+        ),
+        Parameter("base_local_planner", DWA.name, f"or {MPPI.name}, which drives better"),
+        MoveBaseSettings,
+        *_PLANNERS,
+        Section(TRAJECTORY.short_name, RotateSettings, about="read by rotate_recovery, as in move_base"),
+        Section("move_slow", SlowSettings, about=f"read by a recovery of that name, type {MOVE_SLOW.name}"),
+        _COSTMAP,
+        Section("local_costmap", same_as="global_costmap"),
+        about="Every parameter of move_base_lite with its default, that of move_base and its plugins.\n"
+        "Robots are better served by a preset such as turtlebot.yaml.",
+    ),
+    "collision_monitor.yaml": Section(
+        "", MonitorSettings, about="Parameters of collision_monitor, with their defaults."
+    ),
+}

@@ -1,7 +1,12 @@
 # ruff: noqa: N818  -- the names are the reasons
 """Why the robot cannot go: one class per reason, the text for people."""
 
+from typing import TYPE_CHECKING, Optional
+
 from planar import PlanarError
+
+if TYPE_CHECKING:
+    from move_base_lite.control.local_planner import Exploration
 
 
 class NavigationError(PlanarError):
@@ -46,10 +51,14 @@ class NoPath(PlanningError):
 
 
 class ControlError(NavigationError):
-    """No safe velocity follows the plan."""
+    """No safe velocity follows the plan; ``exploration``: what was tried in vain, if that can be shown."""
 
     code = "NO_VALID_CONTROL"
     outcome = 100
+
+    def __init__(self, text: str, exploration: "Optional[Exploration]" = None):
+        super().__init__(text)
+        self.exploration = exploration
 
 
 class Oscillation(NavigationError):

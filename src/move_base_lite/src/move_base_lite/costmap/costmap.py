@@ -1,64 +1,29 @@
-"""A costmap in layers: the map, what the laser sees, and inflation over both."""
+"""A costmap in layers: the map, what sensors see, zones, and inflation over all."""
 
 import math
-from dataclasses import dataclass, field
-from typing import Optional, Sequence, Tuple
+from typing import List, Optional, Sequence
 
-import numba
 import numpy as np
 
 from move_base_lite.costmap.costs import FREE, UNKNOWN
 from move_base_lite.costmap.footprint import Footprint, collides, contacts, footprint_from
-from move_base_lite.costmap.inflation import Inflation, InflationSettings
-from move_base_lite.costmap.obstacle_layer import NOTHING, OVERWRITE, ObstacleLayer, ObstacleSettings
+from move_base_lite.costmap.layer import Layer, LayerSettings, Placement, Site
+from move_base_lite.costmap.layers.zones import ZoneLayer
 from move_base_lite.costmap.polygon import Polygon
+from move_base_lite.costmap.registry import LAYERS
+from move_base_lite.costmap.settings import CostmapSettings
 from move_base_lite.costmap.sighting import Sighting
-from move_base_lite.costmap.static_layer import StaticSettings, static_costs, static_costs_in
 from move_base_lite.costmap.window import NO_CELLS, Bounds, Window, union
-from move_base_lite.costmap.zone_layer import ZoneLayer
 from planar import OccupancyGrid, Pose2
-from planar.config.settings import check
 
 # Radians between the headings at which a turn on the spot is checked.
 TURN_STEP = 0.1
 
 
-@dataclass(frozen=True)
-class CostmapSettings:
-    """One costmap. Lengths in metres, frequencies in Hz; names and defaults of costmap_2d."""
-
-    global_frame: str = "map"
-    robot_base_frame: str = "base_link"
-    transform_tolerance: float = 0.3
-    update_frequency: float = 5.0
-    publish_frequency: float = 0.0
-    rolling_window: bool = False
-    width: float = 10.0
-    height: float = 10.0
-    resolution: float = 0.05
-    origin_x: float = 0.0
-    origin_y: float = 0.0
-    footprint: Tuple[Tuple[float, float], ...] = ()
-    robot_radius: float = 0.46
-    footprint_padding: float = 0.01
-    track_unknown_space: bool = False
-    always_send_full_costmap: bool = False
-    static: StaticSettings = field(default_factory=lambda: StaticSettings(enabled=False))
-    obstacles: ObstacleSettings = field(default_factory=ObstacleSettings)
-    inflation: InflationSettings = field(default_factory=InflationSettings)
-
-    def __post_init__(self):
-        for name in ("width", "height", "resolution"):
-            check(getattr(self, name) > 0.0, name, "positive", getattr(self, name))
-        for name in ("update_frequency", "publish_frequency", "robot_radius", "footprint_padding"):
-            check(getattr(self, name) >= 0.0, name, "at least 0", getattr(self, name))
-        check(len(self.footprint) not in (1, 2), "footprint", "at least 3 points", self.footprint)
-
-
 class LayeredCostmap:
     """Costs, uint8 (rows, cols), of the cells of ``window``; fixed to its frame or rolling with the robot.
 
-    Only what can have changed is computed anew: the block that was seen, grown by the inflation radius.
+    Only what can have changed is computed anew: the block that was seen, grown by what inflation reaches.
     """
 
     def __init__(
@@ -72,57 +37,42 @@ class LayeredCostmap:
         self.footprint: Footprint = footprint_from(
             settings.footprint, settings.robot_radius, settings.footprint_padding
         )
+        self._map = grid
         self._map_window = map_window or _window_of_map(settings, grid)
         self.window: Window = self._map_window or _window_of(settings)
         self.outline_xy = self.footprint.outline_xy(0.8 * self.window.resolution)
-        self._inflation = Inflation(
-            settings.inflation, self.footprint.inscribed_radius, self.window.resolution
-        )
-        rows, cols = self.window.rows, self.window.cols
-        self._obstacles: Optional[ObstacleLayer] = None
-        if settings.obstacles.enabled:
-            self._obstacles = ObstacleLayer(settings.obstacles, rows, cols)
-        self._zones = ZoneLayer()
-        self._ground = np.full((rows, cols), UNKNOWN if settings.track_unknown_space else FREE, np.uint8)
-        self._map = grid
-        self._grid = grid if settings.static.enabled else None
-        if self._grid is not None:
-            self._map_costs = static_costs(self._grid.cells, settings.static)
-            if not settings.rolling_window:
-                self._ground = self._map_costs
+        site = Site(self.window, settings.rolling_window, self.footprint, grid)
+        self._zones = ZoneLayer(LayerSettings(), site)
+        obstacles, own = _made([settings.obstacles], site), _made(settings.own_layers, site)
+        ground, inflation = _made([settings.static], site), _made([settings.inflation], site)
+        self._layers = [*ground, *obstacles, self._zones, *own, *inflation]
+        self._remembering = [*obstacles, *own]
+        self._reach_cells = sum(layer.reach_cells for layer in self._layers)
+        self._unseen = UNKNOWN if settings.track_unknown_space else FREE
         self._changed = NO_CELLS
-        self.costs = np.empty((rows, cols), dtype=np.uint8)
+        self.costs = np.empty((self.window.rows, self.window.cols), dtype=np.uint8)
         self.refresh(self.window.everything)
         self.costs_of_map: np.ndarray = self.costs.copy()
 
     def note(self, sighting: Sighting, base_in_frame: Pose2) -> None:
         """Keeps what a sensor saw from there for the next update."""
-        if self._obstacles is not None:
-            self._obstacles.note(sighting, base_in_frame)
+        for layer in self._layers:
+            layer.note(sighting, base_in_frame)
 
     def update(self, base_in_frame: Pose2, map_in_frame: Pose2 = Pose2()) -> None:
         """Follows the robot and takes in what has been noted."""
-        changed = self._follow(base_in_frame, map_in_frame)
-        is_rolling = self.settings.rolling_window
-        changed = union(changed, self._zones.update(self.window, map_in_frame, is_rolling))
-        if self._obstacles is not None:
-            changed = union(changed, self._obstacles.update(self.window))
-            if self.settings.obstacles.footprint_clearing_enabled:
-                cleared = self._obstacles.clear_footprint(self.window, base_in_frame, self.footprint)
-                changed = union(changed, cleared)
+        placement = self._follow(base_in_frame, map_in_frame)
+        changed = self.window.everything if self.settings.rolling_window else NO_CELLS
+        for layer in self._layers:
+            changed = union(changed, layer.update(placement))
         self.refresh(changed)
 
     def refresh(self, changed: Bounds) -> None:
         """Stacks the layers anew where they have changed."""
-        bounds = self.window.grown(changed, self._inflation.reach_cells)
-        method = self.settings.obstacles.combination_method
-        if self._obstacles is None or method == NOTHING:
-            rows, cols = slice(*bounds[:2]), slice(*bounds[2:])
-            self.costs[rows, cols] = self._ground[rows, cols]
-        else:
-            _stack(self.costs, self._ground, self._obstacles.costs, bounds, method == OVERWRITE)
-        self._zones.apply(self.costs, bounds)
-        self._inflation.apply(self.costs, self.window, bounds)
+        bounds = self.window.grown(changed, self._reach_cells)
+        self.costs[bounds.slices] = self._unseen
+        for layer in self._layers:
+            layer.apply(self.costs, self.window, bounds)
         self._changed = union(self._changed, bounds)
 
     def keep_out(self, barred: Sequence[Polygon], disliked: Sequence[Polygon]) -> None:
@@ -134,12 +84,20 @@ class LayeredCostmap:
         if settings == self.settings:
             return self
         changed = LayeredCostmap(settings, self._map, self._map_window)
-        changed._zones = self._zones.anew()
-        seen, kept = self._obstacles, changed._obstacles
-        if seen is not None and kept is not None and self.window.is_like(changed.window):
-            changed.window, kept.costs = self.window, seen.costs
-            changed.refresh(changed.window.everything)
+        changed._zones.take_over(self._zones)
+        if self.window.is_like(changed.window):
+            changed._remember(self)
         return changed
+
+    def _remember(self, before: "LayeredCostmap") -> None:
+        """Goes on with what the same layers of a costmap of as many cells have known."""
+        known = {type(layer): layer for layer in before._remembering}
+        pairs = [(layer, known[type(layer)]) for layer in self._remembering if type(layer) in known]
+        for layer, same in pairs:
+            layer.take_over(same)
+        if pairs:
+            self.window = before.window
+            self.refresh(self.window.everything)
 
     def take_changed(self) -> Bounds:
         """The block of cells that may have changed since this was asked last."""
@@ -168,35 +126,37 @@ class LayeredCostmap:
 
     def clear_outside(self, base_in_frame: Pose2, side: float) -> None:
         """Forgets obstacles (not the map) outside a square of ``side`` metres round the robot."""
-        if self._obstacles is not None:
-            bounds = self.window.bounds_around(base_in_frame.x, base_in_frame.y, 0.5 * side)
-            self._obstacles.clear_outside(bounds)
-            self.refresh(self.window.everything)
+        bounds = self.window.bounds_around(base_in_frame.x, base_in_frame.y, 0.5 * side)
+        self._refresh_changed([layer.clear_outside(bounds, self.window) for layer in self._layers])
 
     def clear_around(self, base_in_frame: Pose2, side: float) -> None:
         """Forgets obstacles (not the map) inside a square of ``side`` metres round the robot."""
-        if self._obstacles is not None:
-            bounds = self.window.bounds_around(base_in_frame.x, base_in_frame.y, 0.5 * side)
-            self._obstacles.clear_inside(bounds)
-            self.refresh(bounds)
+        bounds = self.window.bounds_around(base_in_frame.x, base_in_frame.y, 0.5 * side)
+        self._refresh_changed([layer.clear_inside(bounds) for layer in self._layers])
 
     def reset(self) -> None:
         """Forgets all that was seen; the map stays."""
-        if self._obstacles is not None:
-            self._obstacles.reset()
-            self.refresh(self.window.everything)
+        self._refresh_changed([layer.clear_outside(NO_CELLS, self.window) for layer in self._layers])
 
-    def _follow(self, base_in_frame: Pose2, map_in_frame: Pose2) -> Bounds:
+    def _refresh_changed(self, blocks: Sequence[Bounds]) -> None:
+        changed = NO_CELLS
+        for block in blocks:
+            changed = union(changed, block)
+        if changed != NO_CELLS:
+            self.refresh(changed)
+
+    def _follow(self, base_in_frame: Pose2, map_in_frame: Pose2) -> Placement:
+        """Moves the window, if it rolls."""
         if not self.settings.rolling_window:
-            return NO_CELLS
+            return Placement(self.window, 0, 0, base_in_frame, map_in_frame)
         before, self.window = self.window, self.window.centred_on(base_in_frame.x, base_in_frame.y)
         cols = round((self.window.origin_x - before.origin_x) / self.window.resolution)
         rows = round((self.window.origin_y - before.origin_y) / self.window.resolution)
-        if (rows or cols) and self._obstacles is not None:
-            self._obstacles.roll(rows, cols)
-        if self._grid is not None:
-            self._ground = static_costs_in(self.window, map_in_frame.inverse(), self._grid, self._map_costs)
-        return self.window.everything
+        return Placement(self.window, rows, cols, base_in_frame, map_in_frame)
+
+
+def _made(settings: Sequence[LayerSettings], site: Site) -> List[Layer]:
+    return [LAYERS.make(each, site) for each in settings if each.enabled]
 
 
 def _window_of_map(settings: CostmapSettings, grid: Optional[OccupancyGrid]) -> Optional[Window]:
@@ -208,18 +168,3 @@ def _window_of_map(settings: CostmapSettings, grid: Optional[OccupancyGrid]) -> 
 def _window_of(settings: CostmapSettings) -> Window:
     rows, cols = round(settings.height / settings.resolution), round(settings.width / settings.resolution)
     return Window(rows, cols, settings.resolution, settings.origin_x, settings.origin_y)
-
-
-@numba.njit(cache=True)
-def _stack(costs, ground, obstacles, bounds, overwrite):
-    """The higher of both layers, or the upper; the unknown of one gives way to the knowledge of the other."""
-    row_min, row_max, col_min, col_max = bounds
-    for row in range(row_min, row_max):
-        for col in range(col_min, col_max):
-            below, above = ground[row, col], obstacles[row, col]
-            if above == UNKNOWN:
-                costs[row, col] = below
-            elif overwrite or below == UNKNOWN:
-                costs[row, col] = above
-            else:
-                costs[row, col] = max(below, above)

@@ -13,6 +13,11 @@ class Bounds(NamedTuple):
     col_min: int
     col_max: int
 
+    @property
+    def slices(self) -> Tuple[slice, slice]:
+        """Of its rows and its columns, to index arrays with."""
+        return slice(self.row_min, self.row_max), slice(self.col_min, self.col_max)
+
 
 NO_CELLS = Bounds(0, 0, 0, 0)
 

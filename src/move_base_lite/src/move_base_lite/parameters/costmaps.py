@@ -1,44 +1,31 @@
 """Parameters of costmaps and their layers."""
 
 from dataclasses import replace
-from typing import Any, Dict, List, Mapping, Tuple
+from typing import Any, Dict, List, Mapping, Set, Tuple
 
 import yaml
 
-from move_base_lite.costmap import CostmapSettings
-from move_base_lite.costmap.inflation import InflationSettings
-from move_base_lite.costmap.obstacle_layer import ObstacleSettings, SourceSettings
-from move_base_lite.costmap.static_layer import StaticSettings
-from move_base_lite.parameters.reader import Reader, below, names_of
+from move_base_lite.costmap import LAYERS, CostmapSettings, Layer, LayerSettings
+from move_base_lite.costmap.layers.inflation import INFLATION, InflationSettings
+from move_base_lite.costmap.layers.obstacles import OBSTACLES, VOXEL, ObstacleSettings, SourceSettings
+from move_base_lite.costmap.layers.static import STATIC, StaticSettings
+from move_base_lite.parameters.reader import Reader, Tree, below, names_of
+from move_base_lite.plugin import Plugin
 from planar import SettingsError
 
-# Parameters that are known but mean nothing here: of a robot that moves sideways, of details of the official
-# code, or read by it and never used.
+# What both costmaps have from move_base's own namespace, unless they have it themselves.
+INHERITED = ("footprint", "robot_radius", "footprint_padding")
+# Parameters that are known but mean nothing here: of details of the official code, or read by it and unused.
 _COSTMAP_IGNORED = {
     "plugins", "static_map", "map_type", "inscribed_radius", "circumscribed_radius",
     "footprint_topic", "published_footprint_topic", "restore_defaults",
 }  # fmt: skip
-_VOXELS_IGNORED = {
-    "origin_z", "z_resolution", "z_voxels", "unknown_threshold", "mark_threshold", "publish_voxel_map",
-}  # fmt: skip
-_STATIC_IGNORED = {"first_map_only", "subscribe_to_updates", "use_maximum"}
-_OBSTACLE_IGNORED = {
-    "observation_sources", "transform_tolerance", "obstacle_range", "raytrace_range",
-} | _VOXELS_IGNORED  # fmt: skip
-
-# What belongs to each kind of layer; it stood in the costmap's own namespace before there were plugins.
-_OBSTACLE_KEYS = {*names_of(ObstacleSettings), *_OBSTACLE_IGNORED} - {"enabled", "sources"}
-_LAYER_KEYS = {
-    "StaticLayer": {*names_of(StaticSettings), *_STATIC_IGNORED} - {"enabled"},
-    "ObstacleLayer": _OBSTACLE_KEYS,
-    "VoxelLayer": _OBSTACLE_KEYS,
-    "InflationLayer": set(names_of(InflationSettings)) - {"enabled"},
-}
 
 
-def costmap_settings(reader: Reader, values, name: str, parameters) -> CostmapSettings:
+def costmap_settings(reader: Reader, values: Tree, name: str, parameters: Tree) -> CostmapSettings:
+    """One costmap and its layers."""
     values = with_plugins(values)
-    for inherited in ("footprint", "robot_radius", "footprint_padding"):
+    for inherited in INHERITED:
         if inherited in parameters:
             values.setdefault(inherited, parameters[inherited])
     if "footprint" in values:
@@ -47,42 +34,53 @@ def costmap_settings(reader: Reader, values, name: str, parameters) -> CostmapSe
     static = StaticSettings(enabled=False)
     obstacles = ObstacleSettings(enabled=False)
     inflation = InflationSettings(enabled=False)
+    own_layers: List[LayerSettings] = []
     for layer, kind in layers_of(reader, values, name).items():
-        tree, where = dict(below(values, layer)), f"{name}/{layer}/"
-        if kind == "StaticLayer":
-            static = reader.read(StaticSettings, tree, where, _STATIC_IGNORED)
-        elif kind == "InflationLayer":
-            inflation = reader.read(InflationSettings, tree, where)
-        else:
-            tree.setdefault("track_unknown_space", settings.track_unknown_space)
+        tree, where = below(values, layer), f"{name}/{layer}/"
+        if kind in (OBSTACLES, VOXEL):
+            tree = {"track_unknown_space": settings.track_unknown_space, **tree}
             earlier = obstacles.sources
-            obstacles = _obstacle_settings(reader, tree, where, [values, parameters])
+            obstacles = _obstacle_settings(reader, kind, tree, where, [values, parameters])
             obstacles = replace(obstacles, sources=(*earlier, *obstacles.sources))
-    return replace(settings, static=static, obstacles=obstacles, inflation=inflation)
+        elif kind is STATIC:
+            static = reader.read_plugin(kind, tree, where)
+        elif kind is INFLATION:
+            inflation = reader.read_plugin(kind, tree, where)
+        else:
+            own_layers.append(reader.read_plugin(kind, tree, where))
+    return replace(
+        settings, static=static, obstacles=obstacles, own_layers=tuple(own_layers), inflation=inflation
+    )
 
 
 def with_plugins(values: Mapping[str, Any]) -> Dict[str, Any]:
     """A costmap's parameters with a list of plugins, made as costmap_2d does if they are older than that."""
     if "plugins" in values:
         return dict(values)
-    obstacles = "VoxelLayer" if values.get("map_type") == "voxel" else "ObstacleLayer"
-    kinds = {"static_layer": "StaticLayer"} if values.get("static_map") else {}
-    kinds.update({"obstacle_layer": obstacles, "inflation_layer": "InflationLayer"})
+    kinds = {"static_layer": STATIC} if values.get("static_map") else {}
+    kinds["obstacle_layer"] = VOXEL if values.get("map_type") == "voxel" else OBSTACLES
+    kinds["inflation_layer"] = INFLATION
     moved: Dict[str, Any] = {"plugins": [], **{layer: {} for layer in kinds}}
     for layer, kind in kinds.items():
-        moved["plugins"].append({"name": layer, "type": f"costmap_2d::{kind}"})
+        moved["plugins"].append({"name": layer, "type": kind.name})
+    all_keys = set().union(*map(_keys_of, (STATIC, OBSTACLES, INFLATION)))
     for key, value in values.items():
         for layer, kind in kinds.items():
-            if key in _LAYER_KEYS[kind] or (isinstance(value, dict) and layer == "obstacle_layer"):
+            if key in _keys_of(kind) or (isinstance(value, dict) and layer == "obstacle_layer"):
                 moved[layer][key] = value
-        if not (isinstance(value, dict) or any(key in keys for keys in _LAYER_KEYS.values())):
+        if not (isinstance(value, dict) or key in all_keys):
             moved[key] = value
     if "track_unknown_space" in values:
         moved["track_unknown_space"] = values["track_unknown_space"]
     return moved
 
 
-def layers_of(reader: Reader, values: Mapping[str, Any], name: str) -> Dict[str, str]:
+def _keys_of(kind: Plugin[Layer]) -> Set[str]:
+    """What belongs to a layer; it stood in the costmap's own namespace before there were plugins."""
+    return {*names_of(kind.settings), *kind.meaningless} - {"enabled"}
+
+
+def layers_of(reader: Reader, values: Tree, name: str) -> Dict[str, Plugin[Layer]]:
     """The kind of each layer that there is here, by its name, in order."""
     layers = {}
     for plugin in values["plugins"]:
@@ -90,17 +88,19 @@ def layers_of(reader: Reader, values: Mapping[str, Any], name: str) -> Dict[str,
             raise SettingsError(
                 f"{reader.where}{name}/plugins must be a list of {{name, type}}, got {plugin!r}"
             )
-        kind = str(plugin["type"]).rpartition("::")[2]
-        if kind in _LAYER_KEYS:
+        kind = LAYERS.find(str(plugin["type"]), is_package_needed=False)
+        if kind is not None:
             layers[plugin["name"]] = kind
         else:
             reader.warnings.append(f"no layer of type {plugin['type']} here, {plugin['name']} is left out")
     return layers
 
 
-def _obstacle_settings(reader: Reader, tree, where: str, outer: List[Mapping[str, Any]]) -> ObstacleSettings:
+def _obstacle_settings(
+    reader: Reader, kind: Plugin[Layer], tree: Tree, where: str, outer: List[Tree]
+) -> ObstacleSettings:
     """A layer with its sources; their ranges are searched for in the namespaces around them too."""
-    layer = reader.read(ObstacleSettings, tree, where, _OBSTACLE_IGNORED)
+    layer = reader.read_plugin(kind, tree, where)
     sources = []
     for name in str(tree.get("observation_sources", "")).split():
         own = {"topic": name, **below(tree, name)}

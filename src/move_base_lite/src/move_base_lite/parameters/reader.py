@@ -1,10 +1,14 @@
 """Settings read out of nested dictionaries of parameters."""
 
-from dataclasses import fields
-from typing import Any, Dict, Iterable, List, Mapping
+from typing import Any, Dict, Iterable, List, Mapping, Type, TypeVar
 
+from move_base_lite.plugin import Plugin
 from planar.config.hints import hint
+from planar.config.parameters import parameters_of
 from planar.config.settings import settings_from
+
+Tree = Mapping[str, Any]
+T = TypeVar("T")
 
 
 class Reader:
@@ -14,16 +18,28 @@ class Reader:
         self.where = where
         self.warnings: List[str] = []
 
-    def read(self, kind, values: Mapping[str, Any], prefix: str, ignore: Iterable[str] = ()):
+    def read(self, kind: Type[T], values: Tree, prefix: str, ignore: Iterable[str] = ()) -> T:
         """The settings ``kind`` from the values that are not dictionaries themselves."""
         flat = {
             name: value
             for name, value in values.items()
             if not isinstance(value, dict) and name not in ignore
         }
-        settings, unknown = settings_from(kind, flat, where=self.where + prefix)
+        said = parameters_of(kind)
+        names = {**{each.field: each.field for each in said}, **{each.name: each.field for each in said}}
+        settings, unknown = settings_from(kind, flat, names, where=self.where + prefix)
         self.report_unknown(unknown, prefix, [*names_of(kind), *ignore])
         return settings
+
+    def read_plugin(self, plugin: Plugin, values: Tree, prefix: str) -> Any:
+        """The plugin's settings, also from old names and other ways to say the same."""
+        present = dict(values)
+        for old, new in plugin.deprecated.items():
+            if old in present:
+                self.warnings.append(f"parameter {self.where}{prefix}{old} is deprecated, use {new} instead")
+                present.setdefault(new, present.pop(old))
+        present = plugin.translated(renamed(present, plugin.synonyms))
+        return self.read(plugin.settings, present, prefix, plugin.meaningless)
 
     def report_unknown(self, names: Iterable[str], prefix: str, known: Iterable[str]) -> None:
         known = list(known)
@@ -31,14 +47,15 @@ class Reader:
             self.warnings.append(f"unknown parameter {self.where}{prefix}{name}{hint(name, known)}")
 
 
-def below(parameters: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+def below(parameters: Tree, name: str) -> Tree:
     value = parameters.get(name, {})
     return value if isinstance(value, dict) else {}
 
 
-def renamed(values: Mapping[str, Any], names: Mapping[str, str]) -> Dict[str, Any]:
+def renamed(values: Tree, names: Mapping[str, str]) -> Dict[str, Any]:
     return {names.get(name, name): value for name, value in values.items()}
 
 
-def names_of(kind) -> List[str]:
-    return [item.name for item in fields(kind)]
+def names_of(kind: type) -> List[str]:
+    """The official names of the parameters of a settings dataclass."""
+    return [each.name for each in parameters_of(kind)]

@@ -1,71 +1,74 @@
 """Parameters of recovery behaviours."""
 
-from dataclasses import replace
-from typing import Any, Dict, List, Mapping, Tuple
+from typing import Any, Dict, List, Tuple
 
 from move_base_lite.config import MoveBaseSettings
 from move_base_lite.costmap import CostmapSettings, footprint_from
 from move_base_lite.parameters.costmaps import layers_of, with_plugins
-from move_base_lite.parameters.reader import Reader, below, names_of, renamed
-from move_base_lite.recovery import RecoverySettings, RotateSettings, SlowSettings, recovery_from
-
-_ROTATE_NAMES = {
-    "acc_lim_th": "acc_lim_theta",
-    "max_rotational_vel": "max_vel_theta",
-    "min_in_place_rotational_vel": "min_in_place_vel_theta",
-}
-# All layers of obstacles are cleared, and costmaps are brought up to date every period.
-_CLEARING_IGNORED = {"layer_names", "force_updating"}
+from move_base_lite.parameters.reader import Reader, Tree, below, names_of, renamed
+from move_base_lite.plugin import Plugin
+from move_base_lite.recovery import RECOVERIES, NamedRecovery, RecoveryBehavior
+from move_base_lite.recovery.clear_costmap import CLEAR_COSTMAP
+from move_base_lite.recovery.rotate import ROTATE
+from planar import SettingsError
 
 
 def recovery_settings(
-    reader: Reader, parameters, move_base: MoveBaseSettings, local: CostmapSettings
-) -> Tuple[RecoverySettings, ...]:
-    listed = parameters.get("recovery_behaviors")
-    if listed is None:
-        listed = _default_recoveries(move_base.clearing_rotation_allowed)
-    names = [item["name"] for item in listed if isinstance(item, dict) and "name" in item and "type" in item]
-    if len(names) != len(listed) or len(set(names)) != len(names):
-        reader.warnings.append(
-            f"{reader.where}recovery_behaviors must be a list of {{name, type}} with different names, "
-            "the default ones take their place"
-        )
-        listed = _default_recoveries(move_base.clearing_rotation_allowed)
+    reader: Reader, parameters: Tree, move_base: MoveBaseSettings, local: CostmapSettings
+) -> Tuple[NamedRecovery, ...]:
+    """The behaviours to try, in order."""
     footprint = footprint_from(local.footprint, local.robot_radius, local.footprint_padding)
     distances = {
         "conservative_reset": move_base.conservative_reset_dist,
         "aggressive_reset": 4.0 * footprint.circumscribed_radius,
     }
     recoveries = []
-    for item in listed:
+    for item in _listed(reader, parameters, move_base.clearing_rotation_allowed):
         name, kind = item["name"], str(item["type"])
-        own = dict(below(parameters, name))
-        if name in distances and kind.endswith("ClearCostmapRecovery"):
-            own.setdefault("reset_distance", distances[name])
-        recoveries.append(_recovery(reader, parameters, name, kind, own))
+        behavior = RECOVERIES.find(kind, is_package_needed=False)
+        if behavior is None:
+            raise SettingsError(f"recovery_behaviors: {name} has an unknown type {kind!r}")
+        values = dict(below(parameters, name))
+        if behavior is CLEAR_COSTMAP and name in distances:
+            values.setdefault("reset_distance", distances[name])
+        recoveries.append(NamedRecovery(name, _settings_of(reader, parameters, name, behavior, values)))
     return tuple(recoveries)
 
 
-def _recovery(reader: Reader, parameters, name: str, kind: str, own: Mapping[str, Any]) -> RecoverySettings:
-    rotating = renamed(below(parameters, "TrajectoryPlannerROS"), _ROTATE_NAMES)
-    rotate = {key: value for key, value in rotating.items() if key in names_of(RotateSettings)}
-    where = f"{name}/"
-    recovery = RecoverySettings(name, kind)
-    if kind.endswith("ClearCostmapRecovery"):
-        values = {"name": name, "type": kind, **own}
-        recovery = reader.read(RecoverySettings, values, where, _CLEARING_IGNORED)
-        _check_layers(reader, parameters, name, own.get("layer_names"))
-    elif kind.endswith("RotateRecovery"):
-        reader.report_unknown(set(own) - {"sim_granularity", "frequency"}, where, ["sim_granularity"])
-        recovery = replace(recovery, rotate=reader.read(RotateSettings, rotate, "TrajectoryPlannerROS/"))
-    elif kind.endswith("MoveSlowAndClear"):
-        ignored = {"max_trans_param_name", "max_rot_param_name", "planner_namespace"}
-        recovery = replace(recovery, slow=reader.read(SlowSettings, own, where, ignored))
-    recovery_from(recovery)
-    return recovery
+def _listed(reader: Reader, parameters: Tree, rotation_allowed: bool) -> List[Dict[str, Any]]:
+    listed = parameters.get("recovery_behaviors")
+    if listed is None:
+        return _default_recoveries(rotation_allowed)
+    names = [item["name"] for item in listed if isinstance(item, dict) and "name" in item and "type" in item]
+    if len(names) != len(listed) or len(set(names)) != len(names):
+        reader.warnings.append(
+            f"{reader.where}recovery_behaviors must be a list of {{name, type}} with different names, "
+            "the default ones take their place"
+        )
+        return _default_recoveries(rotation_allowed)
+    return listed
 
 
-def _check_layers(reader: Reader, parameters, name: str, named: Any) -> None:
+def _settings_of(
+    reader: Reader, parameters: Tree, name: str, behavior: Plugin[RecoveryBehavior], values: Tree
+) -> Any:
+    if behavior is ROTATE:
+        return _rotate_settings(reader, parameters, name, values)
+    settings = reader.read_plugin(behavior, values, f"{name}/")
+    if behavior is CLEAR_COSTMAP:
+        _check_layers(reader, parameters, name, values.get("layer_names"))
+    return settings
+
+
+def _rotate_settings(reader: Reader, parameters: Tree, name: str, values: Tree) -> Any:
+    """Of its own namespace nothing counts; those of TrajectoryPlannerROS do, as far as they are its own."""
+    reader.report_unknown(set(values) - ROTATE.ignored, f"{name}/", ROTATE.ignored)
+    rotating = renamed(below(parameters, "TrajectoryPlannerROS"), ROTATE.synonyms)
+    own = {key: value for key, value in rotating.items() if key in names_of(ROTATE.settings)}
+    return reader.read_plugin(ROTATE, own, "TrajectoryPlannerROS/")
+
+
+def _check_layers(reader: Reader, parameters: Tree, name: str, named: Any) -> None:
     """All obstacles are cleared, whatever the name of their layer; one that is not there is a slip."""
     if named is None:
         return
@@ -82,8 +85,8 @@ def _check_layers(reader: Reader, parameters, name: str, named: Any) -> None:
             )
 
 
-def _default_recoveries(rotation_allowed: bool) -> List[Dict[str, str]]:
-    clear, rotate = "clear_costmap_recovery/ClearCostmapRecovery", "rotate_recovery/RotateRecovery"
+def _default_recoveries(rotation_allowed: bool) -> List[Dict[str, Any]]:
+    clear, rotate = CLEAR_COSTMAP.name, ROTATE.name
     order = [("conservative_reset", clear), ("rotate_recovery", rotate), ("aggressive_reset", clear)]
     order.append(("rotate_recovery_again", rotate))
     return [{"name": name, "type": kind} for name, kind in order if rotation_allowed or kind != rotate]

@@ -9,7 +9,7 @@ from geometry_msgs.msg import Twist
 from move_base_msgs.msg import RecoveryStatus
 from nav_msgs.msg import Path
 
-from move_base_lite.decision import Decision, Outcome
+from move_base_lite.navigator.decision import Decision, Outcome
 from move_base_lite.ros.exploration_topics import ExplorationTopics
 from move_base_lite.ros.plan_messages import path_msg, plan_msg, pose_msg, trajectory_msg
 from move_base_lite.ros.status_messages import outcome_msg, progress_msg

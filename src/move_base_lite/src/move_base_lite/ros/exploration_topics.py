@@ -21,12 +21,11 @@ class ExplorationTopics:
 
     def publish(self, now: rospy.Time, exploration: Exploration) -> None:
         """To be called in the period in which it was made."""
-        settings = exploration.settings
-        if settings.publish_traj_pc and self._trajectories.get_num_connections():
+        if exploration.shows_trajectories and self._trajectories.get_num_connections():
             x, y, *rest = exploration.trajectory_points().T
             columns = (x, y, np.zeros(len(x)), *rest)
             self._trajectories.publish(cloud_msg(columns, TRAJECTORY_FIELDS, now, self._odom_frame))
-        if settings.publish_cost_grid_pc and self._costs.get_num_connections():
+        if exploration.shows_costs and self._costs.get_num_connections():
             x, y, *rest = exploration.cell_costs().T
             columns = (x, y, np.zeros(len(x)), *rest)
             self._costs.publish(cloud_msg(columns, COST_FIELDS, now, self._odom_frame))

@@ -8,7 +8,7 @@ from actionlib.action_server import ServerGoalHandle
 from geometry_msgs.msg import PoseStamped
 from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseFeedback
 
-from move_base_lite.decision import Status
+from move_base_lite.navigator.decision import Status
 from move_base_lite.ros.goals import goal_from_msg
 from move_base_lite.ros.plan_messages import pose_msg
 from planar import Pose2

@@ -6,9 +6,10 @@ from typing import Optional
 import rospy
 
 from move_base_lite.config import NavigatorSettings
-from move_base_lite.decision import Decision, Outcome, Status, Trigger, with_reason
 from move_base_lite.errors import NavigationError, RobotLost
 from move_base_lite.navigator import Navigator
+from move_base_lite.navigator.decision import Decision, Outcome, Status, Trigger, with_reason
+from move_base_lite.navigator.zones import Zones, load_zones
 from move_base_lite.parameters import settings_from_parameters
 from move_base_lite.ros.costmap_topics import CostmapTopics
 from move_base_lite.ros.decision_topics import DecisionTopics
@@ -20,7 +21,6 @@ from move_base_lite.ros.surroundings import Surroundings, View
 from move_base_lite.ros.tuning import ParameterTree
 from move_base_lite.ros.zone_topics import ZoneTopics
 from move_base_lite.warming import warm_up
-from move_base_lite.zones import Zones, load_zones
 from planar import Pose2, SettingsError, Twist2
 from planar_ros.messages.conversion import OccupancyGridArrays, frame_name, grid_from_msg
 from planar_ros.messages.transforms import Transforms

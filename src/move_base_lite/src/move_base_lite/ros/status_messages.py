@@ -2,7 +2,7 @@
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
-from move_base_lite.decision import SUCCEEDED_OUTCOME, Decision, Outcome
+from move_base_lite.navigator.decision import SUCCEEDED_OUTCOME, Decision, Outcome
 
 
 def outcome_msg(outcome: Outcome) -> DiagnosticStatus:

@@ -6,7 +6,7 @@ from std_msgs.msg import ColorRGBA
 from std_srvs.srv import SetBool, SetBoolResponse
 from visualization_msgs.msg import Marker, MarkerArray
 
-from move_base_lite.zones import KEEP_OUT, Zone, Zones
+from move_base_lite.navigator.zones import KEEP_OUT, Zone, Zones
 
 RED, YELLOW, GREY = (0.9, 0.1, 0.1), (0.9, 0.8, 0.1), (0.5, 0.5, 0.5)
 LINE_WIDTH = 0.05

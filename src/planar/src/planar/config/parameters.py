@@ -17,6 +17,8 @@ from typing import Any, Dict, NamedTuple, Sequence, Tuple, Union
 
 from planar.config.settings import check
 
+Dynamic = Union[None, bool, float, Tuple[float, float]]
+
 
 class Bounds(NamedTuple):
     """From ``low`` (itself included unless ``without_low``) to ``high``; ``words`` say so in errors."""
@@ -48,7 +50,8 @@ class Parameter:
 
     ``required``: what it must be ("the path of a file") if it has no default, which then counts as not set.
     ``dynamic``: whether dynamic_reconfigure may change it while the node runs (True); for a number, the
-    largest value that it then offers. ``heading``: stands above it where parameters are listed.
+    largest value that it then offers, for two, the least and the largest. ``heading``: stands above it where
+    parameters are listed.
     ``field``: that of the settings, if it is one of theirs.
     """
 
@@ -59,7 +62,7 @@ class Parameter:
     bounds: Bounds = Bounds()
     choices: Tuple[str, ...] = ()
     required: str = ""
-    dynamic: Union[None, bool, float] = None
+    dynamic: Dynamic = None
     heading: str = ""
     field: str = ""
 
@@ -83,7 +86,7 @@ def parameter(
     name: str = "",
     choices: Sequence[str] = (),
     required: str = "",
-    dynamic: Union[None, bool, float] = None,
+    dynamic: Dynamic = None,
     heading: str = "",
 ) -> Any:
     """A field of a settings dataclass that is a parameter; ``name``: the official one, if another.
@@ -95,9 +98,11 @@ def parameter(
 
 
 def parameters_of(kind: type) -> Tuple[Parameter, ...]:
-    """The parameters among the fields of a settings dataclass, in their order."""
+    """The parameters among the fields of a settings dataclass that can be given, in their order."""
     found = []
     for field in dataclasses.fields(kind):
+        if not field.init:
+            continue
         said = _said_of(kind, field.name)
         if said is not None:
             found.append(
@@ -148,10 +153,12 @@ def tunables_of(kind: type) -> Tuple[Tunable, ...]:
 
 
 def _tunable(said: Parameter) -> Tunable:
-    high = math.inf if said.dynamic is None or isinstance(said.dynamic, bool) else said.dynamic
-    return Tunable(
-        said.name, said.default, in_unit(said.unit, said.meaning), said.bounds.low, high, said.choices
-    )
+    low, high = said.bounds.low, math.inf
+    if isinstance(said.dynamic, tuple):
+        low, high = said.dynamic
+    elif said.dynamic is not None and not isinstance(said.dynamic, bool):
+        high = said.dynamic
+    return Tunable(said.name, said.default, in_unit(said.unit, said.meaning), low, high, said.choices)
 
 
 def _said_of(kind: type, field: str):

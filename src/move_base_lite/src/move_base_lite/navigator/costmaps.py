@@ -6,7 +6,7 @@ from typing import Dict, List, Optional, Sequence, Tuple
 from move_base_lite.config import NavigatorSettings
 from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, LayeredCostmap, Polygon, Sighting
 from move_base_lite.errors import GoalBlocked, OutOfMap
-from move_base_lite.zones import Zone, Zones
+from move_base_lite.navigator.zones import Zone, Zones
 from planar import OccupancyGrid, Pose2
 
 TIME_TOLERANCE = 1e-6

@@ -5,18 +5,19 @@ from typing import Sequence
 import numpy as np
 
 from move_base_lite.costmap.costs import INSCRIBED, LETHAL
+from move_base_lite.costmap.layer import Layer, LayerSettings, Placement, Site
 from move_base_lite.costmap.polygon import Polygon
 from move_base_lite.costmap.window import NO_CELLS, Bounds, Window
-from planar import Pose2
 
 # Cost of a cell that the robot can cross but is to get out of.
 DISLIKED = INSCRIBED - 1
 
 
-class ZoneLayer:
-    """Raises the costs of the cells of polygons, which are given in the map."""
+class ZoneLayer(Layer):
+    """Raises the costs of the cells of polygons, which are given in the map; it is in every costmap."""
 
-    def __init__(self):
+    def __init__(self, settings: LayerSettings, site: Site):
+        self._is_rolling = site.is_rolling
         self._barred: Sequence[Polygon] = ()
         self._disliked: Sequence[Polygon] = ()
         self._is_new = False
@@ -27,28 +28,27 @@ class ZoneLayer:
         self._barred, self._disliked = barred, disliked
         self._is_new = True
 
-    def anew(self) -> "ZoneLayer":
-        """The same zones, for a window that may be another."""
-        layer = ZoneLayer()
-        layer.set(self._barred, self._disliked)
-        return layer
+    def take_over(self, before: Layer) -> None:
+        assert isinstance(before, ZoneLayer)
+        self.set(before._barred, before._disliked)
 
-    def update(self, window: Window, map_in_frame: Pose2, is_rolling: bool) -> Bounds:
-        """Draws the polygons anew if they or the window may have changed; returns what may have changed."""
+    def update(self, placement: Placement) -> Bounds:
+        """Draws the polygons anew if they or the window may have changed."""
         is_anywhere = bool(self._barred or self._disliked)
-        if not (self._is_new or (is_rolling and is_anywhere)):
+        if not (self._is_new or (self._is_rolling and is_anywhere)):
             return NO_CELLS
         self._is_new = False
+        window = placement.window
         self._costs = np.zeros((window.rows, window.cols), np.uint8)
         for polygons, cost in ((self._disliked, DISLIKED), (self._barred, LETHAL)):
             for polygon in polygons:
-                polygon.seen_from(map_in_frame).fill(self._costs, window, cost)
+                polygon.seen_from(placement.map_in_frame).fill(self._costs, window, cost)
         return window.everything
 
-    def apply(self, costs: np.ndarray, bounds: Bounds) -> None:
-        """Raises the cells of ``bounds`` in place; the unknown stays so where it is only disliked."""
+    def apply(self, costs: np.ndarray, window: Window, bounds: Bounds) -> None:
+        """Raises the costs; the unknown stays so where it is only disliked."""
         if self._costs.size:
-            rows, cols = slice(*bounds[:2]), slice(*bounds[2:])
+            rows, cols = bounds.slices
             below, above = costs[rows, cols], self._costs[rows, cols]
             np.maximum(below, above, out=below)
             below[above == LETHAL] = LETHAL

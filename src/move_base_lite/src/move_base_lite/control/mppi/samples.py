@@ -1,0 +1,27 @@
+"""Ways of driving to be tried: speeds and turn rates over time."""
+
+import numpy as np
+
+from move_base_lite.control.mppi.settings import MppiSettings
+
+# Points in time at which the speeds of a sample are drawn; between them they change evenly.
+KNOTS = 5
+
+
+def smooth_noise(rng: np.random.Generator, settings: MppiSettings, steps: int) -> np.ndarray:
+    """Deviations (samples, steps, 2) of speed and turn rate; the first is none."""
+    knots = rng.standard_normal((settings.samples, KNOTS, 2))
+    knots *= (settings.noise_vel_x, settings.noise_vel_theta)
+    knots[0] = 0.0
+    at = np.linspace(0.0, KNOTS - 1.0, steps)
+    before = np.minimum(at.astype(int), KNOTS - 2)
+    share = (at - before)[None, :, None]
+    return (1.0 - share) * knots[:, before] + share * knots[:, before + 1]
+
+
+def fan(settings: MppiSettings, steps: int) -> np.ndarray:
+    """Ways (N, steps, 2) that a stuck mean would not come upon: arcs at some speeds, ahead and back."""
+    speeds = [settings.max_vel_x, 0.5 * settings.max_vel_x, settings.creep_vel_x, 0.0, settings.min_vel_x]
+    rates = np.linspace(-settings.max_vel_theta, settings.max_vel_theta, 11)
+    arcs = np.array([(v, omega) for v in speeds for omega in rates])
+    return np.repeat(arcs[:, None, :], steps, axis=1)

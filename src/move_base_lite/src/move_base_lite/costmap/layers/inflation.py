@@ -1,0 +1,120 @@
+"""Inflation: what lies near an obstacle costs the more the nearer it is (costmap_2d's inflation layer)."""
+
+import math
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+
+from move_base_lite.costmap.costs import FREE, INSCRIBED, LETHAL, UNKNOWN
+from move_base_lite.costmap.layer import Layer, LayerSettings, Site
+from move_base_lite.costmap.window import Bounds, Window
+from move_base_lite.plugin import Plugin
+from planar.config.parameters import at_least, check_parameters, parameter
+
+
+@dataclass(frozen=True)
+class InflationSettings(LayerSettings):
+    """costmap_2d's parameters of it."""
+
+    inflation_radius: float = parameter(
+        0.55, "of what costs around an obstacle", "m", at_least(0.0), dynamic=50.0
+    )
+    cost_scaling_factor: float = parameter(10.0, "how fast costs fall", "1/m", at_least(0.0), dynamic=100.0)
+    inflate_unknown: bool = parameter(
+        False, "whether cells of which nothing is known cost as well", dynamic=True
+    )
+
+    def __post_init__(self):
+        check_parameters(self)
+
+
+def cost_at(distance: float, inscribed_radius: float, settings: InflationSettings) -> int:
+    """Cost of a cell so many metres from the nearest obstacle."""
+    if distance <= 0.0:
+        return LETHAL
+    if distance > settings.inflation_radius:
+        return FREE
+    if distance <= inscribed_radius:
+        return INSCRIBED
+    return int((INSCRIBED - 1) * math.exp(-settings.cost_scaling_factor * (distance - inscribed_radius)))
+
+
+class InflationLayer(Layer):
+    """Raises the costs around lethal cells, within any block of a costmap."""
+
+    def __init__(self, settings: InflationSettings, site: Site):
+        resolution, inscribed_radius = site.window.resolution, site.footprint.inscribed_radius
+        self._inflate_unknown = settings.inflate_unknown
+        self.reach_cells = math.ceil(settings.inflation_radius / resolution)
+        squares = np.arange(self.reach_cells**2 + 1)
+        self._cost_by_square = np.array(
+            [cost_at(math.sqrt(square) * resolution, inscribed_radius, settings) for square in squares],
+            dtype=np.uint8,
+        )
+
+    def apply(self, costs: np.ndarray, window: Window, bounds: Bounds) -> None:
+        """Inflates the cells of ``bounds``; obstacles in reach outside of it count too."""
+        if self.reach_cells:
+            seen = window.grown(bounds, self.reach_cells)
+            near = _cells_to_obstacle_along_columns(costs, bounds, seen, self.reach_cells + 1)
+            _inflate(costs, bounds, seen, near, self._cost_by_square, self._inflate_unknown)
+
+
+# Exact Euclidean distances in two passes (Felzenszwalb and Huttenlocher, 2012), cut off at the reach.
+
+
+@numba.njit(cache=True)
+def _cells_to_obstacle_along_columns(costs, bounds, seen, far):
+    """Cells, int32, from each of the rows of ``bounds`` and columns of ``seen`` to an obstacle of its column,
+    at most ``far``."""
+    row_min, row_max, _, _ = bounds
+    seen_row_min, seen_row_max, seen_col_min, seen_col_max = seen
+    near = np.full((row_max - row_min, seen_col_max - seen_col_min), far, dtype=np.int32)
+    for col in range(seen_col_min, seen_col_max):
+        distance = far
+        for row in range(seen_row_min, row_max):
+            distance = 0 if costs[row, col] == LETHAL else min(distance + 1, far)
+            if row >= row_min:
+                near[row - row_min, col - seen_col_min] = distance
+        distance = far
+        for row in range(seen_row_max - 1, row_min - 1, -1):
+            distance = 0 if costs[row, col] == LETHAL else min(distance + 1, far)
+            if row < row_max and distance < near[row - row_min, col - seen_col_min]:
+                near[row - row_min, col - seen_col_min] = distance
+    return near
+
+
+@numba.njit(cache=True)
+def _inflate(costs, bounds, seen, near, cost_by_square, inflate_unknown):
+    """Raises the costs in ``bounds`` by the squares of the distances to obstacles."""
+    row_min, row_max, col_min, col_max = bounds
+    for row in range(row_min, row_max):
+        for col in range(col_min, col_max):
+            square = _square_to_obstacle(near[row - row_min], col - seen[2], cost_by_square.size)
+            if square >= cost_by_square.size or square == 0:
+                continue
+            cost = cost_by_square[square]
+            if costs[row, col] == UNKNOWN:
+                if cost >= INSCRIBED or (inflate_unknown and cost > FREE):
+                    costs[row, col] = cost
+            elif cost > costs[row, col]:
+                costs[row, col] = cost
+
+
+@numba.njit(cache=True)
+def _square_to_obstacle(near_in_col, middle, limit):
+    """The square of the cells from the middle of a row to an obstacle, if it is below the limit."""
+    best = near_in_col[middle] ** 2
+    offset = 1
+    while offset * offset < min(best, limit):
+        square = offset * offset
+        if middle - offset >= 0:
+            best = min(best, square + near_in_col[middle - offset] ** 2)
+        if middle + offset < near_in_col.size:
+            best = min(best, square + near_in_col[middle + offset] ** 2)
+        offset += 1
+    return best
+
+
+INFLATION: Plugin[Layer] = Plugin("costmap_2d::InflationLayer", InflationSettings, InflationLayer)

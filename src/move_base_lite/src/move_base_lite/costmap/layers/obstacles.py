@@ -1,0 +1,257 @@
+"""What sensors see: marks where beams end, clears where they passed (costmap_2d's obstacle layer)."""
+
+import math
+from dataclasses import dataclass
+from typing import Dict, List, Tuple
+
+import numba
+import numpy as np
+
+from move_base_lite.costmap.costs import FREE, LETHAL, UNKNOWN
+from move_base_lite.costmap.layer import Layer, LayerSettings, Placement, Site
+from move_base_lite.costmap.polygon import Polygon
+from move_base_lite.costmap.sighting import Sighting
+from move_base_lite.costmap.window import NO_CELLS, Bounds, Window, union
+from move_base_lite.plugin import Plugin
+from planar import Pose2
+from planar.config.parameters import POSITIVE, Tunable, at_least, check_parameters, parameter
+from planar.config.settings import check
+
+DATA_TYPES = ("LaserScan", "PointCloud", "PointCloud2")
+OVERWRITE, MAXIMUM, NOTHING = 0, 1, 99
+
+
+@dataclass(frozen=True)
+class SourceSettings:
+    """One sensor."""
+
+    topic: str = parameter("", "its own name, if left out")
+    sensor_frame: str = parameter("", "that of its messages, if empty")
+    data_type: str = parameter("PointCloud", "of its messages", choices=DATA_TYPES)
+    observation_persistence: float = parameter(
+        0.0, "that marks come back for after they were cleared", "s", at_least(0.0)
+    )
+    expected_update_rate: float = parameter(
+        0.0, "without data until the robot stops; 0: never", "s", at_least(0.0)
+    )
+    min_obstacle_height: float = parameter(0.0, "above the floor from which on it marks", "m")
+    max_obstacle_height: float = parameter(2.0, "above the floor up to which it marks", "m")
+    inf_is_valid: bool = parameter(False, "whether a beam without return clears its way")
+    marking: bool = parameter(True, "whether its echoes are obstacles")
+    clearing: bool = parameter(False, "whether the way to its echoes is free")
+    obstacle_range: float = parameter(2.5, "up to which beams mark", "m", POSITIVE)
+    raytrace_range: float = parameter(3.0, "up to which beams clear", "m")
+
+    def __post_init__(self):
+        check_parameters(self)
+        check(
+            self.raytrace_range >= self.obstacle_range or not (self.clearing and self.marking),
+            "raytrace_range",
+            f"at least obstacle_range ({self.obstacle_range:g}), else marks are never cleared",
+            self.raytrace_range,
+        )
+
+
+@dataclass(frozen=True)
+class ObstacleSettings(LayerSettings):
+    """The layer and its sensors."""
+
+    track_unknown_space: bool = parameter(
+        False,
+        "whether the map's unknown stays so until seen, else it is free; default: the costmap's own",
+    )
+    footprint_clearing_enabled: bool = parameter(True, "where the robot stands is free", dynamic=True)
+    max_obstacle_height: float = parameter(
+        2.0, "above the floor up to which any sensor marks", "m", dynamic=(0.0, 50.0)
+    )
+    combination_method: int = parameter(
+        MAXIMUM,
+        "over the layers below: 0 overwrites, 1 takes the higher cost, 99 nothing",
+        dynamic=(0, 99),
+    )
+    sources: Tuple[SourceSettings, ...] = ()
+
+    def __post_init__(self):
+        check_parameters(self)
+        method = self.combination_method
+        check(method in (OVERWRITE, MAXIMUM, NOTHING), "combination_method", "0, 1 or 99", method)
+
+
+@dataclass(frozen=True, eq=False)
+class _Observation:
+    """A sighting from where it was made, in the costmap's frame."""
+
+    sighting: Sighting
+    sensor_in_frame: Pose2
+
+
+class ObstacleLayer(Layer):
+    """Cells that sensors have shown to be occupied or free, aligned with the costmap's window."""
+
+    def __init__(self, settings: ObstacleSettings, site: Site):
+        self._settings, self._footprint = settings, site.footprint
+        self._default = UNKNOWN if settings.track_unknown_space else FREE
+        self._kept: Dict[str, List[_Observation]] = {source.topic: [] for source in settings.sources}
+        self._new: Dict[str, _Observation] = {}
+        self._costs = np.full((site.window.rows, site.window.cols), self._default, dtype=np.uint8)
+
+    def note(self, sighting: Sighting, base_in_frame: Pose2) -> None:
+        """Keeps a sighting until the next update; the newest of a sensor counts."""
+        if sighting.topic in self._kept:
+            self._new[sighting.topic] = _Observation(sighting, base_in_frame @ sighting.sensor_in_base)
+
+    def update(self, placement: Placement) -> Bounds:
+        """Clears for all sensors, then marks; where the robot stands there is no obstacle."""
+        window = placement.window
+        self._roll(placement.rows, placement.cols)
+        changed = self._take_in(window)
+        if self._settings.footprint_clearing_enabled:
+            outline_xy = placement.base_in_frame.transform_points(self._footprint.corners_xy)
+            changed = union(changed, Polygon(outline_xy).fill(self._costs, window, FREE))
+        return changed
+
+    def _take_in(self, window: Window) -> Bounds:
+        changed = NO_CELLS
+        heard = [
+            (source, self._new[source.topic])
+            for source in self._settings.sources
+            if source.topic in self._new
+        ]
+        for source, new in heard:
+            self._integrate(window, source, new, 0.0, source.raytrace_range * source.clearing)
+            reach = max(source.obstacle_range, source.raytrace_range) + window.resolution
+            seen = window.bounds_around(new.sensor_in_frame.x, new.sensor_in_frame.y, reach)
+            changed = union(changed, seen)
+        for source, new in heard:
+            for observation in self._persisting(source, new):
+                self._integrate(window, source, observation, source.obstacle_range * source.marking, 0.0)
+        self._new.clear()
+        return changed
+
+    def _persisting(self, source: SourceSettings, new: _Observation) -> List[_Observation]:
+        """The observations that mark now: the new one, and older ones that still count."""
+        oldest = new.sighting.stamp - source.observation_persistence
+        kept = [one for one in self._kept[source.topic] if one.sighting.stamp >= oldest]
+        self._kept[source.topic] = [*kept, new] if source.observation_persistence > 0.0 else []
+        return [*kept, new]
+
+    def _integrate(self, window, source, observation, mark_range: float, clear_range: float) -> None:
+        sighting, sensor = observation.sighting, observation.sensor_in_frame
+        highest = min(source.max_obstacle_height, self._settings.max_obstacle_height)
+        heights = np.broadcast_to(sighting.heights, sighting.ranges.shape)
+        at_height = (heights >= source.min_obstacle_height) & (heights <= highest)
+        _integrate(
+            self._costs,
+            (sensor.x - window.origin_x) / window.resolution,
+            (sensor.y - window.origin_y) / window.resolution,
+            sensor.yaw + sighting.angles[at_height],
+            sighting.ranges[at_height],
+            sighting.range_min,
+            sighting.range_max,
+            window.resolution,
+            mark_range,
+            clear_range,
+            source.inf_is_valid,
+        )
+
+    def _roll(self, rows: int, cols: int) -> None:
+        """The window has moved by so many cells: keeps what is still in it."""
+        if not (rows or cols):
+            return
+        moved = np.full_like(self._costs, self._default)
+        height, width = self._costs.shape
+        if abs(rows) < height and abs(cols) < width:
+            kept = self._costs[max(rows, 0) : height + min(rows, 0), max(cols, 0) : width + min(cols, 0)]
+            moved[max(-rows, 0) : height + min(-rows, 0), max(-cols, 0) : width + min(-cols, 0)] = kept
+        self._costs = moved
+
+    def apply(self, costs: np.ndarray, window: Window, bounds: Bounds) -> None:
+        if self._settings.combination_method != NOTHING:
+            _stack(costs, self._costs, bounds, self._settings.combination_method == OVERWRITE)
+
+    def clear_outside(self, bounds: Bounds, window: Window) -> Bounds:
+        rows, cols = bounds.slices
+        kept = self._costs[rows, cols].copy()
+        self._costs.fill(self._default)
+        for observations in self._kept.values():
+            observations.clear()
+        self._costs[rows, cols] = kept
+        return window.everything
+
+    def clear_inside(self, bounds: Bounds) -> Bounds:
+        self._costs[bounds.slices] = self._default
+        return bounds
+
+    def take_over(self, before: Layer) -> None:
+        assert isinstance(before, ObstacleLayer)
+        self._costs = before._costs
+
+
+@numba.njit(cache=True)
+def _stack(costs, above, bounds, overwrite):
+    """The higher of both layers, or the upper; the unknown of one gives way to the knowledge of the other."""
+    row_min, row_max, col_min, col_max = bounds
+    for row in range(row_min, row_max):
+        for col in range(col_min, col_max):
+            cost = above[row, col]
+            if cost == UNKNOWN:
+                continue
+            if overwrite or costs[row, col] == UNKNOWN or cost > costs[row, col]:
+                costs[row, col] = cost
+
+
+@numba.njit(cache=True)
+def _integrate(
+    costs, x, y, angles, ranges, range_min, range_max, resolution, mark_range, clear_range, inf_is_valid
+):
+    """Clears along all beams, then marks their ends. ``x``, ``y``: the laser, in cells."""
+    rows, cols = costs.shape
+    for i in range(ranges.size if clear_range > 0.0 else 0):
+        reach = ranges[i]
+        if math.isinf(reach) and reach > 0.0 and inf_is_valid:
+            reach = range_max
+        elif not (range_min <= reach < range_max):
+            continue
+        length = min(reach, clear_range) / resolution
+        _clear_ray(costs, x, y, x + length * math.cos(angles[i]), y + length * math.sin(angles[i]))
+    for i in range(ranges.size):
+        reach = ranges[i]
+        if range_min <= reach < range_max and reach <= mark_range:
+            row = math.floor(y + reach / resolution * math.sin(angles[i]))
+            col = math.floor(x + reach / resolution * math.cos(angles[i]))
+            if 0 <= row < rows and 0 <= col < cols:
+                costs[row, col] = LETHAL
+
+
+@numba.njit(cache=True)
+def _clear_ray(costs, x0, y0, x1, y1):
+    """Frees the cells from (x0, y0) to just before that of (x1, y1), one per row or column."""
+    rows, cols = costs.shape
+    steps = int(max(abs(x1 - x0), abs(y1 - y0)))
+    for step in range(steps):
+        col = math.floor(x0 + (x1 - x0) * step / steps)
+        row = math.floor(y0 + (y1 - y0) * step / steps)
+        if 0 <= row < rows and 0 <= col < cols:
+            costs[row, col] = FREE
+
+
+# Of voxels, which are not here: obstacles are flat.
+FLAT = "(no effect: obstacles are flat)"
+VOXELS = (
+    Tunable("origin_z", 0.0, f"[m] {FLAT}", 0.0),
+    Tunable("z_resolution", 0.2, f"[m] {FLAT}", 0.0, 50.0),
+    Tunable("z_voxels", 10, FLAT, 0, 16),
+    Tunable("unknown_threshold", 15, FLAT, 0, 16),
+    Tunable("mark_threshold", 0, FLAT, 0, 16),
+)
+# Read for the sensors, or known and without meaning.
+IGNORED = frozenset(
+    {"observation_sources", "transform_tolerance", "obstacle_range", "raytrace_range", "publish_voxel_map"}
+    | {voxel.name for voxel in VOXELS}
+)
+OBSTACLES: Plugin[Layer] = Plugin(
+    "costmap_2d::ObstacleLayer", ObstacleSettings, ObstacleLayer, ignored=IGNORED
+)
+VOXEL: Plugin[Layer] = Plugin(
+    "costmap_2d::VoxelLayer", ObstacleSettings, ObstacleLayer, without_effect=VOXELS, ignored=IGNORED
+)

@@ -1,0 +1,164 @@
+"""The Navigator: from poses and scans to velocities that reach a goal."""
+
+from dataclasses import replace
+from typing import Optional, Sequence
+
+import numpy as np
+
+from move_base_lite.config import NavigatorSettings
+from move_base_lite.costmap import LayeredCostmap, Sighting, sighting_of_scan
+from move_base_lite.errors import PlanningError
+from move_base_lite.navigator.crew import Crew
+from move_base_lite.navigator.decision import (
+    CANCELLED_OUTCOME,
+    SUCCEEDED_OUTCOME,
+    SUCCESS_TEXT,
+    Decision,
+    Outcome,
+    Status,
+    Trigger,
+    with_reason,
+)
+from move_base_lite.navigator.pursuit import Moment, Pursuit
+from move_base_lite.navigator.states import GivenUp, HasArrived, step
+from move_base_lite.navigator.zones import Zones
+from move_base_lite.planning import Potential
+from planar import OccupancyGrid, Pose2, Scan, Twist2
+
+
+class Navigator:
+    """Drives a differential-drive robot to one goal at a time, without colliding.
+
+    Call :meth:`tick` once a control period. Plans on a costmap of the map, follows the plan on a costmap of
+    the robot's surroundings, and tries recovery behaviours in order when either fails, as move_base does
+    (states.py).
+    """
+
+    def __init__(
+        self, settings: NavigatorSettings, grid: Optional[OccupancyGrid] = None, zones: Zones = Zones()
+    ):
+        self._grid, self.zones = grid, zones
+        self._crew = Crew(settings, grid, zones)
+        self._new_goal: Optional[Pose2] = None
+        self._pursuit: Optional[Pursuit] = None
+
+    def tick(
+        self,
+        now: float,
+        base_in_map: Pose2,
+        base_in_odom: Pose2,
+        twist: Twist2,
+        scan: Optional[Scan],
+        sightings: Sequence[Sighting] = (),
+    ) -> Decision:
+        """The velocity for the coming period.
+
+        ``now``: seconds; ``scan``: one not given before, as seen from the present pose, or None.
+        ``sightings``: the same of any other sensors.
+        """
+        moment = Moment(now, base_in_map, base_in_odom, twist)
+        if scan is not None:
+            sightings = [*sightings, sighting_of_scan(self.settings.scan_topic, scan)]
+        if self.is_active or not self.settings.move_base.shutdown_costmaps:
+            self._crew.look(moment, sightings)
+        try:
+            self._take_goal(moment)
+            if self._pursuit is None:
+                return Decision(Status.IDLE)
+            self._pursuit.advance(moment, self.settings.move_base.oscillation_distance)
+            decision = step(self._pursuit, moment, self._crew)
+        except HasArrived:
+            outcome = self._outcome(now, SUCCEEDED_OUTCOME, "SUCCESS", SUCCESS_TEXT)
+            return self._end(Status.SUCCEEDED, SUCCESS_TEXT, outcome)
+        except GivenUp as end:
+            text = with_reason(end.text, end.reason)
+            outcome = self._outcome(now, end.reason.outcome, end.reason.code, text)
+            return self._end(Status.ABORTED, text, outcome)
+        left, usual_speed = self._crew.controller.distance_left, self.settings.controller.max_vel_x
+        return replace(decision, progress=self._pursuit.progress(now, left, usual_speed))
+
+    def _take_goal(self, moment: Moment) -> None:
+        """Begins to pursue a new goal, if there is one. Raises GivenUp for one that can never be reached."""
+        goal, self._new_goal = self._new_goal, None
+        if goal is not None:
+            self._pursuit = Pursuit.of(goal, moment)
+            try:
+                self._crew.costmaps.check_goal(goal)
+            except PlanningError as error:
+                raise GivenUp(Trigger.PLANNING.value, error) from error
+
+    def set_goal(self, goal_in_map: Pose2) -> None:
+        """Drives there from the next tick on; a goal under way is left without stopping."""
+        self._new_goal = goal_in_map
+
+    def cancel(self, now: float) -> Decision:
+        """Ends the goal under way: the robot is to stop at once."""
+        return self._end(Status.CANCELLED, "", self._outcome(now, CANCELLED_OUTCOME, "CANCELLED", ""))
+
+    def forget_goal(self) -> None:
+        """Drops the goal without a word; the robot has to be stopped by other means."""
+        self._new_goal = self._pursuit = None
+        self._crew.begin_anew()
+
+    def forget(self) -> None:
+        """Forgets the goal and all that was seen, as after a jump of time."""
+        self.set_map(self._grid)
+        self.forget_goal()
+
+    def set_map(self, grid: Optional[OccupancyGrid]) -> None:
+        """Goes on with another map, from which obstacles have to be seen anew."""
+        self._grid = grid
+        self._crew.set_map(grid)
+
+    def change(self, settings: NavigatorSettings) -> None:
+        """Goes on with other settings, goal and plan included."""
+        self._crew.change(settings)
+
+    @property
+    def settings(self) -> NavigatorSettings:
+        """Those in force."""
+        return self._crew.settings
+
+    @property
+    def is_active(self) -> bool:
+        """Whether there is a goal."""
+        return self._pursuit is not None or self._new_goal is not None
+
+    @property
+    def global_costmap(self) -> LayeredCostmap:
+        """The costmap to plan on, in the map's frame."""
+        return self._crew.costmaps.whole
+
+    @property
+    def local_costmap(self) -> LayeredCostmap:
+        """The costmap to drive on, in odometry's frame."""
+        return self._crew.costmaps.near
+
+    @property
+    def potential(self) -> Optional[Potential]:
+        """The wave of the newest plan, if the settings ask for it."""
+        return self._crew.planner.potential
+
+    def make_plan(self, start_in_map: Pose2, goal_in_map: Pose2, tolerance: float = 0.0) -> np.ndarray:
+        """Path (N, 2) in the map between any two places. Raises PlanningError."""
+        return self._crew.plan(start_in_map, goal_in_map, tolerance)
+
+    def clear_costmaps(self) -> None:
+        """Forgets all obstacles that are not in the map."""
+        self._crew.costmaps.clear()
+
+    def clear_around(self, base_in_map: Pose2) -> None:
+        """Forgets what obstacles the map's costmap shows where the robot stands."""
+        radius = self.settings.move_base.clearing_radius
+        self.global_costmap.clear_around(
+            base_in_map, 2.0 * (radius or self.global_costmap.footprint.circumscribed_radius)
+        )
+
+    def _outcome(self, now: float, code: int, reason: str, text: str) -> Outcome:
+        if self._pursuit is None:
+            return Outcome(code, reason, text)
+        return self._pursuit.outcome(now, code, reason, text)
+
+    def _end(self, status: Status, text: str, outcome: Outcome) -> Decision:
+        self.forget_goal()
+        return Decision(status, Twist2(), text, outcome=outcome)

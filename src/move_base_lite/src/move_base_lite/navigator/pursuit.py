@@ -1,0 +1,139 @@
+"""The pursuit of one goal: since when what has failed, and how far recovery has come."""
+
+import math
+from dataclasses import dataclass, field
+from typing import Optional, Tuple
+
+import numpy as np
+
+from move_base_lite.errors import ControlError, NavigationError
+from move_base_lite.navigator.decision import Outcome, Progress, Status, Trigger
+from move_base_lite.recovery import RecoveryBehavior, SpeedLimit
+from planar import Pose2, Twist2, wrap
+
+# Metres after which the speed so far tells how long the rest will take.
+TELLING_DISTANCE = 1.0
+
+
+@dataclass(frozen=True)
+class Moment:
+    """The robot in this control period: seconds, its pose in two frames, its velocity."""
+
+    now: float
+    base_in_map: Pose2
+    base_in_odom: Pose2
+    twist: Twist2
+
+
+@dataclass
+class Pursuit:
+    """What the Navigator remembers while it has a goal; ``pose`` is where the robot was seen last.
+
+    ``path_xy``: (N, 2) in the map, the plan in use, made at ``planned_at``; empty if the last one failed.
+    """
+
+    goal: Pose2
+    started: float
+    pose: Pose2
+    progress_pose: Pose2
+    last_progress: float
+    planning_since: float
+    next_plan: float
+    status: Status = Status.PLANNING
+    trigger: Trigger = Trigger.PLANNING
+    control_fails_since: Optional[float] = None
+    failed_plans: int = 0
+    recovery_index: int = 0
+    recovery: Optional[RecoveryBehavior] = None
+    reason: Optional[NavigationError] = None
+    travelled: float = 0.0
+    recoveries_used: int = 0
+    slow: Optional[Tuple[SpeedLimit, Pose2]] = None
+    path_xy: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
+    planned_at: float = -math.inf
+
+    @classmethod
+    def of(cls, goal: Pose2, moment: Moment) -> "Pursuit":
+        """A pursuit that begins now and here."""
+        now, here = moment.now, moment.base_in_map
+        return cls(goal, now, here, here, now, now, now)
+
+    def advance(self, moment: Moment, oscillation_distance: float) -> None:
+        """The robot has moved on; so many metres from where it was before are progress."""
+        self.travelled += self.pose.distance_to(moment.base_in_map)
+        self.pose = moment.base_in_map
+        if self.pose.distance_to(self.progress_pose) >= oscillation_distance:
+            self.progress_pose, self.last_progress = self.pose, moment.now
+            self.has_overcome(Trigger.OSCILLATION)
+
+    def speed_limit(self, base_in_odom: Pose2, allowed: float) -> Twist2:
+        """The highest speeds that anything but the controller's own settings allows.
+
+        ``allowed``: m/s, where the robot is; a recovery may have it go more slowly for a while.
+        """
+        if self.slow is not None:
+            limit, since = self.slow
+            if base_in_odom.distance_to(since) < limit.distance:
+                return Twist2(min(limit.highest.v, allowed), limit.highest.omega)
+            self.slow = None
+        return Twist2(allowed, math.inf)
+
+    def drive(self) -> None:
+        """There is a plan."""
+        self.status = Status.CONTROLLING
+        self.failed_plans = 0
+        self.has_overcome(Trigger.PLANNING)
+
+    def control_has_succeeded(self) -> None:
+        """There is a velocity."""
+        self.control_fails_since = None
+        self.has_overcome(Trigger.CONTROLLING)
+
+    def control_has_failed(self, error: ControlError, now: float, patience: float) -> None:
+        """Without a velocity another plan may help, or, after so many seconds, recovery."""
+        self.reason = error
+        if self.control_fails_since is None:
+            self.control_fails_since = now
+        if now - self.control_fails_since > patience:
+            self.clear_up(Trigger.CONTROLLING)
+        else:
+            self.plan_anew(now)
+
+    def has_overcome(self, trigger: Trigger) -> None:
+        """What recovery was begun for is no more: the next trouble starts with the first behaviour."""
+        if self.trigger is trigger:
+            self.recovery_index = 0
+
+    def clear_up(self, trigger: Trigger) -> None:
+        """Recovery is to begin."""
+        self.status, self.trigger = Status.CLEARING, trigger
+
+    def plan_anew(self, now: float) -> None:
+        """Another plan is to be made, with full patience."""
+        self.status = Status.PLANNING
+        self.planning_since, self.failed_plans = now, 0
+
+    def end_recovery(self, now: float) -> None:
+        """One behaviour has ended; the next trouble gets the next one."""
+        self.recovery = None
+        self.recovery_index += 1
+        self.last_progress, self.control_fails_since = now, None
+        self.plan_anew(now)
+
+    def progress(self, now: float, distance_left: float, usual_speed: float) -> Progress:
+        """How it stands; before the robot's own speed tells, the usual one says how long the rest takes."""
+        seconds = now - self.started
+        speed = self.travelled / seconds if self.travelled > TELLING_DISTANCE else usual_speed
+        return Progress(seconds, self.travelled, self.recoveries_used, distance_left, distance_left / speed)
+
+    def outcome(self, now: float, code: int, reason: str, text: str) -> Outcome:
+        """How it ended."""
+        return Outcome(
+            code,
+            reason,
+            text,
+            self.pose.distance_to(self.goal),
+            abs(wrap(self.goal.yaw - self.pose.yaw)),
+            self.recoveries_used,
+            now - self.started,
+        )

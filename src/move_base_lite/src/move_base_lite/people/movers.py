@@ -1,0 +1,75 @@
+"""What moves near the robot: beams that end together where it was free, tracked at constant velocity."""
+
+from collections import deque
+from dataclasses import replace
+from typing import Deque, List, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+from move_base_lite.costmap import Sighting
+from move_base_lite.people.track import Track
+from move_base_lite.people.views import Thing, View, things_in
+from planar import Pose2
+
+# Seconds after which a place is looked at again.
+LOOK_BACK = 1.0
+# Share of a thing's beams that must end where it was free before.
+SHARE_FREE = 0.5
+# Seconds that a track may be hidden, and for which what has moved is not taken for an obstacle that stays.
+HIDDEN, MOVED_LATELY = 0.6, 4.0
+NO_MOVERS = np.empty((0, 5))
+
+
+class Movers:
+    """Tracks what a laser sees moving; the frame is odometry's, which is smooth."""
+
+    def __init__(self) -> None:
+        self._past: Deque[View] = deque()
+        self._tracks: List[Track] = []
+
+    def look(self, base_in_odom: Pose2, sighting: Sighting) -> Sighting:
+        """Takes in the newest scan, made from there; returns it without what has moved lately."""
+        if self._past and sighting.stamp < self._past[-1].stamp:
+            self._past.clear()
+            self._tracks.clear()
+        view = View(base_in_odom @ sighting.sensor_in_base, sighting)
+        things = things_in(view)
+        before = self._view_before(view.stamp)
+        for track in self._tracks:
+            track.predict(view.stamp)
+        for thing in things:
+            has_come = before is not None and before.share_seen_through(thing.points_xy) >= SHARE_FREE
+            own = self._track_of(thing)
+            if own is not None:
+                own.correct(thing, has_come)
+            elif has_come:
+                self._tracks.append(Track(thing, view.stamp))
+        self._tracks = [track for track in self._tracks if view.stamp - track.seen_at <= HIDDEN]
+        self._past.append(view)
+        return replace(sighting, ranges=self._lasting(view, sighting.ranges))
+
+    def at(self, now: float) -> NDArray[np.float64]:
+        """What moves: rows (N, 5) of x, y, its velocity by x and y, and radius; metres, m/s, in odom."""
+        moving = [track.ahead(now) for track in self._tracks if track.is_moving]
+        return np.array(moving) if moving else NO_MOVERS
+
+    def _lasting(self, view: View, ranges: np.ndarray) -> np.ndarray:
+        """The ranges (N,), NaN where a beam ends on what has moved lately."""
+        lasting = np.array(ranges)
+        for track in self._tracks:
+            if view.stamp - track.moved_at <= MOVED_LATELY:
+                lasting[view.beams[track.covers(view.points_xy)]] = np.nan
+        return lasting
+
+    def _view_before(self, stamp: float) -> Optional[View]:
+        """The newest view that is old enough to tell what was free; None if there is none yet."""
+        while len(self._past) > 1 and stamp - self._past[1].stamp >= LOOK_BACK:
+            self._past.popleft()
+        is_there = self._past and stamp - self._past[0].stamp >= LOOK_BACK
+        return self._past[0] if is_there else None
+
+    def _track_of(self, thing: Thing) -> Optional[Track]:
+        """The nearest track that the thing may belong to and that nothing else belongs to."""
+        candidates = [track for track in self._tracks if track.may_be(thing)]
+        return min(candidates, key=lambda track: track.distance_to(thing)) if candidates else None

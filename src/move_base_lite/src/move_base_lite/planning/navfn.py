@@ -1,0 +1,183 @@
+"""navfn and global_planner: a wavefront from the robot, a path down its gradient from the goal."""
+
+from dataclasses import dataclass
+from typing import Any, Dict, Optional, Tuple
+
+import numpy as np
+
+from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, Window
+from move_base_lite.errors import GoalBlocked, NoPath, OutOfMap, StartBlocked
+from move_base_lite.planning.global_planner import (
+    ORIENTATIONS,
+    GlobalPlanner,
+    PlannerSettings,
+    Potential,
+)
+from move_base_lite.planning.nearest import Cell, passable_ends
+from move_base_lite.planning.shortcuts import shortened
+from move_base_lite.planning.wavefront import descend, spread, traversal_costs
+from move_base_lite.plugin import Plugin
+from planar.config.parameters import Bounds, Tunable, at_least, parameter
+from planar.config.settings import check
+
+STEP_CELLS = 0.5
+# Cells that a shortcut may span: any number at any angle; otherwise what evens out the steps of the gradient.
+ANY_ANGLE, SMOOTH = 200.0, 3.0
+START_TOLERANCE = 0.5
+
+
+@dataclass(frozen=True)
+class NavfnSettings(PlannerSettings):
+    """navfn's parameters, and what it has more here; entering a cell costs neutral + factor * cost."""
+
+    use_astar: bool = parameter(False, "a wave towards the goal only")
+    use_grid_path: bool = parameter(False, "from cell to cell instead of down the gradient")
+    any_angle: bool = parameter(False, "with straight lines where they cost no more")
+    neutral_cost: int = parameter(50, "of entering a free cell")
+    cost_factor: float = parameter(
+        0.8, "how much a cell's cost adds to that; GlobalPlanner: 3.0", bounds=at_least(0.0)
+    )
+    lethal_cost: int = parameter(
+        253, "cost from which on a cell cannot be entered", bounds=Bounds(high=253, words="at most 253")
+    )
+
+    def __post_init__(self):
+        super().__post_init__()
+        check(
+            1 <= self.neutral_cost < self.lethal_cost, "neutral_cost", "1 to lethal_cost", self.neutral_cost
+        )
+
+
+@dataclass(frozen=True)
+class GlobalPlannerSettings(NavfnSettings):
+    """The same with global_planner's names, defaults, and what of them dynamic_reconfigure may change."""
+
+    lethal_cost: int = parameter(
+        253,
+        "cost from which on a cell cannot be entered",
+        bounds=Bounds(high=253, words="at most 253"),
+        dynamic=(1, 255),
+    )
+    neutral_cost: int = parameter(50, "of entering a free cell", dynamic=(1, 255))
+    cost_factor: float = parameter(
+        3.0, "how much a cell's cost adds to that", bounds=at_least(0.0), dynamic=(0.01, 5.0)
+    )
+    visualize_potential: bool = parameter(
+        True, "whether the wave of each plan is shown", name="publish_potential", dynamic=True
+    )
+    orientation_mode: int = parameter(1, ORIENTATIONS, bounds=Bounds(0, 6, "0 to 6"), dynamic=(0, 6))
+
+
+class Navfn:
+    """A GlobalPlanner with navfn's costs and wavefront."""
+
+    def __init__(self, settings: NavfnSettings):
+        self._settings = settings
+        self.potential: Optional[Potential] = None
+
+    def plan(
+        self,
+        costs: np.ndarray,
+        window: Window,
+        start_xy: Tuple[float, float],
+        goal_xy: Tuple[float, float],
+        tolerance: float = 0.0,
+    ) -> np.ndarray:
+        """A blocked end gives way to a place from which the other one can be reached, if any can."""
+        settings = self._settings
+        traversal = traversal_costs(
+            costs, settings.allow_unknown, settings.neutral_cost, settings.cost_factor, settings.lethal_cost
+        )
+        start = _cell_in_map(window, start_xy, "robot")
+        goal = _cell_in_map(window, goal_xy, "goal")
+        tolerance_cells = max(tolerance, settings.default_tolerance) / window.resolution
+        start_cells = START_TOLERANCE / window.resolution
+        free_start, free_goal = passable_ends(traversal, start, goal, start_cells, tolerance_cells)
+        if free_start is None:
+            raise StartBlocked(f"{_named('robot', start_xy)} is {_why(costs[start])}")
+        if free_goal is None:
+            raise GoalBlocked(f"{_named('goal', goal_xy)} is {_why(costs[goal])}")
+        if free_start == free_goal:
+            return np.array([start_xy, goal_xy if free_goal == goal else _centre(window, free_goal)])
+        path_cells = self._path_cells(traversal, window, free_start, free_goal)
+        if not len(path_cells):
+            raise NoPath(f"no way leads from {_named('robot', start_xy)} to {_named('goal', goal_xy)}")
+        path_xy = path_cells * window.resolution + (window.origin_x, window.origin_y)
+        ends = [np.array([start_xy]), path_xy[1:-1] if free_start == start else path_xy[:-1]]
+        ends.append(np.array([goal_xy]) if free_goal == goal else path_xy[-1:])
+        return np.concatenate(ends)
+
+    def _path_cells(self, traversal: np.ndarray, window: Window, start: Cell, goal: Cell) -> np.ndarray:
+        """The path (N, 2) as (col, row), empty if nothing leads there; keeps the wave if it is to be seen."""
+        settings = self._settings
+        potential = spread(traversal, *start, *goal, settings.use_astar)
+        if settings.visualize_potential:
+            self.potential = Potential(potential, window, float(potential[goal]))
+        path_cells = descend(potential, *start, *goal, 0.0 if settings.use_grid_path else STEP_CELLS)
+        if len(path_cells) and not settings.use_grid_path:
+            return shortened(traversal, path_cells, ANY_ANGLE if settings.any_angle else SMOOTH)
+        return path_cells
+
+
+def _cell_in_map(window: Window, point_xy: Tuple[float, float], what: str) -> Cell:
+    if not window.contains(*point_xy):
+        raise OutOfMap(f"{_named(what, point_xy)} is outside the map")
+    return window.cell_of(*point_xy)
+
+
+def _named(what: str, point_xy: Tuple[float, float]) -> str:
+    return f"the {what} at ({point_xy[0]:.2f}, {point_xy[1]:.2f})"
+
+
+def _why(cost: int) -> str:
+    if cost == UNKNOWN:
+        return "in unknown space"
+    if cost == LETHAL:
+        return "in an obstacle"
+    return "too close to an obstacle" if cost == INSCRIBED else "on the edge of the map"
+
+
+def _centre(window: Window, cell: Tuple[int, int]) -> Tuple[float, float]:
+    row, col = cell
+    return (
+        window.origin_x + (col + 0.5) * window.resolution,
+        window.origin_y + (row + 0.5) * window.resolution,
+    )
+
+
+def _with_astar(values: Dict[str, Any]) -> Dict[str, Any]:
+    """``use_dijkstra: false`` is how global_planner is told to use A*."""
+    if "use_dijkstra" not in values:
+        return values
+    return {
+        **{name: value for name, value in values.items() if name != "use_dijkstra"},
+        "use_astar": not values["use_dijkstra"],
+    }
+
+
+# Of global_planner's details; known in both namespaces.
+IGNORED = frozenset(
+    {
+        "planner_window_x", "planner_window_y", "outline_map", "old_navfn_behavior", "use_quadratic",
+        "orientation_window_size", "restore_defaults",
+    }
+)  # fmt: skip
+
+NAVFN: Plugin[GlobalPlanner] = Plugin(
+    "navfn/NavfnROS",
+    NavfnSettings,
+    Navfn,
+    translated=_with_astar,
+    ignored=IGNORED | {"publish_potential"},
+)
+GLOBAL_PLANNER: Plugin[GlobalPlanner] = Plugin(
+    "global_planner/GlobalPlanner",
+    GlobalPlannerSettings,
+    Navfn,
+    translated=_with_astar,
+    without_effect=(
+        Tunable("orientation_window_size", 1, "(no effect)", 1, 255),
+        Tunable("outline_map", True, "(no effect: the rim is always barred)"),
+    ),
+    ignored=IGNORED,
+)

@@ -1,0 +1,58 @@
+"""Forgetting obstacles (clear_costmap_recovery)."""
+
+from dataclasses import dataclass
+from typing import Optional
+
+from move_base_lite.plugin import Plugin
+from move_base_lite.recovery.behavior import RecoveryBehavior, RecoveryContext
+from planar import Twist2
+from planar.config.parameters import at_least, check_parameters, parameter
+from planar.config.settings import check
+
+LOCAL, GLOBAL, BOTH = "local", "global", "both"
+
+
+@dataclass(frozen=True)
+class ClearCostmapSettings:
+    """What is forgotten, and where."""
+
+    reset_distance: float = parameter(
+        3.0,
+        "side of the square around the robot outside of which obstacles are forgotten",
+        "m",
+        at_least(0.0),
+    )
+    invert_area_to_clear: bool = parameter(False, "whether they are forgotten inside of it")
+    affected_maps: str = parameter(BOTH, "local, global or both")
+
+    def __post_init__(self):
+        check_parameters(self)
+        maps = self.affected_maps
+        check(maps in (LOCAL, GLOBAL, BOTH), "affected_maps", "local, global or both", maps)
+
+
+class ClearCostmap(RecoveryBehavior):
+    """Forgets obstacles outside a square round the robot, or inside it; what is still seen comes back."""
+
+    def __init__(self, settings: ClearCostmapSettings):
+        self._settings = settings
+
+    def step(self, context: RecoveryContext) -> Optional[Twist2]:
+        side, affected = self._settings.reset_distance, self._settings.affected_maps
+        for name, costmap, base in (
+            (GLOBAL, context.global_costmap, context.base_in_map),
+            (LOCAL, context.local_costmap, context.base_in_local),
+        ):
+            if affected in (name, BOTH):
+                clear = costmap.clear_around if self._settings.invert_area_to_clear else costmap.clear_outside
+                clear(base, side)
+        return None
+
+
+# All layers of obstacles are cleared, and costmaps are brought up to date every period.
+CLEAR_COSTMAP: Plugin[RecoveryBehavior] = Plugin(
+    "clear_costmap_recovery/ClearCostmapRecovery",
+    ClearCostmapSettings,
+    ClearCostmap,
+    ignored=frozenset({"layer_names", "force_updating"}),
+)

@@ -1,0 +1,45 @@
+"""Going on slowly (move_slow_and_clear)."""
+
+from dataclasses import dataclass
+from typing import Optional
+
+from move_base_lite.plugin import Plugin
+from move_base_lite.recovery.behavior import RecoveryBehavior, RecoveryContext, SpeedLimit
+from planar import Twist2
+from planar.config.parameters import POSITIVE, at_least, check_parameters, parameter
+
+
+@dataclass(frozen=True)
+class SlowSettings:
+    """What is cleared around the robot, and how fast it may go until it has moved on."""
+
+    clearing_distance: float = parameter(0.5, "around the robot that is forgotten", "m", at_least(0.0))
+    limited_trans_speed: float = parameter(0.25, "highest speed", "m/s", POSITIVE)
+    limited_rot_speed: float = parameter(0.45, "highest turn rate", "rad/s", POSITIVE)
+    limited_distance: float = parameter(0.3, "to be driven slowly", "m", at_least(0.0))
+
+    def __post_init__(self):
+        check_parameters(self)
+
+
+class MoveSlow(RecoveryBehavior):
+    """Forgets obstacles near the robot and has it go on slowly."""
+
+    def __init__(self, settings: SlowSettings):
+        self._settings = settings
+
+    def step(self, context: RecoveryContext) -> Optional[Twist2]:
+        settings = self._settings
+        context.global_costmap.clear_around(context.base_in_map, 2.0 * settings.clearing_distance)
+        context.local_costmap.clear_around(context.base_in_local, 2.0 * settings.clearing_distance)
+        highest = Twist2(settings.limited_trans_speed, settings.limited_rot_speed)
+        context.limit_speed(SpeedLimit(highest, settings.limited_distance))
+        return None
+
+
+MOVE_SLOW: Plugin[RecoveryBehavior] = Plugin(
+    "move_slow_and_clear/MoveSlowAndClear",
+    SlowSettings,
+    MoveSlow,
+    ignored=frozenset({"max_trans_param_name", "max_rot_param_name", "planner_namespace"}),
+)
