@@ -1,51 +1,46 @@
 """Plays a bag straight into a node: ``amcl --run-from-bag``."""
 
 import time
+from pathlib import Path
 
-import rosbag
 import rospy
 from tf2_msgs.msg import TFMessage
 
-from planar import PlanarError
+from planar_ros.bags.bag import TF, TF_STATIC, Bag, BagError, full_name
 from planar_ros.messages.conversion import LaserScanArrays
 from planar_ros.messages.scan_queue import ScanQueue
 from planar_ros.messages.transforms import Transforms
 
-TF_TOPICS = ("tf", "/tf", "/tf_static")
 POLL_SECONDS = 0.01
 
 
-class BagError(PlanarError):
-    """A bag cannot be read."""
-
-
-def play_bag(path: str, transforms: Transforms, scans: ScanQueue, scan_period: float) -> None:
+def play_bag(path: Path, transforms: Transforms, scans: ScanQueue, scan_period: float) -> None:
     """Feeds the bag's transforms and scans to ``transforms`` and ``scans``; returns when all are dealt with.
 
     ``scan_period``: wall seconds between scans, 0 or less for none. What is fed is published too. Raises
-    BagError.
+    BagError, if the bag was cut off when what there is of it has been dealt with.
     """
-    scan_topics = (scans.topic, scans.topic.lstrip("/"))
+    scan_topic = full_name(scans.topic)
     scan_publisher = rospy.Publisher(scans.topic, LaserScanArrays, queue_size=100)
     tf_publisher = rospy.Publisher("/tf", TFMessage, queue_size=100)
-    try:
-        with rosbag.Bag(path) as bag:
-            for topic, message, _ in bag.read_messages(topics=(*scan_topics, *TF_TOPICS)):
-                if rospy.is_shutdown():
-                    return
-                if topic in TF_TOPICS:
-                    transforms.take(message, is_static=topic == "/tf_static")
-                    tf_publisher.publish(message)
-                    continue
-                scans.take(message)
-                scan_publisher.publish(message)
-                _wait_until(lambda: scans.waiting < scans.size)
-                if scan_period > 0.0:
-                    time.sleep(scan_period)
-    except (OSError, rosbag.ROSBagException) as error:
-        raise BagError(f"{path}: {error}") from None
+    bag = Bag(path)
+    transforms.take(TFMessage(bag.first_static_transforms()), is_static=True)
+    for topic, message, _ in bag.messages([scan_topic, TF, TF_STATIC]):
+        if rospy.is_shutdown():
+            return
+        if topic != scan_topic:
+            transforms.take(message, is_static=topic == TF_STATIC)
+            tf_publisher.publish(message)
+            continue
+        scans.take(message)
+        scan_publisher.publish(message)
+        _wait_until(lambda: scans.waiting < scans.size)
+        if scan_period > 0.0:
+            time.sleep(scan_period)
     scans.take_no_more()
     _wait_until(lambda: scans.waiting == 0)
+    if bag.gap:
+        raise BagError(f"{path}: {bag.gap}")
 
 
 def _wait_until(is_so):

@@ -8,6 +8,7 @@ amcl_lite --run-from-bag BAG [--global-localization]
 import argparse
 import threading
 import time
+from pathlib import Path
 from typing import Optional, Tuple
 
 import numpy as np
@@ -125,7 +126,7 @@ class AmclNode:
         from amcl_lite.ros.bag_player import play_bag  # rosbag takes memory, and is rarely wanted
 
         start = time.monotonic()
-        play_bag(path, self._transforms, self._scans, self._settings.bag_scan_period)
+        play_bag(Path(path), self._transforms, self._scans, self._settings.bag_scan_period)
         rospy.loginfo("Bag complete, took %.1f seconds to process, shutting down", time.monotonic() - start)
         if self._last_estimate is not None:
             pose = self._last_estimate.base_in_map

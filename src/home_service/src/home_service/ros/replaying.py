@@ -6,7 +6,6 @@ from typing import Optional, Sequence
 import rospy
 from std_msgs.msg import String
 
-from home_service.bag_files import LASER_SCAN, Recording
 from home_service.judging.verdict import Verdict
 from home_service.options import LaunchPlan, RunOptions
 from home_service.ros.bags.player import BROKEN, ENDED
@@ -14,7 +13,8 @@ from home_service.ros.mapping import save_map
 from home_service.ros.referee import Referee
 from home_service.ros.run import Run
 from home_service.ros.run_recorder import RunRecorder
-from planar_ros.bags.scan_log import BagError
+from planar_ros.bags.bag import LASER_SCAN, BagError
+from planar_ros.bags.recording import Recording
 from supervision.display import Display
 from supervision.interruption import raise_when_interrupted
 

@@ -17,9 +17,9 @@ from roslib.message import get_message_class
 from std_msgs.msg import Header, String
 from tf2_msgs.msg import TFMessage
 
-from home_service.bag_files import INPUT_TYPES, LASER_SCAN, Played, Recording
 from planar import SettingsError
-from planar_ros.bags.scan_log import BagError
+from planar_ros.bags.bag import LASER_SCAN, TF_STATIC, BagError, Played
+from planar_ros.bags.recording import Recording
 from planar_ros.messages.conversion import frame_name, time_of
 from planar_ros.node.progress import TOPIC as PROGRESS_TOPIC
 from planar_ros.node.shell import run
@@ -31,7 +31,7 @@ CLOCK_SECONDS = 0.01
 AHEAD_SECONDS = 0.5
 """The nodes may be so far behind the bag's time, which is when a message came, not the time it speaks of."""
 BEGINNING_SECONDS = 0.3
-STATIC = "/tf_static"
+INPUT_TYPES = {LASER_SCAN, "sensor_msgs/PointCloud2", "nav_msgs/Odometry", "tf2_msgs/TFMessage"}
 MAP_FRAME = "map"
 
 
@@ -62,7 +62,7 @@ class BagPlayer:
                 topic,
                 get_message_class(types[topic]),
                 queue_size=100,
-                latch=topic == STATIC,
+                latch=topic == TF_STATIC,
                 tcp_nodelay=True,
             )
             for topic in self._topics
@@ -73,7 +73,7 @@ class BagPlayer:
         self._state.publish(PLAYING)
         self._tell_static()
         self._wait_for_listeners()
-        messages = self._recording.messages(self._topics - {STATIC})
+        messages = self._recording.messages(self._topics - {TF_STATIC})
         try:
             self._play(itertools.chain(self._beginning(messages), messages))
         except BagError as error:
@@ -122,14 +122,14 @@ class BagPlayer:
 
     def _tell_static(self) -> None:
         """All at once: a latched topic keeps only its last message."""
-        if STATIC not in self._publishers:
+        if TF_STATIC not in self._publishers:
             return
         together = {
             transform.child_frame_id: transform
-            for played in self._recording.messages({STATIC})
+            for played in self._recording.messages({TF_STATIC})
             for transform in played.message.transforms
         }
-        self._publishers[STATIC].publish(TFMessage(list(together.values())))
+        self._publishers[TF_STATIC].publish(TFMessage(list(together.values())))
 
     def _wait_for_listeners(self) -> None:
         """Until somebody listens to the scans, or for half a minute."""

@@ -4,12 +4,12 @@ import rospy
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
 
-from home_service.bag_files import LASER_SCAN, Recording, bag_paths
-from planar_ros.bags.scan_log import BagError
+from planar_ros.bags.bag import LASER_SCAN, BagError
+from planar_ros.bags.recording import Recording, bag_paths
 
 
-def write_bag(path, start, count):
-    with rosbag.Bag(str(path), "w", chunk_threshold=4000) as bag:
+def write_bag(path, start, count, chunk_bytes=4000):
+    with rosbag.Bag(str(path), "w", chunk_threshold=chunk_bytes) as bag:
         for i in range(count):
             stamp = rospy.Time.from_sec(start + 0.1 * i)
             bag.write("/scan", LaserScan(ranges=[1.0] * 100), stamp)
@@ -55,3 +55,17 @@ def test_what_holds_nothing_to_play_is_refused_by_name(tmp_path):
     cut.write_bytes(cut.read_bytes()[:4200])
     with pytest.raises(BagError, match="cut.bag: cut off before the first complete chunk"):
         Recording([cut])
+
+
+def test_of_several_bags_the_broken_one_is_named(tmp_path):
+    """Also if the bags are not named in the order of time."""
+    early, late = (
+        write_bag(tmp_path / "early.bag", 1.0, 5),
+        write_bag(tmp_path / "late.bag", 11.0, 200, 10**6),
+    )
+    content = bytearray(late.read_bytes())
+    middle = len(content) // 2
+    content[middle : middle + 8000] = b"\xff" * 8000
+    late.write_bytes(content)
+    with pytest.raises(BagError, match=r"late\.bag: broken"):
+        list(Recording([late, early]).messages({"/scan"}))

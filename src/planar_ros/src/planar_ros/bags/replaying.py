@@ -1,0 +1,80 @@
+"""What commands share that work through a bag offline."""
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Callable, Iterable, List, Optional, Type, TypeVar
+
+import numpy as np
+from rich.console import Console
+from rich.progress import Progress
+
+from planar import PlanarError, write_atomically
+from planar.config.settings_file import settings_from_yaml
+from planar.files.tum import tum_text
+from planar_ros.bags.bag import BagError
+from planar_ros.bags.scan_log import LoggedScan, ScanLog
+
+T = TypeVar("T")
+
+
+def add_replay_options(parser: argparse.ArgumentParser, node: str) -> None:
+    """Options of every replay; ``node``: whose parameters ``--config`` holds."""
+    parser.add_argument("bag", metavar="BAG", help="a ROS 1 bag with scans and /tf")
+    parser.add_argument("--config", metavar="YAML", type=Path, help=f"parameters of {node}")
+    parser.add_argument("--scan_topic", default="/scan", help="default: /scan")
+    parser.add_argument("--progress", action="store_true", help="show how far it is")
+
+
+def run_replay(
+    parser: argparse.ArgumentParser,
+    replay: Callable[[argparse.Namespace], int],
+    arguments: Optional[List[str]],
+) -> int:
+    """The exit code of ``replay``; 2 if it came to nothing, which is told in a line."""
+    try:
+        return replay(parser.parse_args(arguments))
+    except PlanarError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+
+
+def work_through(log: ScanLog, use: Callable[[LoggedScan], None], activity: str, shows_progress: bool) -> int:
+    """Hands the scans to ``use``, one by one; returns 0, 1 if the bag broke off, or 130 if interrupted.
+
+    What has been made of the scans so far is good in any case.
+    """
+    console = Console(stderr=True)
+    with Progress(console=console, disable=not shows_progress, transient=True) as progress:
+        task = progress.add_task(activity, total=1.0)
+        try:
+            for logged in log:
+                use(logged)
+                progress.update(task, completed=logged.position)
+        except BagError as error:
+            warn(str(error))
+            return 1
+        except KeyboardInterrupt:
+            warn(f"{log.path}: interrupted")
+            return 130
+    return 0
+
+
+def settings_of(kind: Type[T], path: Optional[Path], also_known: Iterable[str] = ()) -> T:
+    """Settings from a YAML file, if there is one; unknown names are warned of. Raises SettingsError."""
+    if path is None:
+        return kind()
+    settings, unknown = settings_from_yaml(kind, path)
+    for name in unknown:
+        if name not in also_known:
+            warn(f"{path}: {name} has no meaning here")
+    return settings
+
+
+def write_trajectory(path: Path, stamped_poses: np.ndarray) -> None:
+    """Poses (N, 4) ``[t, x, y, yaw]`` as a TUM file, or nothing at all. Raises FileWriteError."""
+    write_atomically(path, tum_text(stamped_poses).encode("ascii"))
+
+
+def warn(text: str) -> None:
+    print(f"warning: {text}", file=sys.stderr)

@@ -1,0 +1,88 @@
+"""The transforms of a bag as far as it has been read."""
+
+from typing import Any, Dict, Iterable, List, Optional, Tuple
+
+import tf2_py
+from genpy import Duration, Time
+from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
+from std_msgs.msg import Header
+
+from planar import Pose2
+from planar_ros.messages.conversion import frame_name, yaw_of
+
+
+class TransformLog:
+    """Answers where a frame lies in another, by the transforms that it was given.
+
+    ``static``: transforms that hold from the start.
+    """
+
+    def __init__(self, static: Iterable[Any]) -> None:
+        self._static: List[TransformStamped] = [_typed(logged) for logged in static]
+        self._frames = {name for one in self._static for name in (one.header.frame_id, one.child_frame_id)}
+        self.clear()
+
+    def clear(self) -> None:
+        """Forgets all but the static ones."""
+        self._buffer = tf2_py.BufferCore(Duration(30.0))
+        self._newest: Dict[str, Time] = {}
+        for transform in self._static:
+            self._buffer.set_transform_static(transform, "bag")
+
+    def add(self, message, is_static: bool) -> None:
+        for logged in message.transforms:
+            transform = _typed(logged)
+            parent, child = transform.header.frame_id, transform.child_frame_id
+            self._frames |= {parent, child}
+            if is_static:
+                self._static.append(transform)
+                self._buffer.set_transform_static(transform, "bag")
+            elif self._newest.get(child) != transform.header.stamp:
+                self._newest[child] = transform.header.stamp
+                self._buffer.set_transform(transform, "bag")
+
+    def latest_stamp(self, target: str, source: str) -> Optional[Time]:
+        try:
+            return self._buffer.get_latest_common_time(target, source)
+        except tf2_py.TransformException:
+            return None
+
+    def pose_near(self, target: str, source: str, stamp, tolerance: float) -> Optional[Pose2]:
+        """Where ``source`` lies in ``target`` at ``stamp``, or else at most ``tolerance`` s later."""
+        latest = self.latest_stamp(target, source)
+        if latest is None:
+            return None
+        transform = self._lookup(target, source, stamp)
+        if transform is None and abs((latest - stamp).to_sec()) <= tolerance:
+            transform = self._lookup(target, source, Time(0))
+        if transform is None:
+            return None
+        return Pose2(transform.translation.x, transform.translation.y, yaw_of(transform.rotation))
+
+    def mounting(self, base: str, sensor: str) -> Optional[Tuple[Pose2, bool]]:
+        """The pose of a sensor on its base, and whether it hangs upside down."""
+        transform = self._lookup(base, sensor, Time(0))
+        if transform is None:
+            return None
+        q = transform.rotation
+        upside_down = 1.0 - 2.0 * (q.x * q.x + q.y * q.y) < 0.0
+        return Pose2(transform.translation.x, transform.translation.y, yaw_of(q)), upside_down
+
+    def frames(self) -> List[str]:
+        return sorted(self._frames)
+
+    def _lookup(self, target: str, source: str, stamp):
+        try:
+            return self._buffer.lookup_transform_core(target, source, stamp).transform
+        except tf2_py.TransformException:
+            return None
+
+
+def _typed(logged) -> TransformStamped:
+    """A transform of the types that tf2 wants; rosbag makes types of its own."""
+    v, q = logged.transform.translation, logged.transform.rotation
+    return TransformStamped(
+        Header(stamp=logged.header.stamp, frame_id=frame_name(logged.header.frame_id)),
+        frame_name(logged.child_frame_id),
+        Transform(Vector3(v.x, v.y, v.z), Quaternion(q.x, q.y, q.z, q.w)),
+    )

@@ -1,0 +1,37 @@
+import pytest
+import rosbag
+import rospy
+from sensor_msgs.msg import LaserScan
+from tf2_msgs.msg import TFMessage
+
+from planar import Pose2
+from planar_ros.bags.scan_log import ScanLog
+from planar_ros.messages.conversion import transform_msg
+
+LASER_IN_BASE = Pose2(0.1, 0.0, 0.0)
+
+
+def write_bag(path, static_at):
+    """Scans of a robot that drives on at 1 m/s, and where its laser is, at scan ``static_at`` of 20."""
+    with rosbag.Bag(str(path), "w") as bag:
+        for i in range(20):
+            stamp = rospy.Time.from_sec(100.0 + 0.1 * i)
+            base_in_odom = transform_msg(Pose2(0.1 * i, 0.0), "odom", "base_link", stamp)
+            bag.write("/tf", TFMessage([base_in_odom]), stamp)
+            scan = LaserScan(ranges=[1.0] * 3, range_max=10.0)
+            scan.header.frame_id, scan.header.stamp = "laser", stamp
+            bag.write("/scan", scan, stamp)
+            if i == static_at:
+                laser = transform_msg(LASER_IN_BASE, "base_link", "laser", stamp)
+                bag.write("/tf_static", TFMessage([laser]), stamp)
+    return path
+
+
+@pytest.mark.parametrize("static_at", [0, 15])
+def test_static_transforms_hold_from_the_start_wherever_they_are_in_the_bag(tmp_path, static_at):
+    warnings = []
+    log = ScanLog(write_bag(tmp_path / "late.bag", static_at), "/scan", "base_link", "odom", warnings.append)
+    logged = list(log)
+    assert warnings == []
+    assert [one.scan.laser_in_base for one in logged] == 20 * [LASER_IN_BASE]
+    assert [one.base_in_odom.x for one in logged] == pytest.approx([0.1 * i for i in range(20)])
