@@ -22,9 +22,6 @@ class ErrandState(enum.Enum):
     CANCELLED = "cancelled"
 
 
-FINAL_STATES = (ErrandState.DELIVERED, ErrandState.FAILED, ErrandState.CANCELLED)
-
-
 class Stage(enum.Enum):
     """How far a delivery has come; the values are those of home_service_msgs/DeliveryState."""
 
@@ -39,6 +36,13 @@ class Stage(enum.Enum):
 
 
 ENDED = (Stage.DELIVERED, Stage.FAILED, Stage.CANCELLED)
+STATE_OF_STAGE = {
+    Stage.FETCHING: ErrandState.GOING_TO_PICKUP,
+    Stage.PICKING_UP: ErrandState.PICKING_UP,
+    Stage.CARRYING: ErrandState.GOING_TO_DROPOFF,
+    Stage.SETTING_DOWN: ErrandState.SETTING_DOWN,
+}
+"""What the robot is about while a delivery is in progress."""
 
 
 @dataclass
@@ -49,6 +53,12 @@ class Job:
     stage: Stage = Stage.WAITING
     attempts: int = 0
     reason: str = ""
+
+    def fail(self, reason: str) -> None:
+        self.stage, self.reason = Stage.FAILED, reason
+
+    def cancel(self) -> None:
+        self.stage, self.reason = Stage.CANCELLED, "cancelled"
 
 
 @dataclass(frozen=True)
