@@ -1,0 +1,47 @@
+"""Draws the tree of frames into frames.pdf, as view_frames of tf: Debian's dies of Python 2's strings."""
+
+import argparse
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import rospy
+import tf
+from tf.srv import FrameGraph
+
+LISTENING = 5.0  # s, as tf's
+
+
+def main() -> None:
+    """Ends with exit code 1 without a node that answers, or without graphviz."""
+    parser = argparse.ArgumentParser(prog="view_frames", description=__doc__)
+    parser.add_argument("--node", help="the node whose frames are drawn (default: what is heard on /tf)")
+    options = parser.parse_args(rospy.myargv()[1:])
+    rospy.init_node("view_frames", anonymous=True)
+    try:
+        graph = _graph_of(options.node) if options.node else _graph_heard()
+    except (rospy.ROSException, rospy.ServiceException) as error:
+        sys.exit(f"error: {options.node} tells no frames: {error}")
+    Path("frames.gv").write_text(graph)
+    if shutil.which("dot") is None:
+        sys.exit("error: graphviz is not installed: the tree is in frames.gv only")
+    subprocess.run(["dot", "-Tpdf", "frames.gv", "-o", "frames.pdf"], check=True)
+    print("frames.pdf generated")
+
+
+def _graph_heard() -> str:
+    """In graphviz' language."""
+    print(f"Listening to /tf for {LISTENING} seconds")
+    listener = tf.TransformListener()
+    time.sleep(LISTENING)
+    print("Done Listening")
+    return str(listener.allFramesAsDot(rospy.Time.now()))
+
+
+def _graph_of(node: str) -> str:
+    service = f"{node}/tf_frames"
+    print(f"Waiting for service {service}")
+    rospy.wait_for_service(service, timeout=LISTENING)
+    return str(rospy.ServiceProxy(service, FrameGraph)().dot_graph)

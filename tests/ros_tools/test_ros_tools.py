@@ -1,0 +1,42 @@
+#!/usr/bin/env python3
+"""Tools of ROS that people type: under Debian's names, and they end."""
+
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import rostest
+
+
+def rosrun(*words, folder=None):
+    return subprocess.run(
+        ["rosrun", *words],
+        cwd=folder,
+        timeout=40.0,
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        check=False,
+    )
+
+
+class RosToolsTest(unittest.TestCase):
+    def test_view_frames_draws_the_tree(self):
+        with tempfile.TemporaryDirectory() as folder:
+            run = rosrun("tf", "view_frames", folder=folder)
+            self.assertEqual(run.returncode, 0, run.stdout)
+            self.assertIn("odom", Path(folder, "frames.gv").read_text())
+            self.assertTrue(Path(folder, "frames.pdf").read_bytes().startswith(b"%PDF"))
+
+    def test_dynparam_ends_where_there_is_no_server(self):
+        run = rosrun("dynamic_reconfigure", "dynparam", "get", "/nobody")
+        self.assertEqual(run.returncode, 1, run.stdout)
+        self.assertIn("/nobody", run.stdout)
+
+    def test_the_other_tools_of_a_mended_package_are_found(self):
+        self.assertIn("tf_echo", rosrun("tf", "tf_echo").stdout)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("home_service_tests", "ros_tools", RosToolsTest)
