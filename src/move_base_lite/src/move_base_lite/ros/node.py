@@ -1,7 +1,8 @@
 """The node ``move_base``: a Navigator behind move_base's action, topics and services."""
 
 import threading
-from typing import Optional
+from functools import partial
+from typing import Callable, Dict, Optional
 
 import rospy
 
@@ -11,15 +12,15 @@ from move_base_lite.navigator import Navigator
 from move_base_lite.navigator.decision import Decision, Outcome, Status, Trigger, with_reason
 from move_base_lite.navigator.zones import Zones, load_zones
 from move_base_lite.parameters import settings_from_parameters
-from move_base_lite.ros.costmap_topics import CostmapTopics
-from move_base_lite.ros.decision_topics import DecisionTopics
-from move_base_lite.ros.goal_server import GoalServer
-from move_base_lite.ros.goals import InvalidGoal
-from move_base_lite.ros.plan_services import PlanServices
-from move_base_lite.ros.potential_topic import PotentialTopic
-from move_base_lite.ros.surroundings import Surroundings, View
+from move_base_lite.ros.goals.messages import InvalidGoal
+from move_base_lite.ros.goals.plan_services import PlanServices
+from move_base_lite.ros.goals.server import GoalServer
+from move_base_lite.ros.sensing.surroundings import Surroundings, View
+from move_base_lite.ros.topics.costmaps import CostmapTopics
+from move_base_lite.ros.topics.decisions import DecisionTopics
+from move_base_lite.ros.topics.potential import PotentialTopic
+from move_base_lite.ros.topics.zones import ZoneTopics
 from move_base_lite.ros.tuning import ParameterTree
-from move_base_lite.ros.zone_topics import ZoneTopics
 from move_base_lite.warming import warm_up
 from planar import Pose2, SettingsError, Twist2
 from planar_ros.messages.conversion import OccupancyGridArrays, frame_name, grid_from_msg
@@ -75,13 +76,10 @@ class MoveBaseNode:
     def _await_inputs(self):
         base_frame = frame_name(self._settings.local_costmap.robot_base_frame)
         odom_frame = frame_name(self._settings.local_costmap.global_frame)
-        conditions = {
-            f"the transforms {self._map_frame} -> {odom_frame} -> {base_frame}": lambda: self._view
-            is not None,
-        }
+        transforms = f"the transforms {self._map_frame} -> {odom_frame} -> {base_frame}"
+        conditions: Dict[str, Callable[[], bool]] = {transforms: lambda: self._view is not None}
         for topic in self._surroundings.topics:
-            heard = f"a message on {topic}"
-            conditions[heard] = lambda topic=topic: topic not in self._surroundings.silent_topics
+            conditions[f"a message on {topic}"] = partial(self._has_heard, topic)
         static = self._settings.global_costmap.static
         if static.enabled:
             conditions[f"a map on {rospy.resolve_name(static.map_topic)}"] = self._has_map
@@ -89,6 +87,9 @@ class MoveBaseNode:
         else:
             self._navigator = Navigator(self._settings, None, self._zones)
         Waiting(conditions)
+
+    def _has_heard(self, topic: str) -> bool:
+        return topic not in self._surroundings.silent_topics
 
     def _has_map(self) -> bool:
         return self._new_map is not None or self._navigator is not None
@@ -139,12 +140,12 @@ class MoveBaseNode:
                 return
             view = self._surroundings.view(now)
             if view is None:
-                self._stand_still(now)
+                self._stand_still(self._navigator, now)
                 return
             self._view, self._lost_since = view, now
             if not self._is_up:
-                self._come_up()
-            self._take_goal(now)
+                self._come_up(self._navigator)
+            self._take_goal(self._navigator, now)
             decision = self._navigator.tick(
                 now.to_sec(), view.base_in_map, view.base_in_odom, view.twist, None, view.sightings
             )
@@ -163,10 +164,10 @@ class MoveBaseNode:
         else:
             self._navigator.set_map(grid)
 
-    def _come_up(self):
+    def _come_up(self, navigator: Navigator):
         self._is_up = True
         PlanServices(
-            self._navigator,
+            navigator,
             self._lock,
             self._transforms,
             lambda: self._goals.is_active,
@@ -179,45 +180,44 @@ class MoveBaseNode:
         threading.Thread(target=self._tree.serve, daemon=True).start()
         rospy.loginfo("odom received, map received: ready for goals")
 
-    def _stand_still(self, now: rospy.Time):
+    def _stand_still(self, navigator: Navigator, now: rospy.Time):
         """Without transforms nothing is safe but standing; goals still come, are cancelled and given up."""
         missing = f"waiting for {self._surroundings.missing_transform(now)}"
         rospy.logwarn_throttle(WARN_SECONDS, missing)
-        self._take_goal(now)
+        self._take_goal(navigator, now)
         if not self._goals.is_active:
             self._lost_since = now
             return
         self._topics.command(Twist2())
         if (now - self._lost_since).to_sec() > self._settings.move_base.sensor_patience:
             lost = RobotLost(missing)
-            self._refuse(with_reason(Trigger.CONTROLLING.value, lost), lost)
+            self._refuse(navigator, with_reason(Trigger.CONTROLLING.value, lost), lost)
 
-    def _take_goal(self, now: rospy.Time):
+    def _take_goal(self, navigator: Navigator, now: rospy.Time):
         """Accepts a new goal, if one has come."""
         try:
             goal = self._goals.take(now)
         except InvalidGoal as error:
-            self._refuse(str(error), error)
+            self._refuse(navigator, str(error), error)
         except NavigationError as error:
-            self._refuse(with_reason(Trigger.PLANNING.value, error), error)
+            self._refuse(navigator, with_reason(Trigger.PLANNING.value, error), error)
         else:
             if goal is not None:
                 self._goal = goal
-                self._navigator.set_goal(goal)
+                navigator.set_goal(goal)
 
     def _on_cancel(self):
         """Does not wait for the next tick."""
         with self._lock:
-            if self._goals.is_cancelled:
+            if self._navigator is not None and self._goals.is_cancelled:
                 decision = self._navigator.cancel(rospy.get_time())
-                self._topics.command(decision.command)
-                self._topics.outcome(decision.outcome)
+                self._topics.tell_end(decision)
                 self._goals.end(decision.status, decision.text)
 
-    def _refuse(self, text: str, error: NavigationError):
+    def _refuse(self, navigator: Navigator, text: str, error: NavigationError):
         rospy.logerr(text)
         self._topics.outcome(Outcome(error.outcome, error.code, text))
-        self._navigator.forget_goal()
+        navigator.forget_goal()
         self._topics.command(Twist2())
         self._goals.end(Status.ABORTED, text)
 

@@ -10,11 +10,9 @@ from geometry_msgs.msg import Polygon
 from move_base_lite.config import NavigatorSettings
 from move_base_lite.parameters import settings_from_parameters
 from move_base_lite.parameters.dynamic import changed, servers
-from move_base_lite.parameters.planners import GLOBAL_PLANNERS, LOCAL_PLANNERS
+from move_base_lite.parameters.planners import PLANNERS
 from planar import SettingsError
 from planar_ros.node.reconfigure import Tuning
-
-PLANNERS = {"base_global_planner": GLOBAL_PLANNERS, "base_local_planner": LOCAL_PLANNERS}
 
 
 class ParameterTree:
@@ -45,11 +43,10 @@ class ParameterTree:
         where = rospy.get_name() + "/"
         with self._lock:
             try:
-                for key, known in PLANNERS.items():
-                    if asked.get(key, known[0]) not in known:
-                        raise SettingsError(
-                            f"{where}{key} must be one of {', '.join(known)}, got {asked[key]}"
-                        )
+                for key, registry in PLANNERS.items():
+                    if key in asked and registry.find(asked[key]) is None:
+                        known = ", ".join(registry.names)
+                        raise SettingsError(f"{where}{key} must be one of {known}, got {asked[key]}")
                 parameters = changed(self._parameters, namespace, asked)
                 settings, _ = settings_from_parameters(parameters, where)
             except SettingsError as error:

@@ -9,8 +9,8 @@ from geometry_msgs.msg import PoseStamped
 from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseFeedback
 
 from move_base_lite.navigator.decision import Status
-from move_base_lite.ros.goals import goal_from_msg
-from move_base_lite.ros.plan_messages import pose_msg
+from move_base_lite.ros.goals.messages import goal_from_msg
+from move_base_lite.ros.topics.plan_messages import pose_msg
 from planar import Pose2
 from planar_ros.calls.actions import ActionServer
 from planar_ros.messages.transforms import Transforms

@@ -2,7 +2,7 @@
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
-from move_base_lite.navigator.decision import SUCCEEDED_OUTCOME, Decision, Outcome
+from move_base_lite.navigator.decision import SUCCEEDED_OUTCOME, Decision, Outcome, Progress
 
 
 def outcome_msg(outcome: Outcome) -> DiagnosticStatus:
@@ -20,9 +20,8 @@ def outcome_msg(outcome: Outcome) -> DiagnosticStatus:
     )
 
 
-def progress_msg(decision: Decision) -> DiagnosticStatus:
+def progress_msg(decision: Decision, progress: Progress) -> DiagnosticStatus:
     """What the robot does for its goal, and what is left: metres, seconds."""
-    progress = decision.progress
     return _status(
         DiagnosticStatus.WARN if decision.text else DiagnosticStatus.OK,
         decision.text,

@@ -9,10 +9,10 @@ from geometry_msgs.msg import Twist
 from move_base_msgs.msg import RecoveryStatus
 from nav_msgs.msg import Path
 
-from move_base_lite.navigator.decision import Decision, Outcome
-from move_base_lite.ros.exploration_topics import ExplorationTopics
-from move_base_lite.ros.plan_messages import path_msg, plan_msg, pose_msg, trajectory_msg
-from move_base_lite.ros.status_messages import outcome_msg, progress_msg
+from move_base_lite.navigator.decision import Decision, Outcome, RecoveryStart
+from move_base_lite.ros.topics.exploration import ExplorationTopics
+from move_base_lite.ros.topics.plan_messages import path_msg, plan_msg, pose_msg, trajectory_msg
+from move_base_lite.ros.topics.status_messages import outcome_msg, progress_msg
 from planar import Pose2, Twist2
 
 FEEDBACK_PERIOD = rospy.Duration(0.2)
@@ -42,6 +42,13 @@ class DecisionTopics:
         message.linear.x, message.angular.z = command.v, command.omega
         self._command.publish(message)
 
+    def tell_end(self, decision: Decision) -> None:
+        """The last command for a goal, and how it ended."""
+        if decision.command is not None:
+            self.command(decision.command)
+        if decision.outcome is not None:
+            self.outcome(decision.outcome)
+
     def outcome(self, outcome: Outcome) -> None:
         self._outcome.publish(outcome_msg(outcome))
 
@@ -53,8 +60,7 @@ class DecisionTopics:
         self, now: rospy.Time, decision: Decision, base_in_map: Pose2, goal: Pose2, orientation_mode: int
     ) -> None:
         """All of a decision but the end of the action."""
-        if decision.command is not None:
-            self.command(decision.command)
+        self.tell_end(decision)
         if decision.plan_xy is not None and self._plan.get_num_connections():
             plan = plan_msg(
                 decision.plan_xy, now, self._map_frame, orientation_mode, base_in_map.yaw, goal.yaw
@@ -66,20 +72,17 @@ class DecisionTopics:
         if decision.exploration is not None:
             self._exploration.publish(now, decision.exploration)
         if decision.recovery is not None:
-            self._tell_recovery(now, decision, base_in_map)
+            self._tell_recovery(now, decision.recovery, base_in_map)
         if decision.progress is not None and now >= self._next_feedback:
             self._next_feedback = now + FEEDBACK_PERIOD
-            self._feedback.publish(progress_msg(decision))
-        if decision.outcome is not None:
-            self.outcome(decision.outcome)
+            self._feedback.publish(progress_msg(decision, decision.progress))
 
     def _publish_followed(self, now: rospy.Time, path_xy: Optional[np.ndarray]):
         if path_xy is not None and self._global_plan.get_num_connections():
             level = np.zeros(len(path_xy))
             self._global_plan.publish(path_msg(path_xy, now, self._odom_frame, level))
 
-    def _tell_recovery(self, now: rospy.Time, decision: Decision, base_in_map: Pose2):
-        recovery = decision.recovery
+    def _tell_recovery(self, now: rospy.Time, recovery: RecoveryStart, base_in_map: Pose2):
         rospy.logwarn("recovery behavior %s (%d of %d)", recovery.name, recovery.index + 1, recovery.total)
         pose = pose_msg(base_in_map, now, self._map_frame)
         self._recovery.publish(RecoveryStatus(pose, recovery.index, recovery.total, recovery.name))

@@ -11,8 +11,8 @@ from std_srvs.srv import Empty, EmptyResponse
 from move_base_lite.config import NavigatorSettings
 from move_base_lite.errors import NavigationError
 from move_base_lite.navigator import Navigator
-from move_base_lite.ros.goals import goal_from_msg
-from move_base_lite.ros.plan_messages import plan_msg
+from move_base_lite.ros.goals.messages import goal_from_msg
+from move_base_lite.ros.topics.plan_messages import plan_msg
 from planar import Pose2
 from planar_ros.messages.conversion import frame_name
 from planar_ros.messages.transforms import Transforms

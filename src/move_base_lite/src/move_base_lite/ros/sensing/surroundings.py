@@ -13,8 +13,8 @@ from sensor_msgs.msg import PointCloud, PointCloud2
 from move_base_lite.config import NavigatorSettings
 from move_base_lite.costmap import Sighting, sighting_of_points, sighting_of_scan
 from move_base_lite.costmap.layers.obstacles import SourceSettings
-from move_base_lite.ros.clouds import points_of
-from move_base_lite.ros.sensor_checks import check_message
+from move_base_lite.ros.sensing.checks import check_message
+from move_base_lite.ros.sensing.clouds import points_of
 from planar import Pose2, Twist2
 from planar_ros.messages.conversion import LaserScanArrays, frame_name, scan_from_msg
 from planar_ros.messages.transforms import Transforms

@@ -1,0 +1,1 @@
+"""What the Navigator is asked: goals, and plans for others."""

@@ -1,0 +1,1 @@
+"""What the Navigator is given: transforms, odometry, sensors."""

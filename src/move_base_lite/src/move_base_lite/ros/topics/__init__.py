@@ -1,0 +1,1 @@
+"""What the Navigator shows: commands, plans, costmaps, zones, how a goal stands."""
