@@ -1,0 +1,69 @@
+"""The dynamic window: what it tries, and what each critic holds against it."""
+
+import numpy as np
+import pytest
+from test_control_contract import PERIOD, PICTURES, plan_in, room_of, situation_of
+
+from move_base_lite.control import DwaSettings, Plan, TrajectorySettings
+from move_base_lite.control.dwa import DynamicWindow
+from move_base_lite.control.dwa.critics import goal_distance, obstacles, path_alignment, path_distance
+from move_base_lite.control.dwa.planner import _scene, velocity_samples
+from move_base_lite.errors import ControlError
+from planar import Pose2, Twist2
+
+LIMITS = Twist2(0.5, 1.0)
+
+
+@pytest.fixture(scope="module")
+def scene():
+    """From the left end of an open room to its right end."""
+    room = room_of(PICTURES["open"])
+    situation = situation_of(room.costmap, Pose2(*room.start_xy, 0.0))
+    return _scene(situation, np.array([room.start_xy, room.goal_xy]), nose=0.3)
+
+
+def ending_at(*poses):
+    return np.array(poses, dtype=float)
+
+
+def test_a_robot_at_rest_tries_what_it_can_reach_and_nothing_that_does_not_move_it():
+    settings = DwaSettings(vx_samples=5, vth_samples=7)
+    velocities = velocity_samples(settings, Twist2(), LIMITS, PERIOD)
+    assert len(velocities) and (velocities[:, 0] >= settings.min_vel_trans - 1e-4).all()
+    assert velocities[:, 0].max() == pytest.approx(settings.acc_lim_x * PERIOD)
+    assert np.abs(velocities[:, 1]).max() == pytest.approx(settings.acc_lim_theta * PERIOD)
+
+
+def test_a_limit_below_the_least_speed_leaves_no_velocity():
+    room = room_of(PICTURES["open"])
+    planner = DynamicWindow(DwaSettings(), PERIOD)
+    situation = situation_of(room.costmap, Pose2(*room.start_xy, 0.0))
+    with pytest.raises(ControlError) as caught:
+        planner.follow(situation, Plan(plan_in(room), 4.5), Twist2(0.05, 1.0))
+    assert len(caught.value.exploration.trajectory_points()) == 0
+
+
+def test_distance_critics_count_cells_to_the_plan_and_to_its_end(scene):
+    near, far = ending_at((2.0, 1.25, 0.0)), ending_at((2.0, 1.75, 0.0))
+    assert goal_distance(ending_at((5.25, 1.25, 0.0)), scene) < goal_distance(near, scene)
+    assert goal_distance(near, scene) == pytest.approx(65.0, abs=1.0)
+    assert goal_distance(near, scene) < goal_distance(far, scene)
+    start = ending_at((0.75, 1.25, 0.0))
+    assert path_distance(start, scene) < path_distance(ending_at((0.75, 1.75, 0.0)), scene)
+
+
+def test_the_alignment_critic_looks_at_the_nose(scene):
+    along, across = ending_at((0.45, 1.25, 0.0)), ending_at((0.75, 1.25, 1.57))
+    assert path_alignment(along, scene) < path_alignment(across, scene)
+
+
+def test_the_obstacle_critic_bars_the_wall_but_lets_a_robot_in_touch_get_away(scene):
+    into_wall = ending_at((0.9, 1.25, 0.0), (0.6, 1.25, 0.0))
+    assert obstacles(into_wall, scene, 0) == np.inf
+    assert obstacles(ending_at((2.0, 1.25, 0.0)), scene, 0) < 253.0
+    assert obstacles(into_wall[::-1].copy(), scene, 99) == 253.0
+
+
+def test_the_names_of_trajectory_planner_make_settings_of_the_dynamic_window():
+    settings = TrajectorySettings(max_vel_x=0.3, min_vel_theta=0.2)
+    assert (settings.max_vel_trans, settings.heading_lookahead, settings.sim_time) == (0.3, 0.4, 1.0)
