@@ -1,0 +1,52 @@
+from types import SimpleNamespace
+
+import pytest
+
+from supervision.errors import LaunchError
+from supervision.ros import supervisor
+from supervision.ros.graph import NodeFailure
+from supervision.ros.supervisor import Supervisor
+
+
+@pytest.fixture
+def graph(monkeypatch):
+    graph = SimpleNamespace(failure=None, is_running=True, log_gap=None)
+    monkeypatch.setattr(supervisor, "RosGraph", lambda *_: graph)
+    return graph
+
+
+def supervised(tmp_path, time_limit=60.0):
+    display = SimpleNamespace(show=lambda status: None)
+    watcher = Supervisor(display, tmp_path, time_limit)
+    watcher.start("home_service", "world.launch", {})
+    return watcher
+
+
+def test_a_watch_ends_when_its_work_is_done(graph, tmp_path):
+    asked = iter((False, False, True))
+    assert supervised(tmp_path).watch(lambda: next(asked), str) is None
+
+
+def test_a_watch_ends_with_what_a_dead_node_said(graph, tmp_path):
+    graph.failure = NodeFailure("amcl: no map", is_bad_input=False)
+    assert supervised(tmp_path).watch(lambda: False, str) == "amcl: no map"
+
+
+def test_a_node_that_refuses_its_input_is_an_error(graph, tmp_path):
+    graph.failure = NodeFailure("amcl: max_particles must be at least 1", is_bad_input=True)
+    with pytest.raises(LaunchError, match="max_particles") as error:
+        supervised(tmp_path).watch(lambda: False, str)
+    assert error.value.is_bad_input
+
+
+def test_a_watch_gives_up_in_time(graph, tmp_path):
+    reason = supervised(tmp_path, time_limit=0.05).watch(lambda: False, str)
+    assert reason == "not done within 0.05 s of wall-clock time"
+
+
+def test_what_was_waited_for_when_the_graph_ended_is_named(graph, tmp_path):
+    graph.is_running = False
+    with pytest.raises(LaunchError) as error:
+        supervised(tmp_path).wait_for("the simulator", lambda: False)
+    assert str(error.value) == f"roslaunch ended before the simulator was there, see {tmp_path}"
+    assert supervised(tmp_path).watch(lambda: False, str) == f"roslaunch ended, see {tmp_path}"
