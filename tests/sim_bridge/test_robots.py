@@ -4,6 +4,7 @@
 import math
 import time
 import unittest
+from typing import get_type_hints
 
 import rospy
 import rosservice
@@ -20,6 +21,8 @@ from waiting import PATIENCE_SECONDS, wait_until
 
 from planar_ros.messages.conversion import LaserScanArrays, quaternion_of
 from sim_bridge import robot_named
+from sim_bridge.ros.sensor_topics import TOPICS
+from sim_bridge.sensors.registry import SENSORS
 
 WHEEL = """<link name="{side}"><inertial><mass value="0.5"/>
 <inertia ixx="0.001" iyy="0.001" izz="0.001"/></inertial>
@@ -108,6 +111,9 @@ class TestRobots(unittest.TestCase):
                 publisher.publish(command)
             odometry = self.odom.next()
         return odometry
+
+    def test_every_sensor_that_a_plugin_brings_has_topics(self):
+        self.assertLessEqual({get_type_hints(read)["return"] for read in SENSORS.values()}, set(TOPICS))
 
     def test_1_both_are_spawned_and_a_name_is_not_taken_twice(self):
         self.assertTrue(self.turtlebot.success, self.turtlebot.status_message)

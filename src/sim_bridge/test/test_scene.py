@@ -81,6 +81,19 @@ def test_a_still_model_that_is_put_elsewhere_is_seen_there(scene):
         scene.models.motion("wall")
 
 
+def test_a_still_model_that_is_put_elsewhere_before_anyone_looked_is_drawn_there(scene):
+    scene.set_model_motion("wall", at_rest(pose3(2.0, 0.0, 0.25)))
+    triangles, _ = scene.sight.triangles()
+    assert triangles[..., 0][triangles[..., 2] > 0.4].min() == pytest.approx(1.75)
+
+
+def test_a_model_may_go_while_it_is_pushed(scene):
+    scene.forces.push(Push("crate::link", np.array([4.0, 0.0, 0.0]), np.zeros(3), 0.0, math.inf))
+    scene.remove_model("crate")
+    scene.step()
+    assert "crate" not in scene.models.names()
+
+
 def test_names_that_are_not_there_are_refused_with_the_nearest(scene):
     with pytest.raises(UnknownEntityError, match="no model named 'crat', did you mean crate"):
         scene.remove_model("crat")
