@@ -6,7 +6,7 @@
 # tests. Needs root, buildah, and debootstrap for the base. Takes half an hour; tells what it is at, and since when.
 # Exit code: 0 all proven, 1 failure, 2 bad usage.
 #
-#   --base TAR       root file system of Debian 12 to build on (default: made with debootstrap)
+#   --base TAR       root file system of Debian 13 to build on (default: made with debootstrap)
 #   --ros-tests NAMES
 #                    besides the unit tests, the ROS tests whose paths contain one of the names (default: all)
 #   --rviz           also the target with rviz: a mission shown on the display
@@ -82,8 +82,8 @@ builder() { buildah --root "$work/storage" --runroot "$work/state" "$@"; }
 
 make_base() {
     if [[ -z $base ]]; then
-        say "A root file system of Debian 12"
-        debootstrap --variant=minbase bookworm "$work/base" 2>&1 | show '^I: (.* the base system|Base system)' \
+        say "A root file system of Debian 13"
+        debootstrap --variant=minbase trixie "$work/base" 2>&1 | show '^I: (.* the base system|Base system)' \
             "$work/debootstrap.log" || fail "debootstrap failed (see $work/debootstrap.log)"
         rm -rf "$work"/base/var/cache/apt/*.bin "$work"/base/var/cache/apt/archives/*.deb
         base=$work/base
@@ -91,7 +91,7 @@ make_base() {
     local container
     container=$(builder from --pull-never scratch)
     builder add --quiet "$container" "$base" / >/dev/null
-    builder commit --quiet --rm "$container" localhost/debian:bookworm-slim >/dev/null
+    builder commit --quiet --rm "$container" localhost/debian:trixie-slim >/dev/null
 }
 
 build_image() { # NAME OPTION...: builds an image and mounts it as $rootfs
@@ -100,7 +100,7 @@ build_image() { # NAME OPTION...: builds an image and mounts it as $rootfs
         printf '[global]\ncert = /run/certificates.crt\n' >"$work/pip.conf"
         options+=(-v "$certificates:/run/certificates.crt:ro" -v "$work/pip.conf:/etc/pip.conf:ro")
     fi
-    builder build "${options[@]}" --from localhost/debian:bookworm-slim \
+    builder build "${options[@]}" --from localhost/debian:trixie-slim \
         --file "$root/docker/Dockerfile" --tag "$image" "$root" 2>&1 |
         show 'STEP [0-9]|^  done in' "$work/build.log" || {
         tail -n 30 "$work/build.log" >&2
