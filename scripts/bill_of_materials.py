@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Prints what is installed here, Debian and Python packages with versions and licences, as CycloneDX 1.5 in JSON.
+"""Prints what is installed here, Debian and Python packages with versions and licences, as CycloneDX 1.5.
 
-In .venv/bin/python3 the Python packages are the workspace's. --table prints lines of NAME VERSION LICENCE instead.
+Of the Python that runs it: .venv/bin/python3 for the workspace's packages.
 """
 
 import argparse
@@ -44,7 +44,7 @@ def _python_packages() -> Iterator[Component]:
 
 
 def _python_licence(fields) -> str:
-    """The expression, else the classifiers, else the first line of the field that some fill with the whole text."""
+    """The expression, else the classifiers, else the first line of what may be the whole text."""
     named = fields.get("License-Expression")
     classes = [
         name.rpartition(" :: ")[2]
