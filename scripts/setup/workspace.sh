@@ -89,7 +89,8 @@ catkin_build() {
     ignored_packages | xargs -I{} touch {}/CATKIN_IGNORE
     export ROS_LANG_DISABLE=genlisp:geneus:gennodejs # bindings of the messages that nobody asks for
     # Without -j it would pass -l as well, and on a loaded machine make would wait for the load to sink.
-    catkin_make -j"$(nproc)" -DPYTHON_EXECUTABLE="$root/.venv/bin/python3" -DCATKIN_ENABLE_TESTING=OFF
+    # The Python of nodes goes by two names: catkin of Debian 13 knows the second one only.
+    catkin_make -j"$(nproc)" -D{PYTHON,Python}_EXECUTABLE="$root/.venv/bin/python3" -DCATKIN_ENABLE_TESTING=OFF
 }
 
 # What is in these folders gives way to packages of the same name that the system or the user has.

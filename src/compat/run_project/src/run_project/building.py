@@ -171,7 +171,9 @@ def _catkin_make(workspace: Workspace, log: Path) -> str:
         f"-DCATKIN_BLACKLIST_PACKAGES={';'.join(sorted(workspace.unbuilt))}",
         "-Wno-dev",
     ]
-    command += [f"-DPYTHON_EXECUTABLE={shutil.which('python3')}", "--force-cmake"]
+    # The second name is the one that catkin of Debian 13 knows.
+    command += [f"-D{name}_EXECUTABLE={shutil.which('python3')}" for name in ("PYTHON", "Python")]
+    command += ["--force-cmake"]
     command += ["--make-args", "-k"]
     variables = {
         "CMAKE_PREFIX_PATH": f"{STAND_INS}:{os.environ['CMAKE_PREFIX_PATH']}:{workspace.pretended}",
