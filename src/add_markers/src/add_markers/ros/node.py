@@ -1,6 +1,7 @@
 """The ROS node of add_markers: shows the objects of an errand or a mission as cubes in rviz."""
 
 import time
+from typing import Callable, List, Optional, Union
 
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
@@ -12,6 +13,7 @@ from add_markers.config import MarkerSettings
 from add_markers.parcel import CarriedParcel, TimedParcel
 from add_markers.ros.mission_markers import MissionMarkers
 from add_markers.ros.zones import zone_markers
+from planar import Pose2
 from planar.maps.places import places_of_errand
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
 from planar_ros.messages.transforms import Transforms
@@ -21,6 +23,7 @@ from planar_ros.node.waiting import Waiting
 
 UPDATE_SECONDS = 0.1
 NOWHERE_YET = object()
+Locate = Callable[[], Optional[Pose2]]
 # Where the mission state of pick_objects puts the robot.
 PICKING_UP, DELIVERED = "picking up", "delivered"
 
@@ -31,11 +34,13 @@ class AddMarkers:
     def __init__(self, settings: MarkerSettings):
         self._settings = settings
         self._pickup, self._dropoff = places = places_of_errand(settings.zones_file)
-        self._robot = None
-        self._shown_at = NOWHERE_YET
+        self._robot: Optional[Pose2] = None
+        self._shown_at: object = NOWHERE_YET
         self._publisher = rospy.Publisher("visualization_marker", Marker, queue_size=10, latch=True)
         self._zones = rospy.Publisher("zones", MarkerArray, queue_size=1, latch=True)
         self._zones.publish(zone_markers(places, settings.frame_id))
+        self._parcel: Union[TimedParcel, CarriedParcel]
+        self._locate: Locate
         if settings.mode == "demo":
             self._parcel = TimedParcel(*places, settings.show_seconds, settings.hide_seconds)
             self._locate = lambda: None
@@ -55,16 +60,16 @@ class AddMarkers:
                 self._show(self._parcel.update(now, self._robot))
             time.sleep(UPDATE_SECONDS / 5)
 
-    def _locator(self, source):
+    def _locator(self, source: str) -> Locate:
         if source == "tf":
             transforms = Transforms()
             return lambda: transforms.lookup(self._settings.frame_id, self._settings.base_frame_id)
-        latest = [None]
+        latest: List[Optional[Pose2]] = [None]
 
-        def keep_pose(message):
+        def keep_pose(message) -> None:
             latest[0] = pose2_from_msg(message.pose.pose)
 
-        def keep_state(message):
+        def keep_state(message) -> None:
             place = {PICKING_UP: self._pickup, DELIVERED: self._dropoff}.get(message.data)
             latest[0] = place.pose if place else None
 

@@ -21,7 +21,7 @@ from amcl_lite.config import CONFIG_FILES, MOTION_MODELS, SENSOR_MODELS, Initial
 from amcl_lite.localizer import Estimate, Localizer, warm_up
 from amcl_lite.ros.start_pose import PoseKeeper, read_start_pose
 from amcl_lite.ros.views import Views
-from planar import PlanarError, Pose2, SettingsError
+from planar import PlanarError, Pose2, Scan, SettingsError
 from planar.config.listing import yaml_of
 from planar.config.parameters import official_names
 from planar.config.settings import settings_from
@@ -231,13 +231,12 @@ class AmclNode:
         with self._lock:
             if self._localizer is not None:
                 try:
-                    self._localize(stamp, scan, base_in_odom, laser)
+                    self._localize(self._localizer, stamp, scan, base_in_odom, laser)
                 except PlanarError as error:
                     rospy.logerr_throttle(SCAN_ALARM_SECONDS, f"scan ignored: {error}")
         self._progress.report(stamp)
 
-    def _localize(self, stamp, scan, base_in_odom, laser):
-        localizer = self._localizer
+    def _localize(self, localizer: Localizer, stamp, scan: Scan, base_in_odom: Pose2, laser: str) -> None:
         updates = localizer.updates
         estimate = localizer.update(base_in_odom, scan, laser)
         self._base_in_odom = base_in_odom
@@ -246,7 +245,7 @@ class AmclNode:
         if estimate is not None:
             self._last_estimate, self._estimate_stamp = estimate, stamp
             self._views.show_estimate(estimate, stamp)
-        if localizer.odom_in_map is None:
+        if localizer.odom_in_map is None or self._last_estimate is None:  # which come together
             return
         self._send_transform(localizer.odom_in_map, stamp)
         self._views.show_quality(localizer)
@@ -274,9 +273,10 @@ class AmclNode:
     def _keep_pose(self):
         """Before the node ends: a restarted one resumes where this one was."""
         with self._lock:
-            if self._last_estimate is not None and self._localizer.odom_in_map is not None:
-                base_in_map = self._localizer.odom_in_map @ self._base_in_odom
-                self._keeper.keep(base_in_map, self._last_estimate.covariance)
+            odom_in_map = None if self._localizer is None else self._localizer.odom_in_map
+            base_in_odom, estimate = self._base_in_odom, self._last_estimate
+            if odom_in_map is not None and base_in_odom is not None and estimate is not None:
+                self._keeper.keep(odom_in_map @ base_in_odom, estimate.covariance)
 
     def _on_reconfigure(self, values):
         """dynamic_reconfigure: as in amcl, the filter starts anew around the last estimate."""

@@ -6,6 +6,7 @@ spin_until_localized [--timeout SECONDS] [--turn-speed RAD_PER_S] [--node AMCL]
 import argparse
 import math
 import time
+from typing import Optional
 
 import numpy as np
 import rospy
@@ -35,7 +36,8 @@ class SpinUntilLocalized:
     """
 
     def __init__(self, node: str):
-        self._state = self._pose = None
+        self._state: Optional[str] = None
+        self._pose: Optional[PoseWithCovarianceStamped] = None
         self._asked_at = rospy.Time(0)
         self._cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1)
         rospy.Subscriber(f"{node}/localization_state", String, self._on_state, queue_size=2)
@@ -56,6 +58,7 @@ class SpinUntilLocalized:
                 time.sleep(POLL_SECONDS)
         finally:
             self._cmd_vel.publish(Twist())
+        assert self._pose is not None
         pose = pose2_from_msg(self._pose.pose.pose)
         return f"localized at ({pose.x:.2f}, {pose.y:.2f}, {pose.yaw:.2f}) after {clock.elapsed():.1f} s"
 

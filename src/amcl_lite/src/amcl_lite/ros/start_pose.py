@@ -1,7 +1,6 @@
 """The start pose on the parameter server, where a restarted node finds where it was."""
 
 import math
-from typing import Optional
 
 import rospy
 
@@ -30,7 +29,7 @@ class PoseKeeper:
         self._kept_at = rospy.Time(0)
         self._writer = ParameterWriter()
 
-    def keep_if_due(self, rate: float, base_in_map: Optional[Pose2], covariance) -> None:
+    def keep_if_due(self, rate: float, base_in_map: Pose2, covariance) -> None:
         """``rate``: Hz, 0 or less for never."""
         now = rospy.Time.now()
         if rate > 0.0 and abs((now - self._kept_at).to_sec()) >= 1.0 / rate:

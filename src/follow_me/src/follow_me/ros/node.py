@@ -1,11 +1,13 @@
 """The node ``follow_me``: asks tf where both robots are, and sends goals to the follower's move_base."""
 
 import threading
+from typing import Callable, Optional
 
 import rospy
 
 from follow_me.config import NodeSettings
 from follow_me.follower import Follower
+from planar import Pose2
 from planar_ros.calls.move_base import MoveBase
 from planar_ros.messages.transforms import Transforms
 from planar_ros.node.clock import sleep_until
@@ -29,9 +31,7 @@ class FollowMe:
             {
                 self._move_base.name: self._move_base.is_ready,
                 **{
-                    f"the transform {self._settings.map_frame} -> {frame}": lambda frame=frame: (
-                        self._in_map(frame) is not None
-                    )
+                    f"the transform {self._settings.map_frame} -> {frame}": self._is_known(frame)
                     for frame in frames
                 },
             }
@@ -61,7 +61,10 @@ class FollowMe:
         if goal is not None:
             self._move_base.send(goal)
 
-    def _in_map(self, frame):
+    def _is_known(self, frame: str) -> Callable[[], bool]:
+        return lambda: self._in_map(frame) is not None
+
+    def _in_map(self, frame: str) -> Optional[Pose2]:
         return self._transforms.lookup(self._settings.map_frame, frame)
 
 

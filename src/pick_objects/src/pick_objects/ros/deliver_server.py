@@ -1,10 +1,10 @@
 """The action ``deliver``: missions for a running robot."""
 
 import time
-from typing import Callable, Optional
+from typing import Callable, List, Optional
 
 import rospy
-from home_service_msgs.msg import DeliverAction, DeliverFeedback, DeliverGoal, DeliverResult
+from home_service_msgs.msg import DeliverAction, DeliverFeedback, DeliverGoal, DeliverResult, DeliveryState
 
 from pick_objects.errand import Errand
 from pick_objects.mission import Mission
@@ -43,7 +43,8 @@ class DeliverServer:
             time.sleep(poll_seconds)
 
     def _do(self, goal: DeliverGoal) -> None:
-        start, self._errand = rospy.Time.now(), None
+        start = rospy.Time.now()
+        self._errand = None
         try:
             mission = self._understand(goal)
         except PlanarError as error:
@@ -51,7 +52,7 @@ class DeliverServer:
             self._server.set_aborted(DeliverResult(reason=str(error)), str(error))
             return
         outcome = self._carry_out(mission, self._watch)
-        states = delivery_states(self._errand) if self._errand else []
+        states = self._states()
         result = DeliverResult(outcome.reason, states, rospy.Time.now() - start)
         if outcome.success:
             self._server.set_succeeded(result, outcome.reason)
@@ -59,6 +60,9 @@ class DeliverServer:
             self._server.set_preempted(result, outcome.reason)
         else:
             self._server.set_aborted(result, outcome.reason)
+
+    def _states(self) -> List[DeliveryState]:
+        return [] if self._errand is None else delivery_states(self._errand)
 
     def _watch(self, errand: Errand) -> None:
         self._errand = errand

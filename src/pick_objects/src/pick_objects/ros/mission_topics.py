@@ -1,6 +1,6 @@
 """Tells how the mission stands: ``~state`` for people, ``~mission_state`` for programs."""
 
-from typing import Callable, Dict
+from typing import Callable, Dict, List, Optional
 
 import rospy
 from home_service_msgs import msg
@@ -20,7 +20,7 @@ class MissionTopics:
         self._frame_id, self._locate = frame_id, locate
         self._state = rospy.Publisher("~state", String, queue_size=10, latch=True)
         self._mission_state = rospy.Publisher("~mission_state", msg.MissionState, queue_size=50, latch=True)
-        self._told_state = None
+        self._told_state: Optional[ErrandState] = None
         self._told: tuple = ()
         self._left_at: Dict[str, Pose2] = {}
 
@@ -77,7 +77,7 @@ class MissionTopics:
         self._left_at = {name: self._left_at.get(name, self._locate()) for name in left}
 
 
-def delivery_states(errand: Errand) -> list:
+def delivery_states(errand: Errand) -> List[msg.DeliveryState]:
     return [
         msg.DeliveryState(delivery_msg(job.delivery), job.stage.value, job.attempts, job.reason)
         for job in errand.jobs

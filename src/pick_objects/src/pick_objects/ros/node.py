@@ -11,7 +11,7 @@ from home_service_msgs.srv import AddDelivery, AddDeliveryResponse, CancelDelive
 
 from pick_objects.approach import GoTo
 from pick_objects.config import ErrandSettings, NodeSettings
-from pick_objects.errand import Errand, MeasureWays
+from pick_objects.errand import Errand, Event, MeasureWays
 from pick_objects.mission import Mission, MissionError, errand_mission
 from pick_objects.mission_file import load_mission, parse_mission
 from pick_objects.ros.deliver_server import DeliverServer
@@ -58,8 +58,7 @@ class PickObjects:
         if obstacle:
             return Finish(False, obstacle)
         if self._mission is not None:
-            self._mission = self._read_mission()  # now against the map
-            outcome = self._carry_out(self._mission)
+            outcome = self._carry_out(self._read_again(self._mission))
         if self._settings.serve:
             DeliverServer(self._topics, self._understand, self._carry_out).serve(POLL_SECONDS)
         return outcome
@@ -72,11 +71,17 @@ class PickObjects:
             return None
         return errand_mission(*places_of_errand(settings.zones_file), self._defaults)
 
+    def _read_again(self, mission: Mission) -> Mission:
+        """The mission, now that there is a map to check it against."""
+        self._mission = self._read_mission() or mission
+        return self._mission
+
     def _carry_out(self, mission: Mission, watch: Callable[[Errand], None] = lambda errand: None) -> Finish:
         obstacle = self._why_impossible(mission)
         if obstacle:
             return Finish(False, obstacle)
-        self._errand, event = Errand(mission), None
+        self._errand = Errand(mission)
+        event: Optional[Event] = None
         while not rospy.is_shutdown():
             with self._lock:
                 order = self._errand.advance(rospy.get_time(), event)

@@ -1,6 +1,7 @@
 """Publishing without a change of threads for every message and subscriber."""
 
 import socket
+from typing import List, Optional
 
 import rospy.topics
 from rospy.impl.tcpros_pubsub import QueuedConnection
@@ -22,6 +23,8 @@ class PromptConnection(QueuedConnection):
         # What is left of a message that was sent in part; unlike the queue's it must not be dropped.
         self._rest = b""
         self._is_relaying = False
+        self._queue: List[bytes]
+        self._error: Optional[Exception]
         super().__init__(connection, queue_size)
 
     def write_data(self, data) -> bool:

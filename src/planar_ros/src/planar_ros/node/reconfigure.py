@@ -90,7 +90,8 @@ def _description(tunables: Sequence[Tunable], values: Mapping[str, Any]) -> Simp
 
 def _parameter(tunable: Tunable, value) -> Dict[str, Any]:
     kind = type(tunable.default)
-    low, high = "", ""
+    low: Any = ""
+    high: Any = ""
     if kind is bool:
         low, high = False, True
     elif kind is not str:

@@ -99,7 +99,7 @@ def _shut_down_on_signals() -> None:
     rospy would do it in the signal's handler, on top of whatever the main thread is at, and wait for ever for
     a lock that this holds, as while it publishes.
     """
-    received = queue.SimpleQueue()
+    received: queue.SimpleQueue[int] = queue.SimpleQueue()
 
     def shut_down():
         number = received.get()
