@@ -6,7 +6,6 @@ which are stale.
 import argparse
 import importlib
 import json
-import re
 import sys
 from pathlib import Path
 from typing import Any, Dict, Iterable, List, Sequence
@@ -14,13 +13,10 @@ from typing import Any, Dict, Iterable, List, Sequence
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(path) for path in ROOT.glob("src/*/src")]
 
-from planar.config.listing import Row, Section, rows_of, yaml_of  # noqa: E402
+from planar.config.listing import Section, rows_of, yaml_of  # noqa: E402
 
 SCHEMA = ROOT / "src/home_service/config/result.schema.json"
 MADE_BY = "Made by docs/generate.py; do not edit."
-KEY = re.compile(
-    r"^(?P<indent> *)(?P<off># )?(?P<name>[A-Za-z_]\w*)(?P<colon>:)?(?P<value>[^#]*)(#(?P<comment>.*))?$"
-)
 
 
 def main() -> int:
@@ -74,7 +70,7 @@ def parameters_page(declared: Dict[Path, Section]) -> str:
         "with the full name of the parameter; an unknown name is a warning that tells the nearest known one,",
         "and with `~strict_params: true` an error. Presets for robots lie beside; they hold what differs.\n",
     ]
-    for path in sorted({*ROOT.glob("src/*/config/*.yaml"), *declared}):
+    for path, section in sorted(declared.items()):
         package = path.parents[1].name
         if path.stem != package:
             continue
@@ -83,49 +79,13 @@ def parameters_page(declared: Dict[Path, Section]) -> str:
         parts.append(
             f"From [`{path.relative_to(ROOT)}`](../{path.relative_to(ROOT)})" + _presets(presets) + ".\n"
         )
-        rows = rows_of(declared[path]) if path in declared else entries(path.read_text(encoding="utf-8"))
-        heads = ("parameter", "default", "unit", "meaning")
-        parts.append(
-            table(heads, [(_code(row.name), _code(row.value), row.unit, row.meaning) for row in rows])
-        )
+        rows = [(_code(row.name), _code(row.value), row.unit, row.meaning) for row in rows_of(section)]
+        parts.append(table(("parameter", "default", "unit", "meaning"), rows))
     return "\n".join(parts)
 
 
 def _presets(names: List[str]) -> str:
     return f"; beside it {', '.join(f'`{name}`' for name in names)}" if names else ""
-
-
-def entries(text: str) -> List[Row]:
-    """The parameters of a YAML file whose comments stand beside, above or, going on, below them."""
-    found: List[Row] = []
-    above: List[str] = []
-    tables: List[str] = []
-    anchors: Dict[str, str] = {}
-    for line in text.splitlines():
-        continued = re.match(r"^\s{8,}# (.*)$", line)
-        if continued and found:
-            last = found.pop()
-            found.append(last._replace(meaning=f"{last.meaning} {continued.group(1).strip()}"))
-            continue
-        if re.match(r"^#(?! [a-z_]+ +#)", line):
-            above.append(line[1:].strip())
-            continue
-        match = KEY.match(line)
-        if not match or not (match["colon"] or match["off"]):
-            above = []
-            continue
-        depth = len(match["indent"]) // 2
-        name, value = ".".join([*tables[:depth], match["name"]]), match["value"].strip()
-        if (not value or value.startswith("&")) and not match["off"]:
-            tables = [*tables[:depth], match["name"]]
-            anchors[value[1:]] = name
-        else:
-            meaning = (match["comment"] or " ".join(above)).strip()
-            if value.startswith("*"):
-                value, meaning = "", f"the same keys and defaults as `{anchors[value[1:]]}`"
-            found.append(Row(name.replace(".", "/"), value, "", meaning))
-        above = []
-    return found
 
 
 def result_page() -> str:
