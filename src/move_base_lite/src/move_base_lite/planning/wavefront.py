@@ -80,9 +80,8 @@ def spread(traversal, start_row, start_col, goal_row, goal_col, use_astar):
             if reached >= potential[cell]:
                 continue
             potential[cell] = reached
-            away = 0.0
-            if use_astar:
-                away = EXPECTED * math.hypot(goal_row - cell // cols, goal_col - cell % cols)
+            row, col = cell // cols, cell % cols
+            away = EXPECTED * math.hypot(goal_row - row, goal_col - col) if use_astar else 0.0
             if reached + away < threshold:
                 n_following = _enlist(following, n_following, cell, reached, cols, flat, potential, waiting)
             else:

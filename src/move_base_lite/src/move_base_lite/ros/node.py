@@ -48,8 +48,8 @@ class MoveBaseNode:
         zones_file = parameters.get("zones_file", "")
         self._zones = load_zones(zones_file) if zones_file else Zones()
         warm_up(self._settings)
-        self._map_frame = frame_name(self._settings.global_costmap.global_frame)
-        odom_frame = frame_name(self._settings.local_costmap.global_frame)
+        costmaps = self._settings.global_costmap, self._settings.local_costmap
+        self._map_frame, odom_frame = (frame_name(costmap.global_frame) for costmap in costmaps)
         self._global_planner = _short_name(parameters, "base_global_planner", "navfn/NavfnROS")
         local_planner = _short_name(parameters, "base_local_planner", "")
         self._lock = threading.RLock()
@@ -74,25 +74,21 @@ class MoveBaseNode:
         threading.Thread(target=self._control, daemon=True).start()
 
     def _await_inputs(self):
-        base_frame = frame_name(self._settings.local_costmap.robot_base_frame)
-        odom_frame = frame_name(self._settings.local_costmap.global_frame)
-        transforms = f"the transforms {self._map_frame} -> {odom_frame} -> {base_frame}"
+        local = self._settings.local_costmap
+        frames = [self._map_frame, *map(frame_name, (local.global_frame, local.robot_base_frame))]
+        transforms = f"the transforms {' -> '.join(frames)}"
         conditions: Dict[str, Callable[[], bool]] = {transforms: lambda: self._view is not None}
         for topic in self._surroundings.topics:
-            conditions[f"a message on {topic}"] = partial(self._has_heard, topic)
+            conditions[f"a message on {topic}"] = partial(self._surroundings.has_heard, topic)
         static = self._settings.global_costmap.static
         if static.enabled:
-            conditions[f"a map on {rospy.resolve_name(static.map_topic)}"] = self._has_map
+            conditions[f"a map on {rospy.resolve_name(static.map_topic)}"] = (
+                lambda: self._new_map is not None or self._navigator is not None
+            )
             rospy.Subscriber(static.map_topic, OccupancyGridArrays, self._on_map, queue_size=1)
         else:
             self._navigator = Navigator(self._settings, None, self._zones)
         Waiting(conditions)
-
-    def _has_heard(self, topic: str) -> bool:
-        return topic not in self._surroundings.silent_topics
-
-    def _has_map(self) -> bool:
-        return self._new_map is not None or self._navigator is not None
 
     def _on_map(self, message):
         self._new_map = message
@@ -171,7 +167,7 @@ class MoveBaseNode:
             self._lock,
             self._transforms,
             lambda: self._goals.is_active,
-            lambda: self._view and self._view.base_in_map,
+            self._where,
             self._global_planner,
         )
         ZoneTopics(self._zones, self._map_frame)
@@ -179,6 +175,9 @@ class MoveBaseNode:
         # Takes a while, for it talks to the parameter server a lot.
         threading.Thread(target=self._tree.serve, daemon=True).start()
         rospy.loginfo("odom received, map received: ready for goals")
+
+    def _where(self) -> Optional[Pose2]:
+        return self._view.base_in_map if self._view else None
 
     def _stand_still(self, navigator: Navigator, now: rospy.Time):
         """Without transforms nothing is safe but standing; goals still come, are cancelled and given up."""

@@ -1,6 +1,7 @@
 """move_base's servers of dynamic_reconfigure: of itself, its costmaps, their layers, its planners."""
 
 import threading
+from functools import partial
 from typing import Any, Callable, Dict
 
 import rospy
@@ -34,7 +35,7 @@ class ParameterTree:
                     self._servers[namespace] = Tuning(
                         [tunable for tunable, _ in tunables],
                         {tunable.name: value for tunable, value in tunables},
-                        lambda asked, namespace=namespace: self._change(namespace, asked),
+                        partial(self._change, namespace),
                         namespace,
                     )
 

@@ -56,10 +56,9 @@ class Surroundings:
         costmaps = (settings.global_costmap, settings.local_costmap)
         self._tolerances = tuple(costmap.transform_tolerance for costmap in costmaps)
 
-    @property
-    def silent_topics(self) -> List[str]:
-        """Topics of sensors from which nothing has come yet."""
-        return [sensor.topic for sensor in self._sensors if not sensor.has_spoken]
+    def has_heard(self, topic: str) -> bool:
+        """Whether all that is awaited on a sensor's topic has spoken."""
+        return all(sensor.has_spoken for sensor in self._sensors if sensor.topic == topic)
 
     @property
     def topics(self) -> List[str]:
