@@ -53,7 +53,7 @@ look_for_missing() { # EXTRA...: each of the variables is empty when nothing of 
         [[ ! -e $root/scripts/requirements-$extra.txt ]] || requirement_files+=("requirements-$extra.txt")
     done
     requirements=$(cd "$root/scripts" && missing_requirements "${requirement_files[@]}")
-    inputs=$(build_inputs)
+    inputs=$([[ ! -d $root/src ]] || build_inputs) # an image is given the packages before the sources
     failure=
     [[ -n $retry ]] || failure=$(last_failure)
     build=
