@@ -5,5 +5,5 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent
 sys.path[:0] = [str(path) for path in sorted(ROOT.glob("src/**/src")) if path.is_dir()]
-sys.path.insert(0, str(ROOT / "tests/runner"))
+sys.path[:0] = [str(ROOT / "tests/runner"), str(ROOT / "tests/repository")]
 sys.path[1:1] = [str(path) for path in sorted(ROOT.glob("src/*/test")) if path.is_dir()]

@@ -1,6 +1,6 @@
 """The commented YAML file of a package's parameters, made from the settings that say them.
 
-A package declares the file in its ``config`` module; ``docs/generate.py`` writes it, and docs/parameters.md::
+A package declares the file in its ``config`` module; ``docs/generate.py`` writes it::
 
     CONFIG_FILES = {
         "tea.yaml": Section(
@@ -15,7 +15,7 @@ A package declares the file in its ``config`` module; ``docs/generate.py`` write
     }
 """
 
-from typing import Any, Dict, Iterator, List, NamedTuple, Union
+from typing import Any, Dict, List, Union
 
 import yaml
 
@@ -32,28 +32,6 @@ class Section:
     def __init__(self, name: str, *parts: Any, about: str = "", same_as: str = ""):
         self.name, self.about, self.same_as = name, about, same_as
         self.parts = tuple(part for given in parts for part in _parts(given))
-
-
-class Row(NamedTuple):
-    """A parameter of a file by its full name, parents first, e.g. "sugar/lumps"."""
-
-    name: str
-    value: str
-    unit: str
-    meaning: str
-
-
-def rows_of(section: Section, above: str = "") -> Iterator[Row]:
-    """The parameters of a file and their defaults as they stand there, for tables; see Section."""
-    for part in section.parts:
-        name = above + part.name
-        if isinstance(part, Parameter):
-            value = "" if part.required else _in_line(part.default)
-            yield Row(name, value, part.unit, _meaning(part))
-        elif part.same_as:
-            yield Row(name, "", "", f"the same keys and defaults as `{part.same_as}`")
-        else:
-            yield from rows_of(part, name + "/")
 
 
 def yaml_of(section: Section) -> str:
