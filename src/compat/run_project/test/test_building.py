@@ -1,4 +1,4 @@
-from run_project.building import Workspace, broken_configurations, environment
+from run_project.preparing.building import Workspace, broken_configurations, environment
 
 OUTPUT = """
 CMake Error at /usr/share/cmake-3.25/Modules/FindPackageHandleStandardArgs.cmake:230 (message):

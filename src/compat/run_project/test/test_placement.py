@@ -2,8 +2,8 @@ from pathlib import Path
 
 import pytest
 
-from run_project.layout import Checkout, Kind
-from run_project.placement import absolute_paths, mounts_to, paths_named, place
+from run_project.checkout.layout import Checkout, Kind
+from run_project.checkout.placement import absolute_paths, mounts_to, paths_named, place
 
 
 def sources(*files):

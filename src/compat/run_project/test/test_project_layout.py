@@ -1,7 +1,7 @@
 import pytest
 
+from run_project.checkout.layout import Kind, choose_script, read_checkout
 from run_project.errors import ProjectError
-from run_project.layout import Kind, choose_script, read_checkout
 
 
 def checkout(folder, *files):

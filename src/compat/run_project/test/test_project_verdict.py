@@ -1,9 +1,9 @@
 import pytest
 
-from run_project.complaints import complaints_in
-from run_project.nodelet import command_for
-from run_project.rviz_topics import topics_of
-from run_project.verdict import Ledger, judge
+from run_project.judging.complaints import complaints_in
+from run_project.judging.verdict import Ledger, judge
+from run_project.stand_ins.nodelet import command_for
+from run_project.stand_ins.rviz_topics import topics_of
 
 ACTIVE, PREEMPTED, SUCCEEDED, ABORTED = 1, 2, 3, 4
 

@@ -1,6 +1,6 @@
 import pytest
 
-from run_project.python2 import in_python3
+from run_project.preparing.python2 import in_python3
 
 
 @pytest.mark.parametrize(

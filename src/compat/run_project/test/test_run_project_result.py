@@ -8,10 +8,10 @@ import fastjsonschema
 import pytest
 
 from run_project import cli
-from run_project.building import Workspace
+from run_project.judging.verdict import Ledger
 from run_project.options import parse
+from run_project.preparing.building import Workspace
 from run_project.ros.running import Job
-from run_project.verdict import Ledger
 from supervision.display import Display
 from supervision.interruption import INTERRUPTED, RunInterruptedError
 

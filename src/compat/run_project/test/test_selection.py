@@ -1,4 +1,4 @@
-from run_project.selection import select
+from run_project.preparing.selection import select
 
 COMPILED = "find_package(catkin REQUIRED COMPONENTS {0})\nadd_executable(x x.cpp)\n"
 

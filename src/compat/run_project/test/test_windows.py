@@ -1,6 +1,6 @@
 import pytest
 
-from run_project.windows import commands_of, returns_at_once, title_of
+from run_project.stand_ins.windows import commands_of, returns_at_once, title_of
 
 
 @pytest.mark.parametrize(

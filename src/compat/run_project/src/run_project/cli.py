@@ -10,18 +10,18 @@ from pathlib import Path
 from typing import Dict, List, Optional
 
 from planar import PlanarError
-from run_project.building import Workspace, build, copy_checkout, environment
-from run_project.complaints import complaints_in
+from run_project.checkout.layout import Checkout, choose_script, is_errand, read_checkout
+from run_project.checkout.placement import READ_SUFFIXES, Placement, place
 from run_project.errors import BuildError, ProjectError
-from run_project.layout import Checkout, choose_script, is_errand, read_checkout
+from run_project.judging.complaints import complaints_in
+from run_project.judging.verdict import Ledger, Verdict, judge
 from run_project.options import Options, parse
-from run_project.placement import READ_SUFFIXES, Placement, place
-from run_project.private_root import prefix
+from run_project.preparing.building import Workspace, build, copy_checkout, environment
+from run_project.preparing.private_root import prefix
 from run_project.ros.headless_rviz import SHOWN
 from run_project.ros.running import Job, ProjectRun
-from run_project.stand_ins import PACKAGE_FOLDER
-from run_project.terminal import LOGS
-from run_project.verdict import Ledger, Verdict, judge
+from run_project.stand_ins.folders import PACKAGE_FOLDER
+from run_project.stand_ins.terminal import LOGS
 from supervision.display import Display, complain
 from supervision.errors import LaunchError
 from supervision.interruption import INTERRUPTED, RunInterruptedError, raise_when_interrupted

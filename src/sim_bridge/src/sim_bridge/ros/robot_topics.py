@@ -12,7 +12,7 @@ from planar_ros.messages.conversion import time_of
 from sim_bridge.description.profile import JointStateProfile
 from sim_bridge.robot import Observation
 from sim_bridge.ros.command_topics import CommandTopics, MuxTopics
-from sim_bridge.ros.kobuki_commands import KobukiCommands
+from sim_bridge.ros.kobuki.commands import KobukiCommands
 from sim_bridge.ros.messages import covariance_of
 from sim_bridge.ros.motion_messages import OdometryMsg, TransformMsg
 from sim_bridge.ros.orders import Orders

@@ -8,7 +8,7 @@ from sensor_msgs.msg import Imu
 from planar_ros.messages.conversion import LaserScanArrays, time_of
 from sim_bridge.robot import Observation, Robot
 from sim_bridge.ros.camera_topics import CameraTopics
-from sim_bridge.ros.kobuki_topics import KobukiTopics
+from sim_bridge.ros.kobuki.topics import KobukiTopics
 from sim_bridge.ros.outlet import Outlet
 from sim_bridge.ros.sensor_messages import imu_to_msg, scan_to_msg
 from sim_bridge.sensors.camera import CameraProfile

@@ -8,14 +8,14 @@ import numpy as np
 from sim_bridge.geometry.meshes import load_mesh
 from sim_bridge.geometry.pose3 import inverse
 from sim_bridge.geometry.shapes import Look, MeshFile, Plane, Shape, scaled
-from sim_bridge.sdf.colours import read_colour
 from sim_bridge.sdf.element import Element, parse, parse_text
 from sim_bridge.sdf.frames import Frames
-from sim_bridge.sdf.geometry import LeftOutError, MissingError, read_shape
 from sim_bridge.sdf.inertia import read_inertia, read_mass
 from sim_bridge.sdf.joints import read_joint, started, trees_of
 from sim_bridge.sdf.lights import read_lights
 from sim_bridge.sdf.models import Model, ModelReader, declare_frames
+from sim_bridge.sdf.shapes.colours import read_colour
+from sim_bridge.sdf.shapes.geometry import LeftOutError, MissingError, read_shape
 from sim_bridge.sdf.state import ModelState, read_states
 from sim_bridge.sdf.warnings import Warnings
 from sim_bridge.world import Body, Collision, DrivenModel, Inertia, Joint, Light, Surface, Visual, World

@@ -7,8 +7,8 @@ from typing import List, Optional
 
 import rospy
 
-from run_project.rviz_topics import topics_of
-from run_project.stand_ins import without_stand_ins
+from run_project.stand_ins.folders import without_stand_ins
+from run_project.stand_ins.rviz_topics import topics_of
 
 SHOWN = "RUN_PROJECT_RVIZ"
 OPTIONS = ("-d", "--display-config")

@@ -14,7 +14,7 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 from visualization_msgs.msg import Marker, MarkerArray
 
-from run_project.verdict import Ledger
+from run_project.judging.verdict import Ledger
 
 # seq and stamp at the start of a message with a header: what changes when nothing else does.
 CHANGING_BYTES = struct.calcsize("<III")

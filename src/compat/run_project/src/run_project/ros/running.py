@@ -13,7 +13,7 @@ import psutil
 import rospy
 
 from run_project.ros.observer import Observer
-from run_project.terminal import WindowLogs
+from run_project.stand_ins.terminal import WindowLogs
 from supervision.display import Display
 from supervision.errors import LaunchError
 from supervision.processes import adopt_orphans, end_descendants, free_port

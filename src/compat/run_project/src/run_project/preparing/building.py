@@ -9,12 +9,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Callable, Dict, Set, Tuple
 
+from run_project.checkout.layout import LEFTOVERS, Checkout
+from run_project.checkout.placement import Placement
 from run_project.errors import BuildError
-from run_project.layout import LEFTOVERS, Checkout
-from run_project.placement import Placement
-from run_project.python2 import in_python3
-from run_project.selection import select
-from run_project.stand_ins import PACKAGE_FOLDER, STAND_INS
+from run_project.preparing.python2 import in_python3
+from run_project.preparing.selection import select
+from run_project.stand_ins.folders import PACKAGE_FOLDER, STAND_INS
 
 FRESH_CLONE = PACKAGE_FOLDER / "cmake" / "fresh_clone.cmake"
 # A bound on how many packages may turn out one after the other not to be configurable.

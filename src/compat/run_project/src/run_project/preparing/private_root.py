@@ -40,7 +40,7 @@ def prefix(mounts: Mapping[Path, Path], root: Path) -> List[str]:
             "run as root, allow user namespaces, or put the project there"
         )
     plan = json.dumps([[str(target), str(source)] for target, source in mounts.items()])
-    return [*unshare, sys.executable, "-m", "run_project.private_root", str(root), plan]
+    return [*unshare, sys.executable, "-m", "run_project.preparing.private_root", str(root), plan]
 
 
 def mirror(host: Path, new: Path, mounts: Mapping[Path, Path]) -> None:

@@ -4,7 +4,7 @@ import rospy
 from kobuki_msgs.msg import Led, MotorPower, Sound
 from std_msgs.msg import Empty
 
-from sim_bridge.ros.kobuki_topics import NAMESPACE
+from sim_bridge.ros.kobuki.topics import NAMESPACE
 from sim_bridge.ros.orders import Orders
 from sim_bridge.scene import Scene
 

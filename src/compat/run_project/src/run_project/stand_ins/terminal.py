@@ -6,7 +6,7 @@ import subprocess
 from pathlib import Path
 from typing import List
 
-from run_project.windows import commands_of, returns_at_once, title_of
+from run_project.stand_ins.windows import commands_of, returns_at_once, title_of
 
 LOGS = "RUN_PROJECT_LOGS"
 # Logs that lie beside those of the windows.

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Dict, Mapping
 
-PACKAGE_FOLDER = Path(__file__).resolve().parents[2]
+PACKAGE_FOLDER = Path(__file__).resolve().parents[3]
 STAND_INS = PACKAGE_FOLDER / "stand_ins"
 
 

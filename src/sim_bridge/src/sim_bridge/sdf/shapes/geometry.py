@@ -7,9 +7,9 @@ import numpy as np
 
 from sim_bridge.geometry.shapes import Box, Cylinder, Look, Mesh, MeshFile, Plane, Sphere
 from sim_bridge.sdf.element import Element
-from sim_bridge.sdf.footprints import footprint_of
 from sim_bridge.sdf.includes import resolve
-from sim_bridge.sdf.prism import prism
+from sim_bridge.sdf.shapes.footprints import footprint_of
+from sim_bridge.sdf.shapes.prism import prism
 
 # SDF's own default, metres.
 POLYLINE_HEIGHT = 1.0

@@ -4,7 +4,7 @@ import rospy
 from kobuki_msgs.msg import BumperEvent, CliffEvent, SensorState, WheelDropEvent
 from sensor_msgs.msg import PointCloud2
 
-from sim_bridge.ros.bumper_cloud import FRAME, BumperCloud
+from sim_bridge.ros.kobuki.bumper_cloud import FRAME, BumperCloud
 from sim_bridge.ros.outlet import Outlet
 from sim_bridge.sensors.bumper import CENTRE, LEFT, RIGHT
 from sim_bridge.sensors.kobuki import KobukiProfile, KobukiReading

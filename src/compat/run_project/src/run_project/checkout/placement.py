@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Dict, FrozenSet, Iterable, Iterator, List, Mapping, Optional, Pattern, Set, Tuple
 
-from run_project.layout import Checkout, Kind
+from run_project.checkout.layout import Checkout, Kind
 
 # Where the system's own files are, and what is rather the tail of a path: nothing is put there.
 SYSTEM = frozenset("bin boot dev etc lib lib64 opt proc run sbin src sys usr var".split())

@@ -5,7 +5,7 @@ from typing import Dict, Optional, Tuple
 import numpy as np
 
 from sim_bridge.geometry.shapes import Mesh
-from sim_bridge.sdf.prism import prism
+from sim_bridge.sdf.shapes.prism import prism
 
 # Measured on the meshes of github.com/osrf/gazebo_models, at the height of a small robot; of people, whose
 # meshes were not at hand, the plate below their feet. By the mesh's address after model://, in its own unit:

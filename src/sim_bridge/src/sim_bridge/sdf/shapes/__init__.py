@@ -1,0 +1,1 @@
+"""<geometry> and <material> elements as shapes and their colours."""
