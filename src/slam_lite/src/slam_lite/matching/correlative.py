@@ -250,25 +250,37 @@ def _climb(
             if stack_bounds[depth] <= best_score:
                 continue
             level, u, v = stack[depth]
-            if level == 0:
-                du, dv = u - excluded[0], v - excluded[1]
-                along = slide[0] * du + slide[1] * dv
-                near = du * du + dv * dv - along * along < apart_cells * apart_cells
-                outside = abs(u) > cells or abs(v) > cells
-                if not (outside or (near and abs(k - excluded[2]) < apart_angles)):
-                    best_score = stack_bounds[depth]
-                    best[0], best[1], best[2] = u, v, k
+            if level > 0:
+                _split(maxima[level - 1], cols[k], rows[k], stack, stack_bounds, depth)
+                depth += 4
                 continue
-            half = 2 ** (level - 1)
-            for quarter in range(4):
-                shift_u, shift_v = u + half * (quarter % 2), v + half * (quarter // 2)
-                bound = _score(maxima[level - 1], cols[k], rows[k], shift_u, shift_v)
-                # The best child ends on top of the stack.
-                at = depth
-                depth += 1
-                while at > depth - 1 - quarter and stack_bounds[at - 1] > bound:
-                    stack[at], stack_bounds[at] = stack[at - 1], stack_bounds[at - 1]
-                    at -= 1
-                stack[at] = level - 1, shift_u, shift_v
-                stack_bounds[at] = bound
+            is_inside = abs(u) <= cells and abs(v) <= cells
+            if is_inside and _is_apart(u, v, k, excluded, apart_cells, apart_angles, slide):
+                best_score = stack_bounds[depth]
+                best[0], best[1], best[2] = u, v, k
     return best, best_score
+
+
+@numba.njit(cache=True, nogil=True)
+def _split(finer, cols, rows, stack, stack_bounds, first):
+    """Puts the four quarters of the cell at ``first`` on top of the stack in its place, the best one last."""
+    level, u, v = stack[first]
+    half = 2 ** (level - 1)
+    for quarter in range(4):
+        shift_u, shift_v = u + half * (quarter % 2), v + half * (quarter // 2)
+        bound = _score(finer, cols, rows, shift_u, shift_v)
+        at = first + quarter
+        while at > first and stack_bounds[at - 1] > bound:
+            stack[at], stack_bounds[at] = stack[at - 1], stack_bounds[at - 1]
+            at -= 1
+        stack[at] = level - 1, shift_u, shift_v
+        stack_bounds[at] = bound
+
+
+@numba.njit(cache=True, nogil=True)
+def _is_apart(u, v, k, excluded, apart_cells, apart_angles, slide):
+    """Whether a pose is far from the excluded one, and from the line through it along ``slide``."""
+    du, dv = u - excluded[0], v - excluded[1]
+    along = slide[0] * du + slide[1] * dv
+    is_near = du * du + dv * dv - along * along < apart_cells * apart_cells
+    return not (is_near and abs(k - excluded[2]) < apart_angles)
