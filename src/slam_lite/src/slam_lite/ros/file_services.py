@@ -1,0 +1,47 @@
+"""The services that write files and read them."""
+
+from typing import Callable
+
+import rospy
+from nav_msgs.srv import LoadMap, LoadMapResponse
+
+from planar import PlanarError, save_map
+from slam_lite.ros.map_topics import MapTopics
+from slam_lite.ros.mapping import Mapping
+from slam_lite.state import save_state
+
+
+class FileServices:
+    """Saves the map and the state of a mapping, and loads a state, when asked."""
+
+    def __init__(self, mapping: Mapping, maps: MapTopics):
+        self._mapping = mapping
+        self._maps = maps
+        rospy.Service("~save_map", LoadMap, self._on_save_map)
+        rospy.Service("~save_state", LoadMap, self._on_save_state)
+        rospy.Service("~load_state", LoadMap, self._on_load_state)
+
+    def _on_save_map(self, request):
+        grid = self._maps.grid()
+        if grid is None:
+            raise rospy.ServiceException("there is no map yet")
+        return _answer(save_map, grid, _stem(request.map_url))
+
+    def _on_save_state(self, request):
+        return _answer(save_state, self._mapping.state(), request.map_url)
+
+    def _on_load_state(self, request):
+        return _answer(self._mapping.load, request.map_url)
+
+
+def _answer(act: Callable[..., object], *arguments) -> LoadMapResponse:
+    try:
+        act(*arguments)
+    except PlanarError as error:
+        rospy.logerr("%s", error)
+        raise rospy.ServiceException(str(error)) from None
+    return LoadMapResponse(result=LoadMapResponse.RESULT_SUCCESS)
+
+
+def _stem(path: str) -> str:
+    return path[: -len(".yaml")] if path.endswith(".yaml") else path

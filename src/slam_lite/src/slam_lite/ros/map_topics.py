@@ -1,0 +1,87 @@
+"""The map as topics and a service."""
+
+import math
+import threading
+from typing import Optional
+
+import numpy as np
+import rospy
+from nav_msgs.msg import MapMetaData
+from std_msgs.msg import Float64
+
+from planar import OccupancyGrid
+from planar_ros.messages.conversion import GetMapArrays, OccupancyGridArrays, frame_name, grid_to_msg
+from slam_lite.config import NodeSettings
+from slam_lite.rendering import on_canvas
+from slam_lite.ros.mapping import Mapping
+
+# The entropy is that of the pose told to this much: 1 cm, 1 cm and 0.01 rad.
+ENTROPY_CELL = 1e-6
+
+
+class MapTopics:
+    """Draws the map and publishes it, in a thread of its own, so that it keeps no scan waiting."""
+
+    def __init__(self, settings: NodeSettings, mapping: Mapping):
+        self._settings = settings
+        self._mapping = mapping
+        self._drawing = threading.Lock()
+        self._is_due = threading.Event()
+        self._stamp = -math.inf
+        self._message: Optional[OccupancyGridArrays] = None
+        self._map_publisher = rospy.Publisher("map", OccupancyGridArrays, queue_size=1, latch=True)
+        self._metadata_publisher = rospy.Publisher("map_metadata", MapMetaData, queue_size=1, latch=True)
+        self._entropy_publisher = rospy.Publisher("~entropy", Float64, queue_size=1, latch=True)
+        rospy.Service("dynamic_map", GetMapArrays, self._on_dynamic_map)
+        threading.Thread(target=self._draw_maps, daemon=True).start()
+        rospy.on_shutdown(self._is_due.set)
+
+    def note_scan(self, stamp: float) -> None:
+        """There is a scan of this time: a map is due when the last one is old enough."""
+        if not 0.0 <= stamp - self._stamp < self._settings.map_update_interval:
+            self._stamp = stamp
+            self._is_due.set()
+
+    def grid(self) -> Optional[OccupancyGrid]:
+        """The map as far as it is known now, None before the first scan."""
+        renderer, beams, poses, _ = self._mapping.evidence()
+        with self._drawing:
+            renderer.update(beams, poses)
+            grid = renderer.grid()
+        return grid if len(poses) else None
+
+    def _draw_maps(self) -> None:
+        while not rospy.is_shutdown():
+            self._is_due.wait()
+            self._is_due.clear()
+            if not rospy.is_shutdown():
+                self._publish()
+
+    def _publish(self) -> None:
+        settings = self._settings
+        renderer, beams, poses, information = self._mapping.evidence()
+        with self._drawing:
+            renderer.update(beams, poses)
+            grid = on_canvas(renderer.grid(), settings.extent)
+        message = grid_to_msg(grid, rospy.Time.now(), frame_name(settings.map_frame))
+        self._message = message
+        self._map_publisher.publish(message)
+        self._metadata_publisher.publish(message.info)
+        entropy = _entropy(information)
+        if entropy > 0.0:
+            self._entropy_publisher.publish(entropy)
+
+    def _on_dynamic_map(self, request):
+        if self._message is None:
+            raise rospy.ServiceException("there is no map yet")
+        response = GetMapArrays._response_class()
+        response.map = self._message
+        return response
+
+
+def _entropy(information: Optional[np.ndarray]) -> float:
+    """Entropy, nats, of a pose of this information when told to the cell of ENTROPY_CELL."""
+    if information is None or np.linalg.det(information) <= 0.0:
+        return 0.0
+    log_volume = 1.5 * math.log(2.0 * math.pi * math.e) - 0.5 * math.log(np.linalg.det(information))
+    return log_volume - math.log(ENTROPY_CELL)

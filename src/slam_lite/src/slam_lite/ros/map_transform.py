@@ -1,0 +1,34 @@
+"""The transform from the map to the odometry."""
+
+from typing import Optional
+
+import rospy
+
+from planar_ros.messages.conversion import frame_name
+from planar_ros.messages.transforms import Transforms
+from slam_lite.config import NodeSettings
+from slam_lite.ros.mapping import Mapping
+
+
+class MapTransform:
+    """Sends where the odometry frame is in the map, at a steady rate unless its period is 0."""
+
+    def __init__(self, settings: NodeSettings, mapping: Mapping, transforms: Transforms):
+        self._settings = settings
+        self._mapping = mapping
+        self._transforms = transforms
+        self._stamp: Optional[rospy.Time] = None
+        if settings.transform_publish_period > 0.0:
+            self._send()
+            period = rospy.Duration(settings.transform_publish_period)
+            rospy.Timer(period, self._send, reset=True)
+
+    def _send(self, event=None) -> None:
+        settings = self._settings
+        delay = settings.tf_delay if settings.tf_delay >= 0.0 else settings.transform_publish_period
+        stamp = rospy.Time.now() + rospy.Duration(delay)
+        if stamp == self._stamp:
+            return  # a simulated clock may stand still, and tf complains of what it has been told before
+        self._stamp = stamp
+        map_frame, odom_frame = frame_name(settings.map_frame), frame_name(settings.odom_frame)
+        self._transforms.send(self._mapping.odom_in_map, map_frame, odom_frame, stamp)

@@ -1,0 +1,107 @@
+"""The one mapper of the node, for all its threads."""
+
+import threading
+from typing import List, NamedTuple, Optional
+
+import numpy as np
+import rospy
+
+from planar import Pose2, Scan
+from slam_lite.config import NodeSettings
+from slam_lite.mapper import Follower, Mapper, PoseUpdate
+from slam_lite.rendering import Beams, MapRenderer
+from slam_lite.state import MapState, load_state
+
+
+class Evidence(NamedTuple):
+    """What a map is drawn from, and the renderer that drew the one before.
+
+    ``beams``: of N key scans, at ``poses`` (N, 3); ``information``: (3, 3), of the robot's pose, if known.
+    """
+
+    renderer: MapRenderer
+    beams: List[Beams]
+    poses: np.ndarray
+    information: Optional[np.ndarray]
+
+
+class Mapping:
+    """Holds one Mapper, or a Follower in localization-only mode, guarded by one lock.
+
+    Loops are closed in a thread of its own, so that they keep no scan waiting.
+    """
+
+    def __init__(self, settings: NodeSettings):
+        self._settings = settings
+        self._lock = threading.RLock()
+        self._has_keys = threading.Condition(self._lock)
+        self._mapper = Mapper(settings, deferred=True)
+        self._follower: Optional[Follower] = None
+        self._renderer = MapRenderer(settings.resolution, settings.occupied_threshold)
+        self._base_in_odom: Optional[Pose2] = None
+        self._information: Optional[np.ndarray] = None
+        self.odom_in_map = Pose2()
+
+    def insert(self, base_in_odom: Pose2, scan: Scan) -> Optional[PoseUpdate]:
+        """Takes one scan in; None if it says nothing new."""
+        with self._lock:
+            self._base_in_odom = base_in_odom
+            update = (self._follower or self._mapper).insert(base_in_odom, scan)
+            if update is not None:
+                self.odom_in_map = update.odom_in_map
+                self._information = update.information
+                self._has_keys.notify_all()
+        return update
+
+    def place(self, base_in_map: Pose2) -> None:
+        """Goes on from another pose of the robot."""
+        with self._lock:
+            if self._follower is not None:
+                self._follower.place(base_in_map)
+            elif len(self._mapper.key_poses):
+                self._mapper.resume(self._mapper.state(), base_in_map)
+            if self._base_in_odom is not None:
+                self.odom_in_map = base_in_map @ self._base_in_odom.inverse()
+
+    def evidence(self) -> Evidence:
+        """What the map is to be drawn from now."""
+        with self._lock:
+            return Evidence(self._renderer, *self._mapper.evidence(), self._information)
+
+    def state(self) -> MapState:
+        """All that it takes to go on later."""
+        with self._lock:
+            return self._mapper.state()
+
+    def load(self, path: str) -> None:
+        """Goes on from a saved state. Raises StateFileError if there is none."""
+        state = load_state(path)
+        settings = self._settings
+        with self._lock:
+            self._mapper = Mapper(settings, deferred=True)
+            self._mapper.resume(state)
+            self._follower = Follower(settings, state) if settings.localization_only else None
+            self._renderer = MapRenderer(settings.resolution, settings.occupied_threshold)
+        rospy.loginfo("loaded a map of %d scans from %s", len(state.poses), path)
+
+    def start(self) -> None:
+        """Closes loops from now on."""
+        threading.Thread(target=self._close_loops, daemon=True).start()
+
+    def _close_loops(self) -> None:
+        while not rospy.is_shutdown():
+            with self._lock:
+                mapper = self._mapper
+                task = mapper.task() if self._follower is None else None
+                if task is None:
+                    self._has_keys.wait(timeout=1.0)
+                    continue
+            result = task.run()
+            with self._lock:
+                if mapper is not self._mapper:
+                    continue
+                before = mapper.last_in_map
+                mapper.adopt(result)
+                self.odom_in_map = mapper.last_in_map @ before.inverse() @ self.odom_in_map
+                if result.moved:
+                    rospy.loginfo("mended the map (%d loop closures so far)", mapper.loop_count)
