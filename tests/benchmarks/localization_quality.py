@@ -17,12 +17,12 @@ from helpers.drives import Sighting, random_drive
 from helpers.localization_cases import Place, places
 from scipy.stats import rankdata
 
-from amcl_lite.beams import all_beams, evenly_spaced_beams
 from amcl_lite.config import LocalizerSettings
-from amcl_lite.likelihood_field import likelihood_field
-from amcl_lite.particles import FreeSpace
-from amcl_lite.quality import quality_of
-from amcl_lite.scan_matching import matched
+from amcl_lite.filter.particles import FreeSpace
+from amcl_lite.recovery.quality import quality_of
+from amcl_lite.sensor.beams import all_beams, evenly_spaced_beams
+from amcl_lite.sensor.likelihood_field import likelihood_field
+from amcl_lite.sensor.scan_matching import matched
 from planar import Pose2, Scan
 
 SETTINGS = LocalizerSettings(beams=60)

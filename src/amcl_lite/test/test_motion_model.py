@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from amcl_lite.config import LocalizerSettings
-from amcl_lite.motion_model import moved, rotations_and_translation
+from amcl_lite.motion.motion_model import moved, rotations_and_translation
 from planar import Pose2, wrap
 
 COUNT = 40_000

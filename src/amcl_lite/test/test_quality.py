@@ -3,12 +3,12 @@ import math
 import numpy as np
 import pytest
 
-from amcl_lite.beams import Beams
-from amcl_lite.likelihood_field import likelihood_field
-from amcl_lite.particles import FreeSpace
-from amcl_lite.quality import LOST_BELOW, LostDetector, Quality, quality_of
-from amcl_lite.recovery import find_hypotheses
-from amcl_lite.scan_matching import matched
+from amcl_lite.filter.particles import FreeSpace
+from amcl_lite.recovery.hypotheses import find_hypotheses
+from amcl_lite.recovery.quality import LOST_BELOW, LostDetector, Quality, quality_of
+from amcl_lite.sensor.beams import Beams
+from amcl_lite.sensor.likelihood_field import likelihood_field
+from amcl_lite.sensor.scan_matching import matched
 from planar import OccupancyGrid, Pose2, grid_from_picture, wrap
 from planar.geometry.ray_casting import cast_rays
 

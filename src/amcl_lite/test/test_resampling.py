@@ -3,17 +3,17 @@ import math
 import numpy as np
 import pytest
 
-from amcl_lite.bins import cluster_labels
 from amcl_lite.config import LocalizerSettings
-from amcl_lite.particles import (
+from amcl_lite.errors import LocalizationError
+from amcl_lite.filter.bins import cluster_labels
+from amcl_lite.filter.particles import (
     FreeSpace,
-    LocalizationError,
     ParticleSet,
     equally_weighted,
     gaussian_particles,
 )
-from amcl_lite.resampling import particles_needed, resampled
-from amcl_lite.statistics import best_cluster, has_converged, mean_and_covariance
+from amcl_lite.filter.resampling import particles_needed, resampled
+from amcl_lite.filter.statistics import best_cluster, has_converged, mean_and_covariance
 from planar import Pose2, grid_from_picture
 
 ROOM = grid_from_picture("#####\n#..?#\n#####", resolution=0.5, origin=Pose2(10.0, 0.0, 0.0))

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from amcl_lite.beams import Beams, evenly_spaced_beams
 from amcl_lite.config import LocalizerSettings
-from amcl_lite.likelihood_field import likelihood_field
-from amcl_lite.particles import LocalizationError
-from amcl_lite.sensor_model import log_beam_model, log_likelihood_field, log_likelihood_field_prob
+from amcl_lite.errors import LocalizationError
+from amcl_lite.sensor.beams import Beams, evenly_spaced_beams
+from amcl_lite.sensor.likelihood_field import likelihood_field
+from amcl_lite.sensor.sensor_model import log_beam_model, log_likelihood_field, log_likelihood_field_prob
 from planar import Pose2, Scan, grid_from_picture
 
 CORRIDOR = grid_from_picture("#######\n......#\n#######", origin=Pose2(0.0, -1.5, 0.0))

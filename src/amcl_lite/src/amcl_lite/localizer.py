@@ -1,27 +1,22 @@
 """The facade: a robot with odometry and a laser is localized in a known map."""
 
 from dataclasses import dataclass
-from typing import Optional, Set
+from typing import Optional
 
 import numpy as np
 
-from amcl_lite.beams import Beams, all_beams, evenly_spaced_beams
 from amcl_lite.config import InitialPose, LocalizerSettings
-from amcl_lite.likelihood_field import likelihood_field
-from amcl_lite.particle_filter import ParticleFilter
-from amcl_lite.particles import (
-    FreeSpace,
-    LocalizationError,
-    ParticleSet,
-    equally_weighted,
-    gaussian_particles,
-)
-from amcl_lite.quality import LostDetector, Quality, quality_of
-from amcl_lite.recovery import find_hypotheses
-from amcl_lite.scan_matching import matched
-from amcl_lite.sensor_model import log_beam_model, log_likelihood_field, log_likelihood_field_prob
-from amcl_lite.statistics import best_cluster, mean_and_covariance
-from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, Scan, grid_from_picture, wrap
+from amcl_lite.errors import LocalizationError
+from amcl_lite.filter.particle_filter import ParticleFilter
+from amcl_lite.filter.particles import FreeSpace, ParticleSet, equally_weighted, gaussian_particles
+from amcl_lite.filter.statistics import best_cluster, mean_and_covariance
+from amcl_lite.motion.update_policy import UpdatePolicy
+from amcl_lite.recovery.hypotheses import find_hypotheses
+from amcl_lite.recovery.quality import LostDetector, Quality, quality_of
+from amcl_lite.sensor.beams import Beams, all_beams, evenly_spaced_beams
+from amcl_lite.sensor.scan_likelihood import ScanLikelihood
+from amcl_lite.sensor.scan_matching import matched
+from planar import OccupancyGrid, Pose2, Scan, grid_from_picture
 
 # Of the particles of a lost robot, this share is put where the scan fits the map.
 _RECOVERY_SHARE = 0.3
@@ -93,7 +88,7 @@ class Localizer:
     @property
     def fit_grid(self) -> OccupancyGrid:
         """The likelihood field as a grid of 0 (far from any obstacle) to 100 (on one), to look at."""
-        fits = np.rint(100.0 * self._field.fit[1:-1, 1:-1]).astype(np.int8)
+        fits = np.rint(100.0 * self._likelihood.field.fit[1:-1, 1:-1]).astype(np.int8)
         return OccupancyGrid(fits, self._grid.resolution, self._grid.origin)
 
     def reconfigure(self, settings: LocalizerSettings) -> None:
@@ -116,7 +111,7 @@ class Localizer:
 
     def request_update(self) -> None:
         """Makes the next scan count even if the robot stands still."""
-        self._update_requested = True
+        self._update_policy.request()
 
     def update(self, base_in_odom: Pose2, scan: Scan, laser: str = "") -> Optional[Estimate]:
         """Takes in a scan made at ``base_in_odom``; returns an estimate when there is a new one.
@@ -128,86 +123,56 @@ class Localizer:
         beams = evenly_spaced_beams(scan, self._settings)
         self._base_in_odom = base_in_odom
         estimate = None
-        if self._is_due(base_in_odom, laser, scan.stamp):
-            self._lasers_done.add(laser)
-            estimate = self._take(base_in_odom, scan, beams)
+        if self._update_policy.is_due(base_in_odom, laser, scan.stamp, self._settings):
+            base_before = self._update_policy.take(base_in_odom, laser)
+            self._move(base_before, base_in_odom)
+            self._weigh(beams)
+            is_resampled = self._resample_if_due(beams)
+            if is_resampled or base_before is None:
+                estimate = self._estimate(base_in_odom, scan)
         self._judge(base_in_odom, beams, scan.stamp)
         return estimate
 
     def _configure(self, settings: LocalizerSettings) -> None:
         self._settings = settings
-        self._field = likelihood_field(self._grid, settings.sigma_hit, settings.likelihood_max_distance)
-        self._opaque_grid = _opaque(self._grid) if settings.sensor_model == "beam" else None
+        self._likelihood = ScanLikelihood(self._grid, settings)
 
     def _start(self, particles: ParticleSet, is_lost: bool) -> None:
         self._filter = ParticleFilter(particles, self._rng)
         self._detector = LostDetector(is_lost)
-        self._updated_at: Optional[Pose2] = None
-        self._updated_stamp = 0.0
-        self._lasers_done: Set[str] = set()
-        self._update_requested = False
+        self._update_policy = UpdatePolicy()
         self._updates = 0
 
-    def _is_due(self, base_in_odom: Pose2, laser: str, stamp: float) -> bool:
-        """Whether this laser's scan is to be worked in; after a motion, each laser's next scan is, once."""
-        if (
-            self._updated_at is None
-            or self._has_moved(self._updated_at, base_in_odom)
-            or self._has_stood_long(stamp)
-            or self._update_requested
-        ):
-            self._update_requested = False
-            self._updated_stamp = stamp
-            self._lasers_done.clear()
-        return laser not in self._lasers_done
+    def _move(self, base_before: Optional[Pose2], base_now: Pose2) -> None:
+        if base_before is not None and base_now != base_before:
+            self._filter.move(base_before, base_now, self._settings)
 
-    def _has_moved(self, before: Pose2, base_in_odom: Pose2) -> bool:
-        return (
-            abs(base_in_odom.x - before.x) > self._settings.update_min_distance
-            or abs(base_in_odom.y - before.y) > self._settings.update_min_distance
-            or abs(wrap(base_in_odom.yaw - before.yaw)) > self._settings.update_min_angle
-        )
-
-    def _has_stood_long(self, stamp: float) -> bool:
-        return abs(stamp - self._updated_stamp) * self._settings.update_when_still >= 1.0
-
-    def _take(self, base_in_odom: Pose2, scan: Scan, beams: Beams) -> Optional[Estimate]:
-        """Works a scan into the filter."""
-        is_first = self._updated_at is None
-        if self._updated_at is not None and base_in_odom != self._updated_at:
-            self._filter.move(self._updated_at, base_in_odom, self._settings)
-        self._updated_at = base_in_odom
+    def _weigh(self, beams: Beams) -> None:
         if self._settings.beams >= 2:
-            self._filter.weigh(self._log_likelihoods(beams), self._settings)
+            poses, has_converged = self._filter.particles.poses, self._filter.has_converged
+            self._filter.weigh(self._likelihood.logarithms(poses, beams, has_converged), self._settings)
         self._updates += 1
-        is_resampled = self._updates % self._settings.resample_interval == 0
-        if is_resampled:
-            self._resample(beams)
-        return self._estimate(base_in_odom, scan) if is_resampled or is_first else None
 
-    def _log_likelihoods(self, beams: Beams) -> np.ndarray:
-        poses, settings = self._filter.particles.poses, self._settings
-        if self._opaque_grid is not None:
-            return log_beam_model(poses, beams, self._opaque_grid, settings)
-        if settings.sensor_model == "likelihood_field_prob":
-            skip_beams = settings.beam_skip and self._filter.has_converged
-            return log_likelihood_field_prob(poses, beams, self._field, settings, skip_beams)
-        return log_likelihood_field(poses, beams, self._field, settings)
-
-    def _resample(self, beams: Beams) -> None:
+    def _resample_if_due(self, beams: Beams) -> bool:
+        """Draws anew every ``resample_interval`` updates, some where the scan fits if the robot is lost."""
+        if self._updates % self._settings.resample_interval != 0:
+            return False
         share, draw = 0.0, self._free_space.draw
         if self._settings.recover_when_lost and self.is_lost:
-            hypotheses = find_hypotheses(beams, self._field, self._grid, self._free_space, self._rng)
+            hypotheses = find_hypotheses(
+                beams, self._likelihood.field, self._grid, self._free_space, self._rng
+            )
             if len(hypotheses) > 0:
                 share, draw = _RECOVERY_SHARE, hypotheses.draw
         self._filter.resample(self._settings, self._free_space.draw, share, draw)
+        return True
 
     def _estimate(self, base_in_odom: Pose2, scan: Scan) -> Estimate:
         cluster = best_cluster(self.particles)
         base_in_map, covariance = mean_and_covariance(cluster)
         if self._settings.refine_pose:
             ends_xy = all_beams(scan, self._settings).ends_xy
-            base_in_map = matched(base_in_map, covariance, ends_xy, self._field)
+            base_in_map = matched(base_in_map, covariance, ends_xy, self._likelihood.field)
         if cluster is not self.particles:
             _, covariance = mean_and_covariance(self.particles)
         self._odom_in_map = base_in_map @ base_in_odom.inverse()
@@ -217,15 +182,9 @@ class Localizer:
     def _judge(self, base_in_odom: Pose2, beams: Beams, stamp: float) -> None:
         if self._odom_in_map is None:
             return
-        self._quality = quality_of(self._odom_in_map @ base_in_odom, beams, self._field, self._grid)
+        base_in_map = self._odom_in_map @ base_in_odom
+        self._quality = quality_of(base_in_map, beams, self._likelihood.field, self._grid)
         self._detector.take(self._quality, stamp)
-
-
-def _opaque(grid: OccupancyGrid) -> OccupancyGrid:
-    """A grid on which amcl's rays end at anything that is not free."""
-    cells = np.full_like(grid.cells, OCCUPIED)
-    cells[grid.cells == FREE] = FREE
-    return OccupancyGrid(cells, grid.resolution, grid.origin)
 
 
 def warm_up(settings: LocalizerSettings) -> None:

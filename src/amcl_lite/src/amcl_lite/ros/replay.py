@@ -7,7 +7,8 @@ from typing import List, Optional, Tuple
 import numpy as np
 
 from amcl_lite.config import InitialPose, NodeSettings
-from amcl_lite.localizer import LocalizationError, Localizer
+from amcl_lite.errors import LocalizationError
+from amcl_lite.localizer import Localizer
 from planar import Pose2, load_map, wrap
 from planar.config.parameters import official_names
 from planar.config.settings_file import settings_from_yaml

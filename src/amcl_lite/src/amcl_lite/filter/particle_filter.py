@@ -6,10 +6,10 @@ import numba
 import numpy as np
 
 from amcl_lite.config import LocalizerSettings
-from amcl_lite.motion_model import moved
-from amcl_lite.particles import ParticleSet
-from amcl_lite.resampling import DrawPoses, resampled
-from amcl_lite.statistics import has_converged
+from amcl_lite.filter.particles import ParticleSet
+from amcl_lite.filter.resampling import DrawPoses, resampled
+from amcl_lite.filter.statistics import has_converged
+from amcl_lite.motion.motion_model import moved
 from planar import Pose2
 
 

@@ -8,7 +8,7 @@ import numba
 import numpy as np
 
 from amcl_lite.config import LocalizerSettings
-from amcl_lite.particles import LocalizationError
+from amcl_lite.errors import LocalizationError
 from planar import Scan
 
 _MANY = 400

@@ -4,12 +4,12 @@ from typing import List, Tuple
 
 import numpy as np
 
-from amcl_lite.beams import Beams
-from amcl_lite.likelihood_field import LikelihoodField
-from amcl_lite.particles import FreeSpace
-from amcl_lite.quality import quality_of
-from amcl_lite.scan_matching import matched
-from amcl_lite.sensor_model import mean_fits
+from amcl_lite.filter.particles import FreeSpace
+from amcl_lite.recovery.quality import quality_of
+from amcl_lite.sensor.beams import Beams
+from amcl_lite.sensor.likelihood_field import LikelihoodField
+from amcl_lite.sensor.scan_matching import matched
+from amcl_lite.sensor.sensor_model import mean_fits
 from planar import OccupancyGrid, Pose2
 
 _DRAWN, _MATCHED, _KEPT = 6000, 40, 10

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numba
 import numpy as np
 
-from amcl_lite.beams import Beams
-from amcl_lite.likelihood_field import LikelihoodField, fit_at, placed
+from amcl_lite.sensor.beams import Beams
+from amcl_lite.sensor.likelihood_field import LikelihoodField, fit_at, placed
 from planar import OccupancyGrid, Pose2
 from planar.geometry.ray_casting import cast_rays
 

@@ -10,7 +10,7 @@ import math
 import numba
 import numpy as np
 
-from amcl_lite.likelihood_field import LikelihoodField, placed
+from amcl_lite.sensor.likelihood_field import LikelihoodField, placed
 from planar import Pose2
 
 # Standard deviation of a beam's misfit (1 - fit) at the right pose; what a typical lidar and map leave over.

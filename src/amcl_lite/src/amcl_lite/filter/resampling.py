@@ -6,9 +6,9 @@ from typing import Callable
 import numba
 import numpy as np
 
-from amcl_lite import bins
 from amcl_lite.config import LocalizerSettings
-from amcl_lite.particles import ParticleSet, equally_weighted
+from amcl_lite.filter import bins
+from amcl_lite.filter.particles import ParticleSet, equally_weighted
 
 DrawPoses = Callable[[int, np.random.Generator], np.ndarray]
 

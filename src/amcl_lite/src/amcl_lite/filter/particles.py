@@ -5,11 +5,8 @@ from dataclasses import dataclass
 import numba
 import numpy as np
 
-from planar import FREE, OccupancyGrid, PlanarError, Pose2
-
-
-class LocalizationError(PlanarError):
-    """Localization is impossible with what it was given."""
+from amcl_lite.errors import LocalizationError
+from planar import FREE, OccupancyGrid, Pose2
 
 
 @dataclass(frozen=True, eq=False)

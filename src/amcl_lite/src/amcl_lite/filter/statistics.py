@@ -6,8 +6,8 @@ from typing import Tuple
 import numba
 import numpy as np
 
-from amcl_lite.bins import cluster_labels
-from amcl_lite.particles import ParticleSet
+from amcl_lite.filter.bins import cluster_labels
+from amcl_lite.filter.particles import ParticleSet
 from planar import Pose2
 
 # All particles this close to their mean, metres along x and along y: the filter has converged (amcl).

@@ -8,9 +8,9 @@ import math
 import numba
 import numpy as np
 
-from amcl_lite.beams import Beams
 from amcl_lite.config import LocalizerSettings
-from amcl_lite.likelihood_field import LikelihoodField, fit_at, placed
+from amcl_lite.sensor.beams import Beams
+from amcl_lite.sensor.likelihood_field import LikelihoodField, fit_at, placed
 from planar import OccupancyGrid
 from planar.geometry.ray_casting import cast_rays_from_many
 

@@ -1,0 +1,1 @@
+"""Beyond amcl: noticing that the robot is lost, and where it may be then."""

@@ -1,0 +1,35 @@
+"""The sensor model that the settings choose, with what it needs to know of the map."""
+
+import numpy as np
+
+from amcl_lite.config import LocalizerSettings
+from amcl_lite.sensor.beams import Beams
+from amcl_lite.sensor.likelihood_field import likelihood_field
+from amcl_lite.sensor.sensor_model import log_beam_model, log_likelihood_field, log_likelihood_field_prob
+from planar import FREE, OCCUPIED, OccupancyGrid
+
+
+class ScanLikelihood:
+    """How likely a scan is at poses in one map; ``field``: the map's likelihood field."""
+
+    def __init__(self, grid: OccupancyGrid, settings: LocalizerSettings):
+        self.field = likelihood_field(grid, settings.sigma_hit, settings.likelihood_max_distance)
+        self._settings = settings
+        self._opaque_grid = _opaque(grid) if settings.sensor_model == "beam" else None
+
+    def logarithms(self, poses: np.ndarray, beams: Beams, has_converged: bool) -> np.ndarray:
+        """Logarithms (N,) for particles (N, 3); beams are skipped only when these ``has_converged``."""
+        settings = self._settings
+        if self._opaque_grid is not None:
+            return log_beam_model(poses, beams, self._opaque_grid, settings)
+        if settings.sensor_model == "likelihood_field_prob":
+            skip_beams = settings.beam_skip and has_converged
+            return log_likelihood_field_prob(poses, beams, self.field, settings, skip_beams)
+        return log_likelihood_field(poses, beams, self.field, settings)
+
+
+def _opaque(grid: OccupancyGrid) -> OccupancyGrid:
+    """A grid on which amcl's rays end at anything that is not free."""
+    cells = np.full_like(grid.cells, OCCUPIED)
+    cells[grid.cells == FREE] = FREE
+    return OccupancyGrid(cells, grid.resolution, grid.origin)
