@@ -1,4 +1,4 @@
-"""Plays a bag straight into a node: ``amcl --run-from-bag``."""
+"""Plays a bag straight into the node: ``amcl --run-from-bag``."""
 
 import time
 from pathlib import Path
@@ -6,12 +6,44 @@ from pathlib import Path
 import rospy
 from tf2_msgs.msg import TFMessage
 
+from amcl_lite.ros.estimate_publisher import EstimatePublisher
+from amcl_lite.ros.shared_localizer import SharedLocalizer
 from planar_ros.bags.bag import TF, TF_STATIC, Bag, BagError, full_name
 from planar_ros.messages.conversion import LaserScanArrays
 from planar_ros.messages.scan_queue import ScanQueue
 from planar_ros.messages.transforms import Transforms
 
 POLL_SECONDS = 0.01
+MAP_POLL_SECONDS = 0.5
+
+
+class BagRun:
+    """Works through a bag, says where the robot is in the end, and ends the node."""
+
+    def __init__(
+        self, shared: SharedLocalizer, transforms: Transforms, scans: ScanQueue, publisher: EstimatePublisher
+    ):
+        self._shared, self._transforms = shared, transforms
+        self._scans, self._publisher = scans, publisher
+
+    def work_through(self, path: Path, localize_globally: bool) -> None:
+        """Waits for the map first. Raises BagError."""
+        while self._shared.localizer is None and not rospy.is_shutdown():
+            time.sleep(MAP_POLL_SECONDS)
+        if localize_globally:
+            self._shared.scatter()
+        start = time.monotonic()
+        play_bag(path, self._transforms, self._scans, self._shared.settings.bag_scan_period)
+        rospy.loginfo("Bag complete, took %.1f seconds to process, shutting down", time.monotonic() - start)
+        self._say_where()
+        rospy.signal_shutdown("bag complete")
+
+    def _say_where(self):
+        estimate, stamp = self._publisher.last_estimate, self._publisher.last_stamp
+        if estimate is not None:
+            pose = estimate.base_in_map
+            place = pose.x, pose.y, pose.yaw, stamp.to_sec()
+            rospy.loginfo("Final location %.3f, %.3f, %.3f with stamp=%f", *place)
 
 
 def play_bag(path: Path, transforms: Transforms, scans: ScanQueue, scan_period: float) -> None:

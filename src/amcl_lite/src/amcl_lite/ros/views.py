@@ -7,8 +7,8 @@ from geometry_msgs.msg import Point, PoseArray, PoseWithCovarianceStamped
 from std_msgs.msg import ColorRGBA, Float32, String
 from visualization_msgs.msg import Marker
 
-from amcl_lite.config import NodeSettings
 from amcl_lite.localizer import Estimate, Localizer
+from amcl_lite.ros.shared_localizer import SharedLocalizer
 from planar import OccupancyGrid
 from planar_ros.messages.conversion import (
     OccupancyGridArrays,
@@ -26,8 +26,8 @@ MARKER_LENGTH, MARKER_COUNT = 0.1, 500
 class Views:
     """The topics of amcl, and amcl_lite's own below ``~``; the latter cost nothing while nobody listens."""
 
-    def __init__(self, settings: NodeSettings):
-        self.settings = settings
+    def __init__(self, shared: SharedLocalizer):
+        self._shared = shared
         self._pose = rospy.Publisher("amcl_pose", PoseWithCovarianceStamped, queue_size=2, latch=True)
         self._cloud = rospy.Publisher("particlecloud", PoseArray, queue_size=2, latch=True)
         self._diagnostics = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=2)
@@ -40,7 +40,7 @@ class Views:
 
     @property
     def _frame(self) -> str:
-        return frame_name(self.settings.map_frame)
+        return frame_name(self._shared.settings.map_frame)
 
     def show_estimate(self, estimate: Estimate, stamp: rospy.Time) -> None:
         message = PoseWithCovarianceStamped()
@@ -85,7 +85,7 @@ class Views:
         self._diagnostics.publish(message)
 
     def _spread(self, estimate):
-        settings = self.settings
+        settings = self._shared.settings
         limits = (settings.std_warn_level_x, settings.std_warn_level_y, settings.std_warn_level_yaw)
         spreads = np.sqrt(np.maximum(np.diag(estimate.covariance), 0.0))
         values = {f"std_{name}": spread for name, spread in zip(("x", "y", "yaw"), spreads)}

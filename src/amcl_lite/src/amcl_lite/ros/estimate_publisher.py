@@ -1,0 +1,59 @@
+"""What becomes of an estimate: topics, the transform, and the pose kept for a restart."""
+
+from typing import Optional
+
+import rospy
+
+from amcl_lite.localizer import Estimate, Localizer
+from amcl_lite.ros.shared_localizer import SharedLocalizer
+from amcl_lite.ros.start_pose import PoseKeeper
+from amcl_lite.ros.tf_bridge import TfBridge
+from amcl_lite.ros.views import Views
+from planar import Pose2
+
+
+class EstimatePublisher:
+    """Publishes what each scan has led to; ``last_estimate`` is of ``last_stamp``, None at first."""
+
+    def __init__(self, shared: SharedLocalizer, views: Views, tf_bridge: TfBridge):
+        self.last_estimate: Optional[Estimate] = None
+        self.last_stamp = rospy.Time(0)
+        self._shared, self._views, self._tf_bridge = shared, views, tf_bridge
+        self._keeper = PoseKeeper()
+        self._base_in_odom: Optional[Pose2] = None
+
+    def publish(
+        self,
+        localizer: Localizer,
+        estimate: Optional[Estimate],
+        is_updated: bool,
+        base_in_odom: Pose2,
+        stamp: rospy.Time,
+    ) -> None:
+        """After each scan; ``is_updated``: whether it was worked in; ``estimate``: the new one, if any."""
+        self._base_in_odom = base_in_odom
+        if is_updated:
+            self._views.show_particles(localizer)
+        if estimate is not None:
+            self.last_estimate, self.last_stamp = estimate, stamp
+            self._views.show_estimate(estimate, stamp)
+        if localizer.odom_in_map is None or self.last_estimate is None:  # which come together
+            return
+        self._tf_bridge.send(localizer.odom_in_map, stamp)
+        self._views.show_quality(localizer)
+        self._views.show_diagnostics(localizer, self.last_estimate)
+        if estimate is None:
+            self._keeper.keep_if_due(
+                self._shared.settings.save_pose_rate,
+                localizer.odom_in_map @ base_in_odom,
+                self.last_estimate.covariance,
+            )
+
+    def keep_pose(self) -> None:
+        """Before the node ends: a restarted one resumes where this one was."""
+        with self._shared.lock:
+            localizer = self._shared.localizer
+            odom_in_map = None if localizer is None else localizer.odom_in_map
+            base_in_odom, estimate = self._base_in_odom, self.last_estimate
+            if odom_in_map is not None and base_in_odom is not None and estimate is not None:
+                self._keeper.keep(odom_in_map @ base_in_odom, estimate.covariance)

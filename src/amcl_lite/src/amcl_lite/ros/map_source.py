@@ -1,0 +1,93 @@
+"""Where the map comes from."""
+
+import time
+from typing import Callable
+
+import rospy
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from nav_msgs.srv import SetMapResponse
+
+from amcl_lite.ros.shared_localizer import SharedLocalizer
+from planar import OccupancyGrid, PlanarError
+from planar_ros.messages.conversion import (
+    GetMapArrays,
+    OccupancyGridArrays,
+    SetMapArrays,
+    frame_name,
+    grid_from_msg,
+)
+
+FETCH_ALARM_SECONDS = 15.0
+FETCH_RETRY_SECONDS = 0.5
+
+
+class MapSource:
+    """Gives the localizer its map: from service or topic at the start, at any time by service ``set_map``.
+
+    ``show_field(fit_grid)`` is called for each map taken. ``take_pose(message, force_update)`` is given the
+    pose that comes with ``set_map``.
+    """
+
+    def __init__(
+        self,
+        shared: SharedLocalizer,
+        show_field: Callable[[OccupancyGrid], None],
+        take_pose: Callable[[PoseWithCovarianceStamped, bool], None],
+    ):
+        self._shared = shared
+        self._show_field, self._take_pose = show_field, take_pose
+        self._is_topic = shared.settings.use_map_topic
+        rospy.Service("set_map", SetMapArrays, self._on_set_map)
+        if self._is_topic:
+            rospy.Subscriber("map", OccupancyGridArrays, self._on_map, queue_size=1)
+
+    @property
+    def name(self) -> str:
+        """Of the topic or the service, for people."""
+        if self._is_topic:
+            return f"topic {rospy.resolve_name('map')}"
+        return f"service {rospy.resolve_name('static_map')}"
+
+    def fetch(self) -> None:
+        """Gets the map from the service static_map, however long it takes; PlanarError if the map is bad."""
+        if self._is_topic:
+            return
+        rospy.loginfo("Requesting the map...")
+        static_map = rospy.ServiceProxy("static_map", GetMapArrays)
+        while not rospy.is_shutdown():
+            try:
+                self._install(static_map().map)
+                return
+            except rospy.ServiceException:
+                rospy.logwarn_throttle(FETCH_ALARM_SECONDS, "Request for map failed; trying again...")
+                time.sleep(FETCH_RETRY_SECONDS)
+
+    def _on_map(self, message):
+        if self._shared.localizer is not None and self._shared.settings.first_map_only:
+            return
+        try:
+            self._install(message)
+        except PlanarError as error:
+            rospy.logerr("map refused: %s", error)
+
+    def _on_set_map(self, request):
+        try:
+            self._install(request.map)
+        except PlanarError as error:
+            rospy.logerr("map refused: %s", error)
+            return SetMapResponse(success=False)
+        self._take_pose(request.initial_pose, self._shared.settings.force_update_after_set_map)
+        return SetMapResponse(success=True)
+
+    def _install(self, message):
+        info, map_frame = message.info, self._shared.settings.map_frame
+        rospy.loginfo("Received a %d X %d map @ %.3f m/pix", info.width, info.height, info.resolution)
+        if frame_name(message.header.frame_id) != frame_name(map_frame):
+            rospy.logwarn(
+                "Frame_id of map received:'%s' doesn't match global_frame_id:'%s'. "
+                "This could cause issues with reading published topics",
+                message.header.frame_id,
+                map_frame,
+            )
+        localizer = self._shared.start_on(grid_from_msg(message))
+        self._show_field(localizer.fit_grid)
