@@ -34,8 +34,8 @@ is_venv_whole() { # made here, with this Python, and never left half installed
 fetch_requirements() { # into .venv/wheels
     [[ -z $(missing_wheel) ]] || build_wheel || return
     local files=("${requirement_files[@]/#/--requirement=$root/scripts/}")
-    # What PyPI has as a source only is built in pip's own way: the setuptools of Debian 11 alone make no wheel.
-    pip wheel --use-pep517 --wheel-dir "$root/.venv/wheels" --find-links "$wheels" "${files[@]}"
+    # What PyPI has as a source only is built in pip's own way: Debian 11 has no wheel, and a distutils of its own.
+    SETUPTOOLS_USE_DISTUTILS=stdlib pip wheel --use-pep517 --wheel-dir "$root/.venv/wheels" --find-links "$wheels" "${files[@]}"
 }
 
 install_requirements() {
