@@ -19,15 +19,14 @@ is_writable() { # FOLDER
     probe=$(mktemp -p "$1" .probe.XXXXXX 2>/dev/null) && rm -f "$probe"
 }
 
-use_cache() { # temporary files and compiled kernels go to /tmp or, where even that is read-only, beside the runs
+use_cache() { # temporary files and the user's caches go to /tmp or, where even that is read-only, beside the runs
     local cache=/tmp/home-service-$UID
     if ! is_writable /tmp; then
         require_runs
         cache=$runs/.cache
     fi
     mkdir -p "$cache/tmp"
-    cp -ru "$root/build/kernels" "$cache"
-    export USER=${USER:-robot} HOME=$cache TMPDIR=$cache/tmp ROS_HOME=$cache/ros NUMBA_CACHE_DIR=$cache/kernels
+    export USER=${USER:-robot} HOME=$cache TMPDIR=$cache/tmp ROS_HOME=$cache/ros
 }
 
 require_runs() {

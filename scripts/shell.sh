@@ -19,7 +19,7 @@ _enter_workspace() {
     # shellcheck source=scripts/setup/environment.sh
     . "$root/scripts/setup/environment.sh"
     ros_environment "$root"
-    unset -f ros_environment
+    unset -f ros_environment use_own_kernels may_write user_cache copy_kernels numba_name
     completion=/usr/share/bash-completion/completions/rosbash # Debian's; Noetic's comes with devel/setup.bash
     # shellcheck source=/dev/null
     [[ ! -r $completion ]] || . "$completion"

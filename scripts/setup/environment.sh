@@ -8,6 +8,45 @@ ros_environment() { # ROOT: what ROS needs in the environment, every socket on t
     # shellcheck source=/dev/null
     . "$1/devel/setup.bash"
     export PATH="$1/.venv/bin:$PATH"
-    export ROS_HOME=${ROS_HOME:-$1/logs/ros}
+    if may_write "$1"; then : "${ROS_HOME:=$1/logs/ros}"; else : "${ROS_HOME:=$(user_cache)/ros}"; fi
+    export ROS_HOME
     export ROS_LOG_DIR=${ROS_LOG_DIR:-$ROS_HOME/log}
+    use_own_kernels "$1"
+}
+
+# Numba reads what it has compiled beside the sources only if it may also write there. Who may not, as another user or
+# on a read-only disk, would compile all anew: that takes longer than the nodes wait for each other.
+use_own_kernels() { # ROOT: such a user has copies, made anew whenever the set-up has compiled
+    local cache compiled=$1/build/.kernels
+    [[ -z ${NUMBA_CACHE_DIR:-} && -e $compiled ]] && ! may_write "$1/src" && cache=$(user_cache) || return 0
+    cache=$cache/kernels/$(numba_name "$1")
+    cmp -s "$compiled" "$cache/.kernels" || copy_kernels "$1" "$cache"
+    export NUMBA_CACHE_DIR=$cache
+}
+
+may_write() { [[ -w $1 ]]; } # FOLDER
+
+user_cache() { # prints a folder that is this user's alone
+    local folder
+    for folder in "${XDG_CACHE_HOME:-${HOME:-}/.cache}/home-service-robot" "${TMPDIR:-/tmp}/home-service-robot-$UID"; do
+        (umask 077 && mkdir -p "$folder") 2>/dev/null || continue
+        [[ -O $folder && ! -L $folder && -w $folder ]] && printf '%s\n' "$folder" && return 0
+    done
+    return 1
+}
+
+copy_kernels() { # ROOT CACHE: the stamp comes last, so that a copy cut short is made again
+    local compiled own
+    rm -rf "$2"
+    find "$1/src" -name '*.nbi' -printf '%h\n' | sort -u | while IFS= read -r compiled; do
+        own=$2/$(numba_name "${compiled%/__pycache__}")
+        mkdir -p "$own"
+        cp "$compiled"/*.nb[ic] "$own"
+    done
+    mkdir -p "$2"
+    cp "$1/build/.kernels" "$2/.kernels"
+}
+
+numba_name() { # FOLDER: as numba names the folder in its cache for the sources in this one
+    printf '%s_%s' "${1##*/}" "$(printf %s "$1" | sha1sum | cut -d ' ' -f 1)"
 }

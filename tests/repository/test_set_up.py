@@ -1,8 +1,10 @@
 """The steps of scripts/setup.sh, in a workspace of their own."""
 
 import fcntl
+import os
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
@@ -172,3 +174,62 @@ def test_a_half_built_wheel_never_reaches_the_cache(tmp_path):
     )
     assert said.returncode == 1
     assert list((tmp_path / "cache").iterdir()) == []
+
+
+KERNEL = """
+from numba import njit
+
+
+@njit(cache=True)
+def doubled(number):
+    return 2 * number
+
+
+doubled(21)
+COMPILED = sum(doubled.stats.cache_misses.values())
+"""
+
+
+def kernels_compiled(folder, set_up=":"):
+    """How many kernels a program compiles whose user has the folder's home, and where it keeps them."""
+    program = "import sys; sys.path.insert(0, 'src/good'); import kernel; print(kernel.COMPILED)"
+    commands = f'{set_up}; "{sys.executable}" -c "{program}"; echo ${{NUMBA_CACHE_DIR:-beside}}'
+    said = in_workspace(folder, f"export HOME=$PWD/home; {commands}")
+    assert said.returncode == 0, said.stderr
+    compiled, place = said.stdout.splitlines()
+    return int(compiled), place
+
+
+def test_who_may_not_write_beside_the_kernels_has_current_copies_of_them(tmp_path, monkeypatch):
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    module = tmp_path / "src/good/kernel.py"
+    stamp = tmp_path / "build/.kernels"
+    module.parent.mkdir(parents=True)
+    stamp.parent.mkdir()
+    for revision in range(2):
+        module.write_text(KERNEL + "#" * revision)
+        assert kernels_compiled(tmp_path) == (1, "beside")
+        stamp.write_text(str(revision))
+        for _ in range(2):
+            compiled, place = kernels_compiled(tmp_path, "may_write() { false; }; use_own_kernels $PWD")
+            assert compiled == 0
+            assert tmp_path / "home/.cache" in Path(place).parents
+    assert kernels_compiled(tmp_path, "use_own_kernels $PWD") == (0, "beside")
+
+
+def test_who_has_no_home_has_a_cache_too(tmp_path, monkeypatch):
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    said = in_workspace(tmp_path, "export HOME=/dev/null TMPDIR=$PWD; user_cache")
+    assert said.stdout == f"{tmp_path}/home-service-robot-{os.getuid()}\n"
+
+
+def test_who_may_not_write_in_the_workspace_has_a_folder_for_ros(tmp_path, monkeypatch):
+    for variable in ("XDG_CACHE_HOME", "ROS_HOME", "ROS_LOG_DIR"):
+        monkeypatch.delenv(variable, raising=False)
+    (tmp_path / "devel").mkdir()
+    (tmp_path / "devel/setup.bash").touch()
+    for may_write, place in (("true", "logs"), ("false", "home/.cache/home-service-robot")):
+        told = "export HOME=$PWD/home; enter_workspace; echo $ROS_HOME"
+        said = in_workspace(tmp_path, f"may_write() {{ {may_write}; }}; {told}")
+        assert said.stdout == f"{tmp_path}/{place}/ros\n"
