@@ -1,7 +1,7 @@
 # shellcheck shell=bash disable=SC2154,SC2034 # variables of lib.sh and setup.sh
 # What can be told of this machine and this place before anything is changed; and what a log says in one sentence.
 
-readonly supported="Debian 11 to 13, Ubuntu 22.04, or Ubuntu 20.04 with ROS Noetic in $noetic"
+readonly supported="Debian 12 or 13, Ubuntu 22.04, or Ubuntu 20.04 with ROS Noetic in $noetic"
 
 check_place() {
     local refused='[][:space:]"$;:\*?<>|!{}`&()#'"'[]"
@@ -20,7 +20,7 @@ check_system() {
     local ID=unknown VERSION_ID='' PRETTY_NAME=''
     # shellcheck source=/dev/null
     [[ ! -r /etc/os-release ]] || . /etc/os-release
-    [[ -d $noetic || $ID-$VERSION_ID =~ ^(debian-1[123]|ubuntu-22\.04)$ ]] ||
+    [[ -d $noetic || $ID-$VERSION_ID =~ ^(debian-1[23]|ubuntu-22\.04)$ ]] ||
         fail "this is ${PRETTY_NAME:-$ID}: the workspace needs $supported; elsewhere, use the container (docs/container.md)"
     is_among "$(uname -m)" x86_64 aarch64 ||
         fail "this machine is $(uname -m): the Python packages are there for x86_64 and aarch64 only"
