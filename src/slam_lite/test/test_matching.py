@@ -3,7 +3,15 @@ import math
 import numpy as np
 
 from planar import Pose2, wrap
-from slam_lite.matching.correlative import Window, search_far, search_near
+from slam_lite.matching.correlative import (
+    Window,
+    _bounds_of_few,
+    _bounds_of_many,
+    _maxima,
+    _phases,
+    search_far,
+    search_near,
+)
 from slam_lite.matching.local_map import LocalMap
 from slam_lite.matching.refinement import refine
 from slam_lite.surface import Surface, surface_of
@@ -160,3 +168,13 @@ def test_points_are_thinned_and_walls_have_normals(office):
     lengths = np.hypot(*surface.normals_xy.T)
     assert np.mean(np.abs(lengths - 1.0) < 1e-5) > 0.8
     assert np.all((np.abs(lengths - 1.0) < 1e-5) | (lengths == 0.0))
+
+
+def test_many_coarse_shifts_are_bounded_as_few_are(office):
+    local_map = local_map_at(office, HERE)
+    coarse = _maxima(local_map.likelihood)[-1]
+    surface = surface_at(office, HERE)
+    cells = np.floor(surface.points_xy / local_map.resolution).astype(np.int64)[None] + [[[500, 450]]]
+    few, many = _bounds_of_few, _bounds_of_many
+    cols, rows = (np.ascontiguousarray(cells[:, :, axis]) for axis in (0, 1))
+    assert np.array_equal(few(coarse, cols, rows, 100), many(_phases(coarse), cols, rows, 100))

@@ -136,7 +136,8 @@ def search_far(
     maxima = _maxima(likelihood)
     cols, rows = _rotated_cells(resolution, surface.points_xy, start, angle_step, angle_steps)
     bounds = _coarse_bounds(maxima[-1], cols, rows, cells)
-    order = np.argsort(-bounds, axis=None, kind="stable")[: np.count_nonzero(bounds > min_score)]
+    promising = np.flatnonzero(bounds > min_score)
+    order = promising[np.argsort(-bounds.ravel()[promising], kind="stable")]
     search = (maxima, bounds, order, cols, rows, cells)
     best, score = _climb(*search, min_score, 2.0, np.zeros(3, dtype=np.int64), 0.0, 0, np.zeros(2))
     if score <= min_score:
@@ -213,15 +214,59 @@ def _score(grid, cols, rows, du, dv):
     return total / (255.0 * len(cols))
 
 
-@numba.njit(cache=True, nogil=True)
-def _coarse_bounds(coarse, cols, rows, cells):
+def _coarse_bounds(coarse: np.ndarray, cols: np.ndarray, rows: np.ndarray, cells: int) -> np.ndarray:
     """Upper bounds (angles, side, side) of the score of shifts by ``-cells`` and coarse steps from there."""
+    if 2 * cells // _COARSE < _MANY_SHIFTS:
+        return _bounds_of_few(coarse, cols, rows, cells)
+    return _bounds_of_many(_phases(coarse), cols, rows, cells)
+
+
+# From so many coarse shifts on it pays to lay their cells side by side.
+_MANY_SHIFTS = 5
+
+
+def _phases(coarse: np.ndarray) -> np.ndarray:
+    """The cells one coarse step apart side by side, (step, step, rows, cols).
+
+    Entry [r, c, j, i] is the coarse grid's [r + j * step, c + i * step].
+    """
+    rows, cols = (-(-side // _COARSE) for side in coarse.shape)
+    padded = np.zeros((rows * _COARSE, cols * _COARSE), dtype=np.uint8)
+    padded[: coarse.shape[0], : coarse.shape[1]] = coarse
+    return np.ascontiguousarray(padded.reshape(rows, _COARSE, cols, _COARSE).transpose(1, 3, 0, 2))
+
+
+@numba.njit(cache=True, nogil=True)
+def _bounds_of_few(coarse, cols, rows, cells):
     side = 2 * cells // _COARSE + 1
     bounds = np.empty((len(cols), side, side), dtype=np.float32)
     for k in range(len(cols)):
         for j in range(side):
             for i in range(side):
                 bounds[k, j, i] = _score(coarse, cols[k], rows[k], i * _COARSE - cells, j * _COARSE - cells)
+    return bounds
+
+
+@numba.njit(cache=True, nogil=True)
+def _bounds_of_many(phases, cols, rows, cells):
+    side = 2 * cells // _COARSE + 1
+    high, wide = phases.shape[2:]
+    bounds = np.empty((len(cols), side, side), dtype=np.float32)
+    totals = np.empty((side, side), dtype=np.uint32)
+    for k in range(len(cols)):
+        totals[:] = 0
+        for p in range(cols.shape[1]):
+            row, col = rows[k, p] - cells, cols[k, p] - cells
+            plane = phases[row % _COARSE, col % _COARSE]
+            row, col = row // _COARSE, col // _COARSE
+            first, end = max(0, -col), min(side, wide - col)
+            for j in range(max(0, -row), min(side, high - row)):
+                line, total = plane[row + j, col + first : col + end], totals[j, first:end]
+                for i in range(len(total)):
+                    total[i] += line[i]
+        for j in range(side):
+            for i in range(side):
+                bounds[k, j, i] = totals[j, i] / (255.0 * cols.shape[1])
     return bounds
 
 
