@@ -1,4 +1,5 @@
 import math
+import tracemalloc
 
 import numpy as np
 
@@ -63,6 +64,16 @@ def test_a_moved_scan_leaves_nothing_behind():
     fresh.update(beams, pose)
     assert np.array_equal(moved.grid().cells, fresh.grid().cells)
     assert moved.grid().origin == fresh.grid().origin
+
+
+def test_two_places_far_apart_take_no_memory_for_what_lies_between():
+    renderer = MapRenderer(0.05, 0.25)
+    beams = [beams_of(scan(2.0, 1.0, 1.5, 3.0), 9.0, 9.0)] * 2
+    tracemalloc.start()
+    renderer.update(beams, np.array([[0.0, 0.0, 0.0], [1500.0, 1500.0, 0.0]]))
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 10e6  # counts of all cells would take 3.6e9
 
 
 def test_a_canvas_is_as_large_as_asked_and_grows_by_ten_metres():

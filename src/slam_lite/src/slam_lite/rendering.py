@@ -2,7 +2,7 @@
 
 A cell is occupied if the share of hits among the beams that reached it exceeds a threshold (Haehnel's
 counting model as used by gmapping). Counts are sums over scans, so a scan whose pose has changed is taken out
-and put in anew.
+and put in anew. They are kept in tiles, and only where a beam has been: of a large site little is ever seen.
 """
 
 import math
@@ -15,6 +15,8 @@ import numpy as np
 from planar import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Pose2, Scan, wrap
 
 _GROWTH = 10.0
+# Side of a tile, cells, and how many there is room for at first.
+_TILE, _FIRST_TILES = 64, 256
 _SIZE_MULTIPLE = 32
 
 
@@ -54,8 +56,11 @@ class MapRenderer:
         self._resolution = resolution
         self._threshold = occupied_threshold
         self._placed: List[np.ndarray] = []
+        # Hits and visits (tiles, 2, rows, cols), the number of each place's tile or -1, and the first place.
+        self._tiles = np.zeros((0, 2, _TILE, _TILE), dtype=np.uint16)
+        self._used = 0
+        self._index = np.empty((0, 0), dtype=np.int32)
         self._corner = np.zeros(2, dtype=np.int64)
-        self._counts = np.zeros((2, 0, 0), dtype=np.uint16)
 
     def update(self, beams: Sequence[Beams], poses: np.ndarray) -> None:
         """Brings the counts up to date with the scans' present poses (N, 3) in the map."""
@@ -75,19 +80,24 @@ class MapRenderer:
 
     def grid(self) -> OccupancyGrid:
         """The map of all scans counted so far, as large as what they reached."""
-        hits, visits = self._counts
-        rows, cols = (np.flatnonzero(visits.any(axis=axis)) for axis in (1, 0))
-        if len(rows) == 0:
+        row, col, end_row, end_col = _extent(self._tiles, self._index)
+        if end_row <= row:
             return OccupancyGrid(np.full((1, 1), UNKNOWN, dtype=np.int8), self._resolution)
-        row, col = rows[0], cols[0]
-        hits, visits = (part[row : rows[-1] + 1, col : cols[-1] + 1] for part in (hits, visits))
-        cells = _judged(hits, visits, self._threshold)
-        x, y = (self._corner + [col, row]) * self._resolution
+        cells = _judged(self._tiles, self._index, self._threshold, row, col, end_row, end_col)
+        x, y = (self._corner * _TILE + [col, row]) * self._resolution
         return OccupancyGrid(cells, self._resolution, Pose2(float(x), float(y), 0.0))
 
     def _count(self, beams: Beams, pose: np.ndarray, amount: int) -> None:
         start, ends = self._in_cells(beams, pose)
-        _trace(self._counts, start - self._corner, ends - self._corner, beams.marks, amount)
+        start, ends = start - self._corner * _TILE, ends - self._corner * _TILE
+        first = 0
+        while first < len(ends):
+            traced, self._used = _trace(
+                self._tiles, self._index, self._used, start, ends[first:], beams.marks[first:], amount
+            )
+            first += traced
+            if first < len(ends):
+                self._tiles = _with_room(self._tiles)
 
     def _in_cells(self, beams: Beams, pose: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
         """Where a scan's beams start, (2,), and end, (N, 2), in cells from the map's origin."""
@@ -96,29 +106,31 @@ class MapRenderer:
         return start / self._resolution, base_in_map.transform_points(beams.ends_xy) / self._resolution
 
     def _cover(self, placed: Sequence[Tuple[Beams, np.ndarray]]) -> None:
-        """Makes room for the beams of some scans at their poses, for all at once: large maps take memory."""
+        """Makes places for tiles where the beams of some scans are at their poses."""
         if not placed:
             return
         extents = []
         for beams, pose in placed:
             cells = np.vstack(self._in_cells(beams, pose))
             extents.append((cells.min(axis=0), cells.max(axis=0)))
-        lowest = np.floor(np.min([low for low, _ in extents], axis=0)).astype(np.int64) - 1
-        highest = np.floor(np.max([high for _, high in extents], axis=0)).astype(np.int64) + 2
-        if self._counts.size == 0:
-            self._corner = lowest
-            self._counts = np.zeros((2, *(highest - lowest)[::-1]), dtype=np.uint16)
-            return
-        end = self._corner + np.array(self._counts.shape[:0:-1])
-        if (lowest >= self._corner).all() and (highest <= end).all():
-            return
-        margin = round(_GROWTH / self._resolution)
-        new_corner = np.where(lowest < self._corner, lowest - margin, self._corner)
-        new_end = np.where(highest > end, highest + margin, end)
-        counts = np.zeros((2, *(new_end - new_corner)[::-1]), dtype=np.uint16)
-        col, row = self._corner - new_corner
-        counts[:, row : row + self._counts.shape[1], col : col + self._counts.shape[2]] = self._counts
-        self._corner, self._counts = new_corner, counts
+        lowest = np.floor(np.min([low for low, _ in extents], axis=0) / _TILE).astype(np.int64) - 1
+        highest = np.floor(np.max([high for _, high in extents], axis=0) / _TILE).astype(np.int64) + 2
+        end = self._corner + self._index.shape[::-1]
+        if self._index.size:
+            lowest, highest = np.minimum(lowest, self._corner), np.maximum(highest, end)
+            if (lowest == self._corner).all() and (highest == end).all():
+                return
+        index = np.full((highest - lowest)[::-1], -1, dtype=np.int32)
+        col, row = self._corner - lowest
+        index[row : row + self._index.shape[0], col : col + self._index.shape[1]] = self._index
+        self._corner, self._index = lowest, index
+
+
+def _with_room(tiles: np.ndarray) -> np.ndarray:
+    """The tiles and at least as many empty ones, which take no memory until they are counted in."""
+    larger = np.zeros((2 * len(tiles) + _FIRST_TILES, *tiles.shape[1:]), dtype=tiles.dtype)
+    larger[: len(tiles)] = tiles
+    return larger
 
 
 def on_canvas(grid: OccupancyGrid, extent: Tuple[float, float, float, float]) -> OccupancyGrid:
@@ -142,34 +154,72 @@ def on_canvas(grid: OccupancyGrid, extent: Tuple[float, float, float, float]) ->
 
 
 @numba.njit(cache=True, nogil=True)
-def _trace(counts, start, ends, marks, amount):
-    """Adds ``amount`` to the visits, counts[1], of each beam's cells and the hits, counts[0], of its end."""
+def _trace(tiles, index, used, start, ends, marks, amount):
+    """Adds ``amount`` to the visits, [1], of each beam's cells and the hits, [0], of its end.
+
+    Takes tiles from ``used`` on where there are none yet. Returns how many beams there was room for, and
+    ``used`` afterwards.
+    """
     for i in range(len(ends)):
         col, row = int(math.floor(start[0])), int(math.floor(start[1]))
         end_col, end_row = int(math.floor(ends[i, 0])), int(math.floor(ends[i, 1]))
+        steps = abs(end_col - col) + abs(end_row - row)
+        if len(tiles) - used < steps // _TILE + 4:
+            return i, used
         dx, dy = ends[i, 0] - start[0], ends[i, 1] - start[1]
         col_step, row_step = (1 if dx > 0 else -1), (1 if dy > 0 else -1)
         next_col = (col + (dx > 0) - start[0]) / dx if dx != 0.0 else np.inf
         next_row = (row + (dy > 0) - start[1]) / dy if dy != 0.0 else np.inf
         col_delta = abs(1.0 / dx) if dx != 0.0 else np.inf
         row_delta = abs(1.0 / dy) if dy != 0.0 else np.inf
-        for _ in range(abs(end_col - col) + abs(end_row - row)):
-            counts[1, row, col] += amount
+        for _ in range(steps):
+            used = _add(tiles, index, used, row, col, 1, amount)
             if next_col < next_row:
                 next_col, col = next_col + col_delta, col + col_step
             else:
                 next_row, row = next_row + row_delta, row + row_step
         if marks[i]:
-            counts[1, end_row, end_col] += amount
-            counts[0, end_row, end_col] += amount
+            used = _add(tiles, index, used, end_row, end_col, 1, amount)
+            used = _add(tiles, index, used, end_row, end_col, 0, amount)
+    return len(ends), used
 
 
 @numba.njit(cache=True, nogil=True)
-def _judged(hits, visits, threshold):
-    """The cells, FREE, OCCUPIED or UNKNOWN, that these counts speak for."""
-    cells = np.full(hits.shape, UNKNOWN, dtype=np.int8)
-    for row in range(cells.shape[0]):
-        for col in range(cells.shape[1]):
-            if visits[row, col] > 0:
-                cells[row, col] = OCCUPIED if hits[row, col] > threshold * visits[row, col] else FREE
+def _add(tiles, index, used, row, col, which, amount):
+    tile = index[row // _TILE, col // _TILE]
+    if tile < 0:
+        tile = index[row // _TILE, col // _TILE] = used
+        used += 1
+    tiles[tile, which, row % _TILE, col % _TILE] += amount
+    return used
+
+
+@numba.njit(cache=True, nogil=True)
+def _extent(tiles, index):
+    """First row and column that were visited, and the ones after the last."""
+    row, col, end_row, end_col = 2**31, 2**31, 0, 0
+    for i in range(index.shape[0]):
+        for j in range(index.shape[1]):
+            if index[i, j] < 0:
+                continue
+            for r in range(_TILE):
+                for c in range(_TILE):
+                    if tiles[index[i, j], 1, r, c] > 0:
+                        row, col = min(row, i * _TILE + r), min(col, j * _TILE + c)
+                        end_row, end_col = max(end_row, i * _TILE + r + 1), max(end_col, j * _TILE + c + 1)
+    return row, col, end_row, end_col
+
+
+@numba.njit(cache=True, nogil=True)
+def _judged(tiles, index, threshold, first_row, first_col, end_row, end_col):
+    """The cells of a box, FREE, OCCUPIED or UNKNOWN, that these counts speak for."""
+    cells = np.full((end_row - first_row, end_col - first_col), UNKNOWN, dtype=np.int8)
+    for row in range(first_row, end_row):
+        for col in range(first_col, end_col):
+            tile = index[row // _TILE, col // _TILE]
+            if tile < 0:
+                continue
+            hits, visits = tiles[tile, 0, row % _TILE, col % _TILE], tiles[tile, 1, row % _TILE, col % _TILE]
+            if visits > 0:
+                cells[row - first_row, col - first_col] = OCCUPIED if hits > threshold * visits else FREE
     return cells
