@@ -5,14 +5,28 @@ the front end goes on: ``result = back_end.task().run()``, then ``back_end.adopt
 """
 
 from dataclasses import dataclass
-from typing import List, Sequence
+from typing import List, Sequence, Tuple
 
 import numpy as np
 
 from planar import Pose2
 from slam_lite.config import MapperSettings
-from slam_lite.loop_closure import Closure, agree, candidates, find_closure
+from slam_lite.drift import drift_along, shortest_ways
+from slam_lite.loop_closure import (
+    Candidate,
+    Closure,
+    agree,
+    candidates,
+    contradict,
+    find_closure,
+    is_confirmed,
+    is_credible,
+    is_out_of_reach,
+    lengths_of,
+    recognised,
+)
 from slam_lite.matching.local_map import LocalMap
+from slam_lite.place_recognition import Appearance, Hypothesis, Memory, hypotheses, remembered, ways_along
 from slam_lite.pose_graph import Edge, EdgeList, Edges, chi_squares, edges_of, optimise
 from slam_lite.surface import Surface
 
@@ -24,17 +38,23 @@ _GUESS_SIGMA_XY, _GUESS_SIGMA_YAW = 0.5, 0.3
 # A new closure with a larger chi-square, or this many smaller ones, are worth an optimisation.
 _NEWS_CHI_SQUARE, _NEWS_COUNT = 10.0, 20
 _MAX_PENDING = 50
+# Places that look alike, searched for a closure after one look.
+_MAX_RECOGNISED = 3
 # When to end an optimisation, metres and radians: while mapping, and in the end.
 _ROUGHLY, _EXACTLY = 5e-3, 1e-5
 
 
 @dataclass(frozen=True, eq=False)
 class ClosureResult:
-    """What a task found: new loop ``edges`` and the ``poses`` (N, 3) of the keys that it knew."""
+    """What a task found: new loop ``edges``, the ``poses`` (N, 3) of the keys that it knew.
+
+    ``pending``, ``memory``: what the next task is to know; ``moved``: the poses are new.
+    """
 
     edges: Sequence[Edge]
     poses: np.ndarray
     pending: Sequence[Closure]
+    memory: Memory
     moved: bool
 
 
@@ -48,27 +68,70 @@ class ClosureTask:
     poses: np.ndarray
     edges: Edges
     pending: Sequence[Closure]
+    memory: Memory
     unsettled: int
 
     def run(self) -> ClosureResult:
         """Does the work; touches nothing but ``local_map``."""
         accepted: List[Closure] = []
         pending = list(self.pending)
-        for candidate in candidates(len(self.poses) - 1, self.poses, self.edges, self.settings):
+        memory, alike = self._look()
+        for candidate in [*candidates(len(self.poses) - 1, self.poses, self.edges, self.settings), *alike]:
             closure = find_closure(candidate, self.poses, self.surfaces, self.local_map, self.settings)
             if closure is None:
                 continue
             witnesses = [other for other in pending if agree(closure, other, self.poses)]
-            if closure.is_familiar or witnesses:
+            if is_confirmed(closure, witnesses, self.poses) and not self._is_disputed(
+                closure, witnesses, pending
+            ):
                 accepted += [closure, *witnesses]
                 pending = [other for other in pending if other not in witnesses]
             else:
                 pending = [*pending[1 - _MAX_PENDING :], closure]
         edges = [_widened(closure.edge, _CLOSURE_SIGMA_XY, _CLOSURE_SIGMA_YAW) for closure in accepted]
         if not self._is_news(edges):
-            return ClosureResult(edges, self.poses, pending, False)
+            return ClosureResult(edges, self.poses, pending, memory, False)
         poses = optimise(self.poses, _with(self.edges, edges), _ROUGHLY, fresh=len(edges))
-        return ClosureResult(edges, poses, pending, True)
+        return ClosureResult(edges, poses, pending, memory, True)
+
+    def _look(self) -> Tuple[Memory, List[Candidate]]:
+        """What to remember of the places passed since the last look, and where it looked alike before."""
+        memory, ways = self.memory, ways_along(self.poses)
+        alike: List[Candidate] = []
+        stretch = memory.next_stretch(ways)
+        while stretch is not None:
+            place = stretch.appearance(self.surfaces, self.poses)
+            look = [] if place is None else self._credible(place, memory)
+            seen = [hypothesis for hypothesis in look if memory.has_seen(hypothesis, self.poses)]
+            step = Pose2.from_array(self.poses[stretch.middle]).inverse() @ Pose2.from_array(
+                self.poses[stretch.last]
+            )
+            count = stretch.last - stretch.first + 1
+            alike = [
+                recognised(hypothesis.place, stretch.last, count, hypothesis.recent_in_place @ step)
+                for hypothesis in seen[:_MAX_RECOGNISED]
+            ]
+            memory = memory.after(stretch, place, look)
+            stretch = memory.next_stretch(ways)
+        return memory, alike
+
+    def _credible(self, recent: Appearance, memory: Memory) -> List[Hypothesis]:
+        """Where the robot may be by what it looks like, among what the other search does not reach."""
+        ways, before = shortest_ways(recent.key, len(self.poses), self.edges, lengths_of(self.edges))
+        drift = np.column_stack(drift_along(ways, before, self.poses, self.edges))
+        places = [place for place in memory.places if is_out_of_reach(ways[place.key], drift[place.key])]
+        return [
+            hypothesis
+            for hypothesis in hypotheses(recent, places)
+            if is_credible(hypothesis, self.poses, drift[hypothesis.place])
+        ]
+
+    def _is_disputed(self, closure: Closure, witnesses: Sequence[Closure], others: Sequence[Closure]) -> bool:
+        """Whether too many say that a place that was but recognised is another one."""
+        if not closure.candidate.is_recognised:
+            return False
+        against = sum(contradict(closure, other, self.poses) for other in others)
+        return len(witnesses) < 2 * against
 
     def _is_news(self, edges: Sequence[Edge]) -> bool:
         if not edges:
@@ -88,6 +151,7 @@ class BackEnd:
         self._edges = EdgeList()
         self._poses = np.empty((64, 3))
         self._pending: Sequence[Closure] = ()
+        self._memory = Memory()
         self._unsettled = 0
 
     def __len__(self) -> int:
@@ -121,6 +185,7 @@ class BackEnd:
         self.surfaces = list(surfaces)
         self._poses = poses.copy()
         self._edges = EdgeList(edges)
+        self._memory = remembered(self.surfaces, self.poses)
 
     def _append(self, surface: Surface, base_in_map: Pose2) -> None:
         n = len(self)
@@ -145,6 +210,7 @@ class BackEnd:
             self.poses.copy(),
             self.edges,
             self._pending,
+            self._memory,
             self._unsettled,
         )
 
@@ -160,6 +226,7 @@ class BackEnd:
         for edge in result.edges:
             self._edges.append(edge)
         self._pending = result.pending
+        self._memory = result.memory
         self._unsettled = 0 if result.moved else self._unsettled + len(result.edges)
 
     def settle(self) -> None:

@@ -4,28 +4,42 @@ Where to look follows from the graph: a place is a candidate if the way to it al
 add up, is much longer than the straight way (E. Olson, "Recognizing places using spectrally clustered local
 matches", RAS 2009). What a search finds must be a good match, the only good one in the window, and - unless
 the graph already knew the place to within a small window - be confirmed by a second closure nearby that says
-the same.
+the same; by two more if the place was but recognised.
 """
 
 import math
 from dataclasses import dataclass
-from typing import List, Optional, Sequence
+from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import dijkstra
 
 from planar import Pose2, wrap
 from slam_lite.config import MapperSettings
+from slam_lite.drift import shortest_ways
 from slam_lite.matching.correlative import Window, scores, search_far
 from slam_lite.matching.local_map import LocalMap, Match
 from slam_lite.matching.refinement import refine
+from slam_lite.place_recognition import Hypothesis
 from slam_lite.pose_graph import Edge, Edges
-from slam_lite.surface import Surface
+from slam_lite.sight import share_seen_through
+from slam_lite.surface import Surface, joined, thinned
+
+Placed = Tuple[Surface, Pose2]
 
 # Growth of the search window with the way along the graph: metres and radians per metre.
 _DRIFT_DISTANCE, _DRIFT_ANGLE = 0.04, 0.008
+# The size of windows that are searched once an interval.
+_OFTEN_DISTANCE = 4.0
 _MIN_WINDOW, _MAX_WINDOW = Window(0.3, 0.1), Window(12.0, 0.8)
+# By how many standard deviations the graph may be off; those that matches tell of themselves are cautious.
+_CREDIBLE = 1.5
+# Share of the walls that may be seen through where a place is doubtful, as by people who have gone on; one of
+# so many scans is asked.
+_MAX_CLASH, _EVERY = 0.025, 4
+# Two closures that differ by more than this, metres, put the robot to different places.
+_ELSEWHERE = 3.0
+# How far off the pose may be at which two places look alike.
+_LIKENESS_WINDOW = Window(4.0, 0.15)
 # Closures found in windows up to this size need no second witness.
 _FAMILIAR_DISTANCE = 1.0
 # Key scans of the place (to each side) and of the robot's recent way that are put together for a match,
@@ -37,6 +51,8 @@ _ENOUGH_FOR_DISTANCE, _MAX_SCALE = 2.0, 3.0
 _GUESS_WAY = 5.0
 # How far from each other two closures are made that share no scan and yet speak of the same stretch, metres.
 _MAX_WITNESS_WAY = 15.0
+# How long a place that was but recognised has to go on alike, metres: corridors' crossings are much the same.
+_LONG_WAY = 11.0
 _MAX_POINTS = 500
 # A match may slide by these ways, metres, if the score there is this share of its own.
 _SLIDES = np.concatenate((-np.arange(0.2, 1.05, 0.1), np.arange(0.2, 1.05, 0.1)))
@@ -48,10 +64,10 @@ _MAX_CANDIDATES = 3
 
 @dataclass(frozen=True)
 class Candidate:
-    """Key ``place``, perhaps near key ``recent``, and the ``window`` in which to look for recent.
+    """Key ``place``, perhaps near key ``recent``, seen from it in the ``window`` around ``guess``.
 
     ``recent_keys``: how many keys up to recent are put together. ``scale``: how much more is needed than in
-    a small window.
+    a small window. ``is_recognised``: the guess is not the graph's, but what the place looks like.
     """
 
     place: int
@@ -59,23 +75,32 @@ class Candidate:
     recent_keys: int
     window: Window
     scale: float
+    guess: Pose2
+    is_recognised: bool = False
+
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether the robot may as well be somewhere else that looks much the same."""
+        return self.is_recognised or self.scale >= _MAX_SCALE
 
 
 @dataclass(frozen=True, eq=False)
 class Closure:
-    """An edge from a place seen before to a recent key, found in ``window``.
+    """An edge from a place seen before to a recent key, and the candidate that it was found at.
 
     ``slide``: unit vector (2,), along first's axes, in which the edge knows nothing, or zeros.
     """
 
     edge: Edge
-    window: Window
+    candidate: Candidate
     slide: np.ndarray
 
     @property
-    def is_familiar(self) -> bool:
-        """Whether the graph knew the place so well beforehand that the closure needs no second witness."""
-        return self.window.distance <= _FAMILIAR_DISTANCE
+    def witnesses_needed(self) -> int:
+        """How many others have to say the same; none if the graph knew the place well beforehand."""
+        if self.candidate.is_recognised:
+            return 2
+        return 0 if self.candidate.window.distance <= _FAMILIAR_DISTANCE else 1
 
 
 def candidates(recent: int, poses: np.ndarray, edges: Edges, settings: MapperSettings) -> List[Candidate]:
@@ -83,24 +108,35 @@ def candidates(recent: int, poses: np.ndarray, edges: Edges, settings: MapperSet
     straight = np.hypot(poses[:, 0] - poses[recent, 0], poses[:, 1] - poses[recent, 1])
     if np.count_nonzero(straight < _MAX_WINDOW.distance + 2.0) <= _RECENT_KEYS:
         return []
-    detours = _ways_along_graph(recent, poses, edges)
+    detours, _ = shortest_ways(recent, len(poses), edges, lengths_of(edges))
     windows = np.clip(_DRIFT_DISTANCE * detours, _MIN_WINDOW.distance, _MAX_WINDOW.distance)
     possible = (detours > settings.closure_min_detour + 2.0 * straight) & (straight < windows + 2.0)
+    # A wide window is searched more seldom: it stays much the same while the robot goes on.
+    intervals = np.maximum(1, np.rint(windows / _OFTEN_DISTANCE)) * settings.closure_interval
+    possible &= recent % intervals < settings.closure_interval
     keys = np.flatnonzero(possible)
     if len(keys) == 0:
         return []
     stretches = np.split(keys, np.flatnonzero(np.diff(keys) > 5) + 1)
     nearest = [int(stretch[np.argmin(straight[stretch])]) for stretch in stretches]
     nearest.sort(key=lambda key: straight[key])
-    return [_candidate(key, recent, detours, float(windows[key])) for key in nearest[:_MAX_CANDIDATES]]
+    return [
+        _candidate(key, recent, detours, float(windows[key]), _between(poses[key], poses[recent]))
+        for key in nearest[:_MAX_CANDIDATES]
+    ]
 
 
-def _candidate(place: int, recent: int, detours: np.ndarray, distance: float) -> Candidate:
+def recognised(place: int, recent: int, recent_keys: int, recent_in_place: Pose2) -> Candidate:
+    """The candidate at a place that looks like where ``recent`` is, whatever the graph says."""
+    return Candidate(place, recent, recent_keys, _LIKENESS_WINDOW, _MAX_SCALE, recent_in_place, True)
+
+
+def _candidate(place: int, recent: int, detours: np.ndarray, distance: float, guess: Pose2) -> Candidate:
     scale = float(np.clip(distance / _ENOUGH_FOR_DISTANCE, 1.0, _MAX_SCALE))
     latest = detours[max(0, recent - round(scale * _RECENT_KEYS) + 1) : recent + 1][::-1]
     recent_keys = int(np.argmax(latest > scale * _RECENT_WAY)) or len(latest)
     angle = float(np.clip(_DRIFT_ANGLE * detours[place], _MIN_WINDOW.angle, _MAX_WINDOW.angle))
-    return Candidate(place, recent, recent_keys, Window(distance, angle), scale)
+    return Candidate(place, recent, recent_keys, Window(distance, angle), scale, guess)
 
 
 def find_closure(
@@ -115,19 +151,21 @@ def find_closure(
     first_recent = recent - candidate.recent_keys + 1
     local_map.clear(Pose2())
     reach = round(candidate.scale * _PLACE_KEYS)
+    there = []
     for key in range(max(0, place - reach), min(first_recent, place + reach + 1)):
         in_place = _between(poses[place], poses[key])
         if math.hypot(in_place.x, in_place.y) < candidate.scale * _PLACE_RADIUS:
-            local_map.add(surfaces[key], in_place)
-    recent_surface = _joined(
-        [(surfaces[key], _between(poses[recent], poses[key])) for key in range(first_recent, recent + 1)]
-    )
+            there.append((surfaces[key], in_place))
+            local_map.add(*there[-1])
+    here = [(surfaces[key], _between(poses[recent], poses[key])) for key in range(first_recent, recent + 1)]
+    recent_surface = thinned(joined(here), _MAX_POINTS)
     if len(recent_surface) < 50:
         return None
-    guess = _between(poses[place], poses[recent])
     min_score = 0.7 * settings.closure_min_response
-    peak = search_far(_thinned(recent_surface, 200), local_map, guess, candidate.window, min_score, apart=0.6)
-    if peak is None or not peak.is_unique:
+    peak = search_far(
+        thinned(recent_surface, 200), local_map, candidate.guess, candidate.window, min_score, apart=0.6
+    )
+    if peak is None or not peak.is_unique or (candidate.is_recognised and peak.slide.any()):
         return None
     match = refine(recent_surface, local_map, peak.base_pose, peak.base_pose, np.zeros((3, 3)))
     if match.response < settings.closure_min_response:
@@ -135,12 +173,23 @@ def find_closure(
     moved = peak.base_pose.inverse() @ match.base_pose
     if math.hypot(moved.x, moved.y) > 0.3 or abs(moved.yaw) > 0.1:
         return None
+    if candidate.is_doubtful and _clash(there, here, match.base_pose) > _MAX_CLASH:
+        return None
     if peak.slide.any():
         information = _blurred(match.information, candidate.window.distance * peak.slide)
     else:
         information = _without_slides(match, recent_surface, local_map)
     edge = Edge(place, recent, match.base_pose, information, is_loop=True)
-    return Closure(edge, candidate.window, peak.slide)
+    return Closure(edge, candidate, peak.slide)
+
+
+def _clash(there: Sequence[Placed], here: Sequence[Placed], recent_in_place: Pose2) -> float:
+    """Share of the walls of one stretch that the other one's scans see through, 0 to 1, whichever is more."""
+    here = [(surface, recent_in_place @ pose) for surface, pose in here]
+    return max(
+        share_seen_through(thinned(joined(solid), _MAX_POINTS), scans[::_EVERY])
+        for solid, scans in ((there, here), (here, there))
+    )
 
 
 def _without_slides(match: Match, surface: Surface, local_map: LocalMap) -> np.ndarray:
@@ -166,32 +215,77 @@ def _blurred(information: np.ndarray, sigma_xy: np.ndarray) -> np.ndarray:
     return np.linalg.inv(np.linalg.inv(information + 1e-3 * np.eye(3)) + np.outer(sigma, sigma))
 
 
+def is_out_of_reach(way: float, drift: np.ndarray) -> bool:
+    """Whether a place, ``way`` metres along the graph, may lie elsewhere than ``candidates`` looks for it.
+
+    ``drift``: standard deviations (2,) of position and heading.
+    """
+    window = np.clip(_DRIFT_DISTANCE * way, _MIN_WINDOW.distance, _MAX_WINDOW.distance)
+    return bool(_CREDIBLE * drift[0] > window + 2.0 or _CREDIBLE * drift[1] > _MAX_WINDOW.angle)
+
+
+def is_credible(hypothesis: Hypothesis, poses: np.ndarray, drift: np.ndarray) -> bool:
+    """Whether the graph may be so much off as a hypothesis says; ``drift`` (2,) as above."""
+    told = hypothesis.recent_in_place.inverse()
+    believed = _between(poses[hypothesis.recent], poses[hypothesis.place])
+    near = told.distance_to(believed) < _CREDIBLE * drift[0] + _LIKENESS_WINDOW.distance
+    return bool(near and abs(wrap(told.yaw - believed.yaw)) < _CREDIBLE * drift[1] + _LIKENESS_WINDOW.angle)
+
+
 def agree(one: Closure, other: Closure, poses: np.ndarray) -> bool:
     """Whether two closures between the same two stretches of the way tell the same story.
 
     Around the cycle place - recent - other recent - other place - place the errors must cancel, up to what
     the front end may have drifted between them, and across a corridor that both may slide along.
     """
-    a, b = one.edge, other.edge
-    recent_step = _between(poses[a.second], poses[b.second])
-    place_step = _between(poses[a.first], poses[b.first])
-    recent_way = math.hypot(recent_step.x, recent_step.y)
+    recent_way, place_way, error, turn = _disagreement(one, other, poses)
     if not _RECENT_WAY <= recent_way <= _MAX_WITNESS_WAY:
         return False
-    way = recent_way + math.hypot(place_step.x, place_step.y)
-    told, retold = a.second_in_first @ recent_step, place_step @ b.second_in_first
-    error = np.array([retold.x - told.x, retold.y - told.y])
-    other_slide = Pose2(0.0, 0.0, place_step.yaw).transform_points(other.slide[None])[0]
+    other_slide = _slide_of(other, one, poses)
     if one.slide.any() and other_slide.any() and abs(one.slide @ other_slide) < _PARALLEL:
         return False
     for slide in (one.slide, other_slide):
         error -= (error @ slide) * slide
-    turn = wrap(retold.yaw - told.yaw)
-    return math.hypot(*error) < 0.15 + 0.02 * way and abs(turn) < 0.05 + 0.005 * way
+    way = recent_way + place_way
+    return math.hypot(*error) < 0.15 + 0.02 * way and turn < 0.05 + 0.005 * way
 
 
-def _ways_along_graph(start: int, poses: np.ndarray, edges: Edges) -> np.ndarray:
-    """Shortest way (N,) along the edges from ``start`` to every key, metres, with a radian counted as one.
+def is_confirmed(closure: Closure, witnesses: Sequence[Closure], poses: np.ndarray) -> bool:
+    """Whether enough others that agree say the same; of a place that was but recognised, also from far on."""
+    if len(witnesses) < closure.witnesses_needed:
+        return False
+    ways = [_disagreement(closure, other, poses)[0] for other in witnesses]
+    return not closure.candidate.is_recognised or max(ways) >= _LONG_WAY
+
+
+def contradict(one: Closure, other: Closure, poses: np.ndarray) -> bool:
+    """Whether two closures of the same stretch of the way put it to different places."""
+    recent_way, place_way, error, turn = _disagreement(one, other, poses)
+    if recent_way > _MAX_WITNESS_WAY:
+        return False
+    way = recent_way + place_way
+    return math.hypot(*error) > _ELSEWHERE + 0.1 * way or turn > 0.3
+
+
+def _disagreement(one: Closure, other: Closure, poses: np.ndarray) -> Tuple[float, float, np.ndarray, float]:
+    """How far the recent keys and the places of two closures lie apart, and the error around their cycle."""
+    a, b = one.edge, other.edge
+    recent_step = _between(poses[a.second], poses[b.second])
+    place_step = _between(poses[a.first], poses[b.first])
+    told, retold = a.second_in_first @ recent_step, place_step @ b.second_in_first
+    error = np.array([retold.x - told.x, retold.y - told.y])
+    ways = (math.hypot(step.x, step.y) for step in (recent_step, place_step))
+    return (*ways, error, abs(wrap(retold.yaw - told.yaw)))
+
+
+def _slide_of(closure: Closure, seen_from: Closure, poses: np.ndarray) -> np.ndarray:
+    """The slide of a closure along the axes of another one's place, (2,)."""
+    place_step = _between(poses[seen_from.edge.first], poses[closure.edge.first])
+    return Pose2(0.0, 0.0, place_step.yaw).transform_points(closure.slide[None])[0]
+
+
+def lengths_of(edges: Edges) -> np.ndarray:
+    """How long each edge is, (E,): metres, with a radian counted as one.
 
     A closure, and a step that is but a guess, is as long as the way on which the front end would err as much.
     """
@@ -199,26 +293,8 @@ def _ways_along_graph(start: int, poses: np.ndarray, edges: Edges) -> np.ndarray
     lengths = np.hypot(steps[:, 0], steps[:, 1]) + np.abs(steps[:, 2])
     weakest = np.minimum(edges.information[:, 0, 0], edges.information[:, 1, 1])
     doubts = 1.0 / np.sqrt(weakest) / _DRIFT_DISTANCE
-    lengths = np.where(edges.is_loop | (doubts > _GUESS_WAY), doubts, lengths)
-    graph = csr_matrix((lengths, tuple(edges.nodes.T)), shape=(len(poses), len(poses)))
-    return dijkstra(graph, directed=False, indices=start)
+    return np.where(edges.is_loop | (doubts > _GUESS_WAY), doubts, lengths)
 
 
 def _between(first: np.ndarray, second: np.ndarray) -> Pose2:
     return Pose2.from_array(first).inverse() @ Pose2.from_array(second)
-
-
-def _joined(parts) -> Surface:
-    points = [pose.transform_points(surface.points_xy) for surface, pose in parts]
-    normals = [Pose2(0.0, 0.0, pose.yaw).transform_points(surface.normals_xy) for surface, pose in parts]
-    return _thinned(
-        Surface(np.concatenate(points).astype(np.float32), np.concatenate(normals).astype(np.float32)),
-        _MAX_POINTS,
-    )
-
-
-def _thinned(surface: Surface, count: int) -> Surface:
-    step = max(1, len(surface) // count)
-    return Surface(
-        np.ascontiguousarray(surface.points_xy[::step]), np.ascontiguousarray(surface.normals_xy[::step])
-    )

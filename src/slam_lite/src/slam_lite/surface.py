@@ -2,11 +2,12 @@
 
 import math
 from dataclasses import dataclass
+from typing import Iterable, Tuple
 
 import numba
 import numpy as np
 
-from planar import Scan
+from planar import Pose2, Scan
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +41,23 @@ def surface_of(scan: Scan, usable_range: float, spacing: float) -> Surface:
         spacing,
     )
     return Surface(points_xy, normals_xy)
+
+
+def joined(parts: Iterable[Tuple[Surface, Pose2]]) -> Surface:
+    """Several surfaces as one, each seen from its pose."""
+    points, normals = [], []
+    for surface, pose in parts:
+        points.append(pose.transform_points(surface.points_xy))
+        normals.append(Pose2(0.0, 0.0, pose.yaw).transform_points(surface.normals_xy))
+    return Surface(np.concatenate(points).astype(np.float32), np.concatenate(normals).astype(np.float32))
+
+
+def thinned(surface: Surface, count: int) -> Surface:
+    """Every so-manieth point, so that about ``count`` are left, or all of fewer."""
+    step = max(1, len(surface) // count)
+    return Surface(
+        np.ascontiguousarray(surface.points_xy[::step]), np.ascontiguousarray(surface.normals_xy[::step])
+    )
 
 
 @numba.njit(cache=True, nogil=True)
