@@ -29,7 +29,7 @@ Placed = Tuple[Surface, Pose2]
 # Growth of the search window with the way along the graph: metres and radians per metre.
 _DRIFT_DISTANCE, _DRIFT_ANGLE = 0.04, 0.008
 # The size of windows that are searched once an interval.
-_OFTEN_DISTANCE = 4.0
+_OFTEN_DISTANCE = 8.0
 _MIN_WINDOW, _MAX_WINDOW = Window(0.3, 0.1), Window(12.0, 0.8)
 # By how many standard deviations the graph may be off; those that matches tell of themselves are cautious.
 _CREDIBLE = 1.5
