@@ -149,14 +149,10 @@ def find_closure(
     """The closure at a candidate, if a good and unambiguous match is there. ``local_map`` is overwritten."""
     place, recent = candidate.place, candidate.recent
     first_recent = recent - candidate.recent_keys + 1
+    there = _around(place, candidate.scale, first_recent, poses, surfaces)
     local_map.clear(Pose2())
-    reach = round(candidate.scale * _PLACE_KEYS)
-    there = []
-    for key in range(max(0, place - reach), min(first_recent, place + reach + 1)):
-        in_place = _between(poses[place], poses[key])
-        if math.hypot(in_place.x, in_place.y) < candidate.scale * _PLACE_RADIUS:
-            there.append((surfaces[key], in_place))
-            local_map.add(*there[-1])
+    for placed in there:
+        local_map.add(*placed)
     here = [(surfaces[key], _between(poses[recent], poses[key])) for key in range(first_recent, recent + 1)]
     recent_surface = thinned(joined(here), _MAX_POINTS)
     if len(recent_surface) < 50:
@@ -181,6 +177,16 @@ def find_closure(
         information = _without_slides(match, recent_surface, local_map)
     edge = Edge(place, recent, match.base_pose, information, is_loop=True)
     return Closure(edge, candidate, peak.slide)
+
+
+def _around(
+    place: int, scale: float, end: int, poses: np.ndarray, surfaces: Sequence[Surface]
+) -> List[Placed]:
+    """The scans near a place on the way through it, before key ``end``, each with its pose seen from there."""
+    reach = round(scale * _PLACE_KEYS)
+    keys = range(max(0, place - reach), min(end, place + reach + 1))
+    placed = [(surfaces[key], _between(poses[place], poses[key])) for key in keys]
+    return [(surface, pose) for surface, pose in placed if math.hypot(pose.x, pose.y) < scale * _PLACE_RADIUS]
 
 
 def _clash(there: Sequence[Placed], here: Sequence[Placed], recent_in_place: Pose2) -> float:
