@@ -182,11 +182,11 @@ def find_closure(
 def _around(
     place: int, scale: float, end: int, poses: np.ndarray, surfaces: Sequence[Surface]
 ) -> List[Placed]:
-    """The scans near a place on the way through it, before key ``end``, each with its pose seen from there."""
+    """The scans near a place on the way through it, before key ``end``, each with its pose seen from it."""
     reach = round(scale * _PLACE_KEYS)
     keys = range(max(0, place - reach), min(end, place + reach + 1))
-    placed = [(surfaces[key], _between(poses[place], poses[key])) for key in keys]
-    return [(surface, pose) for surface, pose in placed if math.hypot(pose.x, pose.y) < scale * _PLACE_RADIUS]
+    seen = [(surfaces[key], _between(poses[place], poses[key])) for key in keys]
+    return [(surface, pose) for surface, pose in seen if math.hypot(pose.x, pose.y) < scale * _PLACE_RADIUS]
 
 
 def _clash(there: Sequence[Placed], here: Sequence[Placed], recent_in_place: Pose2) -> float:
