@@ -87,7 +87,7 @@ class BagsTest(unittest.TestCase):
             timeout=RUN_SECONDS,
             check=False,
         )
-        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         made = next(path for path in self.folder.iterdir() if path not in known)
         made = made.rename(self.folder / ("replay" if script == "replay.sh" else "live"))
         return json.loads((made / "result.json").read_text())
