@@ -118,6 +118,8 @@ class Robot:
             contacts.name: (),
         }
         self._mounts: Dict[str, Mount] = {}
+        # Before this step of physics nothing is due.
+        self._next_step = 0
         for sensor in (truth, self._odometer, wheels, contacts):
             self._mount(fitting.sensor(sensor))
         # What its description has, by the names that they tell by.
@@ -142,6 +144,7 @@ class Robot:
     def retime(self, settings: SimulationSettings) -> None:
         """The rates have changed."""
         self._settings = settings
+        self._next_step = 0
         for mount in self._mounts.values():
             mount.retime(settings)
 
@@ -156,8 +159,11 @@ class Robot:
     def end_step(self, step: int, stamp: float) -> None:
         """After the step of physics number ``step``, at the time ``stamp``: what is due measures."""
         self._around.end_step(stamp)
+        if step < self._next_step:
+            return
         for mount in self._mounts.values():
             mount.end_step(step, self._around)
+        self._next_step = min(mount.next_step(step) for mount in self._mounts.values())
 
     def observe(self, stamp: float) -> Observation:
         """What has been measured since the last call."""

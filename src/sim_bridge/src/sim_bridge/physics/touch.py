@@ -1,7 +1,7 @@
 """What touches what, and what is below."""
 
 import math
-from typing import Iterator, List, NamedTuple, Optional, Sequence, Tuple
+from typing import List, NamedTuple, Optional, Sequence, Tuple
 
 from sim_bridge.physics.bullet import BulletClient
 from sim_bridge.physics.register import Register
@@ -29,12 +29,13 @@ class Touch:
         self._bullet = bullet
         self._register = register
 
-    def contacts(self, base: str) -> Iterator[Contact]:
-        """What a robot touches, or nearly does (negative depth)."""
-        for _, _, other, _, index, _, point, (_, _, normal_z), distance, *_ in self._bullet.getContactPoints(
-            bodyA=self._register.links[base].number
-        ):
-            yield Contact(self._register.owner(other, index), point, normal_z, -distance)
+    def contacts(self, base: str, steepest: float = math.inf) -> List[Contact]:
+        """What a robot touches, or nearly does (negative depth); abs(normal_z) is below ``steepest``."""
+        return [
+            Contact(self._register.owner(told[2], told[4]), told[6], told[7][2], -told[8])
+            for told in self._bullet.getContactPoints(bodyA=self._register.links[base].number)
+            if abs(told[7][2]) < steepest
+        ]
 
     def find_contacts(self) -> None:
         """Looks for contacts without a step."""

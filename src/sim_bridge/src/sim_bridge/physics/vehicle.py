@@ -65,11 +65,8 @@ class Vehicle:
 
     def bumps(self) -> List[Contact]:
         """Where the robot touches things; what it stands on is not among them."""
-        return [
-            contact
-            for contact in self._engine.touch.contacts(self.base)
-            if contact.depth >= 0.0 and abs(contact.normal_z) < SUPPORTING_NORMAL_Z
-        ]
+        contacts = self._engine.touch.contacts(self.base, steepest=SUPPORTING_NORMAL_Z)
+        return [contact for contact in contacts if contact.depth >= 0.0]
 
     def floors_below(self, points: Sequence[Sequence[float]]) -> List[float]:
         """The heights of what is below points in space, -inf where there is nothing."""

@@ -11,6 +11,7 @@ from typing import Any, Generic, List, NamedTuple, Optional, Protocol, Sequence,
 
 import numpy as np
 
+from planar import Twist2
 from sim_bridge.config import SimulationSettings
 from sim_bridge.physics.motion import Motion
 from sim_bridge.physics.touch import Contact
@@ -49,6 +50,10 @@ class Surroundings(Protocol):
     @property
     def base(self) -> Motion:
         """How the robot's base frame moves in the world."""
+
+    @property
+    def twist(self) -> Twist2:
+        """Velocity of the base frame along its own x axis, and turn rate."""
 
     @property
     def wheels(self) -> Tuple[Tuple[float, ...], Tuple[float, ...]]:

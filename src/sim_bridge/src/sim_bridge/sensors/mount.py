@@ -27,6 +27,12 @@ class Mount:
         """Whether a sensor that measures on demand is to do so from now on; others always do."""
         self._is_wanted = is_wanted or not self._sensor.on_demand
 
+    def next_step(self, step: int) -> int:
+        """The first step of physics after number ``step`` at which there is something to do here."""
+        interval, offset, _ = self._schedule
+        due = step + 1 + (offset - step - 1) % interval
+        return min(due, self._on_their_way[0][0]) if self._on_their_way else due
+
     def end_step(self, step: int, around: Surroundings) -> None:
         """After the step of physics number ``step``."""
         interval, offset, delay = self._schedule

@@ -10,7 +10,6 @@ from planar import Pose2, Twist2
 from sim_bridge.config import SimulationSettings
 from sim_bridge.driving.profile import DriveProfile
 from sim_bridge.geometry.pose3 import to_pose2
-from sim_bridge.physics.vehicle import twist_in_base
 from sim_bridge.sensors.base import Mounting, Schedule, Surroundings, every
 
 STREAM = 0
@@ -89,8 +88,7 @@ class Odometer:
 
     def measure(self, around: Surroundings) -> Odometry:
         angles, _ = around.wheels
-        base = around.base
-        return self._reckoning.update(Moved(to_pose2(base.pose), twist_in_base(base), angles, self._seconds))
+        return self._reckoning.update(Moved(to_pose2(around.base.pose), around.twist, angles, self._seconds))
 
 
 class TrueOdometry:

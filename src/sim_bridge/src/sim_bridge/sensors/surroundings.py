@@ -4,9 +4,10 @@ from typing import Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
+from planar import Twist2
 from sim_bridge.physics.motion import Motion
 from sim_bridge.physics.touch import Contact
-from sim_bridge.physics.vehicle import Vehicle
+from sim_bridge.physics.vehicle import Vehicle, twist_in_base
 from sim_bridge.views.sight import Sight
 
 Wheels = Tuple[Tuple[float, ...], Tuple[float, ...]]
@@ -20,13 +21,14 @@ class RobotSurroundings:
         self._vehicle = vehicle
         self._sight = sight
         self._base: Optional[Motion] = None
+        self._twist: Optional[Twist2] = None
         self._wheels: Optional[Wheels] = None
         self._bumps: Dict[str, Contact] = {}
 
     def end_step(self, stamp: float) -> None:
         """A step of physics is over: it is now ``stamp``, s."""
         self.stamp = stamp
-        self._base = self._wheels = None
+        self._base = self._twist = self._wheels = None
         for bump in self._vehicle.bumps():
             self._bumps[bump.link] = bump
 
@@ -43,6 +45,12 @@ class RobotSurroundings:
         if self._base is None:
             self._base = self._vehicle.motion()
         return self._base
+
+    @property
+    def twist(self) -> Twist2:
+        if self._twist is None:
+            self._twist = twist_in_base(self.base)
+        return self._twist
 
     @property
     def wheels(self) -> Wheels:

@@ -7,7 +7,6 @@ from typing import Tuple
 from planar import Pose2, Twist2
 from sim_bridge.config import SimulationSettings
 from sim_bridge.geometry.pose3 import to_pose2
-from sim_bridge.physics.vehicle import twist_in_base
 from sim_bridge.sensors.base import Schedule, Surroundings, every
 
 
@@ -38,7 +37,7 @@ class GroundTruth:
 
     def measure(self, around: Surroundings) -> Truth:
         base = around.base
-        return Truth(to_pose2(base.pose), twist_in_base(base), math.acos(min(base.pose[2, 2], 1.0)))
+        return Truth(to_pose2(base.pose), around.twist, math.acos(min(base.pose[2, 2], 1.0)))
 
 
 class JointEncoders:

@@ -1,0 +1,44 @@
+"""A sensor on its robot is asked when it is due and heard when its delay is over."""
+
+import pytest
+
+from sim_bridge.config import SimulationSettings
+from sim_bridge.sensors.base import Schedule
+from sim_bridge.sensors.mount import Mount
+
+
+class Around:
+    stamp = 0.0
+
+
+class Counter:
+    """Tells how often it has been asked."""
+
+    name, frame, on_demand = "counter", "base_link", False
+
+    def __init__(self, schedule):
+        self._schedule = schedule
+        self.asked = 0
+
+    def schedule(self, settings):
+        return self._schedule
+
+    def measure(self, around):
+        self.asked += 1
+        return self.asked
+
+
+@pytest.mark.parametrize(
+    "schedule", [Schedule(1), Schedule(4), Schedule(4, 3), Schedule(5, 2, 7), Schedule(3, 0, 1)]
+)
+def test_nothing_happens_before_the_next_step(schedule):
+    """A robot that asks its mounts only at their next steps hears what one hears that asks at every step."""
+    always, seldom = (Mount(Counter(schedule), SimulationSettings()) for _ in range(2))
+    next_step = 0
+    for step in range(1, 60):
+        always.end_step(step, Around())
+        if step >= next_step:
+            seldom.end_step(step, Around())
+            next_step = seldom.next_step(step)
+        assert next_step > step
+        assert always.take() == seldom.take()
