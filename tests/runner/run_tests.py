@@ -20,6 +20,7 @@ from xml.etree import ElementTree
 import psutil
 
 ROOT = Path(__file__).resolve().parents[2]
+PYTEST = ("-m", "pytest", "-n", "auto", "--dist", "worksteal")
 UNIT_SECONDS = 900.0  # of a machine that has other things to do; else a minute
 ROSTEST_DEFAULT_SECONDS = 60.0  # of a <test> without time-limit
 START_AND_STOP_SECONDS = 60.0  # of everything around the <test>s of a file
@@ -127,7 +128,7 @@ class Runner:
 
     def run_unit_tests(self, files: Sequence[Path]) -> None:
         report = self._folder / "unit.xml"
-        command = [sys.executable, "-m", "pytest", f"--junitxml={report}", *map(str, files)]
+        command = [sys.executable, *PYTEST, f"--junitxml={report}", *map(str, files)]
         self._run("unit", command, UNIT_SECONDS, lambda code: judge_unit_tests(report, code))
 
     def run_ros_test(self, path: Path) -> None:
