@@ -14,6 +14,7 @@ STOREYS = (
     {"planar_ros", "run_report"},
     {"supervision", "sim_bridge", "map_lite", "amcl_lite", "slam_lite", "move_base_lite", "explorer_lite"}
     | {"pick_objects", "add_markers", "follow_me", "teleop_lite"},
+    {"cockpit"},
     {"home_service", "turtle_world", "gazebo_ros", "ros_tools", "ament_index_python"},
     {"run_project"},
 )

@@ -1,0 +1,69 @@
+"""What browsers may send: few kinds of messages, finite numbers, so much a second."""
+
+import math
+from typing import Any, Mapping
+
+from cockpit.errors import RefusedError
+
+LARGEST_MESSAGE = 256 * 1024
+# A page sends its camera 60 times a second while it is turned, and a drag beside.
+MESSAGES_PER_SECOND, BURST = 240.0, 960.0
+DEEPEST = 8
+
+# What a page of viser's sends of itself; what it also knows (files, sharing, pictures) is not wanted.
+KINDS = frozenset(
+    {
+        "ViewerCameraMessage",
+        "GuiUpdateMessage",
+        "GuiButtonHoldMessage",
+        "GuiFormSubmitMessage",
+        "GuiFormDirtyMessage",
+        "CommandTriggerMessage",
+        "SceneNodeClickMessage",
+        "SceneNodeDragMessage",
+        "ScenePointerMessage",
+        "TransformControlsUpdateMessage",
+        "TransformControlsDragStartMessage",
+        "TransformControlsDragEndMessage",
+    }
+)
+
+
+class Allowance:
+    """A bucket of ``burst`` messages, into which ``rate`` a second run."""
+
+    def __init__(self, rate: float = MESSAGES_PER_SECOND, burst: float = BURST):
+        self._rate, self._burst = rate, burst
+        self._left = burst
+        self._at = -math.inf
+
+    def take(self, now: float) -> bool:
+        """Whether there was one left; ``now``: seconds by a steady clock."""
+        self._left = min(self._burst, self._left + (now - self._at) * self._rate)
+        self._at = now
+        if self._left < 1.0:
+            return False
+        self._left -= 1.0
+        return True
+
+
+def check(message: Any) -> None:
+    """A message as it was decoded. Raises RefusedError."""
+    if not isinstance(message, Mapping) or message.get("type") not in KINDS:
+        raise RefusedError("not a message that the page sends")
+    updates = message.get("updates", {})
+    if not isinstance(updates, Mapping) or set(updates) - {"value"}:
+        raise RefusedError("changes more than a value")
+    _check_value(message, DEEPEST)
+
+
+def _check_value(value: Any, depth: int) -> None:
+    if depth == 0:
+        raise RefusedError("nested too deeply")
+    if isinstance(value, float) and not math.isfinite(value):
+        raise RefusedError("a number is not finite")
+    if isinstance(value, Mapping):
+        value = list(value.values())
+    if isinstance(value, (list, tuple)):
+        for item in value:
+            _check_value(item, depth - 1)

@@ -1,0 +1,20 @@
+"""Laser scans, as points."""
+
+import numpy as np
+
+from cockpit.drawing import Drawing, Part, Points
+from cockpit.layer import Layer
+
+COLOUR = (230, 57, 70)
+
+
+def draw(message) -> Drawing:
+    ranges = np.asarray(message.ranges, dtype=float)
+    angles = message.angle_min + message.angle_increment * np.arange(len(ranges))
+    seen = np.isfinite(ranges) & (ranges >= message.range_min) & (ranges <= message.range_max)
+    ranges, angles = ranges[seen], angles[seen]
+    points = np.column_stack((ranges * np.cos(angles), ranges * np.sin(angles), np.zeros(len(ranges))))
+    return Drawing((Part("scan", message.header.frame_id, Points(points, COLOUR, 0.05)),))
+
+
+LAYER = Layer("Scan", ("sensor_msgs/LaserScan",), lambda: draw, shown=("scan",))

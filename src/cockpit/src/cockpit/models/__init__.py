@@ -1,0 +1,1 @@
+"""What tools compute and show, without ROS and without a page."""

@@ -1,0 +1,24 @@
+"""Tables as the page shows them: HTML in which nothing that comes from the graph is HTML."""
+
+from html import escape
+from typing import Iterable, Sequence
+
+STYLE = (
+    "font-size:11px;line-height:1.5;font-family:ui-monospace,monospace;max-height:320px;overflow:auto;"
+    "margin:0 12px 8px 12px"
+)
+CELL = "padding:0 10px 0 0;white-space:nowrap;text-align:left"
+
+
+def table(heads: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """``rows``: anything that has a text."""
+    head = "".join(f'<th style="{CELL};opacity:.6;font-weight:600">{escape(text)}</th>' for text in heads)
+    body = "".join(
+        "<tr>" + "".join(f'<td style="{CELL}">{escape(str(cell))}</td>' for cell in row) + "</tr>"
+        for row in rows
+    )
+    return f'<div style="{STYLE}"><table style="border-collapse:collapse"><tr>{head}</tr>{body}</table></div>'
+
+
+def preformatted(text: str) -> str:
+    return f'<div style="{STYLE};white-space:pre">{escape(text)}</div>'

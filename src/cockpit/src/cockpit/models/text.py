@@ -1,0 +1,46 @@
+"""Messages as text, however large they are."""
+
+from typing import Any, List
+
+import numpy as np
+
+from cockpit.models.tables import preformatted
+
+MOST_LINES, MOST_ITEMS, LONGEST = 60, 8, 120
+
+
+def outline(message: Any) -> str:
+    """A message's fields with their values as HTML; of long arrays the first."""
+    return preformatted("\n".join(lines_of(message)))
+
+
+def lines_of(message: Any, indent: str = "") -> List[str]:
+    """At most MOST_LINES."""
+    lines: List[str] = []
+    for name in message.__slots__:
+        if name.startswith("_"):
+            continue
+        value = getattr(message, name)
+        if hasattr(value, "__slots__") and not hasattr(value, "to_sec"):
+            lines += [f"{indent}{name}:", *lines_of(value, indent + "  ")]
+        elif isinstance(value, (list, tuple, np.ndarray)) and len(value) and hasattr(value[0], "__slots__"):
+            lines += [f"{indent}{name}: {len(value)} of", *lines_of(value[0], indent + "  ")]
+        else:
+            lines.append(f"{indent}{name}: {value_text(value)}")
+        if len(lines) >= MOST_LINES:
+            return [*lines[: MOST_LINES - 1], f"{indent}..."]
+    return lines
+
+
+def value_text(value: Any) -> str:
+    if hasattr(value, "to_sec"):
+        return f"{value.to_sec():.3f}"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, bytes):
+        return f"{len(value)} bytes"
+    if isinstance(value, (list, tuple, np.ndarray)):
+        told = ", ".join(value_text(item) for item in value[:MOST_ITEMS])
+        return f"[{told}]" if len(value) <= MOST_ITEMS else f"{len(value)} of [{told}, ...]"
+    text = str(value)
+    return text if len(text) <= LONGEST else text[:LONGEST] + "..."

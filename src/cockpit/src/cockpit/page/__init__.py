@@ -1,0 +1,1 @@
+"""The page, by viser: the one room that knows it."""

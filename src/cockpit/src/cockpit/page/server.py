@@ -1,0 +1,118 @@
+"""viser's server behind the gate: the page's look, its lights, who is there."""
+
+import contextlib
+import io
+import threading
+from typing import Callable, List
+
+import numpy as np
+import viser
+
+from cockpit.access import Access
+from cockpit.page.gate import Gate, listen
+
+NAME = "Cockpit"
+BRAND = (38, 110, 160)
+FIELD_OF_VIEW = 0.8
+CAMERA, LOOK_AT = np.array((-5.5, -12.5, 14.5)), np.array((1.2, -0.6, 0.0))
+
+
+class Page:
+    """Serves the page from now on. Raises PortError.
+
+    ``gui`` and ``scene`` are shared by all who look; ``url`` has the token.
+    """
+
+    def __init__(self, address: str, port: int):
+        """``port``: 0 for a free one."""
+        listening = listen(address, port)
+        port = listening.getsockname()[1]
+        shown = "127.0.0.1" if address in ("0.0.0.0", "::") else address
+        access = Access(port, (shown,))
+        self.url = f"http://{f'[{shown}]' if ':' in shown else shown}:{port}/?token={access.token}"
+        self._on_leave: List[Callable[[int], None]] = []
+        self._is_watched = threading.Event()
+        # viser greets on the standard output, with a URL that has no token.
+        with Gate(listening, access).guarding(), contextlib.redirect_stdout(io.StringIO()):
+            self._server = viser.ViserServer(address, port, label=NAME, verbose=False)
+        self.gui, self.scene = self._server.gui, self._server.scene
+        self._server.on_client_connect(self._came)
+        self._server.on_client_disconnect(self._left)
+        self._dress()
+
+    @property
+    def is_watched(self) -> bool:
+        """Whether any browser shows the page."""
+        return self._is_watched.is_set()
+
+    def wait_for_someone(self, seconds: float) -> bool:
+        return self._is_watched.wait(seconds)
+
+    def clients(self) -> List[viser.ClientHandle]:
+        return list(self._server.get_clients().values())
+
+    def on_leave(self, do: Callable[[int], None]) -> None:
+        """``do`` is given the number of each client whose page was closed, or lost."""
+        self._on_leave.append(do)
+
+    def tell(self, text: str, is_bad: bool = False) -> None:
+        """A note on every page, which goes by itself."""
+        for client in self.clients():
+            client.add_notification(
+                "Something went wrong" if is_bad else NAME,
+                text[:500],
+                color="red" if is_bad else None,
+                auto_close_seconds=10.0 if is_bad else 5.0,
+            )
+
+    def atomic(self):
+        """What is changed within is seen at once."""
+        return self._server.atomic()
+
+    def close(self) -> None:
+        with contextlib.redirect_stdout(io.StringIO()):
+            self._server.stop()
+
+    def _came(self, _client: viser.ClientHandle) -> None:
+        self._is_watched.set()
+
+    def _left(self, client: viser.ClientHandle) -> None:
+        if not self._server.get_clients():
+            self._is_watched.clear()
+        for do in self._on_leave:
+            do(client.client_id)
+
+    def _dress(self) -> None:
+        self.gui.configure_theme(
+            show_logo=False, show_share_button=False, brand_color=BRAND, control_width="medium"
+        )
+        self.gui.main_panel.dock_right()
+        self.gui.main_panel.set_width(360)
+        self._server.initial_camera.position = CAMERA
+        self._server.initial_camera.look_at = LOOK_AT
+        self._server.initial_camera.fov = FIELD_OF_VIEW
+        self.scene.set_up_direction("+z")
+        self.scene.configure_environment_map("apartment", environment_intensity=0.55)
+        self.scene.configure_default_lights(enabled=False)
+        self.scene.add_light_directional(
+            "/lights/sun", color=(255, 247, 235), intensity=1.6, cast_shadow=True, position=(-6.0, -9.0, 14.0)
+        )
+        self.scene.add_light_ambient("/lights/sky", color=(235, 242, 255), intensity=0.5)
+        self.scene.add_box(
+            "/floor/slab",
+            dimensions=(400.0, 400.0, 0.1),
+            color=(236, 238, 240),
+            cast_shadow=False,
+            position=(0.0, 0.0, -0.07),
+        )
+        self.scene.add_grid(
+            "/floor/lines",
+            infinite_grid=True,
+            cell_size=0.5,
+            section_size=1.0,
+            cell_color=(218, 222, 225),
+            section_color=(196, 201, 206),
+            shadow_opacity=0.0,
+            fade_distance=40.0,
+            position=(0.0, 0.0, -0.01),
+        )

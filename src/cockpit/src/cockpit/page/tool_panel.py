@@ -1,0 +1,44 @@
+"""The tools: a tab with a box for each, and a window for each that is open."""
+
+from typing import Any, Callable, Dict, Iterable, Tuple
+
+
+class ToolPanel:
+    """``on_switch`` is called with a tool's name and whether it is to be open."""
+
+    def __init__(self, gui, tools: Iterable[Tuple[str, str]], on_switch: Callable[[str, bool], None]):
+        """``tools``: the name and title of each."""
+        self._gui = gui
+        self._boxes: Dict[str, Any] = {}
+        gui.add_markdown("Each opens a window, which can be moved and docked.")
+        for name, title in tools:
+            box = gui.add_checkbox(title, False)
+            box.on_update(lambda _, name=name, box=box: on_switch(name, box.value))
+            self._boxes[name] = box
+
+    def open(self, name: str) -> None:
+        """As if a person had ticked its box."""
+        self._boxes[name].value = True
+
+    def window(self, title: str) -> Any:
+        """A new window with one tab: the context in which controls are made, and ``remove()``."""
+        return Window(self._gui, title)
+
+
+class Window:
+    """A movable window of the page."""
+
+    def __init__(self, gui, title: str):
+        self._panel = gui.add_panel()
+        self._tab = self._panel.add_tab(title)
+        self._panel.dock_left()
+        self._panel.set_width(420)
+
+    def __enter__(self):
+        return self._tab.__enter__()
+
+    def __exit__(self, *error):
+        return self._tab.__exit__(*error)
+
+    def remove(self) -> None:
+        self._panel.remove()

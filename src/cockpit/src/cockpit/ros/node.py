@@ -1,0 +1,72 @@
+"""The process of the cockpit: the page first, then the graph, whenever its master comes.
+
+cockpit [--web-port [ADDRESS:]PORT] [--tool NAME]
+"""
+
+import sys
+import time
+from dataclasses import dataclass
+from typing import Optional, Tuple
+
+import rospy
+from rosgraph import get_master_uri
+
+from cockpit.errors import CockpitError, PortError
+from cockpit.page.server import Page
+from cockpit.ros.cockpit import Cockpit
+from cockpit.ros.tools import names
+from planar import PlanarError
+from supervision.command_line import option, parse
+from supervision.ros.node_api import is_master_online
+
+MASTER_SECONDS = 0.2
+
+
+@dataclass(frozen=True)
+class Options:
+    """Shows and drives a running ROS graph in the browser."""
+
+    web_port: str = option(
+        "127.0.0.1:0", "where the page is served; 0: a free port", metavar="[ADDRESS:]PORT"
+    )
+    tool: Optional[str] = option(None, "a tool that is open at first", metavar="NAME")
+
+
+def main() -> None:
+    options = parse(Options, rospy.myargv()[1:], "cockpit")
+    try:
+        sys.exit(serve(options.web_port, options.tool))
+    except PlanarError as error:
+        print(f"error: {error}", file=sys.stderr)
+        sys.exit(2)
+
+
+def serve(where: str, tool: Optional[str]) -> int:
+    """Until the process is interrupted. Raises CockpitError if the options make no sense."""
+    if tool is not None and tool not in names():
+        raise CockpitError(f"--tool: there is no '{tool}', only {', '.join(names())}")
+    page = Page(*address_of(where))
+    print(f"cockpit: {page.url}", flush=True)
+    if not is_master_online():
+        print(f"cockpit: waiting for a ROS master at {get_master_uri()}", flush=True)
+    while not is_master_online():
+        time.sleep(MASTER_SECONDS)
+    rospy.init_node("cockpit", anonymous=True, log_level=rospy.WARN)
+    cockpit = Cockpit(page)
+    if tool is not None:
+        cockpit.toolbox.open(tool)
+    cockpit.run()
+    page.close()
+    return 0
+
+
+def address_of(text: str) -> Tuple[str, int]:
+    """Address and port of ``[ADDRESS:]PORT``. Raises PortError."""
+    address, _, port = text.rpartition(":")
+    if not port.isascii() or not port.isdigit() or int(port) > 65535:
+        raise PortError(f"--web-port: '{text}' is no port, nor an address and a port")
+    return address.strip("[]") or "127.0.0.1", int(port)
+
+
+if __name__ == "__main__":
+    main()

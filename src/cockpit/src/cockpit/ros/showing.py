@@ -1,0 +1,107 @@
+"""Layers of topics: subscribed while they are switched on and somebody looks, and drawn."""
+
+from typing import Any, Callable, Dict, List, Optional
+
+from cockpit.drawing import Drawing, Screen
+from cockpit.errors import CockpitError
+from cockpit.layer import Draw, Layer
+from cockpit.layers import by_type
+from cockpit.page.drawer import Drawer
+from cockpit.ros.graph import Feed, Graph
+from cockpit.ros.tool import said
+
+
+class ShownTopic:
+    """A topic that is switched on."""
+
+    def __init__(self, graph: Graph, topic: str, kind: str, layer: Layer):
+        """Raises CockpitError."""
+        self.topic, self.layer = topic, layer
+        self._feed: Feed = graph.feed(topic, kind, layer.needs_all)
+        self._draw: Draw = layer.make()
+        self._due = 0.0
+
+    def drawings(self, now: float) -> List[Drawing]:
+        """What is new. Raises whatever a message that makes no sense makes its layer raise."""
+        if now < self._due:
+            return []
+        messages = self._feed.take()
+        if messages:
+            self._due = now + self.layer.seconds
+        return [self._draw(message) for message in messages]
+
+    def close(self) -> None:
+        self._feed.close()
+
+
+class Layers:
+    """All topics that a layer knows to draw."""
+
+    def __init__(self, graph: Graph, drawer: Drawer, tell: Callable[[str], None]):
+        self._graph, self._drawer, self._tell = graph, drawer, tell
+        self._by_type = by_type()
+        self._shown: Dict[str, ShownTopic] = {}
+        self._complaints: Dict[str, str] = {}
+        # The newest picture of each camera.
+        self.screens: Dict[str, Any] = {}
+
+    def offers(self) -> Dict[str, Layer]:
+        """The layer of each topic that somebody publishes. Raises CockpitError."""
+        published, types = self._graph.publishers(), self._graph.topics()
+        known = ((topic, self._by_type.get(types.get(topic, ""))) for topic in sorted(published))
+        return {topic: layer for topic, layer in known if layer is not None}
+
+    def choose(self, wanted: Dict[str, bool], offers: Dict[str, Layer]) -> None:
+        """Subscribes to what is switched on, and to nothing else."""
+        for topic in [topic for topic in self._shown if not wanted.get(topic)]:
+            self._close(topic)
+        for topic, is_on in wanted.items():
+            if is_on and topic not in self._shown and topic in offers:
+                self._open(topic, offers[topic])
+
+    def update(self, now: float) -> None:
+        for topic, shown in self._shown.items():
+            try:
+                for drawing in shown.drawings(now):
+                    self._show(topic, drawing)
+                    self._complain(topic, drawing.told)
+            except Exception as error:  # what a graph sends may be anything
+                self._complain(topic, said(error))
+
+    def close(self) -> None:
+        """Subscribes to nothing; what is shown stays to be seen by who comes next."""
+        for shown in self._shown.values():
+            shown.close()
+        self._shown.clear()
+
+    def _open(self, topic: str, layer: Layer) -> None:
+        try:
+            self._shown[topic] = ShownTopic(self._graph, topic, layer_type(self._graph, topic), layer)
+        except CockpitError as error:
+            self._complain(topic, str(error))
+
+    def _close(self, topic: str) -> None:
+        self._shown.pop(topic).close()
+        self._drawer.clear(topic)
+        self.screens.pop(topic, None)
+
+    def _show(self, topic: str, drawing: Drawing) -> None:
+        screens = [part for part in drawing.parts if isinstance(part.thing, Screen)]
+        for part in screens:
+            self.screens[topic] = part.thing.picture  # type: ignore[union-attr]
+        if not screens:
+            self._drawer.show(topic, drawing)
+
+    def _complain(self, topic: str, text: str) -> None:
+        """Once for each thing that is wrong with a topic."""
+        if text and self._complaints.get(topic) != text:
+            self._tell(f"{topic}: {text}")
+        self._complaints[topic] = text or self._complaints.get(topic, "")
+
+
+def layer_type(graph: Graph, topic: str) -> str:
+    """Raises CockpitError."""
+    kind: Optional[str] = graph.topics().get(topic)
+    if kind is None:
+        raise CockpitError("the topic is gone")
+    return kind

@@ -1,0 +1,92 @@
+"""The tools that are open."""
+
+import threading
+from dataclasses import dataclass
+from typing import Any, Dict, List
+
+from cockpit.page.server import Page
+from cockpit.page.tool_panel import ToolPanel
+from cockpit.ros.graph import Graph
+from cockpit.ros.tool import Desk, Tool, said
+from cockpit.ros.tools import all_tools
+
+
+@dataclass
+class _Open:
+    tool: Tool
+    desk: Desk
+    window: Any
+    due: float = 0.0
+    complaint: str = ""
+
+
+class Toolbox:
+    """Opens and closes tools, and lets each of those that are open do its work in turn."""
+
+    def __init__(self, page: Page, graph: Graph):
+        self._page, self._graph = page, graph
+        self._kinds = all_tools()
+        self._open: Dict[str, _Open] = {}
+        self._lock = threading.RLock()
+        titles = [(name, kind.title) for name, kind in self._kinds.items()]
+        self._panel = ToolPanel(page.gui, titles, self._switch)
+
+    @property
+    def names(self) -> List[str]:
+        return list(self._kinds)
+
+    def open(self, name: str) -> None:
+        self._panel.open(name)
+
+    def update(self, now: float) -> None:
+        for name, opened in self._opened():
+            if now < opened.due or not opened.desk.lock.acquire(blocking=False):
+                continue  # a person is at it: it has its turn later
+            opened.due = now + opened.tool.seconds
+            try:
+                if name in self._open:
+                    opened.tool.update(now)
+                opened.complaint = ""
+            except Exception as error:  # what a tool meets in a graph may be anything
+                self._complain(opened, error)
+            finally:
+                opened.desk.lock.release()
+
+    def pause(self) -> None:
+        for _, opened in self._opened():
+            with opened.desk.lock:
+                opened.tool.pause()
+
+    def close(self) -> None:
+        for name, _ in self._opened():
+            self._switch(name, False)
+
+    def _opened(self):
+        with self._lock:
+            return list(self._open.items())
+
+    def _switch(self, name: str, is_on: bool) -> None:
+        with self._lock:
+            if is_on and name not in self._open:
+                self._open[name] = self._make(name)
+            elif not is_on and name in self._open:
+                opened = self._open.pop(name)
+                with opened.desk.lock:
+                    opened.tool.close()
+                opened.window.remove()
+
+    def _make(self, name: str) -> _Open:
+        kind = self._kinds[name]
+        desk = Desk(self._page.gui, self._graph, self._page.tell)
+        window = self._panel.window(kind.title)
+        opened = _Open(kind(desk), desk, window)
+        with desk.lock, window:
+            opened.tool.build()
+        return opened
+
+    def _complain(self, opened: _Open, error: Exception) -> None:
+        """Once for each thing that is wrong."""
+        text = f"{opened.tool.title}: {said(error)}"
+        if text != opened.complaint:
+            self._page.tell(text, True)
+        opened.complaint = text

@@ -1,0 +1,86 @@
+"""Topics: type, how often, how much, and what the newest message says (rqt_topic)."""
+
+from typing import Dict, Optional
+
+from cockpit.errors import CockpitError
+from cockpit.models.rates import Rate
+from cockpit.models.tables import table
+from cockpit.models.text import outline
+from cockpit.ros.graph import Feed
+from cockpit.ros.tool import Desk
+
+NONE = "(none)"
+
+
+class Topics:
+    name, title, seconds = "topics", "Topics", 0.5
+
+    def __init__(self, desk: Desk):
+        self._desk = desk
+        self._feeds: Dict[str, Feed] = {}
+        self._rates: Dict[str, Rate] = {}
+        self._latest: Optional[str] = None
+
+    def build(self) -> None:
+        gui = self._desk.gui
+        self._filter = gui.add_text("Filter", "", hint="part of a topic's name")
+        self._measured = gui.add_checkbox("Measure", False, hint="subscribe to all that are listed")
+        self._list = gui.add_html("")
+        self._watched = gui.add_dropdown("Watch", (NONE,))
+        self._values = gui.add_html("")
+
+    def update(self, now: float) -> None:
+        types = {
+            topic: kind
+            for topic, kind in sorted(self._desk.graph.topics().items())
+            if self._filter.value.lower() in topic.lower()
+        }
+        options = (NONE, *types)
+        if self._watched.options != options:
+            self._watched.options = options
+        self._listen(types)
+        rows = [(topic, kind, *self._figures(topic, now)) for topic, kind in types.items()]
+        self._list.content = table(("Topic", "Type", "Hz", "KB/s"), rows)
+        self._show_values()
+
+    def pause(self) -> None:
+        for feed in self._feeds.values():
+            feed.close()
+        self._feeds.clear()
+        self._rates.clear()
+
+    def close(self) -> None:
+        self.pause()
+
+    def _listen(self, types: Dict[str, str]) -> None:
+        wanted = set(types) if self._measured.value else set()
+        wanted |= {self._watched.value} & set(types)
+        for topic in set(self._feeds) - wanted:
+            self._feeds.pop(topic).close()
+            self._rates.pop(topic, None)
+        for topic in sorted(wanted - set(self._feeds)):
+            try:
+                self._feeds[topic] = self._desk.graph.feed(topic)
+                self._rates[topic] = Rate()
+            except CockpitError:  # of a type that is not installed: listed without figures
+                continue
+
+    def _figures(self, topic: str, now: float):
+        feed = self._feeds.get(topic)
+        if feed is None:
+            return "", ""
+        hertz, bytes_per_second = self._rates[topic].update(now, feed.count, feed.bytes)
+        return f"{hertz:.1f}", f"{bytes_per_second / 1000.0:.1f}"
+
+    def _show_values(self) -> None:
+        feed = self._feeds.get(self._watched.value)
+        if feed is None:
+            self._values.content = self._latest = ""
+            return
+        messages = feed.take()
+        if messages:
+            self._latest = outline(messages[-1])
+        self._values.content = self._latest or "<i>no message yet</i>"
+
+
+TOOL = Topics

@@ -1,0 +1,41 @@
+"""/tf and /tf_static into a tree of frames."""
+
+from typing import List
+
+from cockpit.errors import CockpitError
+from cockpit.frames import FrameTree, Transform, pose_matrix
+from cockpit.ros.graph import Feed
+
+TOPICS = ("/tf", "/tf_static")
+KIND = "tf2_msgs/TFMessage"
+
+
+class TransformListener:
+    """Keeps ``frames`` up to date while it listens."""
+
+    def __init__(self, frames: FrameTree):
+        self._frames = frames
+        self._feeds: List[Feed] = []
+
+    def listen(self, wanted: bool) -> None:
+        if wanted and not self._feeds:
+            self._feeds = [Feed(topic, KIND, all_of_them=True) for topic in TOPICS]
+        if not wanted:
+            for feed in self._feeds:
+                feed.close()
+            self._feeds = []
+
+    def update(self) -> None:
+        """Takes in what has come. Raises CockpitError."""
+        for feed in self._feeds:
+            for _, message, sender in feed.take_stamped():
+                for stamped in message.transforms:
+                    self._take(stamped, feed.topic == TOPICS[1], sender)
+
+    def _take(self, stamped, is_static: bool, sender: str) -> None:
+        p, q = stamped.transform.translation, stamped.transform.rotation
+        pose = pose_matrix((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
+        if pose is None:
+            raise CockpitError(f"{sender} sends a transform of {stamped.child_frame_id} that is none")
+        parent, stamp = stamped.header.frame_id.lstrip("/"), stamped.header.stamp.to_sec()
+        self._frames.put(stamped.child_frame_id, Transform(parent, pose, stamp, is_static, sender))

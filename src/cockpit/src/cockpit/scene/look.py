@@ -1,0 +1,99 @@
+"""The look of worlds and robots: their visible parts as triangles."""
+
+import io
+import json
+from dataclasses import dataclass
+from typing import Dict, List, Tuple
+
+import numpy as np
+
+from cockpit.drawing import Colour
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A visible part of a link: ``vertices`` (N, 3) in the link's frame, ``triangles`` (M, 3).
+
+    ``model``, ``link``: what it belongs to; of a robot the model is empty. ``pose``: (4, 4) of the link in
+    the world. ``moves``: whether anything but a person moves it.
+    """
+
+    model: str
+    link: str
+    pose: np.ndarray
+    vertices: np.ndarray
+    triangles: np.ndarray
+    colour: Colour
+    moves: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """``warnings``: what cannot be shown, in words."""
+
+    pieces: Tuple[Piece, ...]
+    warnings: Tuple[str, ...] = ()
+
+    def to_bytes(self) -> bytes:
+        """As another process reads it with ``from_bytes``."""
+        about: List[dict] = []
+        arrays: Dict[str, np.ndarray] = {}
+        for number, piece in enumerate(self.pieces):
+            about.append(
+                {"model": piece.model, "link": piece.link, "colour": piece.colour, "moves": piece.moves}
+            )
+            arrays[f"p{number}"] = piece.pose
+            arrays[f"v{number}"] = piece.vertices.astype(np.float32)
+            arrays[f"t{number}"] = piece.triangles.astype(np.int32)
+        index = json.dumps({"pieces": about, "warnings": self.warnings})
+        file = io.BytesIO()
+        np.savez(file, index=np.array(index), **arrays)
+        return file.getvalue()
+
+    @staticmethod
+    def from_bytes(content: bytes) -> "Look":
+        with np.load(io.BytesIO(content)) as arrays:
+            index = json.loads(str(arrays["index"]))
+            pieces = [
+                Piece(
+                    about["model"],
+                    about["link"],
+                    arrays[f"p{number}"],
+                    arrays[f"v{number}"],
+                    arrays[f"t{number}"],
+                    tuple(about["colour"]),
+                    about["moves"],
+                )
+                for number, about in enumerate(index["pieces"])
+            ]
+        return Look(tuple(pieces), tuple(index["warnings"]))
+
+
+def cut_at(piece: Piece, height: float) -> Piece:
+    """The piece without what is above ``height``, metres in the world; empty if it is all above."""
+    in_world = piece.vertices @ piece.pose[:3, :3].T + piece.pose[:3, 3]
+    if not len(in_world) or in_world[:, 2].max() <= height:
+        return piece
+    if in_world[:, 2].min() >= height:
+        return Piece(*_named(piece), np.empty((0, 3)), np.empty((0, 3), int), piece.colour, piece.moves)
+    in_world[:, 2] = np.minimum(in_world[:, 2], height)
+    vertices = (in_world - piece.pose[:3, 3]) @ piece.pose[:3, :3]
+    return Piece(*_named(piece), vertices, piece.triangles, piece.colour, piece.moves)
+
+
+def _named(piece: Piece) -> Tuple[str, str, np.ndarray]:
+    return piece.model, piece.link, piece.pose
+
+
+def merged(pieces: Tuple[Piece, ...]) -> List[Tuple[np.ndarray, np.ndarray, Colour]]:
+    """Vertices, triangles and colour, one of each colour, of pieces of one link."""
+    by_colour: Dict[Colour, List[Piece]] = {}
+    for piece in pieces:
+        if len(piece.triangles):
+            by_colour.setdefault(piece.colour, []).append(piece)
+    result = []
+    for colour, same in by_colour.items():
+        offsets = np.cumsum([0, *(len(piece.vertices) for piece in same)])
+        triangles = np.concatenate([piece.triangles + first for piece, first in zip(same, offsets)])
+        result.append((np.concatenate([piece.vertices for piece in same]), triangles, colour))
+    return result

@@ -1,0 +1,126 @@
+"""The look of worlds and robots, from SDF and URDF.
+
+It brings physics along, which is not to stay in the cockpit's memory: cockpit.ros.looks runs it in a process
+of its own, and whatever a foreign mesh does to its parser is over with that.
+"""
+
+from pathlib import Path
+from typing import Dict, Iterator, List, Optional, Sequence, Tuple
+
+import numpy as np
+
+from cockpit.drawing import Colour
+from cockpit.scene.look import Look, Piece
+from planar import PlanarError
+from sim_bridge import load_world
+from sim_bridge.description.urdf import FindFile
+from sim_bridge.geometry.pose3 import IDENTITY, pose3, transform_points
+from sim_bridge.geometry.shapes import Box, Cylinder, MeshFile, Plane, Sphere
+from sim_bridge.geometry.shapes import Look as Shape
+from sim_bridge.sdf.element import Element, parse_text
+from sim_bridge.views.drawing import GREY, mesh_of, visible_parts
+
+# Colours of a mesh's triangles that differ by less are one, of 255: each is a surface of its own.
+COARSENESS = 16
+
+
+def world_look(path: Path, folders: Sequence[Path]) -> Look:
+    """The bodies of an SDF file. Raises PlanarError."""
+    world = load_world(path, folders)
+    collector = _Collector()
+    for body in world.bodies:
+        model, _, link = body.name.partition("::")
+        for visual in visible_parts(body):
+            if not isinstance(visual.shape, Plane):  # the page has a floor of its own
+                place = model, link, body.pose_in_world, body.mass is not None
+                collector.add(place, visual.shape, visual.pose_in_body, visual.colour)
+    return Look(tuple(collector.pieces), (*world.warnings, *collector.warnings))
+
+
+def robot_look(text: str, find_file: FindFile) -> Look:
+    """The links of a robot's URDF, each in its own frame. Raises PlanarError."""
+    robot = parse_text(text, "robot_description", ("robot",))
+    named = {child.name: _rgb(child) for child in robot.children("material")}
+    collector = _Collector()
+    for link in robot.children("link"):
+        for visual in link.children("visual"):
+            shape = _shape(visual.required("geometry"), find_file)
+            if shape is None:
+                collector.warnings.append(f"{link.name}: its mesh was not found")
+                continue
+            material = visual.child("material")
+            own = None if material is None else _rgb(material) or named.get(material.name)
+            collector.add(("", link.name, IDENTITY, True), shape, _origin(visual), own)
+    return Look(tuple(collector.pieces), tuple(collector.warnings))
+
+
+class _Collector:
+    """Takes shapes, and keeps their triangles by colour."""
+
+    def __init__(self):
+        self.pieces: List[Piece] = []
+        self.warnings: List[str] = []
+
+    def add(self, place: Tuple[str, str, np.ndarray, bool], shape: Shape, pose: np.ndarray, rgb) -> None:
+        """``place``: model, link, pose of the link, whether it moves; ``pose``: of the shape in the link."""
+        model, link, link_pose, moves = place
+        try:
+            for vertices, triangles, colour in _coloured(shape, rgb):
+                vertices = transform_points(pose, vertices)
+                self.pieces.append(Piece(model, link, link_pose, vertices, triangles, colour, moves))
+        except PlanarError as error:
+            self.warnings.append(str(error))
+
+
+def _coloured(shape: Shape, rgb) -> Iterator[Tuple[np.ndarray, np.ndarray, Colour]]:
+    """Vertices and triangles of a shape, once for each colour. Raises PlanarError."""
+    mesh = mesh_of(shape)
+    if rgb is not None or mesh.colours is None:
+        yield mesh.vertices, mesh.triangles, _colour(rgb or GREY)
+        return
+    coarse = np.round(mesh.colours * 255.0 / COARSENESS) * COARSENESS / 255.0
+    for colour, members in _grouped(coarse):
+        used, triangles = np.unique(mesh.triangles[members], return_inverse=True)
+        yield mesh.vertices[used], triangles.reshape(-1, 3), _colour(tuple(colour))
+
+
+def _grouped(rows: np.ndarray) -> Iterator[Tuple[np.ndarray, np.ndarray]]:
+    """Each different row, and where it is."""
+    different, which = np.unique(rows, axis=0, return_inverse=True)
+    for number, row in enumerate(different):
+        yield row, np.flatnonzero(which.reshape(-1) == number)
+
+
+def _colour(rgb: Sequence[float]) -> Colour:
+    red, green, blue = (int(round(255.0 * min(max(float(part), 0.0), 1.0))) for part in rgb)
+    return red, green, blue
+
+
+def _rgb(material: Element) -> Optional[Tuple[float, ...]]:
+    colour = material.child("color")
+    return None if colour is None else tuple(colour.attribute_numbers("rgba", 4)[:3])
+
+
+def _origin(element: Element) -> np.ndarray:
+    origin, zeros = element.child("origin"), (0.0, 0.0, 0.0)
+    if origin is None:
+        return IDENTITY
+    return pose3(*origin.attribute_numbers("xyz", 3, zeros), *origin.attribute_numbers("rpy", 3, zeros))
+
+
+def _shape(geometry: Element, find_file: FindFile) -> Optional[Shape]:
+    """None if it is a mesh that is not there, or nothing known."""
+    sizes: Dict[str, Element] = {kind.tag: kind for kind in geometry.children()}
+    if "box" in sizes:
+        x, y, z = sizes["box"].attribute_lengths("size", 3)
+        return Box((x, y, z))
+    if "cylinder" in sizes:
+        (radius,), (length,) = (sizes["cylinder"].attribute_lengths(name, 1) for name in ("radius", "length"))
+        return Cylinder(radius, length)
+    if "sphere" in sizes:
+        return Sphere(*sizes["sphere"].attribute_lengths("radius", 1))
+    if "mesh" in sizes:
+        path = find_file(sizes["mesh"].attribute("filename"))
+        scale = sizes["mesh"].attribute_numbers("scale", 3, (1.0, 1.0, 1.0))
+        return None if path is None else MeshFile(path, (scale[0], scale[1], scale[2]))
+    return None

@@ -1,0 +1,37 @@
+"""Where frames are."""
+
+import numpy as np
+
+from cockpit.frames import FrameTree, Transform, inverse, pose_matrix
+
+
+def tree(**parents):
+    frames = FrameTree()
+    for number, (child, parent) in enumerate(parents.items(), 1):
+        pose = pose_matrix((float(number), 0.0, 0.0), (0.0, 0.0, 1.0, 1.0))
+        frames.put(child, Transform(parent, pose, 0.0, False))
+    return frames
+
+
+def test_a_pose_is_the_chain_of_those_between():
+    frames = tree(odom="map", base="odom", laser="base")
+    pose = frames.pose("laser", "map")
+    assert np.allclose(pose[:3, 3], [1.0 + 0.0 - 3.0, 2.0, 0.0])
+    assert np.allclose(frames.pose("map", "laser"), inverse(pose))
+
+
+def test_frames_that_no_chain_joins_have_no_pose():
+    frames = tree(odom="map", base="world")
+    assert frames.pose("base", "map") is None
+    assert frames.pose("nowhere", "map") is None
+    assert frames.roots() == ["map", "world"]
+
+
+def test_a_loop_of_frames_ends():
+    assert tree(a="b", b="a").pose("a", "map") is None
+
+
+def test_a_pose_that_is_none_is_known():
+    assert pose_matrix((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)) is None
+    assert pose_matrix((np.nan, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)) is None
+    assert pose_matrix((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, np.inf)) is None
