@@ -256,7 +256,7 @@ class Campus:
         for area, sizes in ((TREE_AREA, ((0.25, 0.6), (0.25, 0.6))), (CAR_AREA, ((1.6, 4.5), (1.6, 4.5)))):
             for _ in range(int(np.prod(self._size) / area)):
                 box = np.array([rng.uniform(*bounds) for bounds in sizes])
-                x, y = rng.uniform([1.0, 1.0], self._size - 1.0 - box)
+                x, y = rng.uniform([1.0, 1.0], self._size - 1.0 - box, size=2)
                 low, high = ((np.array([x, y]) + [-margin, -margin]) / 0.05 for margin in (1.0, 0.0))
                 end = (np.array([x, y]) + box + 1.0) / 0.05
                 around = cells[int(low[1]) : int(end[1]), int(low[0]) : int(end[0])]

@@ -30,7 +30,7 @@ def grid_image(grid: OccupancyGrid, occupied, free, unknown) -> Image.Image:
     shares = np.clip(grid.cells, 0, OCCUPIED)[..., None] / OCCUPIED
     pixels = np.array(free) * (1.0 - shares) + np.array(occupied) * shares
     pixels[grid.cells == UNKNOWN] = unknown
-    return Image.fromarray(np.flipud(np.rint(pixels)).astype(np.uint8), "RGBA")
+    return Image.fromarray(np.flipud(np.rint(pixels)).astype(np.uint8))
 
 
 def data_uri(image: Image.Image) -> str:

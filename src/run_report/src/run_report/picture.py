@@ -189,7 +189,7 @@ def _draw_robot(canvas: MapCanvas, row: np.ndarray) -> None:
 
 
 def _draw_object(canvas: MapCanvas, record: RunRecord, row: np.ndarray) -> None:
-    for marking in _markings_at(record, row[0]):
+    for marking in _markings_at(record, float(row[0])):
         if marking.is_shown:
             corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * 0.11
             canvas.area(corners + [marking.x, marking.y], OBJECT)

@@ -119,7 +119,9 @@ class ClosureTask:
         """Where the robot may be by what it looks like, among what the other search does not reach."""
         ways, before = shortest_ways(recent.key, len(self.poses), self.edges, lengths_of(self.edges))
         drift = np.column_stack(drift_along(ways, before, self.poses, self.edges))
-        places = [place for place in memory.places if is_out_of_reach(ways[place.key], drift[place.key])]
+        places = [
+            place for place in memory.places if is_out_of_reach(float(ways[place.key]), drift[place.key])
+        ]
         return [
             hypothesis
             for hypothesis in hypotheses(recent, places)

@@ -97,8 +97,10 @@ class Memory:
         reached = int(np.searchsorted(ways, max(ways[self.start] + _PLACE_WAY, ways[self.last] + _LOOK_WAY)))
         if reached == len(ways):
             return None
-        first, middle = np.searchsorted(ways, ways[reached] - np.array([1.0, 0.5]) * _PLACE_WAY)
-        return Stretch(max(int(first), self.start), int(middle), reached)
+        first, middle = (
+            int(np.searchsorted(ways, ways[reached] - share * _PLACE_WAY)) for share in (1.0, 0.5)
+        )
+        return Stretch(max(first, self.start), middle, reached)
 
     def after(self, stretch: Stretch, place: Optional[Appearance], look: Sequence[Hypothesis]) -> "Memory":
         """The memory with one more place and look."""

@@ -44,7 +44,7 @@ class Quality:
 
 def quality_of(base_in_map: Pose2, beams: Beams, field: LikelihoodField, grid: OccupancyGrid) -> Quality:
     """Judges a pose by the beams of a scan; the fewer of them met anything, the less they tell."""
-    laser_in_map = base_in_map @ Pose2(beams.start_xy[0], beams.start_xy[1], 0.0)
+    laser_in_map = base_in_map @ Pose2(float(beams.start_xy[0]), float(beams.start_xy[1]), 0.0)
     expected = cast_rays(grid, laser_in_map, beams.directions, beams.max_range)
     x, y, yaw = base_in_map.x, base_in_map.y, base_in_map.yaw
     explained, through, mean_distance = _judged(

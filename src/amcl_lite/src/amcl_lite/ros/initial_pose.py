@@ -42,7 +42,7 @@ class InitialPoses:
 
 def _planar(covariance) -> np.ndarray:
     """The (3, 3) of x, y and yaw out of the 36 numbers of a message."""
-    whole = np.reshape(covariance, (6, 6))
+    whole: np.ndarray = np.reshape(covariance, (6, 6))
     planar = np.zeros((3, 3))
     planar[:2, :2] = whole[:2, :2]
     planar[2, 2] = whole[5, 5]

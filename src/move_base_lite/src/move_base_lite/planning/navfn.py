@@ -94,9 +94,9 @@ class Navfn:
         start_cells = START_TOLERANCE / window.resolution
         free_start, free_goal = passable_ends(traversal, start, goal, start_cells, tolerance_cells)
         if free_start is None:
-            raise StartBlocked(f"{_named('robot', start_xy)} is {_why(costs[start])}")
+            raise StartBlocked(f"{_named('robot', start_xy)} is {_why(int(costs[start]))}")
         if free_goal is None:
-            raise GoalBlocked(f"{_named('goal', goal_xy)} is {_why(costs[goal])}")
+            raise GoalBlocked(f"{_named('goal', goal_xy)} is {_why(int(costs[goal]))}")
         if free_start == free_goal:
             return np.array([start_xy, goal_xy if free_goal == goal else _centre(window, free_goal)])
         path_cells = self._path_cells(traversal, window, free_start, free_goal)

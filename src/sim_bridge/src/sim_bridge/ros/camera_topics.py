@@ -11,7 +11,7 @@ from sim_bridge.sensors.camera import CameraProfile, CameraSettings, Picture, po
 
 # As gazebo_plugins' openni_kinect lays out its points.
 POINT_OFFSETS = {"x": 0, "y": 4, "z": 8, "rgb": 16}
-POINT = np.dtype(
+POINT: np.dtype = np.dtype(
     {
         "names": list(POINT_OFFSETS),
         "formats": ["<f4", "<f4", "<f4", "<u4"],
@@ -90,7 +90,7 @@ def _points_msg(picture: Picture, settings: CameraSettings) -> PointCloud2:
     points = points_of(picture.depth, settings)
     for axis, name in enumerate("xyz"):
         cloud[name] = points[..., axis]
-    red, green, blue = (picture.rgb[..., part].astype(np.uint32) for part in range(3))
+    red, green, blue = np.moveaxis(picture.rgb.astype(np.uint32), -1, 0)
     cloud["rgb"] = red << 16 | green << 8 | blue
     return PointCloud2(
         height=height,

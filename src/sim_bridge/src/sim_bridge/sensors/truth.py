@@ -37,7 +37,7 @@ class GroundTruth:
 
     def measure(self, around: Surroundings) -> Truth:
         base = around.base
-        return Truth(to_pose2(base.pose), around.twist, math.acos(min(base.pose[2, 2], 1.0)))
+        return Truth(to_pose2(base.pose), around.twist, math.acos(min(float(base.pose[2, 2]), 1.0)))
 
 
 class JointEncoders:
