@@ -12,20 +12,20 @@ import numpy as np
 import rospkg
 import rospy
 from nav_msgs.msg import MapMetaData
-from nav_msgs.srv import LoadMapResponse
 
 from map_lite.config import ServerSettings
 from map_lite.map_url import path_of
 from planar import MapFileError, OccupancyGrid, Pose2, load_map
 from planar.maps.map_file import MapDescriptionError, MapImageError, MapMissingError, cells_from_image
-from planar_ros.messages.conversion import GetMapArrays, LoadMapArrays, OccupancyGridArrays, grid_to_msg
+from planar_ros.calls.load_map import LoadMapArrays, LoadResult, offer
+from planar_ros.messages.conversion import GetMapArrays, OccupancyGridArrays, grid_to_msg
 from planar_ros.node.parameters import read_settings
 from planar_ros.node.shell import run
 
 RESULTS = {
-    MapMissingError: LoadMapResponse.RESULT_MAP_DOES_NOT_EXIST,
-    MapImageError: LoadMapResponse.RESULT_INVALID_MAP_DATA,
-    MapDescriptionError: LoadMapResponse.RESULT_INVALID_MAP_METADATA,
+    MapMissingError: LoadResult.MAP_DOES_NOT_EXIST,
+    MapImageError: LoadResult.INVALID_MAP_DATA,
+    MapDescriptionError: LoadResult.INVALID_MAP_METADATA,
 }
 
 
@@ -39,7 +39,7 @@ class MapServerNode:
         self._metadata_publisher = rospy.Publisher("map_metadata", MapMetaData, queue_size=1, latch=True)
         self._show(grid)
         rospy.Service("static_map", GetMapArrays, lambda request: {"map": self._map})
-        rospy.Service("change_map", LoadMapArrays, self._on_change_map)
+        offer(LoadMapArrays, {"change_map": self._on_change_map})
 
     def _load(self, arguments) -> OccupancyGrid:
         path = path_of(arguments.map, _package_folder)
@@ -65,9 +65,8 @@ class MapServerNode:
         except MapFileError as error:
             rospy.logerr("%s", error)
             nothing = OccupancyGridArrays(data=np.zeros(0, dtype=np.int8))
-            result = RESULTS.get(type(error), LoadMapResponse.RESULT_UNDEFINED_FAILURE)
-            return {"map": nothing, "result": result}
-        return {"map": self._map, "result": LoadMapResponse.RESULT_SUCCESS}
+            return {"map": nothing, "result": RESULTS.get(type(error), LoadResult.UNDEFINED_FAILURE)}
+        return {"map": self._map, "result": LoadResult.SUCCESS}
 
 
 def _package_folder(package: str) -> str:

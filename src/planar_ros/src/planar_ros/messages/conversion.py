@@ -7,7 +7,7 @@ import numpy as np
 import rospy
 from geometry_msgs.msg import Point, Pose, PoseArray, Quaternion, TransformStamped
 from nav_msgs.msg import OccupancyGrid as OccupancyGridMsg
-from nav_msgs.srv import GetMap, GetMapResponse, LoadMap, LoadMapResponse, SetMap, SetMapRequest
+from nav_msgs.srv import GetMap, GetMapResponse, SetMap, SetMapRequest
 from rospy.numpy_msg import numpy_msg
 from sensor_msgs.msg import LaserScan
 
@@ -22,12 +22,6 @@ class GetMapArrays(GetMap):
     """nav_msgs/GetMap whose map comes and goes as a numpy array."""
 
     _response_class = numpy_msg(GetMapResponse)
-
-
-class LoadMapArrays(LoadMap):
-    """nav_msgs/LoadMap whose map comes and goes as a numpy array."""
-
-    _response_class = numpy_msg(LoadMapResponse)
 
 
 class SetMapArrays(SetMap):

@@ -1,11 +1,11 @@
 """The services that write files and read them."""
 
-from typing import Callable
+from typing import Callable, Dict
 
 import rospy
-from nav_msgs.srv import LoadMap, LoadMapResponse
 
 from planar import PlanarError, save_map
+from planar_ros.calls.load_map import LoadMap, LoadResult, offer
 from slam_lite.ros.map_topics import MapTopics
 from slam_lite.ros.mapping import Mapping
 from slam_lite.state import save_state
@@ -17,9 +17,12 @@ class FileServices:
     def __init__(self, mapping: Mapping, maps: MapTopics):
         self._mapping = mapping
         self._maps = maps
-        rospy.Service("~save_map", LoadMap, self._on_save_map)
-        rospy.Service("~save_state", LoadMap, self._on_save_state)
-        rospy.Service("~load_state", LoadMap, self._on_load_state)
+        handlers = {
+            "~save_map": self._on_save_map,
+            "~save_state": self._on_save_state,
+            "~load_state": self._on_load_state,
+        }
+        offer(LoadMap, handlers)
 
     def _on_save_map(self, request):
         grid = self._maps.grid()
@@ -34,13 +37,13 @@ class FileServices:
         return _answer(self._mapping.load, request.map_url)
 
 
-def _answer(act: Callable[..., object], *arguments) -> LoadMapResponse:
+def _answer(act: Callable[..., object], *arguments) -> Dict[str, LoadResult]:
     try:
         act(*arguments)
     except PlanarError as error:
         rospy.logerr("%s", error)
         raise rospy.ServiceException(str(error)) from None
-    return LoadMapResponse(result=LoadMapResponse.RESULT_SUCCESS)
+    return {"result": LoadResult.SUCCESS}
 
 
 def _stem(path: str) -> str:

@@ -18,7 +18,6 @@ from typing import Callable, Dict, Iterable, List, Optional, Sequence
 
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
-from nav_msgs.srv import LoadMap, LoadMapResponse
 from std_srvs.srv import Empty
 
 from home_service.ros.commander.drives import Drive, Waypoints
@@ -26,6 +25,7 @@ from home_service.ros.commander.motions import Motion
 from home_service.ros.commander.outcomes import Feedback, Outcome
 from home_service.ros.commander.task import Task
 from planar import PlanarError, Pose2
+from planar_ros.calls.load_map import LoadMap, LoadResult
 from planar_ros.calls.move_base import MoveBase
 from planar_ros.calls.services import call_service
 from planar_ros.messages.conversion import pose2_to_msg
@@ -36,9 +36,9 @@ POLL_SECONDS = 0.05
 BY_HAND = (0.25, 0.25, 0.0685)
 BELIEVED_DISTANCE = 0.5
 MAP_ERRORS = {
-    LoadMapResponse.RESULT_MAP_DOES_NOT_EXIST: "there is no such map",
-    LoadMapResponse.RESULT_INVALID_MAP_DATA: "its image cannot be read",
-    LoadMapResponse.RESULT_INVALID_MAP_METADATA: "its description cannot be read",
+    LoadResult.MAP_DOES_NOT_EXIST: "there is no such map",
+    LoadResult.INVALID_MAP_DATA: "its image cannot be read",
+    LoadResult.INVALID_MAP_METADATA: "its description cannot be read",
 }
 
 
@@ -174,9 +174,11 @@ class Commander:
 
     def change_map(self, path, timeout: float = 20.0) -> None:
         """Has map_server serve another map. Raises ServiceError or CommanderError."""
+        if LoadMap is None:
+            raise CommanderError("nav_msgs of this system has no LoadMap, with which maps are changed")
         request = LoadMap._request_class(map_url=str(Path(path).resolve()))
         response = call_service("change_map", LoadMap, request, timeout)
-        if response.result != LoadMapResponse.RESULT_SUCCESS:
+        if response.result != LoadResult.SUCCESS:
             raise CommanderError(f"{path}: {MAP_ERRORS.get(response.result, 'map_server refuses it')}")
 
     def _believes(self, pose: Pose2) -> bool:
