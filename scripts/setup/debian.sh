@@ -21,7 +21,7 @@ missing_in() { # LIST...
 install_packages() { # NAME...
     local log=$logs/apt.log
     step "Installing Debian packages" "$log" apt_get "$@" && return
-    if grep -q 'Unable to locate package' "$log"; then
+    if [[ -z $(reason_in "$log") ]] && grep -q 'Unable to locate package' "$log"; then
         fail "apt-get does not know all the packages: check that its sources hold Debian's 'main' or Ubuntu's 'universe' (see $log)"
     fi
     give_up "apt-get failed" "$log"

@@ -45,8 +45,18 @@ install_requirements() {
     step "Installing Python packages" "$log" pip install --no-index --find-links "$root/.venv/wheels" "${files[@]}" ||
         give_up "pip failed" "$log"
     rm -rf "$root/.venv/wheels"
+    shield_rospy
     (cd "$root/scripts" && for file in "${requirement_files[@]}"; do requirement_stamp "$file"; done) >"$stamp.new"
     mv "$stamp.new" "$stamp"
+}
+
+rospy_of_system=/usr/lib/python3/dist-packages/rospy
+
+shield_rospy() { # that of Debian 11 calls Thread.isAlive, which its Python no longer has, when a second topic is heard
+    grep -qs 'isAlive()' "$rospy_of_system/core.py" || return 0
+    local site
+    site=$(echo "$root"/.venv/lib/python3.*/site-packages)
+    say 'import threading; threading.Thread.isAlive = threading.Thread.is_alive' >"$site/rospy_shield.pth"
 }
 
 pip() { pip_of "$root/.venv" "$@"; }
@@ -64,7 +74,11 @@ missing_wheel() { # its name, if neither PyPI nor the cache has one for this mac
     local tag
     tag=$(/usr/bin/python3 -c 'import sys; print("cp%d%d" % sys.version_info[:2])') || return 0
     if [[ $(uname -m) == x86_64 ]] && is_among "$tag" cp38 cp39 cp310 cp311; then return 0; fi
-    [[ -n $(compgen -G "$wheels/pybullet-$(pybullet_version)-$tag-*$(uname -m).whl") ]] || say "pybullet for $tag"
+    has_whole_wheel "$wheels/pybullet-$(pybullet_version)-$tag-"*"$(uname -m).whl" || say "pybullet for $tag"
+}
+
+has_whole_wheel() { # FILE: its table of contents is at its end
+    [[ -e $1 ]] && /usr/bin/python3 -m zipfile --list "$1" >/dev/null 2>&1
 }
 
 pybullet_version() { sed -n 's/^pybullet==//p' "$root/scripts/requirements.txt"; }

@@ -1,7 +1,9 @@
 # shellcheck shell=bash disable=SC2154,SC2034 # variables of lib.sh and setup.sh
 # What can be told of this machine and this place before anything is changed; and what a log says in one sentence.
 
-readonly supported="Debian 12 or 13, Ubuntu 22.04, or Ubuntu 20.04 with ROS Noetic in $noetic"
+readonly supported="Debian 11, 12 or 13, Ubuntu 22.04, or Ubuntu 20.04 with ROS Noetic in $noetic"
+
+os_release=/etc/os-release
 
 check_place() {
     local refused='[][:space:]"$;:\*?<>|!{}`&()#'"'[]"
@@ -9,7 +11,7 @@ check_place() {
         fail "catkin cannot build in '$root': move the project to a path without spaces and special characters"
     fi
     ((${#root} < 200)) || fail "catkin cannot build in a path of ${#root} characters: move the project to a shorter one"
-    [[ -w $root ]] || fail "'$root' is read-only, and the workspace in it is not set up: make it writable"
+    may_write "$root" || fail "'$root' is read-only, and the workspace in it is not set up: make it writable"
     if [[ -n $packages ]]; then
         check_system
         check_root "$packages"
@@ -19,8 +21,8 @@ check_place() {
 check_system() {
     local ID=unknown VERSION_ID='' PRETTY_NAME=''
     # shellcheck source=/dev/null
-    [[ ! -r /etc/os-release ]] || . /etc/os-release
-    [[ -d $noetic || $ID-$VERSION_ID =~ ^(debian-1[23]|ubuntu-22\.04)$ ]] ||
+    [[ ! -r $os_release ]] || . "$os_release"
+    [[ -d $noetic || $ID-$VERSION_ID =~ ^(debian-1[123]|ubuntu-22\.04)$ ]] ||
         fail "this is ${PRETTY_NAME:-$ID}: the workspace needs $supported; elsewhere, use the container (docs/container.md)"
     is_among "$(uname -m)" x86_64 aarch64 ||
         fail "this machine is $(uname -m): the Python packages are there for x86_64 and aarch64 only"
@@ -59,9 +61,11 @@ give_up() { # SENTENCE LOG: ends with the reason that the log knows, else with t
     fail "$1 (see $2)"
 }
 
+has_room() { (($(df --output=avail "$root" | tail -n 1) >= 1024)); } # for a MB: without it, logs end before the reason
+
 reason_in() { # LOG: what is no fault of the project's, in a sentence; nothing if it is none of these
     local proxy=${https_proxy:-${HTTPS_PROXY:-${http_proxy:-${HTTP_PROXY:-}}}}
-    if grep -qE 'No space left on device|not have enough free space' "$1"; then
+    if grep -qE 'No space left on device|not have enough free space' "$1" || ! has_room; then
         say "the disk is full: make room and start again, it goes on from there"
     elif [[ -n $proxy ]] && grep -qiE 'ProxyError|Cannot connect to proxy|(connect|resolve).*proxy' "$1"; then
         say "the proxy ${proxy/#*@/} does not answer"

@@ -29,12 +29,19 @@ build_workspace() {
         rm -rf "$last" "$root/build/.failed"
     else
         restore_last_build
-        tail -n 20 "$log" | sed 's/^/  | /' >&2
-        failure="$(fault_in "$log") (see $log)"
-        [[ -e $stamp ]] || give_up "$failure" /dev/null
-        printf '%s\n' "$inputs" "$failure" >"$root/build/.failed"
+        tell_failure "$log"
+        [[ -e $stamp ]] || fail "$failure"
     fi
     trap - EXIT
+}
+
+tell_failure() { # LOG: in $failure; one that the sources are at fault for is kept, so that they are not built again
+    failure=$(reason_in "$1")
+    if [[ -z $failure ]]; then
+        tail -n 20 "$1" | sed 's/^/  | /' >&2
+        failure="$(fault_in "$1") (see $1)"
+        printf '%s\n' "$inputs" "$failure" >"$root/build/.failed"
+    fi
 }
 
 last_failure() { # the sentence, if just these sources have failed to build while an earlier build is in use

@@ -5,7 +5,10 @@ import os
 import shutil
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
+
+import pytest
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 
@@ -165,6 +168,111 @@ def test_what_is_no_fault_of_the_project_is_told_in_a_sentence(tmp_path):
         said = in_workspace(tmp_path, "give_up 'pip failed' log")
         assert said.returncode == 1
         assert said.stderr.startswith(f"error: {sentence}")
+
+
+def test_a_disk_that_is_full_is_told_even_if_no_log_could_say_so(tmp_path):
+    no_room = "df() { printf 'Avail\\n7\\n'; }; : >log; give_up 'pip failed' log"
+    assert in_workspace(tmp_path, no_room).stderr.startswith("error: the disk is full")
+
+
+def test_a_build_for_which_there_was_no_room_is_tried_again(tmp_path):
+    set_up_once(tmp_path)
+    write_package(tmp_path / "src/mine", "mine")
+    full = FAILING + "catkin_build() { echo 'as: No space left on device'; return 1; }; "
+    for _ in range(2):
+        said = in_workspace(tmp_path, full + "set_up; echo used")
+        assert said.returncode == 0, said.stderr
+        assert "Building" in said.stdout and said.stdout.endswith("used\n")
+        assert said.stderr.splitlines() == [
+            "warning: the disk is full: make room and start again, it goes on from there: "
+            "the workspace is used as it was built before"
+        ]
+    assert (tmp_path / "devel/setup.bash").read_text() == "good\n"
+
+
+def test_without_network_the_package_lists_are_not_to_blame(tmp_path):
+    offline = (
+        "apt_get() { printf 'Temporary failure resolving\\nE: Unable to locate package\\n'; return 1; }; "
+    )
+    said = in_workspace(tmp_path, offline + "install_packages catkin")
+    assert said.stderr.startswith("error: no network: the packages could not be downloaded")
+
+
+def test_a_proxy_that_is_down_is_told_without_its_password(tmp_path, monkeypatch):
+    monkeypatch.setenv("https_proxy", "http://me:secret@127.0.0.1:9")
+    said = in_workspace(
+        tmp_path, "echo 'ProxyError(Cannot connect to proxy.)' >log; give_up 'pip failed' log"
+    )
+    assert said.stderr.startswith("error: the proxy 127.0.0.1:9 does not answer")
+
+
+@pytest.mark.parametrize(
+    ("machine", "sentence"),
+    [
+        (("debian", "13", ""), ""),
+        (("debian", "11", ""), ""),
+        (("ubuntu", "22.04", ""), ""),
+        (("ubuntu", "24.04", ""), "error: this is ubuntu: the workspace needs Debian 11, 12 or 13"),
+        (("debian", "12", "uname() { echo aarch64; }"), ""),
+        (("debian", "12", "uname() { echo armv7l; }"), "error: this machine is armv7l: "),
+        (("debian", "12", "getconf() { echo glibc 2.12; }"), "error: the C library is glibc 2.12: "),
+        (("debian", "12", "getconf() { false; }"), "error: the C library is not glibc: "),
+    ],
+)
+def test_a_machine_that_cannot_serve_is_refused_in_a_sentence(tmp_path, machine, sentence):
+    system, version, command = machine
+    (tmp_path / "os-release").write_text(f"ID={system}\nVERSION_ID={version}\n")
+    said = in_workspace(tmp_path, f"{command}\nos_release=os-release; check_system")
+    assert said.returncode == (1 if sentence else 0)
+    assert said.stderr.startswith(sentence) and said.stderr.count("\n") == bool(sentence)
+
+
+def test_a_tree_that_is_read_only_is_told(tmp_path):
+    said = in_workspace(tmp_path, "may_write() { false; }; check_place")
+    assert (
+        said.stderr
+        == f"error: '{tmp_path}' is read-only, and the workspace in it is not set up: make it writable\n"
+    )
+
+
+def test_a_second_set_up_waits_for_the_first_and_says_so(tmp_path):
+    in_workspace(tmp_path, ":")
+    with (tmp_path / "scripts/setup.sh").open() as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        waiting = [
+            "timeout",
+            "1",
+            "bash",
+            "-c",
+            '. "$1"; take_turns',
+            "bash",
+            str(tmp_path / "scripts/setup.sh"),
+        ]
+        said = subprocess.run(waiting, capture_output=True, text=True)
+    assert said.stdout.startswith("Waiting for another set-up of this workspace ...")
+    assert in_workspace(tmp_path, "take_turns").stdout == ""
+
+
+def test_a_wheel_that_is_not_whole_is_made_anew(tmp_path):
+    name = "pybullet-1-cp313-cp313-linux_x86_64.whl"
+    with zipfile.ZipFile(tmp_path / name, "w") as whole:
+        whole.writestr("pybullet.so", b"0" * 1000)
+    (tmp_path / f"half-{name}").write_bytes((tmp_path / name).read_bytes()[:500])
+    tell = "{ has_whole_wheel $each && echo whole || echo broken; }"
+    said = in_workspace(tmp_path, f"for each in {name} half-{name} none; do {tell}; done")
+    assert said.stdout.split() == ["whole", "broken", "broken"]
+
+
+def test_rospy_of_debian_11_finds_the_method_that_its_python_has_dropped(tmp_path):
+    site = tmp_path / ".venv/lib/python3.9/site-packages"
+    site.mkdir(parents=True)
+    for code, shields in (("t.is_alive()", 0), ("t.isAlive()", 1)):
+        (tmp_path / "core.py").write_text(code)
+        said = in_workspace(tmp_path, "rospy_of_system=$PWD; shield_rospy")
+        assert said.returncode == 0, said.stderr
+        assert len(list(site.iterdir())) == shields
+    calls = "import sys, site, threading; site.addsitedir(sys.argv[1]); threading.Thread().isAlive()"
+    subprocess.run([sys.executable, "-c", calls, str(site)], check=True)
 
 
 def test_a_half_built_wheel_never_reaches_the_cache(tmp_path):
