@@ -6,7 +6,10 @@
 #
 #   --save STEM      write STEM.pgm and STEM.yaml (default: map in the run folder)
 #   --rviz           show it in rviz, where there is a display
-#   --speed N        1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz 1)
+#   --web            show it in the browser: prints the URL of the page (docs/cockpit.md)
+#   --web-port [ADDRESS:]PORT
+#                    where that page is served (default: a free port of 127.0.0.1); --web is implied
+#   --speed N        1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz or --web 1)
 #   --world FILE     SDF world (default: map/home.world)
 #   --robot NAME     robot profile of sim_bridge (default: turtlebot_lidar)
 #   --seed N         seed of every noise (default: 0)

@@ -7,7 +7,10 @@
 #   --mission FILE   carry out the deliveries of this file instead (docs/missions.md)
 #   --zones FILE     YAML of the zones (default: map/zones.yaml)
 #   --rviz           show it in rviz, where there is a display
-#   --speed N        1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz 1)
+#   --web            show it in the browser: prints the URL of the page (docs/cockpit.md)
+#   --web-port [ADDRESS:]PORT
+#                    where that page is served (default: a free port of 127.0.0.1); --web is implied
+#   --speed N        1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz or --web 1)
 #   --world FILE     SDF world (default: map/home.world)
 #   --map FILE       map of that world (default: map/home.yaml)
 #   --robot NAME     robot profile of sim_bridge (default: turtlebot_lidar)

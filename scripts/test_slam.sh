@@ -9,6 +9,9 @@
 #   --drive WHO      keys, or auto: the robot explores by itself (default: keys)
 #   --save STEM      write STEM.pgm and STEM.yaml (default: map in the run folder)
 #   --rviz           show it in rviz, where there is a display
+#   --web            show it in the browser: prints the URL of the page (docs/cockpit.md)
+#   --web-port [ADDRESS:]PORT
+#                    where that page is served (default: a free port of 127.0.0.1); --web is implied
 #   --speed N        1 real time, N times that, 0 as fast as the nodes keep up
 #                    (default: with keys or --rviz 1, else 0)
 #   --world FILE     SDF world (default: map/home.world)

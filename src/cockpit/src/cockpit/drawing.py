@@ -78,20 +78,22 @@ Drawable = Union[Points, Lines, Surface, Floor, Label, Axes, Screen]
 class Part:
     """A thing seen from ``frame``; ``name`` tells it from the others of its layer; the same name replaces.
 
-    ``pose``: (4, 4) in that frame.
+    ``pose``: (4, 4) in that frame; ``seconds``: after which it vanishes by itself.
     """
 
     name: str
     frame: str
     thing: Drawable
     pose: Optional[np.ndarray] = None
+    seconds: float = np.inf
 
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
     """What a layer shows from now on; ``keeps``: parts that are not named stay as they are.
 
-    ``gone``: names of parts that are shown no more. ``told``: what cannot be drawn, in words.
+    ``gone``: names of parts that are shown no more, or "*" for all that were shown before. ``told``: what
+    cannot be drawn, in words.
     """
 
     parts: Tuple[Part, ...] = ()

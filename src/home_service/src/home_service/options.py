@@ -110,10 +110,12 @@ class RunOptions:
 
     speed: Optional[float] = option(
         None,
-        "1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz 1)",
+        "1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz or --web 1)",
         type=speed_factor,
     )
     rviz: bool = option(False, "show the run in rviz, where there is a display")
+    web: bool = option(False, "show the run in the browser: prints the page's URL")
+    web_port: Optional[str] = option(None, "where that page is served", metavar="[ADDRESS:]PORT")
     timeout: Optional[float] = option(
         None,
         f"wall-clock seconds a run may take (default: {RUN_SECONDS:g}; none for what Ctrl-C ends)",
@@ -141,7 +143,16 @@ class RunOptions:
     @property
     def wanted_speed(self) -> float:
         """Simulated seconds per second; 0: as fast as the nodes keep up."""
-        return float(self.rviz) if self.speed is None else self.speed
+        return float(self.has_view) if self.speed is None else self.speed
+
+    @property
+    def has_view(self) -> bool:
+        """Whether somebody is to look on."""
+        return self.rviz or self.is_on_the_web
+
+    @property
+    def is_on_the_web(self) -> bool:
+        return self.web or self.web_port is not None
 
     def told(self) -> Dict[str, Any]:
         """The options that belong into result.json."""

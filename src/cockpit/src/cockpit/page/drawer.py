@@ -11,6 +11,7 @@ from cockpit.drawing import Axes, Drawing, Floor, Label, Lines, Part, Points, Su
 from cockpit.frames import FrameTree
 
 STILL = 1e-6
+EVERYTHING = "*"
 # viser's pictures lie in the plane of a camera: x to the right, y down.
 LAID_DOWN = np.diag([1.0, -1.0, -1.0, 1.0])
 
@@ -24,6 +25,7 @@ class _Shown:
     thing: Any
     pose: Optional[np.ndarray] = None
     digest: bytes = b""
+    ends: float = np.inf
 
 
 class Drawer:
@@ -33,21 +35,31 @@ class Drawer:
         self._scene = scene
         self._shown: Dict[Tuple[str, str], _Shown] = {}
 
-    def show(self, layer: str, drawing: Drawing) -> None:
+    def show(self, layer: str, drawing: Drawing, now: float = 0.0) -> None:
         """Shows what ``layer`` has drawn, in place of what it showed before."""
         names = {part.name for part in drawing.parts}
         for key in list(self._shown):
-            if key[0] == layer and key[1] not in names and (not drawing.keeps or key[1] in drawing.gone):
+            if (
+                key[0] == layer
+                and key[1] not in names
+                and (not drawing.keeps or EVERYTHING in drawing.gone or key[1] in drawing.gone)
+            ):
                 self._remove(key)
         for part in drawing.parts:
             self._put((layer, part.name), part)
+            self._shown[layer, part.name].ends = now + part.seconds
 
     def clear(self, layer: str) -> None:
         for key in [key for key in self._shown if key[0] == layer]:
             self._remove(key)
 
-    def place(self, frames: FrameTree, fixed: str) -> None:
-        """Moves every part to where its frame is now; hides those whose frame leads nowhere."""
+    def place(self, frames: FrameTree, fixed: str, now: float) -> None:
+        """Moves every part to where its frame is now; hides those whose frame leads nowhere.
+
+        ``now``: seconds by a steady clock, as for ``show``.
+        """
+        for key in [key for key, shown in self._shown.items() if shown.ends <= now]:
+            self._remove(key)
         poses: Dict[str, Optional[np.ndarray]] = {}
         for shown in self._shown.values():
             frame = shown.part.frame or fixed

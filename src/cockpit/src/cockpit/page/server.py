@@ -98,7 +98,8 @@ class Page:
             "/lights/sun", color=(255, 247, 235), intensity=1.6, cast_shadow=True, position=(-6.0, -9.0, 14.0)
         )
         self.scene.add_light_ambient("/lights/sky", color=(235, 242, 255), intensity=0.5)
-        self.scene.add_box(
+        # What is pressed when a person points at a place.
+        self.floor = self.scene.add_box(
             "/floor/slab",
             dimensions=(400.0, 400.0, 0.1),
             color=(236, 238, 240),

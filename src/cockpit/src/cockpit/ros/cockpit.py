@@ -2,17 +2,24 @@
 
 import time
 from html import escape
-from typing import Callable
+from typing import Any, Callable
 
+import numpy as np
 import rospy
 
+from cockpit.drawing import Axes, Drawing, Label, Part
 from cockpit.errors import CockpitError
 from cockpit.frames import FrameTree
+from cockpit.page.camera import Follower
 from cockpit.page.drawer import Drawer
+from cockpit.page.pointer import Pointer
+from cockpit.page.screens import Screens
 from cockpit.page.server import Page
 from cockpit.page.view_panel import AUTOMATIC, ViewPanel
+from cockpit.ros.driving import Driving
 from cockpit.ros.graph import Graph
 from cockpit.ros.showing import Layers
+from cockpit.ros.tool import said
 from cockpit.ros.toolbox import Toolbox
 from cockpit.ros.transforms import TransformListener
 from cockpit.ros.world import World
@@ -22,6 +29,7 @@ PERIOD = 0.1
 LOOKING_SECONDS = 1.0
 IDLE_SECONDS = 0.5
 FIXED_FRAMES = ("map", "odom", "world")
+FRAMES = "frames"
 
 
 class Cockpit:
@@ -30,20 +38,29 @@ class Cockpit:
     def __init__(self, page: Page):
         self._page = page
         self._graph = Graph()
+        self._fixed: str = FIXED_FRAMES[0]
         self._frames = FrameTree()
         self._transforms = TransformListener(self._frames)
         self._drawer = Drawer(page.scene)
         self._world = World(self._graph, page.scene, self._warn)
-        tabs = page.gui.add_tab_group()
-        cut = self._guarded(self._world.view.cut)
-        self._view = ViewPanel(page.gui, tabs.add_tab("View"), cut)
-        with tabs.add_tab("Tools"):
-            self.toolbox = Toolbox(page, self._graph)
+        pointer = Pointer(page.floor, self._drawer)
+        self._driving = Driving(self._graph, self._frames, pointer, page.tell, lambda: self._fixed)
+        self._build()
         self._world.view.cut(self._view.height.value)
         self._layers = Layers(self._graph, self._drawer, self._warn)
+        self._follower = Follower(page)
+        page.on_leave(self._driving.teleop.release)
         self._look_at = 0.0
-        self._fixed = ""
         self._trouble = ""
+
+    def _build(self) -> None:
+        gui = self._page.gui
+        tabs = gui.add_tab_group()
+        self._view = ViewPanel(gui, tabs.add_tab("View"), self._guarded(self._world.view.cut))
+        self._driving.build(gui, tabs.add_tab("Drive"), self._guarded)
+        with tabs.add_tab("Tools"):
+            self.toolbox = Toolbox(self._page, self._graph)
+        self._screens = Screens(gui)
 
     def run(self, is_over: Callable[[], bool] = rospy.is_shutdown) -> None:
         """Until ``is_over``."""
@@ -54,12 +71,14 @@ class Cockpit:
             began = time.monotonic()
             self._turn(began)
             time.sleep(max(PERIOD - (time.monotonic() - began), 0.02))
+        self._driving.teleop.close()
         self._rest()
 
     def _rest(self) -> None:
         """Nobody looks: nothing is subscribed to."""
         self._layers.close()
         self._transforms.listen(False)
+        self._driving.rest()
         self.toolbox.pause()
 
     def _turn(self, now: float) -> None:
@@ -69,16 +88,14 @@ class Cockpit:
                 self._look_at = now + LOOKING_SECONDS
                 self._look_around()
             self._transforms.update()
+            self._driving.update()
             self._trouble = ""
         except CockpitError as error:
             self._trouble = str(error)
-        self._choose_frame()
+        self._fixed = self._fixed_frame()
         self._layers.update(now)
-        with self._page.atomic():
-            self._world.update(self._frames, self._fixed, self._view.world.value, self._view.robots.value)
-            self._drawer.place(self._frames, self._fixed)
+        self._show(now)
         self.toolbox.update(now)
-        self._view.tell(self._status())
 
     def _look_around(self) -> None:
         """What there is, and what of it is to be shown. Raises CockpitError."""
@@ -90,14 +107,28 @@ class Cockpit:
         self._layers.choose(self._view.offered(), offers)
         self._world.look_for()
         self._view.offer_frames(tuple(self._frames.names()))
+        self._driving.look_around()
 
-    def _choose_frame(self) -> None:
-        chosen = self._view.fixed.value
-        if chosen == AUTOMATIC:
-            known = set(self._frames.names())
-            likely = [name for name in FIXED_FRAMES if name in known] or self._frames.roots() or ["map"]
-            chosen = likely[0]
-        self._fixed = chosen
+    def _fixed_frame(self) -> str:
+        """The one that was chosen, or the likeliest."""
+        if self._view.fixed.value != AUTOMATIC:
+            return self._view.fixed.value
+        known = set(self._frames.names())
+        return next(iter([name for name in FIXED_FRAMES if name in known] or self._frames.roots()), "map")
+
+    def _show(self, now: float) -> None:
+        view, fixed = self._view, self._fixed
+        with self._page.atomic():
+            if view.frames.value:
+                self._drawer.show(FRAMES, frames_drawn(self._frames, fixed))
+            else:
+                self._drawer.clear(FRAMES)
+            self._world.update(self._frames, fixed, view.world.value, view.robots.value)
+            self._drawer.place(self._frames, fixed, now)
+        base = self._driving.base_frame() if view.follow.value else None
+        self._follower.update(None if base is None else self._frames.pose(base, fixed))
+        self._screens.show(self._layers.screens)
+        view.tell(self._status())
 
     def _status(self) -> str:
         if self._trouble:
@@ -108,13 +139,24 @@ class Cockpit:
         rospy.logwarn("%s", text)
         self._page.tell(text, True)
 
-    def _guarded(self, do: Callable) -> Callable:
-        """What a control calls: whatever it raises is told."""
+    def _guarded(self, do: Callable[[Any], object]) -> Callable[[Any], None]:
+        """For what controls call: whatever it raises is told, and is the end of this call only."""
 
-        def guarded(*arguments: object) -> None:
+        def guarded(event: Any) -> None:
             try:
-                do(*arguments)
-            except Exception as error:  # the end of this call only
-                self._warn(f"{type(error).__name__}: {error}")
+                do(event)
+            except Exception as error:  # a person's input meets the whole of ROS here
+                self._warn(said(error))
 
         return guarded
+
+
+def frames_drawn(frames: FrameTree, fixed: str) -> Drawing:
+    """The axes of every frame that is joined to the fixed one, with their names."""
+    found = [(name, frames.pose(name, fixed)) for name in frames.names()]
+    poses = [(name, pose) for name, pose in found if pose is not None]
+    if not poses:
+        return Drawing()
+    labels = [Part(name, fixed, Label(name, np.zeros(3)), pose) for name, pose in poses]
+    axes = Part("axes", fixed, Axes(np.array([pose for _, pose in poses])))
+    return Drawing((axes, *labels))

@@ -63,7 +63,7 @@ class Layers:
         for topic, shown in self._shown.items():
             try:
                 for drawing in shown.drawings(now):
-                    self._show(topic, drawing)
+                    self._show(topic, drawing, now)
                     self._complain(topic, drawing.told)
             except Exception as error:  # what a graph sends may be anything
                 self._complain(topic, said(error))
@@ -85,12 +85,12 @@ class Layers:
         self._drawer.clear(topic)
         self.screens.pop(topic, None)
 
-    def _show(self, topic: str, drawing: Drawing) -> None:
+    def _show(self, topic: str, drawing: Drawing, now: float) -> None:
         screens = [part for part in drawing.parts if isinstance(part.thing, Screen)]
         for part in screens:
             self.screens[topic] = part.thing.picture  # type: ignore[union-attr]
         if not screens:
-            self._drawer.show(topic, drawing)
+            self._drawer.show(topic, drawing, now)
 
     def _complain(self, topic: str, text: str) -> None:
         """Once for each thing that is wrong with a topic."""

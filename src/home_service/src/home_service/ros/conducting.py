@@ -26,7 +26,8 @@ def carry_out(
 def stay_open(options: RunOptions, launch: LaunchPlan, hint: str, places: Mapping[str, Place] = {}) -> int:
     """Runs a graph for people to work with, who are told where its master is; returns the exit code."""
     display = Display()
-    with Run(options, launch, Referee(places, display.say), RunRecorder(places), display) as run:
+    referee = Referee(places, display.say, tells_goals=True)
+    with Run(options, launch, referee, RunRecorder(places), display) as run:
         display.say(f"ROS_MASTER_URI={os.environ['ROS_MASTER_URI']}")
         display.say(hint)
         return run.conclude(Verdict(False, run.watch(lambda: False) or ""))

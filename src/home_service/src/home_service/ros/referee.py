@@ -9,6 +9,7 @@ from typing import Any, Callable, Deque, Dict, Iterable, Mapping, Optional, Set,
 
 import rospy
 from home_service_msgs.msg import MissionState
+from move_base_msgs.msg import MoveBaseActionResult
 from nav_msgs.msg import Odometry, Path
 from rosgraph_msgs.msg import Log
 from std_msgs.msg import String
@@ -16,6 +17,7 @@ from visualization_msgs.msg import Marker
 
 from home_service.judging.delivery_watch import DeliveryWatch
 from home_service.judging.verdict import Ledger, Verdict, collision, judge
+from home_service.ros.goal_watch import GoalWatch
 from pick_objects import Delivery, Stage
 from planar import Pose2
 from planar.maps.places import Place
@@ -38,7 +40,8 @@ class Referee:
     ``say`` is called with each line worth a person's attention.
     """
 
-    def __init__(self, places: Mapping[str, Place], say: Callable[[str], None]):
+    def __init__(self, places: Mapping[str, Place], say: Callable[[str], None], tells_goals: bool = False):
+        """``tells_goals``: also of the goals that move_base is given."""
         self.ledger = Ledger()
         self.state = ""
         self.distance_driven = 0.0
@@ -57,6 +60,7 @@ class Referee:
         self._told: Set[str] = set()
         self._lock = threading.Lock()
         self._has_started = False
+        self._goals = GoalWatch(say, lambda: self.truth) if tells_goals else None
 
     def start(self) -> None:
         """Subscribes to what it judges by; this process is a node by then."""
@@ -68,7 +72,10 @@ class Referee:
         rospy.Subscriber("pick_objects/mission_state", MissionState, self._see_mission, queue_size=50)
         rospy.Subscriber("visualization_marker", Marker, self._see_marker, queue_size=10)
         rospy.Subscriber("move_base/NavfnROS/plan", Path, self._see_plan, queue_size=1)
+        rospy.Subscriber("move_base/result", MoveBaseActionResult, self._see_result, queue_size=1)
         rospy.Subscriber("/rosout_agg", Log, self._hear, queue_size=50)
+        if self._goals is not None:
+            self._goals.start()
 
     def has_begun(self) -> bool:
         """Whether the truth about the robot has been seen."""
@@ -112,6 +119,7 @@ class Referee:
             "real_time_factor": round(self.real_time_factor, 3),
             "distance_driven": round(self.distance_driven, 3),
             **self.ledger.findings(),
+            **({} if self._goals is None else self._goals.findings()),
         }
 
     @property
@@ -192,6 +200,10 @@ class Referee:
     def _see_plan(self, message):
         points = [(pose.pose.position.x, pose.pose.position.y) for pose in message.poses]
         self.distance_to_go = sum(math.dist(a, b) for a, b in zip(points, points[1:]))
+
+    def _see_result(self, _message):
+        """A goal is over: there is nothing left to go."""
+        self.distance_to_go = None
 
     def _hear(self, message):
         if message.file == CONNECTION_CHATTER:

@@ -3,19 +3,21 @@
 import os
 import threading
 import time
+from contextlib import suppress
 from typing import Any, Callable, Optional
 
 import rospy
 
+from cockpit.process import CockpitProcess
 from home_service.judging.contracts import Judge, Recorder
 from home_service.judging.verdict import Verdict
 from home_service.options import LaunchPlan, RunOptions
 from home_service.result import Result
 from home_service.ros.bags.rosbag_process import RosbagProcess
-from planar import PlanarError
+from planar import PlanarError, SettingsError
 from run_report import summary, write_report
 from supervision.display import Display
-from supervision.interruption import RunInterruptedError, raise_when_interrupted
+from supervision.interruption import RunInterruptedError, raise_if_interrupted, raise_when_interrupted
 from supervision.processes import start_of_this_process
 from supervision.ros.node_api import is_master_online
 from supervision.ros.supervisor import Supervisor
@@ -23,6 +25,10 @@ from supervision.run_folder import create_run_folder
 from supervision.versions import versions
 
 REPORT_SECONDS = 60.0
+# How long what is shown is left open after the verdict.
+VIEW_SECONDS = 8.0
+FREE_PORT = "127.0.0.1:0"
+NO_DISPLAY = "--rviz: there is no display (DISPLAY is not set); --web shows the run in the browser"
 
 
 class Run:
@@ -35,6 +41,8 @@ class Run:
         self, options: RunOptions, launch: LaunchPlan, judge: Judge, recorder: Recorder, display: Display
     ):
         """Makes the run folder. Raises SettingsError."""
+        if options.rviz and not os.environ.get("DISPLAY"):
+            raise SettingsError(NO_DISPLAY)
         self._options, self._launch = options, launch
         self._judge, self._recorder = judge, recorder
         self.display = display
@@ -42,6 +50,7 @@ class Run:
         self.result = Result(self.folder)
         self._supervisor = Supervisor(display, self.folder / "log", options.time_limit)
         self._bags: Optional[RosbagProcess] = None
+        self._cockpit: Optional[CockpitProcess] = None
 
     def __enter__(self) -> "Run":
         raise_when_interrupted()
@@ -54,7 +63,11 @@ class Run:
         return self
 
     def __exit__(self, _kind, error, _traceback) -> None:
+        if error is None and self._options.has_view:
+            self._linger()
         self.display.show("shutting down")
+        if self._cockpit is not None:
+            self._cockpit.close()
         if isinstance(error, (PlanarError, RunInterruptedError)):
             self._keep(Verdict(False, str(error)))
         if self._bags is not None:
@@ -87,9 +100,12 @@ class Run:
 
     def _bring_up(self) -> None:
         self.display.say(f"run folder {self.folder}")
-        has_rviz = self._options.rviz and bool(os.environ.get("DISPLAY"))
-        speed = {"speed": self._options.wanted_speed, "rviz": str(has_rviz).lower()}
+        speed = {"speed": self._options.wanted_speed, "rviz": str(self._options.rviz).lower()}
         self._supervisor.start("home_service", self._launch.file, {**self._launch.arguments, **speed})
+        if self._options.is_on_the_web:
+            where = self._options.web_port or FREE_PORT
+            self._cockpit = CockpitProcess(where, self.folder / "log" / "cockpit.log")
+            self.display.say(f"cockpit: {self._cockpit.url}")
         wait_for = self._supervisor.wait_for
         wait_for("the ROS master", is_master_online)
         rospy.init_node("referee", disable_signals=True, anonymous=True, log_level=rospy.ERROR)
@@ -102,6 +118,15 @@ class Run:
             wait_for("ground truth from the simulator", self._judge.has_begun)
         if self._bags is not None:
             wait_for("the recorder of bags", self._bags.is_ready)
+
+    def _linger(self) -> None:
+        """Leaves the views open for those who have looked on; Ctrl-C ends it."""
+        self.display.say(f"the view stays open for {VIEW_SECONDS:g} s; Ctrl-C closes it")
+        ending = time.monotonic() + VIEW_SECONDS
+        with suppress(RunInterruptedError):
+            while time.monotonic() < ending:
+                raise_if_interrupted()
+                time.sleep(0.05)
 
     def _keep(self, verdict: Verdict, **findings: Any) -> None:
         about = {"command": self._options.name, "success": verdict.success, "reason": verdict.reason}

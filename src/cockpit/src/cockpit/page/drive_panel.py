@@ -1,0 +1,117 @@
+"""What a person does in the world: goals, poses and points, driving, time, things, missions."""
+
+from typing import Any, Callable, Mapping, Protocol, Sequence, Tuple
+
+LOOK, GOAL, POSE, POINT, BOX = "Look", "Goal", "Pose", "Point", "Box"
+MODES = (LOOK, GOAL, POSE, POINT, BOX)
+HINTS = {
+    LOOK: "The mouse turns the camera.",
+    GOAL: "Press on the floor, turn, release: the robot drives there.",
+    POSE: "Press where the robot is, turn it the way it looks, release.",
+    POINT: "Click a place: it is published.",
+    BOX: "Click a place: a box is dropped there.",
+}
+# The buttons in rows, with the key of each: of turtlebot_teleop, but that "," is no key here.
+BUTTONS = (("U", "u"), ("I", "i"), ("O", "o"), ("J", "j"), ("K", "k"), ("L", "l"), ("M", ","))
+ARROWS = {"U": "forward left", "I": "forward", "O": "forward right", "J": "turn left", "K": "stop"}
+ARROWS.update({"L": "turn right", "M": "back"})
+HOLD_HZ = 10.0
+SPEEDS = ("as fast as it keeps up", "0.5 x", "1 x", "2 x", "5 x")
+FACTORS = (0.0, 0.5, 1.0, 2.0, 5.0)
+
+
+class Driver(Protocol):
+    """What the panel asks for; whatever it raises is told on the page."""
+
+    def set_mode(self, mode: str) -> None: ...
+
+    def press(self, key: str, client: int) -> None: ...
+
+    def pause(self, is_paused: bool) -> None: ...
+
+    def step(self) -> None: ...
+
+    def reset(self) -> None: ...
+
+    def set_speed(self, factor: float) -> None: ...
+
+    def cancel(self) -> None: ...
+
+
+class DrivePanel:
+    """``guarded`` wraps what controls call."""
+
+    def __init__(self, gui, tab, driver: Driver, guarded: Callable[[Callable], Callable]):
+        self._gui, self._driver, self._guarded = gui, driver, guarded
+        with tab:
+            self._build_pointing()
+            self._build_teleop()
+            self._build_time()
+            with gui.add_folder("Mission"):
+                self.mission = gui.add_html(_note("No mission is told of."))
+        self._build_keys()
+
+    def offer(self, robots: Sequence[str], topics: Sequence[str]) -> None:
+        """The robots that take goals, and the topics that take velocities."""
+        _offer(self.robot, robots)
+        _offer(self.topic, topics)
+
+    def look(self) -> None:
+        """Pointing is over."""
+        self.mode.value = LOOK
+
+    def _build_pointing(self) -> None:
+        gui = self._gui
+        self.mode = gui.add_dropdown("Mouse", MODES)
+        self.hint = gui.add_html(_note(HINTS[LOOK]))
+        self.robot = gui.add_dropdown("Robot", ("/",))
+        self.cancel = gui.add_button("Cancel the goal", color="gray")
+        self.mode.on_update(self._guarded(self._choose_mode))
+        self.cancel.on_click(self._guarded(lambda _: self._driver.cancel()))
+
+    def _choose_mode(self, _event: Any) -> None:
+        self.hint.content = _note(HINTS[self.mode.value])
+        self._driver.set_mode(self.mode.value)
+
+    def _build_teleop(self) -> None:
+        gui = self._gui
+        with gui.add_folder("Drive by hand"):
+            gui.add_html(_note("Hold a button or its key: u i o j k l, m is back. Let go: it stops."))
+            self.topic = gui.add_dropdown("Velocities to", ("/cmd_vel",))
+            for label, key in BUTTONS:
+                button = gui.add_button(f"{label}  {ARROWS[label]}")
+                hold = self._guarded(lambda event, key=key: self._driver.press(key, event.client_id))
+                button.on_hold(hold, callback_hz=HOLD_HZ)
+
+    def _build_keys(self) -> None:
+        for label, key in BUTTONS:
+            command = self._gui.add_command(f"Drive: {ARROWS[label]}", hotkey=label)
+            press = self._guarded(lambda event, key=key: self._driver.press(key, event.client_id))
+            command.on_trigger(press)
+
+    def _build_time(self) -> None:
+        gui, driver = self._gui, self._driver
+        with gui.add_folder("Simulated time", expand_by_default=False):
+            self.speed = gui.add_dropdown("Speed", SPEEDS, initial_value="1 x")
+            pause, go_on = gui.add_button("Pause"), gui.add_button("Go on")
+            step, reset = gui.add_button("One step"), gui.add_button("Reset the world", color="orange")
+        factors: Mapping[str, float] = dict(zip(SPEEDS, FACTORS))
+        self.speed.on_update(self._guarded(lambda _: driver.set_speed(factors[self.speed.value])))
+        does: Tuple[Tuple[Any, Callable[[], None]], ...] = (
+            (pause, lambda: driver.pause(True)),
+            (go_on, lambda: driver.pause(False)),
+            (step, driver.step),
+            (reset, driver.reset),
+        )
+        for button, do in does:
+            button.on_click(self._guarded(lambda _, do=do: do()))
+
+
+def _note(text: str) -> str:
+    return f'<div style="margin:0 12px 6px 12px;font-size:12px;opacity:.75">{text}</div>'
+
+
+def _offer(dropdown: Any, options: Sequence[str]) -> None:
+    told = tuple(options) or dropdown.options
+    if dropdown.options != told:
+        dropdown.options = told

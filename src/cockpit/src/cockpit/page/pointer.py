@@ -1,0 +1,62 @@
+"""The mouse over the floor, while a person is to point at something: press, turn, release, as in rviz."""
+
+from typing import Any, Callable, Optional, Tuple
+
+import numpy as np
+
+from cockpit.drawing import Drawing, Lines, Part
+from cockpit.frames import pose_matrix
+from cockpit.layers.poses import arrow
+from cockpit.models.pointing import facing, on_floor, quaternion_of
+from cockpit.page.drawer import Drawer
+
+Point = Tuple[float, float]
+PREVIEW, COLOUR, HEIGHT = "pointer", (46, 160, 67), 0.08
+
+
+class Pointer:
+    """Calls ``on_pose`` with x, y and yaw in the fixed frame, and the client that pointed.
+
+    ``floor``: the handle of what is pressed. Without a turn the yaw is None.
+    """
+
+    def __init__(self, floor: Any, drawer: Drawer):
+        self._floor, self._drawer = floor, drawer
+        self._on_pose: Optional[Callable[[float, float, Optional[float], int], None]] = None
+        self._start: Optional[Point] = None
+
+    def aim(self, on_pose: Optional[Callable[[float, float, Optional[float], int], None]]) -> None:
+        """From now on the mouse points; with None it turns the camera again."""
+        was_on, self._on_pose = self._on_pose is not None, on_pose
+        if on_pose is not None and not was_on:
+            self._floor.on_drag("left")(self._dragged)
+            self._floor.on_click(self._clicked)
+        if on_pose is None and was_on:
+            self._floor.remove_drag_callback("all")
+            self._floor.remove_click_callback("all")
+            self._drawer.clear(PREVIEW)
+
+    def _clicked(self, event: Any) -> None:
+        if event.ray_origin is None or event.ray_direction is None or self._on_pose is None:
+            return
+        origin = np.asarray(event.ray_origin, float)
+        hit = on_floor(origin, origin + np.asarray(event.ray_direction, float))
+        if hit is not None:
+            self._on_pose(*hit, None, event.client_id)
+
+    def _dragged(self, event: Any) -> None:
+        if event.phase == "start":
+            self._start = event.start_position[0], event.start_position[1]
+        start, end = self._start, on_floor(event.client.camera.position, event.end_position)
+        if start is None:
+            return
+        yaw = facing(start, end, np.nan)
+        if event.phase == "end":
+            self._start = None
+            self._drawer.clear(PREVIEW)
+            if self._on_pose is not None:
+                self._on_pose(*start, None if np.isnan(yaw) else yaw, event.client_id)
+        elif not np.isnan(yaw):
+            pose = pose_matrix((*start, HEIGHT), quaternion_of(yaw))
+            lines = Lines(arrow(0.7, 0.2), COLOUR, 8.0)
+            self._drawer.show(PREVIEW, Drawing((Part("arrow", "", lines, pose),)))

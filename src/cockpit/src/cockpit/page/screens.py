@@ -1,0 +1,36 @@
+"""Pictures of cameras in a window of their own."""
+
+from typing import Any, Dict
+
+import numpy as np
+
+from cockpit.page.tool_panel import Window
+
+
+class Screens:
+    """A window that is there as long as there are pictures."""
+
+    def __init__(self, gui):
+        self._gui = gui
+        self._window: Any = None
+        self._images: Dict[str, Any] = {}
+        self._shown: Dict[str, int] = {}
+
+    def show(self, pictures: Dict[str, np.ndarray]) -> None:
+        """``pictures``: of each topic the newest, (rows, columns, 3) uint8."""
+        if set(pictures) != set(self._images):
+            self._rebuild(pictures)
+        for topic, picture in pictures.items():
+            if self._shown.get(topic) != id(picture):
+                self._shown[topic] = id(picture)
+                self._images[topic].image = picture
+
+    def _rebuild(self, pictures: Dict[str, np.ndarray]) -> None:
+        if self._window is not None:
+            self._window.remove()
+        self._window, self._images, self._shown = None, {}, {}
+        if pictures:
+            self._window = Window(self._gui, "Cameras")
+            with self._window:
+                for topic, picture in sorted(pictures.items()):
+                    self._images[topic] = self._gui.add_image(picture, label=topic, jpeg_quality=70)

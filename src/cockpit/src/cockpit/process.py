@@ -1,0 +1,82 @@
+"""The cockpit beside a run: a process of its own, which ends with the one that has started it."""
+
+import contextlib
+import ctypes
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import List, Mapping, Optional
+
+from cockpit.errors import CockpitError, PortError
+
+URL, ERROR = "cockpit: http", "error: "
+START_SECONDS, CLOSE_SECONDS, POLL_SECONDS = 30.0, 2.0, 0.02
+PR_SET_PDEATHSIG = 1
+
+
+class CockpitProcess:
+    """Serves the page of the graph of ``ROS_MASTER_URI``, whose master may come later; logs to ``log``.
+
+    Raises PortError if it cannot be served at ``where``, [ADDRESS:]PORT, CockpitError if it does not start.
+    """
+
+    def __init__(self, where: str, log: Path, environment: Optional[Mapping[str, str]] = None):
+        self._lines: List[str] = []
+        self._log = log
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "cockpit.ros.node", "--web-port", where],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            env=None if environment is None else dict(environment),
+            start_new_session=True,
+            preexec_fn=_end_with_parent,
+        )
+        threading.Thread(target=self._read, daemon=True).start()
+        self.url = self._wait_for_url()
+
+    def close(self) -> None:
+        """Ends it: every page is told that the connection is lost."""
+        self._process.send_signal(signal.SIGTERM)
+        try:
+            self._process.wait(CLOSE_SECONDS)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+
+    def _wait_for_url(self) -> str:
+        deadline = time.monotonic() + START_SECONDS
+        while time.monotonic() < deadline:
+            for line in list(self._lines):
+                if line.startswith(URL):
+                    return line.partition(": ")[2].strip()
+                if line.startswith(ERROR):
+                    raise PortError(line.partition(": ")[2].strip())
+            if self._process.poll() is not None and not self._lines:
+                break
+            time.sleep(POLL_SECONDS)
+        self.close()
+        raise CockpitError(f"the cockpit did not start, see {self._log}")
+
+    def _read(self) -> None:
+        """Reads on whatever happens to the log, since a process stands still when nobody reads."""
+        with contextlib.ExitStack() as stack:
+            log = None
+            with contextlib.suppress(OSError):
+                log = stack.enter_context(self._log.open("w", encoding="utf-8", buffering=1))
+            for line in self._process.stdout:  # type: ignore[union-attr]
+                if len(self._lines) < 100:
+                    self._lines.append(line)
+                if log is not None:
+                    with contextlib.suppress(OSError):
+                        # The log stays when the run is over: the token is for who started it.
+                        log.write(line.partition("?token=")[0].rstrip() + "\n")
+
+
+def _end_with_parent() -> None:
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)

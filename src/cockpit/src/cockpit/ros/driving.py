@@ -1,0 +1,140 @@
+"""The tab in which a person drives: its panel, the mouse over the floor, and what both make the graph do."""
+
+import math
+from html import escape
+from typing import Callable, Optional
+
+import rospy
+from home_service_msgs.msg import MissionState
+from std_msgs.msg import String
+
+from cockpit.errors import CockpitError
+from cockpit.frames import FrameTree
+from cockpit.models.tables import table
+from cockpit.page.drive_panel import BOX, GOAL, LOOK, POINT, POSE, DrivePanel
+from cockpit.page.pointer import Pointer
+from cockpit.ros.graph import Feed, Graph
+from cockpit.ros.orders import Orders
+from cockpit.ros.teleop import PageTeleop
+from cockpit.ros.world import world_in
+
+BASE_FRAMES = ("base_footprint", "base_link")
+MISSION, ERRAND = "/pick_objects/mission_state", "/pick_objects/state"
+
+
+class Driving:
+    """Implements what the panel asks for (cockpit.page.drive_panel.Driver)."""
+
+    def __init__(
+        self,
+        graph: Graph,
+        frames: FrameTree,
+        pointer: Pointer,
+        tell: Callable[[str], None],
+        fixed: Callable[[], str],
+    ):
+        """``fixed``: tells the fixed frame."""
+        self._graph, self._frames, self._pointer = graph, frames, pointer
+        self._tell, self._fixed = tell, fixed
+        self._orders, self.teleop = Orders(graph), PageTeleop()
+        self._feeds: dict = {}
+        self._panel: Optional[DrivePanel] = None
+
+    def build(self, gui, tab, guarded) -> None:
+        self._panel = DrivePanel(gui, tab, self, guarded)
+
+    def look_around(self) -> None:
+        """Raises CockpitError."""
+        assert self._panel is not None
+        self._panel.offer(self._orders.robots(), self._orders.velocity_topics())
+        types = self._graph.topics()
+        for topic, kind in ((MISSION, MissionState), (ERRAND, String)):
+            if topic in types and topic not in self._feeds:
+                self._feeds[topic] = Feed(topic, kind._type)
+
+    def update(self) -> None:
+        """Raises CockpitError."""
+        assert self._panel is not None
+        for topic in (MISSION, ERRAND):
+            for message in self._feeds[topic].take() if topic in self._feeds else ():
+                if topic == MISSION:
+                    self._panel.mission.content = mission_html(message)
+                elif MISSION not in self._feeds:
+                    self._panel.mission.content = table(("Errand",), [(message.data,)])
+
+    def rest(self) -> None:
+        for feed in self._feeds.values():
+            feed.close()
+        self._feeds.clear()
+
+    def base_frame(self) -> Optional[str]:
+        """That of the robot which is chosen."""
+        assert self._panel is not None
+        prefix, known = self._panel.robot.value.strip("/"), set(self._frames.names())
+        names = [f"{prefix}/{base}".lstrip("/") for base in BASE_FRAMES]
+        return next((name for name in names if name in known), None)
+
+    # -- what the panel asks for
+
+    def set_mode(self, mode: str) -> None:
+        self._pointer.aim(None if mode == LOOK else self._pointed)
+
+    def press(self, key: str, client: int) -> None:
+        assert self._panel is not None
+        self.teleop.press(key, client, self._panel.topic.value)
+
+    def pause(self, is_paused: bool) -> None:
+        self._orders.pause(is_paused)
+
+    def step(self) -> None:
+        self._orders.step()
+
+    def reset(self) -> None:
+        self._orders.reset()
+
+    def set_speed(self, factor: float) -> None:
+        self._orders.set_speed(factor)
+
+    def cancel(self) -> None:
+        assert self._panel is not None
+        self._orders.cancel(self._panel.robot.value)
+
+    def _pointed(self, x: float, y: float, yaw: Optional[float], _client: int) -> None:
+        assert self._panel is not None
+        mode, robot, fixed = self._panel.mode.value, self._panel.robot.value, self._fixed()
+        self._panel.look()
+        self._pointer.aim(None)
+        try:
+            if mode == GOAL:
+                self._orders.goal(robot, fixed, x, y, self._yaw_to(x, y) if yaw is None else yaw)
+                self._tell(f"goal sent: {x:.2f}, {y:.2f} in {fixed}")
+            elif mode == POSE:
+                self._orders.estimate(robot, fixed, x, y, yaw or 0.0)
+                self._tell(f"pose estimate sent: {x:.2f}, {y:.2f} in {fixed}")
+            elif mode == POINT:
+                self._orders.point(fixed, x, y)
+                self._tell(f"point published: {x:.2f}, {y:.2f} in {fixed}")
+            elif mode == BOX:
+                self._drop(x, y)
+        except (CockpitError, rospy.ROSException) as error:
+            self._tell(str(error))
+
+    def _yaw_to(self, x: float, y: float) -> float:
+        """The direction from the robot to a place: a goal that is only clicked is reached looking ahead."""
+        base = self.base_frame()
+        pose = None if base is None else self._frames.pose(base, self._fixed())
+        return 0.0 if pose is None else math.atan2(y - pose[1, 3], x - pose[0, 3])
+
+    def _drop(self, x: float, y: float) -> None:
+        world = world_in(self._frames, self._fixed())
+        if world is None:
+            raise CockpitError("where the world is in the fixed frame is not known")
+        dx, dy = x - world[0, 3], y - world[1, 3]
+        in_world = world[:2, :2].T @ (dx, dy)
+        self._tell(f"{self._orders.drop_box(float(in_world[0]), float(in_world[1]))} dropped")
+
+
+def mission_html(message) -> str:
+    """What there is to say of a mission (home_service_msgs/MissionState)."""
+    rows = [(state.id, state.status, state.object) for state in message.deliveries]
+    return f"<b>{escape(str(message.state))}</b>" + table(("Delivery", "State", "Object"), rows)

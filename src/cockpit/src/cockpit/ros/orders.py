@@ -1,0 +1,148 @@
+"""What a person at the page tells the graph: goals, poses, points, time, things."""
+
+import time
+from typing import Any, Dict, List
+
+import gazebo_msgs.srv
+import rospy
+from actionlib_msgs.msg import GoalID
+from geometry_msgs.msg import PointStamped, Pose, PoseStamped, PoseWithCovarianceStamped
+from sim_bridge_msgs.srv import Step
+from std_srvs.srv import Empty
+
+from cockpit.errors import CockpitError
+from cockpit.models.pointing import quaternion_of
+from cockpit.ros.graph import Graph
+
+GOAL, ESTIMATE, POINT = "move_base_simple/goal", "initialpose", "clicked_point"
+CANCEL = "move_base/cancel"
+TWIST = "geometry_msgs/Twist"
+# Those that a person is to drive by come first.
+LIKELY = ("input/teleop", "teleop/cmd_vel", "cmd_vel", "velocity")
+# rviz's, for a pose estimate: variances of x, y and yaw.
+SPREAD = {0: 0.25, 7: 0.25, 35: 0.06853891945200942}
+LISTENER_SECONDS, SERVICE_SECONDS = 1.0, 1.0
+BOX_SIZE, BOX_HEIGHT = 0.3, 0.5
+BOX = """<sdf version="1.6"><model name="{name}"><link name="box">
+<inertial><mass>2</mass></inertial>
+<collision name="box"><geometry><box><size>{size} {size} {size}</size></box></geometry></collision>
+<visual name="box"><geometry><box><size>{size} {size} {size}</size></box></geometry>
+<material><diffuse>0.85 0.55 0.2 1</diffuse></material></visual></link></model></sdf>"""
+
+
+class Orders:
+    """Each raises CockpitError if nobody is there to take it."""
+
+    def __init__(self, graph: Graph):
+        self._graph = graph
+        self._publishers: Dict[str, rospy.Publisher] = {}
+        self._boxes = 0
+
+    def robots(self) -> List[str]:
+        """The namespaces in which goals are taken. Raises CockpitError."""
+        return sorted(name[: -len(GOAL)] for name in self._graph.subscribers() if name.endswith(f"/{GOAL}"))
+
+    def velocity_topics(self) -> List[str]:
+        """The topics on which somebody takes velocities, the likeliest first. Raises CockpitError."""
+        types, own = self._graph.topics(), rospy.get_name()
+        found = [
+            name
+            for name, nodes in self._graph.subscribers().items()
+            if types.get(name) == TWIST and set(nodes) - {own}
+        ]
+
+        def rank(name: str) -> int:
+            return next((number for number, end in enumerate(LIKELY) if name.endswith(end)), len(LIKELY))
+
+        return sorted(found, key=lambda name: (rank(name), len(name), name))
+
+    def goal(self, robot: str, frame: str, x: float, y: float, yaw: float) -> None:
+        message = PoseStamped(pose=_pose(x, y, yaw))
+        message.header.frame_id, message.header.stamp = frame, rospy.get_rostime()
+        self._send(robot + GOAL, message)
+
+    def estimate(self, robot: str, frame: str, x: float, y: float, yaw: float) -> None:
+        message = PoseWithCovarianceStamped()
+        message.header.frame_id, message.header.stamp = frame, rospy.get_rostime()
+        message.pose.pose = _pose(x, y, yaw)
+        message.pose.covariance = [SPREAD.get(index, 0.0) for index in range(36)]
+        self._send(robot + ESTIMATE, message)
+
+    def point(self, frame: str, x: float, y: float) -> None:
+        message = PointStamped()
+        message.header.frame_id, message.header.stamp = frame, rospy.get_rostime()
+        message.point.x, message.point.y = x, y
+        self._send("/" + POINT, message, needs_listener=False)
+
+    def cancel(self, robot: str) -> None:
+        self._send(robot + CANCEL, GoalID())
+
+    def pause(self, is_paused: bool) -> None:
+        self._call(f"/gazebo/{'pause' if is_paused else 'unpause'}_physics", Empty)
+
+    def reset(self) -> None:
+        self._call("/gazebo/reset_world", Empty)
+
+    def step(self) -> None:
+        self._call("/sim_bridge/step", Step, 1)
+
+    def set_speed(self, factor: float) -> None:
+        """``factor``: times real time, 0 as fast as the nodes keep up."""
+        told = self._call("/gazebo/get_physics_properties", gazebo_msgs.srv.GetPhysicsProperties)
+        answer = self._call(
+            "/gazebo/set_physics_properties",
+            gazebo_msgs.srv.SetPhysicsProperties,
+            told.time_step,
+            factor / told.time_step,
+            told.gravity,
+            told.ode_config,
+        )
+        _check(answer)
+
+    def drop_box(self, x: float, y: float) -> str:
+        """In the world's frame; returns the name of the model."""
+        self._boxes += 1
+        name = f"box_of_cockpit_{int(time.time()) % 100000}_{self._boxes}"
+        pose = _pose(x, y, 0.0)
+        pose.position.z = BOX_HEIGHT
+        answer = self._call(
+            "/gazebo/spawn_sdf_model",
+            gazebo_msgs.srv.SpawnModel,
+            name,
+            BOX.format(name=name, size=BOX_SIZE),
+            "",
+            pose,
+            "world",
+        )
+        _check(answer)
+        return name
+
+    def _send(self, topic: str, message: Any, needs_listener: bool = True) -> None:
+        if topic not in self._publishers:
+            self._publishers[topic] = rospy.Publisher(topic, type(message), queue_size=1)
+        publisher, deadline = self._publishers[topic], time.monotonic() + LISTENER_SECONDS
+        while needs_listener and not publisher.get_num_connections():
+            if time.monotonic() > deadline:
+                raise CockpitError(f"nobody listens to {topic}")
+            time.sleep(0.02)
+        publisher.publish(message)
+
+    def _call(self, name: str, kind: type, *arguments: Any) -> Any:
+        try:
+            rospy.wait_for_service(name, SERVICE_SECONDS)
+            return rospy.ServiceProxy(name, kind)(*arguments)
+        except (rospy.ROSException, rospy.ServiceException) as error:
+            raise CockpitError(f"{name}: {error}") from None
+
+
+def _check(answer: Any) -> None:
+    if not answer.success:
+        raise CockpitError(answer.status_message)
+
+
+def _pose(x: float, y: float, yaw: float) -> Pose:
+    pose = Pose()
+    pose.position.x, pose.position.y = x, y
+    q = pose.orientation
+    q.x, q.y, q.z, q.w = quaternion_of(yaw)
+    return pose

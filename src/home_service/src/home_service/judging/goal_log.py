@@ -1,0 +1,63 @@
+"""Goals that somebody gave by hand, and what became of each."""
+
+from dataclasses import dataclass
+from typing import Any, Dict, List, Optional
+
+from planar import Pose2
+
+OPEN = "open"
+
+
+@dataclass
+class GoalRecord:
+    """``pose``: in ``frame``; ``outcome``: "reached", why it was not, or "open"; ``error``: metres, truly."""
+
+    number: int
+    frame: str
+    pose: Pose2
+    outcome: str = OPEN
+    error: Optional[float] = None
+
+    @property
+    def name(self) -> str:
+        pose = self.pose
+        return f"goal {self.number} ({pose.x:.2f}, {pose.y:.2f}, {pose.yaw:.2f})"
+
+    def told(self) -> Dict[str, Any]:
+        """As result.json tells it."""
+        pose = [round(value, 3) for value in (self.pose.x, self.pose.y, self.pose.yaw)]
+        record: Dict[str, Any] = {"goal": pose, "frame": self.frame, "outcome": self.outcome}
+        return record if self.error is None else {**record, "error": round(self.error, 3)}
+
+
+class GoalLog:
+    """What is said of each goal as it comes and ends."""
+
+    def __init__(self):
+        self.records: List[GoalRecord] = []
+        self._by_id: Dict[str, GoalRecord] = {}
+
+    def sent(self, identity: str, frame: str, pose: Pose2) -> Optional[str]:
+        """A line for the terminal; None if the goal is known already."""
+        if identity in self._by_id:
+            return None
+        record = GoalRecord(len(self.records) + 1, frame, pose)
+        self.records.append(record)
+        self._by_id[identity] = record
+        return f"{record.name}: on the way"
+
+    def ended(self, identity: str, has_reached: bool, text: str, truth: Optional[Pose2]) -> Optional[str]:
+        """``truth``: the robot's true pose. A line for the terminal; None if there is no such goal."""
+        record = self._by_id.get(identity)
+        if record is None or record.outcome != OPEN:
+            return None
+        record.outcome = "reached" if has_reached else text or "given up"
+        if not has_reached:
+            return f"{record.name}: {record.outcome}"
+        record.error = None if truth is None else truth.distance_to(record.pose)
+        aside = "" if record.error is None else f", truly {record.error:.3f} m from it"
+        return f"{record.name}: reached{aside}"
+
+    def findings(self) -> Dict[str, Any]:
+        """What belongs into result.json: nothing if there was no goal."""
+        return {"goals": [record.told() for record in self.records]} if self.records else {}
