@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from test_control_contract import PERIOD, PICTURES, plan_in, room_of, situation_of
 
+from move_base_lite.check.rooms import PERIOD, plan_in, room_of, situation_of
 from move_base_lite.control import DwaSettings, Plan, TrajectorySettings
 from move_base_lite.control.dwa import DynamicWindow
 from move_base_lite.control.dwa.critics import goal_distance, obstacles, path_alignment, path_distance
@@ -17,7 +17,7 @@ LIMITS = Twist2(0.5, 1.0)
 @pytest.fixture(scope="module")
 def scene():
     """From the left end of an open room to its right end."""
-    room = room_of(PICTURES["open"])
+    room = room_of("open")
     situation = situation_of(room.costmap, Pose2(*room.start_xy, 0.0))
     return _scene(situation, np.array([room.start_xy, room.goal_xy]), nose=0.3)
 
@@ -35,7 +35,7 @@ def test_a_robot_at_rest_tries_what_it_can_reach_and_nothing_that_does_not_move_
 
 
 def test_a_limit_below_the_least_speed_leaves_no_velocity():
-    room = room_of(PICTURES["open"])
+    room = room_of("open")
     planner = DynamicWindow(DwaSettings(), PERIOD)
     situation = situation_of(room.costmap, Pose2(*room.start_xy, 0.0))
     with pytest.raises(ControlError) as caught:

@@ -5,8 +5,9 @@ import pytest
 from scipy.ndimage import label
 
 from move_base_lite import GoalBlocked, NoPath, OutOfMap, StartBlocked
+from move_base_lite.check import KITS
 from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, Window
-from move_base_lite.planning import Navfn, NavfnSettings, path_cost
+from move_base_lite.planning import GLOBAL_PLANNERS, Navfn, NavfnSettings, path_cost
 from move_base_lite.planning.wavefront import descend, spread, traversal_costs
 
 PICTURES = {
@@ -82,6 +83,12 @@ def assert_is_free(path_xy, costs, window):
     assert np.linalg.norm(np.diff(path_xy, axis=0), axis=1).max(initial=0.0) <= longest_step
     for point in path_xy:
         assert costs[window.cell_of(*point)] < INSCRIBED
+
+
+@pytest.mark.parametrize("check", KITS["global_planner"].checks, ids=lambda check: check.__name__)
+@pytest.mark.parametrize("member", GLOBAL_PLANNERS.members, ids=lambda member: member.short_name)
+def test_a_global_planner_keeps_its_contract(member, check):
+    check(member)
 
 
 @pytest.mark.parametrize(

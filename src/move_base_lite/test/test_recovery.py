@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from move_base_lite.check import KITS
 from move_base_lite.costmap import LETHAL, sighting_of_points
 from move_base_lite.costmap.costmap import LayeredCostmap
 from move_base_lite.costmap.layers.obstacles import ObstacleSettings, SourceSettings
@@ -58,6 +59,12 @@ class Bench:
     def marked(self, xy):
         """Whether an obstacle is left there, in the global and in the local costmap."""
         return tuple(costmap.costs[costmap.window.cell_of(*xy)] == LETHAL for costmap in self.costmaps)
+
+
+@pytest.mark.parametrize("check", KITS["recovery_behavior"].checks, ids=lambda check: check.__name__)
+@pytest.mark.parametrize("member", RECOVERIES.members, ids=lambda member: member.short_name)
+def test_a_behaviour_keeps_its_contract(member, check):
+    check(member)
 
 
 @pytest.mark.parametrize("member", RECOVERIES.members, ids=lambda member: member.short_name)

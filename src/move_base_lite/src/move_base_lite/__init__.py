@@ -1,6 +1,11 @@
-"""Navigation after move_base: from a goal, poses and scans to velocities that reach it without collision."""
+"""Navigation after move_base: from a goal, poses and scans to velocities that reach it without collision.
+
+Also what plugins of one's own are made of: the contracts of the seams and what they speak of.
+"""
 
 from move_base_lite.config import NavigatorSettings
+from move_base_lite.control import ControllerSettings, LocalPlanner, Plan, Situation, Trajectory
+from move_base_lite.costmap import Layer, LayerSettings, Placement, Site, Window
 from move_base_lite.errors import (
     ControlError,
     GoalBlocked,
@@ -8,23 +13,42 @@ from move_base_lite.errors import (
     NoPath,
     OutOfMap,
     PlanningError,
+    PluginFailed,
     StartBlocked,
 )
 from move_base_lite.navigator import Decision, Navigator, Status
 from move_base_lite.parameters import load_settings, settings_from_parameters
+from move_base_lite.planning import GlobalPlanner, PlannerSettings
+from move_base_lite.recovery import RecoveryBehavior, RecoveryContext, RecoverySettings
 
 __all__ = [
     "ControlError",
+    "ControllerSettings",
     "Decision",
+    "GlobalPlanner",
     "GoalBlocked",
+    "Layer",
+    "LayerSettings",
+    "LocalPlanner",
     "NavigationError",
     "Navigator",
     "NavigatorSettings",
     "NoPath",
     "OutOfMap",
+    "Placement",
+    "Plan",
+    "PlannerSettings",
     "PlanningError",
+    "PluginFailed",
+    "RecoveryBehavior",
+    "RecoveryContext",
+    "RecoverySettings",
+    "Site",
+    "Situation",
     "StartBlocked",
     "Status",
+    "Trajectory",
+    "Window",
     "load_settings",
     "settings_from_parameters",
 ]

@@ -61,6 +61,21 @@ class ControlError(NavigationError):
         self.exploration = exploration
 
 
+class PluginFailed(NavigationError):
+    """A class of other people raised, or answered with what cannot be used; the text begins with its name."""
+
+    code = "PLUGIN_FAILED"
+    outcome = 17
+
+
+class PlanningPluginFailed(PluginFailed, PlanningError):
+    """It was to make a plan."""
+
+
+class ControlPluginFailed(PluginFailed, ControlError):
+    """It was to find a velocity."""
+
+
 class Oscillation(NavigationError):
     """The robot moves, but gets nowhere."""
 

@@ -4,12 +4,17 @@ A seam is a contract in a file of its own -- ``control/local_planner.py``, ``pla
 ``recovery/behavior.py``, ``costmap/layer.py`` -- and beside it a ``registry.py`` that lists its members, one
 line each. All else follows from a member's entry: how its parameters are read, what of them
 dynamic_reconfigure offers, what ``config/move_base_lite.yaml`` says of them.
+
+A class of other people needs no line: it is known by its dotted name (planar.plugins). It is not trusted: a
+``guarded.py`` beside the contract stands before it.
 """
 
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, Callable, Dict, FrozenSet, Generic, Mapping, Optional, Tuple, TypeVar
 
 from planar.config.parameters import Tunable, tunables_of
+from planar.plugins import Contract, load
 
 T = TypeVar("T")
 
@@ -60,26 +65,49 @@ class Plugin(Generic[T]):
 
 
 class Registry(Generic[T]):
-    """The members of a seam; the first one takes the place of one that is not there."""
+    """The members of a seam; the first one takes the place of one that is not there.
 
-    def __init__(self, *members: Plugin[T]):
+    ``contract``: that other people's classes have to keep; ``guarded(name, make)`` stands before what
+    ``make()`` gives, an object of theirs.
+    """
+
+    def __init__(self, *members: Plugin[T], contract: Contract, guarded: Callable[[str, Callable[[], T]], T]):
         self.members = members
+        self.contract = contract
+        self._guarded = guarded
+        self._loaded: Dict[str, Plugin[T]] = {}
 
     @property
     def names(self) -> Tuple[str, ...]:
         return tuple(member.name for member in self.members)
 
     def find(self, name: str, is_package_needed: bool = True) -> Optional[Plugin[T]]:
-        """The member of that name; None if there is none. Without its package a name may be of any."""
-        for member in self.members:
-            if name == member.name or not is_package_needed and short_name(name) == member.short_name:
-                return member
-        return None
+        """The member of that name; None if there is none. Without its package a name may be of any.
+
+        A dotted name is that of other people's class. Raises PluginError if that cannot be used.
+        """
+        if "." not in name.rpartition("/")[0]:
+            for member in self.members:
+                if name == member.name or not is_package_needed and short_name(name) == member.short_name:
+                    return member
+        return self._loaded.get(name) or self._load(name)
 
     def make(self, settings: Any, *given: Any) -> T:
         """A new object of the member that the settings are meant for; ``given``: as the contract says."""
-        member = next(each for each in self.members if each.settings is type(settings))
+        known = (*self.members, *self._loaded.values())
+        member = next(each for each in known if each.settings is type(settings))
         return member.make(settings, *given)
+
+    def _load(self, name: str) -> Optional[Plugin[T]]:
+        found = load(name, self.contract)
+        if found is None:
+            return None
+
+        def make(*given: Any) -> T:
+            return self._guarded(name, partial(found, *given))
+
+        self._loaded[name] = Plugin(name, self.contract.settings_of(found), make)
+        return self._loaded[name]
 
 
 def short_name(name: str) -> str:

@@ -13,7 +13,7 @@ from move_base_lite.control.settings import ControllerSettings
 from move_base_lite.control.tracking import Tracking
 from move_base_lite.control.turning import turn, would_be_in_the_way
 from move_base_lite.costmap import LayeredCostmap
-from move_base_lite.errors import ControlError
+from move_base_lite.errors import ControlError, ControlPluginFailed
 from planar import Pose2, Twist2, wrap
 
 ALIGNED_ANGLE = 0.3
@@ -122,6 +122,8 @@ class Controller:
         plan = Plan(path_xy, self._tracking.distance_left)
         try:
             trajectory = self._planner.follow(situation, plan, self._limits(highest))
+        except ControlPluginFailed:
+            raise
         except ControlError as failure:
             return self._find_another_way(error, situation, path_xy, failure)
         return Control(trajectory.command, trajectory.poses, path_xy, trajectory.exploration)

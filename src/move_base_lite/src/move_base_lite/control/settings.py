@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from planar import Twist2
 from planar.config.parameters import POSITIVE, check_parameters, parameter
 from planar.config.settings import check
 
@@ -51,6 +52,13 @@ class ControllerSettings:
     def looks_for_movers(self) -> bool:
         """Whether it matters what moves."""
         return False
+
+    def reachable(self, now: Twist2, wanted: Twist2, limits: Twist2, period: float) -> Twist2:
+        """The nearest to what is wanted that the robot can do after ``period`` s, within the limits."""
+        dv, domega = self.acc_lim_x * period, self.acc_lim_theta * period
+        v = min(max(wanted.v, now.v - dv, self.min_vel_x), now.v + dv, limits.v)
+        omega = min(max(wanted.omega, now.omega - domega), now.omega + domega)
+        return Twist2(v, min(max(omega, -limits.omega), limits.omega))
 
     def __post_init__(self):
         check_parameters(self)

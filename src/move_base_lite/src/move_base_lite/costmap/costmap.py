@@ -91,8 +91,8 @@ class LayeredCostmap:
 
     def _remember(self, before: "LayeredCostmap") -> None:
         """Goes on with what the same layers of a costmap of as many cells have known."""
-        known = {type(layer): layer for layer in before._remembering}
-        pairs = [(layer, known[type(layer)]) for layer in self._remembering if type(layer) in known]
+        known = {layer.kind: layer for layer in before._remembering}
+        pairs = [(layer, known[layer.kind]) for layer in self._remembering if layer.kind in known]
         for layer, same in pairs:
             layer.take_over(same)
         if pairs:

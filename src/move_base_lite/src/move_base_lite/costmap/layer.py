@@ -65,6 +65,11 @@ class Layer:
 
     reach_cells: int = 0  # how far from a cell that changes others change through this layer
 
+    @property
+    def kind(self) -> type:
+        """Whose knowledge it may take over: that of a layer of the same kind."""
+        return type(self)
+
     def note(self, sighting: Sighting, base_in_frame: Pose2) -> None:
         """Keeps what a sensor saw from there for the next update."""
 

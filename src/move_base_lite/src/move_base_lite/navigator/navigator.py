@@ -7,7 +7,7 @@ import numpy as np
 
 from move_base_lite.config import NavigatorSettings
 from move_base_lite.costmap import LayeredCostmap, Sighting, sighting_of_scan
-from move_base_lite.errors import PlanningError
+from move_base_lite.errors import PlanningError, PluginFailed
 from move_base_lite.navigator.crew import Crew
 from move_base_lite.navigator.decision import (
     CANCELLED_OUTCOME,
@@ -59,9 +59,9 @@ class Navigator:
         moment = Moment(now, base_in_map, base_in_odom, twist)
         if scan is not None:
             sightings = [*sightings, sighting_of_scan(self.settings.scan_topic, scan)]
-        if self.is_active or not self.settings.move_base.shutdown_costmaps:
-            self._crew.look(moment, sightings)
         try:
+            if self.is_active or not self.settings.move_base.shutdown_costmaps:
+                self._crew.look(moment, sightings)
             self._take_goal(moment)
             if self._pursuit is None:
                 return Decision(Status.IDLE)
@@ -74,6 +74,8 @@ class Navigator:
             text = with_reason(end.text, end.reason)
             outcome = self._outcome(now, end.reason.outcome, end.reason.code, text)
             return self._end(Status.ABORTED, text, outcome)
+        except PluginFailed as failure:
+            return self._give_up_for(failure, now)
         left, usual_speed = self._crew.controller.distance_left, self.settings.controller.max_vel_x
         return replace(decision, progress=self._pursuit.progress(now, left, usual_speed))
 
@@ -153,6 +155,13 @@ class Navigator:
         self.global_costmap.clear_around(
             base_in_map, 2.0 * (radius or self.global_costmap.footprint.circumscribed_radius)
         )
+
+    def _give_up_for(self, failure: PluginFailed, now: float) -> Decision:
+        """Costs that a layer has failed to tell cannot be relied on: no goal is pursued then."""
+        if not self.is_active:
+            return Decision(Status.IDLE, text=str(failure))
+        text = with_reason(Trigger.CONTROLLING.value, failure)
+        return self._end(Status.ABORTED, text, self._outcome(now, failure.outcome, failure.code, text))
 
     def _outcome(self, now: float, code: int, reason: str, text: str) -> Outcome:
         if self._pursuit is None:

@@ -7,7 +7,14 @@ import math
 
 import numpy as np
 
-from move_base_lite.errors import ControlError, NavigationError, Oscillation, PlanningError, SensorStale
+from move_base_lite.errors import (
+    ControlError,
+    NavigationError,
+    Oscillation,
+    PlanningError,
+    PluginFailed,
+    SensorStale,
+)
 from move_base_lite.navigator.costmaps import TIME_TOLERANCE
 from move_base_lite.navigator.crew import Crew
 from move_base_lite.navigator.decision import STALE_SENSOR_TEXT, Decision, RecoveryStart, Status, Trigger
@@ -137,10 +144,14 @@ def _clear_up(pursuit: Pursuit, moment: Moment, crew: Crew) -> Decision:
         crew.costmaps.near,
         lambda limit: setattr(pursuit, "slow", (limit, moment.base_in_odom)),
     )
-    command = pursuit.recovery.step(context)
+    text = ""
+    try:
+        command = pursuit.recovery.step(context)
+    except PluginFailed as failure:
+        pursuit.reason, command, text = failure, None, str(failure)
     if command is None:
         pursuit.end_recovery(moment.now)
-    return Decision(Status.CLEARING, command or Twist2(), recovery=start)
+    return Decision(Status.CLEARING, command or Twist2(), text, recovery=start)
 
 
 def _begin_recovery(pursuit: Pursuit, crew: Crew) -> RecoveryStart:

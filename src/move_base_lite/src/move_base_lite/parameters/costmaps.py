@@ -88,7 +88,7 @@ def layers_of(reader: Reader, values: Tree, name: str) -> Dict[str, Plugin[Layer
             raise SettingsError(
                 f"{reader.where}{name}/plugins must be a list of {{name, type}}, got {plugin!r}"
             )
-        kind = LAYERS.find(str(plugin["type"]), is_package_needed=False)
+        kind = reader.find(LAYERS, str(plugin["type"]), f"{name}/plugins", is_package_needed=False)
         if kind is not None:
             layers[plugin["name"]] = kind
         else:

@@ -32,7 +32,7 @@ def _asked_for(reader: Reader, parameters: Tree, key: str, registry: Registry[T]
     """The planner asked for; the first one known takes the place of others."""
     first = registry.members[0]
     name = str(parameters.get(key, first.name))
-    planner = registry.find(name)
+    planner = reader.find(registry, name, key)
     if planner is None:
         kind = key.split("_")[1]
         reader.warnings.append(f"no {kind} planner {name} here, {first.name} takes its place")

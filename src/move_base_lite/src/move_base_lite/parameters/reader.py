@@ -1,11 +1,12 @@
 """Settings read out of nested dictionaries of parameters."""
 
-from typing import Any, Dict, Iterable, List, Mapping, Type, TypeVar
+from typing import Any, Dict, Iterable, List, Mapping, Optional, Type, TypeVar
 
-from move_base_lite.plugin import Plugin
+from move_base_lite.plugin import Plugin, Registry
 from planar.config.hints import hint
 from planar.config.parameters import parameters_of
 from planar.config.settings import settings_from
+from planar.plugins import PluginError
 
 Tree = Mapping[str, Any]
 T = TypeVar("T")
@@ -40,6 +41,15 @@ class Reader:
                 present.setdefault(new, present.pop(old))
         present = plugin.translated(renamed(present, plugin.synonyms))
         return self.read(plugin.settings, present, prefix, plugin.meaningless)
+
+    def find(
+        self, registry: Registry[T], name: str, key: str, is_package_needed: bool = True
+    ) -> Optional[Plugin[T]]:
+        """The plugin that the parameter ``key`` asks for. Raises PluginError if it cannot be used."""
+        try:
+            return registry.find(name, is_package_needed)
+        except PluginError as error:
+            raise PluginError(f"{self.where}{key}: {error}") from None
 
     def report_unknown(self, names: Iterable[str], prefix: str, known: Iterable[str]) -> None:
         known = list(known)

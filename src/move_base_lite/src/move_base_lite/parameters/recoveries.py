@@ -25,7 +25,7 @@ def recovery_settings(
     recoveries = []
     for item in _listed(reader, parameters, move_base.clearing_rotation_allowed):
         name, kind = item["name"], str(item["type"])
-        behavior = RECOVERIES.find(kind, is_package_needed=False)
+        behavior = reader.find(RECOVERIES, kind, "recovery_behaviors", is_package_needed=False)
         if behavior is None:
             raise SettingsError(f"recovery_behaviors: {name} has an unknown type {kind!r}")
         values = dict(below(parameters, name))

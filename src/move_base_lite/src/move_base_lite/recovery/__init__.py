@@ -3,7 +3,13 @@
 ``behavior.py`` is the contract, ``registry.py`` the list of those that hold it.
 """
 
-from move_base_lite.recovery.behavior import NamedRecovery, RecoveryBehavior, RecoveryContext, SpeedLimit
+from move_base_lite.recovery.behavior import (
+    NamedRecovery,
+    RecoveryBehavior,
+    RecoveryContext,
+    RecoverySettings,
+    SpeedLimit,
+)
 from move_base_lite.recovery.clear_costmap import ClearCostmap, ClearCostmapSettings
 from move_base_lite.recovery.move_slow import MoveSlow, SlowSettings
 from move_base_lite.recovery.registry import RECOVERIES
@@ -17,6 +23,7 @@ __all__ = [
     "NamedRecovery",
     "RecoveryBehavior",
     "RecoveryContext",
+    "RecoverySettings",
     "Rotate",
     "RotateSettings",
     "SlowSettings",

@@ -16,6 +16,11 @@ from planar import Pose2, Twist2
 
 
 @dataclass(frozen=True)
+class RecoverySettings:
+    """What every behaviour can be told: nothing."""
+
+
+@dataclass(frozen=True)
 class SpeedLimit:
     """How fast the robot may go until it has moved ``distance`` metres."""
 

@@ -1,0 +1,120 @@
+"""Plugins of other people: found by dotted names, held to their contract, and never the end of the robot."""
+
+import pytest
+import yaml
+from robot_in_picture import PRESET, Robot, drive_to_end, two_rooms
+
+from move_base_lite import Navigator, Status, settings_from_parameters
+from move_base_lite.check.__main__ import main as check
+from planar import Pose2, SettingsError
+
+GRID = two_rooms(door=0.9)
+
+
+def parameters_with(**chosen):
+    preset = yaml.safe_load(PRESET.read_text())
+    return {**preset, "controller_patience": 1.0, "planner_patience": 1.0, **chosen}
+
+
+def drive(grid=GRID, **chosen):
+    settings, warnings = settings_from_parameters(parameters_with(**chosen))
+    assert not warnings
+    robot, navigator = Robot(grid, Pose2(0.6, 0.6)), Navigator(settings, grid)
+    navigator.set_goal(Pose2(5.4, 3.4, 1.0))
+    return robot, drive_to_end(robot, navigator)
+
+
+@pytest.mark.parametrize("name", ["pure_pursuit/PurePursuit", "potential_field/PotentialField"])
+def test_a_local_planner_is_chosen_by_its_dotted_name_and_told_its_parameters(name):
+    own = {name.partition("/")[2]: {"lookahead": 0.3, "latch_xy_goal_tolerance": True}}
+    robot, decisions = drive(base_local_planner=f"plugin_examples.{name}", **own)
+    assert decisions[-1].text == "Goal reached."
+    assert robot.clearance > 0.0
+
+
+def test_a_global_planner_is_chosen_by_its_dotted_name():
+    _, decisions = drive(base_global_planner="plugin_examples.rrt_star/RrtStar", RrtStar={"seed": 4})
+    assert decisions[-1].text == "Goal reached."
+
+
+@pytest.mark.parametrize(
+    "name, reason",
+    [
+        ("no_such.module/Planner", "there is no module no_such on Python's path"),
+        ("planar.errors/Planner", "there is no Planner in "),
+        ("planar.errors/PlanarError", "is no local planner: it has no follow(situation, plan, limits)"),
+        ("own.faulty/NoFollow", "it has no follow(situation, plan, limits)"),
+        ("own.faulty/FollowsLess", "it cannot be called as follow(situation, plan, limits)"),
+        ("own.faulty/StrangeSettings", "its Settings are no dataclass derived from ControllerSettings"),
+        ("own.broken/Planner", "own.broken fails with RuntimeError: no GPU"),
+    ],
+)
+def test_what_cannot_be_used_is_refused_with_what_it_lacks(name, reason):
+    with pytest.raises(SettingsError) as refused:
+        settings_from_parameters(parameters_with(base_local_planner=name), "/move_base/")
+    assert str(refused.value).startswith(f"/move_base/base_local_planner: {name}")
+    assert reason in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    "name, fault",
+    [
+        ("Raises", "raised ZeroDivisionError: division by zero"),
+        ("RaisesWhenMade", "raised OSError: no weights.npz"),
+        ("AnswersNan", "asked for nan m/s"),
+        ("AnswersNothing", "raised AttributeError"),
+        ("Rushes", "asked for 100 m/s, 0 rad/s, beyond its limits"),
+        ("Scribbles", "changed what it was given to read"),
+        ("Dawdles", "took 1.2 s for an answer"),
+    ],
+)
+def test_a_faulty_local_planner_is_named_and_the_goal_given_up_at_a_standstill(name, fault):
+    robot, decisions = drive(base_local_planner=f"own.faulty/{name}", recovery_behavior_enabled=False)
+    assert decisions[-1].status is Status.ABORTED
+    assert f"[code=PLUGIN_FAILED: own.faulty/{name} {fault}" in decisions[-1].text
+    assert robot.pose == Pose2(0.6, 0.6)
+
+
+def test_the_costs_that_a_local_planner_scribbled_over_are_put_right():
+    settings, _ = settings_from_parameters(parameters_with(base_local_planner="own.faulty/Scribbles"))
+    robot, navigator = Robot(GRID, Pose2(0.6, 0.6)), Navigator(settings, GRID)
+    navigator.set_goal(Pose2(5.4, 3.4, 1.0))
+    for _ in range(5):
+        robot.tick(navigator)
+    assert (navigator.local_costmap.costs > 0).any()
+
+
+def test_a_faulty_global_planner_is_named():
+    _, decisions = drive(base_global_planner="own.faulty/BadPlan", recovery_behavior_enabled=False)
+    assert "[code=PLUGIN_FAILED: own.faulty/BadPlan gave a path that is not finite]" in decisions[-1].text
+
+
+def test_a_faulty_recovery_behaviour_is_passed_over():
+    behaviors = [{"name": "mine", "type": "own.faulty/BadRecovery"}]
+    _, decisions = drive(two_rooms(door=0.0), recovery_behaviors=behaviors)
+    assert any(decision.text.startswith("own.faulty/BadRecovery raised KeyError") for decision in decisions)
+    assert decisions[-1].status is Status.ABORTED
+
+
+def test_no_goal_is_pursued_while_a_layer_fails_and_the_robot_stands():
+    parameters = parameters_with()
+    parameters["local_costmap"]["plugins"].append({"name": "mine", "type": "own.faulty/BadLayer"})
+    settings, _ = settings_from_parameters(parameters)
+    robot, navigator = Robot(GRID, Pose2(0.6, 0.6)), Navigator(settings, GRID)
+    navigator.set_goal(Pose2(5.4, 3.4, 1.0))
+    decisions = drive_to_end(robot, navigator)
+    assert decisions[-1].status is Status.ABORTED
+    assert "own.faulty/BadLayer raised IndexError: index 400 is out of bounds" in decisions[-1].text
+    assert robot.tick(navigator).text.startswith("own.faulty/BadLayer raised IndexError")
+
+
+def test_the_check_says_what_a_plugin_does_not_do(capsys):
+    assert check(["own.faulty/Rushes"]) == 1
+    printed = capsys.readouterr().out
+    assert "FAIL  It reaches the goal and stops there without a collision" in printed
+    assert "own.faulty/Rushes: 0 of 6 checks passed" in printed
+
+
+def test_the_check_refuses_what_is_no_plugin(capsys):
+    assert check(["own.faulty/NoFollow"]) == 2
+    assert "is no local planner: it has no follow(situation, plan, limits)" in capsys.readouterr().err

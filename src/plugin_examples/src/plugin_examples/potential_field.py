@@ -1,0 +1,55 @@
+"""An artificial potential field (Khatib, 1986): the plan draws, the costs push."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from move_base_lite import ControlError, ControllerSettings, Plan, Situation, Trajectory
+from planar import Pose2, Twist2, wrap
+from planar.config.parameters import POSITIVE, at_least, parameter
+from plugin_examples.pure_pursuit import arc
+
+# Metres and steps of the way that is looked at.
+FARTHEST, STEPS = 0.3, 6
+# How eagerly the robot turns towards the force, 1/s.
+TURN_GAIN = 2.0
+
+
+@dataclass(frozen=True)
+class PotentialFieldSettings(ControllerSettings):
+    lookahead: float = parameter(0.5, "along the plan to what draws", "m", POSITIVE, dynamic=5.0)
+    repulsion: float = parameter(0.6, "of the highest costs, beside a draw of one", "", at_least(0.0))
+
+
+class PotentialField:
+    Settings = PotentialFieldSettings
+
+    def __init__(self, settings: PotentialFieldSettings, period: float):
+        self._settings, self._period = settings, period
+
+    def follow(self, situation: Situation, plan: Plan, limits: Twist2) -> Trajectory:
+        base = situation.base_in_local
+        apart = np.hypot(plan.path_xy[:, 0] - base.x, plan.path_xy[:, 1] - base.y)
+        drawn_xy = plan.path_xy[int(np.argmax(apart >= self._settings.lookahead)) or -1] - (base.x, base.y)
+        force_x, force_y = drawn_xy / max(np.hypot(*drawn_xy), 1e-6) - self._push(situation)
+        error = wrap(math.atan2(force_y, force_x) - base.yaw)
+        v = limits.v * max(math.cos(error), 0.0) ** 2
+        omega = max(-limits.omega, min(limits.omega, TURN_GAIN * error))
+        command = self._settings.reachable(situation.twist, Twist2(v, omega), limits, self._period)
+        reach = min(FARTHEST, float(np.hypot(*drawn_xy)))
+        poses = arc(base, command, reach / max(command.v, 0.1), STEPS)
+        if any(situation.costmap.collides(Pose2(*pose)) for pose in poses[1:].tolist()):
+            raise ControlError("the way to the plan leads into an obstacle")
+        return Trajectory(command, poses, 1.0 - math.cos(error))
+
+    def _push(self, situation: Situation) -> np.ndarray:
+        """Up the slope of the costs around the robot: (2,), at most the settings' repulsion long."""
+        costs, window = situation.costmap.costs, situation.costmap.window
+        row, col = window.cell_of(situation.base_in_local.x, situation.base_in_local.y)
+        if not (3 <= row < window.rows - 3 and 3 <= col < window.cols - 3):
+            return np.zeros(2)
+        patch = costs[row - 3 : row + 4, col - 3 : col + 4].astype(float) / 254.0
+        across, along = patch[:, 4:] - patch[:, 2::-1], patch[4:] - patch[2::-1]
+        slope = np.array([across.mean(), along.mean()])
+        return self._settings.repulsion * np.clip(slope, -1.0, 1.0)

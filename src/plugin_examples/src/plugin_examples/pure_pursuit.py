@@ -1,0 +1,46 @@
+"""Pure pursuit (Coulter, 1992): an arc to a point of the plan a little ahead."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from move_base_lite import ControlError, ControllerSettings, Plan, Situation, Trajectory
+from planar import Pose2, Twist2
+from planar.config.parameters import POSITIVE, parameter
+
+# Metres and steps of the arc that is looked at.
+FARTHEST, STEPS = 0.3, 6
+
+
+@dataclass(frozen=True)
+class PurePursuitSettings(ControllerSettings):
+    lookahead: float = parameter(0.4, "along the plan to what is steered for", "m", POSITIVE, dynamic=5.0)
+
+
+class PurePursuit:
+    Settings = PurePursuitSettings
+
+    def __init__(self, settings: PurePursuitSettings, period: float):
+        self._settings, self._period = settings, period
+
+    def follow(self, situation: Situation, plan: Plan, limits: Twist2) -> Trajectory:
+        base = situation.base_in_local
+        apart = np.hypot(plan.path_xy[:, 0] - base.x, plan.path_xy[:, 1] - base.y)
+        ahead = plan.path_xy[int(np.argmax(apart >= self._settings.lookahead)) or -1]
+        x, y = base.inverse().transform_points(ahead[None, :])[0]
+        curvature = 2.0 * y / max(x * x + y * y, 1e-6)
+        v = min(limits.v, limits.omega / max(abs(curvature), 1e-6))
+        command = self._settings.reachable(situation.twist, Twist2(v, v * curvature), limits, self._period)
+        poses = arc(base, command, min(FARTHEST, math.hypot(x, y)) / max(command.v, 0.1), STEPS)
+        if any(situation.costmap.collides(Pose2(*pose)) for pose in poses[1:].tolist()):
+            raise ControlError("the way to the plan leads into an obstacle")
+        return Trajectory(command, poses, math.hypot(x, y))
+
+
+def arc(base: Pose2, command: Twist2, seconds: float, steps: int) -> np.ndarray:
+    """Poses (steps + 1, 3) of a robot that keeps to a command."""
+    poses, dt = [base], seconds / steps
+    for _ in range(steps):
+        poses.append(poses[-1] @ Pose2(command.v * dt, 0.0, command.omega * dt))
+    return np.array([pose.as_array() for pose in poses])
