@@ -12,6 +12,7 @@
 #   --world FILE     SDF world (default: map/home.world)
 #   --map FILE       map of that world (default: map/home.yaml)
 #   --robot NAME     robot profile of sim_bridge (default: turtlebot_lidar)
+#   --planner NAME   local planner: official or my_package.my_module/MyPlanner
 #   --seed N         seed of every noise and every particle (default: 0)
 #   --timeout N      a run fails after N simulated seconds (default: 600)
 #   --help           this text

@@ -14,6 +14,7 @@
 #   --world FILE     SDF world (default: map/home.world)
 #   --map FILE       map of that world (default: map/home.yaml)
 #   --robot NAME     robot profile of sim_bridge (default: turtlebot_lidar)
+#   --planner NAME   local planner: official or my_package.my_module/MyPlanner
 #   --seed N         seed of every noise and every particle (default: 0)
 #   --record inputs|all
 #                    record bags: scans, odometry and truth, or everything (docs/bags.md)

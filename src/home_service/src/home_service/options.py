@@ -65,9 +65,24 @@ class HomeOptions(WorldOptions):
 
     map: Path = option(ROOT / "map/home.yaml", "map of that world", type=Path)
 
-    def files(self) -> Dict[str, Path]:
+    def files(self) -> Dict[str, Any]:
         """The files as launch files name them."""
         return {"map_file": self.map.resolve()}
+
+
+@dataclass(frozen=True)
+class DrivingOptions(HomeOptions):
+    """A home to drive in."""
+
+    planner: str = option(
+        "",
+        "local planner: an official name or my_package.my_module/MyPlanner (default: the robot's preset)",
+        metavar="NAME",
+    )
+
+    def files(self) -> Dict[str, Any]:
+        """The files as launch files name them, and who plans."""
+        return {**super().files(), **({"planner": self.planner} if self.planner else {})}
 
 
 @dataclass(frozen=True)
@@ -76,17 +91,17 @@ class ErrandOptions(HomeOptions):
 
     zones: Path = option(ROOT / "map/zones.yaml", "YAML of zones", type=Path)
 
-    def files(self) -> Dict[str, Path]:
+    def files(self) -> Dict[str, Any]:
         return {**super().files(), "zones_file": self.zones.resolve()}
 
 
 @dataclass(frozen=True)
-class MissionOptions(ErrandOptions):
+class MissionOptions(ErrandOptions, DrivingOptions):
     """A home in which a mission may take the place of the errand between the zones."""
 
     mission: Optional[Path] = option(None, "YAML of deliveries", type=Path, metavar="FILE")
 
-    def files(self) -> Dict[str, Path]:
+    def files(self) -> Dict[str, Any]:
         mission = {} if self.mission is None else {"mission_file": self.mission.resolve()}
         return {**super().files(), **mission}
 

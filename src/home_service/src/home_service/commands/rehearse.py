@@ -19,7 +19,7 @@ class Rehearse(MissionOptions):
         stage = (home.world, home.robot, home.grid, home.mission)
         for seed in range(self.seed, self.seed + self.runs):
             parcel = None if self.mission else parcel_of(home.mission)
-            run = Rehearsal(*stage, seed=seed, parcel=parcel).run(self.timeout)
+            run = Rehearsal(*stage, seed=seed, parcel=parcel, planner=self.planner).run(self.timeout)
             successes += run.verdict.success
             print(f"seed {seed}: {'SUCCESS' if run.verdict.success else 'FAILURE'}: {run.verdict.reason}")
             print(

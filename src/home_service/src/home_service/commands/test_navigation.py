@@ -2,7 +2,7 @@ import argparse
 from dataclasses import dataclass
 from typing import List, Optional, Sequence, Tuple
 
-from home_service.options import GraphOptions, HomeOptions
+from home_service.options import DrivingOptions, GraphOptions
 from supervision.command_line import option
 
 
@@ -23,7 +23,7 @@ def goal_list(text: str) -> List[List[float]]:
 
 
 @dataclass(frozen=True)
-class TestNavigation(GraphOptions, HomeOptions):
+class TestNavigation(GraphOptions, DrivingOptions):
     """Starts home, localization and navigation; goals by hand or from --goals."""
 
     goals: Optional[Tuple[Sequence[float], ...]] = option(

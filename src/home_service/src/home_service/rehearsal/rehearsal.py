@@ -71,12 +71,13 @@ class Rehearsal:
         mission: Mission,
         seed: int,
         parcel: Optional[CarriedParcel] = None,
+        planner: str = "",
     ):
-        """``parcel``: the marker of an errand that is rehearsed with it."""
+        """``parcel``: the marker of an errand that is rehearsed with it; ``planner``: another local one."""
         self._simulation = Simulation(world, robot, seed=seed)
         localization, _ = settings_from_yaml(LocalizerSettings, LOCALIZATION_CONFIG)
         self._localizer = Localizer(grid, localization, np.random.default_rng(seed))
-        navigation = load_settings(NAVIGATION_CONFIG)
+        navigation = load_settings(NAVIGATION_CONFIG, **({"base_local_planner": planner} if planner else {}))
         self._navigator = Navigator(navigation, grid)
         self._steps_per_tick = round(
             1.0 / (navigation.move_base.controller_frequency * self._simulation.step_seconds)

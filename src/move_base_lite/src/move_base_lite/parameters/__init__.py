@@ -19,13 +19,16 @@ _MOVE_BASE_IGNORED = {
 }  # fmt: skip
 
 
-def load_settings(*paths) -> NavigatorSettings:
-    """Settings from YAML files of official parameters, later ones over earlier, as ``rosparam load`` does."""
+def load_settings(*paths, **chosen: Any) -> NavigatorSettings:
+    """Settings from YAML files of official parameters, later ones over earlier, as ``rosparam load`` does.
+
+    ``chosen``: parameters of move_base over those of all files.
+    """
     parameters: Dict[str, Any] = {}
     for path in paths:
         with open(path, encoding="utf-8") as file:  # noqa: PTH123
             parameters = _merged(parameters, yaml.safe_load(file) or {})
-    return settings_from_parameters(parameters, f"{paths[-1]}: ")[0]
+    return settings_from_parameters({**parameters, **chosen}, f"{paths[-1]}: ")[0]
 
 
 def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> Dict[str, Any]:

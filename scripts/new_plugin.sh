@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# Usage: ./scripts/new_plugin.sh NAME KIND [options]
+#
+# Lays out a catkin package in src/ with a class of your own that move_base_lite finds by its name, and its test.
+# KIND: local_planner, global_planner, recovery_behavior or costmap_layer (docs/plugins.md).
+# Sets everything up first if need be. Exit code: 0 success, 2 bad input, 130 interrupted.
+#
+#   --source FOLDER  where packages are (default: src)
+#   --help           this text
+
+# shellcheck source=scripts/setup.sh
+. "$(dirname -- "$(readlink -f -- "$0")")/setup.sh"
+run_command new_plugin "$@"

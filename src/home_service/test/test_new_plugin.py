@@ -1,0 +1,35 @@
+"""A package laid out for somebody's own plugin is one that works as it is."""
+
+import importlib
+import sys
+
+import pytest
+
+from home_service.commands.new_plugin import KINDS, NewPlugin
+from move_base_lite.check import KITS
+from planar import SettingsError
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_is_laid_out_is_found_by_its_name_and_keeps_its_contract(kind, tmp_path, monkeypatch, capsys):
+    assert NewPlugin(f"my_{kind}", kind, tmp_path).run() == 0
+    monkeypatch.syspath_prepend(str(tmp_path / f"my_{kind}/src"))
+    name = f"my_{kind}.{kind}/My{kind.title().replace('_', '')}"
+    assert name in capsys.readouterr().out
+    for check in KITS[kind].checks:
+        check(KITS[kind].registry.find(name))
+    del sys.modules[f"my_{kind}"]
+    importlib.invalidate_caches()
+
+
+@pytest.mark.parametrize("name", ["My Planner", "2fast", "planner-1"])
+def test_what_is_no_name_of_a_package_is_refused(name, tmp_path):
+    with pytest.raises(SettingsError, match="is no name of a package"):
+        NewPlugin(name, "local_planner", tmp_path).run()
+    assert not list(tmp_path.iterdir())
+
+
+def test_nothing_is_overwritten(tmp_path):
+    NewPlugin("mine", "local_planner", tmp_path).run()
+    with pytest.raises(SettingsError, match="is there already"):
+        NewPlugin("mine", "local_planner", tmp_path).run()
