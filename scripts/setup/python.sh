@@ -31,17 +31,19 @@ is_venv_whole() { # made here, with this Python, and never left half installed
     grep -qs " $root $(readlink /usr/bin/python3)\$" "$root/.venv/.set-up"
 }
 
-fetch_requirements() { # into .venv/wheels
+fetch_requirements() { # those that are missing, into .venv/wheels
     [[ -z $(missing_wheel) ]] || build_wheel || return
-    local files=("${requirement_files[@]/#/--requirement=$root/scripts/}")
+    local files
+    mapfile -t files < <(options_of_missing)
     # What PyPI has as a source only is built in pip's own way: Debian 11 has no wheel, and a distutils of its own.
-    SETUPTOOLS_USE_DISTUTILS=stdlib pip wheel --use-pep517 --wheel-dir "$root/.venv/wheels" --find-links "$wheels" "${files[@]}"
+    SETUPTOOLS_USE_DISTUTILS=stdlib pip wheel --use-pep517 --no-deps --wheel-dir "$root/.venv/wheels" \
+        --find-links "$wheels" "${files[@]}"
 }
 
 install_requirements() {
     local log=$logs/python.log stamp=$root/.venv/.set-up files file
     finish_aside "Fetching Python packages" || give_up "the Python packages could not be fetched" "$log"
-    files=("${requirement_files[@]/#/--requirement=$root/scripts/}")
+    mapfile -t files < <(options_of_missing)
     step "Installing Python packages" "$log" pip install --no-index --find-links "$root/.venv/wheels" "${files[@]}" ||
         give_up "pip failed" "$log"
     rm -rf "$root/.venv/wheels"
@@ -59,6 +61,12 @@ shield_rospy() { # that of Debian 11 calls Thread.isAlive, which its Python no l
     say 'import threading; threading.Thread.isAlive = threading.Thread.is_alive' >"$site/rospy_shield.pth"
 }
 
+options_of_missing() {
+    local names
+    mapfile -t names <<<"$requirements"
+    printf '%s\n' "${names[@]/#/--requirement=$root/scripts/}"
+}
+
 pip() { pip_of "$root/.venv" "$@"; }
 
 pip_of() { # VENV COMMAND ARGUMENT...
@@ -70,8 +78,9 @@ pip_of() { # VENV COMMAND ARGUMENT...
 
 wheels=${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/home-service-robot/wheels/$(getconf GNU_LIBC_VERSION | tr ' ' -)
 
-missing_wheel() { # its name, if neither PyPI nor the cache has one for this machine
+missing_wheel() { # its name, if it is needed and neither PyPI nor the cache has one for this machine
     local tag
+    grep -qx requirements.txt <<<"$requirements" || return 0
     tag=$(/usr/bin/python3 -c 'import sys; print("cp%d%d" % sys.version_info[:2])') || return 0
     if [[ $(uname -m) == x86_64 ]] && is_among "$tag" cp38 cp39 cp310 cp311; then return 0; fi
     has_whole_wheel "$wheels/pybullet-$(pybullet_version)-$tag-"*"$(uname -m).whl" || say "pybullet for $tag"

@@ -14,6 +14,7 @@ build_inputs() { # two lines: which packages there are, and what the build reads
 
 build_workspace() {
     local log=$logs/build.log stamp=$root/build/.set-up
+    inputs=$(build_inputs) # what has just been installed is among them
     (cd "$root" && check_names)
     : >"$log"
     restore_last_build

@@ -39,14 +39,16 @@ def test_compose_builds_targets_that_the_dockerfile_has():
     }
     compose = ROOT / "docker/compose.yaml"
     services = yaml.safe_load(compose.read_text())["services"]
-    assert set(services) == {"robot", "rviz"}
-    for service in services.values():
+    assert set(services) == {"robot", "rviz", "cockpit"}
+    for name, service in services.items():
         build = service["build"]
         context = (compose.parent / build["context"]).resolve()
         assert context == ROOT
         assert (context / build["dockerfile"]).resolve() == DOCKERFILE
         assert build.get("target", "robot") in targets
-        assert service["read_only"] and service["network_mode"] == "none"
+        assert service["read_only"]
+        assert service["network_mode"] == ("host" if name == "cockpit" else "none")
+        assert service.get("profiles", ["robot"]) == [name]
 
 
 def test_what_the_image_starts_is_there():

@@ -170,6 +170,23 @@ def test_what_is_no_fault_of_the_project_is_told_in_a_sentence(tmp_path):
         assert said.stderr.startswith(f"error: {sentence}")
 
 
+def test_what_the_first_set_up_installs_does_not_make_the_second_start_build_anew(tmp_path):
+    said = in_workspace(
+        tmp_path,
+        FAILING
+        + """
+        mkdir src
+        build_inputs() { cat python 2>/dev/null; echo; }
+        install_missing() { echo 3.13 >python; }
+        catkin_build() { mkdir -p build devel; }
+        set_up
+        look_for_missing
+        echo "left: $build"
+        """,
+    )
+    assert said.stdout.endswith("left: \n"), said.stderr
+
+
 def test_a_disk_that_is_full_is_told_even_if_no_log_could_say_so(tmp_path):
     no_room = "df() { printf 'Avail\\n7\\n'; }; : >log; give_up 'pip failed' log"
     assert in_workspace(tmp_path, no_room).stderr.startswith("error: the disk is full")
