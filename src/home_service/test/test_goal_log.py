@@ -21,6 +21,15 @@ def test_why_a_goal_was_given_up_is_told_and_recorded():
     assert [record["outcome"] for record in log.findings()["goals"]] == ["preempted", "open"]
 
 
+def test_goals_that_are_named_only_when_they_are_taken_end_in_their_order():
+    log = GoalLog()
+    log.sent("", "map", Pose2(1.0))
+    log.sent("", "map", Pose2(2.0))
+    assert log.ended("x", False, "replaced", None) == "goal 1 (1.00, 0.00, 0.00): replaced"
+    assert log.ended("x", False, "replaced", None) is None
+    assert log.ended("y", True, "", Pose2(2.0)) == "goal 2 (2.00, 0.00, 0.00): reached, truly 0.000 m from it"
+
+
 def test_what_is_not_known_or_known_already_is_not_told():
     log = GoalLog()
     log.sent("a", "map", Pose2())

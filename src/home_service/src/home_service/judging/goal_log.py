@@ -36,19 +36,28 @@ class GoalLog:
     def __init__(self):
         self.records: List[GoalRecord] = []
         self._by_id: Dict[str, GoalRecord] = {}
+        self._nameless: List[GoalRecord] = []
 
     def sent(self, identity: str, frame: str, pose: Pose2) -> Optional[str]:
-        """A line for the terminal; None if the goal is known already."""
-        if identity in self._by_id:
+        """A line for the terminal; None if the goal is known already.
+
+        ``identity``: empty if move_base gives it one only when it takes the goal, as one of a click in rviz.
+        """
+        if identity and identity in self._by_id:
             return None
         record = GoalRecord(len(self.records) + 1, frame, pose)
         self.records.append(record)
-        self._by_id[identity] = record
+        if identity:
+            self._by_id[identity] = record
+        else:
+            self._nameless.append(record)
         return f"{record.name}: on the way"
 
     def ended(self, identity: str, has_reached: bool, text: str, truth: Optional[Pose2]) -> Optional[str]:
         """``truth``: the robot's true pose. A line for the terminal; None if there is no such goal."""
         record = self._by_id.get(identity)
+        if record is None and self._nameless:
+            record = self._by_id[identity] = self._nameless.pop(0)  # they end in the order in which they came
         if record is None or record.outcome != OPEN:
             return None
         record.outcome = "reached" if has_reached else text or "given up"
