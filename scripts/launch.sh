@@ -10,7 +10,7 @@
 #                    where that page is served (default: a free port of 127.0.0.1); --web is implied
 #   --speed N        1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz or --web 1)
 #   --world FILE     SDF world (default: map/home.world)
-#   --map FILE       map of that world (default: map/home.yaml)
+#   --map FILE       show this map of the world with it (default: none)
 #   --robot NAME     robot profile of sim_bridge (default: turtlebot_lidar)
 #   --seed N         seed of every noise and every particle (default: 0)
 #   --record inputs|all

@@ -105,11 +105,15 @@ answer_help() { # ARGUMENT...
     fi
 }
 
+is_asked_for_web() { # ARGUMENT...
+    is_among --web "$@" || is_among --web-port "${@%%=*}"
+}
+
 run_command() { # NAME ARGUMENT...: a command of home_service, after the set-up it needs
     answer_help "$@"
     local extras=()
     if is_among --rviz "$@" && [[ -n ${DISPLAY:-} ]]; then extras=(rviz); fi
-    if is_among --web "$@" || is_among --web-port "${@%%=*}" || [[ $1 == cockpit ]]; then extras+=(cockpit); fi
+    if is_asked_for_web "$@" || [[ $1 == cockpit ]]; then extras+=(cockpit); fi
     set_up "${extras[@]}"
     enter_workspace
     exec python3 -m home_service "$@"

@@ -7,10 +7,13 @@
 # Tells goals and markers as they happen, then a verdict; result.json and a log of each window are in the run folder.
 # Exit code: 0 all goals reached, 1 failure, 2 bad input, 130 interrupted. More in docs/projects.md.
 #
-#   --speed N        1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz 1)
+#   --speed N        1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz or --web 1)
 #   --seed N         seed of every noise (default: 0)
 #   --timeout N      the run fails after N seconds of wall time (default: 600)
 #   --rviz           show it in the real rviz, with the project's configuration
+#   --web            show it in the browser: prints the URL of the page (docs/cockpit.md)
+#   --web-port [ADDRESS:]PORT
+#                    where that page is served (default: a free port of 127.0.0.1); --web is implied
 #   --record         record a bag into the run folder
 #   --build-only     end after the build
 #   --output FOLDER  where the run folder is made (default: ./runs)
@@ -21,6 +24,7 @@
 answer_help "$@"
 extras=(projects)
 if is_among --rviz "$@"; then extras+=(rviz); fi
+if is_asked_for_web "$@"; then extras+=(cockpit); fi
 set_up "${extras[@]}"
 enter_workspace
 exec python3 -m run_project "$@"

@@ -12,6 +12,8 @@ from typing import List, Mapping, Optional
 
 from cockpit.errors import CockpitError, PortError
 
+# Where a page is served if nobody says.
+FREE_PORT = "127.0.0.1:0"
 URL, ERROR = "cockpit: http", "error: "
 START_SECONDS, CLOSE_SECONDS, POLL_SECONDS = 30.0, 2.0, 0.02
 PR_SET_PDEATHSIG = 1

@@ -12,7 +12,8 @@ from cockpit.ros.graph import Graph
 from cockpit.ros.looks import ROBOT, WORLD, read_aside
 from cockpit.scene.look import Look
 
-WORLD_PARAMETER = "/sim_bridge/world"
+# Of the simulator under its own name and under that of Gazebo.
+WORLD_PARAMETERS = ("/sim_bridge/world", "/gazebo/world")
 DESCRIPTION, PREFIX = "robot_description", "tf_prefix"
 # The frame of a world file; a map made or rendered of that world coincides with it.
 WORLD_FRAME, MAP_FRAME = "world", "map"
@@ -31,8 +32,9 @@ class World:
     def look_for(self) -> None:
         """Reads, in the background, what has come since the last call. Raises CockpitError."""
         names = self._graph.parameter_names()
-        if WORLD_PARAMETER in names:
-            self._read(WORLD, WORLD_PARAMETER, self._show_world)
+        for name in WORLD_PARAMETERS:
+            if name in names:
+                self._read(WORLD, name, self._show_world)
         for name in names:
             if name.rpartition("/")[2] == DESCRIPTION:
                 self._read(ROBOT, name, partial(self._show_robot, name))

@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 from typing import Dict, List, Optional
 
+from cockpit.process import FREE_PORT, CockpitProcess
 from planar import PlanarError
 from run_project.checkout.layout import Checkout, choose_script, is_errand, read_checkout
 from run_project.checkout.placement import READ_SUFFIXES, Placement, place
@@ -35,6 +36,10 @@ ROS_FOLDER = re.compile(r"/opt/ros/[a-z]+")
 # Of the simulator: what it does not leave behind at speed 0, and what projects count on as Gazebo does so:
 # many compare places in the map with /odom, which does not drift there.
 SIMULATOR = {"wait_for": "amcl move_base", "odometry_rate": 200, "noise": "ideal", "range_noise": 0.01}
+
+
+# How long the page is left open when the project is done.
+VIEW_SECONDS = 8.0
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
@@ -135,7 +140,7 @@ def run_job(
         with run:
             if options.record:
                 run.record(folder / "run.bag")
-            failure = run.watch(options.timeout)
+            failure = _watch(run, options, folder, display)
     except RunInterruptedError as error:
         failure, is_interrupted = str(error), True
     ledger = run.observer.ledger
@@ -162,6 +167,21 @@ def run_job(
     _report(display, verdict, ledger, complaints)
     display.say(f"result in {path}, a log of each window in {folder / 'log'}")
     return INTERRUPTED if is_interrupted else 0 if verdict.success else FAILURE
+
+
+def _watch(run: ProjectRun, options: Options, folder: Path, display: Display) -> Optional[str]:
+    """Why the project cannot go on, or None; with its page in the browser beside, if that is wanted."""
+    if not options.is_on_the_web:
+        return run.watch(options.timeout)
+    cockpit = CockpitProcess(options.web_port or FREE_PORT, folder / "log" / "cockpit.log")
+    try:
+        display.say(f"cockpit: {cockpit.url}")
+        failure = run.watch(options.timeout)
+        display.say(f"the page stays open for {VIEW_SECONDS:g} s")
+        time.sleep(VIEW_SECONDS)
+        return failure
+    finally:
+        cockpit.close()
 
 
 def _parameters(options: Options) -> Dict[str, object]:

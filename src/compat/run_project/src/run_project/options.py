@@ -41,6 +41,8 @@ class Options:
     seed: int = option(0, "of every noise", type=int)
     timeout: float = option(600.0, "seconds of wall time", type=_seconds)
     rviz: bool = option(False, "show it in rviz")
+    web: bool = option(False, "show it in the browser: prints the page's URL")
+    web_port: Optional[str] = option(None, "where that page is served", metavar="[ADDRESS:]PORT")
     record: bool = option(False, "record a bag into the run folder")
     build_only: bool = option(False, "end after the build")
     output: Path = option(Path("runs"), "where the run folder is made", type=Path)
@@ -49,7 +51,11 @@ class Options:
     @property
     def wanted_speed(self) -> float:
         """Simulated seconds per second; 0: as fast as the nodes keep up."""
-        return float(self.rviz) if self.speed is None else self.speed
+        return float(self.rviz or self.is_on_the_web) if self.speed is None else self.speed
+
+    @property
+    def is_on_the_web(self) -> bool:
+        return self.web or self.web_port is not None
 
 
 def parse(words: Sequence[str]) -> Options:

@@ -8,7 +8,7 @@ from typing import Any, Callable, Optional
 
 import rospy
 
-from cockpit.process import CockpitProcess
+from cockpit.process import FREE_PORT, CockpitProcess
 from home_service.judging.contracts import Judge, Recorder
 from home_service.judging.verdict import Verdict
 from home_service.options import LaunchPlan, RunOptions
@@ -27,7 +27,6 @@ from supervision.versions import versions
 REPORT_SECONDS = 60.0
 # How long what is shown is left open after the verdict.
 VIEW_SECONDS = 8.0
-FREE_PORT = "127.0.0.1:0"
 NO_DISPLAY = "--rviz: there is no display (DISPLAY is not set); --web shows the run in the browser"
 
 
