@@ -19,7 +19,7 @@ class Layer:
 
     ``title``: what its topics are listed under. ``types``: of its messages, "sensor_msgs/LaserScan".
     ``make``: makes the ``Draw`` for one topic. ``shown``: the topics that are shown at first, by the end of
-    their names; all if it ends so ("",). ``seconds``: drawn again no sooner than after so many.
+    their names. ``seconds``: drawn again no sooner than after so many.
 
     Life cycle: of a topic that is switched on the newest message alone is drawn, at most ten times a second
     by a wall clock. While no page is open, or it is switched off, the topic is not subscribed to.

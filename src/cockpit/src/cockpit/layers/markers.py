@@ -152,6 +152,6 @@ LAYER = Layer(
     "Markers",
     ("visualization_msgs/Marker", "visualization_msgs/MarkerArray"),
     Markers,
-    shown=("",),
+    shown=("visualization_marker", "visualization_marker_array", "markers", "frontiers"),
     needs_all=True,
 )

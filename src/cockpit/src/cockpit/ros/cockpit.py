@@ -1,6 +1,7 @@
 """The cockpit of a running graph: a thread that looks, draws and lets the tools work, ten times a second."""
 
 import time
+from contextlib import suppress
 from html import escape
 from typing import Any, Callable
 
@@ -67,12 +68,18 @@ class Cockpit:
         while not is_over():
             if not self._page.wait_for_someone(IDLE_SECONDS):
                 self._rest()
+                self._read_world()
                 continue
             began = time.monotonic()
             self._turn(began)
             time.sleep(max(PERIOD - (time.monotonic() - began), 0.02))
         self._driving.teleop.close()
         self._rest()
+
+    def _read_world(self) -> None:
+        """So that it is there when the first page opens."""
+        with suppress(CockpitError):
+            self._world.look_for()
 
     def _rest(self) -> None:
         """Nobody looks: nothing is subscribed to."""
