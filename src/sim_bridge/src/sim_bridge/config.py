@@ -10,6 +10,8 @@ from sim_bridge.noise import NOISES, NOT_NEGATIVE, NoiseSettings
 
 # Hertz; with more, a single period of the odometry would take seconds.
 HIGHEST_PHYSICS_RATE = 100_000
+# Seconds: a period of control, so that simulation and control are carried out side by side.
+LATENCY = 0.1
 
 
 @dataclass(frozen=True)
@@ -55,6 +57,12 @@ class BridgeSettings(RunTimeSettings):
     world: str = parameter("", "world that is simulated", required="the path of an SDF file")
     seed: int = parameter(0, "all noise follows from it", bounds=NOT_NEGATIVE)
     wait_for: str = parameter("", "names of nodes, by spaces, that the simulation stays in step with")
+    latency: float = parameter(
+        LATENCY,
+        "from the moment at which a node in step looks at the world until what it then sends takes effect",
+        "s",
+        POSITIVE,
+    )
     clock_rate: int = parameter(50, "/clock; must divide odometry_rate", "Hz", POSITIVE)
     joint_state_rate: int = parameter(10, "joint_states; must divide odometry_rate", "Hz", POSITIVE)
     strict: bool = parameter(

@@ -1,7 +1,7 @@
 """How fast simulated time may pass: in step with the wall clock, and with the nodes that work on its data."""
 
 from collections import deque
-from typing import Deque, Dict, Iterable, List, Optional, Set
+from typing import Deque, Dict, FrozenSet, Iterable, List, Optional, Set
 
 REAL_TIME = 1.0
 # Wall seconds of delay that are not made up for.
@@ -31,6 +31,8 @@ class Pacer:
         self.speed = speed
         self.wait_for = frozenset(wait_for)
         self.odometry_delay = 0.0
+        # Nodes that are in step by moments, which are waited for there.
+        self.in_step: FrozenSet[str] = frozenset()
         self._shortest_period = shortest_period
         self._patience = patience
         self._missing: Set[str] = set(self.wait_for)
@@ -51,7 +53,7 @@ class Pacer:
             self._missing.discard(name)
 
     def is_missing(self, name: str) -> bool:
-        return name in self._missing
+        return name in self._missing - self.in_step
 
     def restart(self) -> None:
         """Time begins anew: what the nodes have reported is void."""
@@ -78,7 +80,7 @@ class Pacer:
         return sorted(
             name
             for name, reached in self._reached.items()
-            if name not in self._missing and reached < stamp - self.period_of(name) - 1e-6
+            if name not in self._missing | self.in_step and reached < stamp - self.period_of(name) - 1e-6
         )
 
     def period_of(self, name: str) -> float:
@@ -98,7 +100,7 @@ class Pacer:
 
     def _delay_of_speed(self, stamp: float, wall: float) -> float:
         speed = self.speed
-        if self._missing and not 0.0 < speed < REAL_TIME:
+        if self._missing - self.in_step and not 0.0 < speed < REAL_TIME:
             speed = REAL_TIME
         if speed == 0.0:
             self._anchor_speed = speed

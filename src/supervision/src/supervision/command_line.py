@@ -2,7 +2,8 @@
 
 import argparse
 from dataclasses import MISSING, field, fields
-from typing import Any, Sequence, Type, TypeVar
+from pathlib import Path
+from typing import Any, List, Sequence, Type, TypeVar
 
 Options = TypeVar("Options")
 MEANING = "help"
@@ -49,6 +50,20 @@ def parse(
             parser.add_argument(item.name, **how)
     given = vars(parser.parse_args(words))
     return kind(**{name: tuple(value) if isinstance(value, list) else value for name, value in given.items()})
+
+
+def words(options: Any) -> List[str]:
+    """The words that ``parse`` makes these options of; those that are as by default are left out."""
+    told: List[str] = []
+    for item in fields(options):
+        value = getattr(options, item.name)
+        if value == item.default or not item.metadata:
+            continue
+        if "flag" in item.metadata:
+            told.append(item.metadata["flag"] or "--" + item.name.replace("_", "-"))
+        values = value if isinstance(value, tuple) else () if value is True else (value,)
+        told += [str(one.resolve()) if isinstance(one, Path) else str(one) for one in values]
+    return told
 
 
 def summary(kind: type) -> str:

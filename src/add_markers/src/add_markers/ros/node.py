@@ -1,6 +1,5 @@
 """The ROS node of add_markers: shows the objects of an errand or a mission as cubes in rviz."""
 
-import time
 from typing import Callable, List, Optional, Union
 
 import rospy
@@ -20,6 +19,7 @@ from planar_ros.messages.transforms import Transforms
 from planar_ros.node.parameters import read_settings
 from planar_ros.node.shell import run
 from planar_ros.node.waiting import Waiting
+from planar_ros.step import Step
 
 UPDATE_SECONDS = 0.1
 NOWHERE_YET = object()
@@ -50,15 +50,14 @@ class AddMarkers:
         Waiting(self._conditions())
 
     def work(self):
-        """Follows the parcel until shutdown."""
-        latest = None
-        while not rospy.is_shutdown():
-            now = rospy.get_time()
-            if now > 0.0 and (latest is None or abs(now - latest) >= UPDATE_SECONDS):
-                latest = now
-                self._robot = self._locate()
-                self._show(self._parcel.update(now, self._robot))
-            time.sleep(UPDATE_SECONDS / 5)
+        """From now on follows the parcel."""
+        step = Step.of_node()
+        step.every(lambda: UPDATE_SECONDS, self._update, lambda: None)
+        step.join()
+
+    def _update(self, now: rospy.Time) -> None:
+        self._robot = self._locate()
+        self._show(self._parcel.update(now.to_sec(), self._robot))
 
     def _locator(self, source: str) -> Locate:
         if source == "tf":
@@ -111,9 +110,12 @@ class AddMarkers:
 
 def main():
     def start():
+        Step.of_node()
         settings = read_settings(MarkerSettings)
         if settings.mode == "mission":
-            return MissionMarkers(settings)
+            markers = MissionMarkers(settings)
+            Step.of_node().join()
+            return markers
         return AddMarkers(settings).work()
 
     run("add_markers", start)

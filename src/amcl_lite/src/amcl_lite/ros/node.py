@@ -27,21 +27,21 @@ from planar.config.listing import yaml_of
 from planar_ros.messages.conversion import frame_name
 from planar_ros.messages.scan_queue import ScanQueue
 from planar_ros.messages.transforms import Transforms
-from planar_ros.node.progress import Progress
 from planar_ros.node.reconfigure import Reconfiguration, dynamic_values
 from planar_ros.node.shell import run
 from planar_ros.node.waiting import Waiting
+from planar_ros.step import Step
 
 
 class AmclNode:
     """Puts the parts together; hands each scan to the one Localizer and publishes what it returns."""
 
     def __init__(self, scan_topic: str = "scan"):
+        self._step = Step.of_node()
         settings = read_node_settings()
         self._shared = SharedLocalizer(settings)
         _warm_up(settings)
         views = Views(self._shared)
-        self._progress = Progress()
         self._transforms = Transforms()
         tf_bridge = TfBridge(self._transforms, self._shared)
         self._publisher = EstimatePublisher(self._shared, views, tf_bridge)
@@ -62,6 +62,7 @@ class AmclNode:
         rospy.on_shutdown(self._publisher.keep_pose)
         self._say_what_is_missing()
         Reconfiguration(settings, self._on_reconfigure)
+        self._step.join(lambda: settings.use_map_topic or self._shared.localizer is not None)
 
     def fetch_map(self) -> None:
         """Gets the map, however long it takes, if it does not come by topic; PlanarError if it is bad."""
@@ -106,12 +107,12 @@ class AmclNode:
                     self._publisher.publish(localizer, estimate, is_updated, base_in_odom, stamp)
                 except PlanarError as error:
                     rospy.logerr_throttle(SCAN_ALARM_SECONDS, f"scan ignored: {error}")
-        self._progress.report(stamp)
+        self._step.report(stamp)
 
     def _on_skipped_scan(self, message, reason):
         rospy.logwarn_throttle(SCAN_ALARM_SECONDS, f"Failed to compute odom pose, skipping scan ({reason})")
         self._alarm.hear()
-        self._progress.report(message.header.stamp)
+        self._step.report(message.header.stamp)
 
     def _on_reconfigure(self, values):
         try:

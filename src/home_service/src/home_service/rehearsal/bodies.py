@@ -1,6 +1,6 @@
 """The solid objects of a mission as boxes in a simulation without ROS."""
 
-from typing import Set
+from typing import List, Sequence, Set
 
 from add_markers import Bodies, Move, Solid
 from add_markers.bodies import HEIGHT, MASS, RIDING_HEIGHT
@@ -19,14 +19,8 @@ class RehearsedBodies:
         self._bodies.grid = grid
         self._there: Set[str] = set()
 
-    def follow(self, errand: Errand, robot: Pose2) -> None:
-        """Brings the boxes to where they belong now; ``robot``: where it truly is."""
-        things = [(errand.mission.thing(name), where) for name, where in errand.whereabouts.items()]
-        solids = [
-            Solid(thing.name, thing.size, None if where.is_carried else where.pose)
-            for thing, where in things
-            if thing.solid
-        ]
+    def follow(self, solids: Sequence[Solid], robot: Pose2) -> None:
+        """Brings the boxes to where they belong; ``robot``: where it truly is now."""
         for order in self._bodies.update(solids, robot):
             if isinstance(order, Move):
                 self._move(order, robot)
@@ -45,3 +39,13 @@ class RehearsedBodies:
         else:
             scene.add([box_on_floor(name, size, robot, MASS, height=RIDING_HEIGHT)])
             scene.attach(self._simulation.base, f"{name}::link")
+
+
+def solids_of(errand: Errand) -> List[Solid]:
+    """The solid objects, and where they belong now."""
+    things = [(errand.mission.thing(name), where) for name, where in errand.whereabouts.items()]
+    return [
+        Solid(thing.name, thing.size, None if where.is_carried else where.pose)
+        for thing, where in things
+        if thing.solid
+    ]

@@ -1,31 +1,40 @@
 """The whole mission in one process, without ROS: the same cores as in the nodes, stepped in lock-step.
 
-Bit-for-bit repeatable from a seed, and many times faster than real time.
+Bit-for-bit repeatable from a seed, and many times faster than real time. What takes effect when is as over
+ROS (docs/logical_time.md): what one part tells, the others know one control period later.
 """
 
 import hashlib
 import time
+from collections import deque
 from dataclasses import dataclass
 from pathlib import Path
-from typing import List, Optional, Tuple
+from typing import Deque, List, Optional, Tuple, Union
 
 import numpy as np
 
-from add_markers import CarriedParcel
+from add_markers import CarriedParcel, Solid
 from amcl_lite import Localizer, LocalizerSettings
 from home_service.judging.delivery_watch import DeliveryWatch
 from home_service.judging.verdict import ERRAND, MARKERS, Ledger, Verdict, judge
-from home_service.rehearsal.bodies import RehearsedBodies
+from home_service.rehearsal.bodies import RehearsedBodies, solids_of
 from move_base_lite import Decision, NavigationError, Navigator, Status, load_settings
 from pick_objects import Errand, Finish, GoalReached, GoalRefused, GoTo, MeasureWays, Mission, WaysMeasured
-from planar import OccupancyGrid, Pose2, Twist2
+from pick_objects.errand import Order
+from planar import OccupancyGrid, Pose2, Scan, Twist2
 from planar.config.settings_file import settings_from_yaml
 from sim_bridge import Observation, RobotProfile, Simulation
+from sim_bridge.config import LATENCY
 from sim_bridge.world import World
 
 PACKAGES = Path(__file__).resolve().parents[4]
 LOCALIZATION_CONFIG = PACKAGES / "amcl_lite/config/turtlebot.yaml"
 NAVIGATION_CONFIG = PACKAGES / "move_base_lite/config/turtlebot.yaml"
+
+
+# Control periods from when a navigator is there until its client has heard of it; and from when a box is
+# picked up or set down until it has been moved.
+PERIODS_TO_FIND, PERIODS_TO_MOVE = 2, 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +91,14 @@ class Rehearsal:
         self._steps_per_tick = round(
             1.0 / (navigation.move_base.controller_frequency * self._simulation.step_seconds)
         )
+        self._latency = min(LATENCY, 1.0 / navigation.move_base.controller_frequency)
+        self._steps_of_latency = round(self._latency / self._simulation.step_seconds)
+        self._command: Optional[Twist2] = None
+        self._command_under_way: Optional[Twist2] = None
+        self._goal: Optional[Pose2] = None
+        self._event: Union[None, GoalReached, GoalRefused] = None
+        self._now, self._periods_up = 0.0, 0
+        self._solids: Deque[List[Solid]] = deque()
         self._errand = Errand(mission)
         self._bodies = RehearsedBodies(self._simulation, grid)
         self._parcel = parcel
@@ -93,27 +110,10 @@ class Rehearsal:
 
     def run(self, simulated_timeout: float = 600.0) -> Rehearsed:
         """Plays the mission to its end."""
-        start = time.perf_counter()
-        command, event, outcome = Twist2(), None, None
+        start, outcome = time.perf_counter(), None
         while outcome is None:
-            observation, scan = self._advance_simulation(command)
-            now, odometry = observation.stamp, observation.odometry
-            if self._localizer.odom_in_map is None:
-                continue
-            base_in_map = self._localizer.odom_in_map @ odometry.base_in_odom
-            self._note(observation, base_in_map)
-            order = self._errand.advance(now, event)
-            self._note_state(observation.base_in_world)
-            self._bodies.follow(self._errand, observation.base_in_world)
-            if isinstance(order, GoTo):
-                self._navigator.set_goal(order.pose)
-            decision = self._navigator.tick(now, base_in_map, odometry.base_in_odom, odometry.twist, scan)
-            command, event = decision.command or Twist2(), _event_of(decision)
-            if isinstance(order, MeasureWays):
-                event = self._measure(order, base_in_map)
-            if isinstance(order, Finish):
-                outcome = order
-            elif now > simulated_timeout:
+            outcome = self._play_moment()
+            if outcome is None and self._now > simulated_timeout:
                 outcome = Finish(False, f"not done within {simulated_timeout:g} simulated seconds")
         if not outcome.success:
             self._ledger.failure = outcome.reason
@@ -127,15 +127,54 @@ class Rehearsal:
             time.perf_counter() - start,
         )
 
-    def _advance_simulation(self, command: Twist2):
+    def _play_moment(self) -> Optional[Finish]:
+        """Moves on by one control period, after which each part does what it has to do; the end, if so."""
+        odom_in_map = self._localizer.odom_in_map
+        observation, scan = self._advance_simulation()
+        self._now, odometry = observation.stamp, observation.odometry
+        if odom_in_map is None:
+            return None
+        base_in_map = odom_in_map @ odometry.base_in_odom
+        self._note(observation, base_in_map)
+        if self._goal is not None:
+            self._navigator.set_goal(self._goal)
+        decision = self._navigator.tick(
+            self._now, base_in_map, odometry.base_in_odom, odometry.twist, scan, latency=self._latency
+        )
+        self._command = decision.command
+        order = self._advance_errand(base_in_map, observation.base_in_world)
+        self._event = _event_of(decision)
+        self._goal = order.pose if isinstance(order, GoTo) else None
+        return order if isinstance(order, Finish) else None
+
+    def _advance_errand(self, base_in_map: Pose2, truth: Pose2) -> Optional[Order]:
+        """Its next order, if any; it begins when it has found the navigator."""
+        self._periods_up += 1
+        if self._periods_up <= PERIODS_TO_FIND:
+            return None
+        order = self._errand.advance(self._now, self._event)
+        while isinstance(order, MeasureWays):
+            order = self._errand.advance(self._now, self._measure(order, base_in_map))
+        self._note_state(truth)
+        self._solids.append(solids_of(self._errand))
+        if len(self._solids) > PERIODS_TO_MOVE:
+            self._bodies.follow(self._solids.popleft(), truth)
+        return order
+
+    def _advance_simulation(self) -> Tuple[Observation, Optional[Scan]]:
         """Moves on by one control period; returns the last observation and the scan made on the way."""
         scan = None
-        for _ in range(self._steps_per_tick):
-            observation = self._simulation.step(command)
+        for step in range(self._steps_per_tick):
+            sent = self._command_under_way if step == 0 else None
+            if step == self._steps_of_latency:
+                sent = self._command
+            observation = self._simulation.step(sent)
             self._ledger.collisions.extend(observation.contacts)
             if observation.scan is not None:
                 scan = observation.scan
                 self._localizer.update(observation.odometry.base_in_odom, scan)
+        is_under_way = self._steps_of_latency == self._steps_per_tick
+        self._command_under_way = self._command if is_under_way else None
         return observation, scan
 
     def _note(self, observation: Observation, base_in_map: Pose2) -> None:

@@ -14,8 +14,10 @@ from home_service.judging.verdict import Verdict
 from home_service.options import LaunchPlan, RunOptions
 from home_service.result import Result
 from home_service.ros.bags.rosbag_process import RosbagProcess
+from home_service.ros.run_trace import RunTrace
 from planar import PlanarError, SettingsError
 from run_report import summary, write_report
+from supervision.command_line import words
 from supervision.display import Display
 from supervision.interruption import RunInterruptedError, raise_if_interrupted, raise_when_interrupted
 from supervision.processes import start_of_this_process
@@ -50,6 +52,7 @@ class Run:
         self._supervisor = Supervisor(display, self.folder / "log", options.time_limit)
         self._bags: Optional[RosbagProcess] = None
         self._cockpit: Optional[CockpitProcess] = None
+        self._trace = RunTrace()
 
     def __enter__(self) -> "Run":
         raise_when_interrupted()
@@ -111,6 +114,7 @@ class Run:
         if self._launch.bags is not None:
             wait_for("simulated time", lambda: rospy.has_param("/use_sim_time"))
             self._bags = RosbagProcess(self._launch.bags, self.folder / "bag")
+        self._trace.start()
         self._judge.start()
         self._recorder.start()
         if self._launch.is_simulated:
@@ -129,8 +133,9 @@ class Run:
 
     def _keep(self, verdict: Verdict, **findings: Any) -> None:
         about = {"command": self._options.name, "success": verdict.success, "reason": verdict.reason}
-        self.result.add(**about, **self._options.told())
+        self.result.add(**about, **self._options.told(), arguments=words(self._options))
         self.result.add(wall_seconds=round(time.time() - start_of_this_process(), 3))
+        self.result.add(**self._trace.findings(self.folder, self._launch.is_simulated))
         self.result.add(**{**self._judge.findings(), **findings, "versions": versions()})
         self.result.write()
 

@@ -8,18 +8,23 @@ from move_base_lite.config import NavigatorSettings
 from move_base_lite.control import LOCAL_PLANNERS, Controller, Situation
 from move_base_lite.costmap import Sighting
 from move_base_lite.navigator.costmaps import Costmaps
+from move_base_lite.navigator.foresight import motion_ahead
 from move_base_lite.navigator.pursuit import Moment
 from move_base_lite.navigator.zones import Zones
 from move_base_lite.people import Movers
 from move_base_lite.planning import GLOBAL_PLANNERS
-from planar import OccupancyGrid, Pose2
+from planar import OccupancyGrid, Pose2, Twist2
 
 
 class Crew:
-    """Made from settings, and changed with them; ``zones`` may be switched by others."""
+    """Made from settings, and changed with them; ``zones`` may be switched by others.
+
+    ``latency``: seconds until a command takes effect; ``in_force``: the one that the robot obeys meanwhile.
+    """
 
     def __init__(self, settings: NavigatorSettings, grid: Optional[OccupancyGrid], zones: Zones):
         self.settings, self.zones = settings, zones
+        self.latency, self.in_force = 0.0, Twist2()
         self.planner = GLOBAL_PLANNERS.make(settings.planner)
         self.set_map(grid)
         self.begin_anew()
@@ -68,11 +73,14 @@ class Crew:
         )
 
     def situation(self, moment: Moment) -> Situation:
-        """What a velocity is to be chosen from."""
+        """What a velocity is to be chosen from: how things will stand when it takes effect."""
+        controller = self.settings.controller
+        acceleration = Twist2(controller.acc_lim_x, controller.acc_lim_theta)
+        moved, twist = motion_ahead(moment.twist, self.in_force, self.latency, acceleration)
         return Situation(
-            moment.base_in_map,
-            moment.base_in_odom,
-            moment.twist,
+            moment.base_in_map @ moved,
+            moment.base_in_odom @ moved,
+            twist,
             self.costmaps.near,
-            self._movers.at(moment.now),
+            self._movers.at(moment.now + self.latency),
         )

@@ -50,12 +50,27 @@ class Navigator:
         twist: Twist2,
         scan: Optional[Scan],
         sightings: Sequence[Sighting] = (),
+        latency: float = 0.0,
     ) -> Decision:
         """The velocity for the coming period.
 
         ``now``: seconds; ``scan``: one not given before, as seen from the present pose, or None.
-        ``sightings``: the same of any other sensors.
+        ``sightings``: the same of any other sensors. ``latency``: seconds until the velocity takes effect.
         """
+        self._crew.latency = latency
+        decision = self._decide(now, base_in_map, base_in_odom, twist, scan, sightings)
+        self._crew.in_force = decision.command or Twist2()
+        return decision
+
+    def _decide(
+        self,
+        now: float,
+        base_in_map: Pose2,
+        base_in_odom: Pose2,
+        twist: Twist2,
+        scan: Optional[Scan],
+        sightings: Sequence[Sighting],
+    ) -> Decision:
         moment = Moment(now, base_in_map, base_in_odom, twist)
         if scan is not None:
             sightings = [*sightings, sighting_of_scan(self.settings.scan_topic, scan)]

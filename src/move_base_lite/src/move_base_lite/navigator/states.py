@@ -135,10 +135,11 @@ def _clear_up(pursuit: Pursuit, moment: Moment, crew: Crew) -> Decision:
     if pursuit.recovery is None:
         start = _begin_recovery(pursuit, crew)
     assert pursuit.recovery is not None
+    ahead = crew.situation(moment)
     context = RecoveryContext(
-        moment.base_in_map,
-        moment.base_in_odom,
-        moment.twist,
+        ahead.base_in_map,
+        ahead.base_in_local,
+        ahead.twist,
         crew.period,
         crew.costmaps.whole,
         crew.costmaps.near,

@@ -25,11 +25,10 @@ from move_base_lite.warming import warm_up
 from planar import Pose2, SettingsError, Twist2
 from planar_ros.messages.conversion import OccupancyGridArrays, frame_name, grid_from_msg
 from planar_ros.messages.transforms import Transforms
-from planar_ros.node.clock import sleep_until
 from planar_ros.node.parameters import parameters_below
-from planar_ros.node.progress import Progress
 from planar_ros.node.shell import run
 from planar_ros.node.waiting import Waiting
+from planar_ros.step import Step
 
 WARN_SECONDS = 5.0
 KILLED_TEXT = "Aborting on the goal because the node has been killed"
@@ -37,12 +36,13 @@ TIME_JUMP_TEXT = "Aborting on the goal because time has jumped back"
 
 
 class MoveBaseNode:
-    """Callbacks store; one thread ticks the Navigator in ROS time and publishes what it decides.
+    """Callbacks store; the Navigator is ticked in ROS time, and what it decides published.
 
     As with the official node, the action and the services come up when the map and the transforms are there.
     """
 
     def __init__(self):
+        self._step = Step.of_node()
         parameters = parameters_below("~")
         self._settings = _checked_settings(parameters)
         zones_file = parameters.get("zones_file", "")
@@ -68,10 +68,10 @@ class MoveBaseNode:
         odom_topic = parameters.get("DWAPlannerROS", {}).get("odom_topic", "odom")
         self._surroundings = Surroundings(self._settings, self._transforms, odom_topic)
         self._tree = ParameterTree(parameters, self._change)
-        self._progress = Progress()
         self._await_inputs()
         rospy.on_shutdown(self._on_shutdown)
-        threading.Thread(target=self._control, daemon=True).start()
+        self._step.every(self._period, self._tick, self._start_afresh)
+        self._step.join(lambda: self._new_map is not None or self._navigator is not None)
 
     def _await_inputs(self):
         local = self._settings.local_costmap
@@ -100,21 +100,8 @@ class MoveBaseNode:
             if self._navigator is not None:
                 self._navigator.change(settings)
 
-    def _control(self):
-        """Ticks in ROS time; a jump back of time starts afresh."""
-        due = rospy.Time(0)
-        while not rospy.is_shutdown():
-            period = rospy.Duration(1.0 / self._settings.move_base.controller_frequency)
-            try:
-                if due - rospy.Time.now() > 2 * period:
-                    raise rospy.ROSTimeMovedBackwardsException((due - rospy.Time.now()).to_sec())
-                now = sleep_until(due)
-                self._tick(now)
-                self._progress.report(now)
-                due = max(due + period, now) if due != rospy.Time(0) else now + period
-            except rospy.ROSTimeMovedBackwardsException:
-                due = rospy.Time(0)
-                self._start_afresh()
+    def _period(self) -> float:
+        return 1.0 / self._settings.move_base.controller_frequency
 
     def _start_afresh(self):
         rospy.logwarn("time has jumped back: forgetting goal, obstacles and transforms")
@@ -130,6 +117,10 @@ class MoveBaseNode:
             self._goals.forget_time()
 
     def _tick(self, now: rospy.Time):
+        self._navigate(now)
+        self._step.report(now)
+
+    def _navigate(self, now: rospy.Time):
         with self._lock:
             self._take_map()
             if self._navigator is None:
@@ -143,7 +134,13 @@ class MoveBaseNode:
                 self._come_up(self._navigator)
             self._take_goal(self._navigator, now)
             decision = self._navigator.tick(
-                now.to_sec(), view.base_in_map, view.base_in_odom, view.twist, None, view.sightings
+                now.to_sec(),
+                view.base_in_map,
+                view.base_in_odom,
+                view.twist,
+                None,
+                view.sightings,
+                self._step.latency,
             )
             self._act(now, view, decision)
             self._potential.publish(now, self._navigator.potential, self._settings.planner.publish_scale)

@@ -35,12 +35,12 @@ class DeliverServer:
         self._server = ActionServer("deliver", DeliverAction, auto_start=False)
         self._server.start()
 
-    def serve(self, poll_seconds: float) -> None:
-        """Until shutdown."""
+    def serve(self, pause: Callable[[], None]) -> None:
+        """Until shutdown; pauses between two looks at what has come."""
         while not rospy.is_shutdown():
             if self._server.is_new_goal_available():
                 self._do(self._server.accept_new_goal())
-            time.sleep(poll_seconds)
+            pause()
 
     def _do(self, goal: DeliverGoal) -> None:
         start = rospy.Time.now()

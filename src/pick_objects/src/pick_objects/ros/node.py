@@ -24,6 +24,7 @@ from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg
 from planar_ros.node.parameters import read_settings
 from planar_ros.node.shell import fail, run
 from planar_ros.node.waiting import Readiness, Waiting
+from planar_ros.step import Step
 
 POLL_SECONDS = 0.02
 
@@ -32,6 +33,7 @@ class PickObjects:
     """Carries out the mission of a file, or the errand between the two zones, or what the action is sent."""
 
     def __init__(self):
+        self._step = Step.of_node()
         self._settings = read_settings(NodeSettings, ignore=ErrandSettings.__dataclass_fields__)
         self._defaults = read_settings(ErrandSettings, ignore=NodeSettings.__dataclass_fields__)
         self._map: Optional[OccupancyGrid] = None
@@ -60,7 +62,9 @@ class PickObjects:
         if self._mission is not None:
             outcome = self._carry_out(self._read_again(self._mission))
         if self._settings.serve:
-            DeliverServer(self._topics, self._understand, self._carry_out).serve(POLL_SECONDS)
+            DeliverServer(self._topics, self._understand, self._carry_out).serve(
+                lambda: self._step.pause(POLL_SECONDS)
+            )
         return outcome
 
     def _read_mission(self) -> Optional[Mission]:
@@ -95,15 +99,16 @@ class PickObjects:
             if isinstance(order, MeasureWays):
                 event = self._driver.measure(order)
             else:
-                time.sleep(POLL_SECONDS)
+                self._step.pause(POLL_SECONDS)
                 event = self._driver.event()
         return Finish(False, "interrupted")
 
     def _why_not_to_start(self) -> Optional[str]:
         settings = self._settings
-        if not _wait_for(lambda: self._map is not None, settings.map_timeout):
+        if not self._wait_for(lambda: self._map is not None, settings.map_timeout):
             rospy.logwarn("no map within %g s: the places are not checked", settings.map_timeout)
-        if not _wait_for(lambda: not self._missing(), settings.server_timeout):
+        self._step.join(takes_turns=True)
+        if not self._wait_for(lambda: not self._missing(), settings.server_timeout):
             return f"waited {settings.server_timeout:g} s in vain for {', '.join(self._missing())}"
         return None
 
@@ -156,16 +161,15 @@ class PickObjects:
             return response_kind(False, str(error))
         return response_kind(True, "")
 
+    def _wait_for(self, is_there: Callable[[], bool], seconds: float) -> bool:
+        """Waits at most so many wall-clock seconds; whether it is there then."""
+        deadline = time.monotonic() + seconds
+        while not is_there() and time.monotonic() < deadline and not rospy.is_shutdown():
+            self._step.pause(POLL_SECONDS)
+        return is_there()
+
     def _keep_map(self, message):
         self._map = grid_from_msg(message)
-
-
-def _wait_for(is_there: Callable[[], bool], seconds: float) -> bool:
-    """Waits at most so many wall-clock seconds; whether it is there then."""
-    deadline = time.monotonic() + seconds
-    while not is_there() and time.monotonic() < deadline and not rospy.is_shutdown():
-        time.sleep(POLL_SECONDS)
-    return is_there()
 
 
 def main():

@@ -1,19 +1,24 @@
 """Clients and servers of actions."""
 
 import actionlib
-import rospy
+
+from planar_ros.step import Step
 
 
 class ActionServer(actionlib.SimpleActionServer):
-    """A server that tells its status also after time was set back, which ends actionlib's own timer."""
+    """A server that tells its status at moments, and also after time was set back, unlike actionlib's own."""
 
     def start(self) -> None:
+        server, step = self.action_server, Step.of_node()
+        tell = server.publish_status
+        if step.is_on:  # clients connect between this moment and the next, and either all hear it or none
+            server.publish_status = lambda: None
         super().start()
-        server = self.action_server
+        server.publish_status = tell
         if server.status_timer is not None:
             server.status_timer.shutdown()
-            period = rospy.Duration(1.0 / server.status_frequency)
-            server.status_timer = rospy.Timer(period, server.publish_status_async, reset=True)
+        period = 1.0 / server.status_frequency
+        step.every(lambda: period, lambda _now: tell(), lambda: None)
 
 
 def server_is_ready(client: actionlib.SimpleActionClient) -> bool:

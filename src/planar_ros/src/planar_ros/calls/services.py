@@ -6,6 +6,7 @@ import threading
 import rospy
 
 from planar import PlanarError
+from planar_ros.step import Step
 
 
 class ServiceError(PlanarError):
@@ -15,10 +16,11 @@ class ServiceError(PlanarError):
 def call_service(name: str, kind, request, seconds: float):
     """The response of the service; waits at most ``seconds`` of wall-clock time. Raises ServiceError."""
     answers: queue.Queue = queue.Queue()
+    headers = Step.of_node().headers()
 
     def call():
         try:
-            answers.put((rospy.ServiceProxy(name, kind)(request), None))
+            answers.put((rospy.ServiceProxy(name, kind, headers=headers)(request), None))
         except (rospy.ServiceException, rospy.ROSException, OSError) as error:
             answers.put((None, error))
 

@@ -10,6 +10,7 @@ from tf2_msgs.msg import TFMessage
 from planar import Pose2, Scan
 from planar_ros.messages.conversion import LaserScanArrays, frame_name, scan_from_msg
 from planar_ros.messages.transforms import Transforms
+from planar_ros.step import Step
 
 # A stamp this much older than the one before it means that time has jumped back: a bag's loop, a reset.
 JUMP_BACK_SECONDS = 1.0
@@ -19,9 +20,9 @@ class ScanQueue:
     """Hands on each scan once it is known where the robot was, in odometry, at the scan's stamp.
 
     A transform may come a little before or after its scan; the waiting holds up nothing else, it happens in a
-    thread of its own. ``handle(message, scan, base_in_odom)`` is called there, scans of one laser in order;
-    ``skip(message, reason)`` for each scan whose odometry will never be known, or that ``size`` others have
-    overtaken. Reasons are for people.
+    thread of its own, in step at moments. ``handle(message, scan, base_in_odom)`` is called there, scans of
+    one laser in order; ``skip(message, reason)`` for each scan whose odometry will never be known, or that
+    ``size`` others have overtaken. Reasons are for people.
     """
 
     def __init__(
@@ -45,6 +46,8 @@ class ScanQueue:
         self._newest_stamp = rospy.Time(0)
         self._has_news = threading.Condition()
         self._news = 0
+        self._step = Step.of_node()
+        self._step.at_moments(self._deal_with_waiting)
         rospy.on_shutdown(self._wake)
         threading.Thread(target=self._work, daemon=True).start()
         # Subscribed to after the listener, whose callback has then already taken in the same message.
@@ -101,12 +104,17 @@ class ScanQueue:
             with self._has_news:
                 self._has_news.wait_for(lambda: self._news != seen or rospy.is_shutdown())  # noqa: B023
                 seen = self._news
-                waiting = list(self._waiting.items())
-            for number, message in waiting:
-                is_late = self._is_ending or self._received - number >= self.size
-                if self._is_done_with(message, is_late):
-                    with self._has_news:
-                        self._waiting.pop(number, None)
+            if not self._step.is_on:
+                self._deal_with_waiting()
+
+    def _deal_with_waiting(self):
+        with self._has_news:
+            waiting = list(self._waiting.items())
+        for number, message in waiting:
+            is_late = self._is_ending or self._received - number >= self.size
+            if self._is_done_with(message, is_late):
+                with self._has_news:
+                    self._waiting.pop(number, None)
 
     def _is_done_with(self, message, is_late):
         try:

@@ -11,8 +11,8 @@ from planar import Pose2
 from planar.config.settings import check
 from planar_ros.messages.conversion import pose2_from_msg, time_of
 from planar_ros.node.parameters import parameters_below, read_settings
-from planar_ros.node.prompt_sending import send_promptly
 from planar_ros.node.shell import run
+from planar_ros.step import transport
 from sim_bridge.config import BridgeSettings, RobotSettings, SimulationSettings
 from sim_bridge.description import read_sdf_robot
 from sim_bridge.errors import WorldError
@@ -24,6 +24,7 @@ from sim_bridge.ros.cli import find_file, model_folders
 from sim_bridge.ros.fleet import Fleet
 from sim_bridge.ros.gazebo import GazeboInterface
 from sim_bridge.ros.gazebo.server import NAMESPACE
+from sim_bridge.ros.lock_step import LockStep
 from sim_bridge.ros.orders import Orders
 from sim_bridge.ros.performance import Performance
 from sim_bridge.ros.time_control import TimeControl
@@ -48,10 +49,12 @@ class Bridge:
         self._scene = Scene(world, simulation_settings, settings.seed)
         self._orders = Orders()
         self._steps = 0
-        pacer = Pacer(settings.speed, [name.lstrip("/") for name in settings.wait_for.split()])
+        wait_for = [name.lstrip("/") for name in settings.wait_for.split()]
+        pacer = Pacer(settings.speed, wait_for)
+        self._lock_step = LockStep(wait_for, settings.latency, self._orders)
         self._clock = rospy.Publisher("/clock", Clock, queue_size=10, latch=True, tcp_nodelay=True)
         self._performance = Performance()
-        self._time = TimeControl(self._scene, pacer, self._orders)
+        self._time = TimeControl(self._scene, pacer, self._lock_step, self._orders)
         self._fleet = Fleet(self._scene, self._orders, joint_steps)
         for name, one in robots.items():
             profile, start = robot_named(one.robot, find_file), Pose2(one.x, one.y, one.yaw)
@@ -71,7 +74,7 @@ class Bridge:
         """Steps until shutdown."""
         try:
             while not rospy.is_shutdown():
-                self._orders.carry_out()
+                self._orders.carry_out(self._lock_step.awaited, self._lock_step.members)
                 self._time.expect_odometry(self._fleet.odometry_seconds)
                 if not self._time.wait_for_turn():
                     continue
@@ -125,5 +128,5 @@ def _steps_between(rate: int, step_rate: int, name: str) -> int:
 
 
 def main():
-    send_promptly()
+    transport.install()
     run("sim_bridge", lambda: Bridge().run())

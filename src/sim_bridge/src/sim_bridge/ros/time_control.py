@@ -15,6 +15,7 @@ from planar_ros.node.reconfigure import Reconfiguration
 from planar_ros.node.waiting import Waiting
 from sim_bridge.config import RunTimeSettings
 from sim_bridge.pacing import Pacer
+from sim_bridge.ros.lock_step import LockStep
 from sim_bridge.ros.orders import Orders
 from sim_bridge.scene import Scene
 
@@ -33,8 +34,9 @@ class _Grant:
 class TimeControl:
     """Says when the next step is due; its methods are called in the thread that owns the scene."""
 
-    def __init__(self, scene: Scene, pacer: Pacer, orders: Orders):
+    def __init__(self, scene: Scene, pacer: Pacer, step: LockStep, orders: Orders):
         self.is_paused = False
+        self._step = step
         self._scene = scene
         self._pacer = pacer
         self._orders = orders
@@ -64,6 +66,12 @@ class TimeControl:
         if self.is_paused and not self._grants:
             self._orders.wait(LONGEST_WAIT_SECONDS)
             return False
+        if not self._step.may_pass(self._scene.stamp):
+            self._orders.wait(LONGEST_WAIT_SECONDS)
+            return False
+        if self._orders.are_waiting:  # what has just taken effect
+            return False
+        self._pacer.in_step = self._step.names
         wall, stamp = time.monotonic(), self._scene.stamp + self._scene.step_seconds
         delay = self._pacer.delay(stamp, wall, is_limited=not self.is_paused)
         if delay <= 0.0:
@@ -93,6 +101,7 @@ class TimeControl:
     def reset_simulation(self) -> None:
         self._scene.reset()
         self._pacer.restart()
+        self._step.restart()
         rospy.loginfo("the simulation starts again at time 0")
 
     def close(self) -> None:
@@ -127,4 +136,4 @@ class TimeControl:
         self._orders.leave(lambda: self._pacer.report(name, stamp))
 
     def _follows(self, name):
-        return lambda: not self._pacer.is_missing(name)
+        return lambda: name in self._step.names or not self._pacer.is_missing(name)

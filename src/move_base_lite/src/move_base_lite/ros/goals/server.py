@@ -1,6 +1,5 @@
 """Goals: move_base's action, and the topic on which rviz sends them."""
 
-import threading
 from typing import Callable, Optional
 
 import rospy
@@ -14,20 +13,19 @@ from move_base_lite.ros.topics.plan_messages import pose_msg
 from planar import Pose2
 from planar_ros.calls.actions import ActionServer
 from planar_ros.messages.transforms import Transforms
+from planar_ros.step import Step
 
 
 class GoalServer:
     """One goal at a time; a new one preempts the old one.
 
-    ``on_cancel`` is called in a thread of its own when a client wants the goal under way to be left.
+    ``on_cancel`` is called, out of the way of actionlib's locks, when a client wants the goal to be left.
     """
 
     def __init__(self, map_frame: str, transforms: Transforms, on_cancel: Callable[[], None]):
         self._map_frame, self._transforms = map_frame, transforms
         self._server = ActionServer("move_base", MoveBaseAction, auto_start=False)
-        self._server.register_preempt_callback(
-            lambda: threading.Thread(target=on_cancel, daemon=True).start()
-        )
+        self._server.register_preempt_callback(lambda: Step.of_node().soon(on_cancel))
         self._current_goal = rospy.Publisher("~current_goal", PoseStamped, queue_size=1)
         self._action_goal = rospy.Publisher("move_base/goal", MoveBaseActionGoal, queue_size=1)
         rospy.Subscriber("move_base_simple/goal", PoseStamped, self._on_simple_goal, queue_size=1)

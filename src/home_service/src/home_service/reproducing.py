@@ -1,0 +1,53 @@
+"""A run made again from what its folder tells of it."""
+
+import json
+from pathlib import Path
+from typing import Any, Dict
+
+from home_service import cli
+from home_service.judging.trace import first_difference, read_trace
+from planar import SettingsError
+from supervision.versions import versions
+
+NOTHING = "nothing more"
+
+
+def reproduce(folder: Path) -> int:
+    """Runs it again, into ``folder``/again; returns 0 if it was the same, 1 if not. Raises SettingsError."""
+    before, lines = read_result(folder), read_trace(folder)
+    for name, version in versions().items():
+        if before["versions"].get(name) != version:
+            print(f"{name} is {version} now, was {before['versions'].get(name, 'unknown')}")
+    for reason in before.get("not_repeatable_because", ()):
+        print(f"that run may not be repeatable: {reason}")
+    parent = folder / "again"
+    known = set(parent.glob("*/result.json"))
+    cli.main([before["command"], *before["arguments"], "--output", str(parent)])
+    made = sorted(set(parent.glob("*/result.json")) - known)
+    if not made:
+        raise SettingsError(f"{folder}: the run could not be made again")
+    after = read_result(made[0].parent)
+    for reason in after.get("not_repeatable_because", ()):
+        print(f"this run may not be repeatable: {reason}")
+    difference = first_difference(lines, read_trace(made[0].parent))
+    if difference is None:
+        print(f"the same: {len(lines)} messages, hash {after['hash'][:16]}")
+        return 0
+    print(f"not the same; the first difference:\n  was: {difference.here or NOTHING}")
+    print(f"  is:  {difference.there or NOTHING}")
+    return 1
+
+
+def read_result(folder: Path) -> Dict[str, Any]:
+    """What result.json of a run folder tells. Raises SettingsError if that does not suffice to repeat it."""
+    path = folder / "result.json"
+    try:
+        result = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise SettingsError(f"{path}: {error.strerror}") from None
+    except ValueError as error:
+        raise SettingsError(f"{path}: not JSON ({error})") from None
+    for key in ("command", "arguments", "hash", "versions"):
+        if not isinstance(result, dict) or key not in result:
+            raise SettingsError(f"{path}: no {key}: that run cannot be made again")
+    return result

@@ -1,0 +1,91 @@
+"""Follows a run for its trace, and for what may keep it from being repeatable."""
+
+from pathlib import Path
+from typing import Any, Callable, Dict, List
+
+import rospy
+from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
+from home_service_msgs.msg import ExploreActionResult, MissionState
+from move_base_msgs.msg import MoveBaseActionResult
+from nav_msgs.msg import Odometry
+from std_msgs.msg import String
+from visualization_msgs.msg import Marker
+
+from home_service.judging.trace import Entry, Trace
+
+AUDIENCE_PARAMETER = "/simulation/audience"
+ROBOTS = ("", "follower/")
+
+
+class RunTrace:
+    """Subscribes as soon as there is a master, so that the simulator waits for it to hear."""
+
+    def __init__(self):
+        self._trace = Trace()
+        self._remarks: List[str] = []
+
+    def start(self) -> None:
+        """This process is a node by then."""
+        for robot in ROBOTS:
+            self._follow(f"{robot}base_pose_ground_truth", Odometry, _pose, queue_size=1000)
+            self._follow(f"{robot}amcl_pose", PoseWithCovarianceStamped, _pose)
+            self._follow(f"{robot}move_base/current_goal", PoseStamped, _goal, self._begin)
+            self._follow(f"{robot}move_base/result", MoveBaseActionResult, _result)
+        self._follow("move_base/result", MoveBaseActionResult, _result, self._trace.end)
+        self._follow("pick_objects/mission_state", MissionState, _mission, self._trace.end)
+        self._follow("explore/result", ExploreActionResult, _result, self._trace.end)
+        rospy.Subscriber("visualization_marker", Marker, self._keep_marker, queue_size=100)
+        rospy.Subscriber("/simulation/remarks", String, self._keep_remarks, queue_size=10)
+        rospy.set_param(AUDIENCE_PARAMETER, [rospy.get_name()])
+
+    def findings(self, folder: Path, is_simulated: bool) -> Dict[str, Any]:
+        """What belongs into result.json; writes the trace beside it."""
+        digest = self._trace.write(folder) if is_simulated else None
+        if digest is None:
+            return {}
+        return {"hash": digest, "repeatable": not self._remarks, "not_repeatable_because": self._remarks}
+
+    def _follow(
+        self,
+        topic: str,
+        kind: type,
+        tell: Callable[[Any], str],
+        also: Callable[[Entry], None] = lambda entry: None,
+        queue_size: int = 100,
+    ) -> None:
+        def keep(message: Any) -> None:
+            node = message._connection_header["callerid"]
+            entry = Entry(message.header.stamp.to_nsec(), rospy.resolve_name(topic), node, tell(message))
+            self._trace.note(entry)
+            also(entry)
+
+        rospy.Subscriber(topic, kind, keep, queue_size=queue_size, tcp_nodelay=True)
+
+    def _begin(self, entry: Entry) -> None:
+        self._trace.begin(entry.stamp)
+
+    def _keep_marker(self, message: Marker) -> None:
+        at = message.pose.position
+        self._trace.mark(f"marker {message.ns} {message.id}: {message.action} at {at.x!r} {at.y!r} {at.z!r}")
+
+    def _keep_remarks(self, message: String) -> None:
+        self._remarks = message.data.splitlines()
+
+
+def _pose(message: Any) -> str:
+    at, turned = message.pose.pose.position, message.pose.pose.orientation
+    return f"{at.x!r} {at.y!r} {turned.z!r} {turned.w!r}"
+
+
+def _goal(message: PoseStamped) -> str:
+    at, turned = message.pose.position, message.pose.orientation
+    return f"{at.x!r} {at.y!r} {turned.z!r} {turned.w!r}"
+
+
+def _result(message: Any) -> str:
+    return f"{message.status.status} {message.status.text!r}"
+
+
+def _mission(message: MissionState) -> str:
+    stages = ", ".join(f"{each.delivery.name}: {each.state}" for each in message.deliveries)
+    return f"{message.state!r} at {message.place!r}, attempt {message.attempt} ({stages})"

@@ -1,0 +1,221 @@
+"""A node's part in lock-step with a simulator; without one the node works as it comes."""
+
+import threading
+import time
+import traceback
+from typing import Callable, ClassVar, Dict, FrozenSet, List, Optional, Set, Tuple
+
+import rospy
+from sim_bridge_msgs.msg import Answer, Moment
+from std_msgs.msg import Header
+
+from planar_ros.node.progress import Progress
+from planar_ros.step import transport
+from planar_ros.step.calls import await_before_answering, headers_of
+from planar_ros.step.inbox import Inbox
+from planar_ros.step.ticker import Ticker
+from planar_ros.step.transport import ANSWER_TOPIC, MOMENT_TOPIC, CountedConnection
+from planar_ros.step.turns import Turns
+
+Hook = Callable[[], None]
+POLL_SECONDS = 0.02
+# Simulated seconds between two moments that a node needs which does not say.
+DEFAULT_PERIOD = 0.1
+# Wall seconds without a moment after which messages of strangers are handed on as they come.
+STALLED_SECONDS = 0.5
+# Wall seconds that a call from a node in step may have to wait for the moment it belongs to.
+CALL_SECONDS = 4.0
+
+
+class Step:
+    """The one of this node: takes in what belongs to each moment, has the node work, and answers.
+
+    A node asks to be in step (``join``) when it has all that does not take simulated time; the simulator lets
+    no time pass before. In step, messages are handed to callbacks at moments only, in one thread and always
+    in the same order; then the node's hooks are called (``at_moments``, ``every``), then threads that take
+    turns go on until they ``pause``; what they send goes out with the answer. ROS time is the moment's.
+    """
+
+    _instance: ClassVar[Optional["Step"]] = None
+
+    def __init__(self):
+        self._latency = 0.0
+        self._name = rospy.get_name()
+        self._inbox = Inbox(True, lambda text: self.remark(f"at {self._name} {text}"))
+        self._turns = Turns()
+        self._progress = Progress()
+        self._hooks: List[Hook] = []
+        self._required: Dict[Tuple[str, str], int] = {}
+        self._told: Dict[str, int] = {}
+        self._remarks: Set[str] = set()
+        self._pending: List[Hook] = []
+        self._periods: List[Callable[[], float]] = []
+        self._number = self._answered = 0
+        self._answered_at = 0.0
+        self._working = threading.Condition()
+        self._answers: Optional[rospy.Publisher] = None
+        if rospy.get_param("/use_sim_time", False):
+            transport.install()
+            self._inbox.install()
+            await_before_answering(self._await_answer)
+            self._answers = rospy.Publisher(ANSWER_TOPIC, Answer, queue_size=10, tcp_nodelay=True)
+            rospy.Subscriber(MOMENT_TOPIC, Moment, self._on_moment, queue_size=100, tcp_nodelay=True)
+
+    @classmethod
+    def of_node(cls) -> "Step":
+        """The node's own; the first call must come before all subscriptions."""
+        if cls._instance is None:
+            cls._instance = cls()
+        return cls._instance
+
+    @property
+    def is_on(self) -> bool:
+        """Whether the node is in step."""
+        return bool(self._inbox.members)
+
+    @property
+    def latency(self) -> float:
+        """Seconds until what the node sends takes effect."""
+        return self._latency if self.is_on else 0.0
+
+    def join(self, is_ready: Callable[[], bool] = lambda: True, takes_turns: bool = False) -> None:
+        """Asks to be in step as soon as the node ``is_ready``.
+
+        With ``takes_turns`` the calling thread does: no answer is given while it works.
+        """
+        if self._answers is None:
+            return
+        if takes_turns:
+            self._turns.enter()
+        threading.Thread(target=self._ask, args=(is_ready,), daemon=True).start()
+
+    def at_moments(self, hook: Hook) -> None:
+        """``hook`` is called at every moment, when what belongs to it has been taken in."""
+        self._hooks.append(hook)
+
+    def every(self, period: Callable[[], float], tick: Callable[[rospy.Time], None], afresh: Hook) -> None:
+        """Calls ``tick(now)`` every ``period()`` seconds of ROS time, ``afresh`` when it has jumped back."""
+        self._periods.append(period)
+        ticker = Ticker(period, tick, afresh)
+        self.at_moments(ticker.look)
+        ticker.start(lambda: self.is_on)
+
+    def pause(self, seconds: float) -> None:
+        """Ends the turn of the calling thread until the next moment; out of step, for ``seconds``."""
+        if self._turns.has():
+            self._turns.pause(lambda: not self.is_on or rospy.is_shutdown())
+        if not self.is_on:
+            time.sleep(seconds)
+
+    def soon(self, do: Hook) -> None:
+        """Calls it when the caller is done: at the end of the moment; out of step, in another thread."""
+        if self.is_on:
+            self._pending.append(do)
+        else:
+            threading.Thread(target=do, daemon=True).start()
+
+    def report(self, stamp: rospy.Time) -> None:
+        """Out of step: tells a simulator that the node has worked up to ``stamp``."""
+        if not self.is_on:
+            self._progress.report(stamp)
+
+    def headers(self) -> Dict[str, str]:
+        """What a call of a service has to carry now."""
+        return headers_of(self._number if self.is_on else 0)
+
+    def remark(self, text: str) -> None:
+        """Says why this run may not be repeatable."""
+        self._remarks.add(text)
+
+    def _ask(self, is_ready: Callable[[], bool]) -> None:
+        """Again and again while the node is not in step; in it, minds strangers."""
+        while not rospy.is_shutdown():
+            if self.is_on:
+                self._mind_strangers()
+            elif is_ready():
+                self._answer(rospy.Time(0))
+            time.sleep(POLL_SECONDS)
+
+    def _on_moment(self, message: Moment) -> None:
+        members = frozenset(message.members)
+        if self._name not in members:
+            if self.is_on:
+                self._leave()
+            return
+        with self._working:
+            self._begin(message, members)
+            self._work()
+            transport.flush()
+            self._answer(message.header.stamp)
+            self._answered, self._answered_at = self._number, time.monotonic()
+            self._working.notify_all()
+
+    def _begin(self, message: Moment, members: FrozenSet[str]) -> None:
+        """Takes in what belongs to the moment."""
+        if members != self._inbox.members:
+            self._inbox.members = CountedConnection.members = members
+            self._required.clear()
+            self._told.clear()
+        for channel, count in zip(message.channels, message.counts):
+            sender, receiver, topic = channel.split(" ")
+            if receiver == self._name:
+                self._required[topic, sender] = count
+        self._number, self._latency = message.number, message.latency.to_sec()
+        rospy.rostime._set_rostime(message.header.stamp)
+        for loss in self._inbox.release(self._required):
+            rospy.logwarn("at %.2f s: %s", message.header.stamp.to_sec(), loss)
+            self.remark(f"{self._name}: {loss}")
+
+    def _work(self) -> None:
+        for hook in tuple(self._hooks):
+            _call(hook)
+        self._turns.play(lambda: not self.is_on or rospy.is_shutdown())
+        while self._pending:
+            _call(self._pending.pop(0))
+
+    def _answer(self, stamp: rospy.Time) -> None:
+        sent = transport.sent(self._name)
+        news = {channel: count for channel, count in sent.items() if self._told.get(channel) != count}
+        self._told.update(news)
+        remarks, self._remarks = self._remarks, set()
+        answer = Answer(
+            Header(stamp=stamp, frame_id=self._name),
+            self._number if self.is_on else 0,
+            rospy.Duration(min((period() for period in self._periods), default=DEFAULT_PERIOD)),
+            transport.topology(),
+            list(news),
+            list(news.values()),
+            sorted(remarks),
+        )
+        assert self._answers is not None
+        self._answers.publish(answer)
+
+    def _leave(self) -> None:
+        """The simulation goes on without this node, which works out of step and asks to be back."""
+        rospy.logwarn("the simulation does not wait for this node any more")
+        CountedConnection.members = frozenset()
+        transport.flush()
+        self._inbox.release_all()
+        self._turns.wake()
+
+    def _await_answer(self, number: int) -> None:
+        """Until the moment of this number has been answered."""
+        with self._working:
+            self._working.wait_for(lambda: self._answered >= number or not self.is_on, CALL_SECONDS)
+
+    def _mind_strangers(self) -> None:
+        """While no moment comes, as in a simulation that is paused, strangers are heard all the same."""
+        time.sleep(STALLED_SECONDS)
+        with self._working:
+            if self.is_on and time.monotonic() - self._answered_at > STALLED_SECONDS:
+                self._inbox.release_strangers()
+                transport.flush()
+
+
+def _call(hook: Hook) -> None:
+    """A fault of one hook keeps no other from its work, as rospy has it with callbacks."""
+    try:
+        hook()
+    except Exception:
+        if not rospy.is_shutdown():
+            rospy.logerr("at a moment: %s", traceback.format_exc())

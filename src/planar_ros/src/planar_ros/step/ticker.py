@@ -1,0 +1,58 @@
+"""Work that is due again and again in ROS time, in step or not."""
+
+import threading
+import time
+from typing import Callable
+
+import rospy
+
+from planar_ros.node.clock import sleep_until
+
+NEVER = rospy.Time(0)
+# Wall seconds between two looks whether the node is still in step.
+IN_STEP_SECONDS = 0.2
+
+
+class Ticker:
+    """Calls ``tick(now)`` every ``period()`` seconds, ``afresh()`` when ROS time has jumped back."""
+
+    def __init__(
+        self, period: Callable[[], float], tick: Callable[[rospy.Time], None], afresh: Callable[[], None]
+    ):
+        self._period, self._tick, self._afresh = period, tick, afresh
+        self._due = NEVER
+        self._looked_at = NEVER
+        self._lock = threading.RLock()
+
+    def start(self, is_in_step: Callable[[], bool]) -> None:
+        """Works in a thread of its own whenever the node is not in step."""
+        threading.Thread(target=self._work, args=(is_in_step,), daemon=True).start()
+
+    def look(self) -> None:
+        """Works if it is due now."""
+        with self._lock:
+            now, period = rospy.Time.now(), rospy.Duration(self._period())
+            if now < self._looked_at or self._due - now > 2 * period:
+                self._begin_afresh()
+            self._looked_at = now
+            if now != rospy.Time(0) and now >= self._due:
+                self._due = max(self._due + period, now) if self._due != NEVER else now + period
+                self._tick(now)
+
+    def _work(self, is_in_step) -> None:
+        while not rospy.is_shutdown():
+            try:
+                sleep_until(self._due)
+            except rospy.ROSTimeMovedBackwardsException:
+                with self._lock:
+                    self._begin_afresh()
+                continue
+            with self._lock:
+                if not is_in_step():
+                    self.look()
+                    continue
+            time.sleep(IN_STEP_SECONDS)
+
+    def _begin_afresh(self) -> None:
+        self._due = self._looked_at = NEVER
+        self._afresh()

@@ -1,0 +1,119 @@
+"""rospy's connections, so that messages between nodes in step are counted and come in one piece a moment."""
+
+import threading
+from io import BytesIO
+from typing import ClassVar, Dict, FrozenSet, Iterator, List, Tuple
+
+import rospy.topics
+from rospy.impl.tcpros_pubsub import TCPROSSub
+
+from planar_ros.node.prompt_sending import PromptConnection
+
+MOMENT_TOPIC, ANSWER_TOPIC, CLOCK_TOPIC = "/simulation/moment", "/simulation/answer", "/clock"
+# They go by themselves: the first two say how many of all others there are, the moment is the time.
+UNCOUNTED = frozenset((MOMENT_TOPIC, ANSWER_TOPIC, CLOCK_TOPIC))
+LENGTH_BYTES = 4
+
+
+class CountedConnection(PromptConnection):
+    """Towards a node in step it keeps what is sent back until the moment's answer, and loses nothing.
+
+    ``members``: the nodes in step with this one; none, and it is a connection as any other.
+    """
+
+    members: ClassVar[FrozenSet[str]] = frozenset()
+
+    def __init__(self, connection, queue_size: int):
+        self.count = 0
+        self.receiver, self._topic = connection.endpoint_id, connection.protocol.resolved_name
+        self._kept: List[bytes] = []
+        # Reentrant, for a message may be sent while others are: the order is that of the calls.
+        self._keeping = threading.RLock()
+        super().__init__(connection, queue_size)
+
+    def write_data(self, data) -> bool:
+        is_in_step = self.receiver in self.members
+        if is_in_step and self._topic == CLOCK_TOPIC:
+            return True
+        with self._keeping:
+            self.count += 1
+            if is_in_step and self._topic not in UNCOUNTED:
+                self._queue_size = 0  # rospy's word for: drop nothing
+                self._kept.append(data)
+                return True
+            self._send_kept()
+            return super().write_data(data)
+
+    def flush(self) -> None:
+        """Sends what was kept back."""
+        with self._keeping:
+            self._send_kept()
+
+    def _send_kept(self) -> None:
+        if self._kept:
+            kept, self._kept = b"".join(self._kept), []
+            super().write_data(kept)
+
+
+class Frame:
+    """A message as it came, not yet deserialized."""
+
+    __slots__ = ("_connection_header", "data")
+
+    def __init__(self, data: bytes):
+        self.data = data
+        self._connection_header: Dict[str, str] = {}
+
+
+def install() -> None:
+    """From now on this node's connections are such."""
+    rospy.topics.QueuedConnection = CountedConnection
+    TCPROSSub.read_messages = _read_frames
+
+
+def _read_frames(self: TCPROSSub, b: BytesIO, msg_queue: List[Frame], sock: object) -> None:
+    """Cuts what has come into frames, and leaves it to an Inbox to make messages of them."""
+    end, at = b.tell(), 0
+    with b.getbuffer() as view:
+        while end - at >= LENGTH_BYTES:
+            start = at + LENGTH_BYTES
+            size = int.from_bytes(view[at:start], "little")
+            if end - start < size:
+                break
+            msg_queue.append(Frame(bytes(view[start : start + size])))
+            at = start + size
+        rest = bytes(view[at:end]) if at else b""
+    if at:
+        b.seek(0)
+        b.truncate(0)
+        b.write(rest)
+
+
+def connections() -> Iterator[Tuple[str, str, CountedConnection]]:
+    """Receiver, topic and connection of all that this node sends by."""
+    for topic, publisher in list(rospy.topics.get_topic_manager().pubs.items()):
+        for connection in publisher.connections:
+            if isinstance(connection, CountedConnection):
+                yield connection.receiver, topic, connection
+
+
+def flush() -> None:
+    """Sends whatever has been kept back."""
+    for _, _, connection in connections():
+        connection.flush()
+
+
+def sent(sender: str) -> Dict[str, int]:
+    """How many messages have gone out on each connection to a node in step, by "sender receiver topic"."""
+    members = CountedConnection.members
+    return {
+        f"{sender} {receiver} {topic}": connection.count
+        for receiver, topic, connection in connections()
+        if receiver in members and topic not in UNCOUNTED
+    }
+
+
+def topology() -> int:
+    """Another number for other topics."""
+    manager = rospy.topics.get_topic_manager()
+    return hash((frozenset(manager.pubs), frozenset(manager.subs))) & 0xFFFFFFFF

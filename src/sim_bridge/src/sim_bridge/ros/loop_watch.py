@@ -1,0 +1,98 @@
+"""Watches, in a thread of its own, whether the loop of the nodes in step is closed."""
+
+import threading
+import time
+from typing import Collection, Dict, List, Set
+
+import rospy
+
+from planar_ros.step.closure import Closure
+
+POLL_SECONDS = 0.02
+# Wall seconds: for nodes to come, for one that is there to show that it can be in step, for connections.
+COMING_SECONDS, STRANGE_SECONDS, CONNECTING_SECONDS = 30.0, 5.0, 5.0
+# Nodes outside that are to miss nothing.
+AUDIENCE_PARAMETER = "/simulation/audience"
+
+
+class LoopWatch:
+    """The loop is closed when all ``expected`` nodes have joined and hear each other and the node ``me``.
+
+    What does not come within its time is given up.
+    """
+
+    def __init__(self, me: str, expected: Collection[str]):
+        self.is_closed = not expected
+        self._me = me
+        self._joined: Set[str] = set()
+        self._absent = set(expected)
+        self._since: Dict[str, float] = {}
+        self._given_up: Set[str] = set()
+        self._untold: List[str] = []
+        self._closure = Closure()
+        self._changed = threading.Condition()
+        self._version = 1
+        self._seen = 0 if expected else 1
+        threading.Thread(target=self._watch, daemon=True).start()
+
+    def join(self, name: str) -> None:
+        """A node is there and asks to be in step."""
+        with self._changed:
+            self._joined.add(name)
+            self._absent.discard(name)
+        self.look_again()
+
+    def look_again(self) -> None:
+        """Somebody has other topics: the loop is open until all is connected."""
+        with self._changed:
+            if self._joined or self._absent:
+                self._version += 1
+                self.is_closed = False
+                self._changed.notify_all()
+
+    def given_up(self) -> List[str]:
+        """What has been given up since the last call, for people."""
+        with self._changed:
+            untold, self._untold = self._untold, []
+        return untold
+
+    def _watch(self) -> None:
+        while not rospy.is_shutdown():
+            with self._changed:
+                self._changed.wait_for(lambda: self._seen != self._version, 1.0)
+                version = self._version
+            if self._seen == version:
+                continue
+            gaps = self._gaps()
+            with self._changed:
+                if not gaps and version == self._version:
+                    self._seen, self.is_closed = version, True
+                    self._since.clear()
+            if gaps:
+                time.sleep(POLL_SECONDS)
+
+    def _gaps(self) -> List[str]:
+        """What is missing and not given up; those given up are remembered."""
+        with self._changed:
+            absent, members = sorted(self._absent), {self._me, *self._joined}
+        gaps = {}
+        known, able = self._closure.known() if absent else (set(), set())
+        for name in absent:
+            if name in known and name not in able:
+                gaps[f"the node {name}, which is not one of ours,"] = STRANGE_SECONDS
+            else:
+                gaps[f"the node {name}"] = COMING_SECONDS
+        audience = rospy.get_param(AUDIENCE_PARAMETER, [])
+        if not absent:
+            for gap in self._closure.gaps(members, audience):
+                gaps[f"the connection of {gap}"] = CONNECTING_SECONDS
+        return [gap for gap, seconds in gaps.items() if not self._is_given_up(gap, seconds)]
+
+    def _is_given_up(self, gap: str, seconds: float) -> bool:
+        now = time.monotonic()
+        if gap not in self._given_up and now - self._since.setdefault(gap, now) > seconds:
+            rospy.logwarn("waited %g s in vain for %s: the simulation goes on without", seconds, gap)
+            with self._changed:
+                self._given_up.add(gap)
+                self._untold.append(gap)
+        return gap in self._given_up
