@@ -21,6 +21,7 @@ from planar_ros.messages.transforms import Transforms
 from planar_ros.node.parameters import read_settings
 from planar_ros.node.shell import run
 from planar_ros.node.waiting import Waiting
+from planar_ros.step import Step
 
 POLL_SECONDS = 0.02
 FEEDBACK_SECONDS = 1.0
@@ -34,6 +35,7 @@ class Explore:
         node_fields, explorer_fields = (
             kind.__dataclass_fields__ for kind in (NodeSettings, ExplorerSettings)
         )
+        self._step = Step.of_node()
         self._settings = read_settings(NodeSettings, ignore=explorer_fields)
         self._explorer_settings = read_settings(ExplorerSettings, ignore=node_fields)
         warm_up()
@@ -52,8 +54,16 @@ class Explore:
             self._move_base.name: self._move_base.is_ready,
         }
         Waiting(self._conditions)
-        self._server = ActionServer("explore", ExploreAction, self._execute, auto_start=False)
+        self._server = ActionServer("explore", ExploreAction, auto_start=False)
         self._server.start()
+
+    def serve(self) -> None:
+        """Until shutdown."""
+        self._step.join(takes_turns=True)
+        while not rospy.is_shutdown():
+            if self._server.is_new_goal_available():
+                self._execute(self._server.accept_new_goal())
+            self._step.pause(POLL_SECONDS)
 
     def _execute(self, goal):
         settings = self._explorer_settings
@@ -65,7 +75,7 @@ class Explore:
         start = rospy.get_time()
         rospy.loginfo("exploring")
         end = self._explore(explorer)
-        self._move_base.stop(STOP_SECONDS)
+        self._stop()
         result = ExploreResult(
             explored_area=explorer.explored_area,
             duration=rospy.Duration(max(0.0, rospy.get_time() - start)),
@@ -106,9 +116,16 @@ class Explore:
             if explorer.state is not ExplorerState.READY and now >= next_feedback:
                 next_feedback = now + FEEDBACK_SECONDS
                 self._tell(explorer, goal)
-            time.sleep(POLL_SECONDS)
+            self._step.pause(POLL_SECONDS)
             event = event or self._next_event()
         return None
+
+    def _stop(self) -> None:
+        """Gives the goal up, and waits a little until it has been given up."""
+        self._move_base.cancel()
+        deadline = time.monotonic() + STOP_SECONDS
+        while not self._move_base.is_idle and time.monotonic() < deadline:
+            self._step.pause(POLL_SECONDS)
 
     def _robot(self) -> Optional[Pose2]:
         return self._transforms.lookup(self._settings.global_frame, self._settings.robot_base_frame)
@@ -146,4 +163,4 @@ class Explore:
 
 
 def main():
-    run("explore", Explore)
+    run("explore", lambda: Explore().serve())

@@ -1,6 +1,5 @@
 """The node ``follow_me``: asks tf where both robots are, and sends goals to the follower's move_base."""
 
-import threading
 from typing import Callable, Optional
 
 import rospy
@@ -10,21 +9,20 @@ from follow_me.follower import Follower
 from planar import Pose2
 from planar_ros.calls.move_base import MoveBase
 from planar_ros.messages.transforms import Transforms
-from planar_ros.node.clock import sleep_until
 from planar_ros.node.parameters import read_settings
-from planar_ros.node.progress import Progress
 from planar_ros.node.shell import run
 from planar_ros.node.waiting import Waiting
+from planar_ros.step import Step
 
 
 class FollowMe:
     """Sends goals for as long as it lives; without transforms it waits, and says for which."""
 
     def __init__(self):
+        step = Step.of_node()
         self._settings = read_settings(NodeSettings)
         self._follower = Follower(self._settings)
         self._transforms = Transforms()
-        self._progress = Progress()
         self._move_base = MoveBase(self._settings.map_frame)
         frames = (self._settings.leader_frame, self._settings.base_frame)
         Waiting(
@@ -36,24 +34,18 @@ class FollowMe:
                 },
             }
         )
-        threading.Thread(target=self._work, daemon=True).start()
+        step.every(lambda: self._settings.goal_period, self._follow, self._begin_afresh)
+        step.join()
 
-    def _work(self):
-        period, now = rospy.Duration(self._settings.goal_period), rospy.Time.now()
-        while not rospy.is_shutdown():
-            try:
-                # Of the two only a jump back of time makes the second the earlier one.
-                now = sleep_until(min(now, rospy.Time.now()) + period)
-                self._follow()
-                self._progress.report(now)
-            except rospy.ROSTimeMovedBackwardsException:
-                now = rospy.Time.now()
-                self._follower = Follower(self._settings)
-                self._transforms.clear()
-            except rospy.ROSInterruptException:
-                return
+    def _begin_afresh(self):
+        self._follower = Follower(self._settings)
+        self._transforms.clear()
 
-    def _follow(self):
+    def _follow(self, now: rospy.Time):
+        self._send_goal()
+        Step.of_node().report(now)
+
+    def _send_goal(self):
         leader, follower = self._in_map(self._settings.leader_frame), self._in_map(self._settings.base_frame)
         if leader is None or follower is None or not self._move_base.is_ready():
             return

@@ -73,6 +73,11 @@ class MoveBase:
             self._client.cancel_goal()
         self._is_driving = False
 
+    @property
+    def is_idle(self) -> bool:
+        """Whether no goal is pursued."""
+        return goal_is_over(self._client)
+
     def stop(self, patience: float) -> None:
         """The same, and waits at most so many wall-clock seconds until it has been given up."""
         self.cancel()

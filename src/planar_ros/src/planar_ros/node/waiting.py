@@ -2,11 +2,13 @@
 
 import threading
 import time
-from typing import Callable, Mapping
+from typing import Callable, List, Mapping, Optional
 
 import rosgraph
 import rospy
 from std_msgs.msg import String
+
+from planar_ros.step import Step
 
 # Private topic, latched: what the node waits for, one a line; empty once it has everything.
 TOPIC = "waiting_for"
@@ -25,27 +27,35 @@ class Waiting:
 
     def __init__(self, conditions: Mapping[str, Callable[[], bool]]):
         self._conditions = conditions
+        self._missing: Optional[List[str]] = None
         self._publisher = rospy.Publisher(f"~{TOPIC}", String, queue_size=1, latch=True)
+        self._step = Step.present()
+        if self._step is not None:
+            self._step.at_moments(self._look)
         threading.Thread(target=self._watch, daemon=True).start()
 
     def _watch(self):
-        start = time.monotonic()
-        told, latest = False, None
+        start, told = time.monotonic(), False
         while not rospy.is_shutdown():
-            missing = [name for name, is_met in self._conditions.items() if not is_met()]
-            if missing != latest:
-                latest = missing
-                self._publisher.publish("\n".join(missing))
-            if not missing:
+            if self._step is None or not self._step.is_on:
+                self._look()
+            if not self._missing:
                 if told:
                     rospy.loginfo("nothing to wait for any more")
                 return
             if not told and time.monotonic() - start > PATIENCE_SECONDS:
                 told = True
-                for name in missing:
+                for name in self._missing:
                     rospy.logwarn("waiting for %s", name)
                 _check_clock()
             time.sleep(POLL_SECONDS)
+
+    def _look(self):
+        if self._missing != []:
+            missing = [name for name, is_met in self._conditions.items() if not is_met()]
+            if missing != self._missing:
+                self._missing = missing
+                self._publisher.publish("\n".join(missing))
 
 
 class Readiness:

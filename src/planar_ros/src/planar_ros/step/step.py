@@ -68,6 +68,11 @@ class Step:
             cls._instance = cls()
         return cls._instance
 
+    @classmethod
+    def present(cls) -> Optional["Step"]:
+        """The node's own, None if it has none."""
+        return cls._instance
+
     @property
     def is_on(self) -> bool:
         """Whether the node is in step."""

@@ -2,6 +2,7 @@
 
 import math
 import threading
+import time
 from typing import Optional
 
 import numpy as np
@@ -11,16 +12,22 @@ from std_msgs.msg import Float64
 
 from planar import OccupancyGrid
 from planar_ros.messages.conversion import GetMapArrays, OccupancyGridArrays, frame_name, grid_to_msg
+from planar_ros.step import Step
 from slam_lite.config import NodeSettings
 from slam_lite.rendering import on_canvas
 from slam_lite.ros.mapping import Mapping
 
 # The entropy is that of the pose told to this much: 1 cm, 1 cm and 0.01 rad.
 ENTROPY_CELL = 1e-6
+# Wall seconds between two looks whether the node is still in step.
+IN_STEP_SECONDS = 0.2
 
 
 class MapTopics:
-    """Draws the map and publishes it, in a thread of its own, so that it keeps no scan waiting."""
+    """Draws the map and publishes it, in a thread of its own, so that it keeps no scan waiting.
+
+    In step it does so at moments.
+    """
 
     def __init__(self, settings: NodeSettings, mapping: Mapping):
         self._settings = settings
@@ -50,12 +57,19 @@ class MapTopics:
             grid = renderer.grid()
         return grid if len(poses) else None
 
+    def draw_if_due(self) -> None:
+        if self._is_due.is_set() and not rospy.is_shutdown():
+            self._is_due.clear()
+            self._publish()
+
     def _draw_maps(self) -> None:
+        step = Step.of_node()
         while not rospy.is_shutdown():
             self._is_due.wait()
-            self._is_due.clear()
-            if not rospy.is_shutdown():
-                self._publish()
+            if step.is_on:
+                time.sleep(IN_STEP_SECONDS)
+            else:
+                self.draw_if_due()
 
     def _publish(self) -> None:
         settings = self._settings

@@ -6,6 +6,7 @@ import rospy
 
 from planar_ros.messages.conversion import frame_name
 from planar_ros.messages.transforms import Transforms
+from planar_ros.step import Step
 from slam_lite.config import NodeSettings
 from slam_lite.ros.mapping import Mapping
 
@@ -20,10 +21,11 @@ class MapTransform:
         self._stamp: Optional[rospy.Time] = None
         if settings.transform_publish_period > 0.0:
             self._send()
-            period = rospy.Duration(settings.transform_publish_period)
-            rospy.Timer(period, self._send, reset=True)
+            Step.of_node().every(
+                lambda: settings.transform_publish_period, lambda _now: self._send(), lambda: None
+            )
 
-    def _send(self, event=None) -> None:
+    def _send(self) -> None:
         settings = self._settings
         delay = settings.tf_delay if settings.tf_delay >= 0.0 else settings.transform_publish_period
         stamp = rospy.Time.now() + rospy.Duration(delay)

@@ -7,6 +7,7 @@ import numpy as np
 import rospy
 
 from planar import Pose2, Scan
+from planar_ros.step import Step
 from slam_lite.config import NodeSettings
 from slam_lite.mapper import Follower, Mapper, PoseUpdate
 from slam_lite.rendering import Beams, MapRenderer
@@ -28,7 +29,7 @@ class Evidence(NamedTuple):
 class Mapping:
     """Holds one Mapper, or a Follower in localization-only mode, guarded by one lock.
 
-    Loops are closed in a thread of its own, so that they keep no scan waiting.
+    Loops are closed in a thread of its own, so that they keep no scan waiting; in step, at moments.
     """
 
     def __init__(self, settings: NodeSettings):
@@ -86,22 +87,34 @@ class Mapping:
 
     def start(self) -> None:
         """Closes loops from now on."""
-        threading.Thread(target=self._close_loops, daemon=True).start()
+        threading.Thread(target=self._keep_closing, daemon=True).start()
 
-    def _close_loops(self) -> None:
+    def close_loops(self) -> None:
+        """Closes what loops there are."""
+        while self._close_one():
+            pass
+
+    def _keep_closing(self) -> None:
+        step = Step.of_node()
         while not rospy.is_shutdown():
-            with self._lock:
-                mapper = self._mapper
-                task = mapper.task() if self._follower is None else None
-                if task is None:
+            if step.is_on or not self._close_one():
+                with self._lock:
                     self._has_keys.wait(timeout=1.0)
-                    continue
-            result = task.run()
-            with self._lock:
-                if mapper is not self._mapper:
-                    continue
-                before = mapper.last_in_map
-                mapper.adopt(result)
-                self.odom_in_map = mapper.last_in_map @ before.inverse() @ self.odom_in_map
-                if result.moved:
-                    rospy.loginfo("mended the map (%d loop closures so far)", mapper.loop_count)
+
+    def _close_one(self) -> bool:
+        """Whether there was one."""
+        with self._lock:
+            mapper = self._mapper
+            task = mapper.task() if self._follower is None else None
+        if task is None:
+            return False
+        result = task.run()
+        with self._lock:
+            if mapper is not self._mapper:
+                return True
+            before = mapper.last_in_map
+            mapper.adopt(result)
+            self.odom_in_map = mapper.last_in_map @ before.inverse() @ self.odom_in_map
+            if result.moved:
+                rospy.loginfo("mended the map (%d loop closures so far)", mapper.loop_count)
+        return True

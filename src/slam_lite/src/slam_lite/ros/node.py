@@ -10,9 +10,9 @@ from planar_ros.messages.conversion import frame_name, pose2_from_msg, scan_from
 from planar_ros.messages.scan_queue import ScanQueue
 from planar_ros.messages.transforms import Transforms
 from planar_ros.node.parameters import read_settings
-from planar_ros.node.progress import Progress
 from planar_ros.node.shell import run
 from planar_ros.node.waiting import Waiting
+from planar_ros.step import Step
 from slam_lite.config import WITHOUT_EFFECT, NodeSettings
 from slam_lite.ros.alarms import ALARM_SECONDS, MountingAlarm, OdometryAlarm
 from slam_lite.ros.file_services import FileServices
@@ -28,6 +28,7 @@ class SlamNode:
     """Hands scans, which are dealt with in the queue's thread, to a mapping, whose outcome others publish."""
 
     def __init__(self):
+        self._step = Step.of_node()
         settings = self._settings = read_settings(
             NodeSettings, official_names(NodeSettings), ignore=[*WITHOUT_EFFECT, "seed"]
         )
@@ -43,10 +44,8 @@ class SlamNode:
 
     def _connect(self):
         settings = self._settings
-        self._progress = Progress()
         self._transforms = Transforms()
         self._mounting_alarm = MountingAlarm(self._transforms, settings.base_frame)
-        MapTransform(settings, self._mapping, self._transforms)
         self._maps = MapTopics(settings, self._mapping)
         rospy.Service("~pause", SetBool, self._on_pause)
         FileServices(self._mapping, self._maps)
@@ -60,6 +59,10 @@ class SlamNode:
             self._on_skipped_scan,
             size=SCAN_QUEUE_SIZE,
         )
+        self._step.at_moments(self._mapping.close_loops)
+        self._step.at_moments(self._maps.draw_if_due)
+        MapTransform(settings, self._mapping, self._transforms)
+        self._step.join()
         Waiting(
             {
                 f"a scan on {self._scans.topic}": lambda: self._scan_count > 0,
@@ -75,7 +78,7 @@ class SlamNode:
             if update is not None:
                 self._odometry_alarm.note(update.surprise)
             self._maps.note_scan(scan.stamp)
-        self._progress.report(message.header.stamp)
+        self._step.report(message.header.stamp)
 
     def _on_skipped_scan(self, message, reason):
         settings = self._settings
@@ -90,7 +93,7 @@ class SlamNode:
             self._on_scan(message, scan_from_msg(message, *mounting), Pose2())
             return
         rospy.logwarn_throttle(ALARM_SECONDS, "skipping a scan: %s", reason)
-        self._progress.report(message.header.stamp)
+        self._step.report(message.header.stamp)
 
     def _on_pause(self, request):
         self._is_paused = request.data
