@@ -60,6 +60,7 @@ class Step:
             await_before_answering(self._await_answer)
             self._answers = rospy.Publisher(ANSWER_TOPIC, Answer, queue_size=10, tcp_nodelay=True)
             rospy.Subscriber(MOMENT_TOPIC, Moment, self._on_moment, queue_size=100, tcp_nodelay=True)
+            rospy.on_shutdown(self._take_leave)
 
     @classmethod
     def of_node(cls) -> "Step":
@@ -178,15 +179,22 @@ class Step:
         while self._pending:
             _call(self._pending.pop(0))
 
-    def _answer(self, stamp: rospy.Time) -> None:
+    def _take_leave(self) -> None:
+        """Answers for the last time, so that what has been sent takes effect and nobody waits."""
+        if self.is_on:
+            transport.flush()
+            self._answer(rospy.Time.now(), is_last=True)
+
+    def _answer(self, stamp: rospy.Time, is_last: bool = False) -> None:
         sent = transport.sent(self._name)
         news = {channel: count for channel, count in sent.items() if self._told.get(channel) != count}
         self._told.update(news)
         remarks, self._remarks = self._remarks, set()
+        period = 0.0 if is_last else min((period() for period in self._periods), default=DEFAULT_PERIOD)
         answer = Answer(
             Header(stamp=stamp, frame_id=self._name),
             self._number if self.is_on else 0,
-            rospy.Duration(min((period() for period in self._periods), default=DEFAULT_PERIOD)),
+            rospy.Duration(period),
             transport.topology(),
             list(news),
             list(news.values()),

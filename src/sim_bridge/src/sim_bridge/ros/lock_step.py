@@ -33,6 +33,7 @@ class LockStep:
         self._inbox = Inbox(False, self._on_stranger)
         self._inbox.install()
         self._joining: Dict[str, float] = {}
+        self._leaving: List[str] = []
         self._topologies: Dict[str, int] = {}
         self._loop = LoopWatch(self._name, self._wait_for)
         self._is_applied = True
@@ -42,7 +43,7 @@ class LockStep:
         self._noted: Set[str] = set()
         self._moments = rospy.Publisher(MOMENT_TOPIC, Moment, queue_size=10, tcp_nodelay=True)
         self._remarks_topic = rospy.Publisher(REMARKS_TOPIC, String, queue_size=1, latch=True)
-        rospy.Subscriber(ANSWER_TOPIC, Answer, self._hear, queue_size=100, tcp_nodelay=True)
+        self._answers = rospy.Subscriber(ANSWER_TOPIC, Answer, self._hear, queue_size=100, tcp_nodelay=True)
         await_before_answering(lambda number: None)
 
     @property
@@ -91,10 +92,14 @@ class LockStep:
         awaited = self._conductor.awaited()
         if awaited:
             wall = time.monotonic()
-            if self._blocked_since is None:
+            there = {connection.callerid_pub for connection in self._answers.impl.connections}
+            gone = [name for name in awaited if name not in there]
+            if gone and not self._orders.are_waiting:
+                self._give_up(gone, f"has died at {stamp:.2f} s")
+            elif self._blocked_since is None:
                 self._blocked_since = wall
             elif wall - self._blocked_since > PATIENCE_SECONDS:
-                self._give_up(awaited, stamp)
+                self._give_up(awaited, f"did not answer for {PATIENCE_SECONDS:g} s at {stamp:.2f} s")
             return False
         self._blocked_since, self._is_applied = None, True
         required: Dict[Tuple[str, str], int] = {}
@@ -124,11 +129,13 @@ class LockStep:
             Moment(header, number, latency, sorted(members), list(news), list(news.values()))
         )
         self._is_applied = not members
+        while self._leaving:
+            self._conductor.dismiss(self._leaving.pop())
 
-    def _give_up(self, names: Sequence[str], stamp: float) -> None:
+    def _give_up(self, names: Sequence[str], why: str) -> None:
         for name in names:
             rospy.logwarn("no progress of %s: the simulation goes on without it in real time", name[1:])
-            self.remark(f"{name} did not answer for {PATIENCE_SECONDS:g} s at {stamp:.2f} s")
+            self.remark(f"{name} {why}")
             self._conductor.dismiss(name)
         self._blocked_since = None
 
@@ -145,6 +152,8 @@ class LockStep:
         if message.number:
             sent = dict(zip(message.channels, message.counts))
             self._conductor.answer(name, message.number, sent)
+            if not message.period:
+                self._leaving.append(name)
         elif name not in self.members and name not in self._joining:
             self._joining[name] = message.period.to_sec()
             self._loop.join(name)
