@@ -34,18 +34,14 @@ class FollowMe:
                 },
             }
         )
-        step.every(lambda: self._settings.goal_period, self._follow, self._begin_afresh)
+        step.every(lambda: self._settings.goal_period, self._follow, self._begin_afresh, reports=True)
         step.join()
 
     def _begin_afresh(self):
         self._follower = Follower(self._settings)
         self._transforms.clear()
 
-    def _follow(self, now: rospy.Time):
-        self._send_goal()
-        Step.of_node().report(now)
-
-    def _send_goal(self):
+    def _follow(self, _now: rospy.Time):
         leader, follower = self._in_map(self._settings.leader_frame), self._in_map(self._settings.base_frame)
         if leader is None or follower is None or not self._move_base.is_ready():
             return

@@ -28,7 +28,7 @@ from planar_ros.messages.transforms import Transforms
 from planar_ros.node.parameters import parameters_below
 from planar_ros.node.shell import run
 from planar_ros.node.waiting import Waiting
-from planar_ros.step import Step
+from planar_ros.step import Step, is_heard_in_step
 
 WARN_SECONDS = 5.0
 KILLED_TEXT = "Aborting on the goal because the node has been killed"
@@ -70,8 +70,8 @@ class MoveBaseNode:
         self._tree = ParameterTree(parameters, self._change)
         self._await_inputs()
         rospy.on_shutdown(self._on_shutdown)
-        self._step.every(self._period, self._tick, self._start_afresh)
-        self._step.join(lambda: self._new_map is not None or self._navigator is not None)
+        self._step.every(self._period, self._tick, self._start_afresh, reports=True)
+        self._step.join(self._has_map)
 
     def _await_inputs(self):
         local = self._settings.local_costmap
@@ -85,7 +85,7 @@ class MoveBaseNode:
             conditions[f"a map on {rospy.resolve_name(static.map_topic)}"] = (
                 lambda: self._new_map is not None or self._navigator is not None
             )
-            rospy.Subscriber(static.map_topic, OccupancyGridArrays, self._on_map, queue_size=1)
+            self._maps = rospy.Subscriber(static.map_topic, OccupancyGridArrays, self._on_map, queue_size=1)
         else:
             self._navigator = Navigator(self._settings, None, self._zones)
         Waiting(conditions)
@@ -99,6 +99,11 @@ class MoveBaseNode:
             self._surroundings.change(settings)
             if self._navigator is not None:
                 self._navigator.change(settings)
+
+    def _has_map(self) -> bool:
+        """Whether there is a map, or it is yet to be made."""
+        is_there = self._new_map is not None or self._navigator is not None
+        return is_there or is_heard_in_step(self._maps)
 
     def _period(self) -> float:
         return 1.0 / self._settings.move_base.controller_frequency
@@ -117,10 +122,6 @@ class MoveBaseNode:
             self._goals.forget_time()
 
     def _tick(self, now: rospy.Time):
-        self._navigate(now)
-        self._step.report(now)
-
-    def _navigate(self, now: rospy.Time):
         with self._lock:
             self._take_map()
             if self._navigator is None:

@@ -1,5 +1,5 @@
 """Logical time: messages are taken in, and take effect, at moments (docs/logical_time.md)."""
 
-from planar_ros.step.step import Step
+from planar_ros.step.step import Step, is_heard_in_step
 
-__all__ = ["Step"]
+__all__ = ["Step", "is_heard_in_step"]

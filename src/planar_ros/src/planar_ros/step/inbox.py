@@ -9,12 +9,15 @@ from typing import Any, Callable, Deque, Dict, FrozenSet, List, Mapping, Optiona
 import rospy
 from rospy.topics import _SubscriberImpl
 
+from planar_ros.node.progress import TOPIC as PROGRESS_TOPIC
 from planar_ros.step.transport import CLOCK_TOPIC, UNCOUNTED, Frame
 
 # Wall seconds that a message may be under way.
 PATIENCE_SECONDS = 4.0
 # Transforms are there before what refers to them is dealt with.
 FIRST_TOPICS = ("/tf_static", "/tf")
+# What is heard on these from nodes that are not in step decides nothing.
+UNSUSPICIOUS = frozenset((*FIRST_TOPICS, *UNCOUNTED, PROGRESS_TOPIC))
 _receive = _SubscriberImpl.receive_callback
 
 
@@ -113,7 +116,7 @@ class Inbox:
             _deliver(channel, frames)
 
     def _note_stranger(self, topic: str, sender: str) -> None:
-        if (topic, sender) not in self._known and topic not in FIRST_TOPICS:
+        if (topic, sender) not in self._known and topic not in UNSUSPICIOUS:
             self._known.add((topic, sender))
             self._on_stranger(f"{topic} came from {sender}, which is not in step")
 

@@ -18,9 +18,12 @@ from planar_ros.step.transport import ANSWER_TOPIC, MOMENT_TOPIC, CountedConnect
 from planar_ros.step.turns import Turns
 
 Hook = Callable[[], None]
+Tick = Callable[[rospy.Time], None]
 POLL_SECONDS = 0.02
 # Simulated seconds between two moments that a node needs which does not say.
 DEFAULT_PERIOD = 0.1
+# The nodes that the simulator waits for.
+WAIT_FOR_PARAMETER = "/simulation/wait_for"
 # Wall seconds without a moment after which messages of strangers are handed on as they come.
 STALLED_SECONDS = 0.5
 # Wall seconds that a call from a node in step may have to wait for the moment it belongs to.
@@ -99,12 +102,15 @@ class Step:
         """``hook`` is called at every moment, when what belongs to it has been taken in."""
         self._hooks.append(hook)
 
-    def every(self, period: Callable[[], float], tick: Callable[[rospy.Time], None], afresh: Hook) -> None:
-        """Calls ``tick(now)`` every ``period()`` seconds of ROS time, ``afresh`` when it has jumped back."""
+    def every(self, period: Callable[[], float], tick: Tick, afresh: Hook, reports: bool = False) -> None:
+        """Calls ``tick(now)`` every ``period()`` seconds of ROS time, ``afresh`` when it has jumped back.
+
+        If it ``reports``, the node has then worked up to this time.
+        """
         self._periods.append(period)
         ticker = Ticker(period, tick, afresh)
         self.at_moments(ticker.look)
-        ticker.start(lambda: self.is_on)
+        ticker.start(lambda: self.is_on, self.report if reports else lambda now: None)
 
     def pause(self, seconds: float) -> None:
         """Ends the turn of the calling thread until the next moment; out of step, for ``seconds``."""
@@ -223,6 +229,12 @@ class Step:
             if self.is_on and time.monotonic() - self._answered_at > STALLED_SECONDS:
                 self._inbox.release_strangers()
                 transport.flush()
+
+
+def is_heard_in_step(topic: rospy.Subscriber) -> bool:
+    """Whether a node that is to be in step sends on the topic: what it sends takes simulated time."""
+    expected = rospy.get_param(WAIT_FOR_PARAMETER, [])
+    return any(connection.callerid_pub in expected for connection in topic.impl.connections)
 
 
 def _call(hook: Hook) -> None:

@@ -24,9 +24,9 @@ class Ticker:
         self._looked_at = NEVER
         self._lock = threading.RLock()
 
-    def start(self, is_in_step: Callable[[], bool]) -> None:
-        """Works in a thread of its own whenever the node is not in step."""
-        threading.Thread(target=self._work, args=(is_in_step,), daemon=True).start()
+    def start(self, is_in_step: Callable[[], bool], report: Callable[[rospy.Time], None]) -> None:
+        """Works in a thread of its own whenever the node is not in step, and reports each time."""
+        threading.Thread(target=self._work, args=(is_in_step, report), daemon=True).start()
 
     def look(self) -> None:
         """Works if it is due now."""
@@ -39,10 +39,10 @@ class Ticker:
                 self._due = max(self._due + period, now) if self._due != NEVER else now + period
                 self._tick(now)
 
-    def _work(self, is_in_step) -> None:
+    def _work(self, is_in_step, report) -> None:
         while not rospy.is_shutdown():
             try:
-                sleep_until(self._due)
+                now = sleep_until(self._due)
             except rospy.ROSTimeMovedBackwardsException:
                 with self._lock:
                     self._begin_afresh()
@@ -50,6 +50,7 @@ class Ticker:
             with self._lock:
                 if not is_in_step():
                     self.look()
+                    report(now)
                     continue
             time.sleep(IN_STEP_SECONDS)
 

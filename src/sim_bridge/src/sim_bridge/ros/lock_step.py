@@ -11,6 +11,7 @@ from planar_ros.messages.conversion import time_of
 from planar_ros.step import transport
 from planar_ros.step.calls import await_before_answering
 from planar_ros.step.inbox import Inbox
+from planar_ros.step.step import WAIT_FOR_PARAMETER
 from planar_ros.step.transport import ANSWER_TOPIC, MOMENT_TOPIC, CountedConnection
 from sim_bridge.conducting import Conductor
 from sim_bridge.ros.loop_watch import LoopWatch
@@ -29,6 +30,7 @@ class LockStep:
         self._orders = orders
         self._name = rospy.get_name()
         self._wait_for = frozenset(f"/{name}" for name in wait_for)
+        rospy.set_param(WAIT_FOR_PARAMETER, sorted(self._wait_for))
         self._conductor = Conductor(latency)
         self._inbox = Inbox(False, self._on_stranger)
         self._inbox.install()
