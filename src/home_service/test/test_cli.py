@@ -65,9 +65,13 @@ def test_a_missing_file_is_named_and_nothing_is_started(option, tmp_path, capsys
 
 @pytest.mark.parametrize("command", commands.names())
 def test_nonsense_is_answered_in_the_name_of_the_script_that_was_called(command, capsys):
-    needed = {"compare": ["a", "b"], "report": ["run"], "reproduce": ["run"], "replay": ["bag"]}.get(
-        command, []
-    )
+    needed = {
+        "compare": ["a", "b"],
+        "new_plugin": ["mine", "local_planner"],
+        "replay": ["bag"],
+        "report": ["run"],
+        "reproduce": ["run"],
+    }.get(command, [])
     with pytest.raises(SystemExit) as stop:
         main([command, *needed, "--nonsense"])
     assert stop.value.code == 2

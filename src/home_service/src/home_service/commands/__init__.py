@@ -4,14 +4,12 @@ import importlib
 import pkgutil
 from typing import List, Type
 
-from home_service.commands.base import Command
-
-CONTRACT = "base"
+from home_service.command import Command
 
 
 def names() -> List[str]:
     """The commands that there are."""
-    return [module.name for module in pkgutil.iter_modules(__path__) if module.name != CONTRACT]
+    return [module.name for module in pkgutil.iter_modules(__path__)]
 
 
 def find(name: str) -> Type[Command]:

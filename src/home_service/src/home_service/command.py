@@ -4,7 +4,7 @@ from typing import Protocol
 
 
 class Command(Protocol):
-    """What a script does. A command is a module of this folder, and nothing else has to know of it.
+    """What a script does. A command is a module of the folder ``commands``; nothing else has to know of it.
 
     ``commands/count_walls.py`` holds the frozen dataclass ``CountWalls``: its fields are the options (see
     supervision.command_line), the first line of its docstring is the summary, ``run`` does it. It belongs to
