@@ -1,0 +1,58 @@
+"""What worlds look like, and where a mouse points."""
+
+import math
+
+import numpy as np
+
+from cockpit.models.pointing import facing, on_floor
+from cockpit.models.solids import ball, box, cylinder
+from cockpit.scene.look import Look, Piece, cut_at, merged
+
+
+def wall(low, high, colour=(1, 2, 3)):
+    vertices, triangles = box()
+    pose = np.eye(4)
+    pose[:3, 3] = 5.0, 0.0, (low + high) / 2.0
+    return Piece("home", "wall", pose, vertices * (1.0, 1.0, high - low), triangles, colour)
+
+
+def heights(piece):
+    return piece.vertices[:, 2] + piece.pose[2, 3]
+
+
+def test_what_is_higher_is_cut_off_and_what_is_all_above_goes():
+    assert heights(cut_at(wall(0.0, 2.5), 1.2)).max() == 1.2
+    assert heights(cut_at(wall(0.0, 1.0), 1.2)).max() == 1.0
+    assert len(cut_at(wall(2.5, 2.6), 1.2).triangles) == 0
+
+
+def test_pieces_of_a_colour_become_one_surface():
+    surfaces = merged((wall(0.0, 1.0), wall(1.0, 2.0), wall(0.0, 1.0, (9, 9, 9))))
+    assert [(len(vertices), len(triangles)) for vertices, triangles, _ in surfaces] == [(16, 24), (8, 12)]
+
+
+def test_a_look_comes_through_to_another_process():
+    look = Look.from_bytes(Look((wall(0.0, 1.0),), ("a warning",)).to_bytes())
+    assert look.warnings == ("a warning",)
+    assert look.pieces[0].colour == (1, 2, 3)
+    assert np.allclose(look.pieces[0].pose, wall(0.0, 1.0).pose)
+
+
+def test_solids_are_a_metre_across():
+    for solid in (box, ball, cylinder):
+        vertices, triangles = solid()
+        assert np.allclose(vertices.max(axis=0) - vertices.min(axis=0), 1.0)
+        assert triangles.max() < len(vertices)
+
+
+def test_a_ray_meets_the_floor_below_and_nowhere_above():
+    assert on_floor((0.0, 0.0, 2.0), (1.0, 0.5, 1.0)) == (2.0, 1.0)
+    assert on_floor((0.0, 0.0, 2.0), (1.0, 0.0, 3.0)) is None
+    assert on_floor((0.0, 0.0, 2.0), (1.0, 0.0, 2.0)) is None
+    assert on_floor((0.0, 0.0, 2.0), (1.0, 0.0, math.nan)) is None
+
+
+def test_a_press_without_a_turn_has_no_direction_of_its_own():
+    assert facing((0.0, 0.0), (0.0, 1.0), 7.0) == math.pi / 2
+    assert facing((0.0, 0.0), (0.05, 0.0), 7.0) == 7.0
+    assert facing((0.0, 0.0), None, 7.0) == 7.0
