@@ -16,6 +16,7 @@ BUTTONS = (("U", "u"), ("I", "i"), ("O", "o"), ("J", "j"), ("K", "k"), ("L", "l"
 ARROWS = {"U": "forward left", "I": "forward", "O": "forward right", "J": "turn left", "K": "stop"}
 ARROWS.update({"L": "turn right", "M": "back"})
 HOLD_HZ = 10.0
+NOBODY = "(nobody yet)"
 SPEEDS = ("as fast as it keeps up", "0.5 x", "1 x", "2 x", "5 x")
 FACTORS = (0.0, 0.5, 1.0, 2.0, 5.0)
 
@@ -77,7 +78,7 @@ class DrivePanel:
         gui = self._gui
         with gui.add_folder("Drive by hand"):
             gui.add_html(_note("Hold a button or its key: u i o j k l, m is back. Let go: it stops."))
-            self.topic = gui.add_dropdown("Velocities to", ("/cmd_vel",))
+            self.topic = gui.add_dropdown("Velocities to", (NOBODY,))
             for label, key in BUTTONS:
                 button = gui.add_button(f"{label}  {ARROWS[label]}")
                 hold = self._guarded(lambda event, key=key: self._driver.press(key, event.client_id))

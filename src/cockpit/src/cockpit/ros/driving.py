@@ -11,7 +11,7 @@ from std_msgs.msg import String
 from cockpit.errors import CockpitError
 from cockpit.frames import FrameTree
 from cockpit.models.tables import table
-from cockpit.page.drive_panel import BOX, GOAL, LOOK, POINT, POSE, DrivePanel
+from cockpit.page.drive_panel import BOX, GOAL, LOOK, NOBODY, POINT, POSE, DrivePanel
 from cockpit.page.pointer import Pointer
 from cockpit.ros.graph import Feed, Graph
 from cockpit.ros.orders import Orders
@@ -81,6 +81,8 @@ class Driving:
 
     def press(self, key: str, client: int) -> None:
         assert self._panel is not None
+        if self._panel.topic.value == NOBODY:
+            raise CockpitError("nobody takes velocities")
         self.teleop.press(key, client, self._panel.topic.value)
 
     def pause(self, is_paused: bool) -> None:
