@@ -145,7 +145,8 @@ class Step:
             if self.is_on:
                 self._mind_strangers()
             elif is_ready():
-                self._answer(rospy.Time(0))
+                with self._working:  # lest the first moment comes in between
+                    self._answer(rospy.Time(0)) if not self.is_on else None
             time.sleep(POLL_SECONDS)
 
     def _on_moment(self, message: Moment) -> None:

@@ -2,7 +2,7 @@
 
 import threading
 from io import BytesIO
-from typing import ClassVar, Dict, FrozenSet, Iterator, List, Tuple
+from typing import Any, ClassVar, Dict, FrozenSet, Iterator, List, Tuple
 
 import rospy.topics
 from rospy.impl.tcpros_pubsub import TCPROSSub
@@ -89,28 +89,36 @@ def _read_frames(self: TCPROSSub, b: BytesIO, msg_queue: List[Frame], sock: obje
         b.write(rest)
 
 
-def connections() -> Iterator[Tuple[str, str, CountedConnection]]:
-    """Receiver, topic and connection of all that this node sends by."""
+def connections() -> Iterator[Tuple[str, str, Any]]:
+    """Receiver, topic and connection of all that this node sends by.
+
+    rospy makes a plain one for a subscriber that connects before the topic has been told its queue's size.
+    """
     for topic, publisher in list(rospy.topics.get_topic_manager().pubs.items()):
         for connection in publisher.connections:
-            if isinstance(connection, CountedConnection):
-                yield connection.receiver, topic, connection
+            yield connection.endpoint_id, topic, connection
 
 
 def flush() -> None:
     """Sends whatever has been kept back."""
     for _, _, connection in connections():
-        connection.flush()
+        if isinstance(connection, CountedConnection):
+            connection.flush()
 
 
 def sent(sender: str) -> Dict[str, int]:
     """How many messages have gone out on each connection to a node in step, by "sender receiver topic"."""
     members = CountedConnection.members
     return {
-        f"{sender} {receiver} {topic}": connection.count
+        f"{sender} {receiver} {topic}": _count_of(connection)
         for receiver, topic, connection in connections()
         if receiver in members and topic not in UNCOUNTED
     }
+
+
+def _count_of(connection: Any) -> int:
+    is_counted = isinstance(connection, CountedConnection)
+    return int(connection.count if is_counted else connection.stat_num_msg)
 
 
 def topology() -> int:
