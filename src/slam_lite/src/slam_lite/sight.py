@@ -54,5 +54,4 @@ def _sight(points, ends):
 def _polar(point):
     """The sector that a point lies in, and its distance."""
     turn = (math.atan2(point[1], point[0]) / (2.0 * math.pi)) % 1.0
-    # Beams of whole and of half degrees lie off the borders: at one, rounding would choose the sector.
-    return int(turn * _SECTORS + 0.25) % _SECTORS, math.hypot(point[0], point[1])
+    return int(turn * _SECTORS) % _SECTORS, math.hypot(point[0], point[1])
