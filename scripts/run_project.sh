@@ -10,6 +10,7 @@
 #   --speed N        1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz or --web 1)
 #   --seed N         seed of every noise (default: 0)
 #   --timeout N      the run fails after N seconds of wall time (default: 600)
+#   --expect LIST    how its goals are to end, if not all are to be reached, as aborted,succeeded
 #   --rviz           show it in the real rviz, with the project's configuration
 #   --web            show it in the browser: prints the URL of the page (docs/cockpit.md)
 #   --web-port [ADDRESS:]PORT

@@ -46,6 +46,14 @@ class TestSpawnModel(unittest.TestCase):
     def tearDown(self):
         rospy.ServiceProxy("/gazebo/delete_model", DeleteModel)("post")
 
+    def test_words_that_it_does_not_know_are_named_and_ignored_as_kinetics_does(self):
+        place = ("$", "-x", "-3.75", "-trimesh", "post.stl", "-y", "2")
+        code, text = spawn_model("-sdf", "-stdin", "-model", "post", *place, stdin=POST)
+        self.assertEqual(code, 0, text)
+        self.assertIn("goes on without what it does not know: $ -trimesh post.stl", text)
+        self.assertAlmostEqual(state("post").pose.position.x, -3.75)
+        self.assertAlmostEqual(state("post").pose.position.y, 2.0)
+
     def test_a_file_is_spawned_where_asked_for_and_time_passes_on(self):
         rospy.ServiceProxy("/gazebo/pause_physics", Empty)()
         with tempfile.TemporaryDirectory() as folder:

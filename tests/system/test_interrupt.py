@@ -28,6 +28,29 @@ class InterruptTest(unittest.TestCase):
             self.assertNotEqual(code, 0)
             self.assertEqual(left, [], f"interrupted after {moment} s")
 
+    def test_what_a_person_is_meant_to_end_ends_well(self):
+        mark = f"HOME_SERVICE_TEST={uuid.uuid4()}"
+        name, value = mark.split("=")
+        with tempfile.TemporaryDirectory() as folder:
+            run = subprocess.Popen(
+                [str(SCRIPT.with_name("launch.sh")), "--output", folder],
+                env={**os.environ, name: value},
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+            )
+            said = []
+            for line in run.stdout:
+                said.append(line)
+                if "Ctrl-C closes it" in line:
+                    run.send_signal(signal.SIGINT)
+            code = run.wait(EXIT_SECONDS)
+        self.assertEqual(code, 0, "".join(said))
+        self.assertIn("SUCCESS: ended by Ctrl-C", "".join(said))
+        self.assertNotIn("error", "".join(said))
+        self.assertEqual(processes_with(mark), [])
+
     def _interrupted_run(self, moment, mark):
         name, value = mark.split("=")
         with tempfile.TemporaryDirectory() as folder:

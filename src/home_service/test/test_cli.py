@@ -88,3 +88,15 @@ def test_every_command_has_a_class_that_says_what_it_is_for_and_runs(capsys):
     for name in commands.names():
         assert callable(commands.find(name).run)
         assert f"  {name} " in told
+
+
+def test_a_goal_outside_the_map_is_refused_before_anything_is_started(capsys):
+    assert main(["test_navigation", "--goals", "1 0 0; 90 0 0"]) == 2
+    assert "error: --goals: goal 2 (90, 0) lies outside " in capsys.readouterr().err
+
+
+def test_a_zone_in_a_wall_or_outside_the_map_is_refused_before_anything_is_started(tmp_path, capsys):
+    zones = tmp_path / "zones.yaml"
+    zones.write_text("pickup: {x: 2.0, y: 3.0, yaw: 0.0}\ndropoff: {x: 40.0, y: 3.0, yaw: 0.0}\n")
+    assert main(["home_service", "--zones", str(zones)]) == 2
+    assert f"error: {zones}: place dropoff (40, 3) lies outside the map" in capsys.readouterr().err

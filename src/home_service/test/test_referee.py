@@ -1,6 +1,6 @@
 import pytest
 import rospy
-from home_service_msgs.msg import Delivery, DeliveryState, MissionState
+from home_service_msgs.msg import DeliverActionGoal, DeliverGoal, Delivery, DeliveryState, MissionState
 from nav_msgs.msg import Odometry
 from visualization_msgs.msg import Marker
 
@@ -59,3 +59,60 @@ def test_the_marker_of_an_object_may_be_taken_away_and_shown_anew(referee):
         message.pose.position.x, message.pose.orientation.w = x, 1.0
         referee._see_marker(message)
     assert referee.ledger.markers == ["letter at hall", "letter carried"]
+
+
+MISSION = """
+places: {attic: {x: 7.0, y: 0.0}, cellar: {x: 9.0, y: 0.0}}
+objects: {lamp: {}}
+deliveries: [{name: post, object: lamp, from: attic, to: cellar}]
+"""
+
+
+def moment(stamp, stage):
+    delivery = Delivery("post", "lamp", "attic", "cellar")
+    message = MissionState(state="on the way", deliveries=[DeliveryState(delivery, stage, 1, "")])
+    message.header.stamp = rospy.Time.from_sec(stamp)
+    return message
+
+
+def marker_of_lamp(x):
+    message = Marker(ns="lamp", action=Marker.ADD)
+    message.pose.position.x, message.pose.orientation.w = x, 1.0
+    return message
+
+
+def test_places_that_only_a_mission_which_is_sent_knows_are_judged_by(referee):
+    referee._see_goal(DeliverActionGoal(goal=DeliverGoal(mission=MISSION)))
+    referee._see_truth(truth(1.0, 6.9))
+    referee._see_mission(moment(1.0, DeliveryState.PICKING_UP))
+    referee._see_marker(marker_of_lamp(7.1))
+    assert referee.ledger.deliveries[0].pickup_error == pytest.approx(0.1)
+    assert referee.ledger.markers == ["lamp at attic"]
+
+
+def test_a_marker_between_places_that_are_not_known_is_told_by_the_nearest_that_is(referee):
+    referee._see_truth(truth(1.0, 6.9))
+    referee._see_mission(moment(1.0, DeliveryState.PICKING_UP))
+    referee._see_marker(marker_of_lamp(4.9))
+    assert referee.ledger.markers == ["lamp at door"]
+
+
+def test_a_mission_that_cannot_be_understood_changes_nothing(referee):
+    referee._see_goal(DeliverActionGoal(goal=DeliverGoal(mission="places: 3")))
+    assert referee.ledger.deliveries == []
+
+
+def test_a_delivery_that_is_sent_again_by_the_same_name_is_judged_again(referee):
+    referee._see_goal(DeliverActionGoal(goal=DeliverGoal(mission=MISSION)))
+    stages = (
+        DeliveryState.PICKING_UP,
+        DeliveryState.DELIVERED,
+        DeliveryState.FETCHING,
+        DeliveryState.PICKING_UP,
+    )
+    for stamp, stage in enumerate(stages, 1):
+        referee._see_truth(truth(float(stamp), 7.0 + stamp / 100))
+        referee._see_mission(moment(float(stamp), stage))
+    first, second = referee.ledger.deliveries
+    assert first.state == "delivered"
+    assert second.pickup_error == pytest.approx(0.04)

@@ -47,6 +47,20 @@ def test_a_goal_that_is_cancelled_when_the_robot_is_there_is_reached(metres, end
     assert judge(ledger).success is success
 
 
+@pytest.mark.parametrize(
+    ("expected", "success"),
+    [(("aborted", "succeeded"), True), (("succeeded", "succeeded"), False), ((), False)],
+)
+def test_how_goals_end_can_be_declared(expected, success):
+    verdict = judge(ledger_of(ABORTED, SUCCEEDED, places=(A, B)), expected=expected)
+    assert verdict.success is success
+    assert verdict.reason.startswith("1 of 2 goals reached; aborted, succeeded, ")
+
+
+def test_a_run_that_was_cut_short_is_never_as_expected():
+    assert not judge(ledger_of(ABORTED), "interrupted", expected=("aborted",)).success
+
+
 A, B, C = (1.0, 2.0), (3.0, 4.0), (5.0, 6.0)
 
 
@@ -113,6 +127,28 @@ def test_a_marker_tells_where_it_is_shown_and_when_it_is_hidden():
     assert ledger.markers == ["shown at (1.00, 2.00)", "hidden", "shown at (3.00, 4.00)"]
     ledger.hide_all(1.0)
     assert ledger.markers[-1] == "hidden"
+
+
+def blink(ledger, times):
+    """A marker that is shown and hidden, and two that are shown in turn with ever new numbers, for ever."""
+    for second in range(times):
+        ledger.see_marker(10.0 + second, ("blinking", 0), A)
+        ledger.see_marker(10.5 + second, ("blinking", 0), None)
+        ledger.see_marker(10.7 + second, ("renewed", second), B)
+
+
+def test_markers_that_blink_or_are_shown_anew_for_ever_are_no_news():
+    ledger = ledger_of(SUCCEEDED)
+    blink(ledger, 100)
+    assert ledger.latest_news < 12.0
+    assert ledger.markers == ["shown at (1.00, 2.00)", "hidden", "shown at (3.00, 4.00)"]
+
+
+def test_what_a_marker_does_again_after_another_goal_is_news():
+    ledger = ledger_of(SUCCEEDED)
+    blink(ledger, 2)
+    ledger.see_goal(20.0, "another", B)
+    assert ledger.see_marker(21.0, ("blinking", 0), A) == "marker shown at (1.00, 2.00)"
 
 
 def test_an_object_is_away_between_its_being_picked_up_and_set_down():

@@ -1,12 +1,12 @@
 """Everything that a command names, read before anything is started, so that a mistake is told first."""
 
 from dataclasses import dataclass
-from typing import Mapping
+from typing import Iterable, Mapping
 
 from home_service.options import ErrandOptions, HomeOptions, MissionOptions, WorldOptions
 from pick_objects import Mission, errand_mission, load_mission
-from planar import OccupancyGrid, load_map
-from planar.maps.places import Place, load_places, places_of_errand
+from planar import OccupancyGrid, Pose2, SettingsError, load_map
+from planar.maps.places import Place, load_places, places_of_errand, why_unreachable
 from sim_bridge import RobotProfile, load_world, robot_named
 from sim_bridge.world import World
 
@@ -44,10 +44,24 @@ def read_home(options: HomeOptions) -> Home:
     return Home(world, robot_named(options.robot), grid)
 
 
+def read_goals(options: HomeOptions, goals: Iterable[Pose2]) -> Home:
+    """A home with all the goals on its map; one in an obstacle is for move_base to judge."""
+    home = read_home(options)
+    for number, pose in enumerate(goals, 1):
+        if not home.grid.contains(home.grid.cells_of([[pose.x, pose.y]]))[0]:
+            raise SettingsError(f"--goals: goal {number} ({pose.x:g}, {pose.y:g}) lies outside {options.map}")
+    return home
+
+
 def read_errand(options: ErrandOptions) -> MissionHome:
-    """The errand between the zones."""
+    """The errand between the zones, which the robot must be able to stand in."""
     home, zones = read_home(options), load_places(options.zones)
-    errand = errand_mission(*places_of_errand(options.zones))
+    ends = places_of_errand(options.zones)
+    for place in ends:
+        problem = why_unreachable(place, home.grid)
+        if problem:
+            raise SettingsError(f"{options.zones}: {problem}")
+    errand = errand_mission(*ends)
     return MissionHome(home.world, home.robot, home.grid, errand, zones)
 
 

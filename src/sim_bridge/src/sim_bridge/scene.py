@@ -86,10 +86,11 @@ class Scene:
 
     def add_robot(
         self, name: str, profile: RobotProfile, base_in_world: Pose2 = Pose2(), z: float = 0.0
-    ) -> None:
+    ) -> Tuple[str, ...]:
         """Puts a robot on the floor at, or below, the height ``z``.
 
-        Raises WorldError if it cannot stand there or the name is taken.
+        Returns the names of the links that it stands in by so little that contacts push it out. Raises
+        WorldError if it cannot stand there or the name is taken.
         """
         if name in self.models.names():
             raise WorldError(f"{name} is in the world already")
@@ -99,7 +100,7 @@ class Scene:
             raise WorldError(f"the robot would start at {where}, where there is no floor")
         self._add_robot(name, profile, from_pose2(base_in_world, z=floor - profile.model.lowest))
         try:
-            self._robots[name].vehicle.check_start()
+            return self._robots[name].vehicle.check_start()
         except WorldError:
             self.remove_model(name)
             raise

@@ -7,12 +7,13 @@ import re
 import sys
 import time
 from pathlib import Path
-from typing import Dict, List, Optional
+from typing import Dict, List, Optional, Sequence
 
 from cockpit.process import FREE_PORT, CockpitProcess
 from planar import PlanarError
 from run_project.checkout.layout import Checkout, choose_script, is_errand, read_checkout
 from run_project.checkout.placement import READ_SUFFIXES, Placement, place
+from run_project.checkout.told import told_by
 from run_project.errors import BuildError, ProjectError
 from run_project.judging.complaints import complaints_in
 from run_project.judging.verdict import Ledger, Verdict, judge
@@ -66,8 +67,8 @@ def run(options: Options) -> int:
     checkout = read_checkout(options.path)
     script = str(choose_script(checkout, options.script))
     texts = read_texts(checkout, script)
-    placement = place(checkout, script, texts, str(Path.home()), os.environ.get("USER", "root"))
     with _WorkFolder(checkout.root) as work, Display() as display:
+        placement = find_place(checkout, script, texts, work.path, options.script_arguments)
         folder = create_run_folder(options.output.resolve(), "run_project")
         logs = folder / "log"
         display.say(f"{checkout.root}: {checkout.kind.value}, {len(checkout.packages)} packages in it")
@@ -85,6 +86,21 @@ def run(options: Options) -> int:
         return run_job(
             options, job, folder, workspace, display, {"project": str(checkout.root), "script": script}
         )
+
+
+def find_place(
+    checkout: Checkout, script: str, texts: Dict[str, str], work: Path, arguments: Sequence[str]
+) -> Placement:
+    """Where the checkout has to lie by what its files name, and by what its script tells other programs.
+
+    Adds the latter to the script's text.
+    """
+    home, user = str(Path.home()), os.environ.get("USER", "root")
+    placement = place(checkout, script, texts, home, user)
+    copy = copy_checkout(checkout, placement, work)
+    told = told_by(copy.checkout / script, work / "tree" / placement.start, arguments)
+    texts[script] += "\n" + "\n".join(line for line in told.splitlines() if str(work) not in line)
+    return place(checkout, script, texts, home, user)
 
 
 def read_texts(checkout: Checkout, script: str) -> Dict[str, str]:
@@ -144,7 +160,7 @@ def run_job(
     except RunInterruptedError as error:
         failure, is_interrupted = str(error), True
     ledger = run.observer.ledger
-    verdict = judge(ledger, failure, is_errand=is_errand(about["script"]))
+    verdict = judge(ledger, failure, is_errand(about["script"]), options.expect)
     complaints = complaints_in(folder / "log")
     path = write_result(
         folder,

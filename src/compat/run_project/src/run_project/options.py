@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Optional, Sequence, Tuple
 
+from run_project.judging.verdict import FINAL
 from supervision import command_line
 from supervision.command_line import argument, option
 
@@ -24,6 +25,14 @@ def _seconds(text: str) -> float:
     return value
 
 
+def _endings(text: str) -> Tuple[str, ...]:
+    endings = tuple(text.replace(",", " ").split())
+    wrong = [ending for ending in endings if ending not in FINAL]
+    if wrong or not endings:
+        raise argparse.ArgumentTypeError(f"of {', '.join(sorted(FINAL))}, one a goal, got {text!r}")
+    return endings
+
+
 @dataclass(frozen=True)
 class Options:
     """Runs somebody's home-service project, unmodified and headless.
@@ -40,6 +49,9 @@ class Options:
     )
     seed: int = option(0, "of every noise", type=int)
     timeout: float = option(600.0, "seconds of wall time", type=_seconds)
+    expect: Optional[Tuple[str, ...]] = option(
+        None, "how its goals are to end, one after the other: aborted,succeeded", type=_endings
+    )
     rviz: bool = option(False, "show it in rviz")
     web: bool = option(False, "show it in the browser: prints the page's URL")
     web_port: Optional[str] = option(None, "where that page is served", metavar="[ADDRESS:]PORT")

@@ -37,12 +37,13 @@ class TestNavigation(GraphOptions, DrivingOptions):
     def run(self) -> int:
         from home_service.ros.conducting import stay_open
         from home_service.ros.driving import drive_through
-        from home_service.stage import read_home
+        from home_service.stage import read_goals
         from planar import Pose2
 
-        read_home(self)
+        goals = [Pose2(*goal) for goal in self.goals or ()]
+        read_goals(self, goals)
         launch = self.launch("navigation.launch", **self.files())
         if self.goals is None:
             hint = "send goals to /move_base_simple/goal or to the action /move_base; Ctrl-C ends"
             return stay_open(self, launch, hint)
-        return drive_through(self, launch, [Pose2(*goal) for goal in self.goals])
+        return drive_through(self, launch, goals)

@@ -7,6 +7,8 @@ from pick_objects import Delivery, Stage
 from planar import Pose2
 from planar.maps.places import Place
 
+ENDS = (Stage.DELIVERED, Stage.FAILED, Stage.CANCELLED)
+
 
 class DeliveryWatch:
     """Keeps a record of each delivery. ``records`` is changed in place; ``say`` is told of each arrival."""
@@ -21,8 +23,10 @@ class DeliveryWatch:
         self, delivery: Delivery, stage: Stage, attempts: int, reason: str, truth: Optional[Pose2]
     ) -> None:
         """A delivery has come to ``stage`` while the robot truly stood at ``truth``, if that is known."""
-        record = next((known for known in self._records if known.name == delivery.name), None)
-        if record is None:
+        record = next((known for known in reversed(self._records) if known.name == delivery.name), None)
+        is_another = stage not in ENDS and self._stages.get(delivery.name) in ENDS
+        if record is None or is_another:  # a robot that serves is sent one mission after the other
+            self._stages.pop(delivery.name, None)
             record = DeliveryRecord(delivery.name, delivery.thing, delivery.source, delivery.destination)
             self._records.append(record)
         before = self._stages.get(delivery.name, Stage.WAITING).value

@@ -10,6 +10,7 @@ from home_service.ros.run import Run
 from home_service.ros.run_recorder import RunRecorder
 from planar.maps.places import Place
 from supervision.display import Display
+from supervision.interruption import RunInterruptedError
 
 
 def carry_out(
@@ -24,10 +25,17 @@ def carry_out(
 
 
 def stay_open(options: RunOptions, launch: LaunchPlan, hint: str, places: Mapping[str, Place] = {}) -> int:
-    """Runs a graph for people to work with, who are told where its master is; returns the exit code."""
+    """Runs a graph for people to work with, who are told where its master is; returns the exit code.
+
+    Once it is open, Ctrl-C is how it is meant to end.
+    """
     display = Display()
     referee = Referee(places, display.say, tells_goals=True)
     with Run(options, launch, referee, RunRecorder(places), display) as run:
         display.say(f"ROS_MASTER_URI={os.environ['ROS_MASTER_URI']}")
         display.say(hint)
-        return run.conclude(Verdict(False, run.watch(lambda: False) or ""))
+        try:
+            verdict = Verdict(False, run.watch(lambda: False) or "")
+        except RunInterruptedError:
+            verdict = Verdict(True, "ended by Ctrl-C")
+        return run.conclude(verdict)

@@ -1,5 +1,6 @@
 """Watches a run from outside the robot: ground truth, contacts, the state of the errand, the marker."""
 
+import contextlib
 import math
 import re
 import threading
@@ -8,7 +9,7 @@ from collections import deque
 from typing import Any, Callable, Deque, Dict, Iterable, Mapping, Optional, Set, Tuple
 
 import rospy
-from home_service_msgs.msg import MissionState
+from home_service_msgs.msg import DeliverActionGoal, MissionState
 from move_base_msgs.msg import MoveBaseActionResult
 from nav_msgs.msg import Odometry, Path
 from rosgraph_msgs.msg import Log
@@ -18,8 +19,8 @@ from visualization_msgs.msg import Marker
 from home_service.judging.delivery_watch import DeliveryWatch
 from home_service.judging.verdict import Ledger, Verdict, collision, judge
 from home_service.ros.goal_watch import GoalWatch
-from pick_objects import Delivery, Stage
-from planar import Pose2
+from pick_objects import Delivery, Stage, parse_mission
+from planar import PlanarError, Pose2
 from planar.maps.places import Place
 from planar_ros.messages.conversion import pose2_from_msg
 from supervision.processes import start_of_this_process
@@ -37,7 +38,8 @@ SPOKEN_NODES = ("/pick_objects", "/add_markers")
 class Referee:
     """A judge that fills a ledger from topics. Simulated time is that of the ground truth's stamps.
 
-    ``say`` is called with each line worth a person's attention.
+    ``say`` is called with each line worth a person's attention. Places that only a mission knows which the
+    robot is sent are learned from it.
     """
 
     def __init__(self, places: Mapping[str, Place], say: Callable[[str], None], tells_goals: bool = False):
@@ -52,11 +54,11 @@ class Referee:
         self.simulated_time = 0.0
         self._start_truth = Pose2()
         self._start_time = 0.0
-        self._places = places
+        self._places = dict(places)
         self._say = say
         self._recent: Deque[Tuple[float, Pose2]] = deque(maxlen=REMEMBERED)
         self._unjudged: Deque[MissionState] = deque()
-        self._deliveries = DeliveryWatch(places, self.ledger.deliveries, say)
+        self._deliveries = DeliveryWatch(self._places, self.ledger.deliveries, say)
         self._told: Set[str] = set()
         self._lock = threading.Lock()
         self._has_started = False
@@ -69,6 +71,7 @@ class Referee:
         rospy.Subscriber(truth, Odometry, self._see_truth, queue_size=REMEMBERED, tcp_nodelay=True)
         rospy.Subscriber("contacts", String, self._see_contact, queue_size=50)
         rospy.Subscriber("pick_objects/state", String, self._see_state, queue_size=10)
+        rospy.Subscriber("deliver/goal", DeliverActionGoal, self._see_goal, queue_size=10)
         rospy.Subscriber("pick_objects/mission_state", MissionState, self._see_mission, queue_size=50)
         rospy.Subscriber("visualization_marker", Marker, self._see_marker, queue_size=10)
         rospy.Subscriber("move_base/NavfnROS/plan", Path, self._see_plan, queue_size=1)
@@ -152,6 +155,12 @@ class Referee:
         with self._lock:
             self.state = message.data
 
+    def _see_goal(self, message):
+        """What cannot be understood is refused by the robot, in words."""
+        with self._lock, contextlib.suppress(PlanarError):
+            if message.goal.mission:
+                self._places.update(parse_mission(message.goal.mission, self._places).places)
+
     def _see_mission(self, message):
         with self._lock:
             self._unjudged.append(message)
@@ -188,7 +197,8 @@ class Referee:
             event = f"{message.ns} carried"
         else:
             records = [record for record in self.ledger.deliveries if record.object == message.ns]
-            names = [name for record in records for name in (record.source, record.destination)]
+            ends = [name for record in records for name in (record.source, record.destination)]
+            names = [name for name in ends if name in self._places]
             event = f"{message.ns} at {self._nearest_place(message, names or self._places)}"
         if not self.ledger.markers or self.ledger.markers[-1] != event:
             self.ledger.markers.append(event)

@@ -14,6 +14,8 @@ from sim_bridge.world import Body, Joint
 
 # Metres that a robot at its start may reach into what it stands on.
 START_DEPTH = 0.01
+# Metres that it may reach into anything else: from there contacts push it out, upright and at walking pace.
+MENDABLE_DEPTH = 0.06
 # A contact whose normal rises more steeply than this carries the robot; it is no collision.
 SUPPORTING_NORMAL_Z = 0.7
 
@@ -77,15 +79,20 @@ class Vehicle:
         """Downwards, m/s^2."""
         return self._engine.gravity
 
-    def check_start(self) -> None:
-        """Raises WorldError if the robot stands in something."""
+    def check_start(self) -> Tuple[str, ...]:
+        """The names of what the robot stands in, by so little that contacts push it out.
+
+        Raises WorldError if it stands in something by more.
+        """
         touch = self._engine.touch
         touch.find_contacts()
         x, y, _ = position(self._engine.pose_of(self.base))
         sunk = [contact for contact in touch.contacts(self.base) if contact.depth > START_DEPTH]
-        inside = {contact.link for contact in sunk + self.bumps()}
+        met = sunk + self.bumps()
+        inside = {contact.link for contact in met if contact.depth > MENDABLE_DEPTH}
         if inside:
             raise WorldError(f"the robot would start at ({x:g}, {y:g}), inside {', '.join(sorted(inside))}")
+        return tuple(sorted({contact.link for contact in met}))
 
 
 def twist_in_base(motion: Motion) -> Twist2:

@@ -30,8 +30,8 @@ class SpawnError(Exception):
     """The model cannot be had; the text says why."""
 
 
-def parse(arguments: List[str]) -> argparse.Namespace:
-    """The options of gazebo_ros' spawn_model."""
+def parse(arguments: List[str]) -> Tuple[argparse.Namespace, List[str]]:
+    """The options of gazebo_ros' spawn_model, and the words that it does not know, as Kinetic's goes on."""
     parser = argparse.ArgumentParser(prog="spawn_model", allow_abbrev=False)
     kind = parser.add_mutually_exclusive_group(required=True)
     kind.add_argument("-urdf", action="store_true", help="the model is URDF")
@@ -52,7 +52,7 @@ def parse(arguments: List[str]) -> argparse.Namespace:
     parser.add_argument("-J", nargs=2, action="append", default=[], metavar=("JOINT", "RAD_OR_M"))
     parser.add_argument("-package_to_model", action="store_true", help="accepted: package:// is understood")
     parser.add_argument("-b", action="store_true", help="stay, and delete the model when interrupted")
-    return parser.parse_args(arguments)
+    return parser.parse_known_args(arguments)
 
 
 def quaternion(roll: float, pitch: float, yaw: float) -> Tuple[float, float, float, float]:
@@ -145,7 +145,9 @@ def _wait_for_model(name: str, namespace: str) -> None:
 
 def main() -> None:
     """Exit code 0 if the model is there, 1 if not, 130 if interrupted before that was known."""
-    options = parse(rospy.myargv()[1:])
+    options, unknown = parse(rospy.myargv()[1:])
+    if unknown:
+        print(f"[spawn_model] goes on without what it does not know: {' '.join(unknown)}", file=sys.stderr)
     # rospy's own handler may wait for ever for a lock that is held by what it interrupts.
     rospy.init_node("spawn_model", anonymous=True, disable_signals=True)
     for number in INTERRUPTS:

@@ -3,14 +3,17 @@
 import enum
 import os
 import xml.etree.ElementTree as ElementTree
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Dict, Iterator, List, Optional, Tuple
+from typing import Dict, Iterator, List, Mapping, Optional, Tuple
 
+from run_project.checkout.lent import files_of, lendable
 from run_project.errors import ProjectError
+from run_project.stand_ins.folders import PACKAGE_FOLDER
 
 # What a build or a version control leaves in a checkout; never read, never copied.
 LEFTOVERS = frozenset((".git", ".hg", ".svn", "build", "devel", "install", "logs"))
+SCRIPTS = (".sh", ".bash")
 WORD = "home_service"
 
 
@@ -27,7 +30,8 @@ class Checkout:
     """A project as it lies on the disk. All other paths are relative to ``root``.
 
     ``workspace`` is the folder that holds ``src``; None unless the kind is WORKSPACE.
-    ``packages`` maps names to folders.
+    ``packages`` maps names to folders. ``lent``: folders of ours that take the place of missing ones;
+    their files are among ``files``.
     """
 
     root: Path
@@ -35,10 +39,11 @@ class Checkout:
     workspace: Optional[Path]
     packages: Dict[str, Path]
     files: Tuple[str, ...]
+    lent: Mapping[Path, Path] = field(default_factory=dict)
 
     def scripts(self) -> List[Path]:
         """All shell scripts."""
-        return [Path(file) for file in self.files if file.endswith((".sh", ".bash"))]
+        return [Path(file) for file in self.files if file.endswith(SCRIPTS)]
 
     def model_folders(self) -> List[Path]:
         """All folders in which Gazebo's models lie, those that worlds name as ``model://name``."""
@@ -51,8 +56,11 @@ def read_checkout(root: Path) -> Checkout:
     root = root.resolve()
     if not root.is_dir():
         raise ProjectError(f"{root}: no such folder")
-    files = tuple(_files(root))
-    packages = _packages(root, files)
+    own = tuple(_files(root))
+    scripts = ((root / file).read_text(errors="replace") for file in own if file.endswith(SCRIPTS))
+    lent = lendable(root, scripts, PACKAGE_FOLDER.parent)
+    files = (*own, *files_of(lent))
+    packages = _packages(root, own)
     if not packages:
         hint = " (it has git submodules: have they been fetched?)" if ".gitmodules" in files else ""
         raise ProjectError(f"{root}: no package.xml in it or below{hint}")
@@ -62,7 +70,7 @@ def read_checkout(root: Path) -> Checkout:
     else:
         workspace = _workspace(packages)
         kind = Kind.SOURCES if workspace is None else Kind.WORKSPACE
-    return Checkout(root, kind, workspace, packages, files)
+    return Checkout(root, kind, workspace, packages, files, lent)
 
 
 def choose_script(checkout: Checkout, wanted: Optional[str]) -> Path:

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import Any, Dict, List, Optional, Tuple
+from typing import Any, Dict, List, Optional, Sequence, Set, Tuple
 
 STATUS = (
     "pending",
@@ -61,7 +61,10 @@ class _Visit:
 
 @dataclass
 class Ledger:
-    """What has been seen of a run, by simulated time. Each ``see`` returns the news in words, or None."""
+    """What has been seen of a run, by simulated time. Each ``see`` returns the news in words, or None.
+
+    What markers do once more is no news, until a goal has been: some blink, or are shown anew, for ever.
+    """
 
     goals: Dict[str, Goal] = field(default_factory=dict)
     markers: List[str] = field(default_factory=list)
@@ -70,6 +73,7 @@ class Ledger:
     latest_news: float = 0.0
     _position: Optional[Tuple[float, float]] = None
     _shown: Dict[Tuple[str, int], Tuple[float, float]] = field(default_factory=dict)
+    _told: Set[Tuple[bool, int, int]] = field(default_factory=set)
 
     def see_goal(self, now: float, name: str, place: Tuple[float, float]) -> None:
         """A goal was sent."""
@@ -82,7 +86,7 @@ class Ledger:
         if status == goal.status or goal.status in FINAL:
             return None
         goal.status, goal.text = status, text
-        self.latest_news = now
+        self._note_goal(now)
         if status in FINAL:
             goal.ended = now
             if goal.place and self._position:
@@ -105,6 +109,11 @@ class Ledger:
         else:
             self._shown[marker] = place
             news = f"shown{_at(place)}"
+        x, y = place or before or (0.0, 0.0)
+        event = (place is None, round(x / SAME_PLACE), round(y / SAME_PLACE))
+        if event in self._told:
+            return None
+        self._told.add(event)
         self.latest_news = now
         self.markers.append(news)
         return f"marker {news}"
@@ -164,8 +173,12 @@ class Ledger:
     def _goal(self, now: float, name: str) -> Goal:
         if name not in self.goals:
             self.goals[name] = Goal(sent=now)
-            self.latest_news = now
+            self._note_goal(now)
         return self.goals[name]
+
+    def _note_goal(self, now: float) -> None:
+        self.latest_news = now
+        self._told.clear()
 
 
 @dataclass(frozen=True)
@@ -176,11 +189,17 @@ class Verdict:
     reason: str
 
 
-def judge(ledger: Ledger, failure: Optional[str] = None, is_errand: bool = False) -> Verdict:
+def judge(
+    ledger: Ledger,
+    failure: Optional[str] = None,
+    is_errand: bool = False,
+    expected: Optional[Sequence[str]] = None,
+) -> Verdict:
     """Success if the robot reached all places it was sent to; without goals, if the project showed a marker.
 
     A goal that failed and was sent again does not count, nor do those of a third round of the same places.
     ``failure``: why the run was cut short, if it was. ``is_errand``: markers alone are not enough.
+    ``expected``: how the goals have to end instead, one after the other.
     """
     goals = list(ledger.goals.values())[: ledger.two_rounds or None]
     reached = sum(goal.is_reached for goal in goals)
@@ -191,6 +210,12 @@ def judge(ledger: Ledger, failure: Optional[str] = None, is_errand: bool = False
     ]
     if failure:
         return Verdict(False, f"{failure}; {reached} of {len(goals)} goals reached")
+    if expected is not None:
+        endings = [goal.status for goal in goals]
+        is_so = endings == list(expected)
+        said = "as expected" if is_so else f"instead of {', '.join(expected)}"
+        story = f"{', '.join(endings) or 'none'}, {said}"
+        return Verdict(is_so, f"{reached} of {len(goals)} goals reached; {story}")
     if failed:
         return Verdict(False, f"{reached} of {len(goals)} goals reached; {'; '.join(failed)}")
     story = f"markers: {', '.join(_shortened(ledger.markers))}" if ledger.markers else "no marker shown"

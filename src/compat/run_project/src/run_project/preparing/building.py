@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Callable, Dict, Set, Tuple
 
 from run_project.checkout.layout import LEFTOVERS, Checkout
+from run_project.checkout.lent import lend
 from run_project.checkout.placement import Placement
 from run_project.errors import BuildError
 from run_project.preparing.python2 import in_python3
@@ -65,6 +66,7 @@ def copy_checkout(checkout: Checkout, placement: Placement, work: Path) -> Works
         dirs_exist_ok=True,
         ignore=lambda _, names: LEFTOVERS & set(names),
     )
+    lend(checkout.lent, target)
     for script in checkout.scripts():
         (target / script).chmod(0o755)
     for missing, found in placement.links.items():

@@ -1,0 +1,63 @@
+from pathlib import Path
+
+from run_project.checkout.layout import read_checkout
+from run_project.checkout.placement import place
+from run_project.preparing.building import copy_checkout
+
+DEMO = "turtlebot_simulator/turtlebot_gazebo/launch/amcl_demo.launch"
+SCRIPT = f"xterm -e 'roslaunch ../{DEMO} map_file:=$(pwd)/../map/map.yaml'"
+
+
+def project(folder, script=SCRIPT):
+    for file, text in {
+        "pick/package.xml": "<package><name>pick</name></package>",
+        "map/map.yaml": "",
+        "scripts/home_service.sh": script,
+    }.items():
+        (folder / file).parent.mkdir(parents=True, exist_ok=True)
+        (folder / file).write_text(text)
+    return folder
+
+
+def copied(checkout, work):
+    script = "scripts/home_service.sh"
+    text = (checkout.root / script).read_text()
+    placement = place(checkout, script, {script: text}, "/home/me", "me")
+    copy_checkout(checkout, placement, work)
+    return placement, work / "tree" / placement.checkout
+
+
+def test_ours_is_there_where_git_left_a_submodule_empty(tmp_path):
+    root = project(tmp_path / "repo")
+    (root / "turtlebot_simulator").mkdir()
+    placement, copy = copied(read_checkout(root), tmp_path / "work")
+    assert placement.start == Path("src/scripts")
+    assert "amcl" in (copy / DEMO).read_text()
+    assert (copy / DEMO).parents[1].joinpath("CATKIN_IGNORE").exists()
+    assert list((root / "turtlebot_simulator").iterdir()) == []
+
+
+def test_ours_is_there_where_gitmodules_name_a_folder_that_is_not(tmp_path):
+    root = project(tmp_path / "repo", script="")
+    (root / ".gitmodules").write_text('[submodule "a"]\n\tpath = turtlebot_gazebo\n\turl = x\n')
+    _, copy = copied(read_checkout(root), tmp_path / "work")
+    assert (copy / "turtlebot_gazebo/launch/turtlebot_world.launch").is_file()
+
+
+def test_ours_is_there_where_only_the_script_names_a_repository(tmp_path):
+    _, copy = copied(read_checkout(project(tmp_path / "repo")), tmp_path / "work")
+    assert (copy / DEMO).is_file()
+
+
+def test_what_the_project_has_itself_is_left_as_it_is(tmp_path):
+    root = project(tmp_path / "repo")
+    (root / DEMO).parent.mkdir(parents=True)
+    (root / DEMO).write_text("<launch/>")
+    _, copy = copied(read_checkout(root), tmp_path / "work")
+    assert (copy / DEMO).read_text() == "<launch/>"
+
+
+def test_folders_of_other_names_stay_empty(tmp_path):
+    root = project(tmp_path / "repo", script="")
+    (root / "thirdparty").mkdir()
+    assert not read_checkout(root).lent
