@@ -25,6 +25,9 @@ if(_text MATCHES "boost::bind *\\([^;]*[ ,]_[1-9]" AND NOT _text MATCHES "placeh
   add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:SHELL:-include boost/bind.hpp -DBOOST_BIND_GLOBAL_PLACEHOLDERS>")
 endif()
 
+# What the compilers of that time let pass.
+add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:SHELL:-Wno-narrowing -fpermissive>")
+
 # Tests are not built here; roslaunch_add_file_check asks for one all the same.
 if(NOT CATKIN_ENABLE_TESTING AND NOT COMMAND catkin_run_tests_target)
   function(catkin_run_tests_target)

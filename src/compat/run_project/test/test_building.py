@@ -29,6 +29,16 @@ def test_packages_that_cannot_be_configured_are_told_with_the_reason(tmp_path):
     }
 
 
+def test_the_model_of_a_turtlebot3_is_assumed_where_nobody_says_it(tmp_path, monkeypatch):
+    (tmp_path / "devel").mkdir()
+    (tmp_path / "devel/setup.bash").touch()
+    workspace = Workspace(tmp_path, tmp_path / "src", {}, tmp_path / "pretended", ())
+    monkeypatch.delenv("TURTLEBOT3_MODEL", raising=False)
+    assert environment(workspace)["TURTLEBOT3_MODEL"] == "burger"
+    monkeypatch.setenv("TURTLEBOT3_MODEL", "waffle")
+    assert environment(workspace)["TURTLEBOT3_MODEL"] == "waffle"
+
+
 def test_models_are_found_where_they_lie_after_the_folders_that_the_project_names(tmp_path):
     (tmp_path / "devel").mkdir()
     (tmp_path / "devel/setup.bash").write_text("export GAZEBO_MODEL_PATH=/theirs")

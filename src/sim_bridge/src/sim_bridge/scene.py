@@ -16,6 +16,7 @@ from sim_bridge.physics.forces import Forces
 from sim_bridge.physics.model_joints import ModelJoints
 from sim_bridge.physics.models import Models
 from sim_bridge.physics.motion import Motion, at_rest
+from sim_bridge.physics.vehicle import Overlap
 from sim_bridge.robot import Fitting, Observation, Robot
 from sim_bridge.sensors.base import Mounting
 from sim_bridge.views.sight import Sight
@@ -23,6 +24,8 @@ from sim_bridge.world import Body, Joint, World
 
 # Metres above a robot's start from which on a floor is looked for.
 FLOOR_SEARCH = 0.1
+# Metres that a robot which would start inside something is moved at most, and in how many steps.
+MENDABLE_DEPTH, MOST_PUSHES = 0.15, 10
 
 
 class Scene:
@@ -89,8 +92,9 @@ class Scene:
     ) -> Tuple[str, ...]:
         """Puts a robot on the floor at, or below, the height ``z``.
 
-        Returns the names of the links that it stands in by so little that contacts push it out. Raises
-        WorldError if it cannot stand there or the name is taken.
+        One that would reach into something a little is moved out of it, as Gazebo's contacts would push it.
+        Returns the names of what it is moved out of. Raises WorldError if it cannot stand there or the name
+        is taken.
         """
         if name in self.models.names():
             raise WorldError(f"{name} is in the world already")
@@ -98,12 +102,19 @@ class Scene:
         if floor is None:
             where = f"({base_in_world.x:g}, {base_in_world.y:g})"
             raise WorldError(f"the robot would start at {where}, where there is no floor")
-        self._add_robot(name, profile, from_pose2(base_in_world, z=floor - profile.model.lowest))
-        try:
-            return self._robots[name].vehicle.check_start()
-        except WorldError:
+        start, left = base_in_world, Overlap((), 0.0, 0.0)
+        for _ in range(MOST_PUSHES):
+            self._add_robot(name, profile, from_pose2(start, z=floor - profile.model.lowest))
+            overlap = self._robots[name].vehicle.overlap()
+            if overlap is None:
+                return left.links
             self.remove_model(name)
-            raise
+            left = overlap
+            start = Pose2(start.x + overlap.x, start.y + overlap.y, start.yaw)
+            if start.distance_to(base_in_world) > MENDABLE_DEPTH:
+                break
+        where = f"({base_in_world.x:g}, {base_in_world.y:g})"
+        raise WorldError(f"the robot would start at {where}, inside {', '.join(left.links)}")
 
     def robot(self, name: str) -> Robot:
         if name not in self._robots:

@@ -3,7 +3,7 @@
 import re
 from collections import deque
 from dataclasses import dataclass
-from typing import Deque, List, Optional
+from typing import Collection, Deque, List, Optional
 
 from planar import PlanarError
 from teleop_lite.teleop import MOVE_KEYS, SPEED_KEYS, STOP_KEYS
@@ -27,17 +27,17 @@ class Stroke:
     seconds: float = 0.0
 
 
-def parse(text: str) -> List[Stroke]:
+def parse(text: str, keys: Collection[str] = KEYS) -> List[Stroke]:
     """The strokes of a script such as ``i:2.0 j:1.5``, separated by blanks, newlines or commas.
 
-    A key without a time (``q``) is pressed once. Raises KeyScriptError.
+    A key without a time (``q``) is pressed once. ``keys``: those there are. Raises KeyScriptError.
     """
     strokes = []
     position = SEPARATORS.match(text).end()  # type: ignore[union-attr]
     while position < len(text):
         match = STROKE.match(text, position)
         key = (match["key"] or match["tap"]) if match else ""
-        if not match or key not in KEYS:
+        if not match or key not in keys:
             raise KeyScriptError(f"'{text[position:].split()[0]}' is not a key with a time, such as i:2.0")
         strokes.append(Stroke(key, float(match["seconds"] or 0.0)))
         position = SEPARATORS.match(text, match.end()).end()  # type: ignore[union-attr]

@@ -14,11 +14,11 @@ DEEPEST_FLOOR = 10.0
 
 
 class Contact(NamedTuple):
-    """Where a robot touches ``link``: z of the unit normal there, and how deep the two overlap, metres."""
+    """Where a robot touches ``link``: the unit normal there, out of it, and how deep they overlap, metres."""
 
     link: str
     point: Tuple[float, float, float]
-    normal_z: float
+    normal: Tuple[float, float, float]
     depth: float
 
 
@@ -30,9 +30,9 @@ class Touch:
         self._register = register
 
     def contacts(self, base: str, steepest: float = math.inf) -> List[Contact]:
-        """What a robot touches, or nearly does (negative depth); abs(normal_z) is below ``steepest``."""
+        """What a robot touches, or nearly does (negative depth); abs(normal[2]) is below ``steepest``."""
         return [
-            Contact(self._register.owner(told[2], told[4]), told[6], told[7][2], -told[8])
+            Contact(self._register.owner(told[2], told[4]), told[6], told[7], -told[8])
             for told in self._bullet.getContactPoints(bodyA=self._register.links[base].number)
             if abs(told[7][2]) < steepest
         ]

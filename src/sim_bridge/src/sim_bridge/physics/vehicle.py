@@ -1,12 +1,10 @@
 """A wheeled robot among the bodies of an engine."""
 
-from typing import List, Sequence, Tuple
+from typing import List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
 from planar import Twist2
-from sim_bridge.errors import WorldError
-from sim_bridge.geometry.pose3 import position
 from sim_bridge.physics.engine import Engine
 from sim_bridge.physics.motion import Motion
 from sim_bridge.physics.touch import Contact
@@ -14,10 +12,18 @@ from sim_bridge.world import Body, Joint
 
 # Metres that a robot at its start may reach into what it stands on.
 START_DEPTH = 0.01
-# Metres that it may reach into anything else: from there contacts push it out, upright and at walking pace.
-MENDABLE_DEPTH = 0.06
+# Metres by which a robot is moved out of what it stands in, a little at a time, before it stands free.
+CLEARANCE = 0.001
 # A contact whose normal rises more steeply than this carries the robot; it is no collision.
 SUPPORTING_NORMAL_Z = 0.7
+
+
+class Overlap(NamedTuple):
+    """What a robot stands in, and the shortest way out of the worst of it, metres."""
+
+    links: Tuple[str, ...]
+    x: float
+    y: float
 
 
 class Vehicle:
@@ -79,20 +85,18 @@ class Vehicle:
         """Downwards, m/s^2."""
         return self._engine.gravity
 
-    def check_start(self) -> Tuple[str, ...]:
-        """The names of what the robot stands in, by so little that contacts push it out.
-
-        Raises WorldError if it stands in something by more.
-        """
+    def overlap(self) -> Optional[Overlap]:
+        """What the robot stands in, None if in nothing."""
         touch = self._engine.touch
         touch.find_contacts()
-        x, y, _ = position(self._engine.pose_of(self.base))
         sunk = [contact for contact in touch.contacts(self.base) if contact.depth > START_DEPTH]
         met = sunk + self.bumps()
-        inside = {contact.link for contact in met if contact.depth > MENDABLE_DEPTH}
-        if inside:
-            raise WorldError(f"the robot would start at ({x:g}, {y:g}), inside {', '.join(sorted(inside))}")
-        return tuple(sorted({contact.link for contact in met}))
+        if not met:
+            return None
+        deepest = max(met, key=lambda contact: contact.depth)
+        way = deepest.depth + CLEARANCE
+        links = tuple(sorted({contact.link for contact in met}))
+        return Overlap(links, deepest.normal[0] * way, deepest.normal[1] * way)
 
 
 def twist_in_base(motion: Motion) -> Twist2:

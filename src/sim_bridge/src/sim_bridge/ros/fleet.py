@@ -35,7 +35,7 @@ class Fleet:
             rospy.logwarn("%s", warning)
         met = self._scene.add_robot(name, profile, base_in_world, z)
         if met:
-            rospy.logwarn("%s starts a little inside %s, which pushes it out", name, ", ".join(met))
+            rospy.logwarn("%s would start a little inside %s: moved out of it", name, ", ".join(met))
         namespace = "/" + (profile.namespace or namespace.strip("/"))
         self._robots[name] = RobotTopics(
             self._scene, name, self._orders, self._joint_steps, namespace, _tf_prefix(namespace)

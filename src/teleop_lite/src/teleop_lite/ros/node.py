@@ -5,7 +5,8 @@ import signal
 import sys
 import threading
 import time
-from typing import Optional
+from dataclasses import dataclass
+from typing import Callable, Collection, Optional, Protocol
 
 import rospy
 from geometry_msgs.msg import Twist
@@ -16,11 +17,10 @@ from planar_ros.node.progress import Progress
 from planar_ros.node.shell import run
 from planar_ros.node.waiting import Waiting
 from teleop_lite.config import TeleopSettings
-from teleop_lite.key_script import KeyScript, parse
+from teleop_lite.key_script import KEYS, KeyScript, parse
 from teleop_lite.teleop import TICK_SECONDS, Teleop
 from teleop_lite.terminal import CTRL_C, NoKeysError, Pipe, Terminal
 
-NODE_NAME = "turtlebot_teleop_keyboard"
 BANNER = """
 Control Your Turtlebot!
 ---------------------------
@@ -43,20 +43,55 @@ POLL_SECONDS = 0.02
 DELIVERY_SECONDS = 0.1
 
 
+class Driver(Protocol):
+    """Makes velocities of keys. ``full``: what is told of it when it changes, m/s and rad/s."""
+
+    full: Twist2
+
+    def press(self, key: str) -> None:
+        """Takes in a key."""
+
+    def tick(self, now: float) -> Twist2:
+        """The velocity for the coming TICK_SECONDS; ``now``: seconds, by any steady clock."""
+
+
+@dataclass(frozen=True)
+class Style:
+    """A teleop of somebody's: its names, what it prints, its keys, and who makes velocities of them."""
+
+    program: str
+    node_name: str
+    topic: str
+    banner: str
+    keys: Collection[str]
+    driver: Callable[[], Driver]
+
+
+TURTLEBOT = Style(
+    program="turtlebot_teleop_key",
+    node_name="turtlebot_teleop_keyboard",
+    topic="~cmd_vel",
+    banner=BANNER,
+    keys=KEYS,
+    driver=lambda: Teleop(read_settings(TeleopSettings)),
+)
+
+
 class KeyboardTeleop:
     """Publishes velocities every TICK_SECONDS until the keys end; whatever ends it stops the robot."""
 
-    def __init__(self):
-        self._teleop = Teleop(read_settings(TeleopSettings))
+    def __init__(self, style: Style):
+        self._style = style
+        self._teleop = style.driver()
         self._changes = 0
         self._is_stopped = False
         self._lock = threading.Lock()
-        self._publisher = rospy.Publisher("~cmd_vel", Twist, queue_size=5, tcp_nodelay=True)
+        self._publisher = rospy.Publisher(style.topic, Twist, queue_size=5, tcp_nodelay=True)
         rospy.on_shutdown(self.stop)
 
     def follow_keyboard(self, terminal: Terminal) -> None:
         """Until Ctrl-C. Timed by the wall clock, like the hands on the keyboard."""
-        print(BANNER)
+        print(self._style.banner)
         self._tell_speeds()
         next_tick = time.monotonic()
         while not rospy.is_shutdown():
@@ -76,7 +111,7 @@ class KeyboardTeleop:
         rate = rospy.Rate(1.0 / TICK_SECONDS)
         while not rospy.is_shutdown():
             if pipe is not None:
-                script.add(parse(pipe.read()))
+                script.add(parse(pipe.read(), self._style.keys))
             now = rospy.get_rostime()
             for key in script.keys_at(now.to_sec()):
                 self._press(key)
@@ -123,7 +158,7 @@ class KeyboardTeleop:
             self._changes += 1
             self._tell_speeds()
             if self._changes % CHANGES_PER_BANNER == 0:
-                print(BANNER)
+                print(self._style.banner)
 
     def _tell_speeds(self):
         print(f"currently:\tspeed {self._teleop.full.v:.4g}\tturn {self._teleop.full.omega:.4g}", flush=True)
@@ -136,17 +171,17 @@ class KeyboardTeleop:
                 self._publisher.publish(message)
 
 
-def main():
-    keys = _parse_arguments().keys
+def main(style: Style = TURTLEBOT):
+    keys = _parse_arguments(style).keys
     try:
         if not keys and sys.stdin is not None and sys.stdin.isatty():
             terminal = Terminal(sys.stdin.fileno())
-            run(NODE_NAME, lambda: _drive(lambda node: _follow_in(terminal, node)))
+            run(style.node_name, lambda: _drive(style, lambda node: _follow_in(terminal, node)))
         else:
-            script, pipe = _open_script(" ".join(keys))
-            run(NODE_NAME, lambda: _drive(lambda node: node.follow_script(script, pipe)))
+            script, pipe = _open_script(" ".join(keys), style.keys)
+            run(style.node_name, lambda: _drive(style, lambda node: node.follow_script(script, pipe)))
     except PlanarError as error:
-        print(f"[/{NODE_NAME}] error: {error}", file=sys.stderr)
+        print(f"[/{style.node_name}] error: {error}", file=sys.stderr)
         sys.exit(2)
 
 
@@ -155,14 +190,14 @@ def _follow_in(terminal, node):
         node.follow_keyboard(terminal)
 
 
-def _open_script(text):
+def _open_script(text, known_keys):
     """The script and the pipe from which more of it may come; what has already come is checked at once."""
     if text:
-        return KeyScript(parse(text)), None
+        return KeyScript(parse(text, known_keys)), None
     if sys.stdin is None:
         raise NoKeysError(NO_KEYS)
     pipe = Pipe(sys.stdin.fileno())
-    script = KeyScript(parse(pipe.read()))
+    script = KeyScript(parse(pipe.read(), known_keys))
     if pipe.is_at_end and script.is_over:
         raise NoKeysError(NO_KEYS)
     return script, pipe
@@ -174,10 +209,10 @@ NO_KEYS = (
 )
 
 
-def _drive(follow):
+def _drive(style, follow):
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _end)
-    node = KeyboardTeleop()
+    node = KeyboardTeleop(style)
     try:
         follow(node)
     finally:
@@ -191,11 +226,12 @@ def _end(number, _frame):
     sys.exit(128 + number)
 
 
-def _parse_arguments():
+def _parse_arguments(style):
     parser = argparse.ArgumentParser(
-        prog="turtlebot_teleop_key",
+        prog=style.program,
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        description="Drives the robot with the keys of a terminal, or with a script of keys.\n" + BANNER,
+        description="Drives the robot with the keys of a terminal, or with a script of keys.\n"
+        + style.banner,
         epilog="A script comes as arguments or on a pipe:  echo 'i:2.0 j:1.5, ,:1' | turtlebot_teleop_key\n"
         "Times are seconds of ROS time; without a time a key is pressed once. The robot stops at the end.",
     )

@@ -21,6 +21,8 @@ FRESH_CLONE = PACKAGE_FOLDER / "cmake" / "fresh_clone.cmake"
 # A bound on how many packages may turn out one after the other not to be configurable.
 CONFIGURATIONS = 20
 MODEL_PATH = "GAZEBO_MODEL_PATH"
+# What authors set in a file of their home, and what it is most often.
+ASSUMED = {"TURTLEBOT3_MODEL": "burger"}
 UNCONFIGURED = "Configuring incomplete"
 
 # From one error of CMake to its reason, and to the first of a project's files in its call stack.
@@ -113,7 +115,10 @@ def build(workspace: Workspace, log: Path, say: Callable[[str], None]) -> None:
 
 
 def environment(workspace: Workspace) -> Dict[str, str]:
-    """The environment that sourcing the workspace gives; Gazebo's models are found where they lie in it."""
+    """The environment that sourcing the workspace gives, and what is assumed where nobody says it.
+
+    Gazebo's models are found where they lie in it.
+    """
     script = 'source "$1/devel/setup.bash" >&2; exec env -0'
     kept = {name: value for name, value in os.environ.items() if not name.startswith("TURTLEBOT_")}
     output = subprocess.run(
@@ -122,7 +127,7 @@ def environment(workspace: Workspace) -> Dict[str, str]:
     pairs = (entry.partition("=") for entry in output.decode(errors="surrogateescape").split("\0") if entry)
     variables = {name: value for name, _, value in pairs}
     model_path = [variables.get(MODEL_PATH, ""), *map(str, workspace.model_folders)]
-    return {**variables, MODEL_PATH: ":".join(filter(None, model_path))}
+    return {**ASSUMED, **variables, MODEL_PATH: ":".join(filter(None, model_path))}
 
 
 def _is_there(package: str) -> bool:

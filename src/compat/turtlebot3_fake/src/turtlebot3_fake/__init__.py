@@ -1,0 +1,1 @@
+"""A TurtleBot3 of wheels and odometry alone."""

@@ -1,0 +1,1 @@
+"""What speaks ROS in turtlebot3_fake."""

@@ -1,0 +1,4 @@
+case ":$GAZEBO_MODEL_PATH:" in
+  *":@(CMAKE_CURRENT_SOURCE_DIR)/models:"*) ;;
+  *) export GAZEBO_MODEL_PATH="@(CMAKE_CURRENT_SOURCE_DIR)/models${GAZEBO_MODEL_PATH:+:$GAZEBO_MODEL_PATH}" ;;
+esac

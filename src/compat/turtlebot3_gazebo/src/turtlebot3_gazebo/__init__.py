@@ -1,0 +1,1 @@
+"""What drives a TurtleBot3 about by itself."""

@@ -1,0 +1,51 @@
+"""The node ``turtlebot3_drive``."""
+
+import math
+
+import rospy
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import LaserScan
+
+from planar import Pose2
+from planar_ros.messages.conversion import pose2_from_msg
+from planar_ros.node.shell import run
+from turtlebot3_gazebo.wandering import Wanderer
+
+SIDE = math.radians(30.0)
+
+
+class DriveNode:
+    """Answers each scan with a velocity; stops the robot when it ends."""
+
+    def __init__(self) -> None:
+        rospy.loginfo("TurtleBot3 Simulation Node Init")
+        self._wanderer, self._base = Wanderer(), Pose2()
+        topic = rospy.get_param("cmd_vel_topic_name", "cmd_vel")
+        self._publisher = rospy.Publisher(topic, Twist, queue_size=10)
+        rospy.on_shutdown(lambda: self._publisher.publish(Twist()))
+        rospy.Subscriber("odom", Odometry, self._see_odometry, queue_size=10)
+        rospy.Subscriber("scan", LaserScan, self._see_scan, queue_size=1)
+
+    def _see_odometry(self, message: Odometry) -> None:
+        self._base = pose2_from_msg(message.pose.pose)
+
+    def _see_scan(self, scan: LaserScan) -> None:
+        ahead, left, right = (_range_at(scan, angle) for angle in (0.0, SIDE, -SIDE))
+        velocity = self._wanderer.advance(ahead, left, right, self._base.yaw)
+        message = Twist()
+        message.linear.x, message.angular.z = velocity.v, velocity.omega
+        if not rospy.is_shutdown():
+            self._publisher.publish(message)
+
+
+def _range_at(scan: LaserScan, angle: float) -> float:
+    """The distance at an angle of a scan all around, metres; the farthest where nothing is seen."""
+    turn = (angle - scan.angle_min) % math.tau
+    number = round(turn / scan.angle_increment) % len(scan.ranges)
+    distance = scan.ranges[number]
+    return distance if math.isfinite(distance) else scan.range_max
+
+
+def main() -> None:
+    run("turtlebot3_drive", DriveNode)

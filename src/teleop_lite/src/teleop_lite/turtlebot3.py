@@ -1,0 +1,45 @@
+"""From keys to velocities, as turtlebot3_teleop does it (turtlebot3 1.2, turtlebot3_teleop_key)."""
+
+from planar import Twist2
+
+# The fastest of each model; the burger's of an unknown one.
+LIMITS = {
+    "burger": Twist2(0.22, 2.84),
+    "waffle": Twist2(0.26, 1.82),
+    "waffle_pi": Twist2(0.26, 1.82),
+}
+STEP = Twist2(0.01, 0.1)
+MOVE_KEYS = {"w": Twist2(1.0, 0.0), "x": Twist2(-1.0, 0.0), "a": Twist2(0.0, 1.0), "d": Twist2(0.0, -1.0)}
+STOP_KEYS = "s "
+KEYS = {*MOVE_KEYS, *STOP_KEYS}
+
+
+class SteppedTeleop:
+    """Each key changes the velocity by a step; it is kept until another key is pressed."""
+
+    def __init__(self, model: str = "burger"):
+        self._limit = LIMITS.get(model, LIMITS["burger"])
+        self.full = Twist2()
+        self._command = Twist2()
+
+    def press(self, key: str) -> None:
+        """Takes in a key; one without a meaning does nothing."""
+        if key in STOP_KEYS:
+            self.full = self._command = Twist2()
+        way = MOVE_KEYS.get(key, Twist2())
+        self.full = Twist2(
+            _within(self.full.v + way.v * STEP.v, self._limit.v),
+            _within(self.full.omega + way.omega * STEP.omega, self._limit.omega),
+        )
+
+    def tick(self, now: float) -> Twist2:
+        """The velocity until the next tick, half a step nearer to what the keys want."""
+        self._command = Twist2(
+            self._command.v + _within(self.full.v - self._command.v, STEP.v / 2.0),
+            self._command.omega + _within(self.full.omega - self._command.omega, STEP.omega / 2.0),
+        )
+        return self._command
+
+
+def _within(value: float, limit: float) -> float:
+    return min(max(value, -limit), limit)

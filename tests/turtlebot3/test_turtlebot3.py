@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+"""ROBOTIS' simulation chapter: the robot in its hall, localized and sent about by the official names."""
+
+import unittest
+
+import actionlib
+import rospy
+import rostest
+from gazebo_msgs.msg import ModelStates
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
+from sensor_msgs.msg import Imu, JointState, LaserScan
+from turtlebot3_msgs.msg import SensorState, Sound, VersionInfo
+from waiting import PATIENCE_SECONDS, wait_until
+
+from planar import Pose2
+from planar_ros.calls.actions import server_is_ready
+from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
+
+BRING_UP_SECONDS = 90.0
+START, GOAL = Pose2(-2.0, -0.5), Pose2(0.55, -1.8)
+MD5 = {
+    SensorState: "7250c1dc0b61c4190e78f528f599285f",
+    Sound: "e1f8c7f8a9a61383b5734fbdeca2f99a",
+    VersionInfo: "43e0361461af2970a33107409403ef3c",
+}
+
+
+class TurtleBot3Test(unittest.TestCase):
+    def test_1_its_messages_are_the_official_ones(self):
+        for message, md5 in MD5.items():
+            self.assertEqual(message._md5sum, md5, message._type)
+
+    def test_2_its_topics_tell_what_the_official_ones_do(self):
+        scan = rospy.wait_for_message("scan", LaserScan, PATIENCE_SECONDS)
+        self.assertEqual((len(scan.ranges), scan.header.frame_id), (360, "base_scan"))
+        self.assertAlmostEqual(scan.range_max, 3.5, places=5)
+        joints = rospy.wait_for_message("joint_states", JointState, PATIENCE_SECONDS)
+        self.assertEqual(set(joints.name), {"wheel_left_joint", "wheel_right_joint"})
+        self.assertEqual(rospy.wait_for_message("imu", Imu, PATIENCE_SECONDS).header.frame_id, "imu_link")
+        self.assertLess(self._truth().distance_to(START), 0.05)
+
+    def test_3_it_is_told_where_it_is_and_drives_to_a_goal(self):
+        publisher = rospy.Publisher("initialpose", PoseWithCovarianceStamped, queue_size=1, latch=True)
+        pose = PoseWithCovarianceStamped()
+        pose.header.frame_id, pose.pose.pose = "map", pose2_to_msg(START)
+        pose.pose.covariance[0] = pose.pose.covariance[7] = 0.25
+        pose.pose.covariance[35] = 0.07
+        publisher.publish(pose)
+        wait_until("the localization to believe it", lambda: self._believed().distance_to(START) < 0.3)
+        client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
+        wait_until("move_base", lambda: server_is_ready(client), BRING_UP_SECONDS)
+        goal = MoveBaseGoal()
+        goal.target_pose.header.frame_id, goal.target_pose.pose = "map", pose2_to_msg(GOAL)
+        self.assertEqual(client.send_goal_and_wait(goal, rospy.Duration(200.0)), 3)
+        error = self._truth().distance_to(GOAL)
+        print(f"the robot truly stands {error:.3f} m from its goal")
+        self.assertLess(error, 0.25)
+
+    def _truth(self):
+        states = rospy.wait_for_message("/gazebo/model_states", ModelStates, PATIENCE_SECONDS)
+        return pose2_from_msg(states.pose[states.name.index("turtlebot3_burger")])
+
+    def _believed(self):
+        message = rospy.wait_for_message("amcl_pose", PoseWithCovarianceStamped, PATIENCE_SECONDS)
+        return pose2_from_msg(message.pose.pose)
+
+
+if __name__ == "__main__":
+    rospy.init_node("test_turtlebot3")
+    rostest.rosrun("home_service_tests", "turtlebot3", TurtleBot3Test)
