@@ -15,7 +15,8 @@ STOREYS = (
     {"supervision", "sim_bridge", "map_lite", "amcl_lite", "slam_lite", "move_base_lite", "explorer_lite"}
     | {"pick_objects", "add_markers", "follow_me", "teleop_lite"},
     {"cockpit"},
-    {"home_service", "plugin_examples", "turtle_world", "gazebo_ros", "ros_tools", "ament_index_python"},
+    {"home_service", "plugin_examples", "turtle_world", "gazebo_ros", "ros_tools", "ament_index_python"}
+    | {"turtlebot3_fake", "turtlebot3_gazebo"},
     {"run_project"},
 )
 STOREY_OF = {package: number for number, storey in enumerate(STOREYS) for package in storey}

@@ -17,7 +17,7 @@ from std_srvs.srv import Empty, Trigger
 from turtlesim.msg import Pose
 from waiting import wait_until
 
-RADIUS = 0.5 / 0.2  # metres: of the circle that velocity_publisher drives
+RADIUS = 0.5 / 0.2  # metres: of the circle that turtle_velocity_publisher drives
 
 
 @contextlib.contextmanager
@@ -65,7 +65,7 @@ class CourseTest(unittest.TestCase):
 
     def test_the_velocity_publisher_drives_a_circle(self):
         places_xy = []
-        with running("learning_topic", "velocity_publisher.py"):
+        with running("learning_topic", "turtle_velocity_publisher.py"):
             wait_until("the turtle to move", lambda: self.pose().linear_velocity > 0.0)
             subscriber = rospy.Subscriber(
                 "/turtle1/pose", Pose, lambda pose: places_xy.append((pose.x, pose.y))
@@ -82,37 +82,37 @@ class CourseTest(unittest.TestCase):
         self.assertLess(np.abs(distances - RADIUS).max(), 0.05)
 
     def test_the_pose_subscriber_prints_where_the_turtle_is(self):
-        with running("learning_topic", "pose_subscriber.py") as printed:
+        with running("learning_topic", "turtle_pose_subscriber.py") as printed:
             wait_until("a printed pose", lambda: "turtle pose: x 5.54, y 5.54" in printed())
 
     def test_company_info_is_published_and_received(self):
-        with running("learning_topic", "information_subscriber.py") as printed, running(
-            "learning_topic", "information_publisher.py"
+        with running("learning_topic", "Information_subscriber.py") as printed, running(
+            "learning_topic", "Information_publisher.py"
         ):
             wait_until("the company info", lambda: "company info: Home Service" in printed())
 
     def test_a_turtle_is_spawned_once(self):
-        code, output = run("learning_server", "turtle_spawn.py")
+        code, output = run("learning_server", "a_new_turtle.py")
         self.assertEqual(code, 0, output)
         self.assertIn("spawned: turtle2", output)
-        code, output = run("learning_server", "turtle_spawn.py")
+        code, output = run("learning_server", "a_new_turtle.py")
         self.assertEqual(code, 1)
         self.assertIn("no turtle", output)
 
     def test_each_call_of_turtle_command_toggles_whether_the_turtle_drives(self):
-        with running("learning_server", "turtle_command_server.py"):
-            rospy.wait_for_service("/turtle_command", 20.0)
-            toggle = rospy.ServiceProxy("/turtle_command", Trigger)
+        with running("learning_server", "turtle_vel_command_server.py"):
+            rospy.wait_for_service("/turtle_vel_command", 20.0)
+            toggle = rospy.ServiceProxy("/turtle_vel_command", Trigger)
             for message, drives in (("driving", True), ("standing", False), ("driving", True)):
                 answer = toggle()
                 self.assertEqual((answer.success, answer.message), (True, message))
                 wait_until(message, lambda: (self.pose().linear_velocity > 0.0) == drives)  # noqa: B023
 
     def test_5_and_6_are_11(self):
-        with running("learning_server", "int_plus_server.py"):
-            rospy.wait_for_service("/int_plus", 20.0)
-            self.assertEqual(rospy.ServiceProxy("/int_plus", IntPlus)(-3, 7).result, 4)
-            code, output = run("learning_server", "int_plus_client.py", "5", "6")
+        with running("learning_server", "IntPlus_server.py"):
+            rospy.wait_for_service("/Two_Int_Plus", 20.0)
+            self.assertEqual(rospy.ServiceProxy("/Two_Int_Plus", IntPlus)(-3, 7).result, 4)
+            code, output = run("learning_server", "IntPlus_client.py", "5", "6")
         self.assertEqual(code, 0, output)
         self.assertIn("5 + 6 = 11", output)
 

@@ -138,6 +138,13 @@ def test_includes_are_found_by_path_and_may_be_made_static(load, tmp_path, schem
     assert loose.mass == 1.0
 
 
+@pytest.mark.parametrize(
+    "library", ["libgazebo_ros_init.so", "libgazebo_ros_factory.so", "libactor_collisions.so"]
+)
+def test_plugins_of_worlds_that_are_not_needed_are_left_out_in_silence(load, library):
+    assert load(f"<plugin name='p' filename='{library}'/>" + model()).warnings == ()
+
+
 def test_an_include_that_includes_itself_is_an_error(load, tmp_path):
     add_model(tmp_path, "loop", "<model name='loop'><include><uri>model://loop</uri></include></model>")
     with pytest.raises(WorldError, match="includes itself"):

@@ -4,6 +4,7 @@ from typing import Dict, Hashable, List, Tuple
 
 from sim_bridge.sdf.element import Element
 from sim_bridge.sdf.known import HONOURED, WITHOUT_BEARING
+from sim_bridge.sdf.plugins import NEEDLESS, plugin_name
 
 
 class Warnings:
@@ -31,7 +32,7 @@ class Warnings:
         """Names the children of an element that are neither honoured nor without bearing."""
         known = HONOURED[element.tag] | WITHOUT_BEARING.get(element.tag, frozenset())
         for child in element.children():
-            if child.tag not in known:
+            if child.tag not in known and not (child.tag == "plugin" and plugin_name(child) in NEEDLESS):
                 self.leave_out(child, kind=(element.tag, child.tag, child.attribute("filename")))
 
     def lines(self) -> List[str]:

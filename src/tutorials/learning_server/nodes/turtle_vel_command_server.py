@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Starts and stops the turtle: each call of the service /turtle_command toggles whether it drives."""
+"""Starts and stops the turtle: each call of the service /turtle_vel_command toggles whether it drives."""
 
 import rospy
 from geometry_msgs.msg import Twist
@@ -12,7 +12,7 @@ class TurtleCommand:
     def __init__(self):
         self._drives = False
         self._publisher = rospy.Publisher("/turtle1/cmd_vel", Twist, queue_size=10)
-        rospy.Service("/turtle_command", Trigger, self._on_call)
+        rospy.Service("/turtle_vel_command", Trigger, self._on_call)
 
     def drive(self):
         rate = rospy.Rate(10)
@@ -32,7 +32,7 @@ class TurtleCommand:
 
 
 if __name__ == "__main__":
-    rospy.init_node("turtle_command_server")
+    rospy.init_node("turtle_vel_command_server")
     try:
         TurtleCommand().drive()
     except rospy.ROSInterruptException:

@@ -11,7 +11,7 @@ def on_call(request):
 
 
 if __name__ == "__main__":
-    rospy.init_node("int_plus_server")
-    rospy.Service("/int_plus", IntPlus, on_call)
+    rospy.init_node("IntPlus_server")
+    rospy.Service("/Two_Int_Plus", IntPlus, on_call)
     rospy.loginfo("ready to add")
     rospy.spin()

@@ -12,6 +12,6 @@ def on_information(message):
 
 
 if __name__ == "__main__":
-    rospy.init_node("information_subscriber", anonymous=True)
+    rospy.init_node("Information_subscriber", anonymous=True)
     rospy.Subscriber("/company_info", Information, on_information)
     rospy.spin()

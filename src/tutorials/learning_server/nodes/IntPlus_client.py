@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Asks the server /int_plus for a sum.
+"""Asks the server /Two_Int_Plus for a sum.
 
-int_plus_client.py A B
+IntPlus_client.py A B
 """
 
 import sys
@@ -11,12 +11,12 @@ from learning_server.srv import IntPlus
 
 
 def plus(a, b):
-    rospy.wait_for_service("/int_plus", timeout=10.0)
-    return rospy.ServiceProxy("/int_plus", IntPlus)(a, b).result
+    rospy.wait_for_service("/Two_Int_Plus", timeout=10.0)
+    return rospy.ServiceProxy("/Two_Int_Plus", IntPlus)(a, b).result
 
 
 if __name__ == "__main__":
-    rospy.init_node("int_plus_client")
+    rospy.init_node("IntPlus_client")
     try:
         a, b = map(int, rospy.myargv()[1:] or (5, 6))
         rospy.loginfo("%d + %d = %d", a, b, plus(a, b))

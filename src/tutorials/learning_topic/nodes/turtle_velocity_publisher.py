@@ -8,7 +8,7 @@ FORWARD, TURN = 0.5, 0.2  # m/s and rad/s: a circle of 2.5 m radius
 
 
 def main():
-    rospy.init_node("velocity_publisher", anonymous=True)
+    rospy.init_node("turtle_velocity_publisher", anonymous=True)
     publisher = rospy.Publisher("/turtle1/cmd_vel", Twist, queue_size=10)
     rate = rospy.Rate(10)
     twist = Twist()

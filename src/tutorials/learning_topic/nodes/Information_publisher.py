@@ -6,7 +6,7 @@ from learning_topic.msg import Information
 
 
 def main():
-    rospy.init_node("information_publisher", anonymous=True)
+    rospy.init_node("Information_publisher", anonymous=True)
     publisher = rospy.Publisher("/company_info", Information, queue_size=10)
     rate = rospy.Rate(10)
     message = Information(company="Home Service", city="Sindelfingen", employees=42)

@@ -11,6 +11,6 @@ def on_pose(pose):
 
 
 if __name__ == "__main__":
-    rospy.init_node("pose_subscriber", anonymous=True)
+    rospy.init_node("turtle_pose_subscriber", anonymous=True)
     rospy.Subscriber("/turtle1/pose", Pose, on_pose)
     rospy.spin()

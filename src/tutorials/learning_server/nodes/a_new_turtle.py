@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Asks for a second turtle: a client of the service /spawn.
 
-turtle_spawn.py [NAME [X Y THETA]]
+a_new_turtle.py [NAME [X Y THETA]]
 """
 
 import sys
@@ -16,7 +16,7 @@ def spawn(name="turtle2", x="2.0", y="2.0", theta="0.0"):
 
 
 if __name__ == "__main__":
-    rospy.init_node("turtle_spawn")
+    rospy.init_node("a_new_turtle")
     try:
         rospy.loginfo("spawned: %s", spawn(*rospy.myargv()[1:]))
     except (rospy.ServiceException, rospy.ROSException, TypeError, ValueError) as error:
