@@ -82,3 +82,9 @@ def test_a_script_that_is_not_there_is_answered_with_those_that_are(tmp_path):
         match=r"no script home_service\.sh in it; name another of its scripts: src/scripts/pick\.sh",
     ):
         choose_script(project, None)
+
+
+def test_what_git_lfs_has_not_fetched_is_known(tmp_path):
+    checkout(tmp_path, "pick/package.xml", "world/home.world")
+    (tmp_path / "world/map.pgm").write_text("version https://git-lfs.github.com/spec/v1\noid sha256:0\n")
+    assert read_checkout(tmp_path).lfs_pointers() == ["world/map.pgm"]

@@ -72,6 +72,9 @@ def run(options: Options) -> int:
         folder = create_run_folder(options.output.resolve(), "run_project")
         logs = folder / "log"
         display.say(f"{checkout.root}: {checkout.kind.value}, {len(checkout.packages)} packages in it")
+        pointers = checkout.lfs_pointers()
+        if pointers:
+            display.say(f"warning: not fetched, git lfs pull does that: {', '.join(pointers)}")
         display.say(f"logs in {logs}")
         workspace = copy_checkout(checkout, placement, work.path)
         display.show("building ...")

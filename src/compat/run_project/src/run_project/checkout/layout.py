@@ -15,6 +15,7 @@ from run_project.stand_ins.folders import PACKAGE_FOLDER
 LEFTOVERS = frozenset((".git", ".hg", ".svn", "build", "devel", "install", "logs"))
 SCRIPTS = (".sh", ".bash")
 WORD = "home_service"
+LFS_POINTER = b"version https://git-lfs"
 
 
 class Kind(enum.Enum):
@@ -44,6 +45,10 @@ class Checkout:
     def scripts(self) -> List[Path]:
         """All shell scripts."""
         return [Path(file) for file in self.files if file.endswith(SCRIPTS)]
+
+    def lfs_pointers(self) -> List[str]:
+        """Files that were not fetched: what Git LFS puts in their place says where they are."""
+        return [file for file in self.files if _begins(self.root / file, LFS_POINTER)]
 
     def model_folders(self) -> List[Path]:
         """All folders in which Gazebo's models lie, those that worlds name as ``model://name``."""
@@ -98,6 +103,13 @@ def choose_script(checkout: Checkout, wanted: Optional[str]) -> Path:
 def is_errand(script: str) -> bool:
     """Whether a script drives the robot, by its name; others may just show a marker."""
     return _letters(WORD) in _letters(Path(script).stem)
+
+
+def _begins(path: Path, content: bytes) -> bool:
+    if not path.is_file():
+        return False
+    with path.open("rb") as file:
+        return file.read(len(content)) == content
 
 
 def _letters(text: str) -> str:
