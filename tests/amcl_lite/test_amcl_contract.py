@@ -228,6 +228,18 @@ class AmclContractTest(unittest.TestCase):
         transform = self.map_to_odom(self.robot.sense() + rospy.Duration(0.3))
         self.assertEqual(transform.child_frame_id, frame_name(transform.child_frame_id))
 
+    def test_messages_that_mean_nothing_leave_the_node_as_it_was(self):
+        """Each of these once ended it with a segmentation fault, or in an endless loop."""
+        for name in ("angle_min", "angle_increment", "range_max"):
+            self.robot.sense(changed={name: math.nan})
+        for far, spread in ((1e300, 0.1), (1e18, 0.1), (0.0, 1e150)):
+            self.set_pose(Pose2(far, 0.0), spread=spread)
+            self.robot.sense()
+        self.poses.messages.clear()
+        self.set_pose(self.robot.base_in_map)
+        self.robot.sense()
+        self.poses.wait(lambda message: pose2_from_msg(message.pose.pose).distance_to(START) < NEAR)
+
 
 if __name__ == "__main__":
     rostest.rosrun("home_service_tests", "amcl_contract", AmclContractTest)

@@ -57,8 +57,8 @@ class ToyRobot:
         true = cast_rays(self.grid, self.base_in_map, angles, RANGE_MAX)
         return (true + self._rng.normal(0.0, 0.01, BEAMS)).astype(np.float32)
 
-    def sense(self, ranges=None, stamp=None, tf_late=0.0) -> rospy.Time:
-        """Publishes odometry and a scan of one stamp, which is returned."""
+    def sense(self, ranges=None, stamp=None, tf_late=0.0, changed=None) -> rospy.Time:
+        """Publishes odometry and a scan of one stamp, which is returned; ``changed``: fields of the scan."""
         stamp = stamp or rospy.Time.now()
         scan = LaserScanArrays()
         scan.header.stamp, scan.header.frame_id = stamp, self.laser_frame
@@ -67,6 +67,8 @@ class ToyRobot:
         scan.range_min, scan.range_max = 0.1, RANGE_MAX
         scan.ranges = self.ranges() if ranges is None else ranges
         scan.intensities = np.zeros(0, dtype=np.float32)
+        for name, value in (changed or {}).items():
+            setattr(scan, name, value)
         if tf_late:
             self._scans.publish(scan)
             rospy.sleep(tf_late)

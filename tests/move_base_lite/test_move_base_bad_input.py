@@ -85,6 +85,25 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
         self.wait_until(lambda: plan.messages and not plan.messages[-1].poses)
         self.assert_stops_when_cancelled()
 
+    def test_a_goal_at_which_nothing_can_be_is_refused(self):
+        """Once it ended the control thread, and the node lived on without ever answering a goal."""
+        for far in (1e308, 1e18):
+            self.client.send_goal(MoveBaseGoal(pose_at(far, 0.0)))
+            state, text = self.result_of()
+            self.assertEqual(state, GoalStatus.ABORTED)
+            self.assertIn("means nothing", text)
+
+    def test_a_map_without_its_cells_is_ignored(self):
+        maps = rospy.Publisher("map", OccupancyGrid, queue_size=1, latch=True)
+        broken = OccupancyGrid(data=[0] * 5)
+        broken.info.width = broken.info.height = 4
+        broken.info.resolution = 0.05
+        maps.publish(broken)
+        rospy.sleep(0.5)
+        maps.unregister()
+        self.drive(pose_at(*NEXT_ROOM))
+        self.assert_stops_when_cancelled()
+
     def test_cancel_while_controlling(self):
         self.drive(pose_at(*NEXT_ROOM))
         self.assert_stops_when_cancelled()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Ctrl-C at any moment of a run leaves no process behind and is no success."""
+"""However a run is ended from outside, it leaves no process behind and is no success."""
 
 import os
 import signal
@@ -12,6 +12,7 @@ from pathlib import Path
 
 import rostest
 from processes import processes_with
+from waiting import wait_until
 
 SCRIPT = Path(__file__).resolve().parents[2] / "scripts/home_service.sh"
 MOMENTS = (0.1, 0.6, 1.5, 3.0, 6.0)
@@ -51,7 +52,17 @@ class InterruptTest(unittest.TestCase):
         self.assertNotIn("error", "".join(said))
         self.assertEqual(processes_with(mark), [])
 
-    def _interrupted_run(self, moment, mark):
+    def test_a_terminal_that_closes_ends_the_run(self):
+        mark = f"HOME_SERVICE_TEST={uuid.uuid4()}"
+        self.assertEqual(self._interrupted_run(6.0, mark, signal.SIGHUP), 130)
+        self.assertEqual(processes_with(mark), [])
+
+    def test_a_killed_run_takes_its_nodes_along(self):
+        mark = f"HOME_SERVICE_TEST={uuid.uuid4()}"
+        self._interrupted_run(8.0, mark, signal.SIGKILL)
+        wait_until("the nodes to end", lambda: not processes_with(mark), EXIT_SECONDS)
+
+    def _interrupted_run(self, moment, mark, number=signal.SIGINT):
         name, value = mark.split("=")
         with tempfile.TemporaryDirectory() as folder:
             run = subprocess.Popen(
@@ -62,7 +73,7 @@ class InterruptTest(unittest.TestCase):
                 stderr=subprocess.DEVNULL,
             )
             time.sleep(moment)
-            run.send_signal(signal.SIGINT)
+            run.send_signal(number)
             return run.wait(EXIT_SECONDS)
 
 

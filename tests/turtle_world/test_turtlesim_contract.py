@@ -67,6 +67,15 @@ class TurtlesimContractTest(unittest.TestCase):
         twist.linear.x, twist.angular.z = forward, turn
         self.cmd_vel.publish(twist)
 
+    def test_a_turtle_is_not_sent_nowhere(self):
+        teleport = rospy.ServiceProxy("/turtle1/teleport_absolute", TeleportAbsolute)
+        for x, theta in ((math.nan, 0.0), (math.inf, 0.0), (1.0, math.nan)):
+            with self.assertRaisesRegex(rospy.ServiceException, "means nothing"):
+                teleport(x, 1.0, theta)
+        self.tell(forward=math.nan)
+        teleport(1.0, 2.0, 0.5)
+        self.assertTrue(wait_until(lambda: abs(self.pose().x - 1.0) < 0.01), "it steps on")
+
     def test_messages_have_the_official_md5_sums(self):
         for kind, md5_sum in MD5_SUMS.items():
             self.assertEqual(kind._md5sum, md5_sum, kind._type)

@@ -4,9 +4,12 @@ import pytest
 
 rospy = pytest.importorskip("rospy")
 
-from geometry_msgs.msg import Quaternion  # noqa: E402
+from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3  # noqa: E402
+from nav_msgs.msg import OccupancyGrid  # noqa: E402
+from sensor_msgs.msg import LaserScan  # noqa: E402
 
-from planar import Pose2, grid_from_picture  # noqa: E402
+from planar import PlanarError, Pose2, grid_from_picture  # noqa: E402
+from planar.geometry.limits import FARTHEST  # noqa: E402
 from planar_ros.messages import conversion as messages  # noqa: E402
 
 
@@ -31,3 +34,42 @@ def test_a_grid_survives_the_journey_through_a_message():
 
 def test_older_codes_leading_slash_is_dropped_from_frames():
     assert messages.frame_name("/map") == messages.frame_name("map") == "map"
+
+
+def laser_scan(**changed):
+    message = LaserScan(angle_min=-1.0, angle_increment=0.5, range_min=0.1, range_max=5.0, ranges=[1.0] * 5)
+    for name, value in changed.items():
+        setattr(message, name, value)
+    return message
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, 1e300])
+@pytest.mark.parametrize("name", ["angle_min", "angle_increment", "range_min"])
+def test_a_scan_message_of_senseless_numbers_is_refused(name, value):
+    with pytest.raises(PlanarError, match=name):
+        messages.scan_from_msg(laser_scan(**{name: value}), Pose2())
+
+
+def test_a_laser_without_end_sees_as_far_as_any():
+    assert messages.scan_from_msg(laser_scan(range_max=math.inf), Pose2()).range_max == FARTHEST
+
+
+@pytest.mark.parametrize("size", [(3, 2), (0, 5), (2**32 - 1, 2**32 - 1)])
+def test_a_map_message_whose_data_is_not_as_long_as_it_says_is_refused(size):
+    message = OccupancyGrid()
+    message.info.resolution, message.info.width, message.info.height = 0.05, *size
+    message.data = [0] * 5
+    with pytest.raises(PlanarError, match="with 5 values means nothing"):
+        messages.grid_from_msg(message)
+
+
+@pytest.mark.parametrize("x", [math.nan, math.inf, 1e18, -1e300])
+def test_a_pose_message_at_which_nothing_can_be_is_refused(x):
+    with pytest.raises(messages.MessageError):
+        messages.pose2_from_msg(Pose(position=Point(x, 0.0, 0.0)))
+
+
+@pytest.mark.parametrize("omega", [math.nan, 1e308])
+def test_a_velocity_that_no_robot_has_is_refused(omega):
+    with pytest.raises(messages.MessageError):
+        messages.twist2_from_msg(Twist(angular=Vector3(0.0, 0.0, omega)))

@@ -6,6 +6,7 @@ import math
 import pytest
 from PIL import Image
 
+from planar import PlanarError
 from turtle_world import Command, Pen, TurtleError, TurtleWorld
 from turtle_world.canvas import BACKGROUND, SIDE
 from turtle_world.physics import PERIOD
@@ -166,3 +167,20 @@ def test_the_picture_shows_floor_trail_and_turtle():
     assert picture.size == (500, 500)
     colors = {color for _, color in picture.getcolors(100)}
     assert BACKGROUND in colors and (250, 0, 0) in colors and len(colors) >= 4
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, 1e300])
+def test_a_turtle_is_not_put_where_nothing_can_be(value):
+    """Once a place that is not a number ended the thread that steps the world."""
+    world = TurtleWorld()
+    for put in (
+        lambda: world.teleport("turtle1", value, 1.0, 0.0),
+        lambda: world.teleport("turtle1", 1.0, 1.0, value),
+        lambda: world.teleport_by("turtle1", value, 0.0),
+        lambda: world.teleport_by("turtle1", 0.0, value),
+        lambda: world.spawn("", 1.0, value, 0.0),
+    ):
+        with pytest.raises(PlanarError, match="means nothing"):
+            put()
+    assert world.names == ["turtle1"]
+    world.step()

@@ -17,6 +17,7 @@ from amcl_lite.sensor.beams import Beams, all_beams, evenly_spaced_beams
 from amcl_lite.sensor.scan_likelihood import ScanLikelihood
 from amcl_lite.sensor.scan_matching import matched
 from planar import OccupancyGrid, Pose2, Scan, grid_from_picture
+from planar.geometry.limits import FARTHEST, is_within
 
 # Of the particles of a lost robot, this share is put where the scan fits the map.
 _RECOVERY_SHARE = 0.3
@@ -99,8 +100,8 @@ class Localizer:
 
     def set_pose(self, base_in_map: Pose2, pose_covariance: np.ndarray) -> None:
         """Starts anew around a pose; ``pose_covariance``: (3, 3), m^2 and rad^2."""
-        if not (base_in_map.is_finite() and np.isfinite(pose_covariance).all()):
-            raise LocalizationError("a pose to start from must be finite")
+        if not (base_in_map.is_in_range() and is_within(FARTHEST, *np.ravel(pose_covariance))):
+            raise LocalizationError("a pose to start from must be finite, and where a robot can be")
         count = self._settings.max_particles
         self._start(gaussian_particles(base_in_map, pose_covariance, count, self._rng), is_lost=False)
 
@@ -118,8 +119,8 @@ class Localizer:
 
         ``laser`` tells several lasers apart. Raises LocalizationError for a scan that cannot be used.
         """
-        if not base_in_odom.is_finite():
-            raise LocalizationError("odometry must be finite")
+        if not base_in_odom.is_in_range():
+            raise LocalizationError("odometry must tell where a robot can be")
         beams = evenly_spaced_beams(scan, self._settings)
         self._base_in_odom = base_in_odom
         estimate = None

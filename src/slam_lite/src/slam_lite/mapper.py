@@ -7,6 +7,7 @@ from typing import List, Optional, Tuple
 import numpy as np
 
 from planar import OccupancyGrid, Pose2, Scan
+from planar.geometry.pose import check_place
 from slam_lite.back_end import BackEnd, ClosureResult, ClosureTask
 from slam_lite.config import MapperSettings
 from slam_lite.front_end import FrontEnd, KnownScans, RecentScans, Tracked, moves
@@ -65,7 +66,11 @@ class Mapper:
         self._last_in_key = Pose2()
 
     def insert(self, base_in_odom: Pose2, scan: Scan) -> Optional[MapUpdate]:
-        """Takes one scan in; None if it says nothing new because the robot stands still."""
+        """Takes one scan in; None if it says nothing new because the robot stands still.
+
+        Raises OutOfRangeError for odometry at which no robot can be.
+        """
+        check_place(base_in_odom, "odometry")
         if self._pause.lasts(base_in_odom, scan.stamp) and not self._front_end.odometry_is_stuck:
             return None
         max_range, usable_range = ranges_of(scan, self._settings)
@@ -193,7 +198,8 @@ class Follower:
         self._front_end = FrontEnd(self._settings, known, base_in_map)
 
     def insert(self, base_in_odom: Pose2, scan: Scan) -> Optional[PoseUpdate]:
-        """Follows one scan; None if the robot stands still."""
+        """Follows one scan; None if the robot stands still. Raises OutOfRangeError, as ``Mapper.insert``."""
+        check_place(base_in_odom, "odometry")
         if self._pause.lasts(base_in_odom, scan.stamp) and not self._front_end.odometry_is_stuck:
             return None
         _, usable_range = ranges_of(scan, self._settings)

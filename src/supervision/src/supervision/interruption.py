@@ -3,10 +3,19 @@
 import os
 import signal
 import sys
-from typing import NoReturn
+from typing import NoReturn, Tuple
 
 INTERRUPTED = 130
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+def _signals() -> Tuple[signal.Signals, ...]:
+    """Those that ask for an end; the terminal that closes is none to a command under nohup."""
+    asked = (signal.SIGINT, signal.SIGTERM)
+    is_deaf = signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+    return asked if is_deaf else (*asked, signal.SIGHUP)
+
+
+SIGNALS = _signals()
 
 _is_interrupted = False
 
@@ -19,7 +28,7 @@ class RunInterruptedError(KeyboardInterrupt):
 
 
 def leave_when_interrupted() -> None:
-    """From now on SIGINT or SIGTERM ends the process at once: nothing has to be taken down yet.
+    """From now on SIGINT, SIGTERM or SIGHUP ends the process at once: nothing has to be taken down yet.
 
     Libraries that are being imported catch whatever is raised.
     """
@@ -28,7 +37,7 @@ def leave_when_interrupted() -> None:
 
 
 def raise_when_interrupted() -> None:
-    """From now on the first SIGINT or SIGTERM raises RunInterruptedError, and further ones are ignored."""
+    """From now on the first of ``SIGNALS`` raises RunInterruptedError, and further ones are ignored."""
     for number in SIGNALS:
         signal.signal(number, _raise)
 

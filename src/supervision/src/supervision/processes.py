@@ -13,7 +13,7 @@ import psutil
 from supervision.errors import LaunchError
 
 FIRST_PORT, FIRST_OUTGOING_PORT = 20000, 32768
-PR_SET_CHILD_SUBREAPER = 36
+PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
 
 
 def start_of_this_process() -> float:
@@ -38,6 +38,11 @@ def free_port() -> int:
 def adopt_orphans() -> None:
     """Makes this process the parent of every descendant whose own parent dies, so that none can hide."""
     ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+
+
+def end_with_parent() -> None:
+    """For a child between fork and exec: it is sent SIGINT when its parent ends, be it by SIGKILL."""
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGINT, 0, 0, 0)
 
 
 def end_descendants(patience: float) -> None:

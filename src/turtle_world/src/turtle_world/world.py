@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Dict, List, Optional, Tuple
 
 from planar import PlanarError
+from planar.geometry.limits import FARTHEST, FASTEST, MOST_RADIANS, check_within, is_within
 from turtle_world.canvas import BACKGROUND, SIDE, Canvas, Color, Pen
 from turtle_world.physics import PERIOD, Physics, Place
 
@@ -25,8 +26,9 @@ class Command:
     leftward: float = 0.0
     turn: float = 0.0
 
-    def is_finite(self) -> bool:
-        return all(map(math.isfinite, (self.forward, self.leftward, self.turn)))
+    def is_in_range(self) -> bool:
+        """Whether it is finite, and no faster than anything moves."""
+        return is_within(FASTEST, self.forward, self.leftward, self.turn)
 
 
 @dataclass(frozen=True)
@@ -69,13 +71,17 @@ class TurtleWorld:
         return list(self._turtles)
 
     def spawn(self, name: str, x: float, y: float, theta: float) -> str:
-        """A new turtle; returns its name, which is made up if ``name`` is empty. Raises TurtleError."""
+        """A new turtle; returns its name, which is made up if ``name`` is empty.
+
+        Raises TurtleError, or OutOfRangeError for a place that means nothing, as all that moves turtles.
+        """
+        place = _on_floor(Place(x, y, theta))
         if name in self._turtles:
             raise TurtleError(f"A turtle named [{name}] already exists")
         while not name or name in self._turtles:
             self._made_up += 1
             name = f"turtle{self._made_up}"
-        self._turtles[name] = _Turtle(self._physics.add(_on_floor(Place(x, y, theta))))
+        self._turtles[name] = _Turtle(self._physics.add(place))
         return name
 
     def kill(self, name: str) -> None:
@@ -93,8 +99,8 @@ class TurtleWorld:
 
     def command(self, name: str, command: Command) -> None:
         """Tells a turtle how to move from now on, until the command's time-out. Raises TurtleError."""
-        if not command.is_finite():
-            raise TurtleError(f"[{name}] is told to move at a speed that is not finite")
+        if not command.is_in_range():
+            raise TurtleError(f"[{name}] is told to move at a speed that is not finite, or no speed")
         turtle = self._turtle(name)
         turtle.command, turtle.steps_left = command, round(COMMAND_SECONDS / PERIOD)
 
@@ -112,13 +118,14 @@ class TurtleWorld:
 
     def teleport(self, name: str, x: float, y: float, theta: float) -> None:
         """Moves a turtle at once, drawing a line if its pen is on. Raises TurtleError."""
-        start = self.place_of(name)
-        self._physics.move(self._turtle(name).body, _on_floor(Place(x, y, theta)))
+        start, end = self.place_of(name), _on_floor(Place(x, y, theta))
+        self._physics.move(self._turtle(name).body, end)
         self._draw(name, start)
 
     def teleport_by(self, name: str, distance: float, angle: float) -> None:
         """Turns a turtle, then moves it ahead, at once. Raises TurtleError."""
         place = self.place_of(name)
+        check_within(MOST_RADIANS, "a turtle's turn", angle=angle)
         theta = place.theta + angle
         self.teleport(name, place.x + distance * math.cos(theta), place.y + distance * math.sin(theta), theta)
 
@@ -177,4 +184,6 @@ class TurtleWorld:
 
 
 def _on_floor(place: Place) -> Place:
+    check_within(FARTHEST, "a turtle's place", x=place.x, y=place.y)
+    check_within(MOST_RADIANS, "a turtle's place", theta=place.theta)
     return Place(min(max(place.x, 0.0), SIDE), min(max(place.y, 0.0), SIDE), place.theta)

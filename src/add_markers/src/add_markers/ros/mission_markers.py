@@ -10,6 +10,7 @@ from add_markers.bodies import HEIGHT, RIDING_HEIGHT
 from add_markers.config import MarkerSettings
 from add_markers.ros.mission_bodies import MissionBodies
 from planar import Pose2
+from planar_ros.messages.border import listen
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
 from planar_ros.node.waiting import Waiting
 
@@ -30,7 +31,7 @@ class MissionMarkers:
             "visualization_marker", Marker, subscriber_listener=_Repeater(self), queue_size=50
         )
         self._has_state = False
-        rospy.Subscriber(STATE_TOPIC, MissionState, self._follow, queue_size=50)
+        listen(STATE_TOPIC, MissionState, self._follow, queue_size=50)
         Waiting({f"a mission on {rospy.resolve_name(STATE_TOPIC)}": lambda: self._has_state})
 
     def repeat(self, publish) -> None:

@@ -14,6 +14,7 @@ from add_markers.ros.mission_markers import MissionMarkers
 from add_markers.ros.zones import zone_markers
 from planar import Pose2
 from planar.maps.places import places_of_errand
+from planar_ros.messages.border import listen
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
 from planar_ros.messages.transforms import Transforms
 from planar_ros.node.parameters import read_settings
@@ -75,9 +76,9 @@ class AddMarkers:
         if source == "state":
             rospy.Subscriber("pick_objects/state", String, keep_state, queue_size=10)
         elif source == "odom":
-            rospy.Subscriber("odom", Odometry, keep_pose, queue_size=1)
+            listen("odom", Odometry, keep_pose, queue_size=1)
         else:
-            rospy.Subscriber("amcl_pose", PoseWithCovarianceStamped, keep_pose, queue_size=1)
+            listen("amcl_pose", PoseWithCovarianceStamped, keep_pose, queue_size=1)
         return lambda: latest[0]
 
     def _conditions(self):

@@ -6,6 +6,8 @@ from geometry_msgs.msg import PoseWithCovarianceStamped
 
 from amcl_lite.ros.shared_localizer import SharedLocalizer
 from amcl_lite.ros.tf_bridge import TfBridge
+from planar.geometry.limits import FARTHEST, check_within
+from planar_ros.messages.border import listen
 from planar_ros.messages.conversion import frame_name, pose2_from_msg
 
 
@@ -14,10 +16,13 @@ class InitialPoses:
 
     def __init__(self, shared: SharedLocalizer, tf_bridge: TfBridge):
         self._shared, self._tf_bridge = shared, tf_bridge
-        rospy.Subscriber("initialpose", PoseWithCovarianceStamped, self._on_initial_pose, queue_size=2)
+        listen("initialpose", PoseWithCovarianceStamped, self._on_initial_pose, queue_size=2)
 
     def take(self, message: PoseWithCovarianceStamped, force_update: bool) -> None:
-        """Warns of a pose that cannot be used; with ``force_update`` the next scan counts."""
+        """Warns of a pose that cannot be used; with ``force_update`` the next scan counts.
+
+        Raises PlanarError for a pose at which no robot can be.
+        """
         frame, map_frame = frame_name(message.header.frame_id), frame_name(self._shared.settings.map_frame)
         if frame == "":
             rospy.logwarn("Received initial pose with empty frame_id.  You should always supply a frame_id.")
@@ -30,9 +35,7 @@ class InitialPoses:
             return
         motion = self._tf_bridge.motion_since(message.header.stamp)
         pose, covariance = pose2_from_msg(message.pose.pose) @ motion, _planar(message.pose.covariance)
-        if not (pose.is_finite() and np.isfinite(covariance).all()):
-            rospy.logwarn("Ignoring an initial pose that is not finite")
-            return
+        check_within(FARTHEST, "an initial pose", covariance=float(np.abs(covariance).max()))
         rospy.loginfo("Setting pose (%.6f): %.3f %.3f %.3f", rospy.get_time(), pose.x, pose.y, pose.yaw)
         self._shared.set_pose(pose, covariance, force_update)
 

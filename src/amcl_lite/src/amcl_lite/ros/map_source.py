@@ -73,10 +73,10 @@ class MapSource:
     def _on_set_map(self, request):
         try:
             self._install(request.map)
+            self._take_pose(request.initial_pose, self._shared.settings.force_update_after_set_map)
         except PlanarError as error:
             rospy.logerr("map refused: %s", error)
             return SetMapResponse(success=False)
-        self._take_pose(request.initial_pose, self._shared.settings.force_update_after_set_map)
         return SetMapResponse(success=True)
 
     def _install(self, message):

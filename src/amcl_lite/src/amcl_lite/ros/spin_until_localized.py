@@ -15,6 +15,7 @@ from std_msgs.msg import String
 from std_srvs.srv import Empty
 
 from planar import PlanarError
+from planar_ros.messages.border import listen
 from planar_ros.messages.conversion import pose2_from_msg
 from planar_ros.node.shell import fail, run
 
@@ -41,7 +42,7 @@ class SpinUntilLocalized:
         self._asked_at = rospy.Time(0)
         self._cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1)
         rospy.Subscriber(f"{node}/localization_state", String, self._on_state, queue_size=2)
-        rospy.Subscriber("amcl_pose", PoseWithCovarianceStamped, self._on_pose, queue_size=2)
+        listen("amcl_pose", PoseWithCovarianceStamped, self._on_pose, queue_size=2)
 
     def spin(self, timeout: float, turn_speed: float) -> str:
         """Returns where the robot is, in words. Raises NotLocalizedError after ``timeout``, ROS seconds."""

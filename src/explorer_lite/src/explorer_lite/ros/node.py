@@ -16,6 +16,7 @@ from explorer_lite.warming import warm_up
 from planar import OccupancyGrid, Pose2
 from planar_ros.calls.actions import ActionServer
 from planar_ros.calls.move_base import MoveBase
+from planar_ros.messages.border import listen
 from planar_ros.messages.conversion import LaserScanArrays, OccupancyGridArrays, grid_from_msg, pose2_to_msg
 from planar_ros.messages.transforms import Transforms
 from planar_ros.node.parameters import read_settings
@@ -44,8 +45,8 @@ class Explore:
         self._transforms = Transforms()
         self._markers = rospy.Publisher("~frontiers", MarkerArray, queue_size=1, latch=True)
         self._move_base = MoveBase(self._settings.global_frame)
-        rospy.Subscriber("map", OccupancyGridArrays, self._keep_map, queue_size=1, tcp_nodelay=True)
-        self._scans = rospy.Subscriber("scan", LaserScanArrays, self._measure_view, queue_size=1)
+        listen("map", OccupancyGridArrays, self._keep_map, queue_size=1, tcp_nodelay=True)
+        self._scans = listen("scan", LaserScanArrays, self._measure_view, queue_size=1)
         rospy.on_shutdown(self._move_base.cancel_all)
         frames = f"{self._settings.global_frame} to {self._settings.robot_base_frame}"
         self._conditions = {

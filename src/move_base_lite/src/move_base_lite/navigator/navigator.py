@@ -24,6 +24,7 @@ from move_base_lite.navigator.states import GivenUp, HasArrived, step
 from move_base_lite.navigator.zones import Zones
 from move_base_lite.planning import Potential
 from planar import OccupancyGrid, Pose2, Scan, Twist2
+from planar.geometry.pose import check_place
 
 
 class Navigator:
@@ -105,7 +106,11 @@ class Navigator:
                 raise GivenUp(Trigger.PLANNING.value, error) from error
 
     def set_goal(self, goal_in_map: Pose2) -> None:
-        """Drives there from the next tick on; a goal under way is left without stopping."""
+        """Drives there from the next tick on; a goal under way is left without stopping.
+
+        Raises OutOfRangeError for a place at which no robot can be.
+        """
+        check_place(goal_in_map, "a goal")
         self._new_goal = goal_in_map
 
     def cancel(self, now: float) -> Decision:
@@ -157,7 +162,9 @@ class Navigator:
         return self._crew.planner.potential
 
     def make_plan(self, start_in_map: Pose2, goal_in_map: Pose2, tolerance: float = 0.0) -> np.ndarray:
-        """Path (N, 2) in the map between any two places. Raises PlanningError."""
+        """Path (N, 2) in the map between any two places. Raises PlanningError, and as ``set_goal``."""
+        check_place(start_in_map, "a start")
+        check_place(goal_in_map, "a goal")
         return self._crew.plan(start_in_map, goal_in_map, tolerance)
 
     def clear_costmaps(self) -> None:

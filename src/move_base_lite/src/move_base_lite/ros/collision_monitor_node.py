@@ -12,6 +12,7 @@ from std_msgs.msg import String
 from move_base_lite.collision_monitor import STOPPED, CollisionMonitor, MonitorSettings, Verdict
 from planar import SettingsError, Twist2
 from planar.config.settings import settings_from
+from planar_ros.messages.border import listen
 from planar_ros.messages.conversion import LaserScanArrays, frame_name, scan_from_msg
 from planar_ros.messages.transforms import Transforms
 from planar_ros.node.parameters import parameters_below
@@ -38,8 +39,8 @@ class CollisionMonitorNode:
         self._reason = ""
         self._state = rospy.Publisher("~state", String, queue_size=1, latch=True)
         self._out = rospy.Publisher("cmd_vel_out", Twist, queue_size=1, tcp_nodelay=True)
-        rospy.Subscriber("scan", LaserScanArrays, self._on_scan, queue_size=1, tcp_nodelay=True)
-        rospy.Subscriber("cmd_vel_in", Twist, self._on_command, queue_size=1, tcp_nodelay=True)
+        listen("scan", LaserScanArrays, self._on_scan, queue_size=1, tcp_nodelay=True)
+        listen("cmd_vel_in", Twist, self._on_command, queue_size=1, tcp_nodelay=True)
 
     def _on_scan(self, message):
         mounting = self._transforms.mounting(self._base_frame, frame_name(message.header.frame_id))

@@ -22,7 +22,8 @@ from move_base_lite.ros.topics.potential import PotentialTopic
 from move_base_lite.ros.topics.zones import ZoneTopics
 from move_base_lite.ros.tuning import ParameterTree
 from move_base_lite.warming import warm_up
-from planar import Pose2, SettingsError, Twist2
+from planar import OccupancyGrid, Pose2, SettingsError, Twist2
+from planar_ros.messages.border import listen
 from planar_ros.messages.conversion import OccupancyGridArrays, frame_name, grid_from_msg
 from planar_ros.messages.transforms import Transforms
 from planar_ros.node.parameters import parameters_below
@@ -53,7 +54,7 @@ class MoveBaseNode:
         self._global_planner = _short_name(parameters, "base_global_planner", "navfn/NavfnROS")
         local_planner = _short_name(parameters, "base_local_planner", "")
         self._lock = threading.RLock()
-        self._new_map: Optional[OccupancyGridArrays] = None
+        self._new_map: Optional[OccupancyGrid] = None
         self._navigator: Optional[Navigator] = None
         self._view: Optional[View] = None
         self._goal = Pose2()
@@ -85,13 +86,13 @@ class MoveBaseNode:
             conditions[f"a map on {rospy.resolve_name(static.map_topic)}"] = (
                 lambda: self._new_map is not None or self._navigator is not None
             )
-            self._maps = rospy.Subscriber(static.map_topic, OccupancyGridArrays, self._on_map, queue_size=1)
+            self._maps = listen(static.map_topic, OccupancyGridArrays, self._on_map, queue_size=1)
         else:
             self._navigator = Navigator(self._settings, None, self._zones)
         Waiting(conditions)
 
     def _on_map(self, message):
-        self._new_map = message
+        self._new_map = grid_from_msg(message)
 
     def _change(self, settings: NavigatorSettings):
         with self._lock:
@@ -149,10 +150,9 @@ class MoveBaseNode:
             self._local_topics.publish(now, self._navigator.local_costmap, view.base_in_odom)
 
     def _take_map(self):
-        message, self._new_map = self._new_map, None
-        if message is None:
+        grid, self._new_map = self._new_map, None
+        if grid is None:
             return
-        grid = grid_from_msg(message)
         if self._navigator is None:
             self._navigator = Navigator(self._settings, grid, self._zones)
         else:

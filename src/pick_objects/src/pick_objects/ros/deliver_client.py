@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import List, Optional
 
 import actionlib
+import rosgraph
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from home_service_msgs.msg import DeliverAction, DeliverGoal, DeliveryState
@@ -28,12 +29,11 @@ def main(arguments: Optional[List[str]] = None) -> int:
     except (OSError, UnicodeDecodeError) as error:
         return _complain(f"{options.mission}: cannot be read ({getattr(error, 'strerror', None) or error})")
     interrupted = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM):
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, lambda _number, _frame: interrupted.set())
-    try:
-        rospy.init_node("deliver", anonymous=True, disable_signals=True)
-    except OSError as error:
-        return _complain(f"no ROS master ({error})")
+    if not rosgraph.is_master_online():  # rospy would wait for one, deaf to everything
+        return _complain(f"no ROS master at {rosgraph.get_master_uri()}")
+    rospy.init_node("deliver", anonymous=True, disable_signals=True)
     client = actionlib.SimpleActionClient("deliver", DeliverAction)
     deadline = time.monotonic() + options.server_timeout
     while not server_is_ready(client):

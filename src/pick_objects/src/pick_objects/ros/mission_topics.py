@@ -11,6 +11,7 @@ from pick_objects.job import ErrandState, Job
 from pick_objects.mission import Delivery
 from planar import Pose2
 from planar_ros.messages.conversion import pose2_to_msg
+from planar_ros.node.last_words import wait_until_heard
 
 
 class MissionTopics:
@@ -39,6 +40,10 @@ class MissionTopics:
             if text:
                 rospy.loginfo("%s", text)
         self._mission_state.publish(self.message(errand))
+
+    def wait_until_heard(self) -> None:
+        """Until all who listen have heard the last state; nothing can be shown afterwards."""
+        wait_until_heard(self._state, self._mission_state)
 
     def message(self, errand: Errand) -> msg.MissionState:
         now = rospy.Time.now()

@@ -20,6 +20,7 @@ from pick_objects.ros.mission_topics import MissionTopics, delivery_from_msg
 from planar import OccupancyGrid
 from planar.driving import Finish
 from planar.maps.places import load_places, places_of_errand, why_unreachable
+from planar_ros.messages.border import listen
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg
 from planar_ros.node.parameters import read_settings
 from planar_ros.node.shell import fail, run
@@ -43,7 +44,7 @@ class PickObjects:
         self._lock = threading.Lock()
         self._driver = Driver(self._settings.frame_id)
         self._topics = MissionTopics(self._settings.frame_id, lambda: self._driver.robot_in_map)
-        rospy.Subscriber("map", OccupancyGridArrays, self._keep_map, queue_size=1)
+        listen("map", OccupancyGridArrays, self._keep_map, queue_size=1)
         rospy.Service("~add_delivery", AddDelivery, self._on_add)
         rospy.Service("~cancel_delivery", CancelDelivery, self._on_cancel)
         self._required = {self._driver.move_base.name: self._driver.move_base.is_ready}
@@ -66,6 +67,10 @@ class PickObjects:
                 lambda: self._step.pause(POLL_SECONDS)
             )
         return outcome
+
+    def say_goodbye(self) -> None:
+        """To be called last: the end of the mission is heard."""
+        self._topics.wait_until_heard()
 
     def _read_mission(self) -> Optional[Mission]:
         settings = self._settings
@@ -174,9 +179,11 @@ class PickObjects:
 
 def main():
     def start():
-        outcome = PickObjects().work()
+        node = PickObjects()
+        outcome = node.work()
         if rospy.is_shutdown():
             return
+        node.say_goodbye()
         if not outcome.success:
             fail(outcome.reason, exit_code=1)
         rospy.loginfo("%s", outcome.reason)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from planar.errors import PlanarError
+from planar.geometry.limits import COARSEST_CELL, FINEST_CELL, OutOfRangeError
 from planar.geometry.pose import Pose2
 
 FREE = 0
@@ -29,6 +30,8 @@ class OccupancyGrid:
             raise PlanarError(f"a grid needs rows and columns, got shape {self.cells.shape}")
         if not self.resolution > 0.0:
             raise PlanarError(f"a grid needs a positive resolution, got {self.resolution}")
+        if not (FINEST_CELL <= self.resolution <= COARSEST_CELL and self.origin.is_in_range()):
+            raise OutOfRangeError(f"a grid of {self.resolution:g} m a cell at {self.origin} means nothing")
 
     @property
     def rows(self) -> int:

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from planar.geometry.limits import FARTHEST, MOST_RADIANS, OutOfRangeError, is_within
+
 
 def wrap(angle):
     """Angle(s) brought into [-pi, pi); scalar in, float out; array in, array out."""
@@ -59,6 +61,16 @@ class Pose2:
     def is_finite(self) -> bool:
         """Whether no coordinate is NaN or infinite."""
         return math.isfinite(self.x) and math.isfinite(self.y) and math.isfinite(self.yaw)
+
+    def is_in_range(self) -> bool:
+        """Whether a robot can be there: finite, and no farther than ``FARTHEST`` from the origin."""
+        return is_within(FARTHEST, self.x, self.y) and is_within(MOST_RADIANS, self.yaw)
+
+
+def check_place(pose: Pose2, what: str) -> None:
+    """Raises OutOfRangeError for a pose, called ``what``, at which no robot can be."""
+    if not pose.is_in_range():
+        raise OutOfRangeError(f"{what} at {pose.x:g}, {pose.y:g}, {pose.yaw:g} means nothing")
 
 
 @dataclass(frozen=True)

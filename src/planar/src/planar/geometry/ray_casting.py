@@ -39,6 +39,10 @@ def _cast(cells, x, y, angles, max_cells, occupied):
 @numba.njit(cache=True)
 def _cast_one(cells, x, y, dx, dy, max_cells, occupied):
     rows, cols = cells.shape
+    first, last = _way_through(cols, x, dx)
+    first_row, last_row = _way_through(rows, y, dy)
+    first, last = max(first, first_row, 0.0), min(last, last_row, max_cells)
+    x, y = (x + first * dx, y + first * dy) if first > 0.0 and first < last else (x, y)
     col, row = math.floor(x), math.floor(y)
     col_step, row_step = (1 if dx > 0 else -1), (1 if dy > 0 else -1)
     col_delta = abs(1.0 / dx) if dx != 0.0 else np.inf
@@ -46,14 +50,23 @@ def _cast_one(cells, x, y, dx, dy, max_cells, occupied):
     next_col = (col + (dx > 0) - x) / dx if dx != 0.0 else np.inf
     next_row = (row + (dy > 0) - y) / dy if dy != 0.0 else np.inf
     travelled = 0.0
-    while travelled < max_cells:
+    while first + travelled < last:
         if 0 <= row < rows and 0 <= col < cols and cells[row, col] == occupied:
-            return travelled
+            return first + travelled
         if next_col < next_row:
             travelled, next_col, col = next_col, next_col + col_delta, col + col_step
         else:
             travelled, next_row, row = next_row, next_row + row_delta, row + row_step
     return max_cells
+
+
+@numba.njit(cache=True)
+def _way_through(cells, start, step):
+    """From where to where along a ray, in cells, one coordinate may lie in the grid, and a little beyond."""
+    if step == 0.0:
+        return (-np.inf, np.inf) if -1.0 <= start <= cells + 1.0 else (np.inf, -np.inf)
+    one, other = -start / step, (cells - start) / step
+    return min(one, other) - 2.0, max(one, other) + 2.0
 
 
 def cast_rays_from_many(

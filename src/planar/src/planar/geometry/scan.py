@@ -1,9 +1,11 @@
 """Planar laser scans."""
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from planar.geometry.limits import FARTHEST, MOST_BEAMS, MOST_RADIANS, OutOfRangeError, check_within
 from planar.geometry.pose import Pose2
 
 
@@ -15,6 +17,8 @@ class Scan:
     ``stamp``: seconds, of the first ray. ``laser_in_base``: where the laser is mounted;
     ``upside_down``: the laser's z axis points down, so its angles count clockwise in the base frame.
     ``intensities``: float32 (N,), how much light came back, in any unit; empty if it cannot tell.
+
+    Raises OutOfRangeError for what no laser measures: whoever has a scan may count on its numbers.
     """
 
     stamp: float
@@ -26,6 +30,15 @@ class Scan:
     laser_in_base: Pose2 = field(default_factory=Pose2)
     upside_down: bool = False
     intensities: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=np.float32))
+
+    def __post_init__(self):
+        if np.ndim(self.ranges) != 1 or len(self.ranges) > MOST_BEAMS:
+            raise OutOfRangeError(f"a scan of {np.size(self.ranges)} ranges means nothing")
+        last, step = self.angle_min + self.angle_increment * len(self.ranges), self.angle_increment
+        check_within(MOST_RADIANS, "a scan", angle_min=self.angle_min, angle_increment=step, angle_max=last)
+        check_within(FARTHEST, "a scan", range_min=self.range_min, range_max=self.range_max)
+        if not (math.isfinite(self.stamp) and self.laser_in_base.is_in_range()):
+            raise OutOfRangeError("a scan without a finite stamp and place means nothing")
 
     @property
     def angles(self) -> np.ndarray:

@@ -8,7 +8,7 @@ from typing import Callable, Deque, Iterator, Set, Union
 
 import numpy as np
 
-from planar import Pose2, Scan
+from planar import PlanarError, Pose2, Scan
 from planar_ros.bags.bag import TF, TF_STATIC, Bag, BagError, Played, full_name
 from planar_ros.bags.transform_log import TransformLog
 from planar_ros.messages.conversion import frame_name, pose2_from_msg, scan_from_msg
@@ -112,7 +112,12 @@ class ScanLog:
                 position,
             )
             mounting = (Pose2(), False)
-        yield LoggedScan(scan_from_msg(message, *mounting), laser, base_in_odom, position)
+        try:
+            scan = scan_from_msg(message, *mounting)
+        except PlanarError as error:
+            self._tell("a scan is left out", f"({error})", stamp, position)
+            return
+        yield LoggedScan(scan, laser, base_in_odom, position)
 
     def _tell(self, what: str, details: str, stamp: float, position: float) -> None:
         if what not in self._told:

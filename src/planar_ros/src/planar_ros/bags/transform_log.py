@@ -8,7 +8,8 @@ from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
 from std_msgs.msg import Header
 
 from planar import Pose2
-from planar_ros.messages.conversion import frame_name, yaw_of
+from planar_ros.messages.border import MessageError
+from planar_ros.messages.conversion import frame_name, pose2_of
 
 
 class TransformLog:
@@ -55,21 +56,26 @@ class TransformLog:
         transform = self._lookup(target, source, stamp)
         if transform is None and abs((latest - stamp).to_sec()) <= tolerance:
             transform = self._lookup(target, source, Time(0))
-        if transform is None:
-            return None
-        return Pose2(transform.translation.x, transform.translation.y, yaw_of(transform.rotation))
+        return None if transform is None else self._pose_of(transform)
 
     def mounting(self, base: str, sensor: str) -> Optional[Tuple[Pose2, bool]]:
         """The pose of a sensor on its base, and whether it hangs upside down."""
         transform = self._lookup(base, sensor, Time(0))
-        if transform is None:
+        pose = None if transform is None else self._pose_of(transform)
+        if transform is None or pose is None:
             return None
         q = transform.rotation
-        upside_down = 1.0 - 2.0 * (q.x * q.x + q.y * q.y) < 0.0
-        return Pose2(transform.translation.x, transform.translation.y, yaw_of(q)), upside_down
+        return pose, 1.0 - 2.0 * (q.x * q.x + q.y * q.y) < 0.0
 
     def frames(self) -> List[str]:
         return sorted(self._frames)
+
+    def _pose_of(self, transform) -> Optional[Pose2]:
+        """None for a place where nothing can be."""
+        try:
+            return pose2_of(transform.translation, transform.rotation)
+        except MessageError:
+            return None
 
     def _lookup(self, target: str, source: str, stamp):
         try:

@@ -11,7 +11,9 @@ from nav_msgs.srv import GetMap, GetMapResponse, SetMap, SetMapRequest
 from rospy.numpy_msg import numpy_msg
 from sensor_msgs.msg import LaserScan
 
-from planar import OccupancyGrid, Pose2, Scan
+from planar import OccupancyGrid, Pose2, Scan, Twist2
+from planar.geometry.limits import FARTHEST
+from planar_ros.messages.border import MessageError, check_twist
 
 # Subscribed to with these types, `ranges` and `data` arrive as numpy arrays instead of tuples.
 LaserScanArrays = numpy_msg(LaserScan)
@@ -41,7 +43,22 @@ def quaternion_of(yaw: float) -> Quaternion:
 
 
 def pose2_from_msg(pose) -> Pose2:
-    return Pose2(pose.position.x, pose.position.y, yaw_of(pose.orientation))
+    """Raises MessageError for a pose at which nothing can be."""
+    return pose2_of(pose.position, pose.orientation)
+
+
+def pose2_of(position, orientation) -> Pose2:
+    """The pose in the plane of a point and a quaternion. Raises MessageError, as above."""
+    found = Pose2(position.x, position.y, yaw_of(orientation))
+    if not found.is_in_range():
+        raise MessageError(f"a pose at {found.x:g}, {found.y:g}, {found.yaw:g} means nothing")
+    return found
+
+
+def twist2_from_msg(twist) -> Twist2:
+    """Forward and turning speed of a geometry_msgs/Twist. Raises MessageError for none of a robot's."""
+    check_twist(twist)
+    return Twist2(twist.linear.x, twist.angular.z)
 
 
 def pose2_to_msg(pose: Pose2) -> Pose:
@@ -65,8 +82,14 @@ def transform_msg(child_in_parent: Pose2, parent: str, child: str, stamp) -> Tra
 
 
 def grid_from_msg(message) -> OccupancyGrid:
-    """A grid with cells of its own: a message's may be read-only, and kernels would be compiled anew."""
+    """A grid with cells of its own: a message's may be read-only, and kernels would be compiled anew.
+
+    Raises PlanarError for a message that holds no map.
+    """
     info = message.info
+    if len(message.data) != info.width * info.height:
+        size = f"{info.width} x {info.height} cells with {len(message.data)} values"
+        raise MessageError(f"a map of {size} means nothing")
     cells = np.array(message.data, dtype=np.int8).reshape(info.height, info.width)
     return OccupancyGrid(cells, info.resolution, pose2_from_msg(info.origin))
 
@@ -84,13 +107,14 @@ def grid_to_msg(grid: OccupancyGrid, stamp, frame_id: str) -> OccupancyGridMsg:
 
 
 def scan_from_msg(message, laser_in_base: Pose2, upside_down: bool = False) -> Scan:
+    """Raises PlanarError for a message that holds no scan."""
     return Scan(
         stamp=message.header.stamp.to_sec(),
         angle_min=message.angle_min,
         angle_increment=message.angle_increment,
         ranges=np.asarray(message.ranges, dtype=np.float32),
         range_min=message.range_min,
-        range_max=message.range_max,
+        range_max=min(message.range_max, FARTHEST),
         laser_in_base=laser_in_base,
         upside_down=upside_down,
     )

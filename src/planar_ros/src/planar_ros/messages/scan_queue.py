@@ -7,7 +7,7 @@ from typing import Callable, Dict, Tuple
 import rospy
 from tf2_msgs.msg import TFMessage
 
-from planar import Pose2, Scan
+from planar import PlanarError, Pose2, Scan
 from planar_ros.messages.conversion import LaserScanArrays, frame_name, scan_from_msg
 from planar_ros.messages.transforms import Transforms
 from planar_ros.step import Step
@@ -130,7 +130,10 @@ class ScanQueue:
         mounting = self._mountings.get(frame) or self._transforms.mounting(self._base_frame, frame)
         if base_in_odom is not None and mounting is not None:
             self._mountings[frame] = mounting
-            self._handle(message, scan_from_msg(message, *mounting), base_in_odom)
+            try:
+                self._handle(message, scan_from_msg(message, *mounting), base_in_odom)
+            except PlanarError as error:
+                self._skip(message, str(error))
             return True
         latest = self._transforms.latest_stamp(self._odom_frame, self._base_frame)
         if base_in_odom is None and latest is not None and latest > stamp:

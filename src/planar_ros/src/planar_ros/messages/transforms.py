@@ -8,7 +8,8 @@ import tf2_ros
 from scipy.spatial.transform import Rotation
 
 from planar import Pose2
-from planar_ros.messages.conversion import frame_name, transform_msg, yaw_of
+from planar_ros.messages.border import WARN_SECONDS, MessageError
+from planar_ros.messages.conversion import frame_name, pose2_of, transform_msg
 
 
 class Transforms:
@@ -22,20 +23,29 @@ class Transforms:
     def lookup(
         self, target: str, source: str, stamp: Optional[rospy.Time] = None, timeout: float = 0.0
     ) -> Optional[Pose2]:
-        """Where ``source`` lies in ``target`` at ``stamp`` (default: the latest known); None if not known."""
+        """Where ``source`` lies in ``target`` at ``stamp`` (default: the latest known); None if not known.
+
+        A transform to where nothing can be is not known either.
+        """
         transform = self._lookup(target, source, stamp, timeout)
         if transform is None:
             return None
-        return Pose2(transform.translation.x, transform.translation.y, yaw_of(transform.rotation))
+        try:
+            return pose2_of(transform.translation, transform.rotation)
+        except MessageError as error:
+            rospy.logwarn_throttle(WARN_SECONDS, f"tf: {target} -> {source} ignored: {error}")
+            return None
 
     def mounting(self, base_frame: str, sensor_frame: str) -> Optional[Tuple[Pose2, bool]]:
         """How a sensor is mounted on its base: its pose in the plane, and whether it hangs upside down."""
-        transform = self._lookup(base_frame, sensor_frame, None, 0.0)
-        if transform is None:
+        pose, transform = (
+            self.lookup(base_frame, sensor_frame),
+            self._lookup(base_frame, sensor_frame, None, 0.0),
+        )
+        if pose is None or transform is None:
             return None
         q = transform.rotation
-        upside_down = 1.0 - 2.0 * (q.x * q.x + q.y * q.y) < 0.0
-        return Pose2(transform.translation.x, transform.translation.y, yaw_of(q)), upside_down
+        return pose, 1.0 - 2.0 * (q.x * q.x + q.y * q.y) < 0.0
 
     def matrix(self, target: str, source: str) -> Optional[np.ndarray]:
         """Where ``source`` lies in ``target`` in space, (4, 4), by the latest transform; None: not known."""

@@ -6,7 +6,9 @@ import signal
 from contextlib import contextmanager
 from typing import Any, Callable, Iterator
 
-INTERRUPTS = (signal.SIGINT, signal.SIGTERM)
+# A terminal that closes asks for an end too, but not those that were started to outlive it.
+IS_DEAF = signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+INTERRUPTS = (signal.SIGINT, signal.SIGTERM) if IS_DEAF else (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def call(function: str, *arguments: object) -> Any:
@@ -19,14 +21,14 @@ def call(function: str, *arguments: object) -> Any:
 
 @contextmanager
 def leaving_when_interrupted() -> Iterator[None]:
-    """SIGINT and SIGTERM end the process at once, where nothing has to be taken down yet."""
+    """Signals of ``INTERRUPTS`` end the process at once, where nothing has to be taken down yet."""
     with handling_interrupts(_leave):
         yield
 
 
 @contextmanager
 def handling_interrupts(handle: Callable[[int, Any], object]) -> Iterator[None]:
-    """SIGINT and SIGTERM are handled by ``handle``, afterwards as they were before."""
+    """Signals of ``INTERRUPTS`` are handled by ``handle``, afterwards as they were before."""
     before = {number: signal.signal(number, handle) for number in INTERRUPTS}
     try:
         yield

@@ -1,22 +1,26 @@
 """The manners of a node: how it starts, fails and ends."""
 
 import gc
+import logging
 import os
 import queue
 import signal
 import sys
 import threading
 from contextlib import suppress
-from typing import Callable, TextIO
+from typing import Callable, List, TextIO
 
 import rospy
 from rosgraph import get_master_uri
 from threadpoolctl import threadpool_limits
 
 from planar import PlanarError
+from planar_ros.node.entry import INTERRUPTS
 
 # Longer than any node needs to end in order.
 SHUTDOWN_SECONDS = 5.0
+# The exit code of a node one of whose threads has died.
+THREAD_DIED = 1
 
 
 def run(node_name: str, start: Callable[[], object]) -> None:
@@ -25,6 +29,8 @@ def run(node_name: str, start: Callable[[], object]) -> None:
     A PlanarError during the start is a user's mistake: one line on stderr, exit code 2.
     """
     _shut_down_on_signals()
+    # A line of a log that cannot be written, as when the terminal is gone, is no reason for a traceback.
+    logging.raiseExceptions = False
     sys.stdout, sys.stderr = _Forgiving(sys.stdout), _Forgiving(sys.stderr)
     # A node's matrices are small: more threads of BLAS would only wait for work, in busy loops.
     threadpool_limits(1, user_api="blas")
@@ -35,7 +41,8 @@ def run(node_name: str, start: Callable[[], object]) -> None:
         sys.exit(2)
     is_ending, is_over = threading.Event(), threading.Event()
     rospy.on_shutdown(is_ending.set)
-    threading.excepthook = _quiet_once(is_ending)
+    failures: List[str] = []
+    threading.excepthook = _ending_the_node(is_ending, failures)
     # Called after rospy's own hooks: then the master and all peers have been told.
     rospy.core.add_shutdown_hook(lambda _reason: is_over.set())
     try:
@@ -51,6 +58,8 @@ def run(node_name: str, start: Callable[[], object]) -> None:
     finally:
         # The interpreter would look for garbage among all of numba first, which takes a third of a second.
         gc.freeze()
+    if failures:
+        sys.exit(THREAD_DIED)
 
 
 def fail(text: str, exit_code: int = 2) -> None:
@@ -60,15 +69,38 @@ def fail(text: str, exit_code: int = 2) -> None:
     sys.exit(exit_code)
 
 
-def _quiet_once(is_ending: threading.Event) -> Callable[[threading.ExceptHookArgs], None]:
-    """A hook for threads that tells of all exceptions but those of topics closed under them at the end."""
+def _ending_the_node(
+    is_ending: threading.Event, failures: List[str]
+) -> Callable[[threading.ExceptHookArgs], None]:
+    """A hook by which a thread that dies takes the node along, whose last words are the reason.
+
+    Half a node would be worse than none: nobody would start it anew. ``failures`` receives the reason. Topics
+    that are closed under a thread at the end are no reason.
+    """
     tell_all = threading.excepthook
 
-    def tell(failure: threading.ExceptHookArgs) -> None:
-        if not (is_ending.is_set() and issubclass(failure.exc_type, rospy.ROSException)):
-            tell_all(failure)
+    def end(failure: threading.ExceptHookArgs) -> None:
+        if is_ending.is_set() and issubclass(failure.exc_type, rospy.ROSException):
+            return
+        tell_all(failure)
+        if is_ending.is_set():
+            return
+        thread = failure.thread.name if failure.thread else "unknown"
+        reason = f"the thread {thread} has died of {failure.exc_type.__name__}: {failure.exc_value}"
+        print(f"[{rospy.get_name()}] error: {reason}", file=sys.stderr, flush=True)
+        failures.append(reason)
+        _end_within(SHUTDOWN_SECONDS, THREAD_DIED)
+        # In a thread of its own: a hook that waits for this one, as rospy's may, would wait for ever.
+        threading.Thread(target=rospy.signal_shutdown, args=[reason], daemon=True).start()
 
-    return tell
+    return end
+
+
+def _end_within(seconds: float, exit_code: int) -> None:
+    """rospy waits for ever if the master goes away while a topic is being registered."""
+    watchdog = threading.Timer(seconds, os._exit, [exit_code])
+    watchdog.daemon = True
+    watchdog.start()
 
 
 class _Forgiving:
@@ -94,7 +126,7 @@ class _Forgiving:
 
 
 def _shut_down_on_signals() -> None:
-    """Shuts down on SIGINT and SIGTERM in a thread.
+    """Shuts down on signals, in a thread.
 
     rospy would do it in the signal's handler, on top of whatever the main thread is at, and wait for ever for
     a lock that this holds, as while it publishes.
@@ -103,12 +135,9 @@ def _shut_down_on_signals() -> None:
 
     def shut_down():
         number = received.get()
-        # rospy waits for ever if the master goes away while a topic is being registered.
-        watchdog = threading.Timer(SHUTDOWN_SECONDS, os._exit, [128 + number])
-        watchdog.daemon = True
-        watchdog.start()
+        _end_within(SHUTDOWN_SECONDS, 128 + number)
         rospy.signal_shutdown(f"signal {number}")
 
     threading.Thread(target=shut_down, daemon=True).start()
-    for number in (signal.SIGINT, signal.SIGTERM):
+    for number in INTERRUPTS:
         signal.signal(number, lambda number, _frame: received.put(number))

@@ -6,6 +6,7 @@ from std_srvs.srv import SetBool, SetBoolResponse
 
 from planar import Pose2
 from planar.config.parameters import official_names
+from planar_ros.messages.border import listen
 from planar_ros.messages.conversion import frame_name, pose2_from_msg, scan_from_msg
 from planar_ros.messages.scan_queue import ScanQueue
 from planar_ros.messages.transforms import Transforms
@@ -49,7 +50,7 @@ class SlamNode:
         self._maps = MapTopics(settings, self._mapping)
         rospy.Service("~pause", SetBool, self._on_pause)
         FileServices(self._mapping, self._maps)
-        rospy.Subscriber("initialpose", PoseWithCovarianceStamped, self._on_initial_pose, queue_size=2)
+        listen("initialpose", PoseWithCovarianceStamped, self._on_initial_pose, queue_size=2)
         self._mapping.start()
         self._scans = ScanQueue(
             self._transforms,

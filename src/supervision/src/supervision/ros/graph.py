@@ -3,6 +3,7 @@
 import contextlib
 import os
 import re
+import shutil
 import signal
 import subprocess
 import threading
@@ -14,12 +15,14 @@ from typing import IO, Dict, Mapping, Optional
 import psutil
 
 from supervision.errors import LaunchError
-from supervision.processes import adopt_orphans, end_descendants, free_port
+from supervision.processes import adopt_orphans, end_descendants, end_with_parent, free_port
 
 SIGINT_SECONDS = 8.0
 HEARING_SECONDS = 2.0
 SIGTERM_SECONDS = 2.0
-DIED = re.compile(r"\[(?P<node>[^\]\[]+)-\d+\] process has died \[pid \d+, exit code (?P<code>-?\d+)")
+DIED = re.compile(r"(\[(?P<node>[^\]\[]+?)(-\d+)?\] )?process has died \[pid \d+, exit code (?P<code>-?\d+)")
+# Of a node without which there is no run, the name stands in the line before.
+REQUIRED = re.compile(r"REQUIRED process \[(?P<node>[^\]\[]+?)(-\d+)?\] has died")
 POLL_SECONDS = 0.02
 ENDING = "killing on exit"
 COMPLAINT = re.compile(r"^\[/(?P<node>\S+)\] error: (?P<text>.*)")
@@ -42,6 +45,7 @@ class RosGraph:
 
     def __init__(self, package: str, launch_file: str, arguments: Mapping[str, object], log_folder: Path):
         self._complaints: Dict[str, str] = {}
+        self._required = "a node"
         self._failure: Optional[NodeFailure] = None
         self.log_gap: Optional[str] = None
         self._log_folder = log_folder
@@ -51,18 +55,18 @@ class RosGraph:
         os.environ["ROS_LOG_DIR"] = str(log_folder)
         command = ["roslaunch", "--port", str(port), package, launch_file]
         command += [f"{name}:={value}" for name, value in arguments.items() if value is not None]
-        try:
-            self._roslaunch = subprocess.Popen(
-                command,
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT,
-                start_new_session=True,
-                text=True,
-                errors="replace",
-            )
-        except FileNotFoundError:
-            raise LaunchError("roslaunch is not on the PATH: run scripts/setup.sh") from None
+        if shutil.which("roslaunch") is None:
+            raise LaunchError("roslaunch is not on the PATH: run scripts/setup.sh")
+        self._roslaunch = subprocess.Popen(
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+            preexec_fn=end_with_parent,
+            text=True,
+            errors="replace",
+        )
         self._is_ending = threading.Event()
         self._pump = threading.Thread(target=self._read_output, daemon=True)
         self._pump.start()
@@ -111,10 +115,21 @@ class RosGraph:
     def _notice(self, line: str) -> None:
         if line.rstrip().endswith(ENDING):
             self._is_ending.set()
-        complaint, death = COMPLAINT.match(line), DIED.search(line)
+        complaint, required, death = COMPLAINT.match(line), REQUIRED.search(line), DIED.search(line)
         if complaint:
             self._complaints[complaint.group("node")] = complaint.group("text")
+        if required:
+            self._required = required.group("node")
         if death and self._failure is None:
-            node, code = death.group("node"), int(death.group("code"))
-            text = self._complaints.get(node, f"died with exit code {code}, see {self._log_folder}")
+            node, code = death.group("node") or self._required, int(death.group("code"))
+            text = self._complaints.get(node, f"{_end_in_words(code)}, see {self._log_folder}")
             self._failure = NodeFailure(f"{node}: {text}", code == BAD_INPUT)
+
+
+def _end_in_words(code: int) -> str:
+    """What an exit code means; a negative one is a signal's number."""
+    if code >= 0:
+        return f"died with exit code {code}"
+    with contextlib.suppress(ValueError):
+        return f"was ended by {signal.Signals(-code).name}"
+    return f"was ended by signal {-code}"

@@ -13,13 +13,13 @@ import rospy
 from std_srvs.srv import Empty, EmptyResponse
 from turtlesim.srv import Kill, KillResponse, Spawn, SpawnResponse
 
-from planar import FileWriteError, write_atomically
+from planar import FileWriteError, PlanarError, write_atomically
 from planar_ros.node.shell import run
 from turtle_world.canvas import BACKGROUND, Color
 from turtle_world.physics import PERIOD
 from turtle_world.ros.markers import Markers
 from turtle_world.ros.turtle_topics import TurtleTopics
-from turtle_world.world import TurtleError, TurtleWorld
+from turtle_world.world import TurtleWorld
 
 BACKGROUND_PARAMETERS = ("~background_r", "~background_g", "~background_b")
 # A node that comes late, because others had the processor, makes up for so much, seconds.
@@ -97,7 +97,7 @@ class TurtleWorldNode:
         with self._lock:
             try:
                 name = self._world.spawn(request.name, request.x, request.y, request.theta)
-            except TurtleError as error:
+            except PlanarError as error:
                 rospy.logerr("%s", error)
                 return None  # a failed call, as in turtlesim
             self._serve_turtles()

@@ -14,8 +14,9 @@ from turtlesim.srv import (
     TeleportRelativeResponse,
 )
 
+from planar_ros.messages.border import listen, serve
 from turtle_world.canvas import Pen
-from turtle_world.world import Command, TurtleError, TurtleState, TurtleWorld
+from turtle_world.world import Command, TurtleState, TurtleWorld
 
 WARNING_SECONDS = 1.0
 
@@ -27,11 +28,11 @@ class TurtleTopics:
         self._name, self._world, self._lock = name, world, lock
         self._pose = rospy.Publisher(f"{name}/pose", Pose, queue_size=1)
         self._color = rospy.Publisher(f"{name}/color_sensor", Color, queue_size=1)
-        self._subscriber = rospy.Subscriber(f"{name}/cmd_vel", Twist, self._on_command, queue_size=1)
+        self._subscriber = listen(f"{name}/cmd_vel", Twist, self._on_command, queue_size=1)
         self._services = [
-            rospy.Service(f"{name}/set_pen", SetPen, self._on_set_pen),
-            rospy.Service(f"{name}/teleport_absolute", TeleportAbsolute, self._on_teleport_absolute),
-            rospy.Service(f"{name}/teleport_relative", TeleportRelative, self._on_teleport_relative),
+            serve(f"{name}/set_pen", SetPen, self._on_set_pen),
+            serve(f"{name}/teleport_absolute", TeleportAbsolute, self._on_teleport_absolute),
+            serve(f"{name}/teleport_relative", TeleportRelative, self._on_teleport_relative),
         ]
 
     def publish(self, state: TurtleState) -> None:
@@ -52,11 +53,8 @@ class TurtleTopics:
 
     def _on_command(self, message):
         command = Command(message.linear.x, message.linear.y, message.angular.z)
-        try:
-            with self._lock:
-                self._world.command(self._name, command)
-        except TurtleError as error:
-            rospy.logwarn_throttle(WARNING_SECONDS, f"command ignored: {error}")
+        with self._lock:
+            self._world.command(self._name, command)
 
     def _on_set_pen(self, request):
         with self._lock:

@@ -1,6 +1,5 @@
 """Records a run into bags, by rosbag's recorder as a process of its own."""
 
-import ctypes
 import shutil
 import signal
 import subprocess
@@ -10,6 +9,7 @@ from typing import List
 import roslib.packages
 
 from supervision.errors import LaunchError
+from supervision.processes import end_with_parent
 from supervision.ros.node_api import hears_all
 
 PROFILES = {
@@ -24,7 +24,6 @@ CLOSE_SECONDS = 5.0
 FULL_BYTES = 1 << 20
 PAUSED = "Disabling recording"
 """What the recorder says when the disk is nearly full."""
-PR_SET_PDEATHSIG = 1
 
 
 class RosbagProcess:
@@ -48,7 +47,7 @@ class RosbagProcess:
                 stdout=log,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
-                preexec_fn=_end_with_parent,
+                preexec_fn=end_with_parent,
             )
 
     def is_ready(self) -> bool:
@@ -73,7 +72,3 @@ class RosbagProcess:
         if shutil.disk_usage(self._folder).free < FULL_BYTES:
             return "the disk is full"
         return f"exit code {self._process.returncode}, see bag/record.log"
-
-
-def _end_with_parent() -> None:
-    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGINT, 0, 0, 0)

@@ -7,6 +7,7 @@ from geometry_msgs.msg import PoseStamped
 
 from move_base_lite.errors import NavigationError
 from planar import Pose2
+from planar_ros.messages.border import MessageError
 from planar_ros.messages.conversion import frame_name, pose2_from_msg
 from planar_ros.messages.transforms import Transforms
 
@@ -35,9 +36,10 @@ def goal_from_msg(message: PoseStamped, map_frame: str, transforms: Transforms) 
     """
     if not is_upright(message.pose.orientation):
         raise InvalidGoal(INVALID_QUATERNION)
-    goal = pose2_from_msg(message.pose)
-    if not goal.is_finite():
-        raise InvalidGoal("Aborting on goal because its position is not finite")
+    try:
+        goal = pose2_from_msg(message.pose)
+    except MessageError as error:
+        raise InvalidGoal(f"Aborting on goal because {error}") from None
     frame = frame_name(message.header.frame_id)
     if frame == map_frame:
         return goal

@@ -16,11 +16,11 @@ from move_base_lite.costmap.layers.obstacles import SourceSettings
 from move_base_lite.ros.sensing.checks import check_message
 from move_base_lite.ros.sensing.clouds import points_of
 from planar import Pose2, Twist2
-from planar_ros.messages.conversion import LaserScanArrays, frame_name, scan_from_msg
+from planar_ros.messages.border import WARN_SECONDS, listen
+from planar_ros.messages.conversion import LaserScanArrays, frame_name, scan_from_msg, twist2_from_msg
 from planar_ros.messages.transforms import Transforms
 
 KEPT = 5
-WARN_SECONDS = 5.0
 MESSAGES = {"LaserScan": LaserScanArrays, "PointCloud": PointCloud, "PointCloud2": PointCloud2}
 
 
@@ -45,7 +45,7 @@ class Surroundings:
         self.change(settings)
         self._twist = Twist2()
         self._lock = threading.Lock()
-        rospy.Subscriber(odom_topic, Odometry, self._on_odometry, queue_size=1, tcp_nodelay=True)
+        listen(odom_topic, Odometry, self._on_odometry, queue_size=1, tcp_nodelay=True)
         self._sensors = [
             _Sensor(source, transforms, self._local_frame, self._base_frame)
             for source in _sources_of(settings).values()
@@ -95,7 +95,7 @@ class Surroundings:
         self._transforms.clear()
 
     def _on_odometry(self, message):
-        self._twist = Twist2(message.twist.twist.linear.x, message.twist.twist.angular.z)
+        self._twist = twist2_from_msg(message.twist.twist)
 
 
 class _Sensor:
@@ -109,9 +109,7 @@ class _Sensor:
         self._lock = threading.Lock()
         self._mountings: Dict[str, np.ndarray] = {}
         self.has_spoken = False
-        rospy.Subscriber(
-            source.topic, MESSAGES[source.data_type], self._on_message, queue_size=KEPT, tcp_nodelay=True
-        )
+        listen(source.topic, MESSAGES[source.data_type], self._on_message, queue_size=KEPT, tcp_nodelay=True)
 
     @property
     def topic(self) -> str:
@@ -145,11 +143,7 @@ class _Sensor:
             )
 
     def _on_message(self, message):
-        try:
-            check_message(message)
-        except ValueError as error:
-            rospy.logwarn_throttle(WARN_SECONDS, f"{self.topic}: {error}")
-            return
+        check_message(message)
         self.has_spoken = True
         with self._lock:
             self._messages.append(message)

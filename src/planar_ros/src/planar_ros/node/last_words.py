@@ -1,0 +1,58 @@
+"""Last words: what a node publishes before it ends reaches whoever listens."""
+
+import socket
+import time
+from contextlib import suppress
+from typing import List
+
+import rosgraph
+import rospy
+
+PATIENCE_SECONDS = 3.0
+POLL_SECONDS = 0.01
+
+
+def wait_until_heard(*publishers: rospy.Publisher, patience: float = PATIENCE_SECONDS) -> None:
+    """Waits, at most ``patience`` wall-clock seconds, until all subscribers have taken what was published.
+
+    A node that just ended would take back its topic, upon which subscribers drop what they have not read. So
+    each connection is closed for writing, which a subscriber answers by hanging up when it has read all.
+    Nothing can be published afterwards.
+    """
+    deadline = time.monotonic() + patience
+    for publisher in publishers:
+        expected = _listeners(publisher.resolved_name)
+        while publisher.get_num_connections() < expected and time.monotonic() < deadline:
+            time.sleep(POLL_SECONDS)
+    sockets = [each for publisher in publishers for each in _flushed(publisher, deadline)]
+    for each in sockets:
+        with suppress(OSError):
+            each.shutdown(socket.SHUT_WR)
+    for each in sockets:
+        _wait_for_end(each, deadline)
+
+
+def _listeners(topic: str) -> int:
+    """How many nodes listen to a topic, as far as the master knows."""
+    with suppress(OSError, rosgraph.MasterException):
+        subscribers = dict(rosgraph.Master(rospy.get_name()).getSystemState()[1])
+        return len(set(subscribers.get(topic, ())) - {rospy.get_name()})
+    return 0
+
+
+def _flushed(publisher: rospy.Publisher, deadline: float) -> List[socket.socket]:
+    """The sockets of a publisher once rospy has handed them all that waited."""
+    connections = [each for each in publisher.impl.connections if not each.done]
+    while any(getattr(each, "_queue", ()) for each in connections) and time.monotonic() < deadline:
+        time.sleep(POLL_SECONDS)
+    time.sleep(POLL_SECONDS)  # for what has been taken out of a queue just now
+    sockets = [getattr(each, "socket", None) for each in connections]
+    return [each for each in sockets if each is not None]
+
+
+def _wait_for_end(connection: socket.socket, deadline: float) -> None:
+    """Until the other side has hung up."""
+    with suppress(OSError):
+        connection.settimeout(max(POLL_SECONDS, deadline - time.monotonic()))
+        while connection.recv(1024):
+            pass

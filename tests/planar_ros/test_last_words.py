@@ -1,0 +1,35 @@
+#!/usr/bin/env python3
+"""What a node says at its end is heard, also by those who are slow to listen."""
+
+import subprocess
+import time
+import unittest
+
+import rospy
+import rostest
+from std_msgs.msg import String
+from waiting import wait_until
+
+TIMES = 10
+
+
+class LastWordsTest(unittest.TestCase):
+    def test_they_are_heard_every_time(self):
+        heard, slow = [], []
+        rospy.Subscriber("words", String, lambda message: heard.append(message.data))
+        rospy.Subscriber("words", String, lambda message: (time.sleep(0.2), slow.append(message.data)))
+        for number in range(TIMES):
+            subprocess.run(["rosrun", "home_service_tests", "node_of_few_words.py"], check=True, timeout=30)
+            wait_until("the last word", lambda: heard.count("delivered") > number, 1.0)  # noqa: B023
+        wait_until("the slow listener", lambda: slow.count("delivered") == TIMES)
+
+    def test_nobody_is_waited_for_in_vain(self):
+        started = time.monotonic()
+        words = ["rosrun", "home_service_tests", "node_of_few_words.py", "words:=unheard"]
+        subprocess.run(words, check=True, timeout=30)
+        print(f"ended after {time.monotonic() - started:.1f} s")
+
+
+if __name__ == "__main__":
+    rospy.init_node("test_last_words")
+    rostest.rosrun("home_service_tests", "last_words", LastWordsTest)
