@@ -63,3 +63,31 @@ def test_another_version_is_refused(state, tmp_path):
     np.savez(path, **{**table, "version": 99})
     with pytest.raises(StateFileError, match="version 99"):
         load_state(path)
+
+
+BROKEN = {
+    "a pose that is not finite": lambda table: {"poses": np.full_like(table["poses"], np.nan)},
+    "a pose beyond everything": lambda table: {"poses": np.full_like(table["poses"], 1e30)},
+    "an edge to nowhere": lambda table: {"edge_nodes": table["edge_nodes"] + 10**6},
+    "an edge from before the first": lambda table: {"edge_nodes": table["edge_nodes"] - 10**6},
+    "points of three coordinates": lambda table: {"points_xy": np.zeros((4, 3), np.float32)},
+    "counts that do not add up": lambda table: {"point_counts": table["point_counts"] + 1},
+    "no counts": lambda table: {"point_counts": None},
+    "texts": lambda table: {"marks": np.array(["x"])},
+    "a version that is a list": lambda table: {"version": np.array([2, 2])},
+    "information that is infinite": lambda table: {
+        "edge_information": np.full_like(table["edge_information"], np.inf)
+    },
+}
+
+
+@pytest.mark.parametrize("what", BROKEN)
+def test_a_corrupt_state_is_refused(state, tmp_path, what):
+    path = tmp_path / "map.npz"
+    save_state(state, path)
+    with np.load(path) as file:
+        table = dict(file)
+    changed = {**table, **BROKEN[what](table)}
+    np.savez(path, **{name: array for name, array in changed.items() if array is not None})
+    with pytest.raises(StateFileError, match="map.npz"):
+        load_state(path)

@@ -5,6 +5,7 @@ from html import escape
 from pathlib import Path
 from typing import Any, Dict, List, NamedTuple, Tuple
 
+from planar.files.reading import read_text
 from run_report.charts import Line, chart
 from run_report.figures import localization_errors, real_time_factors
 from run_report.map_view import map_svg
@@ -36,13 +37,17 @@ def load_run(folder: Path) -> Run:
     """The result and the record of a run folder. Raises RecordError."""
     path = folder / RESULT_FILE
     try:
-        result = json.loads(path.read_text(encoding="utf-8"))
+        result = json.loads(read_text(path))
     except FileNotFoundError:
         raise RecordError(f"{folder}: not the folder of a run (no {RESULT_FILE} in it)") from None
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise RecordError(f"{path}: cannot be read ({error})") from None
     if not isinstance(result, dict):
         raise RecordError(f"{path}: not the result of a run")
+    try:
+        dict(figures(result)), _made_from(result)
+    except (TypeError, ValueError, LookupError, AttributeError) as error:
+        raise RecordError(f"{path}: not the result of a run ({error})") from None
     return Run(folder, result, load_record(folder))
 
 

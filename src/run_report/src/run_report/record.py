@@ -3,14 +3,16 @@
 import base64
 import io
 import json
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Callable, Dict, List, NamedTuple, Optional
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, get_type_hints
 
 import numpy as np
 from PIL import Image
 
 from planar import OccupancyGrid, PlanarError, Pose2, write_atomically
+from planar.files.reading import read_text
 
 FILE_NAME = "record.json"
 DECIMALS = 4
@@ -115,6 +117,8 @@ class RunRecord:
         return float(self.truth[-1, 0]) if len(self.truth) else 0.0
 
 
+# Whatever json, numpy and Pillow make of what is no record.
+UNREADABLE = (OSError, ValueError, LookupError, TypeError, ArithmeticError, RecursionError, PlanarError)
 SERIES = ("truth", "estimate", "odometry", "velocity", "pace")
 
 
@@ -133,7 +137,8 @@ def load_record(folder: Path) -> RunRecord:
     """The record of a run folder. Raises RecordError."""
     path = folder / FILE_NAME
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = json.loads(read_text(path))
+        _check_kinds(content)
         record = RunRecord(plans=[np.array(plan, dtype=float).reshape(-1, 2) for plan in content["plans"]])
         for name in SERIES:
             columns = getattr(record, name).shape[1]
@@ -143,9 +148,19 @@ def load_record(folder: Path) -> RunRecord:
         record.grid = None if content["grid"] is None else _unpacked(content["grid"])
     except FileNotFoundError:
         raise RecordError(f"{path}: no such file; a run that ended at once leaves none") from None
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except UNREADABLE as error:
         raise RecordError(f"{path}: not the record of a run ({error!r})") from None
     return record
+
+
+def _check_kinds(content: Any) -> None:
+    """Raises TypeError if a number of an event is none, or a text: whoever shows them counts on it."""
+    for name, kind in EVENTS.items():
+        for event in content[name]:
+            for value, wanted in zip(event, get_type_hints(kind).values()):
+                fits = isinstance(value, (int, float) if wanted is float else wanted)
+                if not fits or (wanted is float and not math.isfinite(value)):
+                    raise TypeError(f"{name}: {value!r} is no {wanted.__name__}")
 
 
 def _rounded(rows: np.ndarray) -> list:

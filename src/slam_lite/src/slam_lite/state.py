@@ -1,13 +1,14 @@
 """Saved maps: key scans, their poses and the graph between them, in one versioned file."""
 
 import io
-import zipfile
 from dataclasses import dataclass
-from typing import List, Sequence
+from typing import Dict, List, Mapping, Sequence
 
 import numpy as np
 
 from planar import PlanarError, Pose2, write_atomically
+from planar.files.reading import read_arrays
+from planar.geometry.limits import FARTHEST
 from slam_lite.pose_graph import Edges
 from slam_lite.rendering import Beams
 from slam_lite.surface import Surface
@@ -55,16 +56,19 @@ def save_state(state: MapState, path) -> None:
 def load_state(path) -> MapState:
     """Reads what ``save_state`` wrote. Raises StateFileError."""
     try:
-        with np.load(path, allow_pickle=False) as file:
-            table = dict(file)
+        table = read_arrays(path)
     except FileNotFoundError:
         raise StateFileError(f"{path}: no such state file") from None
-    except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
+    except (OSError, ValueError) as error:
         raise StateFileError(f"{path}: not a readable state file ({error})") from None
     if str(table.get("format")) != FORMAT:
         raise StateFileError(f"{path}: not a state file of slam_lite")
-    if int(table["version"]) != VERSION:
-        raise StateFileError(f"{path}: version {int(table['version'])}, but this program reads {VERSION}")
+    version = table.get("version", np.array(0))
+    if version.shape != () or version != VERSION:
+        raise StateFileError(f"{path}: version {version}, but this program reads {VERSION}")
+    problem = _problem_of(table)
+    if problem:
+        raise StateFileError(f"{path}: {problem}")
     points = _split(table["points_xy"], table["point_counts"])
     normals = _split(table["normals_xy"], table["point_counts"])
     ends = _split(table["ends_xy"], table["beam_counts"])
@@ -78,9 +82,50 @@ def load_state(path) -> MapState:
     )
 
 
+# The arrays of a file: their kinds as numpy names them, and shapes, in which equal letters are equal lengths.
+_LAYOUT = {
+    "points_xy": ("f", "p2"),
+    "normals_xy": ("f", "p2"),
+    "point_counts": ("iuf", "k"),
+    "ends_xy": ("f", "b2"),
+    "marks": ("b", "b"),
+    "lasers_xy": ("f", "k2"),
+    "beam_counts": ("iuf", "k"),
+    "poses": ("f", "k3"),
+    "base_in_map": ("f", "3"),
+    "edge_nodes": ("iu", "e2"),
+    "edge_measured": ("f", "e3"),
+    "edge_information": ("f", "e33"),
+    "edge_is_loop": ("b", "e"),
+}
+
+
+def _problem_of(table: Mapping[str, np.ndarray]) -> str:
+    """Why the arrays are no map, for people; empty if they are one."""
+    lengths: Dict[str, int] = {}
+    for name, (kinds, shape) in _LAYOUT.items():
+        array = table.get(name)
+        if array is None or array.dtype.kind not in kinds or array.ndim != len(shape):
+            return f"{name} is missing, or not what it should be"
+        for size, letter in zip(array.shape, shape):
+            if size != (int(letter) if letter.isdigit() else lengths.setdefault(letter, size)):
+                return f"{name} has not the length it should have"
+        if name != "edge_information" and not (np.abs(array.astype(float)) <= FARTHEST).all():
+            return f"{name} holds numbers that mean nothing"
+    if not np.isfinite(table["edge_information"]).all():
+        return "edge_information holds numbers that mean nothing"
+    for counts, total in (("point_counts", "points_xy"), ("beam_counts", "ends_xy")):
+        if (table[counts] < 0).any() or table[counts].sum() != len(table[total]):
+            return f"{counts} does not count {total}"
+    nodes = table["edge_nodes"]
+    if (nodes < 0).any() or (nodes >= len(table["poses"])).any():
+        return "an edge leads to a key that is not there"
+    return ""
+
+
 def _joined(parts: Sequence[np.ndarray], empty_shape) -> np.ndarray:
     return np.concatenate([np.empty(empty_shape, dtype=np.float32), *parts])
 
 
 def _split(array: np.ndarray, counts: np.ndarray) -> List[np.ndarray]:
-    return np.split(array, np.cumsum(counts)[:-1]) if len(counts) else []
+    return np.split(array, np.cumsum(counts.astype(int))[:-1]) if len(counts) else []

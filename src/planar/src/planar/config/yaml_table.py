@@ -8,8 +8,11 @@ import yaml
 
 from planar.config.hints import hint_or_all
 from planar.errors import PlanarError, SettingsError
+from planar.files.reading import read_text
 
 _REQUIRED: Any = object()
+# No table that people write is nearly as large.
+MOST_BYTES = 4 << 20
 
 
 def read_table(
@@ -22,7 +25,7 @@ def read_table(
     """
     path = Path(path)
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_text(path, MOST_BYTES)
     except FileNotFoundError:
         raise (missing or error)(f"{path}: no such file") from None
     except (OSError, UnicodeDecodeError) as problem:
@@ -201,7 +204,7 @@ class Table:
     def _as_number(self, key: str, value: Any) -> float:
         try:  # 1e-3 is a text in YAML 1.1
             number = float(value)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             number = math.nan
         if isinstance(value, bool) or not math.isfinite(number):
             raise self.complaint(key, f"must be a number, got {value!r}")

@@ -1,17 +1,21 @@
 """Map files: the YAML and image pair of map_server (contract of ROS 1 navigation 1.17)."""
 
+import io
 from pathlib import Path
 
 import numpy as np
-from PIL import Image, UnidentifiedImageError
+from PIL import Image
 
 from planar.config.yaml_table import read_table
 from planar.errors import PlanarError
 from planar.files.atomically import write_together
+from planar.files.reading import read_bytes
 from planar.geometry.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
+from planar.geometry.limits import COARSEST_CELL, FINEST_CELL
 from planar.geometry.pose import Pose2
 
 MODES = ("trinary", "scale", "raw")
+MOST_PIXELS = 100_000_000
 
 
 class MapFileError(PlanarError):
@@ -36,6 +40,8 @@ def load_map(path) -> OccupancyGrid:
     table = read_table(path, error=MapDescriptionError, missing=MapMissingError)
     resolution = table.number("resolution")
     table.check(resolution > 0.0, "resolution", "positive")
+    of_use = f"from {FINEST_CELL:g} to {COARSEST_CELL:g}"
+    table.check(FINEST_CELL <= resolution <= COARSEST_CELL, "resolution", of_use)
     mode = table.choice("mode", MODES, "trinary")
     negate = table.value("negate")
     table.check(negate in (0, 1) and not isinstance(negate, bool), "negate", "0 or 1")
@@ -46,7 +52,9 @@ def load_map(path) -> OccupancyGrid:
         free_thresh=table.number("free_thresh"),
         mode=mode,
     )
-    return OccupancyGrid(cells, resolution, Pose2(*table.numbers("origin", "x, y, yaw")))
+    origin = Pose2(*table.numbers("origin", "x, y, yaw"))
+    table.check(origin.is_in_range(), "origin", "a place at which a map can lie")
+    return OccupancyGrid(cells, resolution, origin)
 
 
 def cells_from_image(
@@ -54,26 +62,33 @@ def cells_from_image(
 ) -> np.ndarray:
     """Cells int8 (rows, cols), row 0 lowest, of an image read as map_server reads it."""
     try:
-        with Image.open(image_path) as image:
-            pixels = np.asarray(image.convert("RGBA" if "A" in image.getbands() else "RGB"), dtype=np.float64)
+        with Image.open(io.BytesIO(read_bytes(image_path))) as image:
+            if image.width * image.height > MOST_PIXELS:
+                raise ValueError(f"{image.width} x {image.height} pixels are too many")
+            pixels = np.asarray(image.convert("RGBA" if "A" in image.getbands() else "RGB"))
     except FileNotFoundError:
         raise MapImageError(f"{image_path}: no such map image") from None
-    except (OSError, UnidentifiedImageError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
+    except Exception as error:  # what Pillow's many readers raise for a broken file has no common class
         raise MapImageError(f"{image_path}: not a readable image ({error})") from None
     channels = pixels if mode == "trinary" else pixels[:, :, :3]
-    shade = np.flipud(channels.mean(axis=2))
+    sums = np.flipud(channels.sum(axis=2, dtype=np.uint16))
+    # Of each sum that there may be, which are far fewer than pixels.
+    shade = np.arange(255 * channels.shape[2] + 1) / channels.shape[2]
     if negate:
         shade = 255.0 - shade
     if mode == "raw":
-        return np.rint(shade).astype(np.uint8).astype(np.int8)
+        return np.rint(shade).astype(np.uint8).astype(np.int8)[sums]
     occupancy = (255.0 - shade) / 255.0
-    cells = np.full(occupancy.shape, UNKNOWN, dtype=np.int8)
-    if mode == "scale":
+    meaning = np.full(occupancy.shape, UNKNOWN, dtype=np.int8)
+    if mode == "scale" and occupied_thresh > free_thresh:
         between = 1.0 + 98.0 * (occupancy - free_thresh) / (occupied_thresh - free_thresh)
-        opaque = np.flipud(pixels[:, :, 3]) >= 255.0 if pixels.shape[2] == 4 else np.True_
-        cells = np.where(opaque, between, UNKNOWN).astype(np.int8)
-    cells[occupancy > occupied_thresh] = OCCUPIED
-    cells[occupancy < free_thresh] = FREE
+        meaning = np.clip(between, 1.0, 99.0).astype(np.int8)
+    is_certain = (occupancy > occupied_thresh) | (occupancy < free_thresh)
+    meaning[occupancy > occupied_thresh] = OCCUPIED
+    meaning[occupancy < free_thresh] = FREE
+    cells = meaning[sums]
+    if mode == "scale" and pixels.shape[2] == 4:
+        cells[(np.flipud(pixels[:, :, 3]) < 255) & ~is_certain[sums]] = UNKNOWN
     return cells
 
 

@@ -37,15 +37,21 @@ class Bag:
     def __init__(self, path: Union[str, Path]):
         self.path = Path(path)
         self._bag, is_cut_off = _open(self.path)
+        try:
+            self._look_over()
+        except Exception as error:  # as below
+            raise BagError(f"{path}: not a readable bag ({error or type(error).__name__})") from None
+        self.gap: Optional[str] = None
+        if is_cut_off:
+            self.gap = f"cut off {self.end - self.start:.1f} s after its start"
+
+    def _look_over(self) -> None:
         topics = self._bag.get_type_and_topic_info().topics
         self.types: Dict[str, str] = {full_name(topic): info.msg_type for topic, info in topics.items()}
         self._spellings = {topic: full_name(topic) for topic in topics}
         self.is_empty = self._bag.get_message_count() == 0
         self.start = 0.0 if self.is_empty else self._bag.get_start_time()
         self.end = 0.0 if self.is_empty else self._bag.get_end_time()
-        self.gap: Optional[str] = None
-        if is_cut_off:
-            self.gap = f"cut off {self.end - self.start:.1f} s after its start"
 
     def messages(self, topics: Iterable[str]) -> Iterator[Played]:
         """The messages of ``topics`` in the order in which they were recorded. Raises BagError."""
@@ -85,11 +91,15 @@ def full_name(topic: str) -> str:
 def _open(path: Path) -> Tuple[rosbag.Bag, bool]:
     """The bag, and whether its end is missing."""
     try:
+        if path.exists() and not path.is_file():
+            raise BagError(f"{path}: not a readable bag (not a regular file)")
         return rosbag.Bag(str(path)), False
+    except BagError:
+        raise
     except rosbag.ROSBagUnindexedException:
         return _without_end(path), True
-    except (OSError, rosbag.ROSBagException) as error:
-        raise BagError(f"{path}: not a readable bag ({error})") from None
+    except Exception as error:  # rosbag lets pass whatever struct, bz2 and genpy raise
+        raise BagError(f"{path}: not a readable bag ({error or type(error).__name__})") from None
 
 
 def _without_end(path: Path) -> rosbag.Bag:

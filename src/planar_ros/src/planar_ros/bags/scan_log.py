@@ -11,11 +11,14 @@ import numpy as np
 from planar import PlanarError, Pose2, Scan
 from planar_ros.bags.bag import TF, TF_STATIC, Bag, BagError, Played, full_name
 from planar_ros.bags.transform_log import TransformLog
+from planar_ros.messages.border import is_stamp
 from planar_ros.messages.conversion import frame_name, pose2_from_msg, scan_from_msg
 
 # Odometry may lag behind or start after a scan by this much, seconds of the bag's time.
 _PATIENCE = 2.0
 _JUMP_BACK = 1.0
+LASER_SCAN = "sensor_msgs/LaserScan"
+KINDS = {TF: "tf2_msgs/TFMessage", TF_STATIC: "tf2_msgs/TFMessage"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +55,9 @@ class ScanLog:
         if self._scan_topic not in self._bag.types:
             there = ", ".join(sorted(self._bag.types)) or "none"
             raise BagError(f"{path}: no scans on {scan_topic}; topics: {there}")
+        for topic, kind in KINDS.items():
+            self._check_kind(topic, kind)
+        self._check_kind(self._scan_topic, LASER_SCAN)
         self._transforms = TransformLog(self._bag.first_static_transforms())
         self._last_in_odom = Pose2()
         self._last_stamp = -math.inf
@@ -64,6 +70,11 @@ class ScanLog:
             for _, message, _ in self._bag.messages([topic])
         ]
         return np.array(stamped).reshape(-1, 4)
+
+    def _check_kind(self, topic: str, kind: str) -> None:
+        told = self._bag.types.get(topic, kind)
+        if told != kind:
+            raise BagError(f"{self.path}: the messages on {topic} are {told}, not {kind}")
 
     def __iter__(self) -> Iterator[LoggedScan]:
         """Raises BagError where the bag breaks off; what was read before is good."""
@@ -88,6 +99,9 @@ class ScanLog:
         message, bag = played.message, self._bag
         position = (played.stamp - bag.start) / max(bag.end - bag.start, 1e-9)
         stamp = message.header.stamp.to_sec()
+        if not is_stamp(message.header.stamp):
+            self._tell("a scan is left out", "(its stamp means nothing)", stamp, position)
+            return
         if stamp < self._last_stamp:
             back = self._last_stamp - stamp
             self._tell("time goes back", f"by {back:.3f} s", stamp, position)

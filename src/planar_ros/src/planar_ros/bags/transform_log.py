@@ -8,7 +8,7 @@ from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
 from std_msgs.msg import Header
 
 from planar import Pose2
-from planar_ros.messages.border import MessageError
+from planar_ros.messages.border import MessageError, is_stamp
 from planar_ros.messages.conversion import frame_name, pose2_of
 
 
@@ -19,7 +19,9 @@ class TransformLog:
     """
 
     def __init__(self, static: Iterable[Any]) -> None:
-        self._static: List[TransformStamped] = [_typed(logged) for logged in static]
+        self._static: List[TransformStamped] = [
+            typed for typed in map(_typed, static) if is_stamp(typed.header.stamp)
+        ]
         self._frames = {name for one in self._static for name in (one.header.frame_id, one.child_frame_id)}
         self.clear()
 
@@ -35,6 +37,8 @@ class TransformLog:
             transform = _typed(logged)
             parent, child = transform.header.frame_id, transform.child_frame_id
             self._frames |= {parent, child}
+            if not is_stamp(transform.header.stamp):
+                continue
             if is_static:
                 self._static.append(transform)
                 self._buffer.set_transform_static(transform, "bag")
@@ -78,6 +82,8 @@ class TransformLog:
             return None
 
     def _lookup(self, target: str, source: str, stamp):
+        if not is_stamp(stamp):
+            return None
         try:
             return self._buffer.lookup_transform_core(target, source, stamp).transform
         except tf2_py.TransformException:

@@ -15,6 +15,10 @@ from planar.geometry.limits import FASTEST, is_within
 WARN_SECONDS = 5.0
 
 
+# Seconds: tf2 ends the process for stamps whose differences it cannot hold.
+LATEST_STAMP = 2**31 - 1000
+
+
 class MessageError(PlanarError):
     """A message means nothing; the text says what is wrong with it."""
 
@@ -44,6 +48,11 @@ def serve(name: str, kind: Any, handle: Callable[[Any], object]) -> rospy.Servic
             raise rospy.ServiceException(str(error)) from None
 
     return rospy.Service(name, kind, answer)
+
+
+def is_stamp(stamp: genpy.Time) -> bool:
+    """Whether tf2 can work with a stamp."""
+    return 0 <= stamp.secs < LATEST_STAMP
 
 
 def check_twist(twist) -> None:

@@ -1,15 +1,33 @@
 """Transforms between frames, as plane poses."""
 
-from typing import Optional, Tuple
+from typing import Iterable, List, Optional, Tuple
 
 import numpy as np
 import rospy
 import tf2_ros
+from geometry_msgs.msg import TransformStamped
 from scipy.spatial.transform import Rotation
 
 from planar import Pose2
-from planar_ros.messages.border import WARN_SECONDS, MessageError
+from planar_ros.messages.border import WARN_SECONDS, MessageError, is_stamp
 from planar_ros.messages.conversion import frame_name, pose2_of, transform_msg
+
+
+def _usable(transforms: Iterable[TransformStamped]) -> List[TransformStamped]:
+    """Those with stamps that tf2 can work with."""
+    return [transform for transform in transforms if is_stamp(transform.header.stamp)]
+
+
+class _Listener(tf2_ros.TransformListener):
+    """Hands on only what leaves tf2 alive."""
+
+    def callback(self, data):
+        data.transforms = _usable(data.transforms)
+        super().callback(data)
+
+    def static_callback(self, data):
+        data.transforms = _usable(data.transforms)
+        super().static_callback(data)
 
 
 class Transforms:
@@ -17,7 +35,7 @@ class Transforms:
 
     def __init__(self, cache_seconds: float = 10.0):
         self.buffer = tf2_ros.Buffer(rospy.Duration(cache_seconds), debug=False)
-        self._listener = tf2_ros.TransformListener(self.buffer, queue_size=100, tcp_nodelay=True)
+        self._listener = _Listener(self.buffer, queue_size=100, tcp_nodelay=True)
         self._broadcaster = tf2_ros.TransformBroadcaster()
 
     def lookup(
@@ -70,7 +88,7 @@ class Transforms:
 
     def take(self, message, is_static: bool = False) -> None:
         """Takes in a tf2_msgs/TFMessage that did not come by topic, as from a bag."""
-        for transform in message.transforms:
+        for transform in _usable(message.transforms):
             if is_static:
                 self.buffer.set_transform_static(transform, "take")
             else:
@@ -81,6 +99,8 @@ class Transforms:
         self.buffer.clear()
 
     def _lookup(self, target, source, stamp, timeout):
+        if stamp is not None and not is_stamp(stamp):
+            return None
         try:
             return self.buffer.lookup_transform(
                 frame_name(target), frame_name(source), stamp or rospy.Time(0), rospy.Duration(timeout)

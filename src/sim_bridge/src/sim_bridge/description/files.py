@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Dict
 
+from planar.files.reading import read_text
 from sim_bridge.description.profile import RobotProfile
 from sim_bridge.description.robot import read_urdf_robot
 from sim_bridge.description.urdf import FindFile
@@ -19,7 +20,7 @@ def read_description(path: Path, arguments: Dict[str, str] = {}) -> str:
     if path.suffix == ".xacro":
         return _expanded(path, arguments)
     try:
-        return path.read_text(encoding="utf-8")
+        return read_text(path)
     except (OSError, UnicodeDecodeError) as error:
         raise RobotError(f"{path}: cannot be read ({error})") from None
 

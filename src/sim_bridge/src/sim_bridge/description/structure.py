@@ -100,6 +100,20 @@ class Structure:
         if len(roots) != 1:
             raise RobotError(f"robot {name}: expected one root link, got {', '.join(roots) or 'none'}")
         self.root = roots[0]
+        self._check_that_all_hang_together()
+
+    def _check_that_all_hang_together(self) -> None:
+        """The ways up from all links end at the root, so that none goes round for ever."""
+        reached = {self.root}
+        for link in self.links:
+            way: List[str] = []
+            while link not in reached and link not in way:
+                way.append(link)
+                link = self._from_child[link].parent
+            if link not in reached:
+                joints = ", ".join(self._from_child[each].name for each in way[way.index(link) :])
+                raise RobotError(f"robot {self.name}: these joints go round in a circle: {joints}")
+            reached.update(way)
 
     def pose_in_base(self, link: str) -> np.ndarray:
         """Where a link is, (4, 4) in the root's frame, with all joints at zero. Raises RobotError."""
@@ -138,7 +152,7 @@ class Structure:
         """All links that hang on ``first`` without a driven wheel between."""
         fixed: List[Tuple[Link, np.ndarray]] = [(self.links[first], IDENTITY)]
         for link, link_in_part in fixed:
-            for joint in self.joints.values():
+            for joint in self._from_child.values():
                 if joint.parent == link.name and joint not in wheel_joints:
                     fixed.append((self.links[joint.child], link_in_part @ joint.child_in_parent))
         return self._merged(fixed)

@@ -7,6 +7,7 @@ import defusedxml.ElementTree
 import numpy as np
 from defusedxml.common import DefusedXmlException
 
+from planar.geometry.limits import FARTHEST, is_within
 from sim_bridge.description.blocks import Blocks
 from sim_bridge.description.structure import Joint, Link, Structure
 from sim_bridge.errors import RobotError, WorldError
@@ -119,7 +120,10 @@ def _origin(element: Element) -> np.ndarray:
     if origin is None:
         return IDENTITY
     zeros = (0.0, 0.0, 0.0)
-    return pose3(*origin.attribute_numbers("xyz", 3, zeros), *origin.attribute_numbers("rpy", 3, zeros))
+    xyz, rpy = origin.attribute_numbers("xyz", 3, zeros), origin.attribute_numbers("rpy", 3, zeros)
+    if not is_within(FARTHEST, *xyz, *rpy):
+        raise origin.error(f"nothing can be there, got {origin.attribute('xyz')!r}")
+    return pose3(*xyz, *rpy)
 
 
 def _inertia(element: Element) -> np.ndarray:

@@ -6,12 +6,13 @@ import logging
 import os
 import re
 import tempfile
-import zipfile
 from pathlib import Path
-from typing import Any, Optional
+from typing import Any, Optional, Sequence
 
 import numpy as np
 
+from planar.files.reading import read_arrays, read_bytes, read_text
+from planar.geometry.limits import FARTHEST
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.shapes import Mesh, MeshFile
 
@@ -31,7 +32,7 @@ def load_mesh(file: MeshFile, cache: Optional[Path] = None) -> Mesh:
     A COLLADA file's unit is honoured; like Gazebo, its up axis is not. Raises WorldError.
     """
     try:
-        content = file.path.read_bytes()
+        content = read_bytes(file.path)
     except OSError as error:
         raise WorldError(f"{file.path}: cannot be read ({error.strerror})") from None
     key = f"{CACHE_VERSION} {file.path.suffix.lower()} {file.submesh} {file.centred} ".encode() + content
@@ -40,7 +41,21 @@ def load_mesh(file: MeshFile, cache: Optional[Path] = None) -> Mesh:
     if mesh is None:
         mesh = _convert(file)
         _write(mesh, cached)
-    return Mesh(mesh.vertices * file.scale, mesh.triangles, mesh.colours)
+    vertices = mesh.vertices * file.scale
+    if not np.abs(vertices).max() <= FARTHEST:
+        raise WorldError(f"{file.path}: scaled by {file.scale} it is larger than anything in a world")
+    return Mesh(vertices, mesh.triangles, mesh.colours)
+
+
+def _resolver(path: Path) -> Any:
+    """Finds what a mesh names, as pictures, with the limits of any file."""
+    from trimesh.resolvers import FilePathResolver
+
+    class Resolver(FilePathResolver):
+        def get(self, name: str) -> bytes:
+            return read_bytes(Path(self.parent) / name.strip())
+
+    return Resolver(str(path))
 
 
 def _convert(file: MeshFile) -> Mesh:
@@ -51,24 +66,37 @@ def _convert(file: MeshFile) -> Mesh:
     logging.getLogger("trimesh").setLevel(logging.CRITICAL)
     try:
         by_groups = submesh and path.suffix.lower() == ".obj"
-        scene: Any = _obj_by_groups(path) if by_groups else trimesh.load(str(path), force="scene")
+        scene: Any = (
+            _obj_by_groups(path)
+            if by_groups
+            else trimesh.load(str(path), force="scene", resolver=_resolver(path))
+        )
         parts = [(node, *scene.graph[node]) for node in scene.graph.nodes_geometry]
         chosen = [
             scene.geometry[name].copy().apply_transform(placed)
             for node, placed, name in parts
             if submesh in ("", node, name)
         ]
+        if not chosen:
+            raise WorldError(f"{path}: holds no mesh" + (f" named {submesh!r}" if submesh else ""))
+        return _joined(file, [part for part in chosen if hasattr(part, "faces")])
+    except WorldError:
+        raise
     except Exception as error:  # the many parsers below trimesh.load share no error class
         raise WorldError(f"{path}: not a readable mesh ({type(error).__name__}: {error})") from None
+
+
+def _joined(file: MeshFile, chosen: Sequence[Any]) -> Mesh:
+    """The parts of a scene that have faces, as one mesh. Raises WorldError if it would be empty."""
     if not chosen:
-        raise WorldError(f"{path}: holds no mesh" + (f" named {submesh!r}" if submesh else ""))
+        raise WorldError(f"{file.path}: holds no triangles")
     colours = np.vstack([_colours(part) for part in chosen])
     unit = float(str(chosen[0].metadata.get("units", "1")).split()[0].replace("meters", "1"))
     offsets = np.cumsum([0, *(len(part.vertices) for part in chosen)])
     vertices = np.vstack([np.asarray(part.vertices, dtype=float) for part in chosen]) * unit
     triangles = np.vstack([part.faces + offset for part, offset in zip(chosen, offsets)])
     if not len(triangles) or not np.isfinite(vertices).all():
-        raise WorldError(f"{path}: holds no triangles, or coordinates that are not numbers")
+        raise WorldError(f"{file.path}: holds no triangles, or coordinates that are not numbers")
     if file.centred:
         vertices = vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2.0
     vertices, first = _without_doubles(vertices)
@@ -79,7 +107,7 @@ def _obj_by_groups(path: Path) -> Any:
     """An OBJ file whose parts are its objects and groups; trimesh makes them of its materials, or objects."""
     import trimesh
 
-    text = re.sub(r"^g ", "o ", path.read_text(errors="replace"), flags=re.MULTILINE)
+    text = re.sub(r"^g ", "o ", read_text(path, errors="replace"), flags=re.MULTILINE)
     return trimesh.load(
         io.StringIO(text), file_type="obj", force="scene", group_material=False, skip_materials=True
     )
@@ -107,11 +135,29 @@ def _colours(part: Any) -> np.ndarray:
 
 
 def _read(cached: Path) -> Optional[Mesh]:
+    """None if there is none, or none that is whole: it is made anew then."""
     try:
-        with np.load(cached) as arrays:
-            return Mesh(arrays["vertices"], arrays["triangles"], arrays["colours"])
-    except (OSError, KeyError, ValueError, EOFError, zipfile.BadZipFile):
+        arrays = read_arrays(cached)
+        mesh = Mesh(arrays["vertices"], arrays["triangles"], arrays["colours"])
+    except (OSError, KeyError, ValueError):
         return None
+    return mesh if _is_whole(mesh) else None
+
+
+def _is_whole(mesh: Mesh) -> bool:
+    vertices, triangles, colours = mesh.vertices, mesh.triangles, mesh.colours
+    return (
+        vertices.dtype == np.float64
+        and vertices.shape == (len(vertices), 3)
+        and bool(np.isfinite(vertices).all())
+        and triangles.dtype == np.int32
+        and triangles.shape == (len(triangles), 3)
+        and len(triangles) > 0
+        and bool((triangles >= 0).all() and (triangles < len(vertices)).all())
+        and colours is not None
+        and colours.dtype == np.float32
+        and colours.shape == triangles.shape
+    )
 
 
 def _write(mesh: Mesh, cached: Path) -> None:

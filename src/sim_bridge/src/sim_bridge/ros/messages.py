@@ -6,9 +6,13 @@ from typing import List, Sequence, Tuple
 import numpy as np
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
 
+from planar.geometry.limits import FARTHEST, is_within
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import from_quaternion, position, quaternion
 from sim_bridge.physics.motion import Motion
+
+# Below it a quaternion is as good as zero, which messages hold that nobody has filled in.
+SHORTEST_QUATERNION = 1e-6
 
 
 def pose3_to_msg(pose: np.ndarray) -> Pose:
@@ -21,7 +25,10 @@ def pose3_from_msg(message: Pose) -> np.ndarray:
     values = (q.x, q.y, q.z, q.w, at.x, at.y, at.z)
     if not all(math.isfinite(value) for value in values):
         raise WorldError("the pose is not finite")
-    pose = from_quaternion(values[:4] if any(values[:4]) else (0.0, 0.0, 0.0, 1.0))
+    if not is_within(FARTHEST, *values):
+        raise WorldError("nothing can be at the pose")
+    is_turned = float(np.linalg.norm(values[:4])) > SHORTEST_QUATERNION
+    pose = from_quaternion(values[:4] if is_turned else (0.0, 0.0, 0.0, 1.0))
     pose[:3, 3] = values[4:]
     return pose
 
@@ -35,6 +42,8 @@ def motion_from_msgs(pose: Pose, twist: Twist) -> Motion:
     linear, angular = vector_from_msg(twist.linear), vector_from_msg(twist.angular)
     if not (np.isfinite(linear).all() and np.isfinite(angular).all()):
         raise WorldError("the twist is not finite")
+    if not is_within(FARTHEST, *linear, *angular):
+        raise WorldError("nothing is as fast as the twist")
     return Motion(pose3_from_msg(pose), linear, angular)
 
 

@@ -1,6 +1,6 @@
 """XML elements that know where they stand, so that an error can name its place."""
 
-import math
+import re
 from pathlib import Path
 from typing import Iterator, List, Optional, Sequence, Tuple
 
@@ -8,8 +8,14 @@ import defusedxml.ElementTree
 import numpy as np
 from defusedxml.common import DefusedXmlException
 
+from planar.files.reading import read_bytes
+from planar.geometry.limits import FARTHEST, is_within
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import pose3
+
+# More than any number in a file of Gazebo's, and small enough to be multiplied.
+LARGEST = 1e30
+_VERSION_NUMBER = re.compile(r"[0-9]{1,9}$")
 
 
 class Element:
@@ -59,7 +65,7 @@ class Element:
             values = [float(word) for word in words]
         except ValueError:
             raise self.error(f"expected {count} numbers, got {self.text!r}") from None
-        if len(values) != count or not all(math.isfinite(value) for value in values):
+        if len(values) != count or not is_within(LARGEST, *values):
             raise self.error(f"expected {count} finite numbers, got {self.text!r}")
         return values
 
@@ -68,6 +74,8 @@ class Element:
         values = self.numbers(count)
         if min(values) <= 0.0:
             raise self.error(f"must be positive, got {self.text!r}")
+        if max(values) > FARTHEST:
+            raise self.error(f"must be at most {FARTHEST:g}, got {self.text!r}")
         return tuple(values)
 
     def attribute_numbers(
@@ -81,7 +89,7 @@ class Element:
             values = tuple(float(word) for word in (text or "").split())
         except ValueError:
             values = ()
-        if len(values) != count or not all(math.isfinite(value) for value in values):
+        if len(values) != count or not is_within(LARGEST, *values):
             raise self.error(f"{name}: expected {count} finite numbers, got {text!r}")
         return values
 
@@ -90,6 +98,8 @@ class Element:
         values = self.attribute_numbers(name, count)
         if min(values) <= 0.0:
             raise self.error(f"{name} must be positive, got {self.attribute(name)!r}")
+        if max(values) > FARTHEST:
+            raise self.error(f"{name} must be at most {FARTHEST:g}, got {self.attribute(name)!r}")
         return values
 
     def flag(self, tag: str) -> bool:
@@ -100,18 +110,33 @@ class Element:
     def raw_pose(self) -> Optional[np.ndarray]:
         """The pose (4, 4) written in this element, in whatever frame; None if none is written."""
         element = self.child("pose")
-        return pose3(*element.numbers(6)) if element is not None and element.text else None
+        if element is None or not element.text:
+            return None
+        values = element.numbers(6)
+        if not is_within(FARTHEST, *values):
+            raise element.error(f"nothing can be there, got {element.text!r}")
+        return pose3(*values)
 
     def number(self, *path: str, default: float) -> float:
         """The number along a path of tags; ``default`` if it is not there."""
         element = self.child(*path)
         return element.numbers(1)[0] if element is not None else default
 
+    def count(self, *path: str, most: int, default: int) -> int:
+        """The whole number from 1 to ``most`` along a path of tags; ``default`` if it is not there."""
+        element = self.child(*path)
+        if element is None:
+            return default
+        (value,) = element.numbers(1)
+        if value != int(value) or not 1 <= value <= most:
+            raise element.error(f"must be a whole number from 1 to {most}, got {element.text!r}")
+        return int(value)
+
 
 def parse(path: Path) -> Element:
     """The root element of an SDF file. Raises WorldError."""
     try:
-        return parse_text(path.read_bytes(), str(path))
+        return parse_text(read_bytes(path), str(path))
     except OSError as error:
         raise WorldError(f"{path}: cannot be read ({error.strerror})") from None
 
@@ -131,4 +156,4 @@ def parse_text(text, file: str, roots: Sequence[str] = ("sdf", "gazebo")) -> Ele
 
 def version_of(text: str) -> Tuple[int, ...]:
     """A version as numbers, so that 1.10 comes after 1.9."""
-    return tuple(int(number) if number.isdecimal() else 0 for number in text.split("."))
+    return tuple(int(number) if _VERSION_NUMBER.match(number) else 0 for number in text.split("."))

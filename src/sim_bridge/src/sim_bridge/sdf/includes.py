@@ -1,9 +1,11 @@
 """Where the files are that an SDF file refers to."""
 
+import os
 from pathlib import Path
 from typing import Optional, Sequence
 from urllib.parse import unquote, urlparse
 
+from planar.files.reading import exists, read_bytes
 from sim_bridge.errors import WorldError
 from sim_bridge.sdf.element import parse_text, version_of
 
@@ -11,18 +13,19 @@ from sim_bridge.sdf.element import parse_text, version_of
 def resolve(uri: str, beside: Path, model_folders: Sequence[Path]) -> Optional[Path]:
     """The existing file or folder that ``uri`` names, or None.
 
-    ``model://name/...`` is looked up in ``model_folders``, ``file://`` and plain paths are absolute, or
-    relative to the folder ``beside`` and then to the model folders, as Gazebo does.
+    ``model://name/...`` is looked up in ``model_folders``, and leads out of none. ``file://`` and plain
+    paths are absolute, or relative to the folder ``beside`` and then to the model folders, as Gazebo does.
     """
     parts = urlparse(uri)
     path = Path(unquote(parts.netloc + parts.path))
     if parts.scheme == "model":
-        candidates = [folder / path for folder in model_folders]
+        leads_out = ".." in Path(os.path.normpath(path)).parts
+        candidates = [] if leads_out else [folder / path for folder in model_folders]
     elif parts.scheme in ("", "file"):
         candidates = [beside / path, *(folder / path for folder in model_folders)]
     else:
         candidates = []
-    return next((candidate for candidate in candidates if candidate.exists()), None)
+    return next((candidate for candidate in candidates if exists(candidate)), None)
 
 
 def has_model(path: Path) -> bool:
@@ -36,7 +39,7 @@ def model_file(folder: Path) -> Path:
         return folder
     config_path = folder / "model.config"
     try:
-        config = parse_text(config_path.read_bytes(), str(config_path), roots=("model",))
+        config = parse_text(read_bytes(config_path), str(config_path), roots=("model",))
     except OSError as error:
         raise WorldError(f"{config_path}: cannot be read ({error.strerror})") from None
     versions = [(version_of(sdf.attribute("version")), sdf.text) for sdf in config.children("sdf")]

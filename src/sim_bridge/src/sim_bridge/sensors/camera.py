@@ -17,6 +17,8 @@ from sim_bridge.sensors.lidar import LaserProfile
 from sim_bridge.views.rasterizer import Projection, draw
 
 STREAM = 100
+# Of a side.
+MOST_PIXELS = 8192
 # From the frame that a camera looks along x of to the optical frame (REP 103): z ahead, x right, y down.
 OPTICAL_IN_CAMERA = np.array(
     [[0.0, 0.0, 1.0, 0.0], [-1.0, 0.0, 0.0, 0.0], [0.0, -1.0, 0.0, 0.0], [0, 0, 0, 1.0]]
@@ -197,8 +199,8 @@ def _values_of(found: Found) -> Tuple[Dict[str, Any], Dict[str, Any]]:
     sensor, plugin, prefix = found.sensor, found.plugin, _prefix(found)
     camera = sensor.child("camera") or sensor
     values = {
-        "width": int(camera.number("image", "width", default=640.0)),
-        "height": int(camera.number("image", "height", default=480.0)),
+        "width": camera.count("image", "width", most=MOST_PIXELS, default=640),
+        "height": camera.count("image", "height", most=MOST_PIXELS, default=480),
         "horizontal_fov": camera.number("horizontal_fov", default=math.radians(60.0)),
         "near": camera.number("clip", "near", default=0.05),
         "far": camera.number("clip", "far", default=100.0),

@@ -30,6 +30,13 @@ class Server:
         full_name = rospy.names.ns_join(NAMESPACE, name)
         rospy.Service(full_name, kind, lambda request: self.between_steps(lambda: answer(request)))
 
+    def serve_aside(self, name: str, kind, answer: Callable) -> None:
+        """The same for an ``answer`` that takes its time: it runs in a thread beside the simulation.
+
+        What it does to the scene it has done ``between_steps``.
+        """
+        rospy.Service(rospy.names.ns_join(NAMESPACE, name), kind, answer)
+
     def between_steps(self, do: Callable[[], T]) -> T:
         """Has ``do`` called between two steps and returns what it returns."""
         return self._orders.ask(do)
