@@ -48,7 +48,8 @@ def _mission(
     defaults: ErrandSettings,
     grid: Optional[OccupancyGrid],
 ) -> Mission:
-    table.allow_only("name", "places", "objects", "settings", "deliveries")
+    # What goes wrong meanwhile, ``faults``, is the simulator's business.
+    table.allow_only("name", "places", "objects", "settings", "deliveries", "faults")
     name = table.text("name", Path(source).stem)
     places = {**known_places, **_places(table, grid)}
     things = _things(table)

@@ -1,4 +1,6 @@
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Optional
 
 from home_service.options import MissionOptions, count, seconds
 from supervision.command_line import option
@@ -9,17 +11,24 @@ class Rehearse(MissionOptions):
     """Plays the home-service mission in one process, without ROS: fast and repeatable."""
 
     runs: int = option(1, "how many runs, each with the next seed", type=count)
+    faults: Optional[Path] = option(
+        None, "YAML with a list of faults; default: those of the mission", type=Path, metavar="FILE"
+    )
     timeout: float = option(600.0, "simulated seconds a run may take", type=seconds)
 
     def run(self) -> int:
         from home_service.rehearsal import Rehearsal, parcel_of
         from home_service.stage import read_mission
+        from sim_bridge.faults import load_faults
 
         home, successes = read_mission(self), 0
+        faulty = self.faults or self.mission
+        faults = () if faulty is None else load_faults(faulty)
         stage = (home.world, home.robot, home.grid, home.mission)
         for seed in range(self.seed, self.seed + self.runs):
             parcel = None if self.mission else parcel_of(home.mission)
-            run = Rehearsal(*stage, seed=seed, parcel=parcel, planner=self.planner).run(self.timeout)
+            rehearsal = Rehearsal(*stage, seed=seed, parcel=parcel, planner=self.planner, faults=faults)
+            run = rehearsal.run(self.timeout)
             successes += run.verdict.success
             print(f"seed {seed}: {'SUCCESS' if run.verdict.success else 'FAILURE'}: {run.verdict.reason}")
             print(
@@ -29,5 +38,7 @@ class Rehearse(MissionOptions):
                 f"trajectory {run.trajectory_hash[:16]}",
                 flush=True,
             )
+            if run.diagnosis:
+                print(f"  not trusted: {run.diagnosis}", flush=True)
         print(f"{successes} of {self.runs} succeeded")
         return 0 if successes == self.runs else 1

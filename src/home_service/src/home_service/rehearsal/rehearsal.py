@@ -7,17 +7,20 @@ ROS (docs/logical_time.md): what one part tells, the others know one control per
 import hashlib
 import time
 from collections import deque
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Deque, List, Optional, Tuple, Union
+from typing import Deque, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from add_markers import CarriedParcel, Solid
 from amcl_lite import Localizer, LocalizerSettings
+from amcl_lite.errors import LocalizationError
 from home_service.judging.delivery_watch import DeliveryWatch
 from home_service.judging.verdict import ERRAND, MARKERS, Ledger, Verdict, judge
 from home_service.rehearsal.bodies import RehearsedBodies, solids_of
+from home_service.rehearsal.senses import FaultyStage, Senses
 from move_base_lite import Decision, NavigationError, Navigator, Status, load_settings
 from pick_objects import Errand, Finish, GoalReached, GoalRefused, GoTo, MeasureWays, Mission, WaysMeasured
 from pick_objects.errand import Order
@@ -25,6 +28,8 @@ from planar import OccupancyGrid, Pose2, Scan, Twist2
 from planar.config.settings_file import settings_from_yaml
 from sim_bridge import Observation, RobotProfile, Simulation
 from sim_bridge.config import LATENCY
+from sim_bridge.faults import Fault, Faults
+from sim_bridge.simulation import ROBOT_NAME
 from sim_bridge.world import World
 
 PACKAGES = Path(__file__).resolve().parents[4]
@@ -42,6 +47,7 @@ class Rehearsed:
     """How a rehearsal went.
 
     ``trajectory``: (N, 4) stamp, true x, y, yaw at each control period. ``localization_error``: (N,), metres.
+    ``diagnosis``: the first sensor that was not trusted, and why.
     """
 
     verdict: Verdict
@@ -49,6 +55,7 @@ class Rehearsed:
     trajectory: np.ndarray
     localization_error: np.ndarray
     wall_seconds: float
+    diagnosis: str = ""
 
     @property
     def simulated_seconds(self) -> float:
@@ -81,13 +88,18 @@ class Rehearsal:
         seed: int,
         parcel: Optional[CarriedParcel] = None,
         planner: str = "",
+        faults: Sequence[Fault] = (),
     ):
-        """``parcel``: the marker of an errand that is rehearsed with it; ``planner``: another local one."""
-        self._simulation = Simulation(world, robot, seed=seed)
+        """``parcel``: the marker of an errand that is rehearsed with it; ``planner``: another local one;
+        ``faults``: what goes wrong.
+        """
+        self._faults = Faults(faults, seed)
+        self._simulation = Simulation(world, robot, seed=seed, fitting=self._faults.fitting)
         localization, _ = settings_from_yaml(LocalizerSettings, LOCALIZATION_CONFIG)
         self._localizer = Localizer(grid, localization, np.random.default_rng(seed))
         navigation = load_settings(NAVIGATION_CONFIG, **({"base_local_planner": planner} if planner else {}))
         self._navigator = Navigator(navigation, grid)
+        self._senses = Senses(navigation.move_base.sensor_patience)
         self._steps_per_tick = round(
             1.0 / (navigation.move_base.controller_frequency * self._simulation.step_seconds)
         )
@@ -125,6 +137,7 @@ class Rehearsal:
             np.array(self._trajectory),
             np.array(self._errors),
             time.perf_counter() - start,
+            self._senses.diagnosis,
         )
 
     def _play_moment(self) -> Optional[Finish]:
@@ -141,9 +154,14 @@ class Rehearsal:
         decision = self._navigator.tick(
             self._now, base_in_map, odometry.base_in_odom, odometry.twist, scan, latency=self._latency
         )
-        self._command = decision.command
+        complaint = self._senses.complaint(self._now)
+        self._command = decision.command if complaint is None else Twist2()
         order = self._advance_errand(base_in_map, observation.base_in_world)
         self._event = _event_of(decision)
+        if complaint is not None and self._senses.is_out_of_patience(self._now):
+            # As move_base does with a sensor that it cannot trust.
+            self._navigator.forget_goal()
+            self._event = GoalRefused(f"waiting for a trustworthy sensor ({complaint})")
         self._goal = order.pose if isinstance(order, GoTo) else None
         return order if isinstance(order, Finish) else None
 
@@ -170,9 +188,13 @@ class Rehearsal:
                 sent = self._command
             observation = self._simulation.step(sent)
             self._ledger.collisions.extend(observation.contacts)
+            self._senses.feel(observation, self._command or Twist2())
             if observation.scan is not None:
                 scan = observation.scan
-                self._localizer.update(observation.odometry.base_in_odom, scan)
+                with suppress(LocalizationError):  # the node says so, and goes on too
+                    self._localizer.update(self._senses.base_at(scan.stamp), scan)
+            place = FaultyStage(self._simulation.scene, ROBOT_NAME, observation.base_in_world)
+            self._faults.disturb(observation.stamp, place)
         is_under_way = self._steps_of_latency == self._steps_per_tick
         self._command_under_way = self._command if is_under_way else None
         return observation, scan

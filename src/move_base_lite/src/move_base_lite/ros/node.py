@@ -221,6 +221,7 @@ class MoveBaseNode:
     def _act(self, now: rospy.Time, view: View, decision: Decision):
         mode = self._settings.planner.orientation_mode
         self._topics.publish(now, decision, view.base_in_map, self._goal, mode)
+        self._surroundings.note_command(decision.command or Twist2())
         self._goals.tell_pose(view.base_in_map, now)
         if decision.status.is_final:
             if decision.status is Status.ABORTED:

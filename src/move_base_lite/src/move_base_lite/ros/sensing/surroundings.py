@@ -3,7 +3,7 @@
 import threading
 from collections import deque
 from dataclasses import dataclass, replace
-from typing import Deque, Dict, List, Optional, Tuple
+from typing import Callable, Deque, Dict, List, Optional, Tuple
 
 import numpy as np
 import rospy
@@ -13,11 +13,19 @@ from sensor_msgs.msg import PointCloud, PointCloud2
 from move_base_lite.config import NavigatorSettings
 from move_base_lite.costmap import Sighting, sighting_of_points, sighting_of_scan
 from move_base_lite.costmap.layers.obstacles import SourceSettings
+from move_base_lite.plausibility import SensorWatch
 from move_base_lite.ros.sensing.checks import check_message
 from move_base_lite.ros.sensing.clouds import points_of
+from move_base_lite.ros.sensing.diagnostics import SensorDiagnostics
 from planar import Pose2, Twist2
 from planar_ros.messages.border import WARN_SECONDS, listen
-from planar_ros.messages.conversion import LaserScanArrays, frame_name, scan_from_msg, twist2_from_msg
+from planar_ros.messages.conversion import (
+    LaserScanArrays,
+    frame_name,
+    pose2_from_msg,
+    scan_from_msg,
+    twist2_from_msg,
+)
 from planar_ros.messages.transforms import Transforms
 
 KEPT = 5
@@ -44,10 +52,13 @@ class Surroundings:
         self._base_frame = frame_name(settings.local_costmap.robot_base_frame)
         self.change(settings)
         self._twist = Twist2()
+        self._command = Twist2()
+        self._watch = SensorWatch()
+        self._diagnostics = SensorDiagnostics()
         self._lock = threading.Lock()
         listen(odom_topic, Odometry, self._on_odometry, queue_size=1, tcp_nodelay=True)
         self._sensors = [
-            _Sensor(source, transforms, self._local_frame, self._base_frame)
+            _Sensor(source, transforms, self._local_frame, self._base_frame, self._on_scan)
             for source in _sources_of(settings).values()
         ]
 
@@ -77,8 +88,16 @@ class Surroundings:
         sightings = tuple(sighting for sighting in newest if sighting is not None)
         return View(odom_in_map @ base_in_odom, base_in_odom, self._twist, sightings)
 
+    def note_command(self, command: Twist2) -> None:
+        """What the robot has just been told to do."""
+        self._command = command
+
     def missing_transform(self, now: rospy.Time) -> Optional[str]:
-        """Which transform is not known or too old, for people; None if all are well."""
+        """Which transform is not known or too old, or which sensor lies, for people; None if all are well."""
+        complaint = self._watch.complaint(now.to_sec())
+        self._diagnostics.tell(complaint, now)
+        if complaint is not None:
+            return f"a trustworthy sensor ({complaint})"
         pairs = (self._global_frame, self._local_frame), (self._local_frame, self._base_frame)
         for (parent, child), tolerance in zip(pairs, self._tolerances):
             latest = self._transforms.latest_stamp(parent, child)
@@ -93,16 +112,30 @@ class Surroundings:
         for sensor in self._sensors:
             sensor.forget()
         self._transforms.clear()
+        self._watch.forget()
 
     def _on_odometry(self, message):
         self._twist = twist2_from_msg(message.twist.twist)
+        pose = pose2_from_msg(message.pose.pose)
+        self._watch.see_odometry(rospy.get_time(), pose, self._command)
+
+    def _on_scan(self, message):
+        self._watch.see_scan(message.ranges, message.range_min, message.range_max)
 
 
 class _Sensor:
     """The newest messages of one topic, made into sightings as soon as tf knows where they were taken."""
 
-    def __init__(self, source: SourceSettings, transforms: Transforms, local_frame: str, base_frame: str):
-        self._source = source
+    def __init__(
+        self,
+        source: SourceSettings,
+        transforms: Transforms,
+        local_frame: str,
+        base_frame: str,
+        watch: Callable[[LaserScanArrays], None],
+    ):
+        """``watch`` is told of each scan, if its returns are what it marks by."""
+        self._source, self._watch = source, watch
         self._transforms = transforms
         self._local_frame, self._base_frame = local_frame, base_frame
         self._messages: Deque = deque(maxlen=KEPT)
@@ -145,6 +178,8 @@ class _Sensor:
     def _on_message(self, message):
         check_message(message)
         self.has_spoken = True
+        if self._source.data_type == "LaserScan" and self._source.marking:
+            self._watch(message)
         with self._lock:
             self._messages.append(message)
 

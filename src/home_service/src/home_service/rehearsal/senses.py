@@ -1,0 +1,68 @@
+"""What a rehearsed robot feels, and whether it can be so."""
+
+from collections import deque
+from dataclasses import dataclass
+from typing import Deque, Optional, Tuple
+
+from move_base_lite.plausibility import SensorWatch
+from planar import Pose2, Twist2
+from sim_bridge import Observation
+from sim_bridge.scene import Scene
+from sim_bridge.sensors.odometry import Odometer
+
+# Steps of the simulation for which odometry is remembered, as tf does.
+REMEMBERED = 500
+
+
+@dataclass(frozen=True, eq=False)
+class FaultyStage:
+    """What faults of the home can reach."""
+
+    scene: Scene
+    robot: str
+    base_in_world: Pose2
+
+
+class Senses:
+    """Keeps odometry, as tf does, and watches over the sensors, as move_base does.
+
+    ``patience``: seconds of a sensor that cannot be trusted, after which a goal is given up.
+    ``diagnosis``: the first complaint.
+    """
+
+    def __init__(self, patience: float):
+        self.diagnosis = ""
+        self._patience = patience
+        self._watch = SensorWatch()
+        self._odometry: Deque[Tuple[float, Pose2]] = deque(maxlen=REMEMBERED)
+        self._wrong_since: Optional[float] = None
+
+    def feel(self, observation: Observation, command: Twist2) -> None:
+        """Takes in a step."""
+        if Odometer.name in observation.readings or not self._odometry:
+            self._odometry.append((observation.stamp, observation.odometry.base_in_odom))
+            self._watch.see_odometry(observation.stamp, observation.odometry.base_in_odom, command)
+        if observation.scan is not None:
+            scan = observation.scan
+            self._watch.see_scan(scan.ranges, scan.range_min, scan.range_max)
+
+    def base_at(self, stamp: float) -> Pose2:
+        """Where odometry had the robot at a time, or as near to it as is remembered."""
+        return min(reversed(self._odometry), key=lambda known: abs(known[0] - stamp))[1]
+
+    def complaint(self, now: float) -> Optional[str]:
+        """Which sensor cannot be trusted; None if all can."""
+        complaint = self._watch.complaint(now)
+        if complaint is None:
+            self._wrong_since = None
+        elif self._wrong_since is None:
+            self._wrong_since = now
+        self.diagnosis = self.diagnosis or complaint or ""
+        return complaint
+
+    def is_out_of_patience(self, now: float) -> bool:
+        """Whether a sensor has been wrong for too long; asked anew afterwards."""
+        if self._wrong_since is None or now - self._wrong_since <= self._patience:
+            return False
+        self._wrong_since = now
+        return True

@@ -1,0 +1,126 @@
+"""Runs with a fault beside the same runs without it."""
+
+from dataclasses import dataclass
+from typing import Dict, Sequence
+
+from home_service.judging.verdict import collision
+from home_service.rehearsal.rehearsal import Rehearsal, Rehearsed, parcel_of
+from home_service.stage import MissionHome
+from sim_bridge.faults import KINDS, Fault
+
+HEAD = """# Faults
+
+What becomes of the errand when something goes wrong {start:g} s after the start and stays so: each kind of
+fault beside its clean twin of the same seed, in one process, over {seeds}. Made by
+`./scripts/faults.sh --runs {runs} --write docs/faults.md`.
+
+A verdict is false if the robot says that it has delivered and has not, or the other way round. *Lost* is the
+simulated time beyond the clean twin's. *Named* is the sensor that the robot did not trust, and why.
+
+| fault | what goes wrong | strength | succeeded | touched | false verdicts | lost, s | named, or the end |
+| --- | --- | --- | --- | --- | --- | --- | --- |
+"""
+TAIL = """
+In a mission file or a file of their own (`./scripts/rehearse.sh --faults FILE`), faults are a list:
+
+```yaml
+faults:
+  - {kind: scan_frozen, start: 8.0, end: 12.0}
+  - {kind: scan_noisy, strength: 0.1, seed: 3}
+```
+
+`start` and `end` are simulated seconds (from the start, for ever), `strength` is in the unit of the table;
+`seed` changes what is random about a fault. A kind is a class in a file of its own in
+`sim_bridge/faults/` and a line of `registry.py` there.
+"""
+
+
+@dataclass(frozen=True)
+class Row:
+    """What a kind of fault does to the mission, over all seeds."""
+
+    kind: str
+    runs: int
+    successes: int
+    touches: str
+    false_verdicts: int
+    seconds_lost: float
+    ending: str
+
+    @property
+    def is_needless_failure(self) -> bool:
+        """Whether most runs failed that need not have."""
+        return KINDS[self.kind].survivable and 2 * self.successes < self.runs
+
+    @property
+    def line(self) -> str:
+        """For the terminal."""
+        told = f"{self.kind}: {self.successes} of {self.runs} succeeded, {self.seconds_lost:.1f} s lost"
+        return ", ".join(filter(None, (told, self.touches, self.ending)))
+
+    @property
+    def table_line(self) -> str:
+        kind = KINDS[self.kind]
+        what = (kind.__doc__ or "").partition("\n")[0].rstrip(".")
+        strength = f"{kind.strength[0]:g} {kind.unit}" if kind.unit else ""
+        cells = (
+            f"`{self.kind}`",
+            what,
+            strength,
+            f"{self.successes} of {self.runs}",
+            self.touches,
+            str(self.false_verdicts),
+            f"{self.seconds_lost:.1f}" if self.successes else "",
+            self.ending,
+        )
+        return f"| {' | '.join(cells)} |\n"
+
+
+class Twins:
+    """Plays a mission with a fault and without, for each of ``seeds``."""
+
+    def __init__(self, home: MissionHome, is_errand: bool, seeds: Sequence[int], timeout: float):
+        self._home, self._is_errand, self._seeds, self._timeout = home, is_errand, seeds, timeout
+        self._clean: Dict[int, Rehearsed] = {}
+
+    def compare(self, kind: str, start: float) -> Row:
+        """What the kind of fault does from ``start`` on."""
+        fault = Fault(kind, start, strength=KINDS[kind].strength[0])
+        pairs = [(self._twin(seed), self._play(seed, (fault,))) for seed in self._seeds]
+        won = [(clean, run) for clean, run in pairs if run.verdict.success]
+        lost = sum(run.simulated_seconds - clean.simulated_seconds for clean, run in won)
+        touched = [name for _, run in pairs for name in run.ledger.collisions]
+        endings = [run.diagnosis or ("" if run.verdict.success else run.verdict.reason) for _, run in pairs]
+        return Row(
+            kind,
+            len(pairs),
+            len(won),
+            collision(touched) or "",
+            sum(map(_is_false, (run for _, run in pairs))),
+            lost / len(won) if won else 0.0,
+            next(filter(None, endings), ""),
+        )
+
+    def _twin(self, seed: int) -> Rehearsed:
+        if seed not in self._clean:
+            self._clean[seed] = self._play(seed, ())
+        return self._clean[seed]
+
+    def _play(self, seed: int, faults: Sequence[Fault]) -> Rehearsed:
+        home = self._home
+        parcel = parcel_of(home.mission) if self._is_errand else None
+        stage = (home.world, home.robot, home.grid, home.mission)
+        return Rehearsal(*stage, seed=seed, parcel=parcel, faults=faults).run(self._timeout)
+
+
+def page(rows: Sequence[Row], start: float, runs: int) -> str:
+    """The table, as a page of the documentation."""
+    seeds = "one seed" if runs == 1 else f"{runs} seeds"
+    return HEAD.format(start=start, seeds=seeds, runs=runs) + "".join(row.table_line for row in rows) + TAIL
+
+
+def _is_false(run: Rehearsed) -> bool:
+    """Whether the robot said something of its mission that is not so."""
+    records = run.ledger.deliveries
+    is_delivered = bool(records) and all(record.complaint is None for record in records)
+    return (run.ledger.final_state == "delivered") != is_delivered

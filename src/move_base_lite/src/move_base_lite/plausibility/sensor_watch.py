@@ -1,0 +1,111 @@
+"""Sensors that are dead and look alive: each is held against what the others and the commands say."""
+
+import math
+from typing import Optional
+
+import numpy as np
+
+from planar import Pose2, Twist2
+
+# Of the beams of a scan: so many of a kind are no chance.
+NEARLY_ALL = 0.95
+# A scan that shows that much is not followed by one that shows nothing, before the robot has gone far.
+ENOUGH = 0.5
+NOT_FAR = 0.3
+# Motion, metres or radians, in which a scan with noise cannot stay the same to the last bit.
+NOTICEABLE = 0.15
+# Seconds of a command, and its speed in m/s or rad/s, after which odometry must have moved.
+PATIENCE = 1.0
+FAST = 0.1
+# Metres by which beams have changed if the robot has truly moved; the median of all.
+CHANGED = 0.1
+# Seconds without odometry that had come before. Scans that stay away are what expected_update_rate is for.
+SILENCE = 2.0
+
+
+class SensorWatch:
+    """Told what scans, odometry and commands say, it says which sensor cannot be trusted now.
+
+    Scans are held against themselves, against the scans before, and against odometry; odometry against
+    commands and scans. What is not known to be wrong is trusted: a scan without a single return may be that
+    of an empty hall, unless the robot has just seen walls all around.
+    """
+
+    def __init__(self) -> None:
+        self._base = Pose2()
+        self._odometry_at: Optional[float] = None
+        self._still_since: Optional[float] = None
+        self._scan_when_still: Optional[np.ndarray] = None
+        self._ranges: Optional[np.ndarray] = None
+        self._base_when_same = Pose2()
+        self._base_when_seeing: Optional[Pose2] = None
+        self._blindness = self._sameness = ""
+
+    def forget(self) -> None:
+        """Time has jumped: what was heard is worthless."""
+        self.__init__()  # type: ignore[misc]
+
+    def see_scan(self, ranges: np.ndarray, range_min: float, range_max: float) -> None:
+        """A scan has come; ``ranges``: (N,), metres."""
+        self._blindness = self._why_blind(ranges, range_min, range_max)
+        self._sameness = self._why_frozen(ranges)
+        self._ranges = ranges
+
+    def see_odometry(self, now: float, base_in_odom: Pose2, command: Twist2) -> None:
+        """Where odometry believes the robot to be, and what the robot has been told to do."""
+        is_told_to_move = abs(command.v) > FAST or abs(command.omega) > FAST
+        if base_in_odom != self._base or not is_told_to_move:
+            self._still_since = None
+        elif self._still_since is None:
+            self._still_since, self._scan_when_still = now, self._ranges
+        self._base, self._odometry_at = base_in_odom, now
+
+    def complaint(self, now: float) -> Optional[str]:
+        """What cannot be trusted, and why, for people: "scan: all of its beams are NaN"; None if all can."""
+        if self._odometry_at is not None and now - self._odometry_at > SILENCE:
+            return f"odometry: none for {now - self._odometry_at:.1f} s"
+        for reason in (self._blindness, self._sameness):
+            if reason:
+                return f"scan: {reason}"
+        if self._odometry_is_stuck(now):
+            return "odometry: it stands still while the robot is told to move and its scans change"
+        return None
+
+    def _why_blind(self, ranges: np.ndarray, range_min: float, range_max: float) -> str:
+        if not len(ranges):
+            return "it has no beams"
+        with np.errstate(invalid="ignore"):
+            shares = {
+                "NaN": np.isnan(ranges).mean(),
+                f"nearer than {range_min:g} m": (ranges < max(range_min, 1e-3)).mean(),
+            }
+            seeing = ((ranges >= range_min) & (ranges < range_max)).mean()
+        for what, share in shares.items():
+            if share >= NEARLY_ALL:
+                return f"nearly all of its beams are {what}"
+        if seeing >= ENOUGH:
+            self._base_when_seeing = self._base
+        elif seeing <= 1.0 - NEARLY_ALL and self._base_when_seeing is not None:
+            gone = self._base_when_seeing.distance_to(self._base)
+            if gone < NOT_FAR:
+                return f"it has lost sight of everything within {gone:.1f} m"
+        return ""
+
+    def _why_frozen(self, ranges: np.ndarray) -> str:
+        is_same = self._ranges is not None and np.array_equal(ranges, self._ranges, equal_nan=True)
+        if not is_same or not np.isfinite(ranges).any():
+            self._base_when_same = self._base
+            return ""
+        moved = self._base_when_same.inverse() @ self._base
+        if max(math.hypot(moved.x, moved.y), abs(moved.yaw)) < NOTICEABLE:
+            return self._sameness
+        return "it stays the same to the last bit while the robot moves"
+
+    def _odometry_is_stuck(self, now: float) -> bool:
+        before, after = self._scan_when_still, self._ranges
+        if self._still_since is None or now - self._still_since < PATIENCE:
+            return False
+        if before is None or after is None or len(before) != len(after):
+            return False
+        both = np.isfinite(before) & np.isfinite(after)
+        return bool(both.any()) and float(np.median(np.abs(after[both] - before[both]))) > CHANGED

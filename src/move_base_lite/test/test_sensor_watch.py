@@ -1,0 +1,110 @@
+"""Sensors that are dead and look alive are named, and those that live are not."""
+
+import math
+
+import numpy as np
+import pytest
+
+from move_base_lite.plausibility import SensorWatch
+from planar import Pose2, Twist2
+
+MIN, MAX, BEAMS, PERIOD = 0.1, 8.0, 100, 0.1
+AHEAD = Twist2(0.5, 0.0)
+
+
+class Drive:
+    """A robot that drives ahead in a room, and what its watch hears."""
+
+    def __init__(self):
+        self.watch, self.now, self.x = SensorWatch(), 0.0, 0.0
+        self._rng = np.random.default_rng(0)
+
+    def go(self, seconds, scan=lambda ranges: ranges, odometry=lambda pose: pose, v=0.5):
+        """The first complaint on the way, or None."""
+        for _ in range(round(seconds / PERIOD)):
+            self.now, self.x = self.now + PERIOD, self.x + v * PERIOD
+            ranges = scan(self.truth())
+            if ranges is not None:
+                self.watch.see_scan(ranges, MIN, MAX)
+            pose = odometry(Pose2(self.x, 0.0))
+            if pose is not None:
+                self.watch.see_odometry(self.now, pose, Twist2(v, 0.0))
+            if self.watch.complaint(self.now):
+                return self.watch.complaint(self.now)
+        return None
+
+    def truth(self):
+        angles = np.linspace(-math.pi, math.pi, BEAMS)
+        sides = 2.0 / np.maximum(np.abs(np.sin(angles)), 0.2)
+        walls = np.where(np.cos(angles) > 0.5, 20.0 - self.x, sides) + self._rng.normal(0.0, 0.01, BEAMS)
+        return np.where(walls < MAX, walls, np.inf).astype(np.float32)
+
+
+@pytest.fixture
+def drive():
+    started = Drive()
+    assert started.go(2.0) is None
+    return started
+
+
+def filled(value):
+    return lambda ranges: np.full_like(ranges, value)
+
+
+@pytest.mark.parametrize(
+    "value, why",
+    [
+        (math.nan, "NaN"),
+        (math.inf, "lost sight"),
+        (0.0, "nearer than"),
+        (0.05, "nearer than"),
+        (-1.0, "nearer"),
+    ],
+)
+def test_a_scan_that_shows_nothing_is_named_within_half_a_second(drive, value, why):
+    complaint = drive.go(0.5, scan=filled(value))
+    assert complaint.startswith("scan: ") and why in complaint
+
+
+def test_a_frozen_scan_is_named_as_soon_as_the_robot_has_moved(drive):
+    frozen = drive.truth()
+    complaint = drive.go(1.0, scan=lambda _: frozen)
+    assert complaint == "scan: it stays the same to the last bit while the robot moves"
+
+
+def test_a_scan_that_stays_the_same_while_the_robot_stands_is_well(drive):
+    frozen = drive.truth()
+    assert drive.go(5.0, scan=lambda _: frozen, v=0.0) is None
+
+
+def test_odometry_that_stays_away_is_named(drive):
+    assert "odometry: none for" in drive.go(3.0, odometry=lambda _: None)
+
+
+def test_odometry_that_stands_still_while_scans_change_is_named(drive):
+    stuck = Pose2(drive.x, 0.0)
+    angles = np.linspace(-math.pi, math.pi, BEAMS)
+    moving = lambda ranges: (ranges + drive.x * np.cos(angles)).astype(np.float32)  # noqa: E731
+    assert "odometry: it stands still" in drive.go(5.0, scan=moving, odometry=lambda _: stuck)
+
+
+def test_a_robot_that_is_blocked_has_no_broken_sensor(drive):
+    at = drive.x
+    assert drive.go(5.0, scan=lambda _: drive.truth(), odometry=lambda _: Pose2(at, 0.0), v=0.0) is None
+
+
+def test_the_middle_of_an_empty_hall_is_no_fault():
+    assert Drive().go(20.0, scan=filled(math.inf)) is None
+
+
+def test_a_robot_that_drives_out_into_the_open_is_trusted(drive):
+    def opening(ranges):
+        return np.where(np.arange(BEAMS) < max(0.0, BEAMS * (1.0 - (drive.x - 1.0) / 3.0)), ranges, np.inf)
+
+    assert drive.go(10.0, scan=opening) is None
+
+
+def test_all_is_forgotten_when_time_jumps(drive):
+    assert drive.go(0.5, scan=filled(math.nan))
+    drive.watch.forget()
+    assert drive.watch.complaint(drive.now + 100.0) is None

@@ -1,0 +1,8 @@
+"""Faults as data: what goes wrong with a robot's sensors, its drive and its home, when and how much."""
+
+from sim_bridge.faults.faulty import Faults
+from sim_bridge.faults.file import load_faults
+from sim_bridge.faults.kind import Fault, Stage
+from sim_bridge.faults.registry import KINDS
+
+__all__ = ["KINDS", "Fault", "Faults", "Stage", "load_faults"]

@@ -1,0 +1,92 @@
+"""Faults put before a robot: wrappers round its sensors and its drive, and what happens to its home."""
+
+from typing import Any, List, Sequence, Tuple
+
+import numpy as np
+
+from planar import Scan, Twist2
+from sim_bridge.driving.base import Drive
+from sim_bridge.faults.kind import Fault, FaultKind, Stage
+from sim_bridge.faults.registry import KINDS
+from sim_bridge.robot import Fitting
+from sim_bridge.sensors.base import Sensor, SensorWrapper, Surroundings
+from sim_bridge.sensors.odometry import Odometry
+
+_STREAM = 900
+
+
+class Faults:
+    """The faults of a run: ``fitting`` for its robot, and ``disturb`` to be called at each step."""
+
+    def __init__(self, faults: Sequence[Fault], seed: int = 0):
+        self._pairs: List[Tuple[Fault, FaultKind]] = []
+        for number, fault in enumerate(faults):
+            rng = np.random.default_rng([seed, _STREAM, fault.seed, number])
+            self._pairs.append((fault, KINDS[fault.kind](fault.strength, rng)))
+        self._begun: List[FaultKind] = []
+
+    @property
+    def fitting(self) -> Fitting:
+        """What stands before the sensors and the drive of the robot."""
+        if not self._pairs:
+            return Fitting()
+        return Fitting(
+            sensor=lambda sensor: FaultySensor(sensor, self), drive=lambda drive: FaultyDrive(drive, self)
+        )
+
+    def at(self, now: float) -> List[FaultKind]:
+        """Those that last at a time, in order."""
+        return [kind for fault, kind in self._pairs if fault.start <= now < fault.end]
+
+    def disturb(self, now: float, stage: Stage) -> None:
+        """Lets the faults of the home and of beliefs begin and end."""
+        lasting = self.at(now)
+        for kind in lasting:
+            if kind not in self._begun:
+                self._begun.append(kind)
+                kind.begin(stage)
+        for kind in [each for each in self._begun if each not in lasting]:
+            self._begun.remove(kind)
+            kind.end(stage)
+
+
+class FaultySensor(SensorWrapper[Any]):
+    """Changes scans and odometry; other sensors are as they were."""
+
+    def __init__(self, sensor: Sensor[Any], faults: Faults):
+        super().__init__(sensor)
+        self._faults = faults
+
+    def measure(self, around: Surroundings) -> Any:
+        told = super().measure(around)
+        for kind in self._faults.at(around.stamp):
+            if isinstance(told, Scan):
+                told = kind.scan(told)
+            elif isinstance(told, Odometry):
+                told = kind.odometry(told)
+        return told
+
+
+class FaultyDrive:
+    """Changes commands, and what the wheels make of them."""
+
+    def __init__(self, drive: Drive, faults: Faults):
+        self._drive, self._faults = drive, faults
+        self._now = 0.0
+        self.switch, self.halt = drive.switch, drive.halt
+
+    def command(self, twist: Twist2) -> None:
+        heard = twist
+        for kind in self._faults.at(self._now):
+            changed = kind.command(heard)
+            if changed is None:
+                return
+            heard = changed
+        self._drive.command(heard)
+
+    def wheel_speeds(self, seconds: float) -> Tuple[float, float]:
+        self._now += seconds
+        left, right = self._drive.wheel_speeds(seconds)
+        for kind in self._faults.at(self._now):
+            left, right = kind.wheel_speeds(left, right)
+        return left, right

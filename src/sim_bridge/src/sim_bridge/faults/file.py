@@ -1,0 +1,32 @@
+"""Faults in files: a list ``faults``, of which every mistake is told with file, line and key."""
+
+from pathlib import Path
+from typing import Tuple
+
+from planar.config.yaml_table import Table, read_table
+from sim_bridge.faults.kind import Fault
+from sim_bridge.faults.registry import KINDS
+
+KEYS = ("kind", "start", "end", "strength", "seed")
+
+
+def load_faults(path: Path) -> Tuple[Fault, ...]:
+    """The faults of a file, which may hold other things beside, as a mission. Raises SettingsError."""
+    return tuple(_fault(entry) for entry in read_table(path).tables("faults"))
+
+
+def _fault(entry: Table) -> Fault:
+    entry.allow_only(*KEYS)
+    name = entry.choice("kind", KINDS)
+    usual, least, largest = KINDS[name].strength
+    start, end = entry.number("start", 0.0), float("inf")
+    entry.check(start >= 0.0, "start", "not negative")
+    if "end" in entry:
+        end = entry.number("end")
+        entry.check(end > start, "end", f"after start ({start:g})")
+    strength = entry.number("strength", usual)
+    entry.check(least <= strength <= largest, "strength", f"from {least:g} to {largest:g}")
+    seed = entry.value("seed") or 0
+    is_seed = isinstance(seed, int) and not isinstance(seed, bool) and seed >= 0
+    entry.check(is_seed, "seed", "a whole number from 0")
+    return Fault(name, start, end, strength, seed)

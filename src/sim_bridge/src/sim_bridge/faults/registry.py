@@ -1,0 +1,64 @@
+"""All kinds of faults, by the names that files give them."""
+
+from typing import Dict, Type
+
+from sim_bridge.faults.kind import FaultKind
+from sim_bridge.faults.odometry.frozen import FrozenOdometry
+from sim_bridge.faults.odometry.gyro_biased import BiasedGyro
+from sim_bridge.faults.odometry.scaled import ScaledOdometry
+from sim_bridge.faults.odometry.slipping import SlippingOdometry
+from sim_bridge.faults.odometry.stopped import StoppedOdometry
+from sim_bridge.faults.rooms.kidnapped import Kidnapped
+from sim_bridge.faults.rooms.obstacle import ObjectInWay
+from sim_bridge.faults.rooms.turned_round import TurnedRound
+from sim_bridge.faults.rooms.wall import WayClosed
+from sim_bridge.faults.scans.biased import BiasedScan
+from sim_bridge.faults.scans.frozen import FrozenScan
+from sim_bridge.faults.scans.inf import InfiniteScan
+from sim_bridge.faults.scans.late import LateScan
+from sim_bridge.faults.scans.masked import MaskedScan
+from sim_bridge.faults.scans.misdated import MisdatedScan
+from sim_bridge.faults.scans.nan import NanScan
+from sim_bridge.faults.scans.noisy import NoisyScan
+from sim_bridge.faults.scans.sparse import SparseScan
+from sim_bridge.faults.scans.stopped import StoppedScan
+from sim_bridge.faults.scans.turned import TurnedScan
+from sim_bridge.faults.scans.zero import ZeroScan
+from sim_bridge.faults.wheels.blocked import BlockedWheels
+from sim_bridge.faults.wheels.commands_deaf import DeafDrive
+from sim_bridge.faults.wheels.commands_late import LateCommands
+from sim_bridge.faults.wheels.commands_lost import LostCommands
+from sim_bridge.faults.wheels.saturated import SaturatedVelocity
+from sim_bridge.faults.wheels.stuck import StuckWheel
+from sim_bridge.faults.wheels.weak import WeakWheel
+
+KINDS: Dict[str, Type[FaultKind]] = {
+    "scan_stopped": StoppedScan,
+    "scan_frozen": FrozenScan,
+    "scan_masked": MaskedScan,
+    "scan_sparse": SparseScan,
+    "scan_nan": NanScan,
+    "scan_inf": InfiniteScan,
+    "scan_zero": ZeroScan,
+    "scan_biased": BiasedScan,
+    "scan_noisy": NoisyScan,
+    "scan_late": LateScan,
+    "scan_misdated": MisdatedScan,
+    "scan_turned": TurnedScan,
+    "odometry_stopped": StoppedOdometry,
+    "odometry_frozen": FrozenOdometry,
+    "odometry_scaled": ScaledOdometry,
+    "odometry_slipping": SlippingOdometry,
+    "gyro_biased": BiasedGyro,
+    "wheel_weak": WeakWheel,
+    "wheel_stuck": StuckWheel,
+    "wheels_blocked": BlockedWheels,
+    "commands_lost": LostCommands,
+    "commands_late": LateCommands,
+    "velocity_saturated": SaturatedVelocity,
+    "commands_deaf": DeafDrive,
+    "kidnapped": Kidnapped,
+    "turned_round": TurnedRound,
+    "object_in_way": ObjectInWay,
+    "way_closed": WayClosed,
+}

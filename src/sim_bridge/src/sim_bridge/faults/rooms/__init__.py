@@ -1,0 +1,1 @@
+"""What happens to the home, and to where the robot is."""

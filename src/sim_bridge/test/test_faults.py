@@ -1,0 +1,130 @@
+"""Faults as data: every kind does what it says, while it lasts, and a file's mistakes are told by line."""
+
+import math
+
+import numpy as np
+import pytest
+
+from planar import SettingsError, Twist2
+from sim_bridge import Simulation, SimulationSettings
+from sim_bridge.faults import KINDS, Fault, Faults, load_faults
+from sim_bridge.geometry.shapes import Box, Plane
+from sim_bridge.noise import noise_named
+from sim_bridge.simulation import ROBOT_NAME
+from sim_bridge.world import Body, Collision, World
+
+EXACT = SimulationSettings(**noise_named("ideal"))
+START, END, SECONDS = 1.0, 2.0, 3.0
+
+
+class Stage:
+    robot = ROBOT_NAME
+
+    def __init__(self, scene, base_in_world):
+        self.scene, self.base_in_world = scene, base_in_world
+
+
+def played(*faults, seed=0):
+    """Observations of a robot that drives towards a wall."""
+    floor = Body("floor::l", np.eye(4), (Collision(Plane(), np.eye(4)),))
+    at = np.eye(4)
+    at[:3, 3] = (6.0, 0.0, 0.5)
+    wall = Body("wall::l", at, (Collision(Box((0.2, 8.0, 1.0)), np.eye(4)),))
+    going_wrong = Faults(faults, seed)
+    simulation = Simulation(World("w", (floor, wall)), settings=EXACT, fitting=going_wrong.fitting)
+    seen = []
+    for _ in range(round(SECONDS / simulation.step_seconds)):
+        command = Twist2(0.3, math.sin(0.1 * len(seen)))
+        seen.append(simulation.step(command))
+        going_wrong.disturb(seen[-1].stamp, Stage(simulation.scene, seen[-1].base_in_world))
+    simulation.close()
+    return seen
+
+
+def essence(observations, since=0.0, until=math.inf):
+    """All that can be told of a run."""
+    return [
+        (one.stamp, one.base_in_world, one.odometry, None if one.scan is None else one.scan.ranges.tobytes(),
+         None if one.scan is None else (one.scan.stamp, one.scan.angle_min))
+        for one in observations
+        if since <= one.stamp < until
+    ]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def clean():
+    return played()
+
+
+def test_there_are_25_kinds_and_more():
+    assert len(KINDS) >= 25
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_a_kind_keeps_the_contract(name, clean):
+    usual, least, largest = KINDS[name].strength
+    assert least <= usual <= largest
+    assert KINDS[name].__doc__
+    fault = Fault(name, START, END, usual, seed=4)
+    seen = played(fault)
+    assert essence(seen, until=START) == essence(clean, until=START), "nothing happens before it begins"
+    assert essence(seen, START) != essence(clean, START), "something happens then"
+    assert essence(seen) == essence(played(fault)), "the same seed gives the same fault"
+
+
+def test_a_scan_is_whole_again_when_its_fault_is_over():
+    seen = played(Fault("scan_nan", START, END))
+    shares = {one.stamp: np.isnan(one.scan.ranges).mean() for one in seen if one.scan is not None}
+    assert {share for stamp, share in shares.items() if START <= stamp < END - 0.01} == {1.0}
+    assert {share for stamp, share in shares.items() if stamp > END + 0.01} == {0.0}
+
+
+def test_faults_add_up():
+    seen = played(Fault("scan_biased", strength=0.1), Fault("scan_biased", strength=0.2))
+    both, none = (next(one.scan for one in run if one.scan is not None) for run in (seen, played()))
+    finite = np.isfinite(none.ranges)
+    assert both.ranges[finite] - none.ranges[finite] == pytest.approx(0.3, abs=1e-5)
+
+
+def test_a_late_scan_keeps_the_stamp_of_its_measurement():
+    seen = played(Fault("scan_late", strength=0.5))
+    ages = [one.stamp - one.scan.stamp for one in seen if one.scan is not None]
+    assert ages == pytest.approx([0.5] * len(ages), abs=0.11)
+
+
+def test_a_robot_that_is_kidnapped_is_elsewhere(clean):
+    seen = played(Fault("kidnapped", START, strength=0.5))
+    moved = seen[-1].base_in_world.distance_to(clean[-1].base_in_world)
+    assert moved == pytest.approx(0.5, abs=0.1)
+    assert seen[-1].odometry.base_in_odom.distance_to(clean[-1].odometry.base_in_odom) < 0.2
+
+
+def test_faults_are_read_from_a_file(tmp_path):
+    path = tmp_path / "faults.yaml"
+    path.write_text(
+        "name: mission\nfaults:\n  - {kind: scan_frozen, start: 8, end: 12.5}\n  - {kind: kidnapped}\n"
+    )
+    assert load_faults(path) == (
+        Fault("scan_frozen", 8.0, 12.5, 1.0),
+        Fault("kidnapped", strength=KINDS["kidnapped"].strength[0]),
+    )
+
+
+@pytest.mark.parametrize(
+    "entry, complaint",
+    [
+        ("{kind: scan_frosen}", r"faults\[1\].kind must be one of .*scan_frozen"),
+        ("{start: 1}", r"faults\[1\].kind is missing"),
+        ("{kind: kidnapped, strength: 99}", r"strength must be from -10 to 10"),
+        ("{kind: kidnapped, start: -1}", "start must be not negative"),
+        ("{kind: kidnapped, start: 2, end: 1}", "end must be after start"),
+        ("{kind: kidnapped, seed: x}", "seed must be a whole number"),
+        ("{kind: kidnapped, sed: 1}", "sed is not known"),
+        ("kidnapped", "must be a table"),
+    ],
+)
+def test_a_mistake_is_told_with_file_line_and_key(tmp_path, entry, complaint):
+    path = tmp_path / "faults.yaml"
+    path.write_text(f"faults:\n  - {entry}\n")
+    with pytest.raises(SettingsError, match=f"faults.yaml:2: .*{complaint}"):
+        load_faults(path)
