@@ -9,6 +9,7 @@
 #   --runs N         how many runs, each with the next seed (default: 1)
 #   --mission FILE   carry out the deliveries of this file instead (docs/missions.md)
 #   --faults FILE    YAML with a list of what goes wrong (docs/faults.md; default: that of the mission)
+#   --each-fault FILE   with each kind of fault beside a clean twin instead; writes the table to this page
 #   --zones FILE     YAML of the zones (default: map/zones.yaml)
 #   --world FILE     SDF world (default: map/home.world)
 #   --map FILE       map of that world (default: map/home.yaml)

@@ -238,7 +238,9 @@ class AmclContractTest(unittest.TestCase):
         self.poses.messages.clear()
         self.set_pose(self.robot.base_in_map)
         self.robot.sense()
-        self.poses.wait(lambda message: pose2_from_msg(message.pose.pose).distance_to(START) < NEAR)
+        self.poses.wait(
+            lambda message: pose2_from_msg(message.pose.pose).distance_to(self.robot.base_in_map) < NEAR
+        )
 
 
 if __name__ == "__main__":

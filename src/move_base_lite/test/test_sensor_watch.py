@@ -77,6 +77,16 @@ def test_a_scan_that_stays_the_same_while_the_robot_stands_is_well(drive):
     assert drive.go(5.0, scan=lambda _: frozen, v=0.0) is None
 
 
+def test_a_robot_that_is_put_elsewhere_has_no_frozen_scan(drive):
+    """Odometry is heard a little before the first scan from there."""
+    here = drive.truth()
+    assert drive.go(0.3, scan=lambda _: here, v=0.0) is None
+    drive.x += 3.0
+    assert drive.go(0.1, scan=lambda _: here, v=0.0) is None
+    there = drive.truth()
+    assert drive.go(3.0, scan=lambda _: there, v=0.0) is None
+
+
 def test_odometry_that_stays_away_is_named(drive):
     assert "odometry: none for" in drive.go(3.0, odometry=lambda _: None)
 

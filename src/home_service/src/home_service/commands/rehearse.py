@@ -1,6 +1,6 @@
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Optional
+from typing import List, Optional
 
 from home_service.options import MissionOptions, count, seconds
 from supervision.command_line import option
@@ -14,9 +14,39 @@ class Rehearse(MissionOptions):
     faults: Optional[Path] = option(
         None, "YAML with a list of faults; default: those of the mission", type=Path, metavar="FILE"
     )
+    each_fault: Optional[Path] = option(
+        None,
+        "play with each kind of fault beside a clean twin instead, and write the table to this page",
+        type=Path,
+        metavar="FILE",
+    )
     timeout: float = option(600.0, "simulated seconds a run may take", type=seconds)
 
     def run(self) -> int:
+        return self._rehearse() if self.each_fault is None else self._compare(self.each_fault)
+
+    def _compare(self, table: Path) -> int:
+        """With each kind of fault; 1 if a verdict was false, or most runs failed that need not have."""
+        from home_service.rehearsal.twins import Row, Twins, page
+        from home_service.stage import read_mission
+        from planar import write_atomically
+        from sim_bridge.faults import KINDS
+
+        twins = Twins(
+            read_mission(self),
+            self.mission is None,
+            self.planner,
+            range(self.seed, self.seed + self.runs),
+            self.timeout,
+        )
+        rows: List[Row] = []
+        for name in KINDS:
+            rows.append(twins.compare(name))
+            print(rows[-1].line, flush=True)
+            write_atomically(table, page(rows, self.runs).encode("utf-8"))
+        return int(any(row.false_verdicts or row.is_needless_failure for row in rows))
+
+    def _rehearse(self) -> int:
         from home_service.rehearsal import Rehearsal, parcel_of
         from home_service.stage import read_mission
         from sim_bridge.faults import load_faults

@@ -8,11 +8,13 @@ from home_service.rehearsal.rehearsal import Rehearsal, Rehearsed, parcel_of
 from home_service.stage import MissionHome
 from sim_bridge.faults import KINDS, Fault
 
+# Simulated seconds: on the way to the object.
+START = 8.0
 HEAD = """# Faults
 
 What becomes of the errand when something goes wrong {start:g} s after the start and stays so: each kind of
 fault beside its clean twin of the same seed, in one process, over {seeds}. Made by
-`./scripts/faults.sh --runs {runs} --write docs/faults.md`.
+`./scripts/rehearse.sh --runs {runs} --timeout 400 --each-fault docs/faults.md`.
 
 A verdict is false if the robot says that it has delivered and has not, or the other way round. *Lost* is the
 simulated time beyond the clean twin's. *Named* is the sensor that the robot did not trust, and why.
@@ -79,13 +81,16 @@ class Row:
 class Twins:
     """Plays a mission with a fault and without, for each of ``seeds``."""
 
-    def __init__(self, home: MissionHome, is_errand: bool, seeds: Sequence[int], timeout: float):
-        self._home, self._is_errand, self._seeds, self._timeout = home, is_errand, seeds, timeout
+    def __init__(
+        self, home: MissionHome, is_errand: bool, planner: str, seeds: Sequence[int], timeout: float
+    ):
+        self._home, self._is_errand, self._planner = home, is_errand, planner
+        self._seeds, self._timeout = seeds, timeout
         self._clean: Dict[int, Rehearsed] = {}
 
-    def compare(self, kind: str, start: float) -> Row:
-        """What the kind of fault does from ``start`` on."""
-        fault = Fault(kind, start, strength=KINDS[kind].strength[0])
+    def compare(self, kind: str) -> Row:
+        """What the kind of fault does."""
+        fault = Fault(kind, START, strength=KINDS[kind].strength[0])
         pairs = [(self._twin(seed), self._play(seed, (fault,))) for seed in self._seeds]
         won = [(clean, run) for clean, run in pairs if run.verdict.success]
         lost = sum(run.simulated_seconds - clean.simulated_seconds for clean, run in won)
@@ -110,13 +115,14 @@ class Twins:
         home = self._home
         parcel = parcel_of(home.mission) if self._is_errand else None
         stage = (home.world, home.robot, home.grid, home.mission)
-        return Rehearsal(*stage, seed=seed, parcel=parcel, faults=faults).run(self._timeout)
+        rehearsal = Rehearsal(*stage, seed=seed, parcel=parcel, planner=self._planner, faults=faults)
+        return rehearsal.run(self._timeout)
 
 
-def page(rows: Sequence[Row], start: float, runs: int) -> str:
+def page(rows: Sequence[Row], runs: int) -> str:
     """The table, as a page of the documentation."""
     seeds = "one seed" if runs == 1 else f"{runs} seeds"
-    return HEAD.format(start=start, seeds=seeds, runs=runs) + "".join(row.table_line for row in rows) + TAIL
+    return HEAD.format(start=START, seeds=seeds, runs=runs) + "".join(row.table_line for row in rows) + TAIL
 
 
 def _is_false(run: Rehearsed) -> bool:

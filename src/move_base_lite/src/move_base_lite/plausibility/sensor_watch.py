@@ -12,8 +12,9 @@ NEARLY_ALL = 0.95
 # A scan that shows that much is not followed by one that shows nothing, before the robot has gone far.
 ENOUGH = 0.5
 NOT_FAR = 0.3
-# Motion, metres or radians, in which a scan with noise cannot stay the same to the last bit.
-NOTICEABLE = 0.15
+# Motion, metres or radians, in which a scan with noise cannot stay the same to the last bit; between so many
+# scans, and between two of them at least.
+NOTICEABLE, ENOUGH_SCANS, LEAST_STEP = 0.15, 3, 0.005
 # Seconds of a command, and its speed in m/s or rad/s, after which odometry must have moved.
 PATIENCE = 1.0
 FAST = 0.1
@@ -37,7 +38,7 @@ class SensorWatch:
         self._still_since: Optional[float] = None
         self._scan_when_still: Optional[np.ndarray] = None
         self._ranges: Optional[np.ndarray] = None
-        self._base_when_same = Pose2()
+        self._base_at_scan, self._same_way, self._same_scans = Pose2(), 0.0, 0
         self._base_when_seeing: Optional[Pose2] = None
         self._blindness = self._sameness = ""
 
@@ -92,14 +93,16 @@ class SensorWatch:
         return ""
 
     def _why_frozen(self, ranges: np.ndarray) -> str:
+        """A single jump of odometry between two scans is none of the robot's motion."""
+        moved = self._base_at_scan.inverse() @ self._base
+        way, self._base_at_scan = max(math.hypot(moved.x, moved.y), abs(moved.yaw)), self._base
         is_same = self._ranges is not None and np.array_equal(ranges, self._ranges, equal_nan=True)
         if not is_same or not np.isfinite(ranges).any():
-            self._base_when_same = self._base
-            return ""
-        moved = self._base_when_same.inverse() @ self._base
-        if max(math.hypot(moved.x, moved.y), abs(moved.yaw)) < NOTICEABLE:
-            return self._sameness
-        return "it stays the same to the last bit while the robot moves"
+            self._same_way, self._same_scans = 0.0, 0
+        elif way > LEAST_STEP:
+            self._same_way, self._same_scans = self._same_way + way, self._same_scans + 1
+        is_frozen = self._same_way >= NOTICEABLE and self._same_scans >= ENOUGH_SCANS
+        return "it stays the same to the last bit while the robot moves" if is_frozen else ""
 
     def _odometry_is_stuck(self, now: float) -> bool:
         before, after = self._scan_when_still, self._ranges
