@@ -18,6 +18,7 @@ fault beside its clean twin of the same seed, in one process, over {seeds}. Made
 
 A verdict is false if the robot says that it has delivered and has not, or the other way round. *Lost* is the
 simulated time beyond the clean twin's. *Named* is the sensor that the robot did not trust, and why.
+Where 0.0 s are lost to a thing in the way, it did not stand in the way of what came after.
 
 | fault | what goes wrong | strength | succeeded | touched | false verdicts | lost, s | named, or the end |
 | --- | --- | --- | --- | --- | --- | --- | --- |
