@@ -13,6 +13,7 @@ MOMENT_TOPIC, ANSWER_TOPIC, CLOCK_TOPIC = "/simulation/moment", "/simulation/ans
 # They go by themselves: the first two say how many of all others there are, the moment is the time.
 UNCOUNTED = frozenset((MOMENT_TOPIC, ANSWER_TOPIC, CLOCK_TOPIC))
 LENGTH_BYTES = 4
+_init = TCPROSSub.__init__
 
 
 class CountedConnection(PromptConnection):
@@ -68,10 +69,16 @@ class Frame:
 def install() -> None:
     """From now on this node's connections are such."""
     rospy.topics.QueuedConnection = CountedConnection
-    TCPROSSub.read_messages = _read_frames
+    TCPROSSub.__init__ = _init_for_frames
 
 
-def _read_frames(self: TCPROSSub, b: BytesIO, msg_queue: List[Frame], sock: object) -> None:
+def _init_for_frames(self: TCPROSSub, *given: Any, **named: Any) -> None:
+    """A connection from before, as that of /clock may be, goes on with messages."""
+    _init(self, *given, **named)
+    self.read_messages = _read_frames
+
+
+def _read_frames(b: BytesIO, msg_queue: List[Frame], sock: object) -> None:
     """Cuts what has come into frames, and leaves it to an Inbox to make messages of them."""
     end, at = b.tell(), 0
     with b.getbuffer() as view:
