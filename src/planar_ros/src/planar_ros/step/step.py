@@ -3,6 +3,7 @@
 import threading
 import time
 import traceback
+from contextlib import suppress
 from typing import Callable, ClassVar, Dict, FrozenSet, List, Optional, Set, Tuple
 
 import rospy
@@ -208,7 +209,8 @@ class Step:
             sorted(remarks),
         )
         assert self._answers is not None
-        self._answers.publish(answer)
+        with suppress(rospy.ROSException):  # rospy has closed the topic: the node is ending
+            self._answers.publish(answer)
 
     def _leave(self) -> None:
         """The simulation goes on without this node, which works out of step and asks to be back."""
