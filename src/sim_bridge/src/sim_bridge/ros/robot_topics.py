@@ -26,6 +26,8 @@ from sim_bridge.sensors.odometry import Odometer
 
 # The frame of the world file; it coincides with a map made or rendered of that world.
 WORLD_FRAME = "world"
+# Messages of the truth that wait for a judge who is held up; its verdict and the run's hash need every one.
+TRUTH_QUEUE = 1000
 
 
 class RobotTopics:
@@ -45,7 +47,7 @@ class RobotTopics:
         self._odom_steps = self._steps_of(profile.odometry.rate, 1)
         self._contacts: Optional[Tuple[str, ...]] = None
         self._odom = outlet.publisher(profile.odometry.topic, Odometry, 100)
-        self._truth = outlet.publisher("base_pose_ground_truth", Odometry, 100)
+        self._truth = outlet.publisher("base_pose_ground_truth", Odometry, TRUTH_QUEUE)
         base_frame = outlet.frame(profile.odometry.base_frame)
         odom_frame = outlet.frame(profile.odometry.frame)
         self._odom_msg = OdometryMsg(odom_frame, base_frame, covariance_of(profile.odometry.variances))
