@@ -54,8 +54,7 @@ class Step:
         self._remarks: Set[str] = set()
         self._pending: List[Hook] = []
         self._periods: List[Callable[[], float]] = []
-        self._number = self._answered = 0
-        self._answered_at = 0.0
+        self._number, self._answered, self._answered_at = 0, 0, 0.0
         self._working = threading.Condition()
         self._answers: Optional[rospy.Publisher] = None
         if rospy.get_param("/use_sim_time", False):
@@ -208,9 +207,9 @@ class Step:
             list(news.values()),
             sorted(remarks),
         )
-        assert self._answers is not None
         with suppress(rospy.ROSException):  # rospy has closed the topic: the node is ending
-            self._answers.publish(answer)
+            if self._answers is not None:
+                self._answers.publish(answer)
 
     def _leave(self) -> None:
         """The simulation goes on without this node, which works out of step and asks to be back."""
