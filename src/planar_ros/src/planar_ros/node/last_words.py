@@ -8,6 +8,8 @@ from typing import List
 import rosgraph
 import rospy
 
+from planar_ros.step import transport
+
 PATIENCE_SECONDS = 3.0
 POLL_SECONDS = 0.01
 
@@ -20,6 +22,7 @@ def wait_until_heard(*publishers: rospy.Publisher, patience: float = PATIENCE_SE
     Nothing can be published afterwards.
     """
     deadline = time.monotonic() + patience
+    transport.flush()  # what a node in step keeps until the moment's answer
     for publisher in publishers:
         expected = _listeners(publisher.resolved_name)
         while publisher.get_num_connections() < expected and time.monotonic() < deadline:
