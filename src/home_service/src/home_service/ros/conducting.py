@@ -33,8 +33,8 @@ def stay_open(options: RunOptions, launch: LaunchPlan, hint: str, places: Mappin
     referee = Referee(places, display.say, tells_goals=True)
     with Run(options, launch, referee, RunRecorder(places), display) as run:
         display.say(f"ROS_MASTER_URI={os.environ['ROS_MASTER_URI']}")
-        display.say(hint)
         try:
+            display.say(hint)
             verdict = Verdict(False, run.watch(lambda: False) or "")
         except RunInterruptedError:
             verdict = Verdict(True, "ended by Ctrl-C")

@@ -10,6 +10,7 @@ from std_msgs.msg import String
 
 from home_service.judging.verdict import ERRAND, Verdict
 from home_service.options import LaunchPlan, RunOptions
+from home_service.ros.hearing import hear
 from home_service.ros.referee import Referee
 from home_service.ros.run import Run
 from home_service.ros.run_recorder import RunRecorder
@@ -39,9 +40,9 @@ class FollowWatch:
         self._unpaired: OrderedDict[rospy.Time, Pose2] = OrderedDict()
         self._seen, self._near, self._farthest = 0, 0, 0.0
         self._lock = threading.Lock()
-        rospy.Subscriber("base_pose_ground_truth", Odometry, self._see_leader, queue_size=50)
-        rospy.Subscriber(f"{namespace}/base_pose_ground_truth", Odometry, self._see_truth, queue_size=50)
-        rospy.Subscriber(f"{namespace}/contacts", String, self._see_contacts, queue_size=50)
+        hear("base_pose_ground_truth", Odometry, self._see_leader)
+        hear(f"{namespace}/base_pose_ground_truth", Odometry, self._see_truth)
+        hear(f"{namespace}/contacts", String, self._see_contacts)
 
     @property
     def share(self) -> float:

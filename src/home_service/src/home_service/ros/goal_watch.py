@@ -2,11 +2,11 @@
 
 from typing import Any, Callable, Dict, Optional
 
-import rospy
 from actionlib_msgs.msg import GoalStatus
 from move_base_msgs.msg import MoveBaseActionGoal, MoveBaseActionResult
 
 from home_service.judging.goal_log import GoalLog
+from home_service.ros.hearing import hear
 from planar import Pose2
 from planar_ros.messages.conversion import pose2_from_msg
 
@@ -19,8 +19,8 @@ class GoalWatch:
         self._log = GoalLog()
 
     def start(self) -> None:
-        rospy.Subscriber("move_base/goal", MoveBaseActionGoal, self._see_goal, queue_size=10)
-        rospy.Subscriber("move_base/result", MoveBaseActionResult, self._see_result, queue_size=10)
+        hear("move_base/goal", MoveBaseActionGoal, self._see_goal)
+        hear("move_base/result", MoveBaseActionResult, self._see_result)
 
     def findings(self) -> Dict[str, Any]:
         return self._log.findings()

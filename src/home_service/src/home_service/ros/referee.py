@@ -8,7 +8,6 @@ import time
 from collections import deque
 from typing import Any, Callable, Deque, Dict, Iterable, Mapping, Optional, Set, Tuple
 
-import rospy
 from home_service_msgs.msg import DeliverActionGoal, MissionState
 from move_base_msgs.msg import MoveBaseActionResult
 from nav_msgs.msg import Odometry, Path
@@ -19,6 +18,7 @@ from visualization_msgs.msg import Marker
 from home_service.judging.delivery_watch import DeliveryWatch
 from home_service.judging.verdict import Ledger, Verdict, collision, judge
 from home_service.ros.goal_watch import GoalWatch
+from home_service.ros.hearing import hear
 from pick_objects import Delivery, Stage, parse_mission
 from planar import PlanarError, Pose2
 from planar.maps.places import Place
@@ -68,15 +68,15 @@ class Referee:
         """Subscribes to what it judges by; this process is a node by then."""
         self._has_started = True
         truth = "base_pose_ground_truth"
-        rospy.Subscriber(truth, Odometry, self._see_truth, queue_size=REMEMBERED, tcp_nodelay=True)
-        rospy.Subscriber("contacts", String, self._see_contact, queue_size=50)
-        rospy.Subscriber("pick_objects/state", String, self._see_state, queue_size=10)
-        rospy.Subscriber("deliver/goal", DeliverActionGoal, self._see_goal, queue_size=10)
-        rospy.Subscriber("pick_objects/mission_state", MissionState, self._see_mission, queue_size=50)
-        rospy.Subscriber("visualization_marker", Marker, self._see_marker, queue_size=10)
-        rospy.Subscriber("move_base/NavfnROS/plan", Path, self._see_plan, queue_size=1)
-        rospy.Subscriber("move_base/result", MoveBaseActionResult, self._see_result, queue_size=1)
-        rospy.Subscriber("/rosout_agg", Log, self._hear, queue_size=50)
+        hear(truth, Odometry, self._see_truth)
+        hear("contacts", String, self._see_contact)
+        hear("pick_objects/state", String, self._see_state)
+        hear("deliver/goal", DeliverActionGoal, self._see_goal)
+        hear("pick_objects/mission_state", MissionState, self._see_mission)
+        hear("visualization_marker", Marker, self._see_marker)
+        hear("move_base/NavfnROS/plan", Path, self._see_plan)
+        hear("move_base/result", MoveBaseActionResult, self._see_result)
+        hear("/rosout_agg", Log, self._hear)
         if self._goals is not None:
             self._goals.start()
 

@@ -124,9 +124,9 @@ class Run:
 
     def _linger(self) -> None:
         """Leaves the views open for those who have looked on; Ctrl-C ends it."""
-        self.display.say(f"the view stays open for {VIEW_SECONDS:g} s; Ctrl-C closes it")
         ending = time.monotonic() + VIEW_SECONDS
         with suppress(RunInterruptedError):
+            self.display.say(f"the view stays open for {VIEW_SECONDS:g} s; Ctrl-C closes it")
             while time.monotonic() < ending:
                 raise_if_interrupted()
                 time.sleep(0.05)

@@ -4,7 +4,6 @@ import time
 from typing import Dict, List, Mapping, Optional, Tuple
 
 import numpy as np
-import rospy
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry, Path
 from rosgraph_msgs.msg import Log
@@ -12,6 +11,7 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker
 
+from home_service.ros.hearing import hear
 from home_service.ros.referee import CONNECTION_CHATTER
 from planar import Pose2
 from planar.maps.places import Place
@@ -50,16 +50,15 @@ class RunRecorder:
             Zone(place.name, place.pose.x, place.pose.y, place.pose.yaw, place.radius)
             for place in self._places.values()
         ]
-        subscribe = rospy.Subscriber
-        subscribe("base_pose_ground_truth", Odometry, self._see_truth, queue_size=50, tcp_nodelay=True)
-        subscribe("/tf", TFMessage, self._see_transforms, queue_size=100, tcp_nodelay=True)
-        subscribe("map", OccupancyGridArrays, self._see_map, queue_size=1)
-        subscribe("pick_objects/state", String, self._see_state, queue_size=10)
-        subscribe("contacts", String, self._see_contact, queue_size=50)
-        subscribe("visualization_marker", Marker, self._see_marker, queue_size=10)
-        subscribe("move_base/current_goal", PoseStamped, self._see_goal, queue_size=10)
-        subscribe("move_base/NavfnROS/plan", Path, self._see_plan, queue_size=1)
-        subscribe("/rosout_agg", Log, self._hear, queue_size=50)
+        hear("base_pose_ground_truth", Odometry, self._see_truth)
+        hear("/tf", TFMessage, self._see_transforms)
+        hear("map", OccupancyGridArrays, self._see_map)
+        hear("pick_objects/state", String, self._see_state)
+        hear("contacts", String, self._see_contact)
+        hear("visualization_marker", Marker, self._see_marker)
+        hear("move_base/current_goal", PoseStamped, self._see_goal)
+        hear("move_base/NavfnROS/plan", Path, self._see_plan)
+        hear("/rosout_agg", Log, self._hear)
 
     def record(self) -> RunRecord:
         """All that has been seen so far."""

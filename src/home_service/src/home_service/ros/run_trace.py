@@ -12,6 +12,7 @@ from std_msgs.msg import String
 from visualization_msgs.msg import Marker
 
 from home_service.judging.trace import Entry, Trace
+from home_service.ros.hearing import hear
 
 AUDIENCE_PARAMETER = "/simulation/audience"
 ROBOTS = ("", "follower/")
@@ -27,15 +28,15 @@ class RunTrace:
     def start(self) -> None:
         """This process is a node by then."""
         for robot in ROBOTS:
-            self._follow(f"{robot}base_pose_ground_truth", Odometry, _pose, queue_size=1000)
+            self._follow(f"{robot}base_pose_ground_truth", Odometry, _pose)
             self._follow(f"{robot}amcl_pose", PoseWithCovarianceStamped, _pose)
             self._follow(f"{robot}move_base/current_goal", PoseStamped, _goal, self._begin)
             self._follow(f"{robot}move_base/result", MoveBaseActionResult, _result)
         self._follow("move_base/result", MoveBaseActionResult, _result, self._trace.end)
         self._follow("pick_objects/mission_state", MissionState, _mission, self._trace.end)
         self._follow("explore/result", ExploreActionResult, _result, self._trace.end)
-        rospy.Subscriber("visualization_marker", Marker, self._keep_marker, queue_size=100)
-        rospy.Subscriber("/simulation/remarks", String, self._keep_remarks, queue_size=10)
+        hear("visualization_marker", Marker, self._keep_marker)
+        hear("/simulation/remarks", String, self._keep_remarks)
         rospy.set_param(AUDIENCE_PARAMETER, [rospy.get_name()])
 
     def findings(self, folder: Path, is_simulated: bool) -> Dict[str, Any]:
@@ -51,7 +52,6 @@ class RunTrace:
         kind: type,
         tell: Callable[[Any], str],
         also: Callable[[Entry], None] = lambda entry: None,
-        queue_size: int = 100,
     ) -> None:
         def keep(message: Any) -> None:
             node = message._connection_header["callerid"]
@@ -59,7 +59,7 @@ class RunTrace:
             self._trace.note(entry)
             also(entry)
 
-        rospy.Subscriber(topic, kind, keep, queue_size=queue_size, tcp_nodelay=True)
+        hear(topic, kind, keep)
 
     def _begin(self, entry: Entry) -> None:
         self._trace.begin(entry.stamp)
