@@ -67,8 +67,11 @@ def test_an_error_in_heading_swings_what_lies_behind_it():
 
 @pytest.fixture(scope="module")
 def carried_off(office):
-    """A drive round the office, and another that begins elsewhere; between them the laser was covered."""
-    before, after = office.drive(laps=1.0), office.drive(laps=1.0, seed=1)[120:]
+    """A drive round the office, and another that begins elsewhere; between them the laser was covered.
+
+    The other is 42 m long: a place takes 12 m to be looked at, and must go on alike for 11 m.
+    """
+    before, after = office.drive(laps=1.0), office.drive(laps=1.5, seed=1)[120:]
     carried = Pose2(60.0, -40.0, 2.0)
     covered = dataclasses.replace(after[0].scan, ranges=np.full(181, np.nan, dtype=np.float32))
     after = [after[0]._replace(scan=covered), *after[1:]]
