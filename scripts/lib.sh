@@ -13,6 +13,7 @@ readonly root
 readonly noetic=/opt/ros/noetic
 # shellcheck source=scripts/setup/environment.sh
 . "$root/scripts/setup/environment.sh"
+readonly experiments=(play) # the commands of the laboratory
 step_pid=
 clock_pid=
 aside_pid=
@@ -109,12 +110,16 @@ is_asked_for_web() { # ARGUMENT...
     is_among --web "$@" || is_among --web-port "${@%%=*}"
 }
 
-run_command() { # NAME ARGUMENT...: a command of home_service, after the set-up it needs
+run_command() { # NAME ARGUMENT...: a command, after the set-up it needs
     answer_help "$@"
-    local extras=()
+    local extras=() package=home_service
     if is_among --rviz "$@" && [[ -n ${DISPLAY:-} ]]; then extras=(rviz); fi
     if is_asked_for_web "$@" || [[ $1 == cockpit ]]; then extras+=(cockpit); fi
+    if is_among "$1" "${experiments[@]}"; then
+        package=laboratory
+        extras+=(laboratory)
+    fi
     set_up "${extras[@]}"
     enter_workspace
-    exec python3 -m home_service "$@"
+    exec python3 -m "$package" "$@"
 }

@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
-# Usage: ./scripts/setup.sh [--dev] [--projects] [--rviz] [--web] [--packages]
+# Usage: ./scripts/setup.sh [--dev] [--projects] [--rviz] [--web] [--laboratory] [--packages]
 #
 # Installs what the workspace needs and is missing: Debian packages (as root or with sudo), Python packages
 # in .venv, the catkin build in build/ and devel/. The other scripts do this themselves when they start.
 # Does nothing when all is there, and goes on where an interrupted set-up ended. Logs: logs/setup/.
 # If a package in src/ does not build, the last build that went well stays in use.
 #
-#   --dev        also what the checks in .ci/run and the benchmarks need: ruff, mypy, chromium, the cockpit ...
+#   --dev        also what the checks in .ci/run and the benchmarks need: ruff, mypy, chromium, the extras ...
 #   --projects   also what run_project.sh needs: libraries for projects in C++
 #   --rviz       also rviz
 #   --web        also the cockpit in the browser
+#   --laboratory also what evaluate.sh needs: Dask, statsmodels, pyarrow
 #   --packages   only the Debian and Python packages, as for a cached layer of an image
 #   --help       this text
 
@@ -30,7 +31,7 @@ packages_only=
 failure=
 retry= # also what has failed before, of the same sources
 
-set_up() { # EXTRA...: brings the workspace up to date; extras are dev, projects, rviz and cockpit
+set_up() { # EXTRA...: brings the workspace up to date; extras are dev, projects, rviz, cockpit and laboratory
     look_for_missing "$@"
     if [[ -n $packages$requirements$build$kernels ]]; then
         check_place
@@ -105,10 +106,11 @@ main() {
     retry=yes
     for option; do
         case $option in
-            --dev) extras+=(dev cockpit) ;;
+            --dev) extras+=(dev cockpit laboratory) ;;
             --projects) extras+=(projects) ;;
             --rviz) extras+=(rviz) ;;
             --web) extras+=(cockpit) ;;
+            --laboratory) extras+=(laboratory) ;;
             --packages) packages_only=yes ;;
             --help | -h)
                 usage

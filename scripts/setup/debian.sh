@@ -6,7 +6,11 @@ missing_packages() { # EXTRA...: names, one a line
     [[ ! -d $noetic ]] || base=apt-packages-noetic
     lists=("$base.txt")
     for extra; do
-        if [[ -e $base-$extra.txt ]]; then lists+=("$base-$extra.txt"); else lists+=("apt-packages-$extra.txt"); fi
+        if [[ -e $base-$extra.txt ]]; then
+            lists+=("$base-$extra.txt")
+        elif [[ -e apt-packages-$extra.txt ]]; then
+            lists+=("apt-packages-$extra.txt")
+        fi
     done
     missing_in "${lists[@]}"
 }

@@ -8,15 +8,19 @@ import pytest
 
 from home_service import commands
 from home_service.cli import parse
+from laboratory.commands import FOLDER as EXPERIMENTS
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 OPTION = re.compile(r"--[a-z][a-z-]*")
 
 
-@pytest.mark.parametrize("command", sorted(commands.names()))
-def test_a_script_tells_the_options_that_its_command_takes(command, capsys):
+@pytest.mark.parametrize(
+    ("folder", "command"),
+    [(folder, name) for folder in (commands.FOLDER, EXPERIMENTS) for name in sorted(folder.names())],
+)
+def test_a_script_tells_the_options_that_its_command_takes(folder, command, capsys):
     with pytest.raises(SystemExit):
-        parse([command, "--help"])
+        parse([command, "--help"], folder)
     usage = subprocess.run(
         [SCRIPTS / f"{command}.sh", "--help"], check=True, capture_output=True, text=True
     ).stdout
@@ -27,3 +31,8 @@ def test_the_set_up_refuses_an_option_that_it_does_not_know():
     result = subprocess.run([SCRIPTS / "setup.sh", "--nonsense"], capture_output=True, text=True)
     assert result.returncode == 2
     assert "--nonsense" in result.stderr
+
+
+def test_a_script_of_the_laboratory_is_known_as_one():
+    listed = re.search(r"experiments=\((.*?)\)", (SCRIPTS / "lib.sh").read_text())
+    assert listed and sorted(listed[1].split()) == sorted(EXPERIMENTS.names())

@@ -17,7 +17,7 @@ STOREYS = (
     {"cockpit"},
     {"home_service", "plugin_examples", "turtle_world", "gazebo_ros", "ros_tools", "ament_index_python"}
     | {"turtlebot3_fake", "turtlebot3_gazebo"},
-    {"run_project"},
+    {"run_project", "laboratory"},
 )
 STOREY_OF = {package: number for number, storey in enumerate(STOREYS) for package in storey}
 

@@ -5,6 +5,7 @@ import sys
 from typing import List, Optional
 
 from home_service import commands
+from home_service.command import Command, CommandFolder
 from planar import PlanarError
 from supervision import command_line
 from supervision.display import complain
@@ -14,11 +15,11 @@ from supervision.interruption import INTERRUPTED, RunInterruptedError, leave_whe
 FAILURE, BAD_INPUT = 1, 2
 
 
-def main(arguments: Optional[List[str]] = None) -> int:
-    """Runs one command; returns its exit code: 0 success, 1 failure, 2 bad input, 130 interrupted."""
+def main(arguments: Optional[List[str]] = None, folder: CommandFolder = commands.FOLDER) -> int:
+    """Runs one of a folder; returns its exit code: 0 success, 1 failure, 2 bad input, 130 interrupted."""
     leave_when_interrupted()
     try:
-        return parse(sys.argv[1:] if arguments is None else arguments).run()
+        return parse(sys.argv[1:] if arguments is None else arguments, folder).run()
     except RunInterruptedError as error:
         complain(str(error))
         return INTERRUPTED
@@ -30,19 +31,20 @@ def main(arguments: Optional[List[str]] = None) -> int:
         return BAD_INPUT
 
 
-def parse(words: List[str]) -> commands.Command:
+def parse(words: List[str], folder: CommandFolder = commands.FOLDER) -> Command:
     """The command that the first word names, with the options that the others give.
 
     Ends the process on --help and on nonsense, in the name of the script that belongs to the command.
     """
-    names = commands.names()
+    names = folder.names()
     if not words or words[0] not in names:
-        _parser_of_names(names).parse_args(words[:1])
-    return command_line.parse(commands.find(words[0]), words[1:], f"{words[0]}.sh")
+        _parser_of_names(folder).parse_args(words[:1])
+    return command_line.parse(folder.find(words[0]), words[1:], f"{words[0]}.sh")
 
 
-def _parser_of_names(names: List[str]) -> argparse.ArgumentParser:
-    summaries = {name: command_line.summary(commands.find(name)) for name in names}
+def _parser_of_names(folder: CommandFolder) -> argparse.ArgumentParser:
+    names = folder.names()
+    summaries = {name: command_line.summary(folder.find(name)) for name in names}
     parser = argparse.ArgumentParser(
         prog="home_service",
         description="The commands behind the scripts.",

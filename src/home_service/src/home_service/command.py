@@ -1,6 +1,8 @@
-"""What a command is."""
+"""What a command is, and where commands are found."""
 
-from typing import Protocol
+import importlib
+import pkgutil
+from typing import Iterable, List, Protocol, Type
 
 
 class Command(Protocol):
@@ -22,3 +24,19 @@ class Command(Protocol):
         Raises PlanarError for bad input (exit code 2), if possible before anything is started; LaunchError
         if a graph does not come up; RunInterruptedError.
         """
+
+
+class CommandFolder:
+    """The commands of a package's folder ``commands``: its ``name`` as a module, and its ``path``."""
+
+    def __init__(self, name: str, path: Iterable[str]):
+        self._name, self._path = name, path
+
+    def names(self) -> List[str]:
+        """The commands that there are."""
+        return [module.name for module in pkgutil.iter_modules(self._path)]
+
+    def find(self, name: str) -> Type[Command]:
+        """The command of that name; no other is imported."""
+        module = importlib.import_module(f"{self._name}.{name}")
+        return getattr(module, name.title().replace("_", ""))

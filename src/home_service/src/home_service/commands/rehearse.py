@@ -47,17 +47,17 @@ class Rehearse(MissionOptions):
         return int(any(row.false_verdicts or row.is_needless_failure for row in rows))
 
     def _rehearse(self) -> int:
-        from home_service.rehearsal import Rehearsal, parcel_of
+        from home_service.rehearsal import Conditions, Rehearsal, parcel_of
         from home_service.stage import read_mission
         from sim_bridge.faults import load_faults
 
         home, successes = read_mission(self), 0
         faulty = self.faults or self.mission
-        faults = () if faulty is None else load_faults(faulty)
+        conditions = Conditions(self.planner, faults=() if faulty is None else load_faults(faulty))
         stage = (home.world, home.robot, home.grid, home.mission)
         for seed in range(self.seed, self.seed + self.runs):
             parcel = None if self.mission else parcel_of(home.mission)
-            rehearsal = Rehearsal(*stage, seed=seed, parcel=parcel, planner=self.planner, faults=faults)
+            rehearsal = Rehearsal(*stage, seed=seed, parcel=parcel, conditions=conditions)
             run = rehearsal.run(self.timeout)
             successes += run.verdict.success
             print(f"seed {seed}: {'SUCCESS' if run.verdict.success else 'FAILURE'}: {run.verdict.reason}")

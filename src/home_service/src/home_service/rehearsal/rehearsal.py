@@ -8,25 +8,33 @@ import hashlib
 import time
 from collections import deque
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Deque, List, Optional, Sequence, Tuple, Union
+from typing import Any, Deque, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from add_markers import CarriedParcel, Solid
 from amcl_lite import Localizer, LocalizerSettings
+from amcl_lite.config import InitialPose
 from amcl_lite.errors import LocalizationError
 from home_service.judging.delivery_watch import DeliveryWatch
 from home_service.judging.verdict import ERRAND, MARKERS, Ledger, Verdict, judge
 from home_service.rehearsal.bodies import RehearsedBodies, solids_of
 from home_service.rehearsal.senses import FaultyStage, Senses
-from move_base_lite import Decision, NavigationError, Navigator, Status, load_settings
+from move_base_lite import (
+    Decision,
+    NavigationError,
+    Navigator,
+    NavigatorSettings,
+    Status,
+    load_settings,
+)
 from pick_objects import Errand, Finish, GoalReached, GoalRefused, GoTo, MeasureWays, Mission, WaysMeasured
 from pick_objects.errand import Order
 from planar import OccupancyGrid, Pose2, Scan, Twist2
 from planar.config.settings_file import settings_from_yaml
-from sim_bridge import Observation, RobotProfile, Simulation
+from sim_bridge import Observation, RobotProfile, Simulation, SimulationSettings
 from sim_bridge.config import LATENCY
 from sim_bridge.faults import Fault, Faults
 from sim_bridge.simulation import ROBOT_NAME
@@ -40,6 +48,26 @@ NAVIGATION_CONFIG = PACKAGES / "move_base_lite/config/turtlebot.yaml"
 # Control periods from when a navigator is there until its client has heard of it; and from when a box is
 # picked up or set down until it has been moved.
 PERIODS_TO_FIND, PERIODS_TO_MOVE = 2, 2
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """Under which conditions a mission is rehearsed, other than the usual.
+
+    ``planner``: another local one; ``parameters``: of move_base, over those of the robot; ``faults``: what
+    goes wrong; ``simulation``: noise and rates; ``start``: where the robot stands, and knows that it does.
+    """
+
+    planner: str = ""
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+    faults: Sequence[Fault] = ()
+    simulation: SimulationSettings = SimulationSettings()
+    start: Pose2 = Pose2()
+
+    def navigation(self, config: Path) -> NavigatorSettings:
+        """The parameters of a robot's file, with these over them. Raises SettingsError."""
+        planner = {"base_local_planner": self.planner} if self.planner else {}
+        return load_settings(config, **{**self.parameters, **planner})
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,17 +115,16 @@ class Rehearsal:
         mission: Mission,
         seed: int,
         parcel: Optional[CarriedParcel] = None,
-        planner: str = "",
-        faults: Sequence[Fault] = (),
+        conditions: Conditions = Conditions(),
     ):
-        """``parcel``: the marker of an errand that is rehearsed with it; ``planner``: another local one;
-        ``faults``: what goes wrong.
-        """
-        self._faults = Faults(faults, seed)
-        self._simulation = Simulation(world, robot, seed=seed, fitting=self._faults.fitting)
-        localization, _ = settings_from_yaml(LocalizerSettings, LOCALIZATION_CONFIG)
-        self._localizer = Localizer(grid, localization, np.random.default_rng(seed))
-        navigation = load_settings(NAVIGATION_CONFIG, **({"base_local_planner": planner} if planner else {}))
+        """``parcel``: the marker of an errand that is rehearsed with it."""
+        start = conditions.start
+        self._faults = Faults(conditions.faults, seed)
+        self._simulation = Simulation(
+            world, robot, conditions.simulation, seed, start, fitting=self._faults.fitting
+        )
+        self._localizer = _localizer(grid, seed, start)
+        navigation = conditions.navigation(NAVIGATION_CONFIG)
         self._navigator = Navigator(navigation, grid)
         self._senses = Senses(navigation.move_base.sensor_patience)
         self._steps_per_tick = round(
@@ -226,6 +253,15 @@ class Rehearsal:
         event = f"shown at {shown[0]}" if shown else "hidden"
         if self._ledger.markers[-1:] != [event]:
             self._ledger.markers.append(event)
+
+
+def _localizer(grid: OccupancyGrid, seed: int, start: Pose2) -> Localizer:
+    """One that knows where it starts, about."""
+    settings, _ = settings_from_yaml(LocalizerSettings, LOCALIZATION_CONFIG)
+    localizer = Localizer(grid, settings, np.random.default_rng(seed))
+    if start != Pose2():
+        localizer.set_pose(start, InitialPose().covariance)
+    return localizer
 
 
 def parcel_of(errand: Mission) -> CarriedParcel:

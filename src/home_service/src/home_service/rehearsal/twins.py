@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Dict, Sequence
 
 from home_service.judging.verdict import collision
-from home_service.rehearsal.rehearsal import Rehearsal, Rehearsed, parcel_of
+from home_service.rehearsal.rehearsal import Conditions, Rehearsal, Rehearsed, parcel_of
 from home_service.stage import MissionHome
 from sim_bridge.faults import KINDS, Fault
 
@@ -116,7 +116,9 @@ class Twins:
         home = self._home
         parcel = parcel_of(home.mission) if self._is_errand else None
         stage = (home.world, home.robot, home.grid, home.mission)
-        rehearsal = Rehearsal(*stage, seed=seed, parcel=parcel, planner=self._planner, faults=faults)
+        rehearsal = Rehearsal(
+            *stage, seed=seed, parcel=parcel, conditions=Conditions(self._planner, faults=faults)
+        )
         return rehearsal.run(self._timeout)
 
 

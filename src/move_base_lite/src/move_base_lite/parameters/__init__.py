@@ -28,7 +28,7 @@ def load_settings(*paths, **chosen: Any) -> NavigatorSettings:
     for path in paths:
         with open(path, encoding="utf-8") as file:  # noqa: PTH123
             parameters = _merged(parameters, yaml.safe_load(file) or {})
-    return settings_from_parameters({**parameters, **chosen}, f"{paths[-1]}: ")[0]
+    return settings_from_parameters(_merged(parameters, chosen), f"{paths[-1]}: ")[0]
 
 
 def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> Dict[str, Any]:

@@ -12,7 +12,12 @@ KEYS = ("kind", "start", "end", "strength", "seed")
 
 def load_faults(path: Path) -> Tuple[Fault, ...]:
     """The faults of a file, which may hold other things beside, as a mission. Raises SettingsError."""
-    return tuple(_fault(entry) for entry in read_table(path).tables("faults"))
+    return faults_from(read_table(path))
+
+
+def faults_from(table: Table) -> Tuple[Fault, ...]:
+    """The faults of a table of a file."""
+    return tuple(_fault(entry) for entry in table.tables("faults"))
 
 
 def _fault(entry: Table) -> Fault:

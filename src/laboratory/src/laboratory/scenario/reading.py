@@ -1,0 +1,132 @@
+"""Scenarios out of YAML files; every mistake is told with file, line and key."""
+
+from pathlib import Path
+from typing import Any, Callable, Dict, Mapping, Tuple, TypeVar
+
+from home_service.rehearsal import Conditions
+from laboratory.scenario.scenario import Scenario
+from laboratory.scenario.seeds import seeds_of
+from laboratory.tasks.reach import config_of
+from laboratory.tasks.registry import TASKS
+from laboratory.worlds.registry import SOURCES
+from move_base_lite import settings_from_parameters
+from planar import Pose2, SettingsError
+from planar.config.hints import hint
+from planar.config.settings import settings_from
+from planar.config.yaml_table import Table, read_table
+from planar.maps.places import pose_from
+from sim_bridge import RobotError, SimulationSettings, robot_named
+from sim_bridge.faults.file import faults_from
+from sim_bridge.noise import noise_named
+
+KEYS = ("about", "world", "robot", "simulation", "task", "happens", "planner", "limits", "seeds")
+Kind = TypeVar("Kind")
+
+
+def read_scenario(path: Path) -> Scenario:
+    """The scenario of a file. Raises SettingsError."""
+    table = read_table(path)
+    table.allow_only(*KEYS)
+    robot, start = _robot(_part(table, "robot", "profile", "start"))
+    happens = _part(table, "happens", "boxes", "faults")
+    planner = _part(table, "planner", "name", "parameters")
+    return Scenario(
+        name=path.stem,
+        file=path.resolve(),
+        about=table.text("about", ""),
+        world=_chosen(table, "world", SOURCES, path.parent),
+        task=_chosen(table, "task", TASKS, path.parent),
+        robot=robot,
+        start=start,
+        simulation=_simulation(table),
+        boxes=happens.count("boxes") if happens and "boxes" in happens else 0,
+        faults=faults_from(happens) if happens else (),
+        planner=planner.text("name") if planner and "name" in planner else "",
+        parameters=_parameters(planner, robot) if planner else {},
+        seconds=_seconds(_part(table, "limits", "seconds")),
+        seeds=_seeds(table),
+    )
+
+
+def _part(table: Table, key: str, *known: str) -> Any:
+    """The table of a key, which knows only these; None if it is missing."""
+    if key not in table:
+        return None
+    part = table.table(key)
+    part.allow_only(*known)
+    return part
+
+
+def _chosen(table: Table, key: str, kinds: Mapping[str, Callable[[Table, Path], Kind]], folder: Path) -> Kind:
+    """What the table of a key describes: one key of ``kinds`` says of which kind it is."""
+    part = table.table(key)
+    found = [known for known in part if known in kinds]
+    if not found:
+        given = next(iter(part), "")
+        raise table.complaint(key, f"needs one of {', '.join(kinds)}{hint(given, kinds)}")
+    return kinds[found[0]](part, folder)
+
+
+def _robot(table: Any) -> Tuple[str, Pose2]:
+    if table is None:
+        return Scenario.robot, Scenario.start
+    name = table.text("profile", Scenario.robot)
+    try:
+        robot_named(name)
+    except RobotError as error:
+        raise table.complaint("profile", f"cannot be used: {error}") from None
+    start = Scenario.start
+    if "start" in table:
+        start_table = table.table("start")
+        start_table.allow_only("x", "y", "yaw")
+        start = pose_from(start_table)
+    return name, start
+
+
+def _simulation(table: Table) -> SimulationSettings:
+    """A profile ``noise``, and single values over it."""
+    if "simulation" not in table:
+        return SimulationSettings()
+    part = table.table("simulation")
+    values: Dict[str, Any] = {key: part.value(key) for key in part if key != "noise"}
+    try:
+        noise = noise_named(part.text("noise", "turtlebot"))
+    except SettingsError as error:
+        raise part.complaint("noise", f"cannot be used: {error}") from None
+    settings, unknown = settings_from(SimulationSettings, {**noise, **values}, where=part.place_of)
+    if unknown:
+        part.allow_only("noise", *(key for key in part if key not in unknown))
+    return settings
+
+
+def _parameters(planner: Table, robot: str) -> Mapping[str, Any]:
+    """Of move_base, by their official names; one that it does not know is an error."""
+    if "parameters" not in planner:
+        return {}
+    values = planner.table("parameters").values()
+    name = planner.text("name") if "name" in planner else ""
+    try:
+        Conditions(name, values).navigation(config_of(robot))
+        _, warnings = settings_from_parameters({**values, **({"base_local_planner": name} if name else {})})
+    except SettingsError as error:
+        raise planner.complaint("parameters", f"cannot be used: {error}") from None
+    if warnings:
+        raise planner.complaint("parameters", f"cannot be used: {warnings[0]}")
+    return values
+
+
+def _seconds(limits: Any) -> float:
+    if limits is None:
+        return Scenario.seconds
+    seconds = limits.number("seconds")
+    limits.check(seconds > 0.0, "seconds", "positive")
+    return seconds
+
+
+def _seeds(table: Table) -> Tuple[int, ...]:
+    if "seeds" not in table:
+        return Scenario.seeds
+    try:
+        return seeds_of(table.text("seeds"))
+    except SettingsError as error:
+        raise table.complaint("seeds", f"cannot be used: {error}") from None

@@ -1,0 +1,83 @@
+"""What is played: a world, a robot in it, a task, what happens meanwhile, who plans, limits, seeds."""
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any, Mapping, Tuple
+
+from laboratory.tasks.task import Task
+from laboratory.worlds.source import Arena, WorldSource
+from planar import Pose2
+from sim_bridge import SimulationSettings
+from sim_bridge.faults import Fault
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """``file``: where it was read; ``start``: where the robot begins, of the world; ``boxes``: how many that
+    its map does not show stand about; ``planner``: a local one other than the robot's; ``parameters``: of
+    move_base, over those of the robot; ``seconds``: simulated ones that a run may take.
+    """
+
+    name: str
+    file: Path
+    world: WorldSource
+    task: Task
+    about: str = ""
+    robot: str = "turtlebot_lidar"
+    start: Pose2 = Pose2()
+    simulation: SimulationSettings = SimulationSettings()
+    boxes: int = 0
+    faults: Tuple[Fault, ...] = ()
+    planner: str = ""
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+    seconds: float = 600.0
+    seeds: Tuple[int, ...] = tuple(range(100))
+
+    def with_planner(self, planner: str) -> "Scenario":
+        """The same with another local planner."""
+        return replace(self, planner=planner)
+
+    def with_parameters(self, parameters: Mapping[str, Any]) -> "Scenario":
+        """The same with other parameters of move_base."""
+        return replace(self, parameters=parameters)
+
+    @property
+    def label(self) -> str:
+        """Its name, and who plans if that is not the robot's usual planner."""
+        return f"{self.name} [{self.planner}]" if self.planner else self.name
+
+    def digest(self) -> str:
+        """The same for two scenarios only if they are played alike: of all they say, and of their files.
+
+        Its name, what it is about and its seeds do not count. Raises PlanarError if a file is not there.
+        """
+        told = asdict(replace(self, name="", about="", seeds=(), file=Path()))
+        kinds = [type(self.world).__name__, type(self.task).__name__]
+        files = [_content(path) for path in (*self.world.files(), *self.task.files())]
+        text = json.dumps([kinds, files, told], sort_keys=True, default=_nameless)
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+    def arena(self, seed: int) -> Arena:
+        """The world of a seed, with what stands about in it. Raises PlanarError."""
+        from laboratory.worlds.boxes import with_boxes
+
+        arena = self.world.arena(seed)
+        if self.boxes:
+            arena = with_boxes(arena, self.boxes, seed, (self.start, *self.task.places(arena)))
+        return arena
+
+
+def _nameless(value: Any) -> Any:
+    """Where a file lies does not matter."""
+    return None if isinstance(value, Path) else str(value)
+
+
+def _content(path: Path) -> str:
+    from planar import SettingsError
+
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError as error:
+        raise SettingsError(f"{path}: {error.strerror}") from None

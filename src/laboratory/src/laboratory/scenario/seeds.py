@@ -1,0 +1,25 @@
+"""Seeds as people write them: ``7``, ``0-999``, ``0-9,20,30-39``."""
+
+from typing import List, Tuple
+
+from planar import SettingsError
+
+MOST_SEEDS = 1_000_000
+
+
+def seeds_of(text: str) -> Tuple[int, ...]:
+    """The seeds that a text names, in its order. Raises SettingsError."""
+    seeds: List[int] = []
+    for part in text.split(","):
+        first, dash, last = part.strip().partition("-")
+        if not _is_number(first) or (dash and not _is_number(last)):
+            raise SettingsError(f"seeds must be like 0-999 or 1,5,7, got {text!r}")
+        start, end = int(first), int(last) if dash else int(first)
+        if end < start or len(seeds) + end - start >= MOST_SEEDS:
+            raise SettingsError(f"seeds must be like 0-999, at most {MOST_SEEDS} of them, got {text!r}")
+        seeds.extend(range(start, end + 1))
+    return tuple(dict.fromkeys(seeds))
+
+
+def _is_number(text: str) -> bool:
+    return text.isascii() and text.isdigit() and len(text) < 10

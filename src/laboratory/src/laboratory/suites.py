@@ -1,0 +1,62 @@
+"""Suites: scenarios that are played together, as they are named on the command line."""
+
+from pathlib import Path
+from typing import List, Sequence, Tuple
+
+from laboratory.scenario import Scenario, read_scenario
+from planar import PlanarError, SettingsError
+
+ROOT = Path(__file__).resolve().parents[4]
+FOLDER = ROOT / "scenarios"
+
+
+def scenarios_of(suites: Sequence[str], planners: Sequence[str] = ()) -> Tuple[List[Scenario], List[str]]:
+    """The scenarios of files, of folders of them, or by their names in ``scenarios/``; with each planner.
+
+    Returns them, and what is wrong with those that cannot be played. Raises SettingsError for a suite that
+    is not there.
+    """
+    scenarios, complaints = [], []
+    for path in [file for suite in suites for file in _files(suite)]:
+        try:
+            scenario = read_scenario(path)
+            _check(scenario)
+        except PlanarError as error:
+            complaints.append(str(error))
+        else:
+            scenarios += [scenario.with_planner(name) for name in planners] or [scenario]
+    return scenarios, complaints
+
+
+def _files(suite: str) -> List[Path]:
+    for path in (Path(suite), FOLDER / f"{suite}.yaml"):
+        if path.is_file():
+            return [path]
+    if Path(suite).is_dir():
+        found = sorted(Path(suite).glob("*.yaml"))
+        if found:
+            return found
+        raise SettingsError(f"{suite}: no scenarios (*.yaml) in this folder")
+    known = ", ".join(sorted(path.stem for path in FOLDER.glob("*.yaml")))
+    raise SettingsError(f"{suite}: neither a file nor a folder nor one of scenarios/ ({known})")
+
+
+def _check(scenario: Scenario) -> None:
+    """Raises PlanarError, naming the scenario's file, if it cannot even be set up for its first seed."""
+    from planar.maps.places import obstruction_at
+    from sim_bridge import Simulation, robot_named
+
+    start = scenario.start
+    try:
+        scenario.digest()
+        arena = scenario.arena(scenario.seeds[0])
+        scenario.task.places(arena)
+        obstruction = None if arena.grid is None else obstruction_at(start, arena.grid)
+        if obstruction:
+            raise SettingsError(f"robot.start ({start.x:g}, {start.y:g}) {obstruction}")
+        Simulation(arena.world, robot_named(scenario.robot), scenario.simulation, 0, start).close()
+    except PlanarError as error:
+        text = str(error)
+        raise SettingsError(
+            text if text.startswith(str(scenario.file)) else f"{scenario.file}: {text}"
+        ) from None

@@ -1,0 +1,102 @@
+"""Deliveries in a home: the errand between two zones, or a mission."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Optional, Sequence, Tuple
+
+from home_service.judging.verdict import collision
+from home_service.rehearsal import NAVIGATION_CONFIG, Conditions, Rehearsal, Rehearsed, parcel_of
+from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, Play
+from laboratory.tasks.ways import shortest_way
+from laboratory.worlds.source import Arena
+from pick_objects import Mission, errand_mission, load_mission
+from planar import OccupancyGrid, Pose2, SettingsError
+from planar.config.yaml_table import Table
+from planar.maps.places import load_places, places_of_errand, why_unreachable
+from sim_bridge import robot_named
+
+if TYPE_CHECKING:
+    from laboratory.scenario.scenario import Scenario
+
+
+@dataclass(frozen=True)
+class Deliveries:
+    """``zones``: the errand between its pick-up and its drop-off; with a ``mission`` that instead."""
+
+    zones: Path
+    mission: Optional[Path] = None
+
+    def play(self, scenario: "Scenario", arena: Arena, seed: int) -> Play:
+        grid, mission = _grid_of(arena), self._mission(arena)
+        conditions = Conditions(
+            scenario.planner, scenario.parameters, scenario.faults, scenario.simulation, scenario.start
+        )
+        rehearsal = Rehearsal(
+            arena.world,
+            robot_named(scenario.robot),
+            grid,
+            mission,
+            seed=seed,
+            parcel=None if self.mission else parcel_of(mission),
+            conditions=conditions,
+        )
+        run = rehearsal.run(scenario.seconds)
+        return Play(
+            _outcome(run, scenario.seconds),
+            run.verdict.reason,
+            run.trajectory,
+            run.localization_error,
+            run.ledger.collisions,
+            self._way(scenario, arena, conditions),
+        )
+
+    def places(self, arena: Arena) -> Sequence[Pose2]:
+        places = self._mission(arena).places.values()
+        return [pose for place in places for pose in place.poses]
+
+    def files(self) -> Tuple[Path, ...]:
+        return (self.zones,) if self.mission is None else (self.zones, self.mission)
+
+    def _mission(self, arena: Arena) -> Mission:
+        if self.mission is not None:
+            return load_mission(self.mission, load_places(self.zones), grid=arena.grid)
+        ends = places_of_errand(self.zones)
+        problems = filter(None, (why_unreachable(place, _grid_of(arena)) for place in ends))
+        for problem in problems:
+            raise SettingsError(f"{self.zones}: {problem}")
+        return errand_mission(*ends)
+
+    def _way(self, scenario: "Scenario", arena: Arena, conditions: Conditions) -> Optional[float]:
+        """Of the errand; in which order a mission is best carried out is not known here."""
+        if self.mission is not None:
+            return None
+        radius = conditions.navigation(NAVIGATION_CONFIG).global_costmap.robot_radius
+        ends = tuple(place.pose for place in places_of_errand(self.zones))
+        return shortest_way(_grid_of(arena), (scenario.start, *ends), radius)
+
+
+def _grid_of(arena: Arena) -> OccupancyGrid:
+    if arena.grid is None:
+        raise SettingsError(f"{arena.title}: deliveries need a world with a map")
+    return arena.grid
+
+
+def _outcome(run: Rehearsed, seconds: float) -> str:
+    if run.verdict.success:
+        return SUCCESS
+    if collision(run.ledger.collisions):
+        return COLLISION
+    return TIMEOUT if run.simulated_seconds > seconds else FAILURE
+
+
+def read_errand(table: Table, folder: Path) -> Deliveries:
+    """``errand``: a file of zones."""
+    table.allow_only("errand")
+    return Deliveries((folder / table.text("errand")).resolve())
+
+
+def read_mission(table: Table, folder: Path) -> Deliveries:
+    """``mission``: a file of deliveries, between places of its own and of the ``zones``."""
+    table.allow_only("mission", "zones")
+    files = [(folder / table.text(key)).resolve() for key in ("zones", "mission")]
+    return Deliveries(*files)

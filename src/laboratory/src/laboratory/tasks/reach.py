@@ -1,0 +1,128 @@
+"""A goal ahead, without a map: as in BARN and DynaBARN, the robot plans in odom."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Optional, Sequence, Set, Tuple
+
+import numpy as np
+
+from home_service.judging.verdict import collision
+from home_service.rehearsal import NAVIGATION_CONFIG, Conditions
+from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, Play
+from laboratory.worlds.source import Arena
+from move_base_lite import Navigator, Status
+from planar import Pose2, Scan, Twist2
+from planar.config.yaml_table import Table
+from planar.maps.places import pose_from
+from sim_bridge import Observation, Simulation, robot_named
+from sim_bridge.faults import Faults
+
+if TYPE_CHECKING:
+    from laboratory.scenario.scenario import Scenario
+
+
+@dataclass(frozen=True)
+class Reach:
+    """``goal``: seen from the start; within ``radius``, metres, of it the robot has arrived."""
+
+    goal: Pose2
+    radius: float = 1.0
+
+    def play(self, scenario: "Scenario", arena: Arena, seed: int) -> Play:
+        drive = _Drive(scenario, arena, seed, self)
+        try:
+            outcome, reason = drive.run(scenario.seconds)
+        finally:
+            drive.close()
+        return Play(
+            outcome, reason, np.array(drive.trajectory), np.zeros(0), sorted(drive.touched), arena.way
+        )
+
+    def places(self, arena: Arena) -> Sequence[Pose2]:
+        return ()
+
+    def files(self) -> Tuple[Path, ...]:
+        return ()
+
+
+class _Drive:
+    """A run to a goal; it ends there, at the first touch, or when the navigator gives up."""
+
+    def __init__(self, scenario: "Scenario", arena: Arena, seed: int, task: Reach):
+        settings = Conditions(scenario.planner, scenario.parameters).navigation(config_of(scenario.robot))
+        self._navigator = Navigator(settings)
+        self._faults = Faults(scenario.faults, seed)
+        self._simulation = Simulation(
+            arena.world,
+            robot_named(scenario.robot),
+            scenario.simulation,
+            seed,
+            scenario.start,
+            self._faults.fitting,
+        )
+        self._steps = round(1.0 / settings.move_base.controller_frequency / self._simulation.step_seconds)
+        self._task, self._goal = task, scenario.start @ task.goal
+        self.trajectory: list = []
+        self.touched: Set[str] = set()
+
+    def run(self, seconds: float) -> Tuple[str, str]:
+        """Outcome and reason; the clock starts with the goal."""
+        observation = self._first_scan()
+        scan = observation.scan
+        began = observation.stamp
+        self._navigator.set_goal(self._task.goal)
+        while observation.stamp - began < seconds:
+            base_in_odom = observation.odometry.base_in_odom
+            decision = self._navigator.tick(
+                observation.stamp, base_in_odom, base_in_odom, observation.odometry.twist, scan
+            )
+            if decision.status.is_final and decision.status is not Status.SUCCEEDED:
+                return FAILURE, decision.text
+            observation, scan = self._advance(decision.command)
+            self._note(observation, began)
+            touched = collision(sorted(self.touched))
+            if touched:
+                place = observation.base_in_world
+                return COLLISION, f"{touched} at {place.x:.2f}, {place.y:.2f}"
+            if observation.base_in_world.distance_to(self._goal) <= self._task.radius:
+                return SUCCESS, "reached the goal"
+        return TIMEOUT, f"not done within {seconds:g} simulated seconds"
+
+    def close(self) -> None:
+        self._simulation.close()
+
+    def _first_scan(self) -> Observation:
+        while True:
+            observation = self._simulation.step()
+            if observation.scan is not None:
+                self._note(observation, observation.stamp)
+                return observation
+
+    def _advance(self, command: Optional[Twist2]) -> Tuple[Observation, Optional[Scan]]:
+        """Moves on by a control period; the last observation, and the scan made on the way."""
+        scan = None
+        for _ in range(self._steps):
+            observation = self._simulation.step(command)
+            command, scan = None, observation.scan or scan
+            self.touched.update(observation.contacts)
+        return observation, scan
+
+    def _note(self, observation: Observation, began: float) -> None:
+        truth = observation.base_in_world
+        self.trajectory.append((observation.stamp - began, truth.x, truth.y, truth.yaw))
+
+
+def config_of(robot: str) -> Path:
+    """move_base's parameters for a robot: the file of its name, or the TurtleBot's."""
+    config = NAVIGATION_CONFIG.with_name(f"{robot}.yaml")
+    return config if config.exists() else NAVIGATION_CONFIG
+
+
+def read_reach(table: Table, folder: Path) -> Reach:
+    """``reach``: x, y and radius, seen from the start."""
+    table.allow_only("reach")
+    goal = table.table("reach")
+    goal.allow_only("x", "y", "yaw", "radius")
+    radius = goal.number("radius", Reach.radius)
+    goal.check(radius > 0.0, "radius", "positive")
+    return Reach(pose_from(goal), radius)

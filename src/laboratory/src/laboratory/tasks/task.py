@@ -1,0 +1,54 @@
+"""The contract of a task.
+
+A task is a frozen dataclass of its own file, with a function that reads it from a scenario's table ``task``,
+and one line of the registry.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Optional, Protocol, Sequence, Tuple
+
+import numpy as np
+
+from laboratory.worlds.source import Arena
+from planar import Pose2
+
+if TYPE_CHECKING:
+    from laboratory.scenario.scenario import Scenario
+
+SUCCESS, FAILURE, COLLISION, TIMEOUT, ERROR = OUTCOMES = (
+    "success",
+    "failure",
+    "collision",
+    "timeout",
+    "error",
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Play:
+    """How a run went.
+
+    ``trajectory``: (N, 4) stamp, true x, y, yaw. ``localization_error``: (M,), metres, of a robot with a map.
+    ``touched``: names of what it bumped into. ``way``: metres of the shortest way there is.
+    """
+
+    outcome: str
+    reason: str
+    trajectory: np.ndarray
+    localization_error: np.ndarray
+    touched: Sequence[str] = ()
+    way: Optional[float] = None
+
+
+class Task(Protocol):
+    """Something to do in an arena; the same scenario and seed are played alike, to the last bit."""
+
+    def play(self, scenario: "Scenario", arena: Arena, seed: int) -> Play:
+        """Plays it. Raises PlanarError if that is impossible."""
+
+    def places(self, arena: Arena) -> Sequence[Pose2]:
+        """Where the robot must be able to stand."""
+
+    def files(self) -> Tuple[Path, ...]:
+        """What the task is read from."""

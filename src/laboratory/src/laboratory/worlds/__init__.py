@@ -1,0 +1,1 @@
+"""Where robots drive: worlds of files, of benchmarks, and generated ones."""

@@ -1,0 +1,67 @@
+"""BARN's worlds (Perille et al., "Benchmarking metric ground navigation", 2020)."""
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Tuple
+
+import numpy as np
+
+from laboratory.worlds.source import Arena
+from planar import Pose2, SettingsError
+from planar.config.yaml_table import Table
+from sim_bridge import load_world
+
+START = Pose2(-2.25, 3.0, math.pi / 2.0)
+GOAL_IN_ODOM = Pose2(10.0, 0.0)
+
+
+@dataclass(frozen=True)
+class BarnFolder:
+    """world_N.world and path_N.npy at any depth of a folder; seeds take them by turns."""
+
+    folder: Path
+
+    def pairs(self) -> Tuple[Tuple[int, Path, Path], ...]:
+        """Number, world and reference path. Raises SettingsError if there are none."""
+        worlds = {int(file.stem.split("_")[1]): file for file in self.folder.rglob("world_*.world")}
+        paths = {int(file.stem.split("_")[1]): file for file in self.folder.rglob("path_*.npy")}
+        both = sorted(set(worlds) & set(paths))
+        if not both:
+            raise SettingsError(f"{self.folder}: no pairs of world_N.world and path_N.npy")
+        return tuple((number, worlds[number], paths[number]) for number in both)
+
+    def arena(self, seed: int) -> Arena:
+        number, world, path = self.pairs()[self.arena_number(seed)]
+        return _arena(number, world, path)
+
+    def files(self) -> Tuple[Path, ...]:
+        return tuple(file for _, *files in self.pairs() for file in files)
+
+    def arena_number(self, seed: int) -> int:
+        return seed % len(self.pairs())
+
+
+@lru_cache(maxsize=32)
+def _arena(number: int, world: Path, path: Path) -> Arena:
+    return Arena(load_world(world), None, f"BARN {number}", reference_length(np.load(path)))
+
+
+def reference_length(path_cells: np.ndarray) -> float:
+    """Metres from start over the cells (N, 2) of a reference path to the goal."""
+    goal = START @ GOAL_IN_ODOM
+    path_xy = path_cells * 0.15 + (-4.575, 5.075)
+    path_xy = np.concatenate(([[START.x, START.y]], path_xy, [[goal.x, goal.y]]))
+    return float(np.linalg.norm(np.diff(path_xy, axis=0), axis=1).sum())
+
+
+def read_barn(table: Table, folder: Path) -> BarnFolder:
+    """``barn``: a folder beside the scenario, or anywhere."""
+    table.allow_only("barn")
+    source = BarnFolder((folder / table.text("barn")).expanduser().resolve())
+    try:
+        source.pairs()
+    except SettingsError as error:
+        raise table.complaint("barn", f"cannot be used: {error}") from None
+    return source

@@ -1,0 +1,14 @@
+"""All sources of worlds, by the key of a scenario's table ``world`` that names them."""
+
+from pathlib import Path
+from typing import Callable, Dict
+
+from laboratory.worlds.barn import read_barn
+from laboratory.worlds.files import read_world_file
+from laboratory.worlds.source import WorldSource
+from planar.config.yaml_table import Table
+
+SOURCES: Dict[str, Callable[[Table, Path], WorldSource]] = {
+    "file": read_world_file,
+    "barn": read_barn,
+}

@@ -1,0 +1,122 @@
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from laboratory.scenario import read_scenario
+from laboratory.scenario.seeds import seeds_of
+from laboratory.suites import FOLDER, scenarios_of
+from planar import Pose2, SettingsError
+
+ROOT = FOLDER.parent
+WHOLE = """\
+about: all keys
+world: {file: ROOT/map/home.world, map: ROOT/map/home.yaml}
+robot: {profile: turtlebot_lidar, start: {x: 0.5, y: 0.1, yaw: 0.2}}
+simulation: {noise: bad, range_noise: 0.02}
+task: {errand: ROOT/map/zones.yaml}
+happens:
+  boxes: 3
+  faults: [{kind: scan_noisy, start: 8.0, end: 12.0}]
+planner: {name: dwa_local_planner/DWAPlannerROS, parameters: {DWAPlannerROS: {max_vel_x: 0.4}}}
+limits: {seconds: 200}
+seeds: 0-4,9
+"""
+
+
+def written(folder: Path, text: str) -> Path:
+    path = folder / "scenario.yaml"
+    path.write_text(text.replace("ROOT", str(ROOT)))
+    return path
+
+
+def test_every_key_of_a_scenario_is_read(tmp_path):
+    scenario = read_scenario(written(tmp_path, WHOLE))
+    assert scenario.name == "scenario" and scenario.about == "all keys"
+    assert scenario.start == Pose2(0.5, 0.1, 0.2)
+    assert (scenario.simulation.range_noise, scenario.simulation.encoder_scale) == (0.02, 0.06)
+    assert scenario.boxes == 3 and scenario.faults[0].end == 12.0
+    assert scenario.planner == "dwa_local_planner/DWAPlannerROS"
+    assert scenario.parameters == {"DWAPlannerROS": {"max_vel_x": 0.4}}
+    assert scenario.seconds == 200.0 and scenario.seeds == (0, 1, 2, 3, 4, 9)
+
+
+@pytest.mark.parametrize(
+    ("was", "becomes", "complaint"),
+    [
+        ("about: all keys", "abuot: x", ":1: abuot is not known; did you mean about?"),
+        ("map: ROOT", "mop: ROOT", ":2: world.mop is not known"),
+        ("{file: ROOT/map/home.world", "{fiel: x", ":2: world needs one of file"),
+        ("turtlebot_lidar", "turtlebto_lidar", ":3: robot.profile cannot be used: unknown robot"),
+        ("y: 0.1", "y: left", ":3: robot.start.y must be a number"),
+        ("noise: bad", "noise: worse", ":4: simulation.noise cannot be used: noise must be one of"),
+        ("range_noise: 0.02", "range_noise: -1", "range_noise must be not negative, got -1"),
+        ("range_noise", "rainge_noise", ":4: simulation.rainge_noise is not known"),
+        ("task: {errand", "task: {errant", ":5: task needs one of errand"),
+        ("boxes: 3", "boxes: many", ":7: happens.boxes must be a whole number"),
+        ("scan_noisy", "scan_nosy", ":8: happens.faults[1].kind must be one of"),
+        ("max_vel_x: 0.4", "max_vel_x: fast", "max_vel_x must be a number, got 'fast'"),
+        ("max_vel_x: 0.4", "max_val_x: 0.4", ":9: planner.parameters cannot be used: "),
+        ("seconds: 200", "seconds: 0", ":10: limits.seconds must be positive"),
+        ("0-4,9", "9-4", ":11: seeds cannot be used: seeds must be like 0-999"),
+    ],
+)
+def test_a_mistake_is_told_with_file_line_and_key(tmp_path, was, becomes, complaint):
+    assert was in WHOLE
+    path = written(tmp_path, WHOLE.replace(was, becomes))
+    with pytest.raises(SettingsError) as error:
+        read_scenario(path)
+    assert str(error.value).startswith(str(path)) and complaint in str(error.value)
+
+
+def test_a_scenario_that_cannot_be_played_is_named_and_the_others_are_played(tmp_path):
+    in_a_wall = written(tmp_path, WHOLE.replace("{x: 0.5, y: 0.1, yaw: 0.2}", "{x: 50.0, y: 0.0}"))
+    (tmp_path / "good.yaml").write_text(WHOLE.replace("ROOT", str(ROOT)))
+    lost = WHOLE.replace("ROOT/map/home.world", "nowhere.world")
+    (tmp_path / "lost.yaml").write_text(lost.replace("ROOT", str(ROOT)))
+    scenarios, complaints = scenarios_of([str(tmp_path)])
+    assert [scenario.name for scenario in scenarios] == ["good"]
+    assert len(complaints) == 2
+    assert "lost.yaml" in complaints[0] and "nowhere.world" in complaints[0]
+    assert str(in_a_wall) in complaints[1] and "robot.start (50, 0) lies outside the map" in complaints[1]
+
+
+def test_a_suite_that_is_not_there_is_refused():
+    with pytest.raises(SettingsError, match="nonsense: neither a file nor a folder nor one of scenarios"):
+        scenarios_of(["nonsense"])
+
+
+def test_a_digest_tells_scenarios_apart_by_what_they_say_and_not_by_their_names(tmp_path):
+    scenario = read_scenario(written(tmp_path, WHOLE))
+    assert replace(scenario, name="other", about="", seeds=(7,)).digest() == scenario.digest()
+    others = [
+        scenario.with_planner(""),
+        scenario.with_parameters({}),
+        replace(scenario, boxes=4),
+        replace(scenario, seconds=100.0),
+        replace(scenario, faults=()),
+    ]
+    assert len({scenario.digest(), *(other.digest() for other in others)}) == 6
+
+
+def test_a_digest_changes_with_a_file_of_the_scenario(tmp_path):
+    zones = tmp_path / "zones.yaml"
+    zones.write_text((ROOT / "map/zones.yaml").read_text())
+    path = written(tmp_path, WHOLE.replace("ROOT/map/zones.yaml", "zones.yaml"))
+    before = read_scenario(path).digest()
+    zones.write_text(zones.read_text().replace("x: 2.0", "x: 1.9"))
+    assert read_scenario(path).digest() != before
+
+
+@pytest.mark.parametrize("path", sorted(FOLDER.glob("home*.yaml")), ids=lambda path: path.stem)
+def test_the_scenarios_of_the_project_can_be_played(path):
+    scenarios, complaints = scenarios_of([str(path)])
+    assert complaints == [] and len(scenarios) == 1
+
+
+def test_seeds_are_written_as_people_do():
+    assert seeds_of("7") == (7,)
+    assert seeds_of("0-3,2,9") == (0, 1, 2, 3, 9)
+    for nonsense in ("", "a", "3-1", "-1", "1-", "0-99999999"):
+        with pytest.raises(SettingsError, match="seeds must be like"):
+            seeds_of(nonsense)
