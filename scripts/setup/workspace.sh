@@ -30,6 +30,7 @@ build_workspace() {
         rm -rf "$last" "$root/build/.failed"
     else
         restore_last_build
+        leave_out_invalid
         tell_failure "$log"
         [[ -e $stamp ]] || fail "$failure"
     fi
@@ -75,6 +76,24 @@ restore_last_build() { # after one that failed or was cut short
         parts_of_build "$last/build" -exec mv -t "$root/build" {} +
     fi
     rm -rf "$last"
+}
+
+leave_out_invalid() { # ROS's tools read each package in the source space, and end at the first that is not valid
+    local sources=$root/devel/.catkin
+    [[ -e $sources ]] || return 0
+    packages_in_source | /usr/bin/python3 -c '
+import os, sys
+from catkin_pkg.package import InvalidPackage, parse_package
+
+valid = []
+for line in sys.stdin:
+    folder = os.path.abspath(line.rstrip("\n").split(" ", 1)[1])
+    try:
+        parse_package(folder)
+        valid.append(folder)
+    except InvalidPackage:
+        pass
+print(";".join(valid), end="")' >"$sources.new" && mv "$sources.new" "$sources"
 }
 
 parts_of_build() { # FOLDER ACTION...: what catkin made in it

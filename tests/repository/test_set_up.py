@@ -64,9 +64,13 @@ def in_workspace(folder, commands):
     )
 
 
-def write_package(folder, name):
-    folder.mkdir(parents=True)
-    (folder / "package.xml").write_text(f"<package>\n  <name>{name}</name>\n</package>\n")
+VALID = """<version>1.0.0</version><description>one</description><license>MIT</license>
+  <maintainer email="a@b.org">a</maintainer>"""
+
+
+def write_package(folder, name, content=""):
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "package.xml").write_text(f"<package>\n  <name>{name}</name>\n  {content}\n</package>\n")
 
 
 def set_up_once(folder):
@@ -111,6 +115,16 @@ def test_a_package_that_does_not_build_leaves_the_last_good_build_in_use(tmp_pat
     shutil.rmtree(tmp_path / "src/mine")
     said = in_workspace(tmp_path, FAILING + "set_up; echo used")
     assert said.stderr == "" and "Building" not in said.stdout
+
+
+def test_ros_does_not_meet_an_invalid_package_while_the_last_build_is_in_use(tmp_path):
+    set_up_once(tmp_path)
+    write_package(tmp_path / "src/good", "good", VALID)
+    write_package(tmp_path / "src/nested/mine", "mine", VALID.replace("a@b.org", "nobody"))
+    (tmp_path / "devel/.catkin").write_text(f"{tmp_path}/src")
+    said = in_workspace(tmp_path, FAILING + "set_up; echo used")
+    assert said.stdout.endswith("used\n"), said.stderr
+    assert (tmp_path / "devel/.catkin").read_text() == f"{tmp_path}/src/good"
 
 
 def test_the_set_up_itself_fails_on_a_package_that_does_not_build(tmp_path):
