@@ -1,0 +1,92 @@
+"""Who plays: processes of this machine, or those of a scheduler of Dask."""
+
+import logging
+import os
+import signal
+import threading
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from typing import Any, Iterator
+
+import dask
+from distributed import Client, LocalCluster
+
+from laboratory.errors import WorkersError
+
+# A mission is lost for good when so many workers have died of it.
+DEATHS = 3
+# Workers are renewed now and then, so that whatever they leak stays small.
+LIFETIME, STAGGER = "60 minutes", "10 minutes"
+SECONDS_TO_CONNECT = 20
+
+
+@dataclass(frozen=True)
+class Workers:
+    """``count``: processes here, 0: one for each core. ``scheduler``: the address of one, instead of them."""
+
+    count: int = 0
+    scheduler: str = ""
+
+    @contextmanager
+    def client(self) -> Iterator[Client]:
+        """A connection to them, which is closed with them. Raises WorkersError."""
+        dask.config.set(
+            {
+                "distributed.scheduler.worker-saturation": 1.0,
+                "distributed.scheduler.allowed-failures": DEATHS - 1,
+                "distributed.worker.daemon": True,
+            }
+        )
+        for name in ("distributed", "distributed.nanny", "distributed.scheduler", "distributed.worker"):
+            logging.getLogger(name).setLevel(logging.CRITICAL)
+        with self._there() if self.scheduler else self._here() as client:
+            yield client
+
+    @contextmanager
+    def _here(self) -> Iterator[Client]:
+        with _deaf_to_interrupts():
+            cluster = LocalCluster(
+                n_workers=self.count or len(os.sched_getaffinity(0)),
+                threads_per_worker=1,
+                processes=True,
+                host="127.0.0.1",
+                dashboard_address=None,
+                silence_logs=logging.CRITICAL,
+                lifetime=LIFETIME,
+                lifetime_stagger=STAGGER,
+                lifetime_restart=True,
+            )
+        try:
+            with Client(cluster, set_as_default=False) as client:
+                yield client
+        finally:
+            with suppress(Exception):  # of processes that are ended anyway
+                cluster.close(timeout=10)
+
+    @contextmanager
+    def _there(self) -> Iterator[Client]:
+        try:
+            client = Client(self.scheduler, timeout=SECONDS_TO_CONNECT, set_as_default=False)
+            client.wait_for_workers(1, timeout=SECONDS_TO_CONNECT)
+        except (OSError, ValueError) as error:
+            raise WorkersError(f"{self.scheduler}: no scheduler with workers answers ({error})") from None
+        with client:
+            yield client
+
+
+def count_of(client: Any) -> int:
+    """How many workers there are now."""
+    return len(client.scheduler_info(n_workers=-1)["workers"])
+
+
+@contextmanager
+def _deaf_to_interrupts() -> Iterator[None]:
+    """Processes that are started meanwhile do not hear Ctrl-C, which this one hears for them."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)

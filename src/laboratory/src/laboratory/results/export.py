@@ -1,0 +1,26 @@
+"""Results as tables for other programs."""
+
+import io
+from dataclasses import asdict
+from pathlib import Path
+from typing import Iterable, Sequence, Tuple
+
+from laboratory.results.result import Result
+from laboratory.scenario.scenario import Scenario
+from planar.files.atomically import write_together
+
+
+def export(runs: Iterable[Tuple[Scenario, Sequence[Result]]], folder: Path) -> None:
+    """Writes results.csv and results.parquet, a row a run, without tracks. Raises FileWriteError."""
+    import pandas
+
+    rows = [
+        {"scenario": scenario.name, "planner": scenario.planner, **asdict(result)}
+        for scenario, results in runs
+        for result in results
+    ]
+    table = pandas.DataFrame(rows).drop(columns="track", errors="ignore")
+    parquet = io.BytesIO()
+    table.to_parquet(parquet, engine="pyarrow", index=False)
+    files = {"results.csv": table.to_csv(index=False).encode(), "results.parquet": parquet.getvalue()}
+    write_together({folder / name: data for name, data in files.items()})

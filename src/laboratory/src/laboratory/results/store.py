@@ -1,0 +1,73 @@
+"""Results in one SQLite file, each written at once; who reads it meanwhile is not in the way (WAL)."""
+
+import sqlite3
+from contextlib import contextmanager
+from dataclasses import astuple, fields
+from pathlib import Path
+from typing import Iterator, List, Optional, Set, Tuple
+
+from laboratory.errors import ResultsError
+from laboratory.results.result import Result
+from laboratory.tasks.task import ERROR
+
+SCHEMA = 1
+KINDS = {int: "INTEGER", str: "TEXT", bytes: "BLOB", float: "REAL", Optional[float]: "REAL"}
+COLUMNS = {field.name: KINDS[field.type] for field in fields(Result)}
+# Seconds that another writer is waited for.
+PATIENCE = 30.0
+
+
+class Store:
+    """The results of a file, which is made if it is not there. Methods raise ResultsError."""
+
+    def __init__(self, path: Path):
+        self._path = path
+        with self._telling():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._connection = sqlite3.connect(str(path), timeout=PATIENCE, isolation_level=None)
+            self._connection.execute("PRAGMA journal_mode=WAL")
+            self._connection.execute("PRAGMA synchronous=NORMAL")
+            self._prepare()
+
+    def close(self) -> None:
+        self._connection.close()
+
+    def add(self, result: Result) -> None:
+        """Keeps a result; one of the same scenario, seed and version is replaced."""
+        marks = ", ".join("?" * len(COLUMNS))
+        with self._telling():
+            self._connection.execute(f"INSERT OR REPLACE INTO results VALUES ({marks})", astuple(result))
+
+    def played(self, version: str) -> Set[Tuple[str, int]]:
+        """Digests and seeds of what has been played; errors are worth another try."""
+        query = "SELECT digest, seed FROM results WHERE version = ? AND outcome != ?"
+        with self._telling():
+            return set(self._connection.execute(query, (version, ERROR)).fetchall())
+
+    def results(self, digest: str, version: str) -> List[Result]:
+        """Those of a scenario, in the order of their seeds."""
+        query = "SELECT * FROM results WHERE digest = ? AND version = ? ORDER BY seed"
+        with self._telling():
+            return [Result(*row) for row in self._connection.execute(query, (digest, version))]
+
+    def versions(self) -> List[str]:
+        """Of all results, the latest last."""
+        query = "SELECT version FROM results GROUP BY version ORDER BY MAX(rowid)"
+        with self._telling():
+            return [version for (version,) in self._connection.execute(query)]
+
+    def _prepare(self) -> None:
+        (schema,) = self._connection.execute("PRAGMA user_version").fetchone()
+        if schema not in (0, SCHEMA):
+            raise ResultsError(f"{self._path}: of another version of this software (schema {schema})")
+        columns = ", ".join(f"{name} {kind}" for name, kind in COLUMNS.items())
+        key = "PRIMARY KEY (digest, seed, version)"
+        self._connection.execute(f"CREATE TABLE IF NOT EXISTS results ({columns}, {key})")
+        self._connection.execute(f"PRAGMA user_version = {SCHEMA}")
+
+    @contextmanager
+    def _telling(self) -> Iterator[None]:
+        try:
+            yield
+        except (sqlite3.Error, OSError) as error:
+            raise ResultsError(f"{self._path}: {error}; what is in it is whole") from None

@@ -1,0 +1,1 @@
+"""What results prove, and what they do not."""

@@ -1,0 +1,41 @@
+"""What has to hold: ``success >= 0.99``."""
+
+import operator
+import re
+from typing import Mapping, NamedTuple
+
+from laboratory.statistics.summary import FIGURES, Estimate
+from planar import SettingsError
+from planar.config.hints import hint_or_all
+
+RELATIONS = {">=": operator.ge, "<=": operator.le, ">": operator.gt, "<": operator.lt}
+FORM = re.compile(r"\s*(\w+)\s*(>=|<=|>|<)\s*([0-9.eE+-]+)\s*")
+
+
+class Requirement(NamedTuple):
+    """A figure, how it must be, to what."""
+
+    figure: str
+    relation: str
+    limit: float
+
+    def is_met(self, figures: Mapping[str, Estimate]) -> bool:
+        """Whether the figure is so; one that is not there is not."""
+        found = figures.get(self.figure)
+        return found is not None and bool(RELATIONS[self.relation](found.value, self.limit))
+
+    def __str__(self) -> str:
+        return f"{self.figure} {self.relation} {self.limit:g}"
+
+
+def requirement_from(text: str) -> Requirement:
+    """Raises SettingsError."""
+    match = FORM.fullmatch(text)
+    try:
+        figure, relation, limit = match.groups() if match else ("", "", "")
+        wanted = Requirement(figure, relation, float(limit))
+    except ValueError:
+        raise SettingsError(f'--require must be like "success >= 0.99", got {text!r}') from None
+    if wanted.figure not in FIGURES:
+        raise SettingsError(f"--require: {wanted.figure} is not known{hint_or_all(wanted.figure, FIGURES)}")
+    return wanted

@@ -1,0 +1,118 @@
+"""Missions over processes: nothing is lost, nothing is played twice, a dead worker costs only its mission."""
+
+import os
+import signal
+import threading
+from dataclasses import replace
+
+import pytest
+
+from laboratory.campaign import Campaign, Mission, Workers, campaign
+from laboratory.campaign.progress import Told
+from laboratory.errors import ResultsError, WorkersError
+from laboratory.evaluation import Evaluation
+from laboratory.playing import play
+from laboratory.results.result import Key
+from laboratory.results.store import Store
+from laboratory.scenario import read_scenario
+from laboratory.suites import FOLDER
+
+SEEDS = tuple(range(6))
+
+
+@pytest.fixture(scope="module")
+def scenario():
+    """One that takes a second or so."""
+    return replace(read_scenario(FOLDER / "home_errand.yaml"), seconds=3.0)
+
+
+@pytest.fixture(scope="module")
+def alone(scenario):
+    """What comes of it in this process."""
+    return [same(play(scenario, seed)) for seed in SEEDS]
+
+
+def same(result):
+    """Without what depends on the machine."""
+    return replace(result, wall_seconds=0.0)
+
+
+def results_of(evaluation):
+    return [same(result) for each in evaluation.evaluated() for result in each.results]
+
+
+def test_workers_make_what_one_process_makes_also_if_one_of_them_is_killed(scenario, alone, tmp_path):
+    evaluation = Evaluation([scenario], SEEDS, tmp_path / "results.sqlite")
+    missions, total = evaluation.missions()
+    assert total == len(missions) == len(SEEDS)
+    killed = threading.Event()
+    with Workers(2).client() as client:
+        processes = list(client.run(os.getpid).values())
+        assert len(processes) == 2
+
+        def kill_one(_mission, _result):
+            if not killed.is_set():
+                killed.set()
+                os.kill(processes[0], signal.SIGKILL)
+
+        Campaign(client, evaluation._store, kill_one, 2).run(missions)
+    assert killed.is_set()
+    assert results_of(evaluation) == alone
+    evaluation.close()
+
+
+def test_what_has_been_played_is_not_played_again(scenario, alone, tmp_path):
+    path = tmp_path / "results.sqlite"
+    store = Store(path)
+    for result in alone[:4]:
+        store.add(result)
+    store.close()
+    evaluation = Evaluation([scenario], SEEDS, path)
+    missions, total = evaluation.missions()
+    assert ([mission.seed for mission in missions], total) == ([4, 5], 6)
+    evaluation.play(Workers(1))
+    assert results_of(evaluation) == alone
+    assert evaluation.missions()[0] == []
+    evaluation.close()
+
+
+def test_an_error_is_worth_another_try_and_other_software_plays_anew(alone, tmp_path):
+    store = Store(tmp_path / "results.sqlite")
+    store.add(alone[0])
+    store.add(replace(alone[1], outcome="error"))
+    assert store.played(alone[0].version) == {(alone[0].digest, 0)}
+    assert store.played("other") == set()
+    store.add(alone[1])
+    assert [result.seed for result in store.results(alone[0].digest, alone[0].version)] == [0, 1]
+    store.close()
+
+
+def test_a_file_that_holds_no_results_is_named(tmp_path):
+    path = tmp_path / "results.sqlite"
+    path.write_text("nothing of this kind " * 100)
+    with pytest.raises(ResultsError, match=f"{path}: file is not a database"):
+        Store(path)
+
+
+def test_a_scheduler_that_is_not_there_is_told(monkeypatch):
+    monkeypatch.setattr("laboratory.campaign.workers.SECONDS_TO_CONNECT", 1)
+    with pytest.raises(WorkersError, match="tcp://127.0.0.1:9: no scheduler"), Workers(
+        scheduler="tcp://127.0.0.1:9"
+    ).client():
+        pass
+
+
+def test_a_worker_of_another_version_refuses(scenario):
+    with pytest.raises(WorkersError, match="another version of the software"):
+        campaign.play_elsewhere(scenario, Key("digest", 1, "of tomorrow"))
+
+
+def test_a_mission_has_a_key_of_scenario_seed_and_version(scenario):
+    assert Mission(scenario, 3, "abc").key[:2] == ("abc", 3)
+
+
+def test_progress_tells_how_long_it_will_take():
+    told = Told(10, clock=iter([0.0, 3.0, 6.0]).__next__)
+    told.count(True)
+    told.count(False)
+    assert told.line(6.0) == "  2 of 10 played, 1 succeeded, 20 a minute, 24 s left"
