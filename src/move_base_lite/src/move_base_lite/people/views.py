@@ -1,8 +1,9 @@
 """What a laser sees from a place: how far it was free, and things narrow enough to be somebody."""
 
 import math
-from typing import List
+from typing import List, NamedTuple
 
+import numba
 import numpy as np
 
 from move_base_lite.costmap import Sighting
@@ -21,52 +22,117 @@ class View:
 
     def __init__(self, sensor_in_odom: Pose2, sighting: Sighting):
         self.sensor_in_odom, self.stamp = sensor_in_odom, sighting.stamp
-        ranges = np.asarray(sighting.ranges, dtype=float)
-        hits = np.isfinite(ranges) & (ranges >= sighting.range_min) & (ranges < sighting.range_max)
-        near = hits & (ranges < REACH)
-        self.beams = np.flatnonzero(near)[np.argsort(sighting.angles[near])]
-        angles = sighting.angles[self.beams]
+        angles, ranges = sighting.angles, np.asarray(sighting.ranges, dtype=float)
+        near, self._free = _near_and_free(angles, ranges, sighting.range_min, sighting.range_max)
+        self.beams = near[np.argsort(angles[near])]
+        angles = angles[self.beams]
         ends = np.column_stack((np.cos(angles), np.sin(angles))) * ranges[self.beams, None]
         self.points_xy = sensor_in_odom.transform_points(ends)
-        free = np.where(hits, ranges, np.where(ranges == np.inf, sighting.range_max, 0.0))
-        self._free = np.full(DIRECTIONS, np.inf)
-        np.minimum.at(self._free, _direction_of(sighting.angles), free)
-        self._free[np.isinf(self._free)] = 0.0
 
     def share_seen_through(self, points_xy: np.ndarray) -> float:
         """Which share of points (N, 2) lay in the free then."""
-        offsets = self.sensor_in_odom.inverse().transform_points(points_xy)
-        free = self._free[_direction_of(np.arctan2(offsets[:, 1], offsets[:, 0]))]
-        return float((np.hypot(offsets[:, 0], offsets[:, 1]) + BEYOND < free).mean())
+        at = self.sensor_in_odom
+        return float(_share_free(points_xy, at.x, at.y, at.yaw, self._free))
 
 
-def _direction_of(angles: np.ndarray) -> np.ndarray:
-    return np.floor(angles * (DIRECTIONS / (2.0 * math.pi))).astype(int) % DIRECTIONS
+class Thing(NamedTuple):
+    """Neighbouring beams, ``points_xy`` (N, 2), that end on one thing; its middle lies its radius behind the
+    nearest."""
 
-
-class Thing:
-    """Neighbouring beams (N, 2) that end on one thing; its middle lies its radius behind the nearest."""
-
-    def __init__(self, points_xy: np.ndarray, sensor_in_odom: Pose2):
-        self.points_xy = points_xy
-        self.radius = 0.5 * float(np.hypot(*np.ptp(points_xy, axis=0)))
-        offsets = points_xy - (sensor_in_odom.x, sensor_in_odom.y)
-        ranges = np.hypot(offsets[:, 0], offsets[:, 1])
-        direction = offsets.sum(axis=0) / np.hypot(*offsets.sum(axis=0))
-        self.middle_xy = (ranges.min() + self.radius) * direction + (sensor_in_odom.x, sensor_in_odom.y)
+    points_xy: np.ndarray
+    middle_xy: np.ndarray
+    radius: float
 
 
 def things_in(view: View) -> List[Thing]:
     """What is narrow enough to be somebody, of a view; the first and the last beam may be of the same."""
-    points_xy = view.points_xy
-    if len(points_xy) < FEWEST_BEAMS:
+    if len(view.points_xy) < FEWEST_BEAMS:
         return []
-    steps = np.hypot(*(points_xy - np.roll(points_xy, 1, axis=0)).T)
-    starts = np.flatnonzero(steps > GAP)
-    if not len(starts):
-        return []
-    groups = np.split(np.roll(points_xy, -starts[0], axis=0), (starts - starts[0])[1:])
-    narrow = [
-        group for group in groups if len(group) >= FEWEST_BEAMS and np.hypot(*np.ptp(group, axis=0)) <= WIDEST
+    first, groups, middles = _groups(view.points_xy, view.sensor_in_odom.x, view.sensor_in_odom.y)
+    points_xy = np.concatenate((view.points_xy[first:], view.points_xy[:first]))
+    return [
+        Thing(points_xy[int(start) : int(end)], middle[:2], float(middle[2]))
+        for (start, end), middle in zip(groups, middles)
     ]
-    return [Thing(group, view.sensor_in_odom) for group in narrow]
+
+
+@numba.njit(cache=True)
+def _near_and_free(angles, ranges, range_min, range_max):
+    """The beams that end within reach, and how far it was free, (DIRECTIONS,)."""
+    near, count = np.empty(ranges.size, dtype=np.int64), 0
+    free = np.full(DIRECTIONS, np.inf)
+    for i in range(ranges.size):
+        reach = ranges[i]
+        is_hit = np.isfinite(reach) and range_min <= reach < range_max
+        if is_hit and reach < REACH:
+            near[count] = i
+            count += 1
+        if not is_hit:
+            reach = range_max if reach == np.inf else 0.0
+        direction = _direction_of(angles[i])
+        free[direction] = min(free[direction], reach)
+    for direction in range(DIRECTIONS):
+        if free[direction] == np.inf:
+            free[direction] = 0.0
+    return near[:count].copy(), free
+
+
+@numba.njit(cache=True)
+def _share_free(points_xy, x, y, yaw, free):
+    """Which share of the points lies nearer to a place than it was free from there."""
+    count = 0
+    for i in range(points_xy.shape[0]):
+        off_x, off_y = points_xy[i, 0] - x, points_xy[i, 1] - y
+        direction = _direction_of(math.atan2(off_y, off_x) - yaw)
+        count += math.hypot(off_x, off_y) + BEYOND < free[direction]
+    return count / points_xy.shape[0]
+
+
+@numba.njit(cache=True)
+def _direction_of(angle):
+    return int(math.floor(angle * (DIRECTIONS / (2.0 * math.pi)))) % DIRECTIONS
+
+
+@numba.njit(cache=True)
+def _groups(points_xy, x, y):
+    """The first point after a gap; from there on, where each narrow group starts and ends, (M, 2), and the x,
+    y of its middle and its radius, (M, 3); as seen from (x, y)."""
+    size = points_xy.shape[0]
+    groups, middles = np.empty((size, 2), dtype=np.int64), np.empty((size, 3))
+    first = 0
+    while first < size and _apart(points_xy, first) <= GAP:
+        first += 1
+    start, count = 0, 0
+    for end in range(1, size + 1 if first < size else 0):
+        if end < size and _apart(points_xy, (first + end) % size) <= GAP:
+            continue
+        if end - start >= FEWEST_BEAMS:
+            middles[count] = _middle(points_xy, first + start, first + end, x, y)
+            if 2.0 * middles[count, 2] <= WIDEST:
+                groups[count] = start, end
+                count += 1
+        start = end
+    return first, groups[:count], middles[:count]
+
+
+@numba.njit(cache=True)
+def _apart(points_xy, i):
+    """Metres between a point and the one before."""
+    return math.hypot(points_xy[i, 0] - points_xy[i - 1, 0], points_xy[i, 1] - points_xy[i - 1, 1])
+
+
+@numba.njit(cache=True)
+def _middle(points_xy, start, end, x, y):
+    """The middle of a thing, x and y, and its radius; its points go on behind the last with the first."""
+    low_x = low_y = nearest = np.inf
+    high_x = high_y = -np.inf
+    sum_x = sum_y = 0.0
+    for i in range(start, end):
+        at_x, at_y = points_xy[i % points_xy.shape[0]]
+        low_x, high_x = min(low_x, at_x), max(high_x, at_x)
+        low_y, high_y = min(low_y, at_y), max(high_y, at_y)
+        nearest = min(nearest, math.hypot(at_x - x, at_y - y))
+        sum_x, sum_y = sum_x + at_x - x, sum_y + at_y - y
+    radius = 0.5 * math.hypot(high_x - low_x, high_y - low_y)
+    away = (nearest + radius) / math.hypot(sum_x, sum_y)
+    return x + away * sum_x, y + away * sum_y, radius

@@ -2,11 +2,10 @@
 
 import math
 
-import numba
 import numpy as np
 
 from move_base_lite.control.local_planner import Plan, Situation, Trajectory
-from move_base_lite.control.mppi.rollout import Limits, Weights, costs_of, drive
+from move_base_lite.control.mppi.rollout import Limits, Weights, arguments_of, best_way
 from move_base_lite.control.mppi.samples import KNOTS, fan, smooth_noise
 from move_base_lite.control.mppi.scene import scene_of
 from move_base_lite.control.mppi.settings import MppiSettings
@@ -29,7 +28,7 @@ class PathIntegral:
         self._period = period
         steps = max(KNOTS, round(settings.horizon / period))
         self._noise = smooth_noise(np.random.default_rng(settings.seed), settings, steps)
-        self._fan = fan(settings, steps)
+        self._samples = np.concatenate((self._noise, fan(settings, steps)))
         self._mean = np.zeros((steps, 2))
         self._weights = Weights(
             safe_distance=settings.safe_distance,
@@ -42,21 +41,14 @@ class PathIntegral:
 
     def follow(self, situation: Situation, plan: Plan, limits: Twist2) -> Trajectory:
         """The mean of the ways tried, or the best of them if that is better."""
-        twist, temperature = situation.twist, self._settings.temperature
+        twist = situation.twist
         start = np.array([*situation.base_in_local.as_array(), twist.v, twist.omega])
-        problem = (start, scene_of(situation, plan), self._limits(limits), self._weights)
-        samples = np.concatenate((self._mean + self._noise, self._fan))
-        costs = costs_of(samples, *problem)
-        best = int(np.argmin(costs))
-        if not math.isfinite(costs[best]):
+        problem = arguments_of(scene_of(situation, plan), self._limits(limits), self._weights)
+        np.add(self._noise, self._mean, out=self._samples[: len(self._noise)])
+        mean, cost, poses, speeds = best_way(self._samples, start, self._settings.temperature, *problem)
+        if not math.isfinite(cost):
             self._mean[:] = 0.0
             raise ControlError("every way tried leads into an obstacle")
-        weights = np.exp((costs[best] - costs) / temperature)
-        mean = _mean_of(samples, weights / weights.sum())
-        cost, poses, speeds = drive(mean, *problem)
-        if not cost <= costs[best] + temperature:
-            mean = samples[best]
-            cost, poses, speeds = drive(mean, *problem)
         self._mean = np.concatenate((mean[1:], mean[-1:]))
         v, omega = map(float, speeds[0])
         return Trajectory(Twist2(v, omega), poses, float(cost))
@@ -73,13 +65,3 @@ class PathIntegral:
             approach_time=settings.approach_time,
             creep_v=settings.creep_vel_x,
         )
-
-
-@numba.njit(cache=True)
-def _mean_of(samples, weights):
-    """The weighted mean; a product of BLAS would take more than one core for a moment."""
-    mean = np.zeros(samples.shape[1:])
-    for i in range(samples.shape[0]):
-        if weights[i] > 0.0:
-            mean += weights[i] * samples[i]
-    return mean

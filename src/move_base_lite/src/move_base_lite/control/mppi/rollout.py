@@ -1,18 +1,22 @@
 """A way of driving followed ahead, and what it costs. Kernels."""
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple, Tuple
 
 import numba
 import numpy as np
 
-from move_base_lite.control.mppi.scene import room_at, room_beside_movers, value_at
+from move_base_lite.control.mppi.scene import ARRAYS, Scene, room_at, room_beside_movers, value_at
 
 # Radians of a turn, and metres, after which the footprint is checked anew.
 CHECKED_ANGLE = 0.1
 CHECKED_DISTANCE = 0.05
 # Metres ahead at which the slope of the cost to go is felt.
 NOSE = 0.3
+# Cells between outline and obstacle, by the middle of the robot, with which no point of it is in one.
+SURELY_FREE = 1.5
+# Radians up to which a turn goes by its series.
+SMALL_ANGLE = 0.2
 # m/s that a robot counts as at least when it lingers near an obstacle.
 CREEPING = 0.1
 
@@ -42,49 +46,101 @@ class Weights(NamedTuple):
 
 
 @numba.njit(cache=True)
-def costs_of(samples, start, scene, limits, weights):
-    costs = np.empty(samples.shape[0])
-    for i in range(samples.shape[0]):
-        costs[i] = drive(samples[i], start, scene, limits, weights)[0]
-    return costs
+def best_way(samples, start, temperature, clearance, to_go, outline_xy, movers, numbers):
+    """The mean of ``samples`` (M, N, 2), weighted by what each costs, or the best of them if that is better.
+
+    Returns the speeds asked for (N, 2), cost, poses and speeds (see drive); the cost is inf if all hit
+    something. Takes arrays of a scene one by one, and all numbers in one: names take numba long to look at.
+    """
+    scene, limits, weights = _named(clearance, to_go, outline_xy, movers, numbers)
+    count, steps = samples.shape[:2]
+    poses, speeds, costs = np.empty((steps + 1, 3)), np.empty((steps, 2)), np.empty(count)
+    for i in range(count):
+        costs[i] = drive(samples[i], start, scene, limits, weights, poses, speeds)
+    best = np.argmin(costs)
+    lowest = costs[best]
+    mean, total = np.zeros((steps, 2)), 0.0
+    if lowest < np.inf:
+        for i in range(count):
+            weight = math.exp((lowest - costs[i]) / temperature)
+            total += weight
+            if weight > 0.0:
+                _add(mean, weight, samples[i])
+        mean /= total
+        lowest = drive(mean, start, scene, limits, weights, poses, speeds)
+        if not lowest <= costs[best] + temperature:
+            mean = samples[best].copy()
+            lowest = drive(mean, start, scene, limits, weights, poses, speeds)
+    return mean, lowest, poses, speeds
+
+
+def arguments_of(scene: Scene, limits: Limits, weights: Weights) -> Tuple[Any, ...]:
+    """What ``best_way`` takes of them."""
+    arrays, numbers = scene[:ARRAYS], scene[ARRAYS:]
+    return (*arrays, np.array([*numbers, *limits, *weights]))
 
 
 @numba.njit(cache=True)
-def drive(wanted, start, scene, limits, weights):
-    """Cost, poses (N + 1, 3) and speeds (N, 2) of a robot that is asked for the speeds ``wanted`` (N, 2).
+def _named(clearance, to_go, outline_xy, movers, n):
+    scene = Scene(clearance, to_go, outline_xy, movers, n[0], n[1], n[2], n[3], n[4])
+    limits = Limits(n[5], n[6], n[7], n[8], n[9], n[10], n[11], n[12])
+    return scene, limits, Weights(n[13], n[14], n[15], n[16], n[17], n[18])
 
-    The speeds are those it can reach, cut to what its clearance allows. The cost is inf if it hits what stays
-    before it could have stopped. A robot in touch may move as long as it never touches at more points.
+
+@numba.njit(cache=True)
+def _add(mean, weight, sample):
+    for step in range(mean.shape[0]):
+        mean[step, 0] += weight * sample[step, 0]
+        mean[step, 1] += weight * sample[step, 1]
+
+
+@numba.njit(cache=True)
+def drive(wanted, start, scene, limits, weights, poses, speeds):
+    """The cost of a robot that is asked for the speeds ``wanted`` (N, 2), in metres left to drive.
+
+    Fills in the poses (N + 1, 3) and speeds (N, 2), those it can reach, cut to what its clearance allows. The
+    cost is inf if it hits what stays before it could have stopped. A robot in touch may move as long as it
+    never touches at more points.
     """
     steps, dt = wanted.shape[0], limits.period
-    poses, speeds = np.empty((steps + 1, 3)), np.zeros((steps, 2))
     x, y, yaw, v, omega = start
+    c, s = math.cos(yaw), math.sin(yaw)
     poses[0] = x, y, yaw
-    still_room = room_at(scene, x, y, yaw)
-    least_room = min(scene.resolution, still_room, room_beside_movers(scene, x, y, 0.0))
+    enough = _exact_below(scene, limits, weights)
+    still_room = room_at(scene, x, y, c, s, enough)
+    least_room = min(1.0 / scene.cells_per_metre, still_room, room_beside_movers(scene, x, y, 0.0))
     seconds_to_stop = abs(v) / limits.acceleration
     cost, moved, turned = 0.0, 0.0, 0.0
     to_go = value_at(scene.to_go, scene, x, y)
     for step in range(steps):
         v, omega = _reached(v, omega, wanted[step], still_room, limits)
-        x_next, y_next, yaw_next = _moved(x, y, yaw, v, omega, dt)
+        ahead_c, ahead_s = _turned(c, s, 0.5 * omega * dt)
+        x_next, y_next, yaw_next = x + v * dt * ahead_c, y + v * dt * ahead_s, yaw + omega * dt
+        c, s = _turned(ahead_c, ahead_s, 0.5 * omega * dt)
         moved, turned = moved + abs(v) * dt, turned + abs(omega) * dt
         if moved > CHECKED_DISTANCE or turned > CHECKED_ANGLE or step == steps - 1:
             moved, turned = 0.0, 0.0
-            still_room = room_at(scene, x_next, y_next, yaw_next)
+            still_room = room_at(scene, x_next, y_next, c, s, enough)
         passing_room = room_beside_movers(scene, x_next, y_next, (step + 1) * dt)
         if min(still_room, passing_room) < least_room:
             if still_room < least_room and (step - 1) * dt < seconds_to_stop:
-                return np.inf, poses, speeds
+                return np.inf
             cost += (1.0 - step / steps) * (1.0 + weights.delay * steps * dt * to_go)
-            poses[step + 1 :] = poses[step]
+            poses[step + 1 :], speeds[step:] = poses[step], 0.0
             break
         x, y, yaw = x_next, y_next, yaw_next
-        poses[step + 1] = x, y, yaw
-        speeds[step] = v, omega
+        poses[step + 1], speeds[step] = (x, y, yaw), (v, omega)
         to_go = value_at(scene.to_go, scene, x, y)
         cost = _with_step(cost, v, omega, still_room, passing_room, to_go, limits, weights)
-    return cost + to_go + weights.heading * _slope(scene, x, y, yaw, to_go), poses, speeds
+    return cost + to_go + weights.heading * _slope(scene, x, y, yaw, to_go)
+
+
+@numba.njit(cache=True)
+def _exact_below(scene, limits, weights):
+    """Metres of room above which more makes no difference, or a round robot surely touches nothing."""
+    if scene.circumscribed_radius - scene.inscribed_radius < 1.0 / scene.cells_per_metre:
+        return SURELY_FREE / scene.cells_per_metre
+    return max(weights.safe_distance, limits.highest_v * limits.approach_time, 1.0 / scene.cells_per_metre)
 
 
 @numba.njit(cache=True)
@@ -97,9 +153,15 @@ def _reached(v, omega, wanted, room, limits):
 
 
 @numba.njit(cache=True)
-def _moved(x, y, yaw, v, omega, dt):
-    heading = yaw + 0.5 * omega * dt
-    return x + v * dt * math.cos(heading), y + v * dt * math.sin(heading), yaw + omega * dt
+def _turned(c, s, angle):
+    """Cosine and sine of a heading turned by an angle; small ones by their series, to the last bits."""
+    if abs(angle) > SMALL_ANGLE:
+        by_c, by_s = math.cos(angle), math.sin(angle)
+    else:
+        square = angle * angle
+        by_c = 1.0 - square / 2.0 * (1.0 - square / 12.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0)))
+        by_s = angle * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0)))
+    return c * by_c - s * by_s, s * by_c + c * by_s
 
 
 @numba.njit(cache=True)

@@ -18,17 +18,22 @@ FAR = 1e3
 
 
 class Scene(NamedTuple):
-    """What there is around the robot: fields (rows, cols) in metres, and the outline it fills itself."""
+    """What there is around the robot: fields (rows, cols) in metres, the outline it fills itself, and what
+    moves; then numbers.
+    """
 
     clearance: np.ndarray
     to_go: np.ndarray
+    outline_xy: np.ndarray
+    movers: np.ndarray
     origin_x: float
     origin_y: float
-    resolution: float
-    outline_xy: np.ndarray
+    cells_per_metre: float
     inscribed_radius: float
     circumscribed_radius: float
-    movers: np.ndarray
+
+
+ARRAYS = 4
 
 
 def scene_of(situation: Situation, plan: Plan) -> Scene:
@@ -38,13 +43,13 @@ def scene_of(situation: Situation, plan: Plan) -> Scene:
     return Scene(
         clearance=distance_field(_standing(costmap, movers), window.resolution, FAR),
         to_go=_cost_to_go(costmap, plan.path_xy),
+        outline_xy=costmap.outline_xy,
+        movers=movers,
         origin_x=window.origin_x,
         origin_y=window.origin_y,
-        resolution=window.resolution,
-        outline_xy=costmap.outline_xy,
+        cells_per_metre=1.0 / window.resolution,
         inscribed_radius=costmap.footprint.inscribed_radius,
         circumscribed_radius=costmap.footprint.circumscribed_radius,
-        movers=movers,
     )
 
 
@@ -73,34 +78,39 @@ def _standing(costmap: LayeredCostmap, movers: np.ndarray) -> np.ndarray:
 
 
 @numba.njit(cache=True)
-def room_at(scene, x, y, yaw):
+def room_at(scene, x, y, c, s, enough):
     """Metres from the outline to the nearest obstacle, at least; if it touches, minus how many points do.
 
-    All that is outside the window counts as an obstacle.
+    ``c``, ``s``: cosine and sine of the heading; ``enough``: metres from which on it need not be exact. All
+    that is outside the window counts as an obstacle.
     """
     rows, cols = scene.clearance.shape
-    base_col = (x - scene.origin_x) / scene.resolution
-    base_row = (y - scene.origin_y) / scene.resolution
-    row, col = math.floor(base_row), math.floor(base_col)
-    touching, nearest = 0, FAR
-    if row < 0 or row >= rows or col < 0 or col >= cols:
+    cells = scene.cells_per_metre
+    base_col = (x - scene.origin_x) * cells
+    base_row = (y - scene.origin_y) * cells
+    touching, nearest = 0, np.float32(FAR)
+    if not (0.0 <= base_row < rows and 0.0 <= base_col < cols):
         touching = 1
     else:
-        around = scene.clearance[row, col]
-        if around > 2.0 * scene.circumscribed_radius:
-            return around - scene.circumscribed_radius
+        around = scene.clearance[np.uint32(base_row), np.uint32(base_col)]
+        if around - scene.circumscribed_radius > enough:
+            return float(around - scene.circumscribed_radius)
         if around < scene.inscribed_radius:
             touching = 1
-    c, s = math.cos(yaw) / scene.resolution, math.sin(yaw) / scene.resolution
+    c, s = c * cells, s * cells
     for i in range(scene.outline_xy.shape[0]):
-        along, across = scene.outline_xy[i]
-        row = math.floor(base_row + s * along + c * across)
-        col = math.floor(base_col + c * along - s * across)
-        if row < 0 or row >= rows or col < 0 or col >= cols or scene.clearance[row, col] == 0.0:
+        along, across = scene.outline_xy[i, 0], scene.outline_xy[i, 1]
+        row = base_row + s * along + c * across
+        col = base_col + c * along - s * across
+        if not (0.0 <= row < rows and 0.0 <= col < cols):
+            touching += 1
+            continue
+        room = scene.clearance[np.uint32(row), np.uint32(col)]
+        if room == 0.0:
             touching += 1
         else:
-            nearest = min(nearest, scene.clearance[row, col])
-    return nearest if touching == 0 else -float(touching)
+            nearest = min(nearest, room)
+    return float(nearest) if touching == 0 else -float(touching)
 
 
 @numba.njit(cache=True)
@@ -118,12 +128,23 @@ def room_beside_movers(scene, x, y, seconds):
 def value_at(field, scene, x, y):
     """A field between the centres of its cells; FAR where it is not known."""
     rows, cols = field.shape
-    u = (y - scene.origin_y) / scene.resolution - 0.5
-    w = (x - scene.origin_x) / scene.resolution - 0.5
-    row, col = int(math.floor(u)), int(math.floor(w))
-    if row < 0 or row >= rows - 1 or col < 0 or col >= cols - 1:
+    cells = scene.cells_per_metre
+    u = (y - scene.origin_y) * cells - 0.5
+    w = (x - scene.origin_x) * cells - 0.5
+    if not (0.0 <= u < rows - 1 and 0.0 <= w < cols - 1):
         return FAR
-    u, w = u - row, w - col
+    row, col = np.uint32(u), np.uint32(w)
+    u, w = u - float(row), w - float(col)
+    below, right = row + np.uint32(1), col + np.uint32(1)
+    low = (1.0 - w) * field[row, col] + w * field[row, right]
+    high = (1.0 - w) * field[below, col] + w * field[below, right]
+    value = (1.0 - u) * low + u * high
+    return value if value < np.inf else _value_of_known(field, row, col, u, w)
+
+
+@numba.njit(cache=True)
+def _value_of_known(field, row, col, u, w):
+    """The same where some of four cells are not known; ``u``, ``w``: from the first of them on, 0 to 1."""
     total, weight = 0.0, 0.0
     for i in range(2):
         for j in range(2):

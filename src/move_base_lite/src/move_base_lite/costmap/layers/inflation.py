@@ -11,6 +11,7 @@ from move_base_lite.costmap.layer import Layer, LayerSettings, Site
 from move_base_lite.costmap.window import Bounds, Window
 from move_base_lite.plugin import Plugin
 from planar.config.parameters import at_least, check_parameters, parameter
+from planar.geometry.distance_field import squares_along_rows
 
 
 @dataclass(frozen=True)
@@ -61,9 +62,6 @@ class InflationLayer(Layer):
             _inflate(costs, bounds, seen, near, self._cost_by_square, self._inflate_unknown)
 
 
-# Exact Euclidean distances in two passes (Felzenszwalb and Huttenlocher, 2012), cut off at the reach.
-
-
 @numba.njit(cache=True)
 def _cells_to_obstacle_along_columns(costs, bounds, seen, far):
     """Cells, int32, from each of the rows of ``bounds`` and columns of ``seen`` to an obstacle of its column,
@@ -89,9 +87,10 @@ def _cells_to_obstacle_along_columns(costs, bounds, seen, far):
 def _inflate(costs, bounds, seen, near, cost_by_square, inflate_unknown):
     """Raises the costs in ``bounds`` by the squares of the distances to obstacles."""
     row_min, row_max, col_min, col_max = bounds
+    squares = squares_along_rows(near)
     for row in range(row_min, row_max):
         for col in range(col_min, col_max):
-            square = _square_to_obstacle(near[row - row_min], col - seen[2], cost_by_square.size)
+            square = squares[row - row_min, col - seen[2]]
             if square >= cost_by_square.size or square == 0:
                 continue
             cost = cost_by_square[square]
@@ -100,21 +99,6 @@ def _inflate(costs, bounds, seen, near, cost_by_square, inflate_unknown):
                     costs[row, col] = cost
             elif cost > costs[row, col]:
                 costs[row, col] = cost
-
-
-@numba.njit(cache=True)
-def _square_to_obstacle(near_in_col, middle, limit):
-    """The square of the cells from the middle of a row to an obstacle, if it is below the limit."""
-    best = near_in_col[middle] ** 2
-    offset = 1
-    while offset * offset < min(best, limit):
-        square = offset * offset
-        if middle - offset >= 0:
-            best = min(best, square + near_in_col[middle - offset] ** 2)
-        if middle + offset < near_in_col.size:
-            best = min(best, square + near_in_col[middle + offset] ** 2)
-        offset += 1
-    return best
 
 
 INFLATION: Plugin[Layer] = Plugin("costmap_2d::InflationLayer", InflationSettings, InflationLayer)
