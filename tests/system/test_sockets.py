@@ -1,0 +1,62 @@
+#!/usr/bin/env python3
+"""What a running home listens on: nothing that another host could reach, as docs/security.md tells."""
+
+import ipaddress
+import os
+import signal
+import subprocess
+import tempfile
+import unittest
+import uuid
+from pathlib import Path
+
+import psutil
+import rostest
+from processes import processes_of
+
+SCRIPT = Path(__file__).resolve().parents[2] / "scripts/launch.sh"
+EXIT_SECONDS = 20.0
+# Debian's own, in C++: ROS's library for it has the server of every node listen on all interfaces.
+OF_THE_SYSTEM = {"robot_state_publisher"}
+
+
+class SocketsTest(unittest.TestCase):
+    def test_only_this_host_reaches_what_the_project_listens_on(self):
+        mark = f"HOME_SERVICE_TEST={uuid.uuid4()}"
+        name, value = mark.split("=")
+        with tempfile.TemporaryDirectory() as folder:
+            run = subprocess.Popen(
+                [str(SCRIPT), "--web", "--output", folder],
+                env={**os.environ, name: value},
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                text=True,
+            )
+            if any("Ctrl-C closes it" in line for line in run.stdout):
+                found = {each for process in processes_of(mark) for each in _listening(process)}
+            run.send_signal(signal.SIGINT)
+            run.communicate(timeout=EXIT_SECONDS)
+        for program, address, port in sorted(found):
+            print(f"{address}:{port} {program}")
+        self.assertLess({"sim_bridge", "move_base_lite", "cockpit"}, {program for program, *_ in found})
+        open_to_others = {
+            program for program, address, _ in found if not ipaddress.ip_address(address).is_loopback
+        }
+        self.assertLessEqual(open_to_others, OF_THE_SYSTEM)
+
+
+def _listening(process):
+    """Program, address and port of each socket that a process is reached by."""
+    with process.oneshot():
+        words = process.cmdline()
+        program = next((Path(word).name for word in words if "python" not in Path(word).name), words[0])
+        sockets = process.connections(kind="inet")
+    return [
+        (program, socket.laddr.ip, socket.laddr.port)
+        for socket in sockets
+        if socket.status == psutil.CONN_LISTEN or (socket.type.name == "SOCK_DGRAM" and not socket.raddr)
+    ]
+
+
+if __name__ == "__main__":
+    rostest.rosrun("home_service_tests", "sockets", SocketsTest)
