@@ -21,6 +21,8 @@ from turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelativ
 from visualization_msgs.msg import MarkerArray
 
 MIDDLE, SIDE = 5.544445, 11.088889
+# So many poses in a row tell their rate.
+POSES = 120
 # Those of the official package.
 MD5_SUMS = {
     Color: "353891e354491c51aabe32df673fb446",
@@ -90,12 +92,16 @@ class TurtlesimContractTest(unittest.TestCase):
 
     def test_poses_come_at_about_62_hz(self):
         stamps = []
+
+        def rate_of_late():
+            latest = stamps[-POSES:]
+            rate = (POSES - 1) / (latest[-1] - latest[0]) if len(latest) == POSES else 0.0
+            return abs(rate - 62.5) < 6.0
+
         subscriber = rospy.Subscriber("/turtle1/pose", Pose, lambda _: stamps.append(time.monotonic()))
-        time.sleep(3.0)
+        # a machine that is busy lets them come late, but not all the time
+        self.assertTrue(wait_until(rate_of_late))
         subscriber.unregister()
-        rate = (len(stamps) - 1) / (stamps[-1] - stamps[0])
-        print(f"poses at {rate:.1f} Hz")
-        self.assertAlmostEqual(rate, 62.5, delta=6.0)
 
     def test_a_command_lasts_one_second(self):
         self.tell(forward=1.0)
