@@ -86,7 +86,7 @@ def is_shown(page, port, cookie):
 
 
 def closing_code(socket_):
-    """None if the frame that tells it was lost, as it may be when the server closes on what it has not read."""
+    """None if the frame that tells it is lost, as when the server closes on what it has not read."""
     with pytest.raises(ConnectionClosed) as closed:
         while True:
             socket_.recv(timeout=DEADLINE)
