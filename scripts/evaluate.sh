@@ -12,6 +12,7 @@
 #   --workers N        processes (default: one for each core)
 #   --scheduler ADDRESS  Dask's, instead of processes here: tcp://HOST:8786
 #   --require RULE...  exit code 1 unless this holds of each scenario: "success >= 0.99"
+#   --against VERSION  exit code 1 if a scenario is worse than with this version of the software, on the same seeds
 #   --output FOLDER    results are kept and told here (default: runs/laboratory)
 #   --help             this text
 

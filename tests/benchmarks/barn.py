@@ -12,7 +12,6 @@ FOLDER holds, at any depth, files world_N.world and path_N.npy of the BARN data 
 
 import argparse
 import json
-import math
 import sys
 import time
 from dataclasses import asdict, dataclass, replace
@@ -22,17 +21,15 @@ from typing import Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
+from laboratory.worlds.barn import GOAL_IN_ODOM, START, BarnFolder, reference_length, score
 from move_base_lite import Navigator, NavigatorSettings, Status, load_settings
 from move_base_lite.warming import warm_up
-from planar import Pose2
+from planar import SettingsError
 from sim_bridge import ROBOTS, Simulation, SimulationSettings, load_world
 
 CONFIG = Path(__file__).resolve().parents[2] / "src" / "move_base_lite" / "config" / "jackal.yaml"
-START = Pose2(-2.25, 3.0, math.pi / 2.0)
-GOAL_IN_ODOM = Pose2(10.0, 0.0)
 ARRIVED = 1.0
 TIME_LIMIT = 100.0
-REFERENCE_SPEED = 2.0
 SIMULATION = SimulationSettings(odometry_rate=100, scan_rate=20)
 
 
@@ -76,20 +73,6 @@ def main() -> int:
         details = {"summary": summary, "runs": [asdict(run) for run in runs]}
         Path(options.json).write_text(json.dumps(details, indent=2))
     return 0
-
-
-def score(seconds: float, path_length: float) -> float:
-    """BARN's score of a run that has arrived after ``seconds``."""
-    optimal = path_length / REFERENCE_SPEED
-    return optimal / min(max(seconds, 2.0 * optimal), 8.0 * optimal)
-
-
-def reference_length(path_cells: np.ndarray) -> float:
-    """Metres from start over the cells (N, 2) of a reference path to the goal."""
-    goal = START @ GOAL_IN_ODOM
-    path_xy = path_cells * 0.15 + (-4.575, 5.075)
-    path_xy = np.concatenate(([[START.x, START.y]], path_xy, [[goal.x, goal.y]]))
-    return float(np.linalg.norm(np.diff(path_xy, axis=0), axis=1).sum())
 
 
 def _run(task) -> Run:
@@ -148,12 +131,11 @@ def _drive(simulation: Simulation, settings: NavigatorSettings) -> Run:
 
 def worlds_in(folder: Path, only: Optional[Sequence[int]]) -> Dict[int, Tuple[Path, Path]]:
     """Number -> files of the world and of its reference path, of all worlds or some."""
-    worlds = {int(file.stem.split("_")[1]): file for file in folder.rglob("world_*.world")}
-    paths = {int(file.stem.split("_")[1]): file for file in folder.rglob("path_*.npy")}
-    both = sorted(set(worlds) & set(paths))
-    if not both:
-        sys.exit(f"{folder}: no pairs of world_N.world and path_N.npy")
-    return {number: (worlds[number], paths[number]) for number in (both if only is None else only)}
+    try:
+        both = {number: (world, path) for number, world, path in BarnFolder(folder).pairs()}
+    except SettingsError as error:
+        sys.exit(str(error))
+    return {number: both[number] for number in (both if only is None else only)}
 
 
 def _summary(runs: List[Run]) -> dict:

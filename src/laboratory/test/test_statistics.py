@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from laboratory.commands.evaluate import broken_rules
+from laboratory.evaluation import Evaluated
 from laboratory.results.export import export
 from laboratory.results.result import Result
 from laboratory.scenario import read_scenario
@@ -11,6 +11,7 @@ from laboratory.statistics.comparison import compare
 from laboratory.statistics.requirement import requirement_from
 from laboratory.statistics.summary import mean, share, success_by_way, summary
 from laboratory.suites import FOLDER
+from laboratory.telling import broken_rules, lines_of, regressions
 from planar import SettingsError
 
 WON = Result("d", 0, "v", "success", "", seconds=20.0, driven=10.0, way=8.0, clearance=0.3, turning=0.5)
@@ -88,12 +89,29 @@ def test_a_requirement_is_read_and_held_against_figures():
         requirement_from("always")
 
 
-def test_a_broken_rule_names_its_scenario():
-    class Evaluated:
-        scenario = read_scenario(FOLDER / "home_errand.yaml")
-        summary = summary(runs(["timeout"]))
+def evaluated(outcomes, planner="", **others):
+    scenario = read_scenario(FOLDER / "home_errand.yaml").with_planner(planner)
+    return Evaluated(scenario, "d", runs(outcomes, **others))
 
-    assert broken_rules([Evaluated], [requirement_from("success >= 1")]) == ["home_errand: not success >= 1"]
+
+def test_a_broken_rule_names_its_scenario():
+    rules = [requirement_from("success >= 1")]
+    assert broken_rules([evaluated(["timeout"])], rules) == ["home_errand: not success >= 1"]
+
+
+def test_a_version_that_is_worse_than_another_is_named():
+    good, bad = evaluated(["success"] * 10), evaluated(["timeout"] * 8 + ["success"] * 2)
+    (line,) = regressions([bad], [good])
+    assert line.startswith("home_errand: worse than before: success: worse (+0 −8")
+    assert regressions([good], [bad]) == [] and regressions([good], []) == []
+
+
+def test_the_terminal_tells_figures_and_how_planners_compare():
+    lines = lines_of([evaluated(["success"] * 4), evaluated(["success"] * 3 + ["collision"], "other")])
+    assert lines[0] == "home_errand: 4 runs: 4 success"
+    assert "home_errand [other]: 4 runs: 3 success, 1 collision" in lines
+    assert lines[-1] == "  beside home_errand: success: cannot tell (+0 −1, p 1)"
+    assert lines_of([evaluated([])]) == ["home_errand: 0 runs: none played"]
 
 
 def test_results_are_exported_as_tables(tmp_path):

@@ -12,6 +12,7 @@ from laboratory.results.store import Store
 from laboratory.results.version import version
 from laboratory.scenario.scenario import Scenario
 from laboratory.statistics.summary import Summary, summary
+from planar import SettingsError
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +56,14 @@ class Evaluation:
             if (digest, seed) not in played
         ]
         return missions, sum(len(seeds) for _, _, seeds in self._scenarios)
+
+    def version_like(self, beginning: str) -> str:
+        """The latest version in the file that begins so. Raises SettingsError."""
+        known = self._store.versions()
+        found = [each for each in known if each.startswith(beginning)]
+        if not found:
+            raise SettingsError(f"--against: no results of {beginning}, but of {', '.join(known) or 'none'}")
+        return found[-1]
 
     def evaluated(self, of_version: str = "") -> List[Evaluated]:
         """What there is in the file, of this or another version."""

@@ -14,8 +14,11 @@ MAX_POINTS = 1500
 WALL, FREE, UNKNOWN = (38, 42, 51, 255), (0, 0, 0, 0), (128, 134, 148, 70)
 
 
-def map_svg(record: RunRecord) -> str:
-    """An SVG element of class ``map``; y points up as in the map frame, by way of negated coordinates."""
+def map_svg(record: RunRecord, above: str = "") -> str:
+    """An SVG element of class ``map``; y points up as in the map frame, by way of negated coordinates.
+
+    ``above``: SVG that is drawn over it.
+    """
     points_xy = np.concatenate([record.truth[:, 1:3], record.estimate[:, 1:3], _zone_corners(record)])
     grid = record.grid or OccupancyGrid(np.full((1, 1), -1, dtype=np.int8), 0.05)
     x_min, y_min, x_max, y_max = view_of(grid, points_xy)
@@ -31,6 +34,7 @@ def map_svg(record: RunRecord) -> str:
         *_collisions(record, unit),
         _robot(record, unit),
         *_objects(record, unit),
+        above,
     ]
     view = f"{x_min:.3f} {-y_max:.3f} {x_max - x_min:.3f} {y_max - y_min:.3f}"
     style = f"font-size:{2.6 * unit:.3f}px"

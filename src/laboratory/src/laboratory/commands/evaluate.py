@@ -1,6 +1,6 @@
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, List, Optional, Tuple
+from typing import Any, Optional, Tuple
 
 from home_service.options import count
 from supervision.command_line import argument, option
@@ -22,15 +22,20 @@ class Evaluate:
     require: Optional[Tuple[str, ...]] = option(
         None, 'exit code 1 unless this holds of each scenario: "success >= 0.99"', nargs="+", metavar="RULE"
     )
+    against: Optional[str] = option(
+        None,
+        "exit code 1 if a scenario is worse than with this version, on the same seeds",
+        metavar="VERSION",
+    )
     output: Path = option(Path("runs/laboratory"), "results are kept and told here", type=Path)
 
     def run(self) -> int:
         from laboratory.campaign import Workers
         from laboratory.evaluation import Evaluation
-        from laboratory.results.export import export
         from laboratory.scenario.seeds import seeds_of
         from laboratory.statistics.requirement import requirement_from
         from laboratory.suites import scenarios_of
+        from laboratory.telling import broken_rules, regressions
         from planar import SettingsError
         from supervision.display import complain
         from supervision.interruption import raise_when_interrupted
@@ -43,36 +48,28 @@ class Evaluate:
         if not scenarios:
             raise SettingsError("no scenario is left to be played")
         evaluation = Evaluation(scenarios, seeds, self.output / "results.sqlite")
+        earlier = evaluation.evaluated(evaluation.version_like(self.against)) if self.against else []
         raise_when_interrupted()
         try:
             evaluation.play(Workers(self.workers or 0, self.scheduler))
         finally:
             evaluated = evaluation.evaluated()
-            tell(evaluated)
-            export([(each.scenario, each.results) for each in evaluated], self.output)
+            self._tell(evaluated)
             evaluation.close()
-        broken = broken_rules(evaluated, rules)
+        broken = broken_rules(evaluated, rules) + regressions(evaluated, earlier)
         for text in broken:
             print(text)
         return 2 if complaints else int(bool(broken))
 
+    def _tell(self, evaluated: Any) -> None:
+        """In the terminal, in tables and on the page."""
+        from laboratory.page import page_html
+        from laboratory.results.export import export
+        from laboratory.results.version import version
+        from laboratory.telling import lines_of
+        from planar import write_atomically
 
-def tell(evaluated: Any) -> None:
-    """What came of each scenario, in the terminal."""
-    for each in evaluated:
-        told = each.summary
-        outcomes = ", ".join(f"{number} {name}" for name, number in told.outcomes.items() if number)
-        print(f"{each.scenario.label}: {told.runs} runs: {outcomes or 'none played'}")
-        for name, estimate in told.figures.items():
-            if name not in told.outcomes or name == "success":
-                print(f"  {name:<12} {estimate}")
-
-
-def broken_rules(evaluated: Any, rules: Any) -> List[str]:
-    """A line for each rule that does not hold of a scenario."""
-    return [
-        f"{each.scenario.label}: not {rule}"
-        for each in evaluated
-        for rule in rules
-        if not rule.is_met(each.summary.figures)
-    ]
+        print("\n".join(lines_of(evaluated)))
+        export([(each.scenario, each.results) for each in evaluated], self.output)
+        write_atomically(self.output / "page.html", page_html(evaluated, version()).encode("utf-8"))
+        print(f"page and tables in {self.output}")

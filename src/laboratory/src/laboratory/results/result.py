@@ -29,8 +29,8 @@ class Result:
     """Lengths in metres, ``seconds`` simulated; what a run has not is None.
 
     ``way``: the shortest that there was, ``clearance``: the least between the robot's middle and anything
-    solid, ``turning``: rad turned for each metre driven. ``hash``: the same for two runs only if every bit of
-    their true trajectories is. ``track``: (N, 4) float32, thinned, as bytes.
+    solid, ``turning``: rad turned for each metre driven, ``score``: of a benchmark. ``hash``: the same for two
+    runs only if every bit of their true trajectories is. ``track``: (N, 4) float32, thinned, as bytes.
     """
 
     digest: str
@@ -47,6 +47,7 @@ class Result:
     turning: Optional[float] = None
     localization_mean: Optional[float] = None
     localization_max: Optional[float] = None
+    score: Optional[float] = None
     collisions: int = 0
     end_x: Optional[float] = None
     end_y: Optional[float] = None
@@ -81,6 +82,7 @@ def result_of(play: Play, arena: Arena, arena_number: int, key: Key, wall_second
         turning=float(np.abs(wrap(steps[:, 3])).sum()) / driven if driven > 0.0 else None,
         localization_mean=float(errors.mean()) if len(errors) else None,
         localization_max=float(errors.max()) if len(errors) else None,
+        score=play.score,
         collisions=len(set(play.touched)) or int(play.outcome == COLLISION),
         end_x=float(track[-1, 1]),
         end_y=float(track[-1, 2]),

@@ -33,7 +33,7 @@ def read_scenario(path: Path) -> Scenario:
     return Scenario(
         name=path.stem,
         file=path.resolve(),
-        about=table.text("about", ""),
+        about=table.text("about") if "about" in table else "",
         world=_chosen(table, "world", SOURCES, path.parent),
         task=_chosen(table, "task", TASKS, path.parent),
         robot=robot,

@@ -29,7 +29,7 @@ class Estimate(NamedTuple):
 @dataclass(frozen=True)
 class Summary:
     """``figures``: by their names, those that there are: success, collision, timeout, failure and error are
-    shares of the runs; seconds, driven, spl, clearance, turning and localization are means.
+    shares of the runs; seconds, driven, spl, score, clearance, turning and localization are means.
     """
 
     runs: int
@@ -46,6 +46,7 @@ def summary(results: Sequence[Result]) -> Summary:
         ("seconds", won, lambda run: run.seconds),
         ("driven", won, lambda run: run.driven),
         ("spl", results, success_by_way),
+        ("score", results, lambda run: run.score),
         ("clearance", results, lambda run: run.clearance),
         ("turning", won, lambda run: run.turning),
         ("localization", results, lambda run: run.localization_mean),
@@ -59,7 +60,7 @@ def summary(results: Sequence[Result]) -> Summary:
 # What can be told of runs, and asked for by --require.
 FIGURES = (
     *("success", COLLISION, TIMEOUT, FAILURE, ERROR),
-    *("seconds", "driven", "spl", "clearance", "turning", "localization"),
+    *("seconds", "driven", "spl", "score", "clearance", "turning", "localization"),
 )
 
 

@@ -43,7 +43,7 @@ class Deliveries:
         run = rehearsal.run(scenario.seconds)
         return Play(
             _outcome(run, scenario.seconds),
-            run.verdict.reason,
+            _reason(run),
             run.trajectory,
             run.localization_error,
             run.ledger.collisions,
@@ -87,6 +87,12 @@ def _outcome(run: Rehearsed, seconds: float) -> str:
     if collision(run.ledger.collisions):
         return COLLISION
     return TIMEOUT if run.simulated_seconds > seconds else FAILURE
+
+
+def _reason(run: Rehearsed) -> str:
+    """That of the verdict; and what it collided with, if that was not the end of it."""
+    touched, reason = collision(run.ledger.collisions), run.verdict.reason
+    return reason if touched is None or touched in reason else f"{touched}; {reason}"
 
 
 def read_errand(table: Table, folder: Path) -> Deliveries:

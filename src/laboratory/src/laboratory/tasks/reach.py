@@ -9,6 +9,7 @@ import numpy as np
 from home_service.judging.verdict import collision
 from home_service.rehearsal import NAVIGATION_CONFIG, Conditions
 from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, Play
+from laboratory.worlds.barn import score
 from laboratory.worlds.source import Arena
 from move_base_lite import Navigator, Status
 from planar import Pose2, Scan, Twist2
@@ -34,9 +35,11 @@ class Reach:
             outcome, reason = drive.run(scenario.seconds)
         finally:
             drive.close()
-        return Play(
-            outcome, reason, np.array(drive.trajectory), np.zeros(0), sorted(drive.touched), arena.way
-        )
+        track, touched = np.array(drive.trajectory), sorted(drive.touched)
+        points = None
+        if arena.way is not None:
+            points = score(float(track[-1, 0]), arena.way) if outcome == SUCCESS else 0.0
+        return Play(outcome, reason, track, np.zeros(0), touched, arena.way, points)
 
     def places(self, arena: Arena) -> Sequence[Pose2]:
         return ()

@@ -31,6 +31,7 @@ class Play:
 
     ``trajectory``: (N, 4) stamp, true x, y, yaw. ``localization_error``: (M,), metres, of a robot with a map.
     ``touched``: names of what it bumped into. ``way``: metres of the shortest way there is.
+    ``score``: that of a benchmark.
     """
 
     outcome: str
@@ -39,6 +40,7 @@ class Play:
     localization_error: np.ndarray
     touched: Sequence[str] = ()
     way: Optional[float] = None
+    score: Optional[float] = None
 
 
 class Task(Protocol):

@@ -15,6 +15,8 @@ from sim_bridge import load_world
 
 START = Pose2(-2.25, 3.0, math.pi / 2.0)
 GOAL_IN_ODOM = Pose2(10.0, 0.0)
+# m/s, at which the reference path takes the time that runs are compared with.
+REFERENCE_SPEED = 2.0
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,12 @@ class BarnFolder:
 @lru_cache(maxsize=32)
 def _arena(number: int, world: Path, path: Path) -> Arena:
     return Arena(load_world(world), None, f"BARN {number}", reference_length(np.load(path)))
+
+
+def score(seconds: float, way: float) -> float:
+    """BARN's score of a run that has arrived after ``seconds``; ``way``: metres of the reference path."""
+    optimal = way / REFERENCE_SPEED
+    return optimal / min(max(seconds, 2.0 * optimal), 8.0 * optimal)
 
 
 def reference_length(path_cells: np.ndarray) -> float:

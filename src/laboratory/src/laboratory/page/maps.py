@@ -1,0 +1,44 @@
+"""Worlds with runs drawn on them."""
+
+from collections import Counter
+from typing import List, Sequence
+
+import numpy as np
+
+from laboratory.results.result import Result, track_of
+from laboratory.scenario.scenario import Scenario
+from laboratory.worlds.source import Arena
+from planar import OccupancyGrid
+from run_report.map_view import map_svg
+from run_report.record import RunRecord
+from sim_bridge.views.true_map import true_map
+
+# Side of a square of the heat map, metres.
+SQUARE = 0.5
+
+
+def picture(scenario: Scenario, result: Result) -> str:
+    """The world of a run, with its true way."""
+    return map_svg(RunRecord(grid=_grid(scenario.arena(result.seed), result), truth=track_of(result)))
+
+
+def heat_map(scenario: Scenario, failures: Sequence[Result]) -> str:
+    """Where runs of the same world ended that failed: the redder a square, the more."""
+    ends = [(run.end_x, run.end_y) for run in failures if run.end_x is not None and run.end_y is not None]
+    squares = Counter(tuple(np.floor(np.array(end) / SQUARE).astype(int).tolist()) for end in ends)
+    most = max(squares.values())
+    drawn: List[str] = []
+    for (col, row), count in sorted(squares.items()):
+        drawn.append(
+            f'<rect x="{col * SQUARE:g}" y="{-(row + 1) * SQUARE:g}" width="{SQUARE}" height="{SQUARE}" '
+            f'fill="var(--bad)" fill-opacity="{0.25 + 0.65 * count / most:.2f}">'
+            f"<title>{count} of {len(ends)} ended here</title></rect>"
+        )
+    grid = _grid(scenario.world.arena(failures[0].seed), failures[0])
+    return map_svg(RunRecord(grid=grid), "".join(drawn))
+
+
+def _grid(arena: Arena, result: Result) -> OccupancyGrid:
+    """What is solid in the world of a run, also where the robot's map does not show it."""
+    _, x, y, _ = track_of(result)[0].tolist()
+    return true_map(arena.world, inside=(x, y))

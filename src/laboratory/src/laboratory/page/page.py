@@ -1,0 +1,121 @@
+"""The page: a leaderboard, what each scenario came to, where it failed, and the runs to look at."""
+
+import shlex
+from html import escape
+from typing import Any, Dict, List, Sequence, Tuple
+
+from laboratory.page.maps import heat_map, picture
+from laboratory.results.result import Result
+from laboratory.scenario.scenario import Scenario
+from laboratory.statistics.comparison import Comparison, compare
+from laboratory.suites import FOLDER
+from run_report.page import document, table, tiles
+
+# Failing runs of a scenario, and worlds with a heat map, that are drawn.
+MOST_PICTURES, MOST_MAPS = 24, 6
+HEADS = ("planner", "runs", "success", "collisions", "time, s", "SPL", "clearance, m", "beside the first")
+FIGURES = ("seconds", "spl", "clearance")
+
+
+def page_html(evaluated: Sequence[Any], version: str) -> str:
+    """The page of what has been evaluated (laboratory.evaluation.Evaluated)."""
+    by_name: Dict[str, List[Any]] = {}
+    for each in evaluated:
+        by_name.setdefault(each.scenario.name, []).append(each)
+    runs = sum(len(each.results) for each in evaluated)
+    won = sum(result.is_success for each in evaluated for result in each.results)
+    body = [
+        "<header><h1>What was played</h1><p>Intervals hold with 95 % confidence.</p></header>",
+        tiles([("scenarios", str(len(by_name))), ("runs", str(runs)), ("succeeded", str(won))]),
+        tiles([("version", version)]),
+    ]
+    for name, planners in by_name.items():
+        body.append(_leaderboard(name, planners))
+        body += [_failures(each) for each in planners]
+        body += [_worth_a_look(each) for each in planners]
+    return document("The laboratory", "".join(body))
+
+
+def verdict(comparison: Comparison) -> str:
+    """What a comparison says, in words."""
+    if not comparison.pairs:
+        return "no seeds in common"
+    counts = f"+{comparison.gained} −{comparison.lost}, p {comparison.p_success:.2g}"
+    told = f"success: {comparison.success} ({counts})"
+    if comparison.seconds is None:
+        return told
+    delay, p_seconds = comparison.seconds, comparison.p_seconds
+    return f"{told}; time: {comparison.time} ({delay.value:+.2f} s, p {p_seconds:.2g})"
+
+
+def command_of(scenario: Scenario, seed: int) -> str:
+    """What repeats a run."""
+    is_given = scenario.file.parent == FOLDER
+    words = ["./scripts/play.sh", scenario.name if is_given else str(scenario.file), "--seed", str(seed)]
+    return shlex.join(words + (["--planner", scenario.planner] if scenario.planner else []))
+
+
+def _leaderboard(name: str, planners: Sequence[Any]) -> str:
+    """The surest success first."""
+    told = [(each, each.summary) for each in planners]
+    ranked = sorted(told, key=lambda row: -row[1].figures["success"].low)
+    first = planners[0]
+    rows = []
+    for each, summary in ranked:
+        figures = [str(summary.figures.get(figure, "")) for figure in FIGURES]
+        beside = "" if each is first else verdict(compare(first.results, each.results))
+        planner = each.scenario.planner or "the robot's own"
+        success, collisions = summary.figures["success"], summary.outcomes["collision"]
+        rows.append((planner, summary.runs, success, collisions, *figures, beside))
+    about = f"<p>{escape(planners[0].scenario.about)}</p>"
+    return f'<section class="card"><h2>{escape(name)}</h2>{about}{table(HEADS, rows)}</section>'
+
+
+def _failures(each: Any) -> str:
+    """A heat map for each world, and each failing run with its picture and the command that repeats it."""
+    failed = [result for result in each.results if not result.is_success]
+    if not failed:
+        return ""
+    drawn = [result for result in failed if result.track]
+    worlds: Dict[int, List[Result]] = {}
+    for result in drawn:
+        worlds.setdefault(result.arena_number, []).append(result)
+    fullest = sorted(worlds.values(), key=lambda runs: -len(runs))[:MOST_MAPS]
+    maps = [
+        _card(f"{runs[0].arena}: where {len(runs)} failed", heat_map(each.scenario, runs)) for runs in fullest
+    ]
+    cards = [_run(each.scenario, result) for result in drawn[:MOST_PICTURES]]
+    rows = [(run.seed, run.outcome, run.reason, command_of(each.scenario, run.seed)) for run in failed]
+    listed = table(("seed", "outcome", "why", "again"), rows)
+    title = f"<h2>{escape(each.scenario.label)}: {len(failed)} of {len(each.results)} failed</h2>"
+    return f'<section class="card">{title}{listed}</section>' + _grid_of(maps) + _grid_of(cards)
+
+
+def _worth_a_look(each: Any) -> str:
+    """The slowest run that succeeded, and the one that came nearest to something solid."""
+    won = [result for result in each.results if result.is_success]
+    chosen: List[Tuple[str, Result]] = []
+    if won:
+        chosen.append(("the slowest success", max(won, key=lambda run: run.seconds or 0.0)))
+    near = [result for result in won if result.clearance is not None]
+    if near:
+        chosen.append(("the nearest to something", min(near, key=lambda run: run.clearance or 0.0)))
+    return _grid_of([_run(each.scenario, run, f"{title}: ") for title, run in chosen])
+
+
+def _run(scenario: Scenario, result: Result, title: str = "") -> str:
+    told = f"{title}{scenario.label}, seed {result.seed}: {result.outcome}"
+    figures = "" if result.seconds is None else f" after {result.seconds:.1f} s, {result.driven:.1f} m"
+    drawn = picture(scenario, result) if result.track else ""
+    command = f"<p><code>{escape(command_of(scenario, result.seed))}</code></p>"
+    return _card(f"{told}{figures}", f"<p>{escape(result.reason)}</p>{drawn}{command}")
+
+
+def _card(title: str, content: str) -> str:
+    return f'<div class="card"><h2>{escape(title)}</h2>{content}</div>'
+
+
+def _grid_of(cards: Sequence[str]) -> str:
+    """Two cards a row."""
+    pairs = [cards[number : number + 2] for number in range(0, len(cards), 2)]
+    return "".join(f'<section class="even columns">{"".join(pair)}</section>' for pair in pairs)

@@ -1,0 +1,51 @@
+import numpy as np
+import pytest
+
+from laboratory.suites import scenarios_of
+from laboratory.worlds.barn import BarnFolder, reference_length, score
+
+WORLD = """<sdf version="1.6"><world name="barn"><model name="ground"><static>true</static><link name="link">
+<collision name="c"><geometry><plane><normal>0 0 1</normal></plane></geometry></collision></link></model>
+</world></sdf>"""
+SCENARIO = """\
+world: {barn: worlds}
+robot: {profile: jackal, start: {x: -2.25, y: 3.0, yaw: 1.57}}
+task: {reach: {x: 10.0, y: 0.0}}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "worlds").mkdir()
+    for number in (7, 30):
+        (tmp_path / f"worlds/world_{number}.world").write_text(WORLD)
+        np.save(tmp_path / f"worlds/path_{number}.npy", np.array([[15, 0], [15, 30]]))
+    (tmp_path / "barn.yaml").write_text(SCENARIO)
+    return tmp_path
+
+
+def test_seeds_take_the_worlds_by_turns(folder):
+    source = BarnFolder(folder / "worlds")
+    assert [source.arena(seed).title for seed in range(3)] == ["BARN 7", "BARN 30", "BARN 7"]
+
+
+def test_a_scenario_of_barn_can_be_played(folder):
+    scenarios, complaints = scenarios_of([str(folder / "barn.yaml")])
+    assert complaints == [] and scenarios[0].task.files() == ()
+
+
+def test_a_folder_without_worlds_is_named_with_its_line(tmp_path):
+    path = tmp_path / "barn.yaml"
+    path.write_text(SCENARIO)
+    _, complaints = scenarios_of([str(path)])
+    assert complaints[0].startswith(f"{path}:1: world.barn cannot be used: ")
+    assert "world_N" in complaints[0]
+
+
+def test_the_score_is_at_best_a_half_and_falls_with_the_time_taken():
+    way = reference_length(np.array([[15, 0], [15, 30]]))
+    assert way == pytest.approx(10.0, abs=0.5)
+    optimal = way / 2.0
+    assert score(1.0, way) == score(2.0 * optimal, way) == 0.5
+    assert score(4.0 * optimal, way) == 0.25
+    assert score(1000.0, way) == 0.125

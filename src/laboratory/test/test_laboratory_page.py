@@ -1,0 +1,69 @@
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from laboratory.page import page_html
+from laboratory.page.maps import heat_map
+from laboratory.page.page import command_of, verdict
+from laboratory.results.result import Result
+from laboratory.scenario import read_scenario
+from laboratory.statistics.comparison import compare
+from laboratory.statistics.summary import summary
+from laboratory.suites import FOLDER
+
+SCENARIO = read_scenario(FOLDER / "home_errand.yaml")
+TRACK = np.array([[0.0, 0.0, 0.0, 0.0], [1.0, 0.5, 0.1, 0.0]], dtype=np.float32).tobytes()
+WON = Result("d", 0, "v", "success", "done", seconds=20.0, driven=9.0, way=8.0, clearance=0.3, track=TRACK)
+LOST = replace(WON, seed=1, outcome="collision", reason="hit <a wall>", end_x=0.6, end_y=0.2)
+
+
+def evaluated(scenario, results):
+    return SimpleNamespace(scenario=scenario, results=results, summary=summary(results))
+
+
+@pytest.fixture(scope="module")
+def page():
+    dwa = SCENARIO.with_planner("dwa_local_planner/DWAPlannerROS")
+    error = Result("d", 2, "v", "error", "the world does not load")
+    return page_html([evaluated(SCENARIO, [WON, LOST]), evaluated(dwa, [WON, error])], "v1.2")
+
+
+def test_a_failing_seed_has_its_reason_its_picture_and_the_command_that_repeats_it(page):
+    assert "hit &lt;a wall&gt;" in page and "<a wall>" not in page
+    assert "./scripts/play.sh home_errand --seed 1" in page
+    assert "home_errand, seed 1: collision after 20.0 s, 9.0 m" in page
+    assert 'class="path truth"' in page
+
+
+def test_a_run_that_could_not_be_played_is_told_without_a_picture(page):
+    assert "the world does not load" in page
+    assert "--seed 2 --planner dwa_local_planner/DWAPlannerROS" in page
+
+
+def test_the_page_asks_nobody_for_anything(page):
+    assert "default-src 'none'" in page
+    assert "http://" not in page and "https://" not in page
+
+
+def test_planners_are_on_a_leaderboard(page):
+    assert "the robot&#x27;s own" in page and "dwa_local_planner/DWAPlannerROS" in page
+    assert "success: cannot tell" in page
+
+
+def test_a_heat_map_is_reddest_where_most_failed():
+    elsewhere = replace(LOST, end_x=-2.0, end_y=1.0)
+    drawn = heat_map(SCENARIO, [LOST, LOST, elsewhere])
+    assert '<rect x="0.5" y="-0.5"' in drawn and "2 of 3 ended here" in drawn
+    assert 'fill-opacity="0.90"' in drawn and 'fill-opacity="0.57"' in drawn
+
+
+def test_the_command_names_a_file_that_is_not_of_the_project(tmp_path):
+    elsewhere = replace(SCENARIO, file=tmp_path / "my scenario.yaml")
+    assert command_of(elsewhere, 5) == f"./scripts/play.sh '{tmp_path}/my scenario.yaml' --seed 5"
+
+
+def test_a_comparison_is_put_into_words():
+    assert verdict(compare([WON], [replace(WON, seed=7)])) == "no seeds in common"
+    assert verdict(compare([WON], [WON])) == "success: cannot tell (+0 −0, p 1)"
