@@ -29,8 +29,8 @@ class Result:
     """Lengths in metres, ``seconds`` simulated; what a run has not is None.
 
     ``way``: the shortest that there was, ``clearance``: the least between the robot's middle and anything
-    solid, ``turning``: rad turned for each metre driven, ``score``: of a benchmark. ``hash``: the same for two
-    runs only if every bit of their true trajectories is. ``track``: (N, 4) float32, thinned, as bytes.
+    solid, ``turning``: rad turned for each metre driven, ``score``: of a benchmark. ``hash``: the same for
+    two runs only if every bit of their true trajectories is. ``track``: (N, 4) float32, thinned, as bytes.
     """
 
     digest: str
