@@ -1,9 +1,10 @@
 """Deliveries in a home: the errand between two zones, or a mission."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional, Sequence, Tuple
 
+from add_markers import CarriedParcel
 from home_service.judging.verdict import collision
 from home_service.rehearsal import NAVIGATION_CONFIG, Conditions, Rehearsal, Rehearsed, parcel_of
 from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, Play
@@ -27,28 +28,9 @@ class Deliveries:
     mission: Optional[Path] = None
 
     def play(self, scenario: "Scenario", arena: Arena, seed: int) -> Play:
-        grid, mission = _grid_of(arena), self._mission(arena)
-        conditions = Conditions(
-            scenario.planner, scenario.parameters, scenario.faults, scenario.simulation, scenario.start
-        )
-        rehearsal = Rehearsal(
-            arena.world,
-            robot_named(scenario.robot),
-            grid,
-            mission,
-            seed=seed,
-            parcel=None if self.mission else parcel_of(mission),
-            conditions=conditions,
-        )
-        run = rehearsal.run(scenario.seconds)
-        return Play(
-            _outcome(run, scenario.seconds),
-            _reason(run),
-            run.trajectory,
-            run.localization_error,
-            run.ledger.collisions,
-            self._way(scenario, arena, conditions),
-        )
+        mission = self._mission(arena)
+        parcel = None if self.mission else parcel_of(mission)
+        return replace(play_mission(scenario, arena, seed, mission, parcel), way=self._way(scenario, arena))
 
     def places(self, arena: Arena) -> Sequence[Pose2]:
         places = self._mission(arena).places.values()
@@ -66,13 +48,35 @@ class Deliveries:
             raise SettingsError(f"{self.zones}: {problem}")
         return errand_mission(*ends)
 
-    def _way(self, scenario: "Scenario", arena: Arena, conditions: Conditions) -> Optional[float]:
+    def _way(self, scenario: "Scenario", arena: Arena) -> Optional[float]:
         """Of the errand; in which order a mission is best carried out is not known here."""
         if self.mission is not None:
             return None
-        radius = conditions.navigation(NAVIGATION_CONFIG).global_costmap.robot_radius
+        radius = _conditions(scenario).navigation(NAVIGATION_CONFIG).global_costmap.robot_radius
         ends = tuple(place.pose for place in places_of_errand(self.zones))
         return shortest_way(_grid_of(arena), (scenario.start, *ends), radius)
+
+
+def play_mission(
+    scenario: "Scenario", arena: Arena, seed: int, mission: Mission, parcel: Optional[CarriedParcel] = None
+) -> Play:
+    """Carries it out; ``parcel``: the marker of an errand. Raises PlanarError."""
+    stage = (arena.world, robot_named(scenario.robot), _grid_of(arena), mission)
+    rehearsal = Rehearsal(*stage, seed=seed, parcel=parcel, conditions=_conditions(scenario))
+    run = rehearsal.run(scenario.seconds)
+    return Play(
+        _outcome(run, scenario.seconds),
+        _reason(run),
+        run.trajectory,
+        run.localization_error,
+        run.ledger.collisions,
+    )
+
+
+def _conditions(scenario: "Scenario") -> Conditions:
+    return Conditions(
+        scenario.planner, scenario.parameters, scenario.faults, scenario.simulation, scenario.start
+    )
 
 
 def _grid_of(arena: Arena) -> OccupancyGrid:

@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Callable, Dict
 
+from laboratory.generators.homes import read_homes
 from laboratory.worlds.barn import read_barn
 from laboratory.worlds.files import read_world_file
 from laboratory.worlds.source import WorldSource
@@ -11,4 +12,5 @@ from planar.config.yaml_table import Table
 SOURCES: Dict[str, Callable[[Table, Path], WorldSource]] = {
     "file": read_world_file,
     "barn": read_barn,
+    "homes": read_homes,
 }

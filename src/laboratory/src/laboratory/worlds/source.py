@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Optional, Protocol, Tuple
 
 from planar import OccupancyGrid
+from planar.maps.places import Place
 from sim_bridge.world import World
 
 
@@ -17,13 +18,14 @@ class Arena:
     """A world, and what is known of it.
 
     ``grid``: the map that the robot is given; None: it has none. ``title``: which of several worlds it is.
-    ``way``: metres of the way that a benchmark compares with.
+    ``way``: metres of the way that a benchmark compares with. ``places``: within reach in it.
     """
 
     world: World
     grid: Optional[OccupancyGrid] = None
     title: str = ""
     way: Optional[float] = None
+    places: Tuple[Place, ...] = ()
 
 
 class WorldSource(Protocol):

@@ -1,0 +1,1 @@
+"""Worlds that nobody has drawn: the same from the same seed."""

@@ -1,0 +1,39 @@
+"""Where a robot can come to among boxes along the axes: quick, to try furniture by."""
+
+from typing import Tuple
+
+import numpy as np
+from scipy.ndimage import label
+
+from planar.geometry.distance_field import distance_field
+
+RESOLUTION = 0.1
+
+
+class Raster:
+    """What is solid of a rectangle from the origin to ``width``, ``depth``, metres."""
+
+    def __init__(self, width: float, depth: float):
+        # Two cells of wall all around.
+        self._solid = np.ones((int(depth / RESOLUTION) + 4, int(width / RESOLUTION) + 4), dtype=bool)
+        self._solid[2:-2, 2:-2] = False
+
+    def fill(self, x1: float, y1: float, x2: float, y2: float) -> None:
+        """Makes a rectangle solid."""
+        (row1, col1), (row2, col2) = _cell(x1, y1), _cell(x2, y2)
+        self._solid[row1 : row2 + 1, col1 : col2 + 1] = True
+
+    def copy(self) -> "Raster":
+        other = Raster(0.0, 0.0)
+        other._solid = self._solid.copy()
+        return other
+
+    def reach(self, x: float, y: float, radius: float) -> float:
+        """Square metres that the middle of a robot of that radius can come to from a place."""
+        regions, _ = label(distance_field(self._solid, RESOLUTION) > radius)
+        here = regions[_cell(x, y)]
+        return float((regions == here).sum()) * RESOLUTION**2 if here else 0.0
+
+
+def _cell(x: float, y: float) -> Tuple[int, int]:
+    return max(int(y / RESOLUTION) + 2, 0), max(int(x / RESOLUTION) + 2, 0)
