@@ -7,7 +7,6 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from planar import OccupancyGrid, Pose2
-from planar.geometry.ray_casting import cast_rays
 from run_report.grid_image import grid_image, view_of
 from run_report.map_view import thinned
 from run_report.record import Marking, RunRecord
@@ -202,6 +201,8 @@ def _markings_at(record: RunRecord, stamp: float) -> List[Marking]:
 
 
 def _sight(grid: OccupancyGrid, row: np.ndarray) -> np.ndarray:
+    from planar.geometry.ray_casting import cast_rays  # late: it brings numba
+
     pose = Pose2.from_array(row[1:])
     angles = np.linspace(-math.pi, math.pi, BEAMS, endpoint=False)
     ranges = cast_rays(grid, pose, angles, SIGHT_RANGE)

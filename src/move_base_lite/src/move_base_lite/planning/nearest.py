@@ -4,7 +4,6 @@ import math
 from typing import Optional, Tuple
 
 import numpy as np
-from scipy.ndimage import label
 
 from move_base_lite.planning.wavefront import IMPASSABLE
 
@@ -23,6 +22,8 @@ def passable_ends(
     free_start, free_goal = _nearest(passable, start, start_reach), _nearest(passable, goal, goal_reach)
     if free_start is None or free_goal is None or (free_start == start and free_goal == goal):
         return free_start, free_goal
+    from scipy.ndimage import label  # late: it takes long to come, and is rarely wanted
+
     regions, _ = label(passable)
     if free_goal != goal:
         free_goal = _nearest(regions == regions[free_start], goal, goal_reach) or free_goal

@@ -1,12 +1,12 @@
 """Transforms between frames, as plane poses."""
 
+import math
 from typing import Iterable, List, Optional, Tuple
 
 import numpy as np
 import rospy
 import tf2_ros
 from geometry_msgs.msg import TransformStamped
-from scipy.spatial.transform import Rotation
 
 from planar import Pose2
 from planar_ros.messages.border import WARN_SECONDS, MessageError, is_stamp
@@ -72,7 +72,7 @@ class Transforms:
             return None
         q, at = transform.rotation, transform.translation
         matrix = np.eye(4)
-        matrix[:3, :3] = Rotation.from_quat([q.x, q.y, q.z, q.w]).as_matrix()
+        matrix[:3, :3] = _rotation(q.x, q.y, q.z, q.w)
         matrix[:3, 3] = at.x, at.y, at.z
         return matrix
 
@@ -107,3 +107,18 @@ class Transforms:
             ).transform
         except tf2_ros.TransformException:
             return None
+
+
+def _rotation(x: float, y: float, z: float, w: float) -> np.ndarray:
+    """The matrix (3, 3) of a quaternion of any length but 0, which turns nothing."""
+    length = math.sqrt(x * x + y * y + z * z + w * w)
+    if length == 0.0:
+        return np.eye(3)
+    x, y, z, w = x / length, y / length, z / length, w / length
+    return np.array(
+        [
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
+            [2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w)],
+            [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)],
+        ]
+    )

@@ -4,7 +4,6 @@ import math
 from typing import Iterator, Union
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
 
 from sim_bridge.geometry.pose3 import transform_points
 from sim_bridge.geometry.shapes import Box, Cylinder, Mesh, Plane, Shape, Sphere
@@ -78,6 +77,8 @@ def _between(points_xyz: np.ndarray, bottom: float, top: float) -> np.ndarray:
 
 def _outline(points_xyz: np.ndarray) -> np.ndarray:
     """Corners (N, 2), in order, of the convex hull seen from above; all points if they lie on one line."""
+    from scipy.spatial import ConvexHull, QhullError  # late: few worlds have meshes
+
     points_xy = points_xyz[:, :2]
     try:
         return points_xy[ConvexHull(points_xy).vertices]

@@ -3,7 +3,6 @@
 from typing import Any, Dict, List, Sequence, Tuple
 
 import numpy as np
-from scipy.spatial import ConvexHull
 
 from sim_bridge.geometry.pose3 import inverse, position, quaternion, transform_points
 from sim_bridge.geometry.shapes import Box, Cylinder, Mesh, Plane, Shape, Sphere
@@ -57,6 +56,8 @@ def _mesh(bullet: BulletClient, mesh: Mesh, pose: np.ndarray, moves: bool) -> Li
     """A mesh as it is, in pieces, if it stands still; its convex hull if it moves."""
     vertices = transform_points(pose, mesh.vertices)
     if moves:
+        from scipy.spatial import ConvexHull  # late: few worlds have meshes
+
         hull = vertices[ConvexHull(vertices, qhull_options="QJ").vertices]
         return [bullet.createCollisionShape(pybullet.GEOM_MESH, vertices=hull.tolist())]
     pieces = []

@@ -1,6 +1,7 @@
 """The node ``sim_bridge``: a Scene with Gazebo's topics and services, and simulated time."""
 
 import dataclasses
+import threading
 from typing import Any, Dict, Mapping
 
 import rospy
@@ -31,12 +32,14 @@ from sim_bridge.ros.time_control import TimeControl
 from sim_bridge.scene import Scene
 from sim_bridge.sdf import load_world
 from sim_bridge.simulation import ROBOT_NAME, box_on_floor
+from sim_bridge.views.section import warm_up
 
 
 class Bridge:
     """Steps a scene as fast as it may, in one thread; callbacks of other threads leave it their orders."""
 
     def __init__(self):
+        threading.Thread(target=warm_up, daemon=True).start()  # while the master is asked this and that
         settings, robot = (_read(kind) for kind in (BridgeSettings, RobotSettings))
         simulation_settings = _read(SimulationSettings, noise_named(settings.noise))
         rate = simulation_settings.odometry_rate

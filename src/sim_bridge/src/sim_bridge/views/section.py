@@ -1,10 +1,8 @@
 """The outlines of a world's bodies at one height, and beams cast at them."""
 
-import math
 from dataclasses import dataclass
 from typing import Callable, Dict, Optional, Tuple
 
-import numba
 import numpy as np
 
 from sim_bridge.geometry.slicing import cut
@@ -91,33 +89,11 @@ def cast_beams(
     ``segments``: (N, 4) as x, y, x, y. Beam i points along ``first + i * increment``, radians, increment
     positive. Returns (count,) infinite and (count,) -1 where nothing lies within ``sight`` metres.
     """
-    return _cast(np.ascontiguousarray(segments), x, y, first, increment, count, sight)
+    from sim_bridge.views.kernels import cast  # late: it brings numba
+
+    return cast(np.ascontiguousarray(segments), x, y, first, increment, count, sight)
 
 
-@numba.njit(cache=True)
-def _cast(segments, x, y, first, increment, count, sight):
-    """Walks through the segments and gives each to the beams between the bearings of its two ends."""
-    turn = 2.0 * math.pi
-    ranges, nearest = np.full(count, np.inf), np.full(count, -1)
-    for i in range(segments.shape[0]):
-        ax, ay = segments[i, 0] - x, segments[i, 1] - y
-        bx, by = segments[i, 2] - x, segments[i, 3] - y
-        if min(ax, bx) > sight or max(ax, bx) < -sight or min(ay, by) > sight or max(ay, by) < -sight:
-            continue
-        side_x, side_y = bx - ax, by - ay
-        area = ax * side_y - ay * side_x
-        # Seen from here the segment runs counter-clockwise from its right end to its left end.
-        right = math.atan2(ay, ax) if area > 0.0 else math.atan2(by, bx)
-        span = math.atan2(abs(area), ax * bx + ay * by)
-        start = (right - first) % turn
-        for shift in (0.0, turn):
-            low = max(math.ceil((start - shift) / increment - 1e-9), 0)
-            high = min(math.floor((start + span - shift) / increment + 1e-9), count - 1)
-            for beam in range(low, high + 1):
-                angle = first + beam * increment
-                across = math.cos(angle) * side_y - math.sin(angle) * side_x
-                if across != 0.0:
-                    distance = area / across
-                    if 0.0 <= distance <= sight and distance < ranges[beam]:
-                        ranges[beam], nearest[beam] = distance, i
-    return ranges, nearest
+def warm_up() -> None:
+    """Compiles, or loads from the cache, what the first scan would wait for."""
+    cast_beams(np.empty((0, 4)), 0.0, 0.0, 0.0, 1.0, 1, 1.0)

@@ -4,7 +4,6 @@ import math
 from typing import List, Tuple
 
 import numpy as np
-from scipy.ndimage import label
 
 from planar import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Pose2
 from sim_bridge.errors import WorldError
@@ -47,6 +46,8 @@ def true_map(
     ((row, col),) = grid.cells_of([inside])
     if solid[row, col]:
         raise WorldError(f"world '{world.name}': ({inside[0]:g}, {inside[1]:g}) is not free space")
+    from scipy.ndimage import label  # late: a simulation needs no map
+
     regions, _ = label(~solid)
     cells[regions == regions[row, col]] = FREE
     cells[solid] = OCCUPIED

@@ -1,0 +1,89 @@
+"""Kernels of what is seen. Imported late: numba takes long to come, and most commands see nothing."""
+
+import math
+
+import numba
+import numpy as np
+
+
+@numba.njit(cache=True)
+def cast(segments, x, y, first, increment, count, sight):
+    """Walks through the segments and gives each to the beams between the bearings of its two ends."""
+    turn = 2.0 * math.pi
+    ranges, nearest = np.full(count, np.inf), np.full(count, -1)
+    for i in range(segments.shape[0]):
+        ax, ay = segments[i, 0] - x, segments[i, 1] - y
+        bx, by = segments[i, 2] - x, segments[i, 3] - y
+        if min(ax, bx) > sight or max(ax, bx) < -sight or min(ay, by) > sight or max(ay, by) < -sight:
+            continue
+        side_x, side_y = bx - ax, by - ay
+        area = ax * side_y - ay * side_x
+        # Seen from here the segment runs counter-clockwise from its right end to its left end.
+        right = math.atan2(ay, ax) if area > 0.0 else math.atan2(by, bx)
+        span = math.atan2(abs(area), ax * bx + ay * by)
+        start = (right - first) % turn
+        for shift in (0.0, turn):
+            low = max(math.ceil((start - shift) / increment - 1e-9), 0)
+            high = min(math.floor((start + span - shift) / increment + 1e-9), count - 1)
+            for beam in range(low, high + 1):
+                angle = first + beam * increment
+                across = math.cos(angle) * side_y - math.sin(angle) * side_x
+                if across != 0.0:
+                    distance = area / across
+                    if 0.0 <= distance <= sight and distance < ranges[beam]:
+                        ranges[beam], nearest[beam] = distance, i
+    return ranges, nearest
+
+
+@numba.njit(cache=True)
+def draw(triangles, colours, scale, centre_x, centre_y, near, far, perspective, picture, depth):
+    """Cuts each triangle off at the near plane and fills what is left of it, as a fan."""
+    corners = np.empty((4, 3))
+    for t in range(triangles.shape[0]):
+        count = 0
+        for i in range(3):
+            a, b = triangles[t, i], triangles[t, (i + 1) % 3]
+            if a[2] >= near:
+                corners[count] = a
+                count += 1
+            if (a[2] >= near) != (b[2] >= near):
+                share = (near - a[2]) / (b[2] - a[2])
+                corners[count] = a + share * (b - a)
+                count += 1
+        if count < 3:
+            continue
+        for i in range(count):
+            factor = scale / corners[i, 2] if perspective else scale
+            corners[i, 0] = corners[i, 0] * factor + centre_x
+            corners[i, 1] = corners[i, 1] * factor + centre_y
+            if perspective:
+                corners[i, 2] = 1.0 / corners[i, 2]
+        for i in range(1, count - 1):
+            _fill(corners[0], corners[i], corners[i + 1], colours[t], far, perspective, picture, depth)
+
+
+@numba.njit(cache=True)
+def _fill(a, b, c, colour, far, perspective, picture, depth):
+    """Pixels whose centre lies in a triangle; 1 / z (or z, without perspective) is linear in the picture."""
+    height, width = depth.shape
+    area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    if area == 0.0:
+        return
+    top = max(int(np.ceil(min(a[1], b[1], c[1]))), 0)
+    bottom = min(int(np.floor(max(a[1], b[1], c[1]))), height - 1)
+    left = max(int(np.ceil(min(a[0], b[0], c[0]))), 0)
+    right = min(int(np.floor(max(a[0], b[0], c[0]))), width - 1)
+    for row in range(top, bottom + 1):
+        for col in range(left, right + 1):
+            of_a = ((b[0] - col) * (c[1] - row) - (b[1] - row) * (c[0] - col)) / area
+            of_b = ((c[0] - col) * (a[1] - row) - (c[1] - row) * (a[0] - col)) / area
+            of_c = 1.0 - of_a - of_b
+            if of_a < 0.0 or of_b < 0.0 or of_c < 0.0:
+                continue
+            value = of_a * a[2] + of_b * b[2] + of_c * c[2]
+            z = 1.0 / value if perspective else value
+            if z < depth[row, col] and z <= far:
+                depth[row, col] = z
+                picture[row, col, 0] = colour[0]
+                picture[row, col, 1] = colour[1]
+                picture[row, col, 2] = colour[2]
