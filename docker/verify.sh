@@ -85,7 +85,9 @@ make_base() {
         say "A root file system of Debian 13"
         debootstrap --variant=minbase trixie "$work/base" 2>&1 | show '^I: (.* the base system|Base system)' \
             "$work/debootstrap.log" || fail "debootstrap failed (see $work/debootstrap.log)"
-        rm -rf "$work"/base/var/cache/apt/*.bin "$work"/base/var/cache/apt/archives/*.deb
+        # As the image of that name: without manuals and translations.
+        (cd "$work/base" && rm -rf var/cache/apt/*.bin var/cache/apt/archives/*.deb usr/share/{man,locale,info} \
+            && find usr/share/doc -type f ! -name copyright -delete)
         base=$work/base
     fi
     local container

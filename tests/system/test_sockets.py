@@ -47,10 +47,12 @@ class SocketsTest(unittest.TestCase):
 
 def _listening(process):
     """Program, address and port of each socket that a process is reached by."""
-    with process.oneshot():
+    try:
         words = process.cmdline()
-        program = next((Path(word).name for word in words if "python" not in Path(word).name), words[0])
         sockets = process.connections(kind="inet")
+    except psutil.NoSuchProcess:  # one that has just ended
+        return []
+    program = next((Path(word).name for word in words if "python" not in Path(word).name), "python")
     return [
         (program, socket.laddr.ip, socket.laddr.port)
         for socket in sockets

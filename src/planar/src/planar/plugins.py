@@ -37,6 +37,8 @@ class Contract:
         if not inspect.isclass(found):
             return ["it is no class"]
         said = [(name, member) for name, member in vars(self.protocol).items() if inspect.isfunction(member)]
+        # Before Python 3.11 a protocol that says nothing of __init__ has one of typing.
+        said = [(name, member) for name, member in said if member.__module__ != "typing"]
         needed = [(name, member) for name, member in said if name == "__init__" or not name.startswith("_")]
         lacks = [text for name, member in needed for text in _lacking(found, name, member)]
         own = getattr(found, "Settings", self.settings)
