@@ -63,7 +63,7 @@ def test_a_missing_file_is_named_and_nothing_is_started(option, tmp_path, capsys
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("command", commands.names())
+@pytest.mark.parametrize("command", commands.FOLDER.names())
 def test_nonsense_is_answered_in_the_name_of_the_script_that_was_called(command, capsys):
     needed = {
         "compare": ["a", "b"],
@@ -85,8 +85,8 @@ def test_every_command_has_a_class_that_says_what_it_is_for_and_runs(capsys):
         parse(["--help"])
     assert stop.value.code == 0
     told = capsys.readouterr().out
-    for name in commands.names():
-        assert callable(commands.find(name).run)
+    for name in commands.FOLDER.names():
+        assert callable(commands.FOLDER.find(name).run)
         assert f"  {name} " in told
 
 

@@ -35,7 +35,7 @@ def referee(monkeypatch):
 
 
 def test_the_result_of_an_errand_follows_the_schema(referee, tmp_path):
-    options = commands.find("home_service")(seed=3, mission=Path("mission.yaml"))
+    options = commands.FOLDER.find("home_service")(seed=3, mission=Path("mission.yaml"))
     result = Result(tmp_path)
     result.add(command=options.name, **VERDICT, **options.told())
     result.add(**referee.findings())
@@ -54,9 +54,9 @@ def test_every_finding_has_its_place_in_the_schema(referee, monkeypatch):
     assert set(found) <= set(SCHEMA["properties"])
 
 
-@pytest.mark.parametrize("name", commands.names())
+@pytest.mark.parametrize("name", commands.FOLDER.names())
 def test_what_a_run_is_told_has_its_place_in_the_schema(name):
-    kind = commands.find(name)
+    kind = commands.FOLDER.find(name)
     if issubclass(kind, RunOptions):
         assert set(kind().told()) <= set(SCHEMA["properties"])
 

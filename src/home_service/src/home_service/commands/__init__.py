@@ -3,4 +3,3 @@
 from home_service.command import CommandFolder
 
 FOLDER = CommandFolder(__name__, __path__)
-names, find = FOLDER.names, FOLDER.find
