@@ -154,22 +154,42 @@ def test_resetting_poses_puts_all_back_and_time_goes_on(scene):
     assert scene.models.motion("crate").pose == pytest.approx(pose3(3.0, 2.0, 0.25), abs=1e-2)
 
 
-def test_a_reset_scene_repeats_itself_bit_for_bit():
-    def trace():
-        seen = []
-        for _ in range(100):
-            one = scene.step({"r": Twist2(0.3, 0.4)})["r"]
-            seen.append((one.stamp, one.base_in_world, one.odometry))
-            if one.scan is not None:
-                seen.append(one.scan.ranges.tobytes())
-        return seen
-
+def walled(seed):
     floor = Body("floor::link", np.eye(4), (Collision(Plane(), np.eye(4)),))
-    scene = Scene(World("w", (floor, box("wall", 3.0))), seed=3)
+    scene = Scene(World("w", (floor, box("wall", 3.0), box("crate", 0.9, 0.2, mass=2.0))), seed=seed)
     scene.add_robot("r", LIDAR)
-    first = trace()
+    return scene
+
+
+def trace(scene, command=Twist2(0.3, 0.4)):
+    seen = []
+    for _ in range(100):
+        one = scene.step({"r": command})["r"]
+        seen.append((one.stamp, one.base_in_world, one.odometry))
+        if one.scan is not None:
+            seen.append(one.scan.ranges.tobytes())
+    return seen
+
+
+def test_a_reset_scene_repeats_itself_bit_for_bit():
+    scene = walled(seed=3)
+    first = trace(scene)
     scene.reset()
-    assert trace() == first
+    assert trace(scene) == first
+
+
+def test_a_scene_rewinds_to_its_mark_whatever_has_happened_since():
+    scene, fresh, start = walled(seed=3), walled(seed=8), {"r": Pose2(0.1, -0.2, 0.3)}
+    for one in (scene, fresh):
+        one.mark()
+    trace(scene, Twist2(0.5, 0.1))  # into the crate
+    assert scene.models.motion("crate").pose[0, 3] > 1.0
+    runs = []
+    for one, seed in ((scene, 4), (scene, 5), (scene, 4), (fresh, 4)):
+        one.rewind(seed, start)
+        runs.append(trace(one))
+    assert runs[0] == runs[2] == runs[3] != runs[1]
+    assert runs[0][0][1].distance_to(start["r"]) < 0.01
 
 
 def test_the_rate_of_physics_can_be_changed_and_time_goes_on(scene):

@@ -104,13 +104,25 @@ class Robot:
     ):
         self.name = name
         self.profile = profile
-        drive, place, self._settings = profile.drive, mounting.base_in_space, mounting.settings
-        parts = bodies_of(profile.model, name)
-        self.vehicle = Vehicle(engine, name, *parts, len(drive.left_joints), drive.torque, place)
-        self._drive = fitting.drive(RampedDrive(drive))
+        self._fitting = fitting
+        parts, drive = bodies_of(profile.model, name), profile.drive
+        self.vehicle = Vehicle(
+            engine, name, *parts, len(drive.left_joints), drive.torque, mounting.base_in_space
+        )
         self._around = RobotSurroundings(self.vehicle, sight)
+        # What its description has, by the names that they tell by.
+        self.specs: Dict[str, SensorSpec] = {}
+        self.begin(mounting)
+
+    def begin(self, mounting: Mounting) -> None:
+        """It stands where it starts: nothing has been commanded, driven or measured yet."""
+        self._settings = mounting.settings
+        drive, odometry = self.profile.drive, self.profile.odometry
+        self._drive = self._fitting.drive(RampedDrive(drive))
+        self._around.end_step(0.0)
+        self._around.end_period()
         truth, wheels, contacts = GroundTruth(), JointEncoders(), ContactList()
-        self._odometer = Odometer(profile.odometry, profile.odometry.reckoning(drive, mounting))
+        self._odometer = Odometer(odometry, odometry.reckoning(drive, mounting))
         self._latest: Dict[str, Any] = {
             truth.name: truth.measure(self._around),
             self._odometer.name: Odometry(),
@@ -121,10 +133,10 @@ class Robot:
         # Before this step of physics nothing is due.
         self._next_step = 0
         for sensor in (truth, self._odometer, wheels, contacts):
-            self._mount(fitting.sensor(sensor))
-        # What its description has, by the names that they tell by.
-        self.specs: Dict[str, SensorSpec] = {
-            self._mount(fitting.sensor(sensor)): spec for spec, sensor in _built(profile.sensors, mounting)
+            self._mount(self._fitting.sensor(sensor))
+        self.specs = {
+            self._mount(self._fitting.sensor(sensor)): spec
+            for spec, sensor in _built(self.profile.sensors, mounting)
         }
 
     def command(self, twist: Twist2) -> None:

@@ -185,6 +185,28 @@ class Scene:
         for name, (profile, base_in_space) in starts.items():
             self._add_robot(name, profile, base_in_space)
 
+    def mark(self) -> None:
+        """Keeps all as it is now, with its robots at rest, for ``rewind``."""
+        self._marked = self._engine.mark()
+
+    def rewind(self, seed: int, starts: Mapping[str, Pose2] = {}) -> None:
+        """Starts again at time 0 from what was marked, to the noise of a seed; much faster than ``reset``.
+
+        ``starts``: of robots that begin elsewhere on the same floor, where they must find room. Models may
+        have moved, but none may have come or gone since the mark. All runs from a mark with the same seed,
+        starts and calls are the same to the last bit.
+        """
+        self._engine.go_back(self._marked)
+        self._seed, self._stamp_at_rate, self._physics_steps = seed, 0.0, 0
+        self.forces.clear()
+        for number, (name, robot) in enumerate(self._robots.items()):
+            _, base_in_space = self._starts[name]
+            if name in starts:
+                base_in_space = from_pose2(starts[name], z=float(base_in_space[2, 3]))
+                self.models.set_motion(name, at_rest(base_in_space))
+            robot.begin(Mounting(base_in_space, self.settings, seed, number))
+        self.sight.redraw()
+
     def _begin(self, gravity: float) -> None:
         """An empty world at time 0."""
         self._physics_steps = 0
@@ -197,6 +219,7 @@ class Scene:
         self.forces = Forces(self._engine, self.models, self.joints)
         self._robots: Dict[str, Robot] = {}
         self._starts: Dict[str, Tuple[RobotProfile, np.ndarray]] = {}
+        self._marked = -1
 
     def _add_robot(self, name: str, profile: RobotProfile, base_in_space: np.ndarray) -> None:
         mounting = Mounting(base_in_space, self.settings, self._seed, robot=len(self._robots))

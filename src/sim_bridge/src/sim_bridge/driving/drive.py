@@ -13,6 +13,7 @@ class RampedDrive:
         self._profile = profile
         self._target = Twist2()
         self._set = Twist2()
+        self._speeds = (0.0, 0.0)
         self._age = 0.0
         self._has_power = True
 
@@ -30,18 +31,25 @@ class RampedDrive:
 
     def halt(self) -> None:
         self._target = self._set = Twist2()
+        self._speeds = (0.0, 0.0)
 
     def wheel_speeds(self, seconds: float) -> Tuple[float, float]:
         limits = self._profile
         self._age += seconds
         if self._age > limits.command_timeout + 1e-9:
             self._target = Twist2()
+        if self._set != self._target:
+            self._ramp(seconds)
+        return self._speeds
+
+    def _ramp(self, seconds: float) -> None:
+        limits = self._profile
         self._set = Twist2(
             _approach(self._set.v, self._target.v, limits.max_acceleration * seconds),
             _approach(self._set.omega, self._target.omega, limits.max_turn_acceleration * seconds),
         )
         outward = self._set.omega * limits.wheel_separation / 2.0
-        return (
+        self._speeds = (
             (self._set.v - outward) / limits.wheel_radius,
             (self._set.v + outward) / limits.wheel_radius,
         )

@@ -62,6 +62,14 @@ class Engine:
             self.push(name, (0.0, 0.0, mass * self._gravity), (0.0, 0.0, 0.0))
         self._bullet.stepSimulation()
 
+    def mark(self) -> int:
+        """Keeps where everything is and how it moves; returns the number by which ``go_back`` finds it."""
+        return int(self._bullet.saveState())
+
+    def go_back(self, mark: int) -> None:
+        """Everything is again as when it was kept; no body may have come or gone since."""
+        self._bullet.restoreState(mark)
+
     def set_rate(self, rate: int) -> None:
         """``rate``: steps per second."""
         self._bullet.setPhysicsEngineParameter(fixedTimeStep=1.0 / rate)

@@ -69,6 +69,8 @@ class Forces:
 
     def apply(self, stamp: float) -> None:
         """Before the step of physics that begins at ``stamp``."""
+        if not self._pushes and not self._joint_pushes:
+            return
         for push in self._pushes:
             if push.start <= stamp < push.end:
                 self._engine.push(push.link, push.force.tolist(), push.torque.tolist())

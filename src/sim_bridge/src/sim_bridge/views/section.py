@@ -31,6 +31,7 @@ class Section:
         self._still: Dict[str, _Outline] = {}
         self._moving: Dict[str, _Outline] = {}
         self._still_segments: Optional[np.ndarray] = None
+        self._still_retros = np.empty(0)
 
     def add(self, body: Body) -> None:
         self._place(body, body.pose_in_world)
@@ -45,11 +46,20 @@ class Section:
         if self._still.pop(name, None) is not None:
             self._still_segments = None
 
+    def redraw(self, pose_of: Callable[[str], np.ndarray]) -> None:
+        """Draws what moves where it now is, to the last bit."""
+        for name, outline in list(self._moving.items()):
+            self._place(outline.body, pose_of(name))
+
     def segments(self, pose_of: Callable[[str], np.ndarray]) -> np.ndarray:
         """Sides (N, 4) of all outlines as x, y, x, y; ``pose_of`` says where a body is now, (4, 4)."""
         if self._still_segments is None:
             sides = [outline.segments for outline in self._still.values()]
             self._still_segments = np.vstack([np.empty((0, 4)), *sides])
+            retros = [outline.retros for outline in self._still.values()]
+            self._still_retros = np.concatenate([np.empty(0), *retros])
+        if not self._moving:
+            return self._still_segments
         for name, outline in self._moving.items():
             pose = pose_of(name)
             if np.abs(pose - outline.drawn_at).max() > STILL:
@@ -58,8 +68,9 @@ class Section:
 
     def retros(self) -> np.ndarray:
         """How brightly each of the sides last told by ``segments`` reflects a laser, (N,)."""
-        outlines = [*self._still.values(), *self._moving.values()]
-        return np.concatenate([np.empty(0), *(outline.retros for outline in outlines)])
+        if not self._moving:
+            return self._still_retros
+        return np.concatenate([self._still_retros, *(outline.retros for outline in self._moving.values())])
 
     def _place(self, body: Body, pose: np.ndarray) -> None:
         outline = _Outline(body, pose, *self._cut(body, pose))

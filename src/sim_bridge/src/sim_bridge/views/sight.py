@@ -48,6 +48,11 @@ class Sight:
             for view in self._views():
                 view.move(name, pose)
 
+    def redraw(self) -> None:
+        """Everything may be elsewhere; no trace is left of where it was."""
+        for section in self._sections.values():
+            section.redraw(self._pose_of)
+
     def forget_viewer(self, viewer: str) -> None:
         """A viewer is gone."""
         self._sections = {key: section for key, section in self._sections.items() if key[0] != viewer}
