@@ -8,6 +8,7 @@ import numpy as np
 from planar import Pose2, Twist2
 from planar.config.hints import hint
 from sim_bridge.config import SimulationSettings
+from sim_bridge.courses import Courses
 from sim_bridge.description import RobotProfile
 from sim_bridge.errors import UnknownEntityError, WorldError
 from sim_bridge.geometry.pose3 import from_pose2
@@ -47,6 +48,7 @@ class Scene:
         self.lights = {light.name: light for light in world.lights}
         self._seed = seed
         self._fitting = fitting
+        self.courses = Courses(world.courses)
         self._begin(world.gravity)
         self.add(world.bodies, world.joints)
 
@@ -74,6 +76,7 @@ class Scene:
             self.robot(name).command(command)
         robots = self._robots.values()
         for _ in range(self.settings.physics_rate // self.settings.odometry_rate):
+            self.courses.follow(self._engine, self._physics_steps, self.settings.physics_rate, self.stamp)
             for robot in robots:
                 robot.begin_step()
             self.forces.apply(self.stamp)
@@ -192,9 +195,8 @@ class Scene:
     def rewind(self, seed: int, starts: Mapping[str, Pose2] = {}) -> None:
         """Starts again at time 0 from what was marked, to the noise of a seed; much faster than ``reset``.
 
-        ``starts``: of robots that begin elsewhere on the same floor, where they must find room. Models may
-        have moved, but none may have come or gone since the mark. All runs from a mark with the same seed,
-        starts and calls are the same to the last bit.
+        ``starts``: of robots that begin elsewhere on the same floor, where they must find room. No model may
+        have come or gone since the mark. The same seed, starts and calls give the same results.
         """
         self._engine.go_back(self._marked)
         self._seed, self._stamp_at_rate, self._physics_steps = seed, 0.0, 0

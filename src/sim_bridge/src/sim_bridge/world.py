@@ -5,6 +5,7 @@ from typing import Any, Optional, Tuple
 
 import numpy as np
 
+from sim_bridge.courses import Course
 from sim_bridge.geometry.pose3 import IDENTITY
 from sim_bridge.geometry.shapes import Look, Shape
 
@@ -53,6 +54,7 @@ class Surface:
 class Body:
     """A rigid thing; ``name`` is ``model::link``, ``pose_in_world``: (4, 4).
 
+    One without mass that ``is_on_course`` goes its own way.
     ``pose_in_model``: (4, 4), of the link in the frame of the outermost model that it belongs to. ``mass`` in
     kg, None if it never moves. ``damping``: of its linear and angular velocity, 1/s. Without
     weight it is not drawn down.
@@ -68,10 +70,16 @@ class Body:
     inertia: Inertia = field(default_factory=Inertia)
     damping: Tuple[float, float] = (0.0, 0.0)
     has_weight: bool = True
+    is_on_course: bool = False
 
     @property
     def model(self) -> str:
         return self.name.split("::", 1)[0]
+
+    @property
+    def keeps_still(self) -> bool:
+        """Whether it stays where it is unless it is put elsewhere."""
+        return self.mass is None and not self.is_on_course
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,7 +130,7 @@ class Light:
 
 @dataclass(frozen=True)
 class World:
-    """Bodies, joints between them, robots, and in words what the world's file holds that was left out."""
+    """Bodies, joints between them, robots, courses, and in words what its file holds that was left out."""
 
     name: str
     bodies: Tuple[Body, ...]
@@ -131,3 +139,4 @@ class World:
     joints: Tuple[Joint, ...] = ()
     robots: Tuple[DrivenModel, ...] = ()
     lights: Tuple[Light, ...] = ()
+    courses: Tuple[Course, ...] = ()

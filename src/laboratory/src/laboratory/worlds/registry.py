@@ -3,8 +3,11 @@
 from pathlib import Path
 from typing import Callable, Dict
 
+from laboratory.generators.crossings import read_crossings
+from laboratory.generators.fields import read_fields
 from laboratory.generators.homes import read_homes
 from laboratory.worlds.barn import read_barn
+from laboratory.worlds.dynabarn import read_dynabarn
 from laboratory.worlds.files import read_world_file
 from laboratory.worlds.source import WorldSource
 from planar.config.yaml_table import Table
@@ -12,5 +15,8 @@ from planar.config.yaml_table import Table
 SOURCES: Dict[str, Callable[[Table, Path], WorldSource]] = {
     "file": read_world_file,
     "barn": read_barn,
+    "dynabarn": read_dynabarn,
     "homes": read_homes,
+    "fields": read_fields,
+    "crossings": read_crossings,
 }

@@ -139,6 +139,12 @@ class Engine:
         linear = motion.linear + cross(motion.angular, centre[:3, 3] - motion.pose[:3, 3])
         self._bullet.resetBaseVelocity(link.number, linear.tolist(), motion.angular.tolist())
 
+    def shift(self, name: str, x: float, y: float) -> None:
+        """Puts a body that stands alone to another place, as high and turned as it is."""
+        link = self._register.links[name]
+        (_, _, z), turn = self._bullet.getBasePositionAndOrientation(link.number)
+        self._bullet.resetBasePositionAndOrientation(link.number, (x, y, z), turn)
+
     def push(self, name: str, force: Sequence[float], torque: Sequence[float]) -> None:
         """Force, N, at the centre of a link's mass, and torque, N m, in the world; for the next step only."""
         link = self._register.links[name]

@@ -49,7 +49,7 @@ class Drawing:
                 self.warnings.append(f"not to be seen: {error}")
         triangles = np.concatenate([np.empty((0, 3, 3)), *(triangles for triangles, _ in parts)])
         colours = np.concatenate([np.empty((0, 3)), *(colours for _, colours in parts)])
-        self._place(body.name, body.mass is None, triangles, colours, body.pose_in_world)
+        self._place(body.name, body.keeps_still, triangles, colours, body.pose_in_world)
 
     def move(self, name: str, pose: np.ndarray) -> None:
         """A body that otherwise keeps still has been put to another place."""

@@ -74,7 +74,7 @@ class Section:
 
     def _place(self, body: Body, pose: np.ndarray) -> None:
         outline = _Outline(body, pose, *self._cut(body, pose))
-        if body.mass is None:
+        if body.keeps_still:
             self._still[body.name] = outline
             self._still_segments = None
         else:

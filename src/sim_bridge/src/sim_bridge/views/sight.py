@@ -43,7 +43,7 @@ class Sight:
 
     def move(self, name: str, pose: np.ndarray) -> None:
         """A body has been put to another place, (4, 4)."""
-        if name in self._bodies and self._bodies[name].mass is None:
+        if name in self._bodies and self._bodies[name].keeps_still:
             self._bodies[name] = replace(self._bodies[name], pose_in_world=pose)
             for view in self._views():
                 view.move(name, pose)

@@ -1,0 +1,25 @@
+"""What worlds are put together from."""
+
+from typing import Sequence
+
+import numpy as np
+
+from planar import Pose2
+from sim_bridge.geometry.pose3 import pose3
+from sim_bridge.geometry.shapes import Cylinder, Plane
+from sim_bridge.simulation import box_on_floor
+from sim_bridge.world import Body, Collision
+
+FLOOR = Body("floor::link", np.eye(4), (Collision(Plane(), np.eye(4)),))
+WALL_HEIGHT = 1.0
+
+
+def wall(name: str, x: float, y: float, width: float, depth: float) -> Body:
+    """A box along the axes with its middle at (x, y), metres."""
+    return box_on_floor(name, (width, depth, WALL_HEIGHT), Pose2(x, y))
+
+
+def post(name: str, xy: Sequence[float], radius: float, height: float, is_on_course: bool = False) -> Body:
+    """A cylinder that stands on the floor."""
+    solid = (Collision(Cylinder(radius, height), np.eye(4)),)
+    return Body(f"{name}::link", pose3(*xy, height / 2.0), solid, is_on_course=is_on_course)

@@ -1,0 +1,87 @@
+"""Worlds of cylinders, standing and moving, of seeds and of DynaBARN's files."""
+
+import numpy as np
+import pytest
+
+from laboratory.generators.crossings import Crossings
+from laboratory.generators.fields import Fields
+from laboratory.playing import play
+from laboratory.suites import scenarios_of
+from laboratory.worlds.dynabarn import DynabarnFolder
+
+WORLD = """\
+start: [11.0, 0.0, 3.14159265]
+goal: [-9.0, 0.0]
+walls:
+  - [-10.0, 0.0, 0.5, 20.0]
+obstacles:
+  - {name: slow, radius: 0.5, height: 1, period: 4.0, keyframes: [[0, 3, 1], [2, 3, -1], [4, 3, 1]]}
+"""
+SCENARIO = """\
+world: {dynabarn: worlds}
+robot: {profile: jackal, start: {x: 11.0, y: 0.0, yaw: 3.141592653589793}}
+simulation: {odometry_rate: 100, scan_rate: 20}
+task: {reach: {x: 4.0, y: 0.0}}
+limits: {seconds: 20}
+"""
+
+
+def places(arena):
+    return {body.name: body.pose_in_world[:2, 3].tolist() for body in arena.world.bodies}
+
+
+@pytest.mark.parametrize("source", [Fields(), Crossings()], ids=["fields", "crossings"])
+def test_a_seed_has_a_world_of_its_own(source):
+    uncached = type(source).arena.__globals__["_arena"].__wrapped__
+    arguments = (1,) if isinstance(source, Fields) else (source.slowest, source.fastest, 1)
+    assert places(source.arena(1)) == places(uncached(*arguments)) != places(source.arena(2))
+
+
+def test_there_is_a_way_through_every_field():
+    ways = [Fields().arena(seed).way for seed in range(8)]
+    assert all(way is not None and 10.0 <= way < 14.0 for way in ways), ways
+    assert len(set(ways)) > 1
+
+
+def test_crossings_go_there_and_back_without_a_leap():
+    for course in Crossings(1.0, 1.0).arena(3).world.courses:
+        places_xy = np.array([course.at(stamp) for stamp in np.arange(0.0, 100.0, 0.1)])
+        speeds = np.hypot(*np.diff(places_xy, axis=0).T) / 0.1
+        assert np.median(speeds) > 0.85 and speeds.max() < 1.15
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "worlds").mkdir()
+    for number in (0, 10, 5):
+        (tmp_path / f"worlds/dynabarn_{number}.yaml").write_text(WORLD)
+    (tmp_path / "scenario.yaml").write_text(SCENARIO)
+    return tmp_path
+
+
+def test_dynabarns_worlds_are_taken_by_turns_and_move(folder):
+    source = DynabarnFolder(folder / "worlds")
+    assert [source.arena(seed).title for seed in range(3)] == ["DynaBARN 0", "DynaBARN 5", "DynaBARN 10"]
+    arena = source.arena(0)
+    assert arena.way == 20.0
+    assert [course.at(5.0) for course in arena.world.courses] == [(3.0, 0.0)]
+
+
+def test_a_scenario_of_dynabarn_is_played(folder):
+    (scenario,), complaints = scenarios_of([str(folder / "scenario.yaml")])
+    assert complaints == []
+    assert play(scenario, 0).outcome == "success"
+
+
+@pytest.mark.parametrize(
+    ("wrong", "complaint"),
+    [
+        ("keyframes: [[0, 3, 1], [0, 3, -1]]", "slow::link: a course needs times that rise"),
+        ("keyframes: [[0, 3]]", "keyframes must be lists of 3 numbers"),
+        ("keyframes: [[0, 3, x]]", "keyframes must be lists of 3 numbers"),
+    ],
+)
+def test_a_wrong_world_is_told(folder, wrong, complaint):
+    (folder / "worlds/dynabarn_0.yaml").write_text(WORLD.replace(WORLD[WORLD.index("keyf") : -2], wrong))
+    _, complaints = scenarios_of([str(folder / "scenario.yaml")])
+    assert len(complaints) == 1 and complaint in complaints[0]

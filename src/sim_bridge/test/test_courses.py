@@ -1,0 +1,61 @@
+"""Bodies that go their own way are seen where they are, felt when they touch, and start again."""
+
+import numpy as np
+import pytest
+
+from planar import Pose2
+from sim_bridge import Simulation, SimulationSettings, WorldError
+from sim_bridge.courses import Course
+from sim_bridge.geometry.pose3 import pose3
+from sim_bridge.geometry.shapes import Cylinder, Plane
+from sim_bridge.world import Body, Collision, World
+
+TIMES, POINTS = np.array([0.0, 2.0, 4.0]), np.array([(3.0, 0.0), (1.0, 0.0), (3.0, 0.0)])
+EXACT = SimulationSettings(range_noise=0.0, wheel_slip=0.0)
+
+
+def world(points_xy=POINTS):
+    floor = Body("floor::link", np.eye(4), (Collision(Plane(), np.eye(4)),))
+    post = (Collision(Cylinder(0.2, 1.0), np.eye(4)),)
+    walker = Body("walker::link", pose3(3.0, 0.0, 0.5), post, is_on_course=True)
+    return World("w", (floor, walker), courses=(Course("walker::link", TIMES, points_xy),))
+
+
+def straight_ahead(observation):
+    ranges = observation.scan.ranges
+    return float(ranges[len(ranges) // 2])
+
+
+def run(simulation, seconds):
+    return [simulation.step() for _ in range(round(seconds / simulation.step_seconds))]
+
+
+def test_a_scan_sees_the_body_where_its_course_has_it():
+    seen = [one for one in run(Simulation(world(), settings=EXACT), 7.9) if one.scan is not None]
+    places = [float(np.interp(one.stamp % 4.0, TIMES, POINTS[:, 0])) for one in seen]
+    gaps = [x - straight_ahead(one) for x, one in zip(places, seen)]
+    assert np.ptp(places) > 1.9
+    assert np.ptp(gaps) < 0.041, "a step of a course either way"
+
+
+def test_it_stops_for_nobody_and_what_it_touches_is_told():
+    simulation = Simulation(world(POINTS - (1.0, 0.0)), settings=EXACT)
+    seen = run(simulation, 2.0)
+    assert any("walker::link" in one.contacts for one in seen)
+    assert seen[-1].base_in_world.x < -0.05, "the robot is pushed away"
+    assert simulation.scene.models.motion("walker").pose[0, 3] == pytest.approx(0.0, abs=0.05)
+
+
+def test_after_a_rewind_it_goes_the_same_way():
+    simulation = Simulation(world(), settings=EXACT)
+    simulation.mark()
+    scans = []
+    for seconds in (1.3, 1.0, 1.0):
+        simulation.rewind(7, Pose2(0.0, 0.1))
+        scans.append([one.scan.ranges.tobytes() for one in run(simulation, seconds) if one.scan is not None])
+    assert scans[0][: len(scans[1])] == scans[1] == scans[2]
+
+
+def test_times_that_do_not_rise_are_no_course():
+    with pytest.raises(WorldError, match="walker::link: a course needs times that rise"):
+        Course("walker::link", np.array([0.0, 2.0, 2.0]), POINTS)
