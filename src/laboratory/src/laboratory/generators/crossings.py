@@ -47,7 +47,7 @@ def _arena(slowest: float, fastest: float, seed: int) -> Arena:
     courses = []
     for number in range(rng.integers(FEWEST, MOST, endpoint=True)):
         ends_xy = _ends(rng)
-        post_there = post(f"crossing_{number}", ends_xy[0], RADIUS, HEIGHT, is_on_course=True)
+        post_there = post(f"crossing_{number}", Pose2(*ends_xy[0]), RADIUS, HEIGHT, is_on_course=True)
         bodies.append(post_there)
         courses.append(_course(post_there.name, ends_xy, speed * rng.uniform(0.9, 1.1), rng))
     world = World(f"crossings {seed}", tuple(bodies), courses=tuple(courses))

@@ -12,6 +12,7 @@ from laboratory.tasks.ways import Ways
 from laboratory.worlds.barn import GOAL_IN_ODOM, START
 from laboratory.worlds.solids import FLOOR, post, wall
 from laboratory.worlds.source import Arena
+from planar import Pose2
 from planar.config.yaml_table import Table
 from sim_bridge.views.true_map import true_map
 from sim_bridge.world import World
@@ -72,7 +73,7 @@ def _world(seed: int, cells: np.ndarray) -> World:
     ]
     corner = np.array(MIDDLE_XY) - (side - CELL) / 2.0
     posts = [
-        post(f"post_{number}", corner + CELL * cell[::-1], RADIUS, 1.0)
+        post(f"post_{number}", Pose2(*(corner + CELL * cell[::-1])), RADIUS, 1.0)
         for number, cell in enumerate(np.argwhere(cells))
     ]
     return World(f"field {seed}", (FLOOR, *walls, *posts))

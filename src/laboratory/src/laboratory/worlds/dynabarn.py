@@ -11,7 +11,7 @@ import numpy as np
 
 from laboratory.worlds.solids import FLOOR, post, wall
 from laboratory.worlds.source import Arena
-from planar import SettingsError
+from planar import Pose2, SettingsError
 from planar.config.yaml_table import Table, read_table
 from sim_bridge.courses import Course
 from sim_bridge.world import Body, World
@@ -46,7 +46,9 @@ def _arena(file: Path) -> Arena:
     courses = []
     for obstacle in table.tables("obstacles"):
         name, keyframes = obstacle.text("name"), _rows(obstacle, "keyframes", 3)
-        body = post(name, keyframes[0, 1:], obstacle.number("radius"), obstacle.number("height"), True)
+        body = post(
+            name, Pose2(*keyframes[0, 1:]), obstacle.number("radius"), obstacle.number("height"), True
+        )
         bodies.append(body)
         courses.append(Course(body.name, keyframes[:, 0], keyframes[:, 1:]))
     title = f"DynaBARN {file.stem.rpartition('_')[2]}"

@@ -1,11 +1,9 @@
 """What worlds are put together from."""
 
-from typing import Sequence
-
 import numpy as np
 
 from planar import Pose2
-from sim_bridge.geometry.pose3 import pose3
+from sim_bridge.geometry.pose3 import from_pose2
 from sim_bridge.geometry.shapes import Cylinder, Plane
 from sim_bridge.simulation import box_on_floor
 from sim_bridge.world import Body, Collision
@@ -19,7 +17,7 @@ def wall(name: str, x: float, y: float, width: float, depth: float) -> Body:
     return box_on_floor(name, (width, depth, WALL_HEIGHT), Pose2(x, y))
 
 
-def post(name: str, xy: Sequence[float], radius: float, height: float, is_on_course: bool = False) -> Body:
+def post(name: str, place: Pose2, radius: float, height: float, is_on_course: bool = False) -> Body:
     """A cylinder that stands on the floor."""
     solid = (Collision(Cylinder(radius, height), np.eye(4)),)
-    return Body(f"{name}::link", pose3(*xy, height / 2.0), solid, is_on_course=is_on_course)
+    return Body(f"{name}::link", from_pose2(place, z=height / 2.0), solid, is_on_course=is_on_course)
