@@ -17,6 +17,7 @@ readonly experiments=(play evaluate) # the commands of the laboratory
 step_pid=
 clock_pid=
 aside_pid=
+undo=: # of what must not be left half done
 
 say() { printf '%s\n' "$*"; }
 
@@ -51,6 +52,7 @@ interrupted() { # EXIT_CODE: ends the step that is running, then this script
 trap 'interrupted 130' INT
 trap 'interrupted 143' TERM
 trap 'interrupted 129' HUP
+trap 'end_group "$aside_pid"; "$undo"' EXIT
 
 as_root_if_needed() { "$@" 2>/dev/null || sudo -n "$@" 2>/dev/null || true; }
 
@@ -78,7 +80,6 @@ step() { # TITLE LOG COMMAND...: runs the command, shows how long it takes, retu
 }
 
 start_aside() { # LOG COMMAND...: goes on beside the next steps, until finish_aside
-    trap 'end_group "$aside_pid"' EXIT
     set -m
     "${@:2}" >>"$1" 2>&1 </dev/null &
     aside_pid=$!

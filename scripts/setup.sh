@@ -39,10 +39,10 @@ set_up() { # EXTRA...: brings the workspace up to date; extras are dev, projects
         take_turns
         look_for_missing "$@"
         announce
-        install_missing
-        [[ -z $packages_only ]] || return 0
+        start_python
+        [[ -z $packages ]] || install_debian
         [[ -z $build ]] || build_workspace
-        [[ -z $kernels ]] || compile_kernels
+        finish_python
         exec 9<&- # what is run now must not keep others from setting up
     fi
     [[ -z $failure ]] || warn_of_failure
@@ -63,6 +63,7 @@ look_for_missing() { # EXTRA...: each of the variables is empty when nothing of 
     kernels=
     [[ -z $build ]] && has_stamp "$root/build/.kernels" "$(kernel_inputs)" || kernels=kernels
     packages=$(cd "$root/scripts" && missing_packages "$@" ${build:+build})
+    [[ -z $packages_only ]] || build='' kernels=''
 }
 
 has_stamp() { [[ -e $1 && $(<"$1") == "$2" ]]; } # FILE TEXT
@@ -71,17 +72,19 @@ announce() {
     say "Setting up the workspace in $root (once; logs in logs/setup/):"
     [[ -z $packages ]] || say "  Debian packages, with apt-get: ${packages//$'\n'/ }"
     [[ -z $requirements ]] || say "  Python packages, into .venv: $(requirement_names)"
-    [[ -z $packages_only ]] || return 0
     [[ -z $build ]] || say "  catkin build, into build/ and devel/"
     [[ -z $kernels ]] || say "  compiled numerical kernels, into __pycache__ folders of src/"
 }
 
-install_missing() { # Python's packages are fetched, and PyBullet is compiled, while apt-get is at work
+start_python() { # what needs neither Debian's packages nor the build goes on beside them
     [[ -z $requirements ]] || prepare_python
+    [[ -z $requirements$kernels ]] || start_aside "$logs/python.log" install_python
+}
+
+install_debian() {
     local names
     mapfile -t names <<<"$packages"
-    [[ -z $packages ]] || install_packages "${names[@]}"
-    [[ -z $requirements ]] || install_requirements
+    install_packages "${names[@]}"
 }
 
 prepare_python() {
@@ -93,7 +96,33 @@ prepare_python() {
         ((${#needed[@]} == 0)) || { check_root "${needed[*]}" && install_packages "${needed[@]}"; }
     fi
     make_venv
-    start_aside "$logs/python.log" fetch_requirements
+}
+
+readonly not_fetched=3 not_installed=4 not_compiled=5
+
+install_python() { # the exit code tells what did not end well
+    if [[ -n $requirements ]]; then
+        fetch_requirements || return "$not_fetched"
+        install_requirements || return "$not_installed"
+    fi
+    [[ -z $kernels ]] || warm_kernels >"$logs/kernels.log" 2>&1 || return "$not_compiled"
+}
+
+finish_python() {
+    [[ -n $aside_pid ]] || return 0
+    local title="Python packages" log=$logs/python.log status=0
+    [[ -z $kernels ]] || title=${requirements:+$title, }"Numerical kernels"
+    finish_aside "$title" || status=$?
+    case $status in
+        0) ;;
+        "$not_fetched") give_up "the Python packages could not be fetched" "$log" ;;
+        "$not_compiled")
+            say "warning: the kernels were not compiled; each is when it is first needed (see $logs/kernels.log)"
+            ;;
+        *) give_up "pip failed" "$log" ;;
+    esac
+    [[ -z $requirements ]] || shield_rospy
+    [[ -z $kernels ]] || kernel_inputs >"$root/build/.kernels"
 }
 
 warn_of_failure() {

@@ -41,13 +41,10 @@ fetch_requirements() { # those that are missing, into .venv/wheels
 }
 
 install_requirements() {
-    local log=$logs/python.log stamp=$root/.venv/.set-up files file
-    finish_aside "Fetching Python packages" || give_up "the Python packages could not be fetched" "$log"
+    local stamp=$root/.venv/.set-up files file
     mapfile -t files < <(options_of_missing)
-    step "Installing Python packages" "$log" pip install --no-index --find-links "$root/.venv/wheels" "${files[@]}" ||
-        give_up "pip failed" "$log"
+    pip install --no-index --find-links "$root/.venv/wheels" "${files[@]}" || return
     rm -rf "$root/.venv/wheels"
-    shield_rospy
     (cd "$root/scripts" && for file in "${requirement_files[@]}"; do requirement_stamp "$file"; done) >"$stamp.new"
     mv "$stamp.new" "$stamp"
 }
@@ -69,9 +66,11 @@ options_of_missing() {
 
 pip() { pip_of "$root/.venv" "$@"; }
 
-pip_of() { # VENV COMMAND ARGUMENT...
-    env -u PYTHONHOME -u PYTHONPATH "$1/bin/python3" -m pip "$2" --no-input --disable-pip-version-check \
-        --retries 3 "${@:3}"
+pip_of() { # VENV COMMAND ARGUMENT...: what Debian has does not count, it comes and goes while apt-get is at work
+    env -u PYTHONHOME -u PYTHONPATH "$1/bin/python3" -c '
+import runpy, sys
+sys.path = [path for path in sys.path if not path.endswith("dist-packages")]
+runpy.run_module("pip", run_name="__main__")' "$2" --no-input --disable-pip-version-check --retries 3 "${@:3}"
 }
 
 # -- PyBullet, where its makers have no wheel: built once, for all workspaces of this user ---------------

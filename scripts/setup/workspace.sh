@@ -18,7 +18,7 @@ build_workspace() {
     (cd "$root" && check_names)
     : >"$log"
     restore_last_build
-    trap restore_last_build EXIT
+    undo=restore_last_build
     clear_build
     # A build that was made elsewhere, or holds packages that have gone, is made anew.
     if [[ $(head -n 1 "$last/build/.set-up" 2>/dev/null) == "${inputs%%$'\n'*}" ]]; then
@@ -34,7 +34,7 @@ build_workspace() {
         tell_failure "$log"
         [[ -e $stamp ]] || fail "$failure"
     fi
-    trap - EXIT
+    undo=:
 }
 
 tell_failure() { # LOG: in $failure; one that the sources are at fault for is kept, so that they are not built again
@@ -178,17 +178,8 @@ fault_in() { # LOG: which package does not build, and of what it says that it la
 
 # -- the numerical kernels -----------------------------------------------------------------------------
 
-kernel_inputs() { (cd "$root" && grep -rl --include='*.py' numba src | sort | xargs -r stat -c '%n %Y %s' | sha256sum); }
-
-compile_kernels() {
-    local log=$logs/kernels.log
-    : >"$log"
-    step "Compiling the numerical kernels" "$log" warm_kernels ||
-        say "warning: that did not end well; each is compiled when it is first needed (see $log)"
-    kernel_inputs >"$root/build/.kernels"
-}
+kernel_inputs() { (cd "$root" && { grep -rl --include='*.py' numba src || true; } | sort | xargs -r stat -c '%n %Y %s' | sha256sum); }
 
 warm_kernels() {
-    enter_workspace
-    python3 -m home_service.warm
+    env -u PYTHONHOME PYTHONPATH="$(printf '%s:' "$root"/src/*/src)" "$root/.venv/bin/python3" -m home_service.warm
 }

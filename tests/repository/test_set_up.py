@@ -97,7 +97,7 @@ FAILING = """
     missing_requirements() { :; }
     missing_packages() { :; }
     announce() { :; }
-    compile_kernels() { :; }
+    warm_kernels() { :; }
 """
 
 
@@ -191,7 +191,9 @@ def test_what_the_first_set_up_installs_does_not_make_the_second_start_build_ane
         + """
         mkdir src
         build_inputs() { cat python 2>/dev/null; echo; }
-        install_missing() { echo 3.13 >python; }
+        missing_packages() { [[ -e python ]] || echo python3; }
+        check_place() { :; }
+        install_debian() { echo 3.13 >python; }
         catkin_build() { mkdir -p build devel; }
         set_up
         look_for_missing
@@ -199,6 +201,40 @@ def test_what_the_first_set_up_installs_does_not_make_the_second_start_build_ane
         """,
     )
     assert said.stdout.endswith("left: \n"), said.stderr
+
+
+BESIDE = """
+    missing_requirements() { echo requirements.txt; }
+    missing_packages() { :; }
+    announce() { :; }
+    prepare_python() { :; }
+    fetch_requirements() { until [[ -e building ]]; do sleep 0.01; done; }
+    install_requirements() { touch installed; }
+    warm_kernels() { touch compiled; }
+    catkin_build() { mkdir -p build devel; touch building; }
+"""
+
+
+def test_python_packages_and_kernels_are_made_beside_the_build(tmp_path):
+    said = in_workspace(
+        tmp_path, BESIDE + "mkdir src; set_up; ls installed compiled build/.set-up build/.kernels"
+    )
+    assert said.returncode == 0, said.stderr
+
+
+@pytest.mark.parametrize(
+    "step, code, sentence",
+    [
+        ("fetch_requirements", 1, "error: the Python packages could not be fetched"),
+        ("install_requirements", 1, "error: pip failed"),
+        ("warm_kernels", 0, "warning: the kernels were not compiled"),
+    ],
+)
+def test_what_fails_beside_the_build_is_told_after_it(tmp_path, step, code, sentence):
+    said = in_workspace(tmp_path, BESIDE + f"mkdir src; {step}() {{ false; }}; set_up")
+    assert said.returncode == code
+    assert sentence in said.stdout + said.stderr
+    assert (tmp_path / "build/.set-up").exists()
 
 
 def test_a_disk_that_is_full_is_told_even_if_no_log_could_say_so(tmp_path):
