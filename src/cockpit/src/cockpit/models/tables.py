@@ -7,17 +7,20 @@ STYLE = (
     "font-size:11px;line-height:1.5;font-family:ui-monospace,monospace;max-height:320px;overflow:auto;"
     "margin:0 12px 8px 12px"
 )
-CELL = "padding:0 10px 0 0;white-space:nowrap;text-align:left"
+CELL = "padding:0 10px 0 0;vertical-align:top;text-align:left"
+SHORT, LONG = ";white-space:nowrap", ";white-space:pre-wrap;overflow-wrap:anywhere;min-width:180px"
+LONGEST_LINE = 48
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     """``rows``: anything that has a text."""
     head = "".join(f'<th style="{CELL};opacity:.6;font-weight:600">{escape(text)}</th>' for text in heads)
-    body = "".join(
-        "<tr>" + "".join(f'<td style="{CELL}">{escape(str(cell))}</td>' for cell in row) + "</tr>"
-        for row in rows
-    )
+    body = "".join("<tr>" + "".join(_cell(str(cell)) for cell in row) + "</tr>" for row in rows)
     return f'<div style="{STYLE}"><table style="border-collapse:collapse"><tr>{head}</tr>{body}</table></div>'
+
+
+def _cell(text: str) -> str:
+    return f'<td style="{CELL}{SHORT if len(text) <= LONGEST_LINE else LONG}">{escape(text)}</td>'
 
 
 def preformatted(text: str) -> str:

@@ -1,6 +1,6 @@
 """Messages as text, however large they are."""
 
-from typing import Any, List
+from typing import Any, Dict, List
 
 import numpy as np
 
@@ -44,3 +44,15 @@ def value_text(value: Any) -> str:
         return f"[{told}]" if len(value) <= MOST_ITEMS else f"{len(value)} of [{told}, ...]"
     text = str(value)
     return text if len(text) <= LONGEST else text[:LONGEST] + "..."
+
+
+def flat(tree: Any, name: str = "") -> Dict[str, Any]:
+    """The leaves of dictionaries in dictionaries, each by its full name."""
+    if not isinstance(tree, dict) or not tree:
+        return {name: tree} if name else {}
+    return {path: leaf for key, below in tree.items() for path, leaf in flat(below, f"{name}/{key}").items()}
+
+
+def amount(size: int) -> str:
+    """Of bytes."""
+    return f"{size / 1e6:.1f} MB" if size >= 100_000 else f"{size / 1e3:.1f} KB"

@@ -2,6 +2,8 @@
 
 from typing import Any, Callable, Dict, Iterable, Tuple
 
+WIDTH = 420
+
 
 class ToolPanel:
     """``on_switch`` is called with a tool's name and whether it is to be open."""
@@ -20,19 +22,19 @@ class ToolPanel:
         """As if a person had ticked its box."""
         self._boxes[name].value = True
 
-    def window(self, title: str) -> Any:
+    def window(self, title: str, width: int) -> Any:
         """A new window with one tab: the context in which controls are made, and ``remove()``."""
-        return Window(self._gui, title)
+        return Window(self._gui, title, width)
 
 
 class Window:
-    """A movable window of the page."""
+    """A movable window of the page; ``width``: pixels."""
 
-    def __init__(self, gui, title: str):
+    def __init__(self, gui, title: str, width: int = WIDTH):
         self._panel = gui.add_panel()
         self._tab = self._panel.add_tab(title)
         self._panel.dock_left()
-        self._panel.set_width(420)
+        self._panel.set_width(width)
 
     def __enter__(self):
         return self._tab.__enter__()

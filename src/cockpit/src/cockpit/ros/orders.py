@@ -12,6 +12,7 @@ from std_srvs.srv import Empty
 
 from cockpit.errors import CockpitError
 from cockpit.models.pointing import quaternion_of
+from cockpit.ros.calls import call
 from cockpit.ros.graph import Graph
 
 GOAL, ESTIMATE, POINT = "move_base_simple/goal", "initialpose", "clicked_point"
@@ -21,7 +22,7 @@ TWIST = "geometry_msgs/Twist"
 LIKELY = ("input/teleop", "teleop/cmd_vel", "cmd_vel", "velocity")
 # rviz's, for a pose estimate: variances of x, y and yaw.
 SPREAD = {0: 0.25, 7: 0.25, 35: 0.06853891945200942}
-LISTENER_SECONDS, SERVICE_SECONDS = 1.0, 1.0
+LISTENER_SECONDS = 1.0
 BOX_SIZE, BOX_HEIGHT = 0.3, 0.5
 BOX = """<sdf version="1.6"><model name="{name}"><link name="box">
 <inertial><mass>2</mass></inertial>
@@ -78,18 +79,18 @@ class Orders:
         self._send(robot + CANCEL, GoalID())
 
     def pause(self, is_paused: bool) -> None:
-        self._call(f"/gazebo/{'pause' if is_paused else 'unpause'}_physics", Empty)
+        call(f"/gazebo/{'pause' if is_paused else 'unpause'}_physics", Empty)
 
     def reset(self) -> None:
-        self._call("/gazebo/reset_world", Empty)
+        call("/gazebo/reset_world", Empty)
 
     def step(self) -> None:
-        self._call("/sim_bridge/step", Step, 1)
+        call("/sim_bridge/step", Step, 1)
 
     def set_speed(self, factor: float) -> None:
         """``factor``: times real time, 0 as fast as the nodes keep up."""
-        told = self._call("/gazebo/get_physics_properties", gazebo_msgs.srv.GetPhysicsProperties)
-        answer = self._call(
+        told = call("/gazebo/get_physics_properties", gazebo_msgs.srv.GetPhysicsProperties)
+        answer = call(
             "/gazebo/set_physics_properties",
             gazebo_msgs.srv.SetPhysicsProperties,
             told.time_step,
@@ -105,7 +106,7 @@ class Orders:
         name = f"box_of_cockpit_{int(time.time()) % 100000}_{self._boxes}"
         pose = _pose(x, y, 0.0)
         pose.position.z = BOX_HEIGHT
-        answer = self._call(
+        answer = call(
             "/gazebo/spawn_sdf_model",
             gazebo_msgs.srv.SpawnModel,
             name,
@@ -126,13 +127,6 @@ class Orders:
                 raise CockpitError(f"nobody listens to {topic}")
             time.sleep(0.02)
         publisher.publish(message)
-
-    def _call(self, name: str, kind: type, *arguments: Any) -> Any:
-        try:
-            rospy.wait_for_service(name, SERVICE_SECONDS)
-            return rospy.ServiceProxy(name, kind)(*arguments)
-        except (rospy.ROSException, rospy.ServiceException) as error:
-            raise CockpitError(f"{name}: {error}") from None
 
 
 def _check(answer: Any) -> None:

@@ -3,8 +3,8 @@
 import threading
 from typing import Any, Callable, Protocol
 
-from cockpit.errors import CockpitError
 from cockpit.ros.graph import Graph
+from planar import PlanarError
 
 
 class Desk:
@@ -47,7 +47,7 @@ class Tool(Protocol):
     it. What it computes is a pure module of ``cockpit/models``, tested without ROS and without a page.
 
     ``name``: by which ``cockpit.sh --tool`` and the page know it, one word; ``title``: of its window;
-    ``seconds``: between two updates.
+    ``seconds``: between two updates; ``width``: of its window, pixels.
 
     Life cycle: made when it is opened, with a desk of its own. ``build`` makes its controls, with
     ``desk.gui``, once; they vanish with the window. ``update`` is called every ``seconds`` while the window
@@ -61,6 +61,7 @@ class Tool(Protocol):
     name: str
     title: str
     seconds: float
+    width: int
 
     def __init__(self, desk: Desk): ...
 
@@ -77,4 +78,4 @@ class Tool(Protocol):
 def said(error: Exception) -> str:
     """What went wrong, in one line."""
     text = " ".join(str(error).split())
-    return text if isinstance(error, CockpitError) and text else f"{type(error).__name__}: {text}"[:300]
+    return text if isinstance(error, PlanarError) and text else f"{type(error).__name__}: {text}"[:300]

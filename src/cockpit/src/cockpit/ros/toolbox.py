@@ -78,7 +78,7 @@ class Toolbox:
     def _make(self, name: str) -> _Open:
         kind = self._kinds[name]
         desk = Desk(self._page.gui, self._graph, self._page.tell)
-        window = self._panel.window(kind.title)
+        window = self._panel.window(kind.title, kind.width)
         opened = _Open(kind(desk), desk, window)
         with desk.lock, window:
             opened.tool.build()

@@ -1,5 +1,6 @@
 """/tf and /tf_static into a tree of frames."""
 
+from collections import Counter
 from typing import List
 
 from cockpit.errors import CockpitError
@@ -11,10 +12,11 @@ KIND = "tf2_msgs/TFMessage"
 
 
 class TransformListener:
-    """Keeps ``frames`` up to date while it listens."""
+    """Keeps ``frames`` up to date while it listens; ``counts``: how many transforms of each have come."""
 
     def __init__(self, frames: FrameTree):
         self._frames = frames
+        self.counts: Counter = Counter()
         self._feeds: List[Feed] = []
 
     def listen(self, wanted: bool) -> None:
@@ -38,4 +40,5 @@ class TransformListener:
         if pose is None:
             raise CockpitError(f"{sender} sends a transform of {stamped.child_frame_id} that is none")
         parent, stamp = stamped.header.frame_id.lstrip("/"), stamped.header.stamp.to_sec()
+        self.counts[stamped.child_frame_id.lstrip("/")] += 1
         self._frames.put(stamped.child_frame_id, Transform(parent, pose, stamp, is_static, sender))

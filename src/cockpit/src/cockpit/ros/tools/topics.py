@@ -13,7 +13,7 @@ NONE = "(none)"
 
 
 class Topics:
-    name, title, seconds = "topics", "Topics", 0.5
+    name, title, seconds, width = "topics", "Topics", 0.5, 620
 
     def __init__(self, desk: Desk):
         self._desk = desk

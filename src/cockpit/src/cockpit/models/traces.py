@@ -1,0 +1,92 @@
+"""Numbers out of messages, and how they went over time (rqt_plot)."""
+
+import math
+import re
+from collections import deque
+from typing import Any, Deque, Dict, List, Tuple
+
+import numpy as np
+
+from cockpit.errors import CockpitError
+
+MOST_SAMPLES, MOST_DRAWN = 6000, 1000
+MOST_LISTED, LONGEST_LISTED, DEEPEST = 120, 6, 6
+STEP = re.compile(r"(\w+)((?:\[-?\d+\])*)")
+
+
+def number_at(message: Any, path: str) -> float:
+    """The number at ``pose.position.x``, ``ranges[3]``. Raises CockpitError if there is none."""
+    value = message
+    for word in path.split("."):
+        matched = STEP.fullmatch(word)
+        if matched is None or not hasattr(value, "__slots__") or matched.group(1) not in value.__slots__:
+            raise CockpitError(f"there is no field '{path}'")
+        value = getattr(value, matched.group(1))
+        for index in re.findall(r"-?\d+", matched.group(2)):
+            try:
+                value = value[int(index)]
+            except (IndexError, TypeError, KeyError):
+                raise CockpitError(f"there is no element [{index}] in '{path}'") from None
+    if hasattr(value, "to_sec"):
+        value = value.to_sec()
+    if not isinstance(value, (bool, int, float, np.number, np.bool_)):
+        raise CockpitError(f"'{path}' is not a number")
+    return float(value)
+
+
+def numbers_in(message: Any, depth: int = DEEPEST) -> List[str]:
+    """The paths of the numbers of a message, of arrays the first few."""
+    return _numbers(message, "", depth)[:MOST_LISTED]
+
+
+def _numbers(value: Any, path: str, depth: int) -> List[str]:
+    if hasattr(value, "to_sec") or isinstance(value, (bool, int, float, np.number, np.bool_)):
+        return [path]
+    if depth == 0:
+        return []
+    found: List[str] = []
+    if hasattr(value, "__slots__"):
+        for name in value.__slots__:
+            if not name.startswith("_"):
+                found += _numbers(getattr(value, name), f"{path}.{name}".lstrip("."), depth - 1)
+    elif isinstance(value, (list, tuple, np.ndarray)):
+        for index, item in enumerate(value[:LONGEST_LISTED]):
+            found += _numbers(item, f"{path}[{index}]", depth - 1)
+    return found
+
+
+class Traces:
+    """Numbers that came over time, each under a name; ``seconds``: how far back they are drawn."""
+
+    def __init__(self, seconds: float):
+        self.seconds = seconds
+        self._samples: Dict[str, Deque[Tuple[float, float]]] = {}
+
+    def add(self, name: str, at: float, value: float) -> None:
+        samples = self._samples.setdefault(name, deque(maxlen=MOST_SAMPLES))
+        if math.isfinite(value):
+            samples.append((at, value))
+
+    def forget(self, name: str) -> None:
+        self._samples.pop(name, None)
+
+    def newest(self, name: str) -> float:
+        """NaN if there is none."""
+        samples = self._samples.get(name)
+        return samples[-1][1] if samples else math.nan
+
+    def drawn(self, names: List[str], now: float) -> Tuple[np.ndarray, ...]:
+        """Times (N,) in seconds before ``now``, and the values (N,) of each, held until the next."""
+        taken = [np.array(self._samples.get(name, ())).reshape(-1, 2) for name in names]
+        times = np.unique(np.concatenate([np.array([now]), *(samples[:, 0] for samples in taken)]))
+        times = times[times >= now - self.seconds]
+        if len(times) > MOST_DRAWN:
+            times = times[np.unique(np.linspace(0, len(times) - 1, MOST_DRAWN).astype(int))]
+        return (times - now, *(_held(samples, times) for samples in taken))
+
+
+def _held(samples: np.ndarray, times: np.ndarray) -> np.ndarray:
+    if not len(samples):
+        return np.zeros(len(times))
+    which = np.searchsorted(samples[:, 0], times, side="right") - 1
+    return samples[np.maximum(which, 0), 1]

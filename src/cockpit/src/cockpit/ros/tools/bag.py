@@ -1,0 +1,164 @@
+"""Bag: what is said recorded in a file, a file played, paused and ended (rqt_bag, rosbag)."""
+
+import os
+import signal
+import subprocess
+from pathlib import Path
+from typing import List, Optional
+
+from std_srvs.srv import SetBool
+
+from cockpit.errors import CockpitError
+from cockpit.models.bag_files import bags_below, new_bag
+from cockpit.models.text import amount
+from cockpit.ros.aside import Aside
+from cockpit.ros.calls import call
+from cockpit.ros.tool import Desk
+from planar_ros.bags.recording import Recording
+
+NONE, PAUSE = "(none)", "/pause_playback"
+END_SECONDS = 5.0
+
+
+class Bag:
+    name, title, seconds, width = "bag", "Bag", 0.5, 440
+
+    def __init__(self, desk: Desk):
+        self._desk = desk
+        self._folder = Path.cwd()
+        self._recorder: Optional[Program] = None
+        self._player: Optional[Program] = None
+        self._file = Path()
+        self._aside = Aside()
+
+    def build(self) -> None:
+        gui, guarded = self._desk.gui, self._desk.guarded
+        with gui.add_folder("Record"):
+            self._name = gui.add_text("File", "recording.bag", hint=f"in {self._folder}")
+            self._topics = gui.add_text("Topics", "", hint="names with blanks between; empty: all")
+            gui.add_button("Record").on_click(guarded(lambda _: self._record()))
+            gui.add_button("End the recording", color="gray").on_click(
+                guarded(lambda _: self._end_recorder())
+            )
+        with gui.add_folder("Play"):
+            self._found = gui.add_dropdown("Found", (NONE,), hint=f"in {self._folder} and its runs")
+            self._path = gui.add_text("or its path", "")
+            self._rate = gui.add_number("Times real time", 1.0, min=0.01, max=100.0, step=0.1)
+            self._clock = gui.add_checkbox("Its clock too", False, hint="for nodes with use_sim_time")
+            gui.add_button("Play").on_click(guarded(lambda _: self._play()))
+            gui.add_button("Pause", color="gray").on_click(guarded(lambda _: self._pause(True)))
+            gui.add_button("Go on", color="gray").on_click(guarded(lambda _: self._pause(False)))
+            gui.add_button("End it", color="gray").on_click(guarded(lambda _: self._end_player()))
+        self._status = gui.add_markdown("")
+
+    def update(self, now: float) -> None:
+        options = (NONE, *bags_below(self._folder))
+        if self._found.options != options:
+            self._found.options = options
+        for do in self._aside.take():
+            do()
+        self._status.content = "  \n".join(self._told())
+
+    def pause(self) -> None:
+        """A recording goes on though nobody looks: that is what it was started for."""
+
+    def close(self) -> None:
+        self._end_recorder()
+        self._end_player()
+
+    def _told(self) -> List[str]:
+        told = []
+        if self._recorder is not None:
+            part = self._file.with_suffix(".bag.active")
+            size = next((path.stat().st_size for path in (part, self._file) if path.exists()), 0)
+            state = "recording" if self._recorder.is_running else "recorded"
+            told.append(f"{state} {self._file.name}: {amount(size)}")
+        if self._player is not None:
+            told.append("playing" if self._player.is_running else "played to its end")
+            told += [f"the player says: {word}" for word in self._player.complaints()]
+        return told
+
+    def _record(self) -> None:
+        if self._recorder is not None and self._recorder.is_running:
+            raise CockpitError(f"{self._file.name} is being recorded: end that first")
+        path = new_bag(self._folder, self._name.value)
+        if not os.access(self._folder, os.W_OK):
+            raise CockpitError(f"{self._folder} cannot be written to")
+        topics = self._topics.value.split()
+        bad = [topic for topic in topics if not topic.startswith("/")]
+        if bad:
+            raise CockpitError(f"'{bad[0]}' is no topic: its name begins with /")
+        self._file = path
+        self._recorder = Program(["record", "-O", str(path), *(topics or ["--all"])])
+
+    def _end_recorder(self) -> None:
+        if self._recorder is not None:
+            self._recorder.end()
+
+    def _play(self) -> None:
+        if self._player is not None and self._player.is_running:
+            raise CockpitError("a bag is being played: end that first")
+        told = self._path.value.strip() or self._found.value
+        if told == NONE:
+            raise CockpitError("choose a bag first")
+        path, rate, clock = self._folder / told, self._rate.value, self._clock.value
+
+        def look():
+            bags = Recording([path]).paths  # whether it can be read is known before anything is sent
+            words = ["play", "--rate", f"{rate:g}", *(["--clock"] if clock else []), *map(str, bags)]
+
+            def start() -> None:
+                self._player = Program(words)
+
+            return start
+
+        self._aside.start(look)
+
+    def _pause(self, is_paused: bool) -> None:
+        """Whatever plays a bag in this graph."""
+        found = [name for name in self._desk.graph.services() if name.endswith(PAUSE)]
+        if not found:
+            raise CockpitError("no bag is played")
+        for name in found:
+            call(name, SetBool, is_paused)
+
+    def _end_player(self) -> None:
+        if self._player is not None:
+            self._player.end()
+
+
+class Program:
+    """A program of the package rosbag, which is ended as by Ctrl-C."""
+
+    def __init__(self, words: List[str]):
+        self._process = subprocess.Popen(
+            ["rosrun", "rosbag", *words],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            start_new_session=True,
+        )
+
+    @property
+    def is_running(self) -> bool:
+        return self._process.poll() is None
+
+    def complaints(self) -> List[str]:
+        """What it said at its end, if that was a bad one."""
+        if self.is_running or self._process.returncode in (0, -signal.SIGINT):
+            return []
+        assert self._process.stderr is not None
+        lines = self._process.stderr.read().decode(errors="replace").split("\n")
+        return [line.strip()[:200] for line in lines if line.strip()][-1:]
+
+    def end(self) -> None:
+        if self.is_running:
+            os.killpg(self._process.pid, signal.SIGINT)
+            try:
+                self._process.wait(END_SECONDS)
+            except subprocess.TimeoutExpired:
+                os.killpg(self._process.pid, signal.SIGKILL)
+                self._process.wait()
+
+
+TOOL = Bag

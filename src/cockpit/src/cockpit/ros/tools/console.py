@@ -1,0 +1,105 @@
+"""Console: what nodes say, by node and level; how much each says (rqt_console, rqt_logger_level)."""
+
+from typing import Optional
+
+from roscpp.srv import GetLoggers, SetLoggerLevel
+
+from cockpit.errors import CockpitError
+from cockpit.models.log import HEADS, LEVELS, Log, Said, Wanted, level_named
+from cockpit.models.tables import table
+from cockpit.ros.aside import Aside
+from cockpit.ros.calls import call
+from cockpit.ros.graph import Feed
+from cockpit.ros.tool import Desk
+
+COLLECTED, TOLD, KIND = "/rosout_agg", "/rosout", "rosgraph_msgs/Log"
+NONE = "(none)"
+LOGGERS, SET_LEVEL = "/get_loggers", "/set_logger_level"
+
+
+class Console:
+    name, title, seconds, width = "console", "Console", 0.5, 640
+
+    def __init__(self, desk: Desk):
+        self._desk = desk
+        self._log = Log()
+        self._feed: Optional[Feed] = None
+        self._aside = Aside()
+
+    def build(self) -> None:
+        gui, guarded = self._desk.gui, self._desk.guarded
+        self._lowest = gui.add_dropdown("From level", tuple(LEVELS.values()), initial_value="Info")
+        self._node = gui.add_text("Node", "", hint="part of a node's name")
+        self._text = gui.add_text("Message", "", hint="part of a message")
+        gui.add_button("Clear", color="gray").on_click(guarded(lambda _: self._log.clear()))
+        self._lines = gui.add_html("")
+        with gui.add_folder("How much a node says", expand_by_default=False):
+            self._speaker = gui.add_dropdown("Of node", (NONE,))
+            self._logger = gui.add_dropdown("Logger", (NONE,))
+            self._level = gui.add_dropdown("Level", tuple(LEVELS.values()), initial_value="Info")
+            gui.add_button("Set the level").on_click(guarded(self._set_level))
+        self._speaker.on_update(guarded(self._ask_loggers))
+
+    def update(self, now: float) -> None:
+        for told in self._listening().take():
+            where = f"{told.file.rpartition('/')[2]}:{told.line} {told.function}".strip(": ")
+            self._log.add(Said(told.level, told.header.stamp.to_sec(), told.name, told.msg, where))
+        wanted = Wanted(level_named(self._lowest.value), self._node.value, self._text.value)
+        content = table(HEADS, self._log.rows(wanted))
+        if self._lines.content != content:
+            self._lines.content = content
+        services = self._desk.graph.services()
+        speakers = sorted(name[: -len(LOGGERS)] for name in services if name.endswith(LOGGERS))
+        if self._speaker.options != (NONE, *speakers):
+            self._speaker.options = (NONE, *speakers)
+        for do in self._aside.take():
+            do()
+
+    def _listening(self) -> Feed:
+        """To the collector of all that is said or, where none runs, to each node itself."""
+        wanted = COLLECTED if COLLECTED in self._desk.graph.publishers() else TOLD
+        if self._feed is not None and self._feed.topic != wanted:
+            self.pause()
+        if self._feed is None:
+            self._feed = self._desk.graph.feed(wanted, KIND, all_of_them=True)
+        return self._feed
+
+    def pause(self) -> None:
+        if self._feed is not None:
+            self._feed.close()
+            self._feed = None
+
+    close = pause
+
+    def _ask_loggers(self, _event) -> None:
+        node = self._speaker.value
+        if node == NONE:
+            self._logger.options = (NONE,)
+        else:
+            self._aside.start(lambda: self._offering(node))
+
+    def _offering(self, node: str):
+        told = call(node + LOGGERS, GetLoggers).loggers
+        levels = {logger.name: logger.level.capitalize() for logger in told}
+
+        def offer() -> None:
+            self._logger.options = tuple(sorted(levels, key=lambda name: (name != "rosout", name))) or (NONE,)
+            level = levels.get(self._logger.value, "")
+            if level in LEVELS.values():
+                self._level.value = level
+
+        return offer
+
+    def _set_level(self, _event) -> None:
+        node, logger, level = self._speaker.value, self._logger.value, self._level.value
+        if NONE in (node, logger):
+            raise CockpitError("choose a node and one of its loggers first")
+
+        def ask():
+            call(node + SET_LEVEL, SetLoggerLevel, logger, level.lower())
+            return lambda: self._desk.tell(f"{node}: {logger} is at {level}")
+
+        self._aside.start(ask)
+
+
+TOOL = Console

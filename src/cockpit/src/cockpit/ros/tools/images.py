@@ -1,0 +1,70 @@
+"""Images: what a camera sees (rqt_image_view)."""
+
+from typing import Any, Optional
+
+from cockpit.drawing import Screen
+from cockpit.layers.pictures import LAYER
+from cockpit.models.rates import Rate
+from cockpit.ros.graph import Feed
+from cockpit.ros.tool import Desk
+
+NONE = "(none)"
+
+
+class Images:
+    name, title, seconds, width = "images", "Images", 0.1, 520
+
+    def __init__(self, desk: Desk):
+        self._desk = desk
+        self._feed: Optional[Feed] = None
+        self._rate = Rate()
+        self._image: Any = None
+        self._draw = LAYER.make()
+
+    def build(self) -> None:
+        self._topic = self._desk.gui.add_dropdown("Topic", (NONE,))
+        self._status = self._desk.gui.add_markdown("")
+        self._space = self._desk.gui.add_folder("Picture")
+
+    def update(self, now: float) -> None:
+        types = self._desk.graph.topics()
+        found = (NONE, *sorted(topic for topic, kind in types.items() if kind in LAYER.types))
+        if self._topic.options != found:
+            self._topic.options = found
+        self._listen()
+        if self._feed is None:
+            self._status.content = "choose a topic" if len(found) > 1 else "no camera sends pictures"
+            return
+        hertz, _ = self._rate.update(now, self._feed.count, 0)
+        for message in self._feed.take():
+            self._status.content = f"{message.width} x {message.height}, {message.encoding}, {hertz:.1f} Hz"
+            for part in self._draw(message).parts:
+                if isinstance(part.thing, Screen):
+                    self._show(part.thing.picture)
+
+    def pause(self) -> None:
+        if self._feed is not None:
+            self._feed.close()
+            self._feed = None
+
+    close = pause
+
+    def _listen(self) -> None:
+        wanted = self._topic.value
+        if self._feed is not None and self._feed.topic != wanted:
+            self.pause()
+            if self._image is not None:
+                self._image.remove()
+                self._image = None
+        if self._feed is None and wanted != NONE:
+            self._feed, self._rate = self._desk.graph.feed(wanted), Rate()
+
+    def _show(self, picture: Any) -> None:
+        if self._image is None:
+            with self._space:
+                self._image = self._desk.gui.add_image(picture, jpeg_quality=75)
+        else:
+            self._image.image = picture
+
+
+TOOL = Images

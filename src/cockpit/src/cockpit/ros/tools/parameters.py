@@ -1,0 +1,80 @@
+"""Parameters: listed, looked at, set and removed (rosparam)."""
+
+import rospy
+import yaml
+
+from cockpit.errors import CockpitError
+from cockpit.models.tables import table
+from cockpit.models.text import flat, value_text
+from cockpit.ros.tool import Desk
+
+MOST_LISTED = 300
+LONGEST = 10_000
+
+
+class Parameters:
+    name, title, seconds, width = "parameters", "Parameters", 1.0, 560
+
+    def __init__(self, desk: Desk):
+        self._desk = desk
+
+    def build(self) -> None:
+        gui, guarded = self._desk.gui, self._desk.guarded
+        self._filter = gui.add_text("Filter", "", hint="part of a parameter's name")
+        self._list = gui.add_html("")
+        self._name = gui.add_text("Name", "")
+        gui.add_button("Get", color="gray").on_click(guarded(lambda _: self._get()))
+        self._value = gui.add_text("Value", "", multiline=True, hint="YAML")
+        gui.add_button("Set").on_click(guarded(lambda _: self._set()))
+        gui.add_button("Remove", color="orange").on_click(guarded(lambda _: self._remove()))
+
+    def update(self, now: float) -> None:
+        known = flat(self._desk.graph.parameter("/", {}))
+        part = self._filter.value.lower()
+        rows = [(name, value_text(value)) for name, value in sorted(known.items()) if part in name.lower()]
+        more = [(f"... and {len(rows) - MOST_LISTED} more", "")] if len(rows) > MOST_LISTED else []
+        content = table(("Parameter", "Value"), rows[:MOST_LISTED] + more)
+        if self._list.content != content:
+            self._list.content = content
+
+    def pause(self) -> None:
+        """It listens to nothing."""
+
+    close = pause
+
+    def _named(self) -> str:
+        name = self._name.value.strip()
+        if not name or name == "/":
+            raise CockpitError("say the parameter's name first")
+        return rospy.resolve_name("/" + name.lstrip("/"))
+
+    def _get(self) -> None:
+        name = self._named()
+        value = self._desk.graph.parameter(name)
+        if value is None:
+            raise CockpitError(f"there is no parameter {name}")
+        self._value.value = yaml.safe_dump(value, default_flow_style=False).replace("\n...\n", "").strip()
+
+    def _set(self) -> None:
+        name = self._named()
+        if len(self._value.value) > LONGEST:
+            raise CockpitError(f"longer than {LONGEST} characters")
+        try:
+            value = yaml.safe_load(self._value.value)
+        except (yaml.YAMLError, RecursionError) as error:
+            raise CockpitError(f"{name}: not YAML ({getattr(error, 'problem', error)})") from None
+        if value is None:
+            raise CockpitError(f"{name}: say a value first")
+        rospy.set_param(name, value)
+        self._desk.tell(f"{name} is set; a node that has read it already knows nothing of that")
+
+    def _remove(self) -> None:
+        name = self._named()
+        try:
+            rospy.delete_param(name)
+        except KeyError:
+            raise CockpitError(f"there is no parameter {name}") from None
+        self._desk.tell(f"{name} is removed")
+
+
+TOOL = Parameters

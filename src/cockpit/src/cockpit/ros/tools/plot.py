@@ -1,0 +1,120 @@
+"""Plot: any number in any topic over time (rqt_plot)."""
+
+from typing import Any, Dict, List, Tuple
+
+from cockpit.errors import CockpitError
+from cockpit.models.tables import table
+from cockpit.models.traces import Traces, number_at, numbers_in
+from cockpit.ros.filling import message_class
+from cockpit.ros.graph import Feed
+from cockpit.ros.tool import Desk
+
+NONE = "(none)"
+COLOURS = ("#1c7ed6", "#e8590c", "#2f9e44", "#ae3ec9", "#f59f00", "#0c8599", "#c92a2a", "#495057")
+SECONDS, LONGEST = 20.0, 300.0
+
+
+class Plot:
+    name, title, seconds, width = "plot", "Plot", 0.2, 560
+
+    def __init__(self, desk: Desk):
+        self._desk = desk
+        self._feeds: Dict[str, Feed] = {}
+        self._paths: Dict[str, Tuple[str, str]] = {}
+        self._traces = Traces(SECONDS)
+        self._chart: Any = None
+
+    def build(self) -> None:
+        gui, guarded = self._desk.gui, self._desk.guarded
+        self._topic = gui.add_dropdown("Topic", (NONE,))
+        self._field = gui.add_dropdown("Number", (NONE,))
+        self._typed = gui.add_text("or type it", "", hint="/odom/twist/twist/linear/x, /scan/ranges[3]")
+        gui.add_button("Add").on_click(guarded(self._add))
+        self._shown = gui.add_dropdown("Shown", (NONE,))
+        gui.add_button("Remove", color="gray").on_click(guarded(self._remove))
+        self._span = gui.add_number("Seconds", SECONDS, min=1.0, max=LONGEST, step=1.0)
+        self._space = gui.add_folder("Over the last seconds")
+        self._values = gui.add_html("")
+        self._topic.on_update(guarded(self._offer_fields))
+
+    def update(self, now: float) -> None:
+        topics = (NONE, *sorted(self._desk.graph.topics()))
+        if self._topic.options != topics:
+            self._topic.options = topics
+        self._listen()
+        self._take()
+        self._traces.seconds = self._span.value
+        names = sorted(self._paths)
+        rows = [(name, f"{self._traces.newest(name):.6g}") for name in names]
+        self._values.content = table(("Number", "Now"), rows) if rows else ""
+        if self._chart is not None:
+            self._chart.data = self._traces.drawn(names, now)
+
+    def pause(self) -> None:
+        for feed in self._feeds.values():
+            feed.close()
+        self._feeds.clear()
+
+    close = pause
+
+    def _offer_fields(self, _event: Any) -> None:
+        kind = self._desk.graph.topics().get(self._topic.value)
+        found = [] if kind is None else numbers_in(message_class(kind)())
+        self._field.options = tuple(found) or (NONE,)
+
+    def _add(self, _event: Any) -> None:
+        typed = self._typed.value.strip()
+        topic, path = self._split(typed) if typed else (self._topic.value, self._field.value)
+        if NONE in (topic, path):
+            raise CockpitError("choose a topic and a number in it first")
+        self._paths[f"{topic}/{path}"] = topic, path
+        self._typed.value = ""
+        self._rebuild()
+
+    def _split(self, typed: str) -> Tuple[str, str]:
+        """A topic and what follows it, as rqt_plot takes them."""
+        known = [name for name in self._desk.graph.topics() if typed.startswith(f"{name}/")]
+        if not known:
+            raise CockpitError(f"no topic is the beginning of '{typed}'")
+        topic = max(known, key=len)
+        return topic, typed[len(topic) + 1 :].replace("/", ".")
+
+    def _remove(self, _event: Any) -> None:
+        name = self._shown.value
+        if self._paths.pop(name, None) is not None:
+            self._traces.forget(name)
+            self._rebuild()
+
+    def _rebuild(self) -> None:
+        """A chart with as many lines as there are numbers."""
+        names = sorted(self._paths)
+        self._shown.options = tuple(names) or (NONE,)
+        if self._chart is not None:
+            self._chart.remove()
+            self._chart = None
+        if names:
+            series: List[dict] = [{"label": "s"}]
+            for number, name in enumerate(names):
+                series.append({"label": name, "stroke": COLOURS[number % len(COLOURS)], "width": 2})
+            with self._space:
+                self._chart = self._desk.gui.add_uplot(
+                    self._traces.drawn(names, 0.0), tuple(series), scales={"x": {"time": False}}, height=260
+                )
+
+    def _listen(self) -> None:
+        wanted = {topic for topic, _ in self._paths.values()}
+        for topic in set(self._feeds) - wanted:
+            self._feeds.pop(topic).close()
+        for topic in wanted - set(self._feeds):
+            if topic in self._desk.graph.topics():  # it may be gone, and come again
+                self._feeds[topic] = self._desk.graph.feed(topic, all_of_them=True)
+
+    def _take(self) -> None:
+        for topic, feed in self._feeds.items():
+            wanted = [(name, path) for name, (source, path) in self._paths.items() if source == topic]
+            for at, message, _ in feed.take_stamped():
+                for name, path in wanted:
+                    self._traces.add(name, at, number_at(message, path))
+
+
+TOOL = Plot

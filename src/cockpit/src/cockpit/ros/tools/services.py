@@ -1,0 +1,95 @@
+"""Services: who offers them, and a call of one (rqt_service_caller)."""
+
+from typing import Any, Dict
+
+import rosservice
+
+from cockpit.errors import CockpitError
+from cockpit.models.tables import preformatted, table
+from cockpit.models.text import outline
+from cockpit.ros.aside import Aside
+from cockpit.ros.calls import call
+from cockpit.ros.filling import filled, service_class, template
+from cockpit.ros.tool import Desk
+
+NONE = "(none)"
+# Those that every node has, or every node of its kind.
+COMMON = ("/get_loggers", "/set_logger_level", "/tf2_frames")
+
+
+class Services:
+    name, title, seconds, width = "services", "Services", 0.5, 520
+
+    def __init__(self, desk: Desk):
+        self._desk = desk
+        self._types: Dict[str, str] = {}
+        self._asking, self._calling = Aside(), Aside()
+
+    def build(self) -> None:
+        gui, guarded = self._desk.gui, self._desk.guarded
+        self._filter = gui.add_text("Filter", "", hint="part of a service's name")
+        self._common = gui.add_checkbox("Those of loggers too", False)
+        self._list = gui.add_html("")
+        self._chosen = gui.add_dropdown("Service", (NONE,))
+        self._kind = gui.add_markdown("")
+        self._fields = gui.add_text("Request", "", multiline=True, hint="YAML")
+        gui.add_button("Call").on_click(guarded(self._call))
+        self._answer = gui.add_html("")
+        self._chosen.on_update(guarded(self._choose))
+
+    def update(self, now: float) -> None:
+        providers = {
+            name: ", ".join(nodes)
+            for name, nodes in sorted(self._desk.graph.services().items())
+            if self._filter.value.lower() in name.lower()
+            and (self._common.value or not name.endswith(COMMON))
+        }
+        content = table(("Service", "Node"), providers.items())
+        if self._list.content != content:
+            self._list.content = content
+        if self._chosen.options != (NONE, *providers):
+            self._chosen.options = (NONE, *providers)
+        for name, kind in self._asking.take():
+            self._show_request(name, kind)
+        for answer in self._calling.take():
+            self._answer.content = outline(answer) if answer.__slots__ else preformatted("done")
+
+    def pause(self) -> None:
+        """It listens to nothing."""
+
+    close = pause
+
+    def _choose(self, _event: Any) -> None:
+        name = self._chosen.value
+        self._kind.content = self._fields.value = self._answer.content = ""
+        if name != NONE:
+            self._asking.start(lambda: (name, _type_of(name)))
+
+    def _show_request(self, name: str, kind: str) -> None:
+        if name != self._chosen.value:
+            return
+        self._types[name] = kind
+        self._kind.content = kind
+        self._fields.value = template(service_class(kind)._request_class)
+
+    def _call(self, _event: Any) -> None:
+        name = self._chosen.value
+        if name not in self._types:
+            raise CockpitError("choose a service first")
+        kind = service_class(self._types[name])
+        request = filled(kind._request_class, self._fields.value)
+        self._calling.start(lambda: call(name, kind, request))
+        self._answer.content = preformatted("...")
+
+
+def _type_of(name: str) -> str:
+    try:
+        kind = rosservice.get_service_type(name)
+    except rosservice.ROSServiceException as error:
+        raise CockpitError(f"{name}: {error}") from None
+    if kind is None:
+        raise CockpitError(f"{name} does not tell its type")
+    return kind
+
+
+TOOL = Services

@@ -1,0 +1,48 @@
+"""Messages as people write them."""
+
+import pytest
+from geometry_msgs.msg import PoseStamped
+from std_msgs.msg import String, UInt8
+from std_srvs.srv import SetBoolRequest, TriggerRequest
+
+from cockpit.errors import CockpitError
+from cockpit.ros.filling import filled, message_class, service_class, template
+
+
+def test_a_template_is_a_message_as_it_is_by_itself():
+    assert filled(PoseStamped, template(PoseStamped)) == PoseStamped()
+    assert template(TriggerRequest) == ""
+    assert filled(TriggerRequest, "") == TriggerRequest()
+
+
+def test_fields_that_are_not_named_stay_as_they_are():
+    message = filled(PoseStamped, "{header: {frame_id: map}, pose: {position: {x: 1.5}}}")
+    assert (message.header.frame_id, message.pose.position.x) == ("map", 1.5)
+    assert message.pose.orientation.w == 0.0
+    assert filled(SetBoolRequest, "data: true").data is True
+
+
+@pytest.mark.parametrize(
+    ("kind", "text"),
+    [
+        (String, "data: ["),
+        (String, "data: [1]"),
+        (String, "nothing: 1"),
+        (String, "hello"),
+        (String, "!!python/object/apply:os.system [true]"),
+        (UInt8, "data: 300"),
+        (PoseStamped, "pose: {position: {x: far}}"),
+        (String, "data: " + "x" * 30_000),
+    ],
+)
+def test_what_is_no_such_message_is_told(kind, text):
+    with pytest.raises(CockpitError):
+        filled(kind, text)
+
+
+def test_types_that_are_not_installed_are_told():
+    assert message_class("std_msgs/String") is String
+    with pytest.raises(CockpitError, match="nowhere_msgs/Thing is a type that is not installed here"):
+        message_class("nowhere_msgs/Thing")
+    with pytest.raises(CockpitError):
+        service_class("nonsense")

@@ -1,0 +1,255 @@
+"""What tools compute."""
+
+import math
+import os
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from cockpit.errors import CockpitError
+from cockpit.frames import Transform
+from cockpit.models.bag_files import bags_below, new_bag
+from cockpit.models.computation import ALL, NODES, Shown, dot_of
+from cockpit.models.knobs import Knob, knobs_of, values_of
+from cockpit.models.log import MOST_KEPT, MOST_SHOWN, Log, Said, Wanted, level_named
+from cockpit.models.repeating import Repeating
+from cockpit.models.tables import table
+from cockpit.models.text import amount, flat
+from cockpit.models.traces import Traces, number_at, numbers_in
+from cockpit.models.tree import rows_of
+
+PUBLISHERS = {
+    "/scan": ["/sim"],
+    "/plan": ["/nav"],
+    "/rosout": ["/sim", "/nav"],
+    "/nav/goal": ["/errand"],
+    "/nav/cancel": ["/errand"],
+}
+SUBSCRIBERS = {
+    "/scan": ["/nav", "/cockpit_1"],
+    "/rosout": ["/rosout"],
+    "/nav/goal": ["/nav"],
+    "/nav/cancel": ["/nav"],
+}
+
+
+def test_the_graph_has_what_is_in_use_and_no_debugging():
+    dot = dot_of(PUBLISHERS, SUBSCRIBERS, Shown())
+    assert '"n/sim" -> "t/scan";' in dot
+    assert '"t/scan" -> "n/nav";' in dot
+    assert '"n/errand" -> "t/nav/action";' in dot
+    for hidden in ("rosout", "cockpit", "/plan", "/nav/goal"):
+        assert hidden not in dot
+
+
+def test_the_graph_has_all_topics_or_none():
+    assert '"n/nav" -> "t/plan";' in dot_of(PUBLISHERS, SUBSCRIBERS, Shown(kind=ALL))
+    assert "/rosout" in dot_of(PUBLISHERS, SUBSCRIBERS, Shown(debug=True))
+    nodes = dot_of(PUBLISHERS, SUBSCRIBERS, Shown(kind=NODES))
+    assert '"n/sim" -> "n/nav" [label="/scan"' in nodes
+    assert '"t/' not in nodes
+
+
+def test_the_graph_is_filtered_by_names_of_nodes_and_topics():
+    dot = dot_of(PUBLISHERS, SUBSCRIBERS, Shown(part_of_name="SCAN"))
+    assert "/sim" in dot and "/errand" not in dot
+
+
+def test_a_name_cannot_break_out_of_the_drawing():
+    dot = dot_of({'/a"]; evil [': ["/n\\"]}, {'/a"]; evil [': ["/m"]}, Shown())
+    assert '/a\\"]; evil [' in dot and '"n/n\\\\"' in dot
+
+
+def said(level, text, node="/amcl"):
+    return Said(level, 1.0, node, text, "amcl.py:1")
+
+
+def test_a_log_is_filtered_by_level_node_and_text_the_newest_first():
+    log = Log()
+    for line in (said(2, "one"), said(4, "Two"), said(8, "two", "/move_base"), said(1, "two")):
+        log.add(line)
+    assert [row[3] for row in log.rows(Wanted(lowest=2))] == ["two", "Two", "one"]
+    assert [row[2] for row in log.rows(Wanted(text="TWO", lowest=4))] == ["/move_base", "/amcl"]
+    assert [row[0] for row in log.rows(Wanted(node="move"))] == ["Error"]
+    assert level_named("Warn") == 4
+
+
+def test_a_log_has_an_end():
+    log = Log()
+    for number in range(MOST_KEPT + 10):
+        log.add(said(2, str(number)))
+    rows = log.rows(Wanted())
+    assert len(rows) == MOST_SHOWN
+    assert rows[0][3] == str(MOST_KEPT + 9)
+    log.clear()
+    assert log.rows(Wanted()) == []
+
+
+def transform(parent, stamp=0.0, is_static=False):
+    return Transform(parent, np.eye(4), stamp, is_static, "/amcl")
+
+
+def test_the_tree_of_frames_goes_from_the_root_down_with_ages():
+    transforms = {
+        "odom": transform("map", 9.5),
+        "base": transform("odom", 9.9),
+        "laser": transform("base", is_static=True),
+    }
+    rows = rows_of(transforms, 10.0, {"odom": 20.0})
+    assert [row[0].strip() for row in rows] == ["map", "odom", "base", "laser"]
+    assert rows[1][1:] == ("0.50", "20.0", "/amcl")
+    assert rows[3][1] == "static"
+
+
+def test_frames_in_a_loop_are_told_as_such():
+    rows = rows_of({"a": transform("b"), "b": transform("a")}, 0.0, {})
+    assert [row[0] for row in rows] == ["a (in a loop)", "b (in a loop)"]
+
+
+def message(**fields):
+    """As genpy's: its fields are its slots."""
+    return type("Message", (), {"__slots__": list(fields), "__init__": _init})(fields)
+
+
+def _init(self, fields):
+    for name, value in fields.items():
+        setattr(self, name, value)
+
+
+MESSAGE = message(
+    header=message(stamp=SimpleNamespace(to_sec=lambda: 1.5), frame_id="map"),
+    pose=message(position=message(x=2.0)),
+    ranges=np.array([1.0, math.nan, 3.0]),
+    poses=[message(x=7)],
+    is_on=True,
+)
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        ("pose.position.x", 2.0),
+        ("ranges[2]", 3.0),
+        ("poses[0].x", 7.0),
+        ("header.stamp", 1.5),
+        ("is_on", 1.0),
+    ],
+)
+def test_a_number_is_found_by_its_path(path, value):
+    assert number_at(MESSAGE, path) == value
+
+
+@pytest.mark.parametrize(
+    "path", ["", "pose", "nothing", "ranges[9]", "header.frame_id", "__class__", "pose..x"]
+)
+def test_what_is_no_number_is_told(path):
+    with pytest.raises(CockpitError):
+        number_at(MESSAGE, path)
+
+
+def test_the_numbers_of_a_message_are_listed():
+    listed = numbers_in(MESSAGE)
+    assert {"pose.position.x", "ranges[0]", "poses[0].x", "header.stamp", "is_on"} <= set(listed)
+    assert "header.frame_id" not in listed
+
+
+def test_traces_hold_each_number_until_the_next_and_leave_out_what_is_none():
+    traces = Traces(seconds=10.0)
+    for at, value in ((0.0, 5.0), (91.0, 1.0), (95.0, 2.0), (96.0, math.nan)):
+        traces.add("a", at, value)
+    traces.add("b", 93.0, 7.0)
+    times, a, b = traces.drawn(["a", "b"], 100.0)
+    assert times.tolist() == [-9.0, -7.0, -5.0, 0.0]
+    assert a.tolist() == [1.0, 1.0, 2.0, 2.0]
+    assert b.tolist() == [7.0, 7.0, 7.0, 7.0]
+    assert traces.newest("a") == 2.0 and math.isnan(traces.newest("c"))
+
+
+def test_many_samples_are_thinned():
+    traces = Traces(seconds=1000.0)
+    for number in range(5000):
+        traces.add("a", float(number) / 10.0, 1.0)
+    times, values = traces.drawn(["a"], 500.0)
+    assert len(times) == len(values) <= 1000
+    assert times[-1] == 0.0
+
+
+def parameter(name, kind, edit_method=""):
+    return SimpleNamespace(name=name, type=kind, description="what it does", edit_method=edit_method)
+
+
+def config(**doubles):
+    found = [SimpleNamespace(name=name, value=value) for name, value in doubles.items()]
+    return SimpleNamespace(bools=[], ints=[], strs=[], doubles=found)
+
+
+def test_knobs_have_the_bounds_that_the_server_told():
+    group = SimpleNamespace(parameters=[parameter("speed", "double"), parameter("far", "double")])
+    description = SimpleNamespace(
+        groups=[group],
+        min=config(speed=0.0, far=-math.inf),
+        max=config(speed=2.0, far=math.inf),
+        dflt=config(speed=0.5, far=1.0),
+    )
+    speed, far = knobs_of(description)
+    assert (speed.lowest, speed.highest, speed.default, speed.is_bounded) == (0.0, 2.0, 0.5, True)
+    assert not far.is_bounded
+    assert values_of(config(speed=1.0)) == {"speed": 1.0}
+
+
+def test_choices_are_read_and_nonsense_is_none():
+    listed = "{'enum': [{'name': 'Slow', 'value': 0, 'type': 'int'}], 'enum_description': ''}"
+    for text, choices in ((listed, (("Slow", 0),)), ("__import__('os')", ()), ("[[", ()), ("3", ())):
+        group = SimpleNamespace(parameters=[parameter("mode", "double", text)])
+        told = config(mode=0.0)
+        (knob,) = knobs_of(SimpleNamespace(groups=[group], min=told, max=told, dflt=told))
+        assert knob.choices == choices
+
+
+@pytest.mark.parametrize(
+    ("kind", "highest", "step"),
+    [("int", 50, 1), ("double", 5.0, 0.001), ("double", 500.0, 0.1), ("double", math.inf, 0.01)],
+)
+def test_sliders_are_as_fine_as_makes_sense(kind, highest, step):
+    assert Knob("a", kind, 0, highest, 1).step == step
+
+
+def test_what_is_repeated_is_due_at_its_rate_and_makes_up_for_nothing():
+    repeating = Repeating()
+    assert not repeating.is_due(0.0)
+    repeating.start(1.0, 0.5)
+    assert [repeating.is_due(at) for at in (1.0, 1.2, 1.5, 1.6)] == [True, False, True, False]
+    assert [repeating.is_due(at) for at in (9.0, 9.01, 9.6)] == [True, True, True]
+    repeating.stop()
+    assert not repeating.is_due(20.0)
+
+
+def test_recordings_go_into_the_folder_and_nowhere_else(tmp_path):
+    assert new_bag(tmp_path, "one") == new_bag(tmp_path, "one.bag") == tmp_path / "one.bag"
+    (tmp_path / "one.bag").touch()
+    for name in ("one", "", "../one", "/tmp/one", ".hidden", "a b", "x" * 200):
+        with pytest.raises(CockpitError):
+            new_bag(tmp_path, name)
+
+
+def test_bags_are_found_the_newest_first(tmp_path):
+    inside = tmp_path / "runs/a/bag/run.bag"
+    inside.parent.mkdir(parents=True)
+    for number, path in enumerate((tmp_path / "old.bag", inside)):
+        path.touch()
+        os.utime(path, (number, number))
+    assert bags_below(tmp_path) == ["runs/a/bag/run.bag", "old.bag"]
+
+
+def test_parameters_are_flattened():
+    assert flat({"a": {"b": 1, "c": {}}, "d": [1]}) == {"/a/b": 1, "/a/c": {}, "/d": [1]}
+    assert flat({}) == {}
+
+
+def test_amounts_are_told_in_what_is_short():
+    assert (amount(1500), amount(2_500_000)) == ("1.5 KB", "2.5 MB")
+
+
+def test_nothing_in_a_table_is_html():
+    assert "<script>" not in table(("A",), [("<script>",), ("<script>" * 20,)])

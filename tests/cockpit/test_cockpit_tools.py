@@ -1,0 +1,222 @@
+#!/usr/bin/env python3
+"""Each tool of the cockpit, worked as a person does: in a browser, beside a small graph."""
+
+import os
+import tempfile
+import threading
+import unittest
+from pathlib import Path
+
+import rosgraph
+import rospy
+import rostest
+from browser import Browser
+from std_msgs.msg import String
+from waiting import wait_until
+
+from cockpit.process import FREE_PORT, CockpitProcess
+
+# Where screenshots are kept, if anybody wants to look at them.
+PICTURES = os.environ.get("COCKPIT_PICTURES")
+
+
+class CockpitToolsTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = Path(tempfile.mkdtemp())
+        os.chdir(cls.folder)
+        cls.cockpit = CockpitProcess(FREE_PORT, cls.folder / "cockpit.log")
+        cls.browser = Browser()
+        cls.page = cls.browser.open(cls.cockpit.url, 1400, 900)
+        cls.page.wait_for("Tools", "View")
+        cls.page.click("Tools")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+        cls.cockpit.close()
+        print((cls.folder / "cockpit.log").read_text())
+
+    def setUp(self):
+        self.opened = None
+
+    def tearDown(self):
+        if PICTURES:
+            self.page.screenshot(Path(PICTURES) / f"{self.opened}.png".replace("/", "_"))
+        if self.opened:
+            self.page.click(self.opened)
+        self.assertEqual(self.page.errors, [])
+
+    def open(self, title):
+        self.page.click(title)
+        self.opened = title
+
+    def test_the_graph_is_drawn(self):
+        self.open("Graph")
+        self.page.choose("Show", "nodes and all topics")
+        self.page.wait_for("/stage", "/sine")
+        self.assertNotIn("/rosout", self.drawn())
+        self.page.choose("Show", "nodes and topics that are in use")
+        wait_until("a topic without listeners to vanish", lambda: "/sine" not in self.drawn())
+
+    def drawn(self):
+        found = "[...document.querySelectorAll('svg text')].map((one) => one.textContent).join(' ')"
+        return self.page.evaluate(found)
+
+    def test_topics_have_rates_and_values(self):
+        self.open("Topics")
+        self.page.fill_in("Filter", "sine")
+        wait_until("the others to vanish", lambda: "/told" not in self.page.text())
+        self.page.choose("Watch", "/sine")
+        self.page.wait_for("data: ")
+        wait_until("20 Hz", lambda: any(15.0 < rate < 25.0 for rate in self.rates()))
+
+    def rates(self):
+        words = self.page.evaluate("[...document.querySelectorAll('td')].map((one) => one.innerText)")
+        return [float(word) for word in words if word.replace(".", "", 1).isdigit()]
+
+    def test_the_console_filters_and_sets_levels(self):
+        self.open("Console")
+        self.page.wait_for("<b>of the stage</b>", "/stage", "Warn")
+        self.page.choose("From level", "Error")
+        wait_until("warnings to vanish", lambda: "of the stage" not in self.page.text())
+        self.page.choose("From level", "Debug")
+        self.page.wait_for("of the stage")
+        self.page.click("How much a node says")
+        self.page.choose("Of node", "/stage")
+        self.page.choose("Logger", "rosout")
+        self.page.choose("Level", "Fatal")
+        self.page.click("Set the level")
+        self.page.wait_for("/stage: rosout is at Fatal")
+        self.page.choose("Level", "Info")
+        self.page.click("Set the level")
+        self.page.wait_for("/stage: rosout is at Info")
+
+    def test_the_tree_of_frames_has_ages(self):
+        self.open("Frames (tf)")
+        self.page.wait_for("odom", "base_link", "/stage")
+        wait_until("20 Hz", lambda: any(15.0 < rate < 25.0 for rate in self.rates()))
+
+    def test_a_service_is_called(self):
+        self.open("Services")
+        self.page.choose("Service", "/switch")
+        self.page.wait_for("std_srvs/SetBool")
+        self.page.fill_in("Request", "data: true")
+        self.page.click("Call")
+        self.page.wait_for("success: True", "message: told True")
+        self.page.fill_in("Request", "data: [")
+        self.page.click("Call")
+        self.page.wait_for("not YAML")
+
+    def test_parameters_are_shown_and_set(self):
+        self.open("Parameters")
+        self.page.fill_in("Filter", "answ")
+        self.page.wait_for("/answer", "42")
+        self.page.fill_in("Name", "/answer")
+        self.page.fill_in("Value", "[1, 2]")
+        self.page.click("Set")
+        wait_until("the parameter", lambda: rospy.get_param("/answer") == [1, 2])
+        self.page.wait_for("[1, 2]")
+        rospy.set_param("/answer", 42)
+
+    def test_a_message_is_published_once_and_again_and_again(self):
+        self.open("Publisher")
+        heard = []
+        rospy.Subscriber("/words", String, lambda message: heard.append(message.data))
+        self.page.fill_in("Topic", "/words")
+        self.page.click("Make the message")
+        wait_until("the template", lambda: self.page.value_of("Message") == "data: ''")
+        self.page.fill_in("Message", "data: hello")
+        self.page.click("Publish once")
+        wait_until("the message", lambda: heard == ["hello"])
+        self.page.fill_in("Hz", "10")
+        self.page.tick("Again and again")
+        wait_until("ten more", lambda: len(heard) > 10)
+        self.page.tick("Again and again")
+        self.page.fill_in("Message", "data: [1]")
+        self.page.click("Publish once")
+        self.page.wait_for("not a std_msgs/String")
+
+    def test_a_number_is_plotted(self):
+        self.open("Plot")
+        self.page.fill_in("or type it", "/sine/data")
+        self.page.click("Add")
+        self.page.wait_for("/sine/data")
+        wait_until("a chart", lambda: self.page.evaluate("document.querySelectorAll('.uplot').length") == 1)
+        self.page.fill_in("or type it", "/nothing")
+        self.page.click("Add")
+        self.page.wait_for("no topic is the beginning of '/nothing'")
+
+    def test_a_server_is_reconfigured(self):
+        self.open("Reconfigure")
+        self.page.choose("Server", "/stage")
+        self.page.wait_for("gain")
+        self.page.fill_in("gain", "5")
+        wait_until("the gain", lambda: rospy.get_param("/stage/gain") == 5.0)
+
+    def test_a_picture_is_shown(self):
+        self.open("Images")
+        self.page.choose("Topic", "/camera/image")
+        self.page.wait_for("64 x 48, rgb8")
+        wait_until("a picture", lambda: self.page.evaluate("document.querySelectorAll('img').length"))
+
+    def test_a_bag_is_recorded_and_played(self):
+        self.open("Bag")
+        self.page.fill_in("File", "../there.bag")
+        self.page.click("Record")
+        self.page.wait_for("is no name of a file")
+        self.page.fill_in("File", "told.bag")
+        self.page.fill_in("Topics", "/sine")
+        self.page.click("Record")
+        self.page.wait_for("recording told.bag")
+        wait_until("something in it", lambda: _size(self.folder / "told.bag.active") > 4000)
+        threading.Event().wait(2.0)
+        self.page.click("End the recording")
+        self.page.wait_for("recorded told.bag")
+        self.page.choose("Found", "told.bag")
+        self.page.fill_in("Times real time", "0.1")
+        self.page.click("Play")
+        self.page.wait_for("playing")
+        wait_until("its node", lambda: any("/play" in node for node in nodes_of("/sine")))
+        wait_until("its service", lambda: any(name.endswith("/pause_playback") for name in services()))
+        self.page.click("Pause")
+        wait_until("silence", lambda: not played_within(0.5))
+        self.page.click("Go on")
+        wait_until("what was recorded", lambda: played_within(2.0))
+        self.page.click("End it")
+        self.page.wait_for("played to its end")
+        self.page.fill_in("or its path", "nothing.bag")
+        self.page.click("Play")
+        self.page.wait_for("no such bag")
+
+
+def nodes_of(topic):
+    publishers, _, _ = rosgraph.Master("/test").getSystemState()
+    return dict(publishers).get(topic, [])
+
+
+def services():
+    return dict(rosgraph.Master("/test").getSystemState()[2])
+
+
+def played_within(seconds):
+    """Whether the player sends anything."""
+    heard = threading.Event()
+
+    def hear(message):
+        if "/play" in message._connection_header["callerid"]:
+            heard.set()
+
+    subscriber = rospy.Subscriber("/sine", rospy.AnyMsg, hear)
+    heard.wait(seconds)
+    subscriber.unregister()
+    return heard.is_set()
+
+
+def _size(path):
+    return path.stat().st_size if path.exists() else 0
+
+
+if __name__ == "__main__":
+    rospy.init_node("test_cockpit_tools")
+    rostest.rosrun("home_service_tests", "cockpit_tools", CockpitToolsTest)

@@ -1,0 +1,252 @@
+"""A browser without a window, driven by the protocol of its developer tools."""
+
+import base64
+import itertools
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+import time
+import urllib.request
+from contextlib import suppress
+from pathlib import Path
+
+from waiting import wait_until
+from websockets.sync.client import connect
+
+NAMES = ("chromium", "chromium-browser", "google-chrome")
+# A page that saves messages sends the last of what is typed or turned within such a time.
+TYPING_SECONDS = 0.6
+START_SECONDS, ANSWER_SECONDS = 60.0, 60.0
+# It draws without a graphics card, and calls nobody.
+OPTIONS = (
+    "--headless=new",
+    "--no-sandbox",
+    "--no-first-run",
+    "--hide-scrollbars",
+    "--mute-audio",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-default-apps",
+    "--disable-dev-shm-usage",
+    "--disable-extensions",
+    "--disable-sync",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--remote-debugging-port=0",
+)
+
+
+def executable():
+    """None if there is no browser."""
+    return next(filter(None, map(shutil.which, NAMES)), None)
+
+
+class Browser:
+    """Starts one; ``open`` opens pages."""
+
+    def __init__(self):
+        assert executable() is not None, "no browser: ./scripts/setup.sh --dev installs one"
+        self._folder = tempfile.mkdtemp()
+        told = Path(self._folder) / "DevToolsActivePort"
+        self._process = subprocess.Popen(
+            [executable(), *OPTIONS, f"--user-data-dir={self._folder}", "about:blank"],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            env={**os.environ, "HOME": self._folder},
+        )
+        wait_until("the browser", lambda: told.exists() and told.read_text().count("\n"), START_SECONDS)
+        self._port = int(told.read_text().split()[0])
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def open(self, url, width=1280, height=800):
+        """A tab that shows ``url``."""
+        request = urllib.request.Request(f"http://127.0.0.1:{self._port}/json/new?about:blank", method="PUT")
+        with urllib.request.urlopen(request, timeout=ANSWER_SECONDS) as answer:
+            address = json.load(answer)["webSocketDebuggerUrl"]
+        return Tab(address, url, width, height)
+
+    def close(self):
+        self._process.terminate()
+        try:
+            self._process.wait(5.0)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+
+class Tab:
+    """``errors``: what its page has complained of; ``requests``: the URLs that it has asked for."""
+
+    def __init__(self, address, url, width, height):
+        self._socket = connect(address, max_size=None, open_timeout=ANSWER_SECONDS)
+        self._numbers = itertools.count(1)
+        self.errors, self.requests = [], []
+        for domain in ("Runtime", "Log", "Network", "Page"):
+            self._ask(f"{domain}.enable")
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        self._ask("Emulation.setDeviceMetricsOverride", **size)
+        self._ask("Page.navigate", url=url)
+
+    def evaluate(self, script):
+        """The value of an expression in the page."""
+        answer = self._ask("Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True)
+        assert "exceptionDetails" not in answer, answer["exceptionDetails"]
+        return answer["result"].get("value")
+
+    def text(self):
+        """All that can be read on the page."""
+        return self.evaluate("document.body ? document.body.innerText : ''") or ""
+
+    def wait_for(self, *texts, seconds=30.0):
+        """Until all of them are on the page."""
+        wait_until(f"{texts} on the page", lambda: all(text in self.text() for text in texts), seconds)
+
+    def click(self, text, seconds=20.0):
+        """The innermost thing that has this text, or whose label it is."""
+        wait_until(f"'{text}' to click", lambda: self._place_of(text) is not None, seconds)
+        self.click_at(*self._place_of(text))
+
+    def click_at(self, x, y):
+        self.drag((x, y), (x, y))
+
+    def drag(self, start, end, steps=8):
+        """The left button pressed at ``start``, moved, and released at ``end``, pixels."""
+        self._mouse("mouseMoved", *start)
+        self._mouse("mousePressed", *start, button="left", clickCount=1, buttons=1)
+        for step in range(1, steps + 1) if start != end else ():
+            x, y = (a + (b - a) * step / steps for a, b in zip(start, end))
+            self._mouse("mouseMoved", x, y, button="left", buttons=1)
+            time.sleep(0.02)
+        self._mouse("mouseReleased", *end, button="left", clickCount=1)
+
+    def hold(self, text, seconds):
+        """Presses the button that has this text for so long."""
+        place = self._place_of(text)
+        assert place is not None, text
+        self._mouse("mouseMoved", *place)
+        self._mouse("mousePressed", *place, button="left", clickCount=1, buttons=1)
+        time.sleep(seconds)
+        self._mouse("mouseReleased", *place, button="left", clickCount=1)
+
+    def press(self, text):
+        """Presses the button that has this text, and does not let go."""
+        place = self._place_of(text)
+        assert place is not None, text
+        self._mouse("mouseMoved", *place)
+        self._mouse("mousePressed", *place, button="left", clickCount=1, buttons=1)
+
+    def choose(self, label, option):
+        """An option of the list with this label."""
+        wait_until(f"a list {label}", lambda: self._place_of_input(label) is not None)
+        for _ in range(20):
+            place = self._place_of_input(label)
+            if place is not None and not self.evaluate(HAS_OPTIONS):
+                self.click_at(*place)
+            with suppress(AssertionError):
+                wait_until(f"{option} in {label}", lambda: self._place_of_option(option) is not None, 1.0)
+                time.sleep(0.2)  # it moves while it opens
+                place = self._place_of_option(option)
+                if place is not None:
+                    self.click_at(*place)
+                wait_until(f"{option} chosen", lambda: self.value_of(label) == option, 1.0)
+                return
+        raise AssertionError(f"'{option}' could not be chosen of '{label}'")
+
+    def tick(self, label):
+        """The box with this label, whether it is ticked or not."""
+        wait_until(f"a box {label}", lambda: self._place_of_input(label) is not None)
+        self.click_at(*self._place_of_input(label))
+
+    def value_of(self, label):
+        """What the field with this label says."""
+        return self.evaluate(f"(({FIND_INPUT})({json.dumps(label)}) || {{}}).value")
+
+    def fill_in(self, label, text):
+        """Writes over what the field with this label says."""
+        self._focus(label)
+        self.evaluate("document.activeElement.select && document.activeElement.select()")
+        self._ask("Input.insertText", text=text)
+        self.evaluate("document.activeElement.blur()")
+        time.sleep(TYPING_SECONDS)
+
+    def screenshot(self, path):
+        picture = self._ask("Page.captureScreenshot", format="png")["data"]
+        Path(path).write_bytes(base64.b64decode(picture))
+
+    def close(self):
+        with self._socket:
+            self._ask("Page.close")
+
+    def _focus(self, label):
+        wait_until(f"a field {label}", lambda: self._place_of_input(label) is not None)
+        self.evaluate(f"({FIND_INPUT})({json.dumps(label)}).focus()")
+
+    def _place_of(self, text):
+        return self.evaluate(f"({MIDDLE})(({FIND_TEXT})({json.dumps(text)}))")
+
+    def _place_of_input(self, label):
+        return self.evaluate(f"({MIDDLE})(({FIND_INPUT})({json.dumps(label)}))")
+
+    def _place_of_option(self, option):
+        return self.evaluate(f"({MIDDLE})(({FIND_OPTION})({json.dumps(option)}))")
+
+    def _mouse(self, kind, x, y, **more):
+        self._ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
+
+    def _ask(self, method, **parameters):
+        number = next(self._numbers)
+        self._socket.send(json.dumps({"id": number, "method": method, "params": parameters}))
+        deadline = time.monotonic() + ANSWER_SECONDS
+        while True:
+            told = json.loads(self._socket.recv(max(deadline - time.monotonic(), 0.01)))
+            if told.get("id") == number:
+                assert "error" not in told, f"{method}: {told['error']}"
+                return told["result"]
+            self._note(told)
+
+    def _note(self, event):
+        told, kind = event.get("params", {}), event.get("method")
+        if kind == "Runtime.exceptionThrown":
+            self.errors.append(str(told["exceptionDetails"]))
+        elif kind == "Runtime.consoleAPICalled" and told["type"] in ("error", "assert"):
+            self.errors.append(" ".join(str(each.get("value")) for each in told["args"]))
+        elif kind == "Log.entryAdded" and told["entry"]["level"] == "error":
+            self.errors.append(told["entry"]["text"])
+        elif kind == "Network.requestWillBeSent":
+            self.requests.append(told["request"]["url"])
+        elif kind == "Network.webSocketCreated":
+            self.requests.append(told["url"])
+
+
+# The innermost visible thing with a text; of several the one that is seen first.
+FIND_TEXT = """(text) => [...document.querySelectorAll('button, label, span, p, div, a')].filter(
+    (one) => one.innerText && one.innerText.trim() === text && one.getClientRects().length).pop() || null"""
+# The field of the row that begins with a label.
+FIND_INPUT = """(label) => {
+    for (const one of document.querySelectorAll('label, p, div, span')) {
+        if (one.children.length || one.textContent.trim() !== label || !one.getClientRects().length) continue;
+        for (let row = one.parentElement, n = 0; row && n < 5; row = row.parentElement, n++) {
+            const found = row.querySelector('input:not([type=hidden]), textarea');
+            if (found) return found;
+        }
+    }
+    return null;
+}"""
+HAS_OPTIONS = "[...document.querySelectorAll('[role=option]')].some((one) => one.getClientRects().length)"
+FIND_OPTION = """(text) => [...document.querySelectorAll('[role=option]')].find(
+    (one) => one.innerText.trim() === text && one.getClientRects().length) || null"""
+MIDDLE = """(one) => {
+    if (!one) return null;
+    one.scrollIntoView({block: 'nearest'});
+    const box = one.getBoundingClientRect();
+    return [box.x + box.width / 2, box.y + box.height / 2];
+}"""
