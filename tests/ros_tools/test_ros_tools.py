@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Tools of ROS that people type: under Debian's names, and they end."""
 
+import os
 import subprocess
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import rostest
 
@@ -33,6 +35,12 @@ class RosToolsTest(unittest.TestCase):
         run = rosrun("dynamic_reconfigure", "dynparam", "get", "/nobody")
         self.assertEqual(run.returncode, 1, run.stdout)
         self.assertIn("/nobody", run.stdout)
+
+    def test_dynparam_ends_where_there_is_no_master(self):
+        with mock.patch.dict(os.environ, ROS_MASTER_URI="http://127.0.0.1:1"):
+            run = rosrun("dynamic_reconfigure", "dynparam", "list")
+        self.assertEqual(run.returncode, 1, run.stdout)
+        self.assertIn("no ROS master at http://127.0.0.1:1", run.stdout)
 
     def test_the_other_tools_of_a_mended_package_are_found(self):
         self.assertIn("tf_echo", rosrun("tf", "tf_echo").stdout)

@@ -1,9 +1,10 @@
-"""dynparam of dynamic_reconfigure, which for a server that does not exist would wait for ever."""
+"""dynparam of dynamic_reconfigure, which for a server or a master that does not exist would wait for ever."""
 
 import runpy
 import sys
 from typing import List
 
+import rosgraph
 import roslib
 import rospy
 
@@ -13,7 +14,9 @@ TO_A_SERVER = ("dump", "get", "load", "set", "set_from_parameters")
 
 
 def main() -> None:
-    """Ends with exit code 1 if no server answers."""
+    """Ends with exit code 1 if no server, or no master, answers."""
+    if not rosgraph.is_master_online():
+        sys.exit(f"error: no ROS master at {rosgraph.get_master_uri()}")
     sys.argv = with_timeout(sys.argv)
     roslib.load_manifest = lambda _: None  # Debian's libraries are on the path, their manifests are not
     try:
