@@ -13,7 +13,8 @@ readonly root
 readonly noetic=/opt/ros/noetic
 # shellcheck source=scripts/setup/environment.sh
 . "$root/scripts/setup/environment.sh"
-readonly experiments=(play evaluate) # the commands of the laboratory
+readonly experiments=(play evaluate)   # the commands of the laboratory
+readonly environments=(gymnasium) # those of home_service_gym
 step_pid=
 clock_pid=
 aside_pid=
@@ -119,6 +120,10 @@ run_command() { # NAME ARGUMENT...: a command, after the set-up it needs
     if is_among "$1" "${experiments[@]}"; then
         package=laboratory
         extras+=(laboratory)
+    fi
+    if is_among "$1" "${environments[@]}"; then
+        package=home_service_gym
+        extras+=(gymnasium)
     fi
     set_up "${extras[@]}"
     enter_workspace

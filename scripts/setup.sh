@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Usage: ./scripts/setup.sh [--dev] [--projects] [--rviz] [--web] [--laboratory] [--packages]
+# Usage: ./scripts/setup.sh [--dev] [--projects] [--rviz] [--web] [--laboratory] [--gymnasium] [--packages]
 #
 # Installs what the workspace needs and is missing: Debian packages (as root or with sudo), Python packages
 # in .venv, the catkin build in build/ and devel/. The other scripts do this themselves when they start.
@@ -11,6 +11,7 @@
 #   --rviz       also rviz
 #   --web        also the cockpit in the browser
 #   --laboratory also what evaluate.sh needs: Dask, statsmodels, pyarrow
+#   --gymnasium  also what the environments need: gymnasium
 #   --packages   only the Debian and Python packages, as for a cached layer of an image
 #   --help       this text
 
@@ -31,7 +32,7 @@ packages_only=
 failure=
 retry= # also what has failed before, of the same sources
 
-set_up() { # EXTRA...: brings the workspace up to date; extras are dev, projects, rviz, cockpit and laboratory
+set_up() { # EXTRA...: brings the workspace up to date; extras are dev, projects, rviz, cockpit, laboratory and gymnasium
     look_for_missing "$@"
     if [[ -n $packages$requirements$build$kernels ]]; then
         check_place
@@ -135,11 +136,12 @@ main() {
     retry=yes
     for option; do
         case $option in
-            --dev) extras+=(dev cockpit laboratory) ;;
+            --dev) extras+=(dev cockpit laboratory gymnasium) ;;
             --projects) extras+=(projects) ;;
             --rviz) extras+=(rviz) ;;
             --web) extras+=(cockpit) ;;
             --laboratory) extras+=(laboratory) ;;
+            --gymnasium) extras+=(gymnasium) ;;
             --packages) packages_only=yes ;;
             --help | -h)
                 usage

@@ -8,15 +8,17 @@ import pytest
 
 from home_service import commands
 from home_service.cli import parse
+from home_service_gym.commands import FOLDER as ENVIRONMENTS
 from laboratory.commands import FOLDER as EXPERIMENTS
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+FOLDERS = (commands.FOLDER, EXPERIMENTS, ENVIRONMENTS)
 OPTION = re.compile(r"--[a-z][a-z-]*")
 
 
 @pytest.mark.parametrize(
     ("folder", "command"),
-    [(folder, name) for folder in (commands.FOLDER, EXPERIMENTS) for name in sorted(folder.names())],
+    [(folder, name) for folder in FOLDERS for name in sorted(folder.names())],
 )
 def test_a_script_tells_the_options_that_its_command_takes(folder, command, capsys):
     with pytest.raises(SystemExit):
@@ -33,6 +35,7 @@ def test_the_set_up_refuses_an_option_that_it_does_not_know():
     assert "--nonsense" in result.stderr
 
 
-def test_a_script_of_the_laboratory_is_known_as_one():
-    listed = re.search(r"experiments=\((.*?)\)", (SCRIPTS / "lib.sh").read_text())
-    assert listed and sorted(listed[1].split()) == sorted(EXPERIMENTS.names())
+@pytest.mark.parametrize(("kind", "folder"), [("experiments", EXPERIMENTS), ("environments", ENVIRONMENTS)])
+def test_a_script_of_a_package_of_its_own_is_known_as_one(kind, folder):
+    listed = re.search(rf"{kind}=\((.*?)\)", (SCRIPTS / "lib.sh").read_text())
+    assert listed and sorted(listed[1].split()) == sorted(folder.names())

@@ -18,6 +18,7 @@ STOREYS = (
     {"home_service", "plugin_examples", "turtle_world", "gazebo_ros", "ros_tools", "ament_index_python"}
     | {"turtlebot3_fake", "turtlebot3_gazebo"},
     {"run_project", "laboratory"},
+    {"home_service_gym"},
 )
 STOREY_OF = {package: number for number, storey in enumerate(STOREYS) for package in storey}
 

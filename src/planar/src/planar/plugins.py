@@ -71,6 +71,14 @@ def load(name: str, contract: Contract) -> Optional[type]:
     return found
 
 
+def find(name: str) -> Any:
+    """What a dotted name, module/attribute, names, whatever it is. Raises PluginError if it is not there."""
+    module, _, attribute = name.rpartition("/")
+    if not (module and attribute):
+        raise PluginError(f"{name}: must be like my_package.my_module/MyClass")
+    return _from_module(name, module, attribute)
+
+
 def _from_module(name: str, module: str, class_name: str) -> Any:
     try:
         found = importlib.import_module(module)

@@ -1,7 +1,9 @@
 """What goes its own way, whatever it meets: Gazebo's animated models, DynaBARN's obstacles, a leader."""
 
+from bisect import bisect_right
 from dataclasses import dataclass
-from typing import Protocol, Tuple
+from functools import cached_property
+from typing import List, Protocol, Tuple
 
 import numpy as np
 
@@ -30,8 +32,16 @@ class Course:
     def at(self, stamp: float) -> Tuple[float, float]:
         """Where the body is, x and y in the world."""
         time = stamp % float(self.times[-1])
-        x, y = (float(np.interp(time, self.times, values)) for values in self.points_xy.T)
-        return x, y
+        times, points = self._keyframes
+        after = bisect_right(times, time)
+        (x1, y1), (x2, y2) = points[after - 1 : after + 1]
+        share = (time - times[after - 1]) / (times[after] - times[after - 1])
+        return x1 + share * (x2 - x1), y1 + share * (y2 - y1)
+
+    @cached_property
+    def _keyframes(self) -> Tuple[List[float], List[List[float]]]:
+        """As plain numbers, which are quicker to ask one by one."""
+        return self.times.tolist(), self.points_xy.tolist()
 
 
 class Movable(Protocol):

@@ -22,7 +22,7 @@ from sim_bridge.world import World
 CELLS, CELL, RADIUS, ROOM = 30, 0.15, 0.075, 0.3
 MIDDLE_XY, WALL_Y = (-2.25, 7.25), (0.5, 14.5)
 # Shares of cells that are filled at first, and how often the automaton smooths them.
-LEAST_FILL, MOST_FILL, SMOOTHINGS = 0.12, 0.28, (2, 4)
+LEAST_FILL, MOST_FILL, SMOOTHINGS = 0.18, 0.34, (2, 4)
 # Of eight neighbours filled, from which on a cell fills, and up to which it empties.
 FILLS, EMPTIES = 5, 1
 _STREAM = 44

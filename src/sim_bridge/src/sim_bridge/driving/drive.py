@@ -12,7 +12,8 @@ class RampedDrive:
     def __init__(self, profile: DriveProfile):
         self._profile = profile
         self._target = Twist2()
-        self._set = Twist2()
+        # What is set now, as plain numbers: they change before each step of physics.
+        self._v = self._omega = 0.0
         self._speeds = (0.0, 0.0)
         self._age = 0.0
         self._has_power = True
@@ -30,28 +31,26 @@ class RampedDrive:
             self._target = Twist2(_clip(twist.v, limits.max_speed), _clip(twist.omega, limits.max_turn_rate))
 
     def halt(self) -> None:
-        self._target = self._set = Twist2()
+        self._target = Twist2()
+        self._v = self._omega = 0.0
         self._speeds = (0.0, 0.0)
 
     def wheel_speeds(self, seconds: float) -> Tuple[float, float]:
-        limits = self._profile
         self._age += seconds
-        if self._age > limits.command_timeout + 1e-9:
+        if self._age > self._profile.command_timeout + 1e-9:
             self._target = Twist2()
-        if self._set != self._target:
+        if self._v != self._target.v or self._omega != self._target.omega:
             self._ramp(seconds)
         return self._speeds
 
     def _ramp(self, seconds: float) -> None:
         limits = self._profile
-        self._set = Twist2(
-            _approach(self._set.v, self._target.v, limits.max_acceleration * seconds),
-            _approach(self._set.omega, self._target.omega, limits.max_turn_acceleration * seconds),
-        )
-        outward = self._set.omega * limits.wheel_separation / 2.0
+        self._v = _approach(self._v, self._target.v, limits.max_acceleration * seconds)
+        self._omega = _approach(self._omega, self._target.omega, limits.max_turn_acceleration * seconds)
+        outward = self._omega * limits.wheel_separation / 2.0
         self._speeds = (
-            (self._set.v - outward) / limits.wheel_radius,
-            (self._set.v + outward) / limits.wheel_radius,
+            (self._v - outward) / limits.wheel_radius,
+            (self._v + outward) / limits.wheel_radius,
         )
 
 
@@ -60,4 +59,7 @@ def _clip(value: float, limit: float) -> float:
 
 
 def _approach(value: float, target: float, step: float) -> float:
-    return value + _clip(target - value, step)
+    change = target - value
+    if change > step:
+        return value + step
+    return value + change if change >= -step else value - step

@@ -30,6 +30,8 @@ class Section:
         self._height = height
         self._still: Dict[str, _Outline] = {}
         self._moving: Dict[str, _Outline] = {}
+        # Of what is on a course, where it began: it is shifted and not turned, so it need not be cut again.
+        self._begun: Dict[str, _Outline] = {}
         self._still_segments: Optional[np.ndarray] = None
         self._still_retros = np.empty(0)
 
@@ -73,12 +75,23 @@ class Section:
         return np.concatenate([self._still_retros, *(outline.retros for outline in self._moving.values())])
 
     def _place(self, body: Body, pose: np.ndarray) -> None:
-        outline = _Outline(body, pose, *self._cut(body, pose))
+        if body.is_on_course:
+            outline = self._shifted(body, pose)
+        else:
+            outline = _Outline(body, pose, *self._cut(body, pose))
         if body.keeps_still:
             self._still[body.name] = outline
             self._still_segments = None
         else:
             self._moving[body.name] = outline
+
+    def _shifted(self, body: Body, pose: np.ndarray) -> _Outline:
+        begun = self._begun.get(body.name)
+        if begun is None or begun.body is not body:
+            begun = _Outline(body, body.pose_in_world, *self._cut(body, body.pose_in_world))
+            self._begun[body.name] = begun
+        way = np.tile(pose[:2, 3] - begun.drawn_at[:2, 3], 2)
+        return _Outline(body, pose, begun.segments + way, begun.retros)
 
     def _cut(self, body: Body, pose: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
         """Sides (N, 4) of a body's outlines, and how brightly each reflects, (N,)."""

@@ -1,0 +1,23 @@
+"""The robot and its worlds as Gymnasium environments, without ROS: docs/gymnasium.md.
+
+import gymnasium
+env = gymnasium.make("home_service_gym:PointGoal-v0")
+"""
+
+import gymnasium
+
+# Name, class, and seconds of an episode, at so many control periods a second.
+_ENVIRONMENTS = (
+    ("HomeService-v0", "environments:HomeService", 120, 10),
+    ("PointGoal-v0", "environments:PointGoal", 60, 10),
+    ("BARN-v0", "environments:Barn", 100, 10),
+    ("DynaBARN-v0", "environments:Dynabarn", 100, 10),
+    ("Follow-v0", "environments:Follow", 60, 10),
+    ("Explore-v0", "environments:Explore", 300, 10),
+    ("TurtleBot3Stage-v0", "turtlebot3_stage:TurtleBot3Stage", 100, 5),
+)
+NAMES = tuple(name for name, *_ in _ENVIRONMENTS)
+
+for _name, _class, _seconds, _rate in _ENVIRONMENTS:
+    if _name not in gymnasium.registry:
+        gymnasium.register(_name, f"{__name__}.{_class}", max_episode_steps=_seconds * _rate)

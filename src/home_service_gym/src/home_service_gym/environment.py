@@ -1,0 +1,128 @@
+"""What all environments with a task have in common."""
+
+from collections import OrderedDict
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Dict, Optional, Tuple
+
+import gymnasium
+import numpy as np
+from gymnasium import spaces
+
+from home_service_gym.drawing import Picture
+from home_service_gym.playground import Moment, Playground, lidar_of
+from home_service_gym.task import COLLISION, PERIOD, Task
+from laboratory.scenario import Scenario, read_scenario
+from laboratory.suites import FOLDER
+from planar import SettingsError, Twist2
+from sim_bridge import robot_named
+
+# Playgrounds that an environment keeps built, and control periods a second.
+KEPT, RATE = 16, 10
+
+
+def scenario_of(name: str) -> Scenario:
+    """A scenario by its name in scenarios/, or by its file. Raises SettingsError."""
+    path = Path(name)
+    scenario = read_scenario(path if path.suffix == ".yaml" else FOLDER / f"{name}.yaml")
+    if scenario.faults:
+        raise SettingsError(f"{scenario.file}: happens.faults: environments play no faults")
+    return scenario
+
+
+class TaskEnv(gymnasium.Env):
+    """A robot of a scenario, in its worlds and with its noise, that has a task.
+
+    An observation has ``scan`` (m, as the lidar tells, 0 if too near, the greatest range if nothing is in
+    reach), ``velocity`` (m/s and rad/s, of odometry) and what the task tells. An action is the share, -1 to
+    1, of the robot's greatest speed and turn rate. An episode ends with the task, or at the first touch.
+
+    ``reset(options={"seed": N})`` takes the world of that seed of the scenario; otherwise one is drawn.
+    """
+
+    metadata = {"render_modes": ["rgb_array"], "render_fps": RATE}
+
+    def __init__(self, scenario: Scenario, task: Task, render_mode: Optional[str] = None):
+        if render_mode not in (None, *self.metadata["render_modes"]):
+            raise SettingsError(f"render_mode must be rgb_array or None, got {render_mode!r}")
+        self.render_mode = render_mode
+        self._scenario, self._task = scenario, task
+        self._robot = robot_named(scenario.robot)
+        self._playgrounds: OrderedDict[int, Playground] = OrderedDict()
+        self._playground: Optional[Playground] = None
+        self._moment: Optional[Moment] = None
+        self._picture: Optional[Picture] = None
+        lidar, drive = lidar_of(self._robot), self._robot.drive
+        self._most = np.array((drive.max_speed, drive.max_turn_rate))
+        fastest = 2.0 * self._most.astype(np.float32)
+        self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
+        self.observation_space = spaces.Dict(
+            {
+                "scan": spaces.Box(0.0, np.float32(lidar.range_max), (lidar.beams,), np.float32),
+                "velocity": spaces.Box(-fastest, fastest, dtype=np.float32),
+                **task.spaces(),
+            }
+        )
+
+    def reset(
+        self, *, seed: Optional[int] = None, options: Optional[Dict[str, Any]] = None
+    ) -> Tuple[Dict[str, np.ndarray], Dict[str, Any]]:
+        super().reset(seed=seed)
+        number = int((options or {}).get("seed", self.np_random.choice(self._scenario.seeds)))
+        self._playground = self._playground_of(number)
+        beginning = self._task.begin(self._playground, self.np_random)
+        noise = int(self.np_random.integers(2**31))
+        self._picture = None
+        self._moment = self._playground.restart(noise, beginning.start, beginning.courses)
+        return self._observation(), {"world": self._playground.arena.title}
+
+    def step(self, action: np.ndarray) -> Tuple[Dict[str, np.ndarray], float, bool, bool, Dict[str, Any]]:
+        assert self._playground is not None, "reset comes before step"
+        v, omega = (np.clip(action, -1.0, 1.0) * self._most).tolist()
+        self._moment = self._playground.advance(Twist2(v, omega))
+        judgement = self._task.judge(self._moment)
+        reward, outcome = judgement.reward, judgement.outcome
+        if self._moment.touched:
+            reward, outcome = PERIOD + COLLISION, "collision"
+        info: Dict[str, Any] = {}
+        if outcome:
+            info = {"outcome": outcome, "is_success": outcome == "success"}
+            if outcome == "collision":
+                info["touched"] = self._moment.touched
+        return self._observation(), float(reward), bool(outcome), False, info
+
+    def render(self) -> Optional[np.ndarray]:  # type: ignore[override]
+        if self.render_mode is None or self._playground is None or self._moment is None:
+            return None
+        if self._picture is None:
+            self._picture = Picture(self._playground)
+        return self._picture.draw(self._moment, self._task.marks())
+
+    def close(self) -> None:
+        for playground in self._playgrounds.values():
+            playground.close()
+        self._playgrounds.clear()
+        self._playground = self._moment = self._picture = None
+
+    def _playground_of(self, seed: int) -> Playground:
+        """That of the world of a seed, built if it is not among the last that were used."""
+        key = self._scenario.world.arena_number(seed) if not self._scenario.boxes else seed
+        playground = self._playgrounds.pop(key, None)
+        if playground is None:
+            arena = self._scenario.arena(seed)
+            bodies = (*arena.world.bodies, *self._task.bodies())
+            arena = replace(arena, world=replace(arena.world, bodies=bodies))
+            playground = Playground(arena, self._robot, self._scenario.simulation, self._scenario.start, RATE)
+        self._playgrounds[key] = playground
+        if len(self._playgrounds) > KEPT:
+            self._playgrounds.popitem(last=False)[1].close()
+        return playground
+
+    def _observation(self) -> Dict[str, np.ndarray]:
+        assert self._moment is not None
+        scan, twist = self._moment.scan, self._moment.twist
+        return {
+            "scan": np.clip(scan.ranges, np.float32(0.0), np.float32(scan.range_max)),
+            "velocity": np.array((twist.v, twist.omega), dtype=np.float32),
+            **self._task.observe(self._moment),
+        }

@@ -1,0 +1,88 @@
+"""The environments with a task, by the names of their classes; docs/gymnasium.md describes each."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Optional
+
+from home_service_gym.environment import RATE, TaskEnv, scenario_of
+from home_service_gym.task import Task
+from home_service_gym.tasks import errand, explore, follow, point_goal, reach
+from laboratory.scenario import Scenario
+from laboratory.tasks.deliveries import Deliveries
+from laboratory.tasks.reach import Reach
+from laboratory.worlds.barn import BarnFolder
+from laboratory.worlds.dynabarn import DynabarnFolder
+from planar import SettingsError
+from planar.maps.places import places_of_errand
+
+
+class PointGoal(TaskEnv):
+    """From anywhere in a home to anywhere."""
+
+    def __init__(self, scenario: str = "home_errand", render_mode: Optional[str] = None):
+        super().__init__(scenario_of(scenario), point_goal.PointGoal(), render_mode)
+
+
+class HomeService(TaskEnv):
+    """The errand of a scenario: to the pick-up zone, wait there, then to the drop-off zone."""
+
+    def __init__(
+        self,
+        scenario: str = "home_errand",
+        pickup_seconds: float = 5.0,
+        render_mode: Optional[str] = None,
+    ):
+        played = scenario_of(scenario)
+        if not isinstance(played.task, Deliveries) or played.task.mission is not None:
+            raise SettingsError(f"{played.file}: task must be an errand")
+        pickup, dropoff = places_of_errand(played.task.zones)
+        task = errand.Errand(played.start, pickup.pose, dropoff.pose, pickup_seconds, RATE)
+        super().__init__(played, task, render_mode)
+
+
+class Barn(TaskEnv):
+    """A Jackal through a field of cylinders; ``folder``: of the benchmark's own worlds."""
+
+    def __init__(
+        self, scenario: str = "fields", folder: Optional[str] = None, render_mode: Optional[str] = None
+    ):
+        played = scenario_of(scenario)
+        if folder is not None:
+            source = BarnFolder(Path(folder).expanduser().resolve())
+            source.pairs()
+            played = replace(played, world=source)
+        super().__init__(played, _reach(played), render_mode)
+
+
+class Dynabarn(TaskEnv):
+    """A Jackal between cylinders that move; ``folder``: of the benchmark's own worlds."""
+
+    def __init__(
+        self, scenario: str = "crossings", folder: Optional[str] = None, render_mode: Optional[str] = None
+    ):
+        played = scenario_of(scenario)
+        if folder is not None:
+            source = DynabarnFolder(Path(folder).expanduser().resolve())
+            source.files()
+            played = replace(played, world=source)
+        super().__init__(played, _reach(played), render_mode)
+
+
+class Follow(TaskEnv):
+    """After somebody who walks through a home."""
+
+    def __init__(self, scenario: str = "home_errand", render_mode: Optional[str] = None):
+        super().__init__(scenario_of(scenario), follow.Follow(), render_mode)
+
+
+class Explore(TaskEnv):
+    """See all of a home."""
+
+    def __init__(self, scenario: str = "home_errand", render_mode: Optional[str] = None):
+        super().__init__(scenario_of(scenario), explore.Explore(), render_mode)
+
+
+def _reach(scenario: Scenario) -> Task:
+    if not isinstance(scenario.task, Reach):
+        raise SettingsError(f"{scenario.file}: task must be reach")
+    return reach.Reach(scenario.start, scenario.task.goal, scenario.task.radius)

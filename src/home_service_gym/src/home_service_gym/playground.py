@@ -1,0 +1,82 @@
+"""A robot in an arena, moved by control periods, put back in well under a millisecond for each episode."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Sequence, Tuple
+
+import numpy as np
+
+from home_service_gym.ground import Ground
+from laboratory.worlds.source import Arena
+from planar import Pose2, Scan, Twist2
+from sim_bridge import Observation, RobotProfile, Simulation, SimulationSettings
+from sim_bridge.courses import Course
+from sim_bridge.sensors.lidar import LaserProfile
+from sim_bridge.views.true_map import true_map
+
+
+@dataclass(frozen=True, eq=False)
+class Moment:
+    """The end of a control period; ``touched``: names of what the robot bumped into during it.
+
+    ``base_in_world`` is the truth, ``base_in_odom`` and ``twist`` are what odometry tells.
+    """
+
+    stamp: float
+    base_in_world: Pose2
+    base_in_odom: Pose2
+    twist: Twist2
+    scan: Scan
+    touched: Tuple[str, ...]
+
+
+class Playground:
+    """``rate``: control periods a second, in each of which the lidar and odometry tell once."""
+
+    def __init__(
+        self, arena: Arena, robot: RobotProfile, noise: SimulationSettings, start: Pose2, rate: int = 10
+    ):
+        self.arena, self.start = arena, start
+        settings = replace(noise, odometry_rate=rate, scan_rate=rate)
+        self._simulation = Simulation(arena.world, with_lidar_only(robot), settings, 0, start)
+        self._simulation.mark()
+
+    @cached_property
+    def ground(self) -> Ground:
+        """Where there is room, by the truth about the arena as it is at the beginning."""
+        still = [body for body in self.arena.world.bodies if body.keeps_still]
+        world = replace(self.arena.world, bodies=tuple(still))
+        return Ground(true_map(world, inside=(self.start.x, self.start.y)), self.start)
+
+    def restart(self, seed: int, start: Pose2, courses: Sequence[Course] = ()) -> Moment:
+        """Begins an episode with the noise of a seed, and ``courses`` beside those of the world."""
+        self._simulation.scene.courses.each = (*self.arena.world.courses, *courses)
+        self._simulation.rewind(seed, start)
+        return self.advance(Twist2())
+
+    def advance(self, command: Twist2) -> Moment:
+        """Drives for a control period."""
+        return _moment_of(self._simulation.step(command))
+
+    def places_of(self, courses: Sequence[Course], stamp: float) -> np.ndarray:
+        """Where what goes its own way then is, (N, 2)."""
+        return np.array([course.at(stamp) for course in courses]).reshape(-1, 2)
+
+    def close(self) -> None:
+        self._simulation.close()
+
+
+def _moment_of(seen: Observation) -> Moment:
+    assert seen.scan is not None, "a lidar tells once a period"
+    told = seen.odometry
+    return Moment(seen.stamp, seen.base_in_world, told.base_in_odom, told.twist, seen.scan, seen.contacts)
+
+
+def with_lidar_only(robot: RobotProfile) -> RobotProfile:
+    """The robot without the sensors that no environment observes, which would cost time."""
+    return replace(robot, sensors=(lidar_of(robot),))
+
+
+def lidar_of(robot: RobotProfile) -> LaserProfile:
+    """Its first one; every robot that is known by name has one."""
+    return next(spec for spec in robot.sensors if isinstance(spec, LaserProfile))

@@ -1,0 +1,69 @@
+"""Episodes played by a policy, told in a line each."""
+
+from pathlib import Path
+from typing import Any, Callable, Dict, List
+
+import gymnasium
+import numpy as np
+from PIL import Image
+
+from home_service_gym import NAMES
+from planar import PlanarError, SettingsError
+from planar.config.hints import hint
+from planar.config.yaml_table import parse_table
+from planar.plugins import find
+
+Policy = Callable[[Any], Any]
+# Control periods between two pictures of an animation.
+PERIODS = 3
+
+
+def environment_of(name: str, arguments: str) -> gymnasium.Env[Any, Any]:
+    """``arguments``: of its constructor, as a YAML mapping. Raises SettingsError."""
+    if name not in NAMES:
+        raise SettingsError(
+            f"no environment named {name!r}{hint(name, NAMES)} (there are {', '.join(NAMES)})"
+        )
+    given: Dict[str, Any] = parse_table(arguments, "--arguments").values()
+    try:
+        return gymnasium.make(name, render_mode="rgb_array", **given)
+    except PlanarError:
+        raise
+    except TypeError as error:
+        raise SettingsError(f"{name}: {error}") from None
+
+
+def policy_of(name: str, env: gymnasium.Env[Any, Any], seed: int) -> Policy:
+    """That of a dotted name, or one that acts by chance. Raises SettingsError."""
+    if name:
+        return find(name)
+    env.action_space.seed(seed)
+    return lambda observation: env.action_space.sample()
+
+
+class Episodes:
+    """Of one environment with one policy; ``is_filmed``: for an animation."""
+
+    def __init__(self, env: gymnasium.Env[Any, Any], policy: Policy, is_filmed: bool):
+        self._env, self._policy, self._is_filmed = env, policy, is_filmed
+        self._film: List[np.ndarray] = []
+
+    def play(self, seed: int) -> str:
+        """One episode; how it went."""
+        observation, _ = self._env.reset(seed=seed)
+        total, periods, is_over = 0.0, 0, False
+        while not is_over:
+            if self._is_filmed and periods % PERIODS == 0:
+                self._film.append(np.asarray(self._env.render()))
+            observation, reward, terminated, truncated, info = self._env.step(self._policy(observation))
+            total, periods = total + float(reward), periods + 1
+            is_over = terminated or truncated
+        return f"{info.get('outcome', 'time is up')} after {periods} steps, return {total:.1f}"
+
+    def save(self, path: Path) -> None:
+        """The animation. Raises SettingsError if it cannot be written."""
+        first, *others = [Image.fromarray(picture) for picture in self._film]
+        try:
+            first.save(path, save_all=True, append_images=others, duration=100 * PERIODS, loop=0)
+        except (OSError, ValueError) as error:
+            raise SettingsError(f"{path}: cannot be written: {error}") from None

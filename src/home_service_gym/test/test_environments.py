@@ -1,0 +1,208 @@
+"""Every environment keeps Gymnasium's contract and repeats itself; each task ends as it should."""
+
+import functools
+import warnings
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env, data_equivalence
+
+import home_service_gym
+from home_service_gym.environments import Barn, Dynabarn, Explore, Follow, HomeService, PointGoal
+from home_service_gym.turtlebot3_stage import WALKS, TurtleBot3Stage
+from planar import Pose2, SettingsError
+
+VARIANTS = [
+    *((name, {}) for name in home_service_gym.NAMES),
+    *(("TurtleBot3Stage-v0", {"stage": stage}) for stage in (2, 3, 4)),
+    ("PointGoal-v0", {"scenario": "home_boxes"}),
+]
+each_variant = pytest.mark.parametrize(("name", "given"), VARIANTS, ids=lambda value: str(value))
+
+
+@each_variant
+def test_it_passes_the_checker_of_gymnasium_without_a_complaint(name, given):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        warnings.filterwarnings("ignore", ".*render_mode.*|.*different to the unwrapped.*")
+        env = gymnasium.make(name, render_mode="rgb_array", **given)
+        check_env(env.unwrapped)
+    assert env.unwrapped.spec is not None
+    env.close()
+
+
+def episode(env, seed, steps=60):
+    observation, _ = env.reset(seed=seed)
+    env.action_space.seed(seed)
+    told = [observation]
+    for _ in range(steps):
+        observation, reward, terminated, _, info = env.step(env.action_space.sample())
+        told += [observation, reward, terminated, info]
+        if terminated:
+            break
+    return told
+
+
+@each_variant
+def test_the_same_seed_gives_the_same_episode_whatever_was_played_before(name, given):
+    used, fresh = gymnasium.make(name, **given).unwrapped, gymnasium.make(name, **given).unwrapped
+    episode(used, seed=5)
+    first, other, again = (episode(used, seed) for seed in (3, 4, 3))
+    assert data_equivalence(first, again, exact=True)
+    assert data_equivalence(first, episode(fresh, 3), exact=True)
+    assert not data_equivalence(first[:4], other[:4], exact=True)
+    used.close()
+    fresh.close()
+
+
+@pytest.mark.parametrize("name", home_service_gym.NAMES)
+def test_a_picture_shows_the_episode_go_on(name):
+    env = gymnasium.make(name, render_mode="rgb_array")
+    env.reset(seed=0)
+    first = env.render()
+    for _ in range(10):
+        env.step(
+            2 if isinstance(env.action_space, gymnasium.spaces.Discrete) else np.array([0.5, 0.2], np.float32)
+        )
+    assert first.dtype == np.uint8 and first.ndim == 3
+    assert (env.render() != first).any()
+    env.close()
+
+
+def test_processes_play_what_one_process_plays():
+    make = functools.partial(gymnasium.make_vec, "home_service_gym:PointGoal-v0", num_envs=2)
+    told = []
+    for mode in ("sync", "async"):
+        envs = make(vectorization_mode=mode)
+        envs.action_space.seed(1)
+        told.append([envs.reset(seed=[7, 8])[0], *(envs.step(envs.action_space.sample()) for _ in range(20))])
+        envs.close()
+    assert data_equivalence(*told, exact=True)
+
+
+def steer(observation):
+    """Turns to what it is told of, then drives there; sees no obstacle."""
+    distance, cosine, sine = observation["goal"]
+    bearing = np.arctan2(sine, cosine)
+    ahead = 0.5 * min(max(float(distance), 0.0), 1.0) if abs(bearing) < 0.2 else 0.0
+    return np.array([ahead, np.clip(bearing, -0.5, 0.5)], dtype=np.float32)
+
+
+def play(env, policy, seed, steps=900, options=None):
+    observation, _ = env.reset(seed=seed, options=options)
+    rewards = []
+    for _ in range(steps):
+        observation, reward, terminated, _, info = env.step(policy(observation))
+        rewards.append(reward)
+        if terminated:
+            break
+    env.close()
+    return sum(rewards), info.get("outcome", "")
+
+
+def test_a_goal_in_the_same_room_is_reached_and_worth_its_way():
+    outcomes = [play(PointGoal(), steer, seed) for seed in range(8)]
+    reached = [total for total, outcome in outcomes if outcome == "success"]
+    assert reached and min(reached) > 9.0
+    assert any(outcome == "collision" and total < 0.0 for total, outcome in outcomes)
+
+
+def along_the_way(env, goal):
+    """An observation of a point of the way to a goal a little ahead; of the goal itself when it is near."""
+    ground, pose = env._playground.ground, env._moment.base_in_world
+    way_xy = ground.way(ground.distances_to(goal), pose)
+    x, y = way_xy[min(5, len(way_xy) - 1)] - (pose.x, pose.y)
+    bearing = np.arctan2(y, x) - pose.yaw
+    is_there = pose.distance_to(goal) < 0.15
+    return {"goal": (0.0 if is_there else 0.6, np.cos(bearing), np.sin(bearing))}
+
+
+def test_the_errand_waits_at_the_pickup_zone_and_ends_at_the_drop_off_zone():
+    env = HomeService()
+    observation, _ = env.reset(seed=0)
+    assert observation["carrying"] == [0]
+    pickup, *onwards = [Pose2(2.0, 3.0), Pose2(-0.3, 0.1), Pose2(-1.7, 0.1), Pose2(-2.0, 1.0)]
+    carrying, stood, outcome = 0, 0, ""
+    for _ in range(1200):
+        goal = onwards[0] if carrying else pickup
+        observation, reward, terminated, _, info = env.step(steer(along_the_way(env, goal)))
+        base = env._moment.base_in_world
+        stood += base.distance_to(pickup) < 0.16
+        if carrying and len(onwards) > 1 and base.distance_to(goal) < 0.2:
+            onwards.pop(0)
+        if observation["carrying"][0] > carrying:
+            carrying = 1
+            assert reward > 9.0 and stood >= 50
+            assert observation["goal"][0] == pytest.approx(np.hypot(4.0, 2.0), abs=0.3), "the other zone"
+        if terminated:
+            outcome = info["outcome"]
+            break
+    assert (carrying, outcome) == (1, "success"), info
+    env.close()
+
+
+def test_a_leader_who_is_left_alone_is_lost_and_one_who_is_followed_is_not():
+    assert play(Follow(), lambda _: np.zeros(2, np.float32), 1)[1] == "lost"
+    total, outcome = play(
+        Follow(), lambda seen: steer({"goal": seen["leader"] - (0.9, 0.0, 0.0)}), 2, steps=150
+    )
+    assert outcome == "" and total > 2.0
+
+
+def test_turning_round_shows_more_of_a_home_only_once():
+    env = Explore()
+    observation, _ = env.reset(seed=2)
+    assert 0.0 < (observation["map"] > 0).mean() < 0.6
+    rewards = [env.step(np.array([0.0, 0.5], np.float32))[1] for _ in range(80)]
+    assert sum(rewards[40:]) < 1.0
+    env.close()
+
+
+def test_moving_cylinders_come_nearer_without_the_robot_moving():
+    env = Dynabarn()
+    first = env.reset(seed=3)[0]["scan"]
+    for _ in range(30):
+        last = env.step(np.zeros(2, np.float32))[0]["scan"]
+    assert np.abs(last - first).max() > 1.0
+    env.close()
+
+
+def test_straight_ahead_through_a_field_is_a_collision():
+    total, outcome = play(Barn(), lambda _: np.array([0.5, 0.0], np.float32), 0, options={"seed": 2})
+    assert outcome == "collision" and total < 0.0
+
+
+def test_the_first_goal_of_a_stage_is_reached_straight_ahead_and_another_follows():
+    env = TurtleBot3Stage(1)
+    seen, _ = env.reset(seed=0)
+    assert seen.shape == (26,) and seen[25] == pytest.approx(0.6, abs=0.05)
+    rewards = [env.step(2)[1] for _ in range(20)]
+    assert 200.0 in rewards
+    assert env.unwrapped._goal.x != 0.6
+    env.close()
+
+
+def test_what_walks_in_stage_four_goes_as_far_as_its_keyframes():
+    courses = {course.link: course for course in TurtleBot3Stage(4)._playground.arena.world.courses}
+    for name, walk in WALKS.items():
+        course = courses[f"{name}::link"]
+        there = np.array(course.at(walk[2][0])) - course.at(0.0)
+        assert there == pytest.approx(walk[2][1:])
+
+
+@pytest.mark.parametrize(
+    ("make", "complaint"),
+    [
+        (lambda: TurtleBot3Stage(5), "stage must be 1, 2, 3 or 4, got 5"),
+        (lambda: PointGoal(render_mode="human"), "render_mode must be rgb_array or None, got 'human'"),
+        (lambda: PointGoal("nowhere"), "nowhere.yaml"),
+        (lambda: HomeService("fields"), "task must be an errand"),
+        (lambda: Barn("home_errand"), "task must be reach"),
+        (lambda: Barn(folder="/nonexistent"), "no pairs of world_N.world and path_N.npy"),
+        (lambda: Dynabarn(folder="/nonexistent"), "no files dynabarn_N.yaml"),
+    ],
+)
+def test_what_cannot_be_played_is_told(make, complaint):
+    with pytest.raises(SettingsError, match=complaint.replace(".", r"\.")):
+        make()

@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+"""Measures the Gymnasium environments: steps a second beside PyBullet's own limit, resets, processes.
+
+The limit is what PyBullet alone takes for the steps of physics of a control period, the robot driving, in the
+same world; each is measured in turns, and of both the median of CPU time counts.
+
+python3 tests/benchmarks/gymnasium_steps.py [--json FILE] [ENVIRONMENT ...]
+"""
+
+import argparse
+import json
+import statistics
+import sys
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Callable, List
+
+import gymnasium
+
+import home_service_gym
+
+BLOCKS, PERIODS, RESETS, SECONDS = 15, 100, 30, 8.0
+# The world that is measured, of environments that have many.
+WORLD = 2
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """Steps a second, resets in ms in a world that is built; ``share``: of the limit."""
+
+    environment: str
+    beams: int
+    steps: float
+    limit: float
+    share: float
+    reset_median: float
+    reset_most: float
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("environments", nargs="*", metavar="ENVIRONMENT", default=home_service_gym.NAMES)
+    parser.add_argument("--json", type=Path, metavar="FILE", help="writes the figures there too")
+    options = parser.parse_args()
+    print("environment          beams  steps/s  limit/s  share  reset ms, median and most")
+    measured = []
+    for name in options.environments:
+        one = measure(name)
+        measured.append(one)
+        print(
+            f"{one.environment:20} {one.beams:5} {one.steps:8.0f} {one.limit:8.0f} {one.share:6.2f} "
+            f"{one.reset_median:9.1f} {one.reset_most:6.1f}",
+            flush=True,
+        )
+    alone, both = (throughput(options.environments[0], count) for count in (1, 2))
+    print(
+        f"{options.environments[0]}, one process {alone:.0f}, two processes {both:.0f} steps/s: "
+        f"efficiency {both / alone / 2.0:.2f}"
+    )
+    if options.json:
+        told = {"environments": [asdict(one) for one in measured], "one": alone, "two": both}
+        options.json.write_text(json.dumps(told, indent=2) + "\n")
+    return 0
+
+
+def measure(name: str) -> Measurement:
+    env = gymnasium.make(name).unwrapped
+    world = {"seed": WORLD}
+    env.reset(seed=0, options=world)
+    env.action_space.seed(0)
+    simulation = env._playground._simulation  # type: ignore[attr-defined]
+    engine = simulation.scene._engine
+    physics = round(simulation.scene.settings.physics_rate * simulation.step_seconds)
+
+    def steps() -> None:
+        for _ in range(PERIODS):
+            if env.step(env.action_space.sample())[2]:
+                env.reset(options=world)
+
+    def limit() -> None:
+        for _ in range(PERIODS * physics):
+            engine.step()
+
+    steps()
+    taken: List[float] = []
+    least: List[float] = []
+    for _ in range(BLOCKS):
+        taken.append(cpu_seconds(steps) / PERIODS)
+        least.append(cpu_seconds(limit) / PERIODS)
+    for _ in range(RESETS):  # the ways of a home are looked for once
+        env.reset(options=world)
+    resets = [1e3 * cpu_seconds(lambda: env.reset(options=world)) for _ in range(RESETS)]
+    scan = simulation.step().scan
+    env.close()
+    step, bound = statistics.median(taken), statistics.median(least)
+    return Measurement(
+        name, len(scan.ranges), 1 / step, 1 / bound, bound / step, statistics.median(resets), max(resets)
+    )
+
+
+def cpu_seconds(do: Callable[[], object]) -> float:
+    began = time.process_time()
+    do()
+    return time.process_time() - began
+
+
+def throughput(name: str, processes: int) -> float:
+    """Steps a second, by the clock, of environments in as many processes."""
+    envs = gymnasium.make_vec(f"home_service_gym:{name}", num_envs=processes, vectorization_mode="async")
+    envs.reset(seed=0)
+    envs.action_space.seed(0)
+    for _ in range(PERIODS):
+        envs.step(envs.action_space.sample())
+    began, count = time.perf_counter(), 0
+    while time.perf_counter() - began < SECONDS:
+        envs.step(envs.action_space.sample())
+        count += processes
+    rate = count / (time.perf_counter() - began)
+    envs.close()
+    return rate
+
+
+if __name__ == "__main__":
+    sys.exit(main())
