@@ -2,23 +2,27 @@
 
 import re
 import subprocess
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
 from home_service import commands
 from home_service.cli import parse
-from home_service_gym.commands import FOLDER as ENVIRONMENTS
 from laboratory.commands import FOLDER as EXPERIMENTS
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
-FOLDERS = (commands.FOLDER, EXPERIMENTS, ENVIRONMENTS)
+FOLDERS = {"": commands.FOLDER, "experiments": EXPERIMENTS}
+if find_spec("gymnasium"):
+    from home_service_gym.commands import FOLDER as ENVIRONMENTS
+
+    FOLDERS["environments"] = ENVIRONMENTS
 OPTION = re.compile(r"--[a-z][a-z-]*")
 
 
 @pytest.mark.parametrize(
     ("folder", "command"),
-    [(folder, name) for folder in FOLDERS for name in sorted(folder.names())],
+    [(folder, name) for folder in FOLDERS.values() for name in sorted(folder.names())],
 )
 def test_a_script_tells_the_options_that_its_command_takes(folder, command, capsys):
     with pytest.raises(SystemExit):
@@ -35,7 +39,7 @@ def test_the_set_up_refuses_an_option_that_it_does_not_know():
     assert "--nonsense" in result.stderr
 
 
-@pytest.mark.parametrize(("kind", "folder"), [("experiments", EXPERIMENTS), ("environments", ENVIRONMENTS)])
+@pytest.mark.parametrize(("kind", "folder"), list(FOLDERS.items())[1:])
 def test_a_script_of_a_package_of_its_own_is_known_as_one(kind, folder):
     listed = re.search(rf"{kind}=\((.*?)\)", (SCRIPTS / "lib.sh").read_text())
     assert listed and sorted(listed[1].split()) == sorted(folder.names())
