@@ -8,6 +8,7 @@ EXAMPLES = [
     ("local_planner", "plugin_examples.pure_pursuit/PurePursuit"),
     ("local_planner", "plugin_examples.potential_field/PotentialField"),
     ("global_planner", "plugin_examples.rrt_star/RrtStar"),
+    ("costmap_layer", "plugin_examples.social_distance/SocialDistance"),
 ]
 CASES = {
     f"{name.rpartition('/')[2]}-{check.__name__}": (KITS[kind], name, check)

@@ -1,0 +1,81 @@
+"""A costmap layer that keeps its distance from people who walk (Kirby, Simmons and Forlizzi, 2009).
+
+Around each the costs fall as a Gaussian does, which reaches farther where they are going. It belongs into the
+local costmap, which sees what moves.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from move_base_lite import Layer, LayerSettings
+from move_base_lite.costmap import INSCRIBED, Placement, Sighting, Site
+from move_base_lite.costmap.window import NO_CELLS, Bounds, Window, union
+from move_base_lite.people import NO_MOVERS, Movers
+from planar import Pose2
+from planar.config.parameters import POSITIVE, at_least, parameter
+
+# Standard deviations within which a Gaussian counts, and the cost in its middle, short of an obstacle's.
+REACH, HIGHEST = 2.0, INSCRIBED - 1
+
+
+@dataclass(frozen=True)
+class SocialDistanceSettings(LayerSettings):
+    topic: str = parameter("scan", "of the laser that sees them")
+    spread: float = parameter(0.4, "standard deviation beside and behind them", "m", POSITIVE, dynamic=2.0)
+    foresight: float = parameter(
+        1.0, "how much farther ahead, for each m/s that they walk", "s", at_least(0.0), dynamic=5.0
+    )
+
+
+class SocialDistance(Layer):
+    Settings = SocialDistanceSettings
+
+    def __init__(self, settings: SocialDistanceSettings, site: Site):
+        self._settings = settings
+        self._movers, self._seen_at = Movers(), 0.0
+        self._people, self._bounds = NO_MOVERS, NO_CELLS
+
+    def note(self, sighting: Sighting, base_in_frame: Pose2) -> None:
+        if sighting.topic == self._settings.topic:
+            self._movers.look(base_in_frame, sighting)
+            self._seen_at = sighting.stamp
+
+    def update(self, placement: Placement) -> Bounds:
+        before, self._people, self._bounds = self._bounds, self._movers.at(self._seen_at), NO_CELLS
+        for x, y, along_x, along_y, _ in self._people:
+            reach = REACH * self._ahead(math.hypot(along_x, along_y))
+            self._bounds = union(
+                self._bounds, placement.window.cut(placement.window.bounds_around(x, y, reach))
+            )
+        return union(before, self._bounds)
+
+    def apply(self, costs: np.ndarray, window: Window, bounds: Bounds) -> None:
+        rows, cols = np.mgrid[bounds.slices]
+        if not rows.size:
+            return
+        x = window.origin_x + (cols + 0.5) * window.resolution
+        y = window.origin_y + (rows + 0.5) * window.resolution
+        block = costs[bounds.slices]
+        for person in self._people:
+            added = (HIGHEST * self._share(person, x, y)).astype(np.uint8)
+            np.maximum(block, added, out=block, where=block < added)
+
+    def clear_outside(self, bounds: Bounds, window: Window) -> Bounds:
+        before = self._bounds
+        self._movers, self._people, self._bounds = Movers(), NO_MOVERS, NO_CELLS
+        return before
+
+    def _ahead(self, speed: float) -> float:
+        return self._settings.spread + self._settings.foresight * speed
+
+    def _share(self, person: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Of the highest cost, at each cell."""
+        middle_x, middle_y, along_x, along_y, _ = person
+        speed, heading = math.hypot(along_x, along_y), math.atan2(along_y, along_x)
+        ahead = (x - middle_x) * math.cos(heading) + (y - middle_y) * math.sin(heading)
+        aside = (y - middle_y) * math.cos(heading) - (x - middle_x) * math.sin(heading)
+        spread = np.where(ahead > 0.0, self._ahead(speed), self._settings.spread)
+        squares = (ahead / spread) ** 2 + (aside / self._settings.spread) ** 2
+        return np.where(squares <= REACH**2, np.exp(-0.5 * squares), 0.0)
