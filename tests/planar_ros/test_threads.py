@@ -22,7 +22,7 @@ class ThreadsTest(unittest.TestCase):
                 timeout=END_SECONDS,
                 check=False,
             )
-            self.assertEqual(run.returncode, 1, run.stdout)
+            self.assertEqual(run.returncode, 70, run.stdout)
             self.assertRegex(
                 run.stdout, r"\[/node_of_threads\] error: the thread .* has died of ValueError: no way on"
             )

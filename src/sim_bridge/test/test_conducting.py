@@ -82,3 +82,12 @@ def test_after_a_restart_of_time_nodes_must_still_answer_what_they_are_at():
     assert conductor.awaited() == ["/amcl"]
     conductor.answer("/amcl", 1, {})
     assert conductor.begin_moment(0.0) == (2, True)
+
+
+def test_what_was_sent_to_a_node_that_has_gone_is_not_asked_of_the_next_of_its_name():
+    conductor = conductor_of("/amcl", "/move_base")
+    conductor.begin_moment(0.0)
+    conductor.answer("/amcl", 1, {"/amcl /move_base /tf": 7, "/amcl /sim_bridge /tf": 7})
+    conductor.dismiss("/move_base")
+    conductor.admit("/move_base", 0.1)
+    assert conductor.effects() == {"/amcl /sim_bridge /tf": 7}

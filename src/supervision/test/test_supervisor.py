@@ -2,21 +2,22 @@ from types import SimpleNamespace
 
 import pytest
 
+from supervision.deaths import NodeFailure
 from supervision.errors import LaunchError
 from supervision.ros import supervisor
-from supervision.ros.graph import NodeFailure
 from supervision.ros.supervisor import Supervisor
 
 
 @pytest.fixture
 def graph(monkeypatch):
-    graph = SimpleNamespace(failure=None, is_running=True, log_gap=None)
+    deaths = SimpleNamespace(failure=None, restarts=[])
+    graph = SimpleNamespace(deaths=deaths, is_running=True, log_gap=None)
     monkeypatch.setattr(supervisor, "RosGraph", lambda *_: graph)
     return graph
 
 
 def supervised(tmp_path, time_limit=60.0):
-    display = SimpleNamespace(show=lambda status: None)
+    display = SimpleNamespace(show=lambda status: None, say=lambda text: None)
     watcher = Supervisor(display, tmp_path, time_limit)
     watcher.start("home_service", "world.launch", {})
     return watcher
@@ -28,12 +29,12 @@ def test_a_watch_ends_when_its_work_is_done(graph, tmp_path):
 
 
 def test_a_watch_ends_with_what_a_dead_node_said(graph, tmp_path):
-    graph.failure = NodeFailure("amcl: no map", is_bad_input=False)
+    graph.deaths.failure = NodeFailure("amcl: no map", is_bad_input=False)
     assert supervised(tmp_path).watch(lambda: False, str) == "amcl: no map"
 
 
 def test_a_node_that_refuses_its_input_is_an_error(graph, tmp_path):
-    graph.failure = NodeFailure("amcl: max_particles must be at least 1", is_bad_input=True)
+    graph.deaths.failure = NodeFailure("amcl: max_particles must be at least 1", is_bad_input=True)
     with pytest.raises(LaunchError, match="max_particles") as error:
         supervised(tmp_path).watch(lambda: False, str)
     assert error.value.is_bad_input

@@ -32,6 +32,9 @@ class MarkerSettings:
     pickup_seconds: float = parameter(
         5.0, "service: how long the robot stays at pick-up until it has the object", "s", ZERO_OR_MORE
     )
+    resume: bool = parameter(
+        False, "for a node that is respawned: whether to go on where an earlier one was cut short"
+    )
     frame_id: str = parameter("map", "frame in which the zones are given")
     base_frame_id: str = parameter("base_footprint", "the robot's frame, for pose_source tf")
     size: float = parameter(0.2, "edge of the cube", "m", POSITIVE)

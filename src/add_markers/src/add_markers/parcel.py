@@ -1,37 +1,49 @@
 """Where the object of an errand is, as far as one can see it."""
 
+import enum
 from typing import Optional
 
 from planar import Pose2
 from planar.maps.places import Place
 
 
-class CarriedParcel:
-    """An object that waits at pick-up, leaves with the robot and is set down at drop-off."""
+class Stage(enum.Enum):
+    """How far an object has come."""
 
-    def __init__(self, pickup: Place, dropoff: Place, pickup_seconds: float):
+    WAITING = "waiting"
+    CARRIED = "carried"
+    DELIVERED = "delivered"
+
+
+class CarriedParcel:
+    """An object that waits at pick-up, leaves with the robot and is set down at drop-off.
+
+    ``stage``: how far it has come.
+    """
+
+    def __init__(self, pickup: Place, dropoff: Place, pickup_seconds: float, stage: Stage = Stage.WAITING):
+        self.stage = stage
         self._pickup = pickup
         self._dropoff = dropoff
         self._pickup_seconds = pickup_seconds
         self._arrived_at: Optional[float] = None
-        self._is_carried = False
-        self._is_delivered = False
 
     def update(self, now: float, robot: Optional[Pose2]) -> Optional[Pose2]:
         """Where the object is shown, or None while it is hidden. ``robot``: its pose in the map, if known."""
-        if self._is_delivered:
-            return self._dropoff.pose
-        if robot is None:
-            return None if self._is_carried else self._pickup.pose
-        if self._is_carried:
-            self._is_delivered = self._dropoff.holds(robot)
-            return self._dropoff.pose if self._is_delivered else None
-        if not self._pickup.holds(robot):
-            self._arrived_at = None
-        elif self._arrived_at is None:
-            self._arrived_at = now
-        self._is_carried = self._arrived_at is not None and now - self._arrived_at >= self._pickup_seconds
-        return None if self._is_carried else self._pickup.pose
+        if robot is not None:
+            self._follow(now, robot)
+        return {Stage.WAITING: self._pickup.pose, Stage.DELIVERED: self._dropoff.pose}.get(self.stage)
+
+    def _follow(self, now: float, robot: Pose2) -> None:
+        if self.stage is Stage.CARRIED and self._dropoff.holds(robot):
+            self.stage = Stage.DELIVERED
+        elif self.stage is Stage.WAITING:
+            if not self._pickup.holds(robot):
+                self._arrived_at = None
+            elif self._arrived_at is None:
+                self._arrived_at = now
+            if self._arrived_at is not None and now - self._arrived_at >= self._pickup_seconds:
+                self.stage = Stage.CARRIED
 
 
 class TimedParcel:

@@ -2,9 +2,9 @@
 
 import argparse
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Any, Dict, Mapping, Optional
+from typing import Any, Dict, Mapping, Optional, Tuple
 
 from supervision.command_line import option
 
@@ -111,12 +111,18 @@ class LaunchPlan:
     """What a run starts.
 
     ``is_simulated``: whether a simulator is in it. ``bags``: the profile of what is recorded, if any.
+    ``comes_back``: the nodes that are started again if they die.
     """
 
     file: str
     arguments: Mapping[str, object]
     is_simulated: bool = True
     bags: Optional[str] = None
+    comes_back: Tuple[str, ...] = ()
+
+    def respawning(self, *nodes: str) -> "LaunchPlan":
+        """The same, with these nodes started again if they die."""
+        return replace(self, arguments={**self.arguments, "respawn": "true"}, comes_back=nodes)
 
 
 @dataclass(frozen=True)

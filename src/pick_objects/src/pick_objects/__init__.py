@@ -6,6 +6,7 @@ from pick_objects.errand import Errand, MeasureWays, WaysMeasured
 from pick_objects.job import ErrandState, Job, Stage, Whereabouts
 from pick_objects.mission import Delivery, Mission, MissionError, Thing, errand_mission
 from pick_objects.mission_file import load_mission, parse_mission
+from pick_objects.record import record_of, resumed
 from planar.driving import Finish, GoalReached, GoalRefused
 
 __all__ = [
@@ -28,4 +29,6 @@ __all__ = [
     "errand_mission",
     "load_mission",
     "parse_mission",
+    "record_of",
+    "resumed",
 ]

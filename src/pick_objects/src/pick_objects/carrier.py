@@ -31,6 +31,8 @@ class Carrier:
     def set_out(self, now: float) -> Optional[GoTo]:
         """The first order; None if the delivery has failed already."""
         delivery = self.job.delivery
+        if self.job.stage is Stage.CARRYING:  # taken up again
+            return self._go(now, Stage.CARRYING)
         if self._whereabouts[delivery.thing].place != delivery.source:
             self._fail(f"{delivery.thing} is not at {delivery.source}")
             return None

@@ -50,6 +50,10 @@ class NodeSettings:
     wait_for: str = parameter(
         "", "nodes of ours, by spaces, that are to be ready too before the mission begins"
     )
+    resume: bool = parameter(
+        False,
+        "for a node that is respawned: whether to go on where the last was cut short, and to stay when done",
+    )
     frame_id: str = parameter("map", "frame in which the places are given")
     server_timeout: float = parameter(
         60.0, "how long to wait for move_base and those nodes, by the wall clock", "s", POSITIVE

@@ -1,7 +1,7 @@
 """The errand: carries a mission out, one delivery after the other."""
 
 from dataclasses import dataclass
-from typing import Dict, List, Optional, Tuple, Union
+from typing import Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from pick_objects.approach import GoTo
 from pick_objects.carrier import Carrier
@@ -72,6 +72,14 @@ class Errand:
         self._schedule.add(added)
         self._note_objects()
         return added
+
+    def resume(self, jobs: Sequence[Job], whereabouts: Mapping[str, Whereabouts]) -> None:
+        """Goes on where an earlier errand of this mission was cut short; comes before the first advance.
+
+        A job may be CARRYING; no other is under way.
+        """
+        self._schedule.jobs = list(jobs)
+        self.whereabouts.update(whereabouts)
 
     def cancel(self, name: str = "") -> None:
         """Cancels the delivery of that name, or the whole mission, at the next call of advance.
@@ -146,14 +154,16 @@ class Errand:
     def _begin_next(self, now: float) -> Order:
         while True:
             self._schedule.give_up_hopeless()
-            waiting = self._schedule.waiting
-            if not waiting or (self._schedule.has_failed and self.mission.settings.on_failure == "stop"):
-                return self._conclude()
-            if not self._schedule.is_settled and len(waiting) > 1:
-                self._is_measuring = True
-                return MeasureWays(self._schedule.ways(self.mission.places))
+            job = self._schedule.under_way
+            if job is None:
+                waiting = self._schedule.waiting
+                if not waiting or (self._schedule.has_failed and self.mission.settings.on_failure == "stop"):
+                    return self._conclude()
+                if not self._schedule.is_settled and len(waiting) > 1:
+                    self._is_measuring = True
+                    return MeasureWays(self._schedule.ways(self.mission.places))
+                job = self._schedule.next_job()
             approach = self._carrier.approach if self._carrier else None
-            job = self._schedule.next_job()
             self._carrier = Carrier(job, self.mission, self.whereabouts, self._forecast, approach)
             order = self._carrier.set_out(now)
             if order is not None:

@@ -29,6 +29,11 @@ class Schedule:
         return [job for job in self.jobs if job.stage is Stage.WAITING]
 
     @property
+    def under_way(self) -> Optional[Job]:
+        """The one whose object is on the robot, if any."""
+        return next((job for job in self.jobs if job.stage is Stage.CARRYING), None)
+
+    @property
     def has_failed(self) -> bool:
         """Whether a delivery has."""
         return any(job.stage is Stage.FAILED for job in self.jobs)

@@ -48,8 +48,12 @@ class Conductor:
         self.members, self._has_news = frozenset(self._members), True
 
     def dismiss(self, name: str) -> None:
-        """A node is in step no more."""
+        """A node is in step no more; the next of its name has had nothing of what was sent to it."""
         self._members.pop(name, None)
+        for member in self._members.values():
+            member.sent = {
+                channel: count for channel, count in member.sent.items() if channel.split(" ")[1] != name
+            }
         self.members, self._has_news = frozenset(self._members), True
 
     def restart(self) -> None:

@@ -9,7 +9,7 @@ from std_msgs.msg import String
 from visualization_msgs.msg import Marker, MarkerArray
 
 from add_markers.config import MarkerSettings
-from add_markers.parcel import CarriedParcel, TimedParcel
+from add_markers.parcel import CarriedParcel, Stage, TimedParcel
 from add_markers.ros.mission_markers import MissionMarkers
 from add_markers.ros.zones import zone_markers
 from planar import Pose2
@@ -17,6 +17,7 @@ from planar.maps.places import places_of_errand
 from planar_ros.messages.border import listen
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
 from planar_ros.messages.transforms import Transforms
+from planar_ros.node.keepsake import Keepsake
 from planar_ros.node.parameters import read_settings
 from planar_ros.node.shell import run
 from planar_ros.node.waiting import Waiting
@@ -40,13 +41,16 @@ class AddMarkers:
         self._publisher = rospy.Publisher("visualization_marker", Marker, queue_size=10, latch=True)
         self._zones = rospy.Publisher("zones", MarkerArray, queue_size=1, latch=True)
         self._zones.publish(zone_markers(places, settings.frame_id))
+        self._keepsake: Optional[Keepsake] = None
         self._parcel: Union[TimedParcel, CarriedParcel]
         self._locate: Locate
         if settings.mode == "demo":
             self._parcel = TimedParcel(*places, settings.show_seconds, settings.hide_seconds)
             self._locate = lambda: None
         else:
-            self._parcel = CarriedParcel(*places, settings.pickup_seconds)
+            self._keepsake = Keepsake() if settings.resume else None
+            stage = Stage((self._keepsake and self._keepsake.found) or Stage.WAITING)
+            self._parcel = CarriedParcel(*places, settings.pickup_seconds, stage)
             self._locate = self._locator(settings.pose_source)
         Waiting(self._conditions())
 
@@ -59,6 +63,8 @@ class AddMarkers:
     def _update(self, now: rospy.Time) -> None:
         self._robot = self._locate()
         self._show(self._parcel.update(now.to_sec(), self._robot))
+        if self._keepsake is not None and isinstance(self._parcel, CarriedParcel):
+            self._keepsake.keep(self._parcel.stage.value)
 
     def _locator(self, source: str) -> Locate:
         if source == "tf":

@@ -6,7 +6,7 @@ import rospy
 
 from amcl_lite.localizer import Estimate, Localizer
 from amcl_lite.ros.shared_localizer import SharedLocalizer
-from amcl_lite.ros.start_pose import PoseKeeper
+from amcl_lite.ros.start_pose import PoseKeeper, read_start_pose
 from amcl_lite.ros.tf_bridge import TfBridge
 from amcl_lite.ros.views import Views
 from planar import Pose2
@@ -20,7 +20,15 @@ class EstimatePublisher:
         self.last_stamp = rospy.Time(0)
         self._shared, self._views, self._tf_bridge = shared, views, tf_bridge
         self._keeper = PoseKeeper()
+        self._odom_in_map_before = self._keeper.odom_in_map
         self._base_in_odom: Optional[Pose2] = None
+
+    def take_up(self, localizer: Localizer, base_in_odom: Pose2) -> None:
+        """Before the first scan: after a crash the robot is where odometry has brought it since."""
+        if self._odom_in_map_before is not None:
+            covariance = read_start_pose().covariance
+            localizer.set_pose(self._odom_in_map_before @ base_in_odom, covariance)
+            self._odom_in_map_before = None
 
     def publish(
         self,
@@ -45,7 +53,8 @@ class EstimatePublisher:
         if estimate is None:
             self._keeper.keep_if_due(
                 self._shared.settings.save_pose_rate,
-                localizer.odom_in_map @ base_in_odom,
+                localizer.odom_in_map,
+                base_in_odom,
                 self.last_estimate.covariance,
             )
 

@@ -101,6 +101,7 @@ class AmclNode:
             localizer = self._shared.localizer
             if localizer is not None:
                 try:
+                    self._publisher.take_up(localizer, base_in_odom)
                     updates = localizer.updates
                     estimate = localizer.update(base_in_odom, scan, laser)
                     is_updated = localizer.updates != updates

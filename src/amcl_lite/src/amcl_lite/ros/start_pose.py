@@ -1,12 +1,19 @@
-"""The start pose on the parameter server, where a restarted node finds where it was."""
+"""The start pose on the parameter server, where a restarted node finds where it was.
+
+The official parameters say where the robot was; it has driven on meanwhile. So after a crash, where odometry
+goes on, the place of odometry's origin counts instead.
+"""
 
 import math
+from dataclasses import asdict
+from typing import Optional
 
 import rospy
 
 from amcl_lite.config import InitialPose, NodeSettings
 from planar import Pose2
 from planar.config.parameters import official_names
+from planar_ros.node.keepsake import Keepsake
 from planar_ros.node.parameters import ParameterWriter, read_settings
 from planar_ros.node.reconfigure import RESTORE
 
@@ -28,13 +35,21 @@ class PoseKeeper:
     def __init__(self):
         self._kept_at = rospy.Time(0)
         self._writer = ParameterWriter()
+        self._keepsake = Keepsake()
 
-    def keep_if_due(self, rate: float, base_in_map: Pose2, covariance) -> None:
+    @property
+    def odom_in_map(self) -> Optional[Pose2]:
+        """As a node of this name has left it that has crashed; None without such a one."""
+        found = self._keepsake.found
+        return None if found is None else Pose2(**found)
+
+    def keep_if_due(self, rate: float, odom_in_map: Pose2, base_in_odom: Pose2, covariance) -> None:
         """``rate``: Hz, 0 or less for never."""
         now = rospy.Time.now()
         if rate > 0.0 and abs((now - self._kept_at).to_sec()) >= 1.0 / rate:
             self._kept_at = now
-            self.keep(base_in_map, covariance)
+            self.keep(odom_in_map @ base_in_odom, covariance)
+            self._keepsake.keep(asdict(odom_in_map))
 
     def keep(self, base_in_map: Pose2, covariance) -> None:
         """``covariance``: (3, 3); its diagonal is kept."""

@@ -4,6 +4,9 @@ from home_service.judging.verdict import ERRAND, MARKERS, OBJECTS
 from home_service.options import GraphOptions, MissionOptions
 from supervision.command_line import option
 
+# Without the simulator there is no run; what the others know is kept for the next of their name.
+COMES_BACK = ("amcl", "move_base", "map_server", "robot_state_publisher", "pick_objects", "add_markers")
+
 
 @dataclass(frozen=True)
 class HomeService(GraphOptions, MissionOptions):
@@ -29,7 +32,7 @@ class HomeService(GraphOptions, MissionOptions):
             marker_source=self.marker_source,
             marker_mode="mission" if self.mission or self.serve else "service",
             serve=str(self.serve).lower(),
-        )
+        ).respawning(*COMES_BACK)
         if self.serve:
             return stay_open(self, launch, "send missions to the action deliver; Ctrl-C ends", places)
         return carry_out(self, launch, places, {ERRAND, OBJECTS if self.mission else MARKERS})

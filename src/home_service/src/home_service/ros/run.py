@@ -4,6 +4,7 @@ import os
 import threading
 import time
 from contextlib import suppress
+from dataclasses import asdict
 from typing import Any, Callable, Optional
 
 import rospy
@@ -103,7 +104,8 @@ class Run:
     def _bring_up(self) -> None:
         self.display.say(f"run folder {self.folder}")
         speed = {"speed": self._options.wanted_speed, "rviz": str(self._options.rviz).lower()}
-        self._supervisor.start("home_service", self._launch.file, {**self._launch.arguments, **speed})
+        arguments = {**self._launch.arguments, **speed}
+        self._supervisor.start("home_service", self._launch.file, arguments, self._launch.comes_back)
         if self._options.is_on_the_web:
             where = self._options.web_port or FREE_PORT
             self._cockpit = CockpitProcess(where, self.folder / "log" / "cockpit.log")
@@ -135,6 +137,7 @@ class Run:
         about = {"command": self._options.name, "success": verdict.success, "reason": verdict.reason}
         self.result.add(**about, **self._options.told(), arguments=words(self._options))
         self.result.add(wall_seconds=round(time.time() - start_of_this_process(), 3))
+        self.result.add(restarts=[asdict(restart) for restart in self._supervisor.restarts])
         self.result.add(**self._trace.findings(self.folder, self._launch.is_simulated))
         self.result.add(**{**self._judge.findings(), **findings, "versions": versions()})
         self.result.write()

@@ -14,8 +14,8 @@ from move_base_lite.parameters.recoveries import recovery_settings
 # code, or read by it and never used.
 _MOVE_BASE_IGNORED = {
     "base_global_planner", "base_local_planner", "recovery_behaviors", "latch_xy_goal_tolerance",
-    "restore_defaults", "strict_params", "zones_file", "footprint", "robot_radius", "footprint_padding",
-    "obstacle_range", "raytrace_range", "actionlib_status_frequency", "status_list_timeout",
+    "strict_params", "zones_file", "footprint", "robot_radius", "footprint_padding", "obstacle_range",
+     "raytrace_range", "actionlib_status_frequency", "status_list_timeout",
 }  # fmt: skip
 
 

@@ -18,7 +18,7 @@ INHERITED = ("footprint", "robot_radius", "footprint_padding")
 # Parameters that are known but mean nothing here: of details of the official code, or read by it and unused.
 _COSTMAP_IGNORED = {
     "plugins", "static_map", "map_type", "inscribed_radius", "circumscribed_radius",
-    "footprint_topic", "published_footprint_topic", "restore_defaults",
+    "footprint_topic", "published_footprint_topic",
 }  # fmt: skip
 
 

@@ -10,6 +10,8 @@ from planar.plugins import PluginError
 
 Tree = Mapping[str, Any]
 T = TypeVar("T")
+# In every namespace that has had a server of dynamic_reconfigure.
+LEFT_BY_RECONFIGURE = "restore_defaults"
 
 
 class Reader:
@@ -54,6 +56,8 @@ class Reader:
     def report_unknown(self, names: Iterable[str], prefix: str, known: Iterable[str]) -> None:
         known = list(known)
         for name in names:
+            if name == LEFT_BY_RECONFIGURE:
+                continue
             self.warnings.append(f"unknown parameter {self.where}{prefix}{name}{hint(name, known)}")
 
 

@@ -159,7 +159,7 @@ def _with_astar(values: Dict[str, Any]) -> Dict[str, Any]:
 IGNORED = frozenset(
     {
         "planner_window_x", "planner_window_y", "outline_map", "old_navfn_behavior", "use_quadratic",
-        "orientation_window_size", "restore_defaults",
+        "orientation_window_size",
     }
 )  # fmt: skip
 

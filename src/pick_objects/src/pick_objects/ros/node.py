@@ -14,6 +14,7 @@ from pick_objects.config import ErrandSettings, NodeSettings
 from pick_objects.errand import Errand, Event, MeasureWays
 from pick_objects.mission import Mission, MissionError, errand_mission
 from pick_objects.mission_file import load_mission, parse_mission
+from pick_objects.record import record_of, resumed
 from pick_objects.ros.deliver_server import DeliverServer
 from pick_objects.ros.driver import Driver
 from pick_objects.ros.mission_topics import MissionTopics, delivery_from_msg
@@ -22,6 +23,7 @@ from planar.driving import Finish
 from planar.maps.places import load_places, places_of_errand, why_unreachable
 from planar_ros.messages.border import listen
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg
+from planar_ros.node.keepsake import Keepsake
 from planar_ros.node.parameters import read_settings
 from planar_ros.node.shell import fail, run
 from planar_ros.node.waiting import Readiness, Waiting
@@ -41,6 +43,7 @@ class PickObjects:
         self._zones = load_places(self._settings.zones_file)
         self._mission = self._read_mission()
         self._errand: Optional[Errand] = None
+        self._keepsake = Keepsake() if self._settings.resume else None
         self._lock = threading.Lock()
         self._driver = Driver(self._settings.frame_id)
         self._topics = MissionTopics(self._settings.frame_id, lambda: self._driver.robot_in_map)
@@ -56,7 +59,7 @@ class PickObjects:
         """Carries the mission out and says how it ended; one that serves goes on until shutdown."""
         outcome = Finish(True, "served")
         if self._mission is not None:
-            self._topics.show(Errand(self._mission))
+            self._topics.show(self._errand_for(self._mission))
         obstacle = self._why_not_to_start()
         if obstacle:
             return Finish(False, obstacle)
@@ -69,8 +72,10 @@ class PickObjects:
         return outcome
 
     def say_goodbye(self) -> None:
-        """To be called last: the end of the mission is heard."""
+        """To be called last: the end of the mission is heard. Who would be respawned stays until shutdown."""
         self._topics.wait_until_heard()
+        while self._settings.resume and not rospy.is_shutdown():
+            self._step.pause(POLL_SECONDS)
 
     def _read_mission(self) -> Optional[Mission]:
         settings = self._settings
@@ -89,12 +94,14 @@ class PickObjects:
         obstacle = self._why_impossible(mission)
         if obstacle:
             return Finish(False, obstacle)
-        self._errand = Errand(mission)
+        self._errand = self._errand_for(mission)
         event: Optional[Event] = None
         while not rospy.is_shutdown():
             with self._lock:
                 order = self._errand.advance(rospy.get_time(), event)
                 self._topics.show(self._errand)
+                if self._keepsake is not None:
+                    self._keepsake.keep(record_of(self._errand))
                 if isinstance(order, Finish):
                     self._driver.move_base.cancel_all()
                     return order
@@ -107,6 +114,12 @@ class PickObjects:
                 self._step.pause(POLL_SECONDS)
                 event = self._driver.event()
         return Finish(False, "interrupted")
+
+    def _errand_for(self, mission: Mission) -> Errand:
+        """Where an earlier node of this name was cut short, if one was."""
+        found = None if self._keepsake is None else self._keepsake.found
+        errand = None if found is None else resumed(mission, found)
+        return errand or Errand(mission)
 
     def _why_not_to_start(self) -> Optional[str]:
         settings = self._settings
@@ -183,10 +196,11 @@ def main():
         outcome = node.work()
         if rospy.is_shutdown():
             return
+        if outcome.success:
+            rospy.loginfo("%s", outcome.reason)
         node.say_goodbye()
         if not outcome.success:
             fail(outcome.reason, exit_code=1)
-        rospy.loginfo("%s", outcome.reason)
         rospy.signal_shutdown("mission done")
 
     run("pick_objects", start)

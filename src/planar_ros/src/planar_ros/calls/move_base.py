@@ -56,6 +56,8 @@ class MoveBase:
             return None
         self._is_driving = False
         status = GoalStatus.to_string(self._client.get_state())
+        if status == "LOST":  # the text is of when it was still known
+            return DriveOutcome(status, f"{self.name} has forgotten the goal: it was started anew")
         return DriveOutcome(status, self._client.get_goal_status_text())
 
     def is_lost(self, patience: float) -> bool:

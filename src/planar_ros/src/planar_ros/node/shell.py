@@ -19,8 +19,8 @@ from planar_ros.node.entry import INTERRUPTS
 
 # Longer than any node needs to end in order.
 SHUTDOWN_SECONDS = 5.0
-# The exit code of a node one of whose threads has died.
-THREAD_DIED = 1
+# The exit code of a node one of whose threads has died: EX_SOFTWARE of sysexits.h.
+THREAD_DIED = 70
 
 
 def run(node_name: str, start: Callable[[], object]) -> None:

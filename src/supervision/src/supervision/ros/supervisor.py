@@ -2,8 +2,9 @@
 
 import time
 from pathlib import Path
-from typing import Callable, Mapping, Optional
+from typing import Callable, Collection, List, Mapping, Optional
 
+from supervision.deaths import Restart
 from supervision.display import Display
 from supervision.errors import LaunchError
 from supervision.interruption import raise_if_interrupted
@@ -21,10 +22,17 @@ class Supervisor:
         self._display, self._log_folder, self._time_limit = display, log_folder, time_limit
         self._deadline = time.monotonic() + time_limit
         self._graph: Optional[RosGraph] = None
+        self._told = 0
 
-    def start(self, package: str, launch_file: str, arguments: Mapping[str, object]) -> None:
-        """Launches the graph. Raises LaunchError."""
-        self._graph = RosGraph(package, launch_file, arguments, self._log_folder)
+    def start(
+        self,
+        package: str,
+        launch_file: str,
+        arguments: Mapping[str, object],
+        comes_back: Collection[str] = (),
+    ) -> None:
+        """Launches the graph; nodes in ``comes_back`` may die, and are started again. Raises LaunchError."""
+        self._graph = RosGraph(package, launch_file, arguments, self._log_folder, comes_back)
 
     def wait_for(self, what: str, is_there: Callable[[], bool]) -> None:
         """Waits for a part of the graph. Raises LaunchError if it does not come."""
@@ -60,11 +68,22 @@ class Supervisor:
         """What is missing of the graph's log, and why."""
         return None if self._graph is None else self._graph.log_gap
 
+    @property
+    def restarts(self) -> List[Restart]:
+        """The nodes that died and came back."""
+        return [] if self._graph is None else self._graph.deaths.restarts
+
+    def _tell_restarts(self) -> None:
+        for restart in self.restarts[self._told :]:
+            self._display.say(f"{restart.node}: {restart.reason}: started again")
+            self._told += 1
+
     def _failure(self, when: str = "") -> Optional[str]:
         """Why the graph cannot go on. Raises LaunchError if a node refused its input."""
         raise_if_interrupted()
         assert self._graph is not None, "start() comes first"
-        failure = self._graph.failure
+        self._tell_restarts()
+        failure = self._graph.deaths.failure
         if failure is not None and failure.is_bad_input:
             raise LaunchError(failure.text, is_bad_input=True)
         if failure is not None:

@@ -1,0 +1,62 @@
+"""What of an errand outlives its node: how each delivery stands, and where each object is."""
+
+from dataclasses import asdict
+from typing import Any, Dict, Mapping, Optional
+
+from pick_objects.errand import Errand
+from pick_objects.job import Job, Stage, Whereabouts
+from pick_objects.mission import Delivery, Mission
+from planar import Pose2
+
+TAKEN_UP_AS = {
+    Stage.FETCHING: Stage.WAITING,
+    Stage.PICKING_UP: Stage.WAITING,
+    Stage.SETTING_DOWN: Stage.CARRYING,
+}
+
+
+def record_of(errand: Errand) -> Dict[str, Any]:
+    """Made of what JSON knows."""
+    return {
+        "mission": errand.mission.name,
+        "jobs": [
+            {
+                "delivery": asdict(job.delivery),
+                "stage": job.stage.name,
+                "attempts": job.attempts,
+                "reason": job.reason,
+            }
+            for job in errand.jobs
+        ],
+        "whereabouts": {
+            thing: {"place": where.place, "pose": asdict(where.pose), "is_carried": where.is_carried}
+            for thing, where in errand.whereabouts.items()
+        },
+    }
+
+
+def resumed(mission: Mission, record: Mapping[str, Any]) -> Optional[Errand]:
+    """The errand of a mission, taken up where an earlier one was cut short.
+
+    None if the record is of another mission.
+    """
+    jobs = [_job(told) for told in record["jobs"]]
+    deliveries = [job.delivery for job in jobs]
+    if record["mission"] != mission.name or not set(mission.deliveries) <= set(deliveries):
+        return None
+    for delivery in deliveries:
+        if delivery not in mission.deliveries:
+            mission = mission.with_delivery(delivery)
+    errand = Errand(mission)
+    places = {
+        thing: Whereabouts(told["place"], Pose2(**told["pose"]), told["is_carried"])
+        for thing, told in record["whereabouts"].items()
+    }
+    errand.resume(jobs, places)
+    return errand
+
+
+def _job(told: Mapping[str, Any]) -> Job:
+    delivery = Delivery(**{**told["delivery"], "after": tuple(told["delivery"]["after"])})
+    stage = Stage[told["stage"]]
+    return Job(delivery, TAKEN_UP_AS.get(stage, stage), told["attempts"], told["reason"])

@@ -1,0 +1,71 @@
+from supervision.deaths import MOST_RESTARTS, Deaths, Restart
+
+
+def deaths(*lines, comes_back=()):
+    read = Deaths("logs", comes_back)
+    for line in lines:
+        read.read(line + "\n")
+    return read
+
+
+def killed(node):
+    return f"[{node}-4] process has died [pid 18, exit code -9, cmd nodes/x]."
+
+
+def test_a_node_that_dies_is_reported_in_its_own_words():
+    failure = deaths(
+        "[/amcl] error: /amcl/max_particles must be at least 1, got -3",
+        "[amcl-3] process has died [pid 17, exit code 2, cmd nodes/amcl_lite].",
+    ).failure
+    assert failure.text == "amcl: /amcl/max_particles must be at least 1, got -3"
+    assert failure.is_bad_input
+
+
+def test_a_node_that_dies_in_silence_is_reported_with_what_ended_it():
+    failure = deaths("[move_base-4] process has died [pid 18, exit code -11, cmd nodes/x].").failure
+    assert failure.text == "move_base: was ended by SIGSEGV, see logs"
+    assert not failure.is_bad_input
+
+
+def test_a_node_without_which_there_is_no_run_is_named_too():
+    failure = deaths(
+        "================================================================================"
+        "REQUIRED process [sim_bridge-2] has died!",
+        "process has died [pid 18, exit code -9, cmd nodes/sim_bridge].",
+        "log file: sim_bridge-2*.log",
+    ).failure
+    assert failure.text == "sim_bridge: was ended by SIGKILL, see logs"
+
+
+def test_a_master_that_dies_is_named_too():
+    failure = deaths(
+        "REQUIRED process [master] has died!",
+        "process has died [pid 18, exit code -15, cmd rosmaster --core].",
+    ).failure
+    assert failure.text == "master: was ended by SIGTERM, see logs"
+
+
+def test_a_node_that_comes_back_is_no_failure():
+    read = deaths(killed("amcl"), killed("move_base"), comes_back=("amcl", "move_base"))
+    assert read.failure is None
+    assert read.restarts == [
+        Restart("amcl", "was ended by SIGKILL"),
+        Restart("move_base", "was ended by SIGKILL"),
+    ]
+
+
+def test_a_node_that_dies_again_and_again_is_one():
+    read = deaths(*[killed("amcl")] * (MOST_RESTARTS + 1), comes_back=("amcl",))
+    assert read.failure.text == "amcl: was ended by SIGKILL, after 3 restarts, see logs"
+    assert len(read.restarts) == MOST_RESTARTS
+
+
+def test_what_a_node_refuses_or_decides_is_final():
+    for code, is_bad_input in ((2, True), (1, False)):
+        failure = deaths(
+            "[/pick_objects] error: place pickup not reached",
+            f"[pick_objects-6] process has died [pid 18, exit code {code}, cmd nodes/x].",
+            comes_back=("pick_objects",),
+        ).failure
+        assert failure.text == "pick_objects: place pickup not reached"
+        assert failure.is_bad_input is is_bad_input

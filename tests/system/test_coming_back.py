@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+"""Each node of a mission is killed in turn: it comes back, the mission goes on, the result tells of it."""
+
+import json
+import os
+import subprocess
+import tempfile
+import threading
+import time
+import unittest
+from pathlib import Path
+
+import psutil
+import rostest
+from waiting import wait_until
+
+ROOT = Path(__file__).resolve().parents[2]
+NODES = ("amcl", "move_base", "pick_objects", "map_server", "add_markers", "robot_state_publisher")
+RUN_SECONDS = 200.0
+BACK_SECONDS = 20.0
+APART_SECONDS = 1.0
+
+
+class ComingBackTest(unittest.TestCase):
+    def test_a_mission_survives_the_death_of_each_of_its_nodes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            run = Run("--mission", str(ROOT / "map/mission.yaml"), "--seed", "61", "--output", folder)
+            try:
+                wait_until("the robot to set out", lambda: run.has_said("driving to"), 60.0)
+                for node in NODES:
+                    run.kill(node)
+                code = run.process.wait(RUN_SECONDS)
+            finally:
+                run.process.kill()
+            result = json.loads(next(Path(folder).glob("*/result.json")).read_text())
+        print("".join(run.said))
+        self.assertEqual(code, 0)
+        self.assertEqual([restart["node"] for restart in result["restarts"]], list(NODES))
+        self.assertEqual({restart["reason"] for restart in result["restarts"]}, {"was ended by SIGKILL"})
+        self.assertEqual(result["final_state"], "delivered")
+        self.assertFalse(result["repeatable"])
+
+    def test_a_node_that_cannot_stay_alive_ends_the_run_with_its_reason(self):
+        with tempfile.TemporaryDirectory() as folder:
+            run = Run("--output", folder)
+            try:
+                wait_until("the robot to set out", lambda: run.has_said("driving to"), 60.0)
+                for _ in range(4):
+                    run.kill("map_server")
+                code = run.process.wait(RUN_SECONDS)
+            finally:
+                run.process.kill()
+        print("".join(run.said))
+        self.assertEqual(code, 1)
+        self.assertTrue(run.has_said("FAILURE: map_server: was ended by SIGKILL, after 3 restarts"))
+
+
+class Run:
+    """home_service.sh, what it says, and its nodes; in real time, so that it is not over too soon."""
+
+    def __init__(self, *options):
+        self.process = subprocess.Popen(
+            [str(ROOT / "scripts/home_service.sh"), "--speed", "4", *options],
+            env={**os.environ, "PYTHONUNBUFFERED": "1"},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        self.said = []
+        threading.Thread(target=lambda: self.said.extend(self.process.stdout), daemon=True).start()
+
+    def has_said(self, text):
+        return any(text in line for line in list(self.said))
+
+    def kill(self, node):
+        """Ends the node with SIGKILL once it is there, and gives the others a moment to notice."""
+        wait_until(f"{node} to be there", lambda: self._processes(node), BACK_SECONDS)
+        for process in self._processes(node):
+            process.kill()
+        time.sleep(APART_SECONDS)
+
+    def _processes(self, node):
+        found = []
+        for process in psutil.Process(self.process.pid).children(recursive=True):
+            try:
+                if f"__name:={node}" in process.cmdline():
+                    found.append(process)
+            except psutil.NoSuchProcess:
+                pass
+        return found
+
+
+if __name__ == "__main__":
+    rostest.rosrun("home_service_tests", "coming_back", ComingBackTest)
