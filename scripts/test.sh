@@ -2,7 +2,8 @@
 # Usage: ./scripts/test.sh [unit|ros|all] [NAME...]
 #
 # Runs the tests: unit tests (pytest, no ROS), ROS tests (rostest: nodes and whole missions), or both, the
-# default; with NAMEs only the test files whose paths contain one. Sets everything up first if need be.
+# default; with NAMEs only the test files whose paths contain one. Sets everything up first if need be; tests of what
+# only ./scripts/setup.sh --dev installs (a browser, Dask ...) are left out without it.
 # Logs and JUnit reports: logs/tests/. Exit code: 0 all passed, 1 failure, 2 bad usage, 130 interrupted.
 #
 #   --help   this text

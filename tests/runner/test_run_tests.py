@@ -1,5 +1,14 @@
 import pytest
-from run_tests import Outcome, judge_ros_test, judge_unit_tests, read_report, time_limits
+from run_tests import (
+    NEEDS,
+    ROOT,
+    Outcome,
+    judge_ros_test,
+    judge_unit_tests,
+    lacking,
+    read_report,
+    time_limits,
+)
 
 
 def write_report(path, tests, failures=0, errors=0, skipped=0):
@@ -84,3 +93,14 @@ def test_the_time_limits_of_a_file_are_read(tmp_path):
         '<test test-name="b" pkg="p" type="t"/></group></launch>'
     )
     assert time_limits(path) == {"a": 90.0, "b": 60.0}
+
+
+def test_what_needs_a_command_that_is_not_there_is_left_out():
+    two_hosts, mission = ROOT / "tests/two_hosts/two_hosts.test", ROOT / "tests/system/m.test"
+    assert lacking(two_hosts, find=lambda name: None) == "ip"
+    assert lacking(two_hosts, find=lambda name: f"/bin/{name}") is None
+    assert lacking(mission, find=lambda name: None) is None
+
+
+def test_the_folders_that_need_a_command_are_there():
+    assert all((ROOT / folder).is_dir() for folder in NEEDS)
