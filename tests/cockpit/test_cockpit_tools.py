@@ -2,6 +2,8 @@
 """Each tool of the cockpit, worked as a person does: in a browser, beside a small graph."""
 
 import os
+import signal
+import subprocess
 import tempfile
 import threading
 import unittest
@@ -41,7 +43,7 @@ class CockpitToolsTest(unittest.TestCase):
         self.opened = None
 
     def tearDown(self):
-        if PICTURES:
+        if PICTURES and self.opened:
             self.page.screenshot(Path(PICTURES) / f"{self.opened}.png".replace("/", "_"))
         if self.opened:
             self.page.click(self.opened)
@@ -189,6 +191,26 @@ class CockpitToolsTest(unittest.TestCase):
         self.page.click("Play")
         self.page.wait_for("no such bag")
 
+    def test_the_names_of_rqt_start_the_cockpit_at_their_tool(self):
+        self.assert_shows(["rosrun", "rqt_plot", "rqt_plot", "/sine/data"], "Plot", "/sine/data")
+        self.assert_shows(["rqt", "-s", "rqt_tf_tree"], "Frames (tf)", "base_link")
+        done = subprocess.run(
+            ["rqt", "-s", "rqt_dream"], capture_output=True, text=True, timeout=60, check=False
+        )
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1))
+        self.assertIn("there is no 'rqt_dream' here", done.stderr)
+
+    def assert_shows(self, command, *texts):
+        run = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        line = run.stdout.readline()
+        self.assertTrue(line.startswith("cockpit: http"), line)
+        page = self.browser.open(line.split()[1])
+        page.wait_for(*texts)
+        self.assertEqual(page.errors, [])
+        page.close()
+        run.send_signal(signal.SIGINT)
+        self.assertEqual(run.wait(30.0), 0)
+
 
 def nodes_of(topic):
     publishers, _, _ = rosgraph.Master("/test").getSystemState()
@@ -219,4 +241,4 @@ def _size(path):
 
 if __name__ == "__main__":
     rospy.init_node("test_cockpit_tools")
-    rostest.rosrun("home_service_tests", "cockpit_tools", CockpitToolsTest)
+    rostest.rosrun("home_service_tests", "tools_in_browser", CockpitToolsTest)

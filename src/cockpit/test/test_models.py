@@ -16,7 +16,7 @@ from cockpit.models.log import MOST_KEPT, MOST_SHOWN, Log, Said, Wanted, level_n
 from cockpit.models.repeating import Repeating
 from cockpit.models.tables import table
 from cockpit.models.text import amount, flat
-from cockpit.models.traces import Traces, number_at, numbers_in
+from cockpit.models.traces import Traces, expanded, number_at, numbers_in
 from cockpit.models.tree import rows_of
 
 PUBLISHERS = {
@@ -146,6 +146,12 @@ def test_a_number_is_found_by_its_path(path, value):
 def test_what_is_no_number_is_told(path):
     with pytest.raises(CockpitError):
         number_at(MESSAGE, path)
+
+
+def test_words_of_rqt_plot_may_be_several_numbers():
+    assert expanded("/a/x:y:z") == ["/a/x", "/a/y", "/a/z"]
+    assert expanded("/a/x,/b/data") == ["/a/x", "/b/data"]
+    assert expanded("") == []
 
 
 def test_the_numbers_of_a_message_are_listed():

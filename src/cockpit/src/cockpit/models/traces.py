@@ -14,6 +14,16 @@ MOST_LISTED, LONGEST_LISTED, DEEPEST = 120, 6, 6
 STEP = re.compile(r"(\w+)((?:\[-?\d+\])*)")
 
 
+def expanded(word: str) -> List[str]:
+    """What rqt_plot takes as one word: "/pose/x:y" and "/pose/x,/pose/y" are two numbers."""
+    found = []
+    for part in filter(None, word.split(",")):
+        first, *others = part.split(":")
+        above = first.rpartition("/")[0]
+        found += [first, *(f"{above}/{other}" for other in others if other)]
+    return found
+
+
 def number_at(message: Any, path: str) -> float:
     """The number at ``pose.position.x``, ``ranges[3]``. Raises CockpitError if there is none."""
     value = message

@@ -71,8 +71,8 @@ class DrivePanel:
         self.cancel.on_click(self._guarded(lambda _: self._driver.cancel()))
 
     def _choose_mode(self, _event: Any) -> None:
-        self.hint.content = _note(HINTS[self.mode.value])
         self._driver.set_mode(self.mode.value)
+        self.hint.content = _note(HINTS[self.mode.value])  # said when it is so
 
     def _build_teleop(self) -> None:
         gui = self._gui

@@ -19,6 +19,7 @@ from planar import PlanarError
 from supervision.command_line import option, parse
 from supervision.ros.node_api import is_master_online
 
+FREE_PORT = "127.0.0.1:0"
 MASTER_SECONDS = 0.2
 
 
@@ -26,9 +27,7 @@ MASTER_SECONDS = 0.2
 class Options:
     """Shows and drives a running ROS graph in the browser."""
 
-    web_port: str = option(
-        "127.0.0.1:0", "where the page is served; 0: a free port", metavar="[ADDRESS:]PORT"
-    )
+    web_port: str = option(FREE_PORT, "where the page is served; 0: a free port", metavar="[ADDRESS:]PORT")
     tool: Optional[str] = option(None, "a tool that is open at first", metavar="NAME")
 
 
@@ -41,8 +40,11 @@ def main() -> None:
         sys.exit(2)
 
 
-def serve(where: str, tool: Optional[str]) -> int:
-    """Until the process is interrupted. Raises CockpitError if the options make no sense."""
+def serve(where: str, tool: Optional[str], words: Tuple[str, ...] = ()) -> int:
+    """Until the process is interrupted; ``words``: what the tool is to show at first.
+
+    Raises CockpitError if the options make no sense.
+    """
     if tool is not None and tool not in names():
         raise CockpitError(f"--tool: there is no '{tool}', only {', '.join(names())}")
     page = Page(*address_of(where))
@@ -54,7 +56,7 @@ def serve(where: str, tool: Optional[str]) -> int:
     rospy.init_node("cockpit", anonymous=True, log_level=rospy.WARN)
     cockpit = Cockpit(page)
     if tool is not None:
-        cockpit.toolbox.open(tool)
+        cockpit.toolbox.open(tool, words)
     cockpit.run()
     page.close()
     return 0

@@ -12,7 +12,7 @@ from std_srvs.srv import Empty
 
 from cockpit.errors import CockpitError
 from cockpit.models.pointing import quaternion_of
-from cockpit.ros.calls import call
+from cockpit.ros.calls import call, join
 from cockpit.ros.graph import Graph
 
 GOAL, ESTIMATE, POINT = "move_base_simple/goal", "initialpose", "clicked_point"
@@ -22,7 +22,6 @@ TWIST = "geometry_msgs/Twist"
 LIKELY = ("input/teleop", "teleop/cmd_vel", "cmd_vel", "velocity")
 # rviz's, for a pose estimate: variances of x, y and yaw.
 SPREAD = {0: 0.25, 7: 0.25, 35: 0.06853891945200942}
-LISTENER_SECONDS = 1.0
 BOX_SIZE, BOX_HEIGHT = 0.3, 0.5
 BOX = """<sdf version="1.6"><model name="{name}"><link name="box">
 <inertial><mass>2</mass></inertial>
@@ -121,11 +120,10 @@ class Orders:
     def _send(self, topic: str, message: Any, needs_listener: bool = True) -> None:
         if topic not in self._publishers:
             self._publishers[topic] = rospy.Publisher(topic, type(message), queue_size=1)
-        publisher, deadline = self._publishers[topic], time.monotonic() + LISTENER_SECONDS
-        while needs_listener and not publisher.get_num_connections():
-            if time.monotonic() > deadline:
-                raise CockpitError(f"nobody listens to {topic}")
-            time.sleep(0.02)
+        publisher = self._publishers[topic]
+        join(publisher, len(self._graph.subscribers().get(topic, ())) or int(needs_listener))
+        if needs_listener and not publisher.get_num_connections():
+            raise CockpitError(f"nobody listens to {topic}")
         publisher.publish(message)
 
 

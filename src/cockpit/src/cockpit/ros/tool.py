@@ -1,7 +1,7 @@
 """The contract of a tool, as those of rqt are: a window of the page with a subject of its own."""
 
 import threading
-from typing import Any, Callable, Protocol
+from typing import Any, Callable, Protocol, Tuple
 
 from cockpit.ros.graph import Graph
 from planar import PlanarError
@@ -11,11 +11,14 @@ class Desk:
     """What a tool works with.
 
     ``gui``: viser's, whose controls come into the tool's window while it is built. ``graph``: the ROS graph.
-    ``lock``: held while any of the tool's methods runs.
+    ``lock``: held while any of the tool's methods runs. ``words``: what a person has asked it to show, as in
+    ``rqt_plot /odom/twist/twist/linear/x``; a tool may take no notice.
     """
 
-    def __init__(self, gui: Any, graph: Graph, tell: Callable[[str, bool], None]):
-        self.gui, self.graph = gui, graph
+    def __init__(
+        self, gui: Any, graph: Graph, tell: Callable[[str, bool], None], words: Tuple[str, ...] = ()
+    ):
+        self.gui, self.graph, self.words = gui, graph, words
         self.lock = threading.RLock()
         self._tell = tell
 

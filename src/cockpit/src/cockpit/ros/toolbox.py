@@ -2,7 +2,7 @@
 
 import threading
 from dataclasses import dataclass
-from typing import Any, Dict, List
+from typing import Any, Dict, List, Tuple
 
 from cockpit.page.server import Page
 from cockpit.page.tool_panel import ToolPanel
@@ -27,6 +27,7 @@ class Toolbox:
         self._page, self._graph = page, graph
         self._kinds = all_tools()
         self._open: Dict[str, _Open] = {}
+        self._words: Dict[str, Tuple[str, ...]] = {}
         self._lock = threading.RLock()
         titles = [(name, kind.title) for name, kind in self._kinds.items()]
         self._panel = ToolPanel(page.gui, titles, self._switch)
@@ -35,7 +36,9 @@ class Toolbox:
     def names(self) -> List[str]:
         return list(self._kinds)
 
-    def open(self, name: str) -> None:
+    def open(self, name: str, words: Tuple[str, ...] = ()) -> None:
+        """``words``: what it is to show."""
+        self._words[name] = words
         self._panel.open(name)
 
     def update(self, now: float) -> None:
@@ -77,7 +80,7 @@ class Toolbox:
 
     def _make(self, name: str) -> _Open:
         kind = self._kinds[name]
-        desk = Desk(self._page.gui, self._graph, self._page.tell)
+        desk = Desk(self._page.gui, self._graph, self._page.tell, self._words.pop(name, ()))
         window = self._panel.window(kind.title, kind.width)
         opened = _Open(kind(desk), desk, window)
         with desk.lock, window:

@@ -20,6 +20,7 @@ class Images:
         self._rate = Rate()
         self._image: Any = None
         self._draw = LAYER.make()
+        self._awaited = desk.words[:1]
 
     def build(self) -> None:
         self._topic = self._desk.gui.add_dropdown("Topic", (NONE,))
@@ -31,6 +32,8 @@ class Images:
         found = (NONE, *sorted(topic for topic, kind in types.items() if kind in LAYER.types))
         if self._topic.options != found:
             self._topic.options = found
+        if self._awaited and self._awaited[0] in found:
+            self._topic.value, self._awaited = self._awaited[0], ()
         self._listen()
         if self._feed is None:
             self._status.content = "choose a topic" if len(found) > 1 else "no camera sends pictures"

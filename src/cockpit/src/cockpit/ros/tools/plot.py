@@ -4,7 +4,7 @@ from typing import Any, Dict, List, Tuple
 
 from cockpit.errors import CockpitError
 from cockpit.models.tables import table
-from cockpit.models.traces import Traces, number_at, numbers_in
+from cockpit.models.traces import Traces, expanded, number_at, numbers_in
 from cockpit.ros.filling import message_class
 from cockpit.ros.graph import Feed
 from cockpit.ros.tool import Desk
@@ -23,6 +23,7 @@ class Plot:
         self._paths: Dict[str, Tuple[str, str]] = {}
         self._traces = Traces(SECONDS)
         self._chart: Any = None
+        self._awaited = [name for word in desk.words for name in expanded(word)]
 
     def build(self) -> None:
         gui, guarded = self._desk.gui, self._desk.guarded
@@ -41,6 +42,7 @@ class Plot:
         topics = (NONE, *sorted(self._desk.graph.topics()))
         if self._topic.options != topics:
             self._topic.options = topics
+        self._add_awaited()
         self._listen()
         self._take()
         self._traces.seconds = self._span.value
@@ -63,13 +65,23 @@ class Plot:
         self._field.options = tuple(found) or (NONE,)
 
     def _add(self, _event: Any) -> None:
-        typed = self._typed.value.strip()
-        topic, path = self._split(typed) if typed else (self._topic.value, self._field.value)
-        if NONE in (topic, path):
+        found = [self._split(name) for name in expanded(self._typed.value.strip())]
+        found = found or [(self._topic.value, self._field.value)]
+        if NONE in found[0]:
             raise CockpitError("choose a topic and a number in it first")
-        self._paths[f"{topic}/{path}"] = topic, path
+        self._paths.update({f"{topic}/{path}": (topic, path) for topic, path in found})
         self._typed.value = ""
         self._rebuild()
+
+    def _add_awaited(self) -> None:
+        """Of what was asked for at the start, that of topics which are there by now."""
+        topics = self._desk.graph.topics()
+        come = [name for name in self._awaited if any(name.startswith(f"{topic}/") for topic in topics)]
+        if come:
+            self._awaited = [name for name in self._awaited if name not in come]
+            for topic, path in map(self._split, come):
+                self._paths[f"{topic}/{path}"] = topic, path
+            self._rebuild()
 
     def _split(self, typed: str) -> Tuple[str, str]:
         """A topic and what follows it, as rqt_plot takes them."""

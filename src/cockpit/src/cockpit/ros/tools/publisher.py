@@ -7,11 +7,11 @@ import rospy
 
 from cockpit.errors import CockpitError
 from cockpit.models.repeating import Repeating
+from cockpit.ros.calls import join
 from cockpit.ros.filling import filled, message_class, template
 from cockpit.ros.tool import Desk
 
 FASTEST = 20.0
-LISTENER_SECONDS, POLL_SECONDS = 1.0, 0.02
 
 
 class Publisher:
@@ -99,7 +99,7 @@ class Publisher:
                 self._publisher = None
                 raise CockpitError(f"{topic}: {error}") from None
             else:
-                _join(self._publisher, len(self._desk.graph.subscribers().get(topic, ())))
+                join(self._publisher, len(self._desk.graph.subscribers().get(topic, ())))
         self._message = message
 
     def _publish(self) -> None:
@@ -108,13 +108,6 @@ class Publisher:
         self._sent += 1
         listeners = self._publisher.get_num_connections()
         self._status.content = f"{self._sent} sent, {listeners} listening"
-
-
-def _join(publisher: rospy.Publisher, listeners: int) -> None:
-    """Gives all who listen the time to find it."""
-    deadline = time.monotonic() + LISTENER_SECONDS
-    while time.monotonic() < deadline and publisher.get_num_connections() < listeners:
-        time.sleep(POLL_SECONDS)
 
 
 TOOL = Publisher

@@ -1,0 +1,31 @@
+"""The names of rqt's programs."""
+
+import pytest
+
+from cockpit.ros.rqt import TOOLS, chosen
+from cockpit.ros.tools import names
+from planar import PlanarError
+
+
+def test_every_name_has_a_tool():
+    assert set(TOOLS.values()) <= set(names())
+
+
+@pytest.mark.parametrize(
+    ("program", "arguments", "expected"),
+    [
+        ("rqt_graph", [], ("graph", ())),
+        ("rqt_plot", ["/odom/x", "--empty"], ("plot", ("/odom/x",))),
+        ("rqt", [], (None, ())),
+        ("gzclient", ["--verbose"], (None, ())),
+        ("rqt", ["-s", "rqt_console"], ("console", ())),
+    ],
+)
+def test_a_program_is_the_cockpit_at_its_tool(program, arguments, expected):
+    assert chosen(program, arguments) == expected
+
+
+@pytest.mark.parametrize("arguments", [["-s"], ["--standalone", "rqt_dream"]])
+def test_a_tool_that_is_not_there_is_told(arguments):
+    with pytest.raises(PlanarError, match="there is no '"):
+        chosen("rqt", arguments)

@@ -1,0 +1,165 @@
+#!/usr/bin/env python3
+"""The home driven from a page in a browser: goals, poses, by hand; judged by ground truth."""
+
+import math
+import os
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+import rosgraph
+import rospy
+import rostest
+from browser import Browser
+from gazebo_msgs.msg import ModelStates
+from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped, Twist
+from nav_msgs.msg import Odometry
+from waiting import wait_until
+
+from cockpit.page.server import CAMERA, FIELD_OF_VIEW, LOOK_AT
+from cockpit.process import FREE_PORT, CockpitProcess
+
+PICTURES = os.environ.get("COCKPIT_PICTURES")
+TELEOP = "/cmd_vel_mux/input/teleop"
+GOAL = (1.5, 0.3)
+# A pixel is some centimetres of the floor; the robot stops within 0.25 m of where it was told to.
+POINTING, ARRIVAL = 0.1, 0.35
+
+
+class CockpitHomeTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.newest = {}
+        for topic, kind in (
+            ("/base_pose_ground_truth", Odometry),
+            ("/move_base_simple/goal", PoseStamped),
+            ("/initialpose", PoseWithCovarianceStamped),
+            (TELEOP, Twist),
+            ("/gazebo/model_states", ModelStates),
+        ):
+            rospy.Subscriber(topic, kind, lambda message, topic=topic: cls.newest.update({topic: message}))
+        cls.folder = tempfile.mkdtemp()
+        cls.cockpit = CockpitProcess(FREE_PORT, Path(cls.folder) / "cockpit.log")
+        cls.browser = Browser()
+        cls.page = cls.browser.open(cls.cockpit.url)
+        cls.page.wait_for("/scan", "/map", "/amcl", seconds=90.0)
+        wait_until("the truth", lambda: "/base_pose_ground_truth" in cls.newest, 60.0)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+        cls.cockpit.close()
+
+    def tearDown(self):
+        if PICTURES and self._testMethodName < "test_6":
+            self.page.screenshot(Path(PICTURES) / f"home_{self._testMethodName}.png")
+
+    def test_1_the_page_complains_of_nothing_and_asks_nobody_else(self):
+        own = self.cockpit.url.partition("/?")[0]
+        allowed = (own, own.replace("http", "ws"), f"blob:{own}", "data:")
+        self.assertEqual([url for url in self.page.requests if not url.startswith(allowed)], [])
+        self.assertEqual(self.page.errors, [])
+
+    def test_2_a_goal_that_is_clicked_is_reached(self):
+        self.page.click("Drive")
+        wait_until("a robot that takes goals", lambda: _subscribers("/move_base_simple/goal"), 60.0)
+        self.aim("Goal", "Press on the floor")
+        self.page.click_at(*self.pixel(*GOAL))
+        self.page.wait_for("goal sent")
+        wait_until("the goal", lambda: "/move_base_simple/goal" in self.newest)
+        goal = self.newest["/move_base_simple/goal"].pose.position
+        self.assertLess(math.hypot(goal.x - GOAL[0], goal.y - GOAL[1]), POINTING)
+        wait_until("the robot at the goal", lambda: self.distance_to(*GOAL) < ARRIVAL, 60.0)
+
+    def test_3_a_pose_is_pressed_turned_and_released(self):
+        self.aim("Pose", "Press where the robot is")
+        wait_until(
+            "standing", lambda: abs(self.newest["/base_pose_ground_truth"].twist.twist.linear.x) < 0.01
+        )
+        x, y = self.truth()
+        self.page.drag(self.pixel(x, y), self.pixel(x, y + 1.0))
+        self.page.wait_for("pose estimate sent")
+        wait_until("the estimate", lambda: "/initialpose" in self.newest)
+        told = self.newest["/initialpose"].pose.pose
+        self.assertLess(math.hypot(told.position.x - x, told.position.y - y), POINTING)
+        yaw = 2.0 * math.atan2(told.orientation.z, told.orientation.w)
+        self.assertAlmostEqual(yaw, math.pi / 2.0, delta=0.2)
+
+    def test_4_a_box_is_dropped_where_it_was_clicked(self):
+        self.aim("Box", "a box is dropped there")
+        self.page.click_at(*self.pixel(-0.5, 1.0))
+        self.page.wait_for("dropped")
+        wait_until("the box", lambda: self.box() is not None)
+        self.assertLess(math.hypot(self.box().x + 0.5, self.box().y - 1.0), 0.2)
+
+    def test_5_a_button_drives_as_long_as_it_is_held(self):
+        start = self.truth()
+        self.page.hold("I forward", 2.0)
+        self.assertGreater(self.distance_to(*start), 0.1)
+        wait_until("rest", lambda: self.newest[TELEOP] == Twist())
+
+    def test_6_a_tab_that_is_closed_lets_go(self):
+        self.page.press("J turn left")
+        wait_until("turning", lambda: self.newest[TELEOP].angular.z > 0.2)
+        self.page.close()
+        wait_until("rest", lambda: self.newest[TELEOP] == Twist(), 3.0)
+        wait_until("the robot to stand", lambda: not self.is_moving(), 3.0)
+
+    def test_7_nothing_is_subscribed_while_nobody_looks(self):
+        wait_until("silence", lambda: not self.heard_by_cockpit(), 10.0)
+        page = self.browser.open(self.cockpit.url)
+        wait_until("scans", lambda: "/scan" in self.heard_by_cockpit(), 30.0)
+        page.close()
+        wait_until("silence", lambda: not self.heard_by_cockpit(), 10.0)
+
+    def aim(self, mode, hint):
+        self.page.choose("Mouse", mode)
+        self.page.wait_for(hint)
+
+    def heard_by_cockpit(self):
+        """Its topics but the clock, which every node hears."""
+        _, subscribers, _ = rosgraph.Master("/test").getSystemState()
+        found = {topic for topic, nodes in subscribers if any(node.startswith("/cockpit") for node in nodes)}
+        return found - {"/clock"}
+
+    def truth(self):
+        position = self.newest["/base_pose_ground_truth"].pose.pose.position
+        return position.x, position.y
+
+    def is_moving(self):
+        twist = self.newest["/base_pose_ground_truth"].twist.twist
+        return max(abs(twist.linear.x), abs(twist.angular.z)) > 0.01
+
+    def distance_to(self, x, y):
+        own = self.truth()
+        return math.hypot(own[0] - x, own[1] - y)
+
+    def box(self):
+        states = self.newest["/gazebo/model_states"]
+        places = [pose for name, pose in zip(states.name, states.pose) if name.startswith("box_of_cockpit")]
+        return places[0].position if places else None
+
+    def pixel(self, x, y):
+        """Where a place of the floor is on the page, seen by the camera as it is at first."""
+        forward = (LOOK_AT - CAMERA) / np.linalg.norm(LOOK_AT - CAMERA)
+        right = np.cross(forward, (0.0, 0.0, 1.0))
+        right /= np.linalg.norm(right)
+        seen = np.array((x, y, 0.0)) - CAMERA
+        depth = seen @ forward
+        left, top, width, height = self.page.evaluate(
+            "(({x, y, width, height}) => [x, y, width, height])"
+            "(document.querySelector('canvas').getBoundingClientRect())"
+        )
+        scale = height / 2.0 / math.tan(FIELD_OF_VIEW / 2.0) / depth
+        across, up = seen @ right * scale, seen @ np.cross(right, forward) * scale
+        return left + width / 2.0 + across, top + height / 2.0 - up
+
+
+def _subscribers(topic):
+    return dict(rosgraph.Master("/test").getSystemState()[1]).get(topic)
+
+
+if __name__ == "__main__":
+    rospy.init_node("test_cockpit_home")
+    rostest.rosrun("home_service_tests", "home_in_browser", CockpitHomeTest)
