@@ -14,7 +14,7 @@ readonly noetic=/opt/ros/noetic
 # shellcheck source=scripts/setup/environment.sh
 . "$root/scripts/setup/environment.sh"
 readonly experiments=(play evaluate)   # the commands of the laboratory
-readonly environments=(gymnasium) # those of home_service_gym
+readonly environments=(gymnasium train) # those of home_service_gym
 step_pid=
 clock_pid=
 aside_pid=

@@ -16,7 +16,7 @@ from planar import Pose2, SettingsError
 VARIANTS = [
     *((name, {}) for name in home_service_gym.NAMES),
     *(("TurtleBot3Stage-v0", {"stage": stage}) for stage in (2, 3, 4)),
-    ("PointGoal-v0", {"scenario": "home_boxes"}),
+    ("PointGoal-v0", {"scenario": "home_boxes", "lookahead": 0.6}),
 ]
 each_variant = pytest.mark.parametrize(("name", "given"), VARIANTS, ids=lambda value: str(value))
 

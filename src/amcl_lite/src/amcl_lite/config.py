@@ -26,6 +26,13 @@ AS_AMCL: Dict[str, Any] = {
 }
 
 
+def _check_plugin(name: str) -> None:
+    from amcl_lite.sensor.own_model import check_name  # late: its contract is made of these settings
+
+    if name:
+        check_name(name)
+
+
 @dataclass(frozen=True)
 class LocalizerSettings:
     """What the particle filter works with; metres and radians."""
@@ -88,6 +95,7 @@ class LocalizerSettings:
         choices=SENSOR_MODELS,
         dynamic=True,
     )
+    sensor_plugin: str = parameter("", "your own model, package.module/Model, for laser_model_type")
     beams: int = parameter(
         30,
         "evenly spaced beams used of each scan; fewer than 2 disables the sensor",
@@ -210,6 +218,7 @@ class LocalizerSettings:
         if self.strict_compat:
             for name, value in AS_AMCL.items():
                 object.__setattr__(self, name, value)
+        _check_plugin(self.sensor_plugin)
         check(
             self.min_particles <= self.max_particles,
             "min_particles",

@@ -91,6 +91,12 @@ class TaskEnv(gymnasium.Env):
                 info["touched"] = self._moment.touched
         return self._observation(), float(reward), bool(outcome), False, info
 
+    @property
+    def moment(self) -> Moment:
+        """What is so now, also what is not observed."""
+        assert self._moment is not None, "reset comes first"
+        return self._moment
+
     def render(self) -> Optional[np.ndarray]:  # type: ignore[override]
         if self.render_mode is None or self._playground is None or self._moment is None:
             return None

@@ -17,10 +17,13 @@ from planar.maps.places import places_of_errand
 
 
 class PointGoal(TaskEnv):
-    """From anywhere in a home to anywhere."""
+    """From anywhere in a home to anywhere; ``lookahead``, m: ``waypoint`` is told that far on the way."""
 
-    def __init__(self, scenario: str = "home_errand", render_mode: Optional[str] = None):
-        super().__init__(scenario_of(scenario), point_goal.PointGoal(), render_mode)
+    def __init__(
+        self, scenario: str = "home_errand", lookahead: float = 0.0, render_mode: Optional[str] = None
+    ):
+        task = point_goal.PointGoal(lookahead=lookahead)
+        super().__init__(scenario_of(scenario), task, render_mode)
 
 
 class HomeService(TaskEnv):

@@ -67,13 +67,15 @@ class Ground:
         window = distances[max(row - 1, 0) : max(row + 2, 0), max(col - 1, 0) : max(col + 2, 0)]
         return float(window.min()) if window.size else math.inf
 
-    def way(self, distances: np.ndarray, start: Pose2) -> np.ndarray:
-        """The points (N, 2) of a way from a place to the goal that ``distances`` lead to."""
+    def way(self, distances: np.ndarray, start: Pose2, most: int = 1_000_000) -> np.ndarray:
+        """The points (N, 2) of a way to the goal that ``distances`` lead to, or the first ``most`` of it."""
         ((row, col),) = self.grid.cells_of([[start.x, start.y]])
         cells = [(int(row), int(col))]
-        while distances[cells[-1]] > 0.0:
+        while distances[cells[-1]] > 0.0 and len(cells) < most:
             row, col = cells[-1]
             around = distances[row - 1 : row + 2, col - 1 : col + 2]
+            if around.shape != (3, 3) or not np.isfinite(around).any():
+                break
             down, right = np.unravel_index(int(np.argmin(around)), around.shape)
             if (down, right) == (1, 1):
                 break

@@ -5,21 +5,30 @@ import numpy as np
 from amcl_lite.config import LocalizerSettings
 from amcl_lite.sensor.beams import Beams
 from amcl_lite.sensor.likelihood_field import likelihood_field
+from amcl_lite.sensor.own_model import GuardedSensorModel
 from amcl_lite.sensor.sensor_model import log_beam_model, log_likelihood_field, log_likelihood_field_prob
 from planar import FREE, OCCUPIED, OccupancyGrid
 
 
 class ScanLikelihood:
-    """How likely a scan is at poses in one map; ``field``: the map's likelihood field."""
+    """How likely a scan is at poses in one map; ``field``: the map's likelihood field.
+
+    Raises LocalizationError for what goes wrong in a sensor model of somebody's own.
+    """
 
     def __init__(self, grid: OccupancyGrid, settings: LocalizerSettings):
         self.field = likelihood_field(grid, settings.sigma_hit, settings.likelihood_max_distance)
         self._settings = settings
+        self._own = None
+        if settings.sensor_plugin:
+            self._own = GuardedSensorModel(settings.sensor_plugin, grid, settings)
         self._opaque_grid = _opaque(grid) if settings.sensor_model == "beam" else None
 
     def logarithms(self, poses: np.ndarray, beams: Beams, has_converged: bool) -> np.ndarray:
         """Logarithms (N,) for particles (N, 3); beams are skipped only when these ``has_converged``."""
         settings = self._settings
+        if self._own is not None:
+            return self._own.log_likelihoods(poses, beams)
         if self._opaque_grid is not None:
             return log_beam_model(poses, beams, self._opaque_grid, settings)
         if settings.sensor_model == "likelihood_field_prob":

@@ -8,6 +8,7 @@ from gymnasium import spaces
 from home_service_gym.approach import Approach
 from home_service_gym.playground import Moment, Playground
 from home_service_gym.task import (
+    FARTHEST_GOAL,
     PERIOD,
     PROGRESS,
     SUCCESS,
@@ -21,16 +22,22 @@ from sim_bridge.world import Body
 
 
 class PointGoal:
-    """Within ``radius``, m, of the goal is there; the way to it has at least ``least_way``, m."""
+    """Within ``radius``, m, of the goal is there; the way to it has at least ``least_way``, m.
 
-    def __init__(self, radius: float = 0.3, least_way: float = 1.0):
-        self._radius, self._least_way = radius, least_way
+    ``lookahead``: also the point that far, m, ahead on the shortest way is told; 0: it is not.
+    """
+
+    def __init__(self, radius: float = 0.3, least_way: float = 1.0, lookahead: float = 0.0):
+        self._radius, self._least_way, self._lookahead = radius, least_way, lookahead
 
     def bodies(self) -> Sequence[Body]:
         return ()
 
     def spaces(self) -> Dict[str, spaces.Space[Any]]:
-        return {"goal": goal_space()}
+        told: Dict[str, spaces.Space[Any]] = {"goal": goal_space()}
+        if self._lookahead:
+            told["waypoint"] = spaces.Box(-FARTHEST_GOAL, FARTHEST_GOAL, (2,), np.float32)
+        return told
 
     def begin(self, playground: Playground, rng: np.random.Generator) -> Beginning:
         ground = playground.ground
@@ -40,7 +47,11 @@ class PointGoal:
         return Beginning(start)
 
     def observe(self, moment: Moment) -> Dict[str, np.ndarray]:
-        return {"goal": seen_from(moment.base_in_world, self._approach.goal)}
+        base = moment.base_in_world
+        told = {"goal": seen_from(base, self._approach.goal)}
+        if self._lookahead:
+            told["waypoint"] = self._approach.ahead(base, self._lookahead).astype(np.float32)
+        return told
 
     def judge(self, moment: Moment) -> Judgement:
         reward = PERIOD + PROGRESS * self._approach.metres(moment.base_in_world)

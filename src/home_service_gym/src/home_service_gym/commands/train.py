@@ -1,0 +1,32 @@
+from dataclasses import dataclass
+from pathlib import Path
+
+from home_service.options import count, seed
+from supervision.command_line import option
+
+
+@dataclass(frozen=True)
+class Train:
+    """Trains the learned local planner of plugin_examples in generated homes, on CPUs alone."""
+
+    generations: int = option(60, "how many", type=count)
+    pairs: int = option(8, "of opposite changes that a generation tries", type=count)
+    episodes: int = option(4, "that each is tried on", type=count)
+    workers: int = option(2, "processes", type=count)
+    seed: int = option(0, "of all chance", type=seed)
+    output: Path = option(Path("learned.npz"), "the weights are kept here after each generation", type=Path)
+
+    def run(self) -> int:
+        import numpy as np
+
+        from home_service_gym.training import evolve
+        from planar import SettingsError
+
+        evolution = evolve(self.generations, self.pairs, self.episodes, self.workers, self.seed)
+        for generation, total, share, weights in evolution:
+            print(f"generation {generation}: return {total:.2f}, {share:.0%} succeeded", flush=True)
+            try:
+                np.savez(self.output, weights=weights.astype(np.float32))
+            except OSError as error:
+                raise SettingsError(f"{self.output}: cannot be written: {error.strerror}") from None
+        return 0

@@ -1,0 +1,75 @@
+"""An evolution strategy (Salimans et al., 2017) for the network of plugin_examples.learned, on CPUs alone."""
+
+import math
+from multiprocessing import get_context
+from typing import Iterator, List, Tuple
+
+import numpy as np
+
+from home_service_gym.environments import PointGoal
+from planar import Scan
+from plugin_examples.learned import LOOKAHEAD, SECTORS, SIGHT, Policy, Seen
+
+# Seeds of the homes that are trained in (8 has no two places), control periods of an episode, spread and step
+# of the weights.
+HOMES = (0, 1, 2, 3, 4, 5, 6, 7, 9, 10, 11, 12)
+PERIODS, SPREAD, STEP = 300, 0.05, 0.05
+# Shares of what the robot could do that a planner lets it, 0.6 m/s and 1.8 rad/s of a TurtleBot.
+LIMITS = np.array((0.6 / 0.7, 1.8 / math.pi))
+_env: List[PointGoal] = []
+
+
+def clear_in_scan(scan: Scan) -> np.ndarray:
+    """How far it is in each sector to what the scan has met, (SECTORS,), m."""
+    points = scan.hit_points_in_base()
+    turns = np.arctan2(points[:, 1], points[:, 0]) / (2.0 * math.pi) + 0.5
+    clear = np.full(SECTORS, SIGHT)
+    np.minimum.at(clear, (turns * SECTORS).astype(int) % SECTORS, np.hypot(points[:, 0], points[:, 1]))
+    return clear
+
+
+def play(env: PointGoal, policy: Policy, seed: int) -> Tuple[float, str]:
+    """An episode in one of the homes: its return, and how it ended."""
+    observation, _ = env.reset(seed=seed, options={"seed": HOMES[seed % len(HOMES)]})
+    total = 0.0
+    for _ in range(PERIODS):
+        x, y = observation["waypoint"].tolist()
+        v, omega = (observation["velocity"] / (0.6, 1.8)).tolist()
+        shares = policy.act(Seen(clear_in_scan(env.moment.scan), x, y, v, omega)) * LIMITS
+        observation, reward, is_over, _, info = env.step(shares.astype(np.float32))
+        total += reward
+        if is_over:
+            return total, info["outcome"]
+    return total, "timeout"
+
+
+def _play_all(task: Tuple[np.ndarray, Tuple[int, ...]]) -> Tuple[float, int]:
+    """Mean return of some weights over episodes, and how many succeeded; in a process of a pool."""
+    weights, seeds = task
+    if not _env:
+        _env.append(PointGoal("homes", lookahead=LOOKAHEAD))
+    played = [play(_env[0], Policy(weights), seed) for seed in seeds]
+    return float(np.mean([total for total, _ in played])), sum(how == "success" for _, how in played)
+
+
+def evolve(
+    generations: int, pairs: int, episodes: int, workers: int, seed: int
+) -> Iterator[Tuple[int, float, float, np.ndarray]]:
+    """After each generation its number, mean return, share of successes, and the weights then.
+
+    Each generation tries ``pairs`` of opposite changes on the same ``episodes``.
+    """
+    rng = np.random.default_rng(seed)
+    weights = np.zeros(Policy.COUNT)
+    weights[: -Policy.LAST] = rng.normal(0.0, 0.3, Policy.COUNT - Policy.LAST)
+    with get_context("spawn").Pool(workers) as pool:
+        for generation in range(generations):
+            seeds = tuple(rng.integers(2**31, size=episodes).tolist())
+            changes = rng.normal(0.0, 1.0, (pairs, Policy.COUNT))
+            tried = np.concatenate((weights + SPREAD * changes, weights - SPREAD * changes))
+            played = pool.map(_play_all, [(one, seeds) for one in tried], chunksize=1)
+            returns = np.array([total for total, _ in played])
+            ranks = np.argsort(np.argsort(returns)) / (len(returns) - 1.0) - 0.5
+            weights = weights + STEP * (ranks[:pairs] - ranks[pairs:]) @ changes / pairs
+            share = sum(count for _, count in played) / (len(played) * episodes)
+            yield generation, float(returns.mean()), share, weights

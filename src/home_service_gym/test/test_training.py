@@ -1,0 +1,34 @@
+"""Evolution repeats itself from a seed, tells of each generation, and changes the weights."""
+
+import numpy as np
+import pytest
+
+from home_service_gym import training
+from home_service_gym.environments import PointGoal
+from home_service_gym.training import clear_in_scan, evolve, play
+from planar import Scan
+from plugin_examples.learned import LOOKAHEAD, SECTORS, SIGHT, Policy
+
+
+def test_the_sectors_tell_how_far_it_is_all_around():
+    ranges = np.full(360, np.inf)
+    ranges[180] = 0.7  # straight ahead
+    clear = clear_in_scan(Scan(0.0, -np.pi, 2.0 * np.pi / 360, ranges, 0.1, 8.0))
+    assert clear[SECTORS // 2] == pytest.approx(0.7)
+    assert np.delete(clear, SECTORS // 2) == pytest.approx(SIGHT)
+
+
+def test_without_its_network_it_follows_the_way_to_some_goals(monkeypatch):
+    monkeypatch.setattr(training, "HOMES", (0,))
+    env = PointGoal("home_errand", lookahead=LOOKAHEAD)
+    outcomes = [play(env, Policy(np.zeros(Policy.COUNT)), seed)[1] for seed in range(6)]
+    env.close()
+    assert outcomes.count("success") >= 2, outcomes
+
+
+def test_a_seed_decides_what_evolves():
+    runs = [list(evolve(generations=2, pairs=1, episodes=1, workers=1, seed=3)) for _ in range(2)]
+    weights = [[generation[-1] for generation in run] for run in runs]
+    assert [generation[0] for generation in runs[0]] == [0, 1]
+    assert np.array_equal(weights[0], weights[1])
+    assert not np.array_equal(weights[0][0], weights[0][1])
