@@ -8,6 +8,7 @@
 #
 #   --mission FILE   carry out the deliveries of this file instead (docs/missions.md; map/mission.yaml is one)
 #   --serve          wait for missions sent to the action deliver, until Ctrl-C
+#   --faults FILE    YAML with a list of what goes wrong (docs/faults.md; default: that of the mission)
 #   --zones FILE     YAML of the zones (default: map/zones.yaml)
 #   --marker-source tf|amcl_pose|odom|state
 #                    what tells the marker where the robot is (default: tf)

@@ -117,7 +117,8 @@ catkin_build() {
     export ROS_LANG_DISABLE=genlisp:geneus:gennodejs # bindings of the messages that nobody asks for
     # Without -j it would pass -l as well, and on a loaded machine make would wait for the load to sink.
     # The Python of nodes goes by two names: catkin of Debian 13 knows the second one only.
-    catkin_make -j"$(nproc)" -D{PYTHON,Python}_EXECUTABLE="$root/.venv/bin/python3" -DCATKIN_ENABLE_TESTING=OFF
+    # A message that is new in a folder is seen by cmake alone.
+    catkin_make --force-cmake -j"$(nproc)" -D{PYTHON,Python}_EXECUTABLE="$root/.venv/bin/python3" -DCATKIN_ENABLE_TESTING=OFF
 }
 
 # What is in these folders gives way to packages of the same name that the system or the user has.

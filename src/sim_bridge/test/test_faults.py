@@ -7,7 +7,7 @@ import pytest
 
 from planar import SettingsError, Twist2
 from sim_bridge import Simulation, SimulationSettings
-from sim_bridge.faults import KINDS, Fault, Faults, load_faults
+from sim_bridge.faults import KINDS, Fault, Faults, Stage, load_faults
 from sim_bridge.geometry.shapes import Box, Plane
 from sim_bridge.noise import noise_named
 from sim_bridge.simulation import ROBOT_NAME
@@ -15,13 +15,6 @@ from sim_bridge.world import Body, Collision, World
 
 EXACT = SimulationSettings(**noise_named("ideal"))
 START, END, SECONDS = 1.0, 2.0, 3.0
-
-
-class Stage:
-    robot = ROBOT_NAME
-
-    def __init__(self, scene, base_in_world):
-        self.scene, self.base_in_world = scene, base_in_world
 
 
 def played(*faults, seed=0):
@@ -36,7 +29,7 @@ def played(*faults, seed=0):
     for _ in range(round(SECONDS / simulation.step_seconds)):
         command = Twist2(0.3, math.sin(0.1 * len(seen)))
         seen.append(simulation.step(command))
-        going_wrong.disturb(seen[-1].stamp, Stage(simulation.scene, seen[-1].base_in_world))
+        going_wrong.disturb(seen[-1].stamp, Stage(simulation.scene, ROBOT_NAME, seen[-1].base_in_world))
     simulation.close()
     return seen
 
@@ -128,3 +121,17 @@ def test_a_mistake_is_told_with_file_line_and_key(tmp_path, entry, complaint):
     path.write_text(f"faults:\n  - {entry}\n")
     with pytest.raises(SettingsError, match=f"faults.yaml:2: .*{complaint}"):
         load_faults(path)
+
+
+def test_a_fault_may_come_later():
+    faults = Faults((), may_come=True)
+    floor = Body("floor::l", np.eye(4), (Collision(Plane(), np.eye(4)),))
+    simulation = Simulation(World("w", (floor,)), settings=EXACT, fitting=faults.fitting)
+    while (seen := simulation.step(Twist2())).scan is None:
+        pass
+    assert not np.isnan(seen.scan.ranges).any()
+    faults.add(Fault("scan_nan", start=seen.stamp))
+    while (seen := simulation.step(Twist2())).scan is None:
+        pass
+    simulation.close()
+    assert np.isnan(seen.scan.ranges).all()

@@ -63,6 +63,7 @@ class BridgeSettings(RunTimeSettings):
         "s",
         POSITIVE,
     )
+    faults_file: str = parameter("", "YAML with a list of faults, as docs/faults.md has it; empty: none")
     clock_rate: int = parameter(50, "/clock; must divide odometry_rate", "Hz", POSITIVE)
     joint_state_rate: int = parameter(10, "joint_states; must divide odometry_rate", "Hz", POSITIVE)
     strict: bool = parameter(

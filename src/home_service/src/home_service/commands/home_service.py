@@ -1,4 +1,6 @@
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Optional
 
 from home_service.judging.verdict import ERRAND, MARKERS, OBJECTS
 from home_service.options import GraphOptions, MissionOptions
@@ -12,6 +14,9 @@ COMES_BACK = ("amcl", "move_base", "map_server", "robot_state_publisher", "pick_
 class HomeService(GraphOptions, MissionOptions):
     """Fetches the object at the pick-up zone and delivers it at the drop-off zone."""
 
+    faults: Optional[Path] = option(
+        None, "YAML with a list of faults; default: those of the mission", type=Path, metavar="FILE"
+    )
     serve: bool = option(False, "wait for missions sent to the action deliver, until Ctrl-C")
     marker_source: str = option(
         "tf", "what tells the marker where the robot is", choices=("tf", "amcl_pose", "odom", "state")
@@ -24,14 +29,18 @@ class HomeService(GraphOptions, MissionOptions):
     def run(self) -> int:
         from home_service.ros.conducting import carry_out, stay_open
         from home_service.stage import read_mission
+        from sim_bridge.faults import load_faults
 
         places = read_mission(self).places
+        faulty = self.faults or self.mission
+        has_faults = faulty is not None and load_faults(faulty)
         launch = self.launch(
             "home_service.launch",
             **self.files(),
             marker_source=self.marker_source,
             marker_mode="mission" if self.mission or self.serve else "service",
             serve=str(self.serve).lower(),
+            faults_file=faulty.resolve() if has_faults else "",
         ).respawning(*COMES_BACK)
         if self.serve:
             return stay_open(self, launch, "send missions to the action deliver; Ctrl-C ends", places)

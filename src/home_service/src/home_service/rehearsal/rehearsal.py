@@ -21,7 +21,7 @@ from amcl_lite.errors import LocalizationError
 from home_service.judging.delivery_watch import DeliveryWatch
 from home_service.judging.verdict import ERRAND, MARKERS, Ledger, Verdict, judge
 from home_service.rehearsal.bodies import RehearsedBodies, solids_of
-from home_service.rehearsal.senses import FaultyStage, Senses
+from home_service.rehearsal.senses import Senses
 from move_base_lite import (
     Decision,
     NavigationError,
@@ -36,7 +36,7 @@ from planar import OccupancyGrid, Pose2, Scan, Twist2
 from planar.config.settings_file import settings_from_yaml
 from sim_bridge import Observation, RobotProfile, Simulation, SimulationSettings
 from sim_bridge.config import LATENCY
-from sim_bridge.faults import Fault, Faults
+from sim_bridge.faults import Fault, Faults, Stage
 from sim_bridge.simulation import ROBOT_NAME
 from sim_bridge.world import World
 
@@ -220,7 +220,7 @@ class Rehearsal:
                 scan = observation.scan
                 with suppress(LocalizationError):  # the node says so, and goes on too
                     self._localizer.update(self._senses.base_at(scan.stamp), scan)
-            place = FaultyStage(self._simulation.scene, ROBOT_NAME, observation.base_in_world)
+            place = Stage(self._simulation.scene, ROBOT_NAME, observation.base_in_world)
             self._faults.disturb(observation.stamp, place)
         is_under_way = self._steps_of_latency == self._steps_per_tick
         self._command_under_way = self._command if is_under_way else None

@@ -1,26 +1,15 @@
 """What a rehearsed robot feels, and whether it can be so."""
 
 from collections import deque
-from dataclasses import dataclass
 from typing import Deque, Optional, Tuple
 
 from move_base_lite.plausibility import SensorWatch
 from planar import Pose2, Twist2
 from sim_bridge import Observation
-from sim_bridge.scene import Scene
 from sim_bridge.sensors.odometry import Odometer
 
 # Steps of the simulation for which odometry is remembered, as tf does.
 REMEMBERED = 500
-
-
-@dataclass(frozen=True, eq=False)
-class FaultyStage:
-    """What faults of the home can reach."""
-
-    scene: Scene
-    robot: str
-    base_in_world: Pose2
 
 
 class Senses:

@@ -24,7 +24,8 @@ Where 0.0 s are lost to a thing in the way, it did not stand in the way of what 
 | --- | --- | --- | --- | --- | --- | --- | --- |
 """
 TAIL = """
-In a mission file or a file of their own (`./scripts/rehearse.sh --faults FILE`), faults are a list:
+In a mission file, or a file of their own (`--faults FILE` of `rehearse.sh` and `home_service.sh`), faults
+are a list:
 
 ```yaml
 faults:
@@ -33,7 +34,9 @@ faults:
 ```
 
 `start` and `end` are simulated seconds (from the start, for ever), `strength` is in the unit of the table;
-`seed` changes what is random about a fault. A kind is a class in a file of its own in
+`seed` changes what is random about a fault. While a simulation runs,
+`rosservice call /sim_bridge/add_fault scan_nan 5.0 0.0` has something go wrong for so many seconds (0: for
+ever), with that strength (0: the usual one). A kind is a class in a file of its own in
 `sim_bridge/faults/` and a line of `registry.py` there.
 """
 

@@ -16,19 +16,27 @@ _STREAM = 900
 
 
 class Faults:
-    """The faults of a run: ``fitting`` for its robot, and ``disturb`` to be called at each step."""
+    """The faults of a run: ``fitting`` for its robot, and ``disturb`` to be called at each step.
 
-    def __init__(self, faults: Sequence[Fault], seed: int = 0):
+    ``may_come``: whether more may be added once the robot has been fitted.
+    """
+
+    def __init__(self, faults: Sequence[Fault], seed: int = 0, may_come: bool = False):
+        self._seed, self._may_come = seed, may_come
         self._pairs: List[Tuple[Fault, FaultKind]] = []
-        for number, fault in enumerate(faults):
-            rng = np.random.default_rng([seed, _STREAM, fault.seed, number])
-            self._pairs.append((fault, KINDS[fault.kind](fault.strength, rng)))
         self._begun: List[FaultKind] = []
+        for fault in faults:
+            self.add(fault)
+
+    def add(self, fault: Fault) -> None:
+        """One more."""
+        rng = np.random.default_rng([self._seed, _STREAM, fault.seed, len(self._pairs)])
+        self._pairs.append((fault, KINDS[fault.kind](fault.strength, rng)))
 
     @property
     def fitting(self) -> Fitting:
         """What stands before the sensors and the drive of the robot."""
-        if not self._pairs:
+        if not (self._pairs or self._may_come):
             return Fitting()
         return Fitting(
             sensor=lambda sensor: FaultySensor(sensor, self), drive=lambda drive: FaultyDrive(drive, self)

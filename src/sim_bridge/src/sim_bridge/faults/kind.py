@@ -6,7 +6,7 @@ asked.
 """
 
 from dataclasses import dataclass
-from typing import ClassVar, Optional, Protocol, Tuple
+from typing import ClassVar, Optional, Tuple
 
 import numpy as np
 
@@ -29,20 +29,13 @@ class Fault:
     seed: int = 0
 
 
-class Stage(Protocol):
-    """What a fault of the home or of the robot's beliefs can reach."""
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """What a fault of the home can reach: the world, the robot's name in it, and where that truly is."""
 
-    @property
-    def scene(self) -> Scene:
-        """The world."""
-
-    @property
-    def robot(self) -> str:
-        """The robot's name in it."""
-
-    @property
-    def base_in_world(self) -> Pose2:
-        """Where the robot truly is."""
+    scene: Scene
+    robot: str
+    base_in_world: Pose2
 
 
 class FaultKind:

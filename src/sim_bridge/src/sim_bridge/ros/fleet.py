@@ -1,12 +1,13 @@
 """The robots of a scene and their topics."""
 
-from typing import Dict, List
+from typing import Dict, List, Mapping
 
 import rospy
 from tf2_msgs.msg import TFMessage
 
 from planar import Pose2
 from sim_bridge.description import RobotProfile
+from sim_bridge.robot import Observation
 from sim_bridge.ros.motion_messages import TransformsMsg
 from sim_bridge.ros.orders import Orders
 from sim_bridge.ros.performance import CountingPublisher
@@ -57,8 +58,8 @@ class Fleet:
         """Of all robots, the most simulated seconds between two messages of odometry."""
         return max((topics.odometry_seconds for topics in self._robots.values()), default=0.0)
 
-    def step(self) -> None:
-        """Moves on by one period of the odometry."""
+    def step(self) -> Mapping[str, Observation]:
+        """Moves on by one period of the odometry; what each robot observes."""
         commands = {name: topics.take_command() for name, topics in self._robots.items()}
         seen = self._scene.step({name: command for name, command in commands.items() if command})
         transforms = [
@@ -66,6 +67,7 @@ class Fleet:
         ]
         if transforms:
             self._tf.publish(TransformsMsg(transforms))
+        return seen
 
 
 def _tf_prefix(namespace: str) -> str:

@@ -22,6 +22,7 @@ from sim_bridge.noise import noise_named
 from sim_bridge.pacing import Pacer
 from sim_bridge.robots import robot_named
 from sim_bridge.ros.cli import find_file, model_folders
+from sim_bridge.ros.fault_control import FaultControl
 from sim_bridge.ros.fleet import Fleet
 from sim_bridge.ros.gazebo import GazeboInterface
 from sim_bridge.ros.gazebo.server import NAMESPACE
@@ -49,8 +50,9 @@ class Bridge:
         world = load_world(settings.world, model_folders(), settings.strict)
         for warning in world.warnings:
             rospy.logwarn("%s", warning)
-        self._scene = Scene(world, simulation_settings, settings.seed)
         self._orders = Orders()
+        self._faults = FaultControl(settings.faults_file, settings.seed, self._orders)
+        self._scene = Scene(world, simulation_settings, settings.seed, self._faults.fitting)
         self._steps = 0
         wait_for = [name.lstrip("/") for name in settings.wait_for.split()]
         pacer = Pacer(settings.speed, wait_for)
@@ -89,7 +91,7 @@ class Bridge:
             self._scene.close()
 
     def _step(self):
-        self._fleet.step()
+        self._faults.disturb(self._scene, self._fleet.step())
         self._gazebo.publish()
         # Last, so that what it wakes up finds the data of this moment.
         self._steps += 1
