@@ -52,7 +52,7 @@ class CockpitHomeTest(unittest.TestCase):
         cls.cockpit.close()
 
     def tearDown(self):
-        if PICTURES and self._testMethodName < "test_6":
+        if PICTURES and self._testMethodName < "test_7":
             self.page.screenshot(Path(PICTURES) / f"home_{self._testMethodName}.png")
 
     def test_1_the_page_complains_of_nothing_and_asks_nobody_else(self):
@@ -93,20 +93,28 @@ class CockpitHomeTest(unittest.TestCase):
         wait_until("the box", lambda: self.box() is not None)
         self.assertLess(math.hypot(self.box().x + 0.5, self.box().y - 1.0), 0.2)
 
-    def test_5_a_button_drives_as_long_as_it_is_held(self):
+    def test_5_furniture_is_moved_to_where_it_was_pressed(self):
+        self.aim("Move", "Press where the thing is to stand")
+        self.page.choose("Thing", "armchair")
+        self.page.drag(self.pixel(-1.0, -3.2), self.pixel(-1.0, -2.2))
+        self.page.wait_for("armchair moved to")
+        wait_until("the armchair", lambda: self.place_of("armchair").y < -2.9)
+        self.assertLess(math.hypot(self.place_of("armchair").x + 1.0, self.place_of("armchair").y + 3.2), 0.2)
+
+    def test_6_a_button_drives_as_long_as_it_is_held(self):
         start = self.truth()
         self.page.hold("I forward", 2.0)
         self.assertGreater(self.distance_to(*start), 0.1)
         wait_until("rest", lambda: self.newest[TELEOP] == Twist())
 
-    def test_6_a_tab_that_is_closed_lets_go(self):
+    def test_7_a_tab_that_is_closed_lets_go(self):
         self.page.press("J turn left")
         wait_until("turning", lambda: self.newest[TELEOP].angular.z > 0.2)
         self.page.close()
         wait_until("rest", lambda: self.newest[TELEOP] == Twist(), 3.0)
         wait_until("the robot to stand", lambda: not self.is_moving(), 3.0)
 
-    def test_7_nothing_is_subscribed_while_nobody_looks(self):
+    def test_8_nothing_is_subscribed_while_nobody_looks(self):
         wait_until("silence", lambda: not self.heard_by_cockpit(), 10.0)
         page = self.browser.open(self.cockpit.url)
         wait_until("scans", lambda: "/scan" in self.heard_by_cockpit(), 30.0)
@@ -136,8 +144,11 @@ class CockpitHomeTest(unittest.TestCase):
         return math.hypot(own[0] - x, own[1] - y)
 
     def box(self):
+        return self.place_of("box_of_cockpit")
+
+    def place_of(self, model):
         states = self.newest["/gazebo/model_states"]
-        places = [pose for name, pose in zip(states.name, states.pose) if name.startswith("box_of_cockpit")]
+        places = [pose for name, pose in zip(states.name, states.pose) if name.startswith(model)]
         return places[0].position if places else None
 
     def pixel(self, x, y):

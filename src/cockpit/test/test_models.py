@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from home_service_msgs.msg import Delivery, DeliveryState, MissionState
 
 from cockpit.errors import CockpitError
 from cockpit.frames import Transform
@@ -13,6 +14,7 @@ from cockpit.models.bag_files import bags_below, new_bag
 from cockpit.models.computation import ALL, NODES, Shown, dot_of
 from cockpit.models.knobs import Knob, knobs_of, values_of
 from cockpit.models.log import MOST_KEPT, MOST_SHOWN, Log, Said, Wanted, level_named
+from cockpit.models.mission import STATES, mission_html
 from cockpit.models.repeating import Repeating
 from cockpit.models.tables import table
 from cockpit.models.text import amount, flat
@@ -255,6 +257,29 @@ def test_parameters_are_flattened():
 
 def test_amounts_are_told_in_what_is_short():
     assert (amount(1500), amount(2_500_000)) == ("1.5 KB", "2.5 MB")
+
+
+def test_a_mission_tells_of_its_deliveries():
+    told = MissionState(mission="<tea>", state="carrying", progress=0.5, time_left=12.0)
+    what = Delivery(object="cup", source="kitchen", destination="desk")
+    told.deliveries = [DeliveryState(delivery=what, state=state) for state in (DeliveryState.CARRYING, 99)]
+    html = mission_html(told)
+    for text in (
+        "&lt;tea&gt;: carrying",
+        "50 %",
+        "12 s left",
+        "cup",
+        "kitchen",
+        "desk",
+        ">carrying<",
+        ">99<",
+    ):
+        assert text in html
+
+
+def test_the_states_of_deliveries_have_the_names_of_their_message():
+    for number, name in enumerate(STATES):
+        assert getattr(DeliveryState, name.upper().replace(" ", "_")) == number
 
 
 def test_nothing_in_a_table_is_html():

@@ -2,21 +2,22 @@
 
 from typing import Any, Callable, Mapping, Protocol, Sequence, Tuple
 
-LOOK, GOAL, POSE, POINT, BOX = "Look", "Goal", "Pose", "Point", "Box"
-MODES = (LOOK, GOAL, POSE, POINT, BOX)
+LOOK, GOAL, POSE, POINT, BOX, MOVE = "Look", "Goal", "Pose", "Point", "Box", "Move"
+MODES = (LOOK, GOAL, POSE, POINT, BOX, MOVE)
 HINTS = {
     LOOK: "The mouse turns the camera.",
     GOAL: "Press on the floor, turn, release: the robot drives there.",
     POSE: "Press where the robot is, turn it the way it looks, release.",
     POINT: "Click a place: it is published.",
     BOX: "Click a place: a box is dropped there.",
+    MOVE: "Press where the thing is to stand; turn it if you like; release.",
 }
 # The buttons in rows, with the key of each: of turtlebot_teleop, but that "," is no key here.
 BUTTONS = (("U", "u"), ("I", "i"), ("O", "o"), ("J", "j"), ("K", "k"), ("L", "l"), ("M", ","))
 ARROWS = {"U": "forward left", "I": "forward", "O": "forward right", "J": "turn left", "K": "stop"}
 ARROWS.update({"L": "turn right", "M": "back"})
 HOLD_HZ = 10.0
-NOBODY = "(nobody yet)"
+NOBODY, NOTHING = "(nobody yet)", "(nothing yet)"
 SPEEDS = ("as fast as it keeps up", "0.5 x", "1 x", "2 x", "5 x")
 FACTORS = (0.0, 0.5, 1.0, 2.0, 5.0)
 
@@ -38,6 +39,8 @@ class Driver(Protocol):
 
     def cancel(self) -> None: ...
 
+    def cancel_mission(self) -> None: ...
+
 
 class DrivePanel:
     """``guarded`` wraps what controls call."""
@@ -50,12 +53,15 @@ class DrivePanel:
             self._build_time()
             with gui.add_folder("Mission"):
                 self.mission = gui.add_html(_note("No mission is told of."))
+                end = gui.add_button("Cancel the mission", color="gray")
+                end.on_click(guarded(lambda _: driver.cancel_mission()))
         self._build_keys()
 
-    def offer(self, robots: Sequence[str], topics: Sequence[str]) -> None:
-        """The robots that take goals, and the topics that take velocities."""
+    def offer(self, robots: Sequence[str], topics: Sequence[str], things: Sequence[str]) -> None:
+        """The robots that take goals, the topics that take velocities, what can be moved."""
         _offer(self.robot, robots)
         _offer(self.topic, topics)
+        _offer(self.thing, things)
 
     def look(self) -> None:
         """Pointing is over."""
@@ -66,11 +72,13 @@ class DrivePanel:
         self.mode = gui.add_dropdown("Mouse", MODES)
         self.hint = gui.add_html(_note(HINTS[LOOK]))
         self.robot = gui.add_dropdown("Robot", ("/",))
+        self.thing = gui.add_dropdown("Thing", (NOTHING,), visible=False)
         self.cancel = gui.add_button("Cancel the goal", color="gray")
         self.mode.on_update(self._guarded(self._choose_mode))
         self.cancel.on_click(self._guarded(lambda _: self._driver.cancel()))
 
     def _choose_mode(self, _event: Any) -> None:
+        self.thing.visible = self.mode.value == MOVE
         self._driver.set_mode(self.mode.value)
         self.hint.content = _note(HINTS[self.mode.value])  # said when it is so
 

@@ -93,6 +93,12 @@ class WorldView:
         if name in self._poses:
             self._poses[name] = pose_in_world
 
+    def move(self, model: str, motion: np.ndarray) -> None:
+        """``motion``: (4, 4), from where the model was in the world to where it is."""
+        for name, thing in self._things.items():
+            if thing.pieces[0].model == model:
+                self._poses[name] = motion @ self._poses[name]
+
     def update(self, world_in_fixed: Optional[np.ndarray]) -> None:
         for name, thing in self._things.items():
             shown = world_in_fixed is not None and self.is_shown

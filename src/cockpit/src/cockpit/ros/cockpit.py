@@ -45,14 +45,16 @@ class Cockpit:
         self._drawer = Drawer(page.scene)
         self._world = World(self._graph, page.scene, self._warn)
         pointer = Pointer(page.floor, self._drawer)
-        self._driving = Driving(self._graph, self._frames, pointer, page.tell, lambda: self._fixed)
+        self._driving = Driving(
+            self._graph, self._frames, pointer, self._world, page.tell, lambda: self._fixed
+        )
         self._build()
         self._world.view.cut(self._view.height.value)
         self._layers = Layers(self._graph, self._drawer, self._warn)
         self._follower = Follower(page)
         page.on_leave(self._driving.teleop.release)
         self._look_at = 0.0
-        self._trouble = ""
+        self._trouble = self._complaint = ""
 
     def _build(self) -> None:
         gui = self._page.gui
@@ -71,7 +73,10 @@ class Cockpit:
                 self._read_world()
                 continue
             began = time.monotonic()
-            self._turn(began)
+            try:
+                self._turn(began)
+            except Exception as error:  # whatever a graph sends, the page goes on
+                self._complain(said(error))
             time.sleep(max(PERIOD - (time.monotonic() - began), 0.02))
         self._driving.teleop.close()
         self._rest()
@@ -86,6 +91,7 @@ class Cockpit:
         self._layers.close()
         self._transforms.listen(False)
         self._driving.rest()
+        self._world.rest()
         self.toolbox.pause()
 
     def _turn(self, now: float) -> None:
@@ -97,8 +103,8 @@ class Cockpit:
             self._transforms.update()
             self._driving.update()
             self._trouble = ""
-        except CockpitError as error:
-            self._trouble = str(error)
+        except Exception as error:  # the rest is shown nevertheless
+            self._trouble = said(error)
         self._fixed = self._fixed_frame()
         self._layers.update(now)
         self._show(now)
@@ -141,6 +147,12 @@ class Cockpit:
         if self._trouble:
             return f'<div style="margin:0 12px;color:#c92a2a">{escape(self._trouble)}</div>'
         return f'<div style="margin:0 12px;opacity:.7">fixed frame <b>{escape(self._fixed)}</b></div>'
+
+    def _complain(self, text: str) -> None:
+        """Once for each thing that is wrong."""
+        if text != self._complaint:
+            self._complaint = text
+            self._warn(text)
 
     def _warn(self, text: str) -> None:
         rospy.logwarn("%s", text)

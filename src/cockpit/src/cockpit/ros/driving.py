@@ -1,8 +1,7 @@
 """The tab in which a person drives: its panel, the mouse over the floor, and what both make the graph do."""
 
 import math
-from html import escape
-from typing import Callable, Optional
+from typing import Callable, Optional, Tuple
 
 import rospy
 from home_service_msgs.msg import MissionState
@@ -10,13 +9,14 @@ from std_msgs.msg import String
 
 from cockpit.errors import CockpitError
 from cockpit.frames import FrameTree
+from cockpit.models.mission import mission_html
 from cockpit.models.tables import table
-from cockpit.page.drive_panel import BOX, GOAL, LOOK, NOBODY, POINT, POSE, DrivePanel
+from cockpit.page.drive_panel import BOX, GOAL, LOOK, MOVE, NOBODY, NOTHING, POINT, POSE, DrivePanel
 from cockpit.page.pointer import Pointer
 from cockpit.ros.graph import Feed, Graph
-from cockpit.ros.orders import Orders
+from cockpit.ros.orders import BOX_SIZE, Orders
 from cockpit.ros.teleop import PageTeleop
-from cockpit.ros.world import world_in
+from cockpit.ros.world import World, world_in
 
 BASE_FRAMES = ("base_footprint", "base_link")
 MISSION, ERRAND = "/pick_objects/mission_state", "/pick_objects/state"
@@ -30,11 +30,12 @@ class Driving:
         graph: Graph,
         frames: FrameTree,
         pointer: Pointer,
+        world: World,
         tell: Callable[[str], None],
         fixed: Callable[[], str],
     ):
         """``fixed``: tells the fixed frame."""
-        self._graph, self._frames, self._pointer = graph, frames, pointer
+        self._graph, self._frames, self._pointer, self._world = graph, frames, pointer, world
         self._tell, self._fixed = tell, fixed
         self._orders, self.teleop = Orders(graph), PageTeleop()
         self._feeds: dict = {}
@@ -46,7 +47,7 @@ class Driving:
     def look_around(self) -> None:
         """Raises CockpitError."""
         assert self._panel is not None
-        self._panel.offer(self._orders.robots(), self._orders.velocity_topics())
+        self._panel.offer(self._orders.robots(), self._orders.velocity_topics(), self._world.view.models)
         types = self._graph.topics()
         for topic, kind in ((MISSION, MissionState), (ERRAND, String)):
             if topic in types and topic not in self._feeds:
@@ -101,6 +102,10 @@ class Driving:
         assert self._panel is not None
         self._orders.cancel(self._panel.robot.value)
 
+    def cancel_mission(self) -> None:
+        self._orders.cancel_mission()
+        self._tell("the mission is cancelled")
+
     def _pointed(self, x: float, y: float, yaw: Optional[float], _client: int) -> None:
         assert self._panel is not None
         mode, robot, fixed = self._panel.mode.value, self._panel.robot.value, self._fixed()
@@ -117,7 +122,9 @@ class Driving:
                 self._orders.point(fixed, x, y)
                 self._tell(f"point published: {x:.2f}, {y:.2f} in {fixed}")
             elif mode == BOX:
-                self._drop(x, y)
+                self._drop(*self._in_world(x, y, 0.0)[:2])
+            elif mode == MOVE:
+                self._move(*self._in_world(x, y, yaw))
         except (CockpitError, rospy.ROSException) as error:
             self._tell(str(error))
 
@@ -127,16 +134,23 @@ class Driving:
         pose = None if base is None else self._frames.pose(base, self._fixed())
         return 0.0 if pose is None else math.atan2(y - pose[1, 3], x - pose[0, 3])
 
-    def _drop(self, x: float, y: float) -> None:
+    def _in_world(self, x: float, y: float, yaw: Optional[float]) -> Tuple[float, float, Optional[float]]:
+        """Of the fixed frame. Raises CockpitError."""
         world = world_in(self._frames, self._fixed())
         if world is None:
             raise CockpitError("where the world is in the fixed frame is not known")
-        dx, dy = x - world[0, 3], y - world[1, 3]
-        in_world = world[:2, :2].T @ (dx, dy)
-        self._tell(f"{self._orders.drop_box(float(in_world[0]), float(in_world[1]))} dropped")
+        at = world[:2, :2].T @ (x - world[0, 3], y - world[1, 3])
+        return float(at[0]), float(at[1]), None if yaw is None else yaw - math.atan2(world[1, 0], world[0, 0])
 
+    def _drop(self, x: float, y: float) -> None:
+        name = self._orders.drop_box(x, y)
+        self._world.add_box(name, BOX_SIZE, x, y)
+        self._tell(f"{name} dropped")
 
-def mission_html(message) -> str:
-    """What there is to say of a mission (home_service_msgs/MissionState)."""
-    rows = [(state.id, state.status, state.object) for state in message.deliveries]
-    return f"<b>{escape(str(message.state))}</b>" + table(("Delivery", "State", "Object"), rows)
+    def _move(self, x: float, y: float, yaw: Optional[float]) -> None:
+        assert self._panel is not None
+        model = self._panel.thing.value
+        if model == NOTHING:
+            raise CockpitError("there is nothing to move")
+        self._world.view.move(model, self._orders.move_model(model, x, y, yaw))
+        self._tell(f"{model} moved to {x:.2f}, {y:.2f}")

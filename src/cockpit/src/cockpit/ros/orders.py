@@ -1,16 +1,20 @@
 """What a person at the page tells the graph: goals, poses, points, time, things."""
 
 import time
-from typing import Any, Dict, List
+from typing import Any, Dict, List, Optional
 
+import gazebo_msgs.msg
 import gazebo_msgs.srv
+import numpy as np
 import rospy
 from actionlib_msgs.msg import GoalID
 from geometry_msgs.msg import PointStamped, Pose, PoseStamped, PoseWithCovarianceStamped
+from home_service_msgs.srv import CancelDelivery
 from sim_bridge_msgs.srv import Step
 from std_srvs.srv import Empty
 
 from cockpit.errors import CockpitError
+from cockpit.frames import inverse, pose_matrix
 from cockpit.models.pointing import quaternion_of
 from cockpit.ros.calls import call, join
 from cockpit.ros.graph import Graph
@@ -77,6 +81,10 @@ class Orders:
     def cancel(self, robot: str) -> None:
         self._send(robot + CANCEL, GoalID())
 
+    def cancel_mission(self) -> None:
+        """All deliveries; an object on the robot is left where the robot stands."""
+        _check(call("/pick_objects/cancel_delivery", CancelDelivery, ""))
+
     def pause(self, is_paused: bool) -> None:
         call(f"/gazebo/{'pause' if is_paused else 'unpause'}_physics", Empty)
 
@@ -117,6 +125,18 @@ class Orders:
         _check(answer)
         return name
 
+    def move_model(self, name: str, x: float, y: float, yaw: Optional[float]) -> np.ndarray:
+        """In the world's frame; None: turned as it is. Returns the motion (4, 4) that this was."""
+        told = call("/gazebo/get_model_state", gazebo_msgs.srv.GetModelState, name, "world")
+        _check(told)
+        before = _matrix(told.pose)
+        state = gazebo_msgs.msg.ModelState(model_name=name, reference_frame="world", pose=told.pose)
+        if yaw is not None:
+            state.pose = _pose(x, y, yaw)
+        state.pose.position.x, state.pose.position.y, state.pose.position.z = x, y, before[2, 3]
+        _check(call("/gazebo/set_model_state", gazebo_msgs.srv.SetModelState, state))
+        return _matrix(state.pose) @ inverse(before)
+
     def _send(self, topic: str, message: Any, needs_listener: bool = True) -> None:
         if topic not in self._publishers:
             self._publishers[topic] = rospy.Publisher(topic, type(message), queue_size=1)
@@ -129,7 +149,7 @@ class Orders:
 
 def _check(answer: Any) -> None:
     if not answer.success:
-        raise CockpitError(answer.status_message)
+        raise CockpitError(getattr(answer, "status_message", "") or getattr(answer, "message", ""))
 
 
 def _pose(x: float, y: float, yaw: float) -> Pose:
@@ -138,3 +158,12 @@ def _pose(x: float, y: float, yaw: float) -> Pose:
     q = pose.orientation
     q.x, q.y, q.z, q.w = quaternion_of(yaw)
     return pose
+
+
+def _matrix(pose: Pose) -> np.ndarray:
+    """Raises CockpitError."""
+    p, q = pose.position, pose.orientation
+    matrix = pose_matrix((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
+    if matrix is None:
+        raise CockpitError("the simulator tells a pose that is none")
+    return matrix

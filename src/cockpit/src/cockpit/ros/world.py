@@ -1,22 +1,26 @@
 """The simulated world and the robots of the graph: found by their parameters, kept where they are."""
 
+from contextlib import suppress
 from functools import partial
 from typing import Callable, Dict, List, Optional
 
 import numpy as np
 
 from cockpit.errors import CockpitError
-from cockpit.frames import FrameTree
+from cockpit.frames import FrameTree, pose_matrix
+from cockpit.models import solids
 from cockpit.page.world_view import RobotView, WorldView
-from cockpit.ros.graph import Graph
+from cockpit.ros.graph import Feed, Graph
 from cockpit.ros.looks import ROBOT, WORLD, read_aside
-from cockpit.scene.look import Look
+from cockpit.scene.look import Look, Piece
 
 # Of the simulator under its own name and under that of Gazebo.
 WORLD_PARAMETERS = ("/sim_bridge/world", "/gazebo/world")
 DESCRIPTION, PREFIX = "robot_description", "tf_prefix"
 # The frame of a world file; a map made or rendered of that world coincides with it.
 WORLD_FRAME, MAP_FRAME = "world", "map"
+LINK_STATES = "/gazebo/link_states"
+BOX_COLOUR = (217, 140, 51)
 
 
 class World:
@@ -28,6 +32,7 @@ class World:
         self.robots: Dict[str, RobotView] = {}
         self._asked: Dict[str, str] = {}
         self._arrived: List[Callable[[], None]] = []
+        self._states: Optional[Feed] = None
 
     def look_for(self) -> None:
         """Reads, in the background, what has come since the last call. Raises CockpitError."""
@@ -43,9 +48,40 @@ class World:
         while self._arrived:
             self._arrived.pop(0)()
         self.view.is_shown = shows_world
+        with suppress(CockpitError):  # of a master that is gone; the status tells of that
+            self._follow_things(shows_world)
         self.view.update(world_in(frames, fixed))
         for robot in self.robots.values():
             robot.update(frames, fixed, shows_robots)
+
+    def rest(self) -> None:
+        """Nobody looks."""
+        if self._states is not None:
+            self._states.close()
+            self._states = None
+
+    def add_box(self, name: str, size: float, x: float, y: float) -> None:
+        """One that was dropped at a place of the world."""
+        pose = np.eye(4)
+        pose[:3, 3] = x, y, size / 2.0
+        vertices, triangles = solids.box()
+        piece = Piece(name, "box", pose, vertices * size, triangles, BOX_COLOUR, moves=True)
+        self._arrived.append(lambda: self.view.show(Look((piece,))))
+
+    def _follow_things(self, wanted: bool) -> None:
+        """Those that physics may move; where there are none the simulator is not asked."""
+        movable = self.view.movable
+        if not wanted or not movable:
+            self.rest()
+        elif self._states is None and LINK_STATES in self._graph.publishers():
+            self._states = self._graph.feed(LINK_STATES, "gazebo_msgs/LinkStates")
+        for message in self._states.take() if self._states is not None else ():
+            found = dict(zip(message.name, message.pose))
+            for name in set(movable) & set(found):
+                p, q = found[name].position, found[name].orientation
+                pose = pose_matrix((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
+                if pose is not None:
+                    self.view.place(name, pose)
 
     def _read(self, kind: str, parameter: str, show: Callable[[Look], None]) -> None:
         if parameter in self._asked:
