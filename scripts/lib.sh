@@ -57,8 +57,14 @@ trap 'end_group "$aside_pid"; "$undo"' EXIT
 
 as_root_if_needed() { "$@" 2>/dev/null || sudo -n "$@" 2>/dev/null || true; }
 
-end_group() {
-    [[ -z $1 ]] || { kill -- "-$1" && wait "$1"; } 2>/dev/null || true
+end_group() { # PID: asked more than once, since bash loses a signal that comes while it starts a process
+    local hundredths=0
+    [[ -n $1 ]] || return 0
+    while kill -0 "$1" 2>/dev/null; do
+        ((hundredths++ % 100)) || kill -- "-$1" 2>/dev/null || true
+        sleep 0.01
+    done
+    wait "$1" 2>/dev/null || true
 }
 
 step() { # TITLE LOG COMMAND...: runs the command, shows how long it takes, returns its exit code

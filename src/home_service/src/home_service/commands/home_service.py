@@ -33,14 +33,14 @@ class HomeService(GraphOptions, MissionOptions):
 
         places = read_mission(self).places
         faulty = self.faults or self.mission
-        has_faults = faulty is not None and load_faults(faulty)
+        faults_file = faulty.resolve() if faulty and load_faults(faulty) else ""
         launch = self.launch(
             "home_service.launch",
             **self.files(),
             marker_source=self.marker_source,
             marker_mode="mission" if self.mission or self.serve else "service",
             serve=str(self.serve).lower(),
-            faults_file=faulty.resolve() if has_faults else "",
+            faults_file=faults_file,
         ).respawning(*COMES_BACK)
         if self.serve:
             return stay_open(self, launch, "send missions to the action deliver; Ctrl-C ends", places)

@@ -44,5 +44,5 @@ class FaultControl:
 
     def _add(self, kind: str, seconds: float, strength: float):
         self._faults.add(Fault(kind, self._now, self._now + seconds, strength))
-        rospy.loginfo("fault: %s", KINDS[kind].__doc__.splitlines()[0])
+        rospy.loginfo("fault: %s of strength %g", kind, strength)
         return AddFaultResponse(True, "")
