@@ -69,7 +69,7 @@ class Plot:
         found = found or [(self._topic.value, self._field.value)]
         if NONE in found[0]:
             raise CockpitError("choose a topic and a number in it first")
-        self._paths.update({f"{topic}/{path}": (topic, path) for topic, path in found})
+        self._paths.update({_name(*each): each for each in found})
         self._typed.value = ""
         self._rebuild()
 
@@ -79,8 +79,7 @@ class Plot:
         come = [name for name in self._awaited if any(name.startswith(f"{topic}/") for topic in topics)]
         if come:
             self._awaited = [name for name in self._awaited if name not in come]
-            for topic, path in map(self._split, come):
-                self._paths[f"{topic}/{path}"] = topic, path
+            self._paths.update({_name(*each): each for each in map(self._split, come)})
             self._rebuild()
 
     def _split(self, typed: str) -> Tuple[str, str]:
@@ -127,6 +126,11 @@ class Plot:
             for at, message, _ in feed.take_stamped():
                 for name, path in wanted:
                     self._traces.add(name, at, number_at(message, path))
+
+
+def _name(topic: str, path: str) -> str:
+    """As rqt_plot writes it."""
+    return f"{topic}/{path.replace('.', '/')}"
 
 
 TOOL = Plot
