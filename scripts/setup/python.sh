@@ -21,10 +21,13 @@ requirement_names() {
 make_venv() {
     check_python
     : >"$logs/python.log"
-    is_venv_whole || step "Creating .venv" "$logs/python.log" \
+    if is_venv_whole; then
+        mv "$root/.venv/.set-up" "$root/.venv/.set-up.before" # other extras stay installed
+        return
+    fi
+    step "Creating .venv" "$logs/python.log" \
         /usr/bin/python3 -m venv --clear --system-site-packages "$root/.venv" ||
         give_up "the virtual environment could not be created" "$logs/python.log"
-    rm -f "$root/.venv/.set-up"
 }
 
 is_venv_whole() { # made here, with this Python, and never left half installed
@@ -45,8 +48,19 @@ install_requirements() {
     mapfile -t files < <(options_of_missing)
     pip install --no-index --find-links "$root/.venv/wheels" "${files[@]}" || return
     rm -rf "$root/.venv/wheels"
-    (cd "$root/scripts" && for file in "${requirement_files[@]}"; do requirement_stamp "$file"; done) >"$stamp.new"
+    (
+        cd "$root/scripts" || exit
+        stamps_of_others "$stamp.before"
+        for file in "${requirement_files[@]}"; do requirement_stamp "$file"; done
+    ) | sort -u >"$stamp.new"
     mv "$stamp.new" "$stamp"
+    rm -f "$stamp.before"
+}
+
+stamps_of_others() { # FILE: of requirements that are not set up now, which stay installed
+    local names
+    names=$(IFS='|' && printf '%s' "${requirement_files[*]}")
+    grep -svE "  ($names) " "$1" || true
 }
 
 rospy_of_system=/usr/lib/python3/dist-packages/rospy

@@ -203,6 +203,28 @@ def test_what_the_first_set_up_installs_does_not_make_the_second_start_build_ane
     assert said.stdout.endswith("left: \n"), said.stderr
 
 
+def test_what_one_extra_installs_another_does_not_install_again(tmp_path):
+    said = in_workspace(
+        tmp_path,
+        """
+        pip() { :; }
+        options_of_missing() { :; }
+        is_venv_whole() { [[ -e $root/.venv/.set-up ]]; }
+        mkdir -p .venv; touch .venv/.set-up
+        install() { requirement_files=(requirements.txt "$@"); make_venv; install_requirements; }
+        install requirements-docs.txt
+        install requirements-cockpit.txt
+        cd scripts
+        missing_requirements requirements.txt requirements-docs.txt requirements-cockpit.txt
+        echo >>requirements-docs.txt
+        missing_requirements requirements.txt requirements-docs.txt requirements-cockpit.txt
+        """,
+    )
+    assert said.stdout.split() == ["requirements-docs.txt"], said.stderr
+    stamps = (tmp_path / ".venv/.set-up").read_text().splitlines()
+    assert len(stamps) == 3 and not (tmp_path / ".venv/.set-up.before").exists()
+
+
 BESIDE = """
     missing_requirements() { echo requirements.txt; }
     missing_packages() { :; }

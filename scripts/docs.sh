@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Usage: ./scripts/docs.sh [--serve]
+#
+# Builds the documentation as a site in build/site, with the API of the cores from their docstrings and a search.
+# Sets everything up first if need be, with mkdocs; to look at the site takes no network.
+# Exit code: 0 success, 1 a warning or failure, 2 bad usage, 130 interrupted.
+#
+#   --serve  then shows it at http://127.0.0.1:8800 until Ctrl-C (the search does not work in files)
+#   --help   this text
+
+# shellcheck source=scripts/setup.sh
+. "$(dirname -- "$(readlink -f -- "$0")")/setup.sh"
+answer_help "$@"
+if [[ $* && $* != --serve ]]; then
+    usage >&2
+    printf "error: unknown option '%s'\n" "$1" >&2
+    exit 2
+fi
+set_up docs
+cd "$root"
+log=$root/build/site.log
+if ! .venv/bin/python3 -W ignore::DeprecationWarning -m mkdocs build --quiet --strict >"$log" 2>&1; then
+    cat "$log" >&2
+    fail "the site has not been built"
+fi
+say "build/site/index.html"
+[[ -z $* ]] || exec .venv/bin/python3 -m http.server --bind 127.0.0.1 --directory build/site 8800
