@@ -35,3 +35,12 @@ def test_a_pose_that_is_none_is_known():
     assert pose_matrix((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)) is None
     assert pose_matrix((np.nan, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)) is None
     assert pose_matrix((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, np.inf)) is None
+
+
+def test_what_was_seen_a_moment_ago_is_where_its_frame_was_then():
+    frames = FrameTree()
+    for stamp in (1.0, 1.1, 1.2):
+        frames.put("laser", Transform("map", pose_matrix((stamp, 0, 0), (0, 0, 0, 1)), stamp, False))
+    assert [frames.pose("laser", "map", at)[0, 3] for at in (0.0, 1.11, 9.0, None)] == [1.0, 1.1, 1.2, 1.2]
+    frames.put("laser", Transform("map", pose_matrix((0.1, 0, 0), (0, 0, 0, 1)), 0.1, False))
+    assert frames.pose("laser", "map", 1.2)[0, 3] == 0.1

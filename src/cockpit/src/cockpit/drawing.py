@@ -78,7 +78,8 @@ Drawable = Union[Points, Lines, Surface, Floor, Label, Axes, Screen]
 class Part:
     """A thing seen from ``frame``; ``name`` tells it from the others of its layer; the same name replaces.
 
-    ``pose``: (4, 4) in that frame; ``seconds``: after which it vanishes by itself.
+    ``pose``: (4, 4) in that frame; ``seconds``: after which it vanishes by itself; ``stamp``: seconds of ROS
+    time, when it was seen from where the frame was then; None: it goes along with its frame.
     """
 
     name: str
@@ -86,6 +87,7 @@ class Part:
     thing: Drawable
     pose: Optional[np.ndarray] = None
     seconds: float = np.inf
+    stamp: Optional[float] = None
 
 
 @dataclass(frozen=True, eq=False)

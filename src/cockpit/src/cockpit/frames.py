@@ -1,12 +1,15 @@
-"""Where frames are: the latest transform of each, and ways between any two."""
+"""Where frames are and were a moment ago, and ways between any two."""
 
+from collections import deque
 from dataclasses import dataclass
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import Deque, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
 # Longer chains are a loop.
 DEEPEST = 64
+# Two seconds of what comes fifty times a second: for scans that come later than their transforms.
+MOST_KEPT = 100
 
 
 def pose_matrix(position: Sequence[float], quaternion: Sequence[float]) -> Optional[np.ndarray]:
@@ -46,16 +49,23 @@ class Transform:
 
 
 class FrameTree:
-    """The newest transform of each frame; unlike tf2's buffer it keeps no history, which a view needs not."""
+    """The newest transform of each frame, and the last few: a view needs no more."""
 
     def __init__(self):
         self._transforms: Dict[str, Transform] = {}
+        self._past: Dict[str, Deque[Transform]] = {}
 
     def put(self, child: str, transform: Transform) -> None:
-        self._transforms[child.lstrip("/")] = transform
+        child = child.lstrip("/")
+        past = self._past.setdefault(child, deque(maxlen=MOST_KEPT))
+        if past and transform.stamp < past[-1].stamp:  # time began anew
+            past.clear()
+        past.append(transform)
+        self._transforms[child] = transform
 
     def clear(self) -> None:
         self._transforms.clear()
+        self._past.clear()
 
     def transforms(self) -> Dict[str, Transform]:
         """That of each frame that has a parent."""
@@ -68,20 +78,28 @@ class FrameTree:
     def roots(self) -> List[str]:
         return [name for name in self.names() if name not in self._transforms]
 
-    def pose(self, frame: str, fixed: str) -> Optional[np.ndarray]:
-        """Of ``frame`` in ``fixed``, (4, 4); None if no chain of transforms leads from one to the other."""
+    def pose(self, frame: str, fixed: str, at: Optional[float] = None) -> Optional[np.ndarray]:
+        """Of ``frame`` in ``fixed``, (4, 4); None if no chain of transforms leads from one to the other.
+
+        ``at``: seconds of ROS time, of which what is kept comes nearest; None: now.
+        """
         frame, fixed = frame.lstrip("/"), fixed.lstrip("/")
         if frame == fixed:
             return np.eye(4)
-        frame_root, frame_in_root = self._to_root(frame)
-        fixed_root, fixed_in_root = self._to_root(fixed)
+        frame_root, frame_in_root = self._to_root(frame, at)
+        fixed_root, fixed_in_root = self._to_root(fixed, at)
         return inverse(fixed_in_root) @ frame_in_root if frame_root == fixed_root else None
 
-    def _to_root(self, frame: str) -> Tuple[str, np.ndarray]:
+    def _to_root(self, frame: str, at: Optional[float]) -> Tuple[str, np.ndarray]:
         pose = np.eye(4)
         for _ in range(DEEPEST):
-            transform = self._transforms.get(frame)
+            transform = self._told(frame, at)
             if transform is None:
                 break
             pose, frame = transform.pose_in_parent @ pose, transform.parent
         return frame, pose
+
+    def _told(self, frame: str, at: Optional[float]) -> Optional[Transform]:
+        if at is None or frame not in self._past:
+            return self._transforms.get(frame)
+        return min(self._past[frame], key=lambda transform: abs(transform.stamp - at))

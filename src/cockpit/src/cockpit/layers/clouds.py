@@ -26,7 +26,8 @@ def draw(message) -> Drawing:
         [np.ascontiguousarray(rows[:, end - 4 : end]).view(f"{order}f4").reshape(-1) for end in ends]
     )
     points = points[np.isfinite(points).all(axis=1)]
-    return Drawing((Part("cloud", message.header.frame_id, Points(points, colours_of(points[:, 2]), 0.03)),))
+    header, thing = message.header, Points(points, colours_of(points[:, 2]), 0.03)
+    return Drawing((Part("cloud", header.frame_id, thing, stamp=header.stamp.to_sec() or None),))
 
 
 def colours_of(heights: np.ndarray) -> np.ndarray:

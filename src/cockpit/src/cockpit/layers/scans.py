@@ -14,7 +14,9 @@ def draw(message) -> Drawing:
     seen = np.isfinite(ranges) & (ranges >= message.range_min) & (ranges <= message.range_max)
     ranges, angles = ranges[seen], angles[seen]
     points = np.column_stack((ranges * np.cos(angles), ranges * np.sin(angles), np.zeros(len(ranges))))
-    return Drawing((Part("scan", message.header.frame_id, Points(points, COLOUR, 0.05)),))
+    header = message.header
+    thing = Points(points, COLOUR, 0.05)
+    return Drawing((Part("scan", header.frame_id, thing, stamp=header.stamp.to_sec() or None),))
 
 
 LAYER = Layer("Scan", ("sensor_msgs/LaserScan",), lambda: draw, shown=("scan",))

@@ -60,12 +60,12 @@ class Drawer:
         """
         for key in [key for key, shown in self._shown.items() if shown.ends <= now]:
             self._remove(key)
-        poses: Dict[str, Optional[np.ndarray]] = {}
+        poses: Dict[Tuple[str, Optional[float]], Optional[np.ndarray]] = {}
         for shown in self._shown.values():
-            frame = shown.part.frame or fixed
-            if frame not in poses:
-                poses[frame] = frames.pose(frame, fixed)
-            pose = poses[frame]
+            seen_from = shown.part.frame or fixed, shown.part.stamp
+            if seen_from not in poses:
+                poses[seen_from] = frames.pose(seen_from[0], fixed, seen_from[1])
+            pose = poses[seen_from]
             if shown.node.visible != (pose is not None):
                 shown.node.visible = pose is not None
             if pose is not None:
