@@ -36,6 +36,14 @@ class TestFaults(unittest.TestCase):
         self.assertTrue(self.add_fault("odometry_stopped", 2.0, 0.0).success)
         wait_until("a gap", lambda: self.longest_gap() > 1.5)
 
+    def test_a_late_scan_bears_the_stamp_of_its_measurement(self):
+        self.assertTrue(self.add_fault("scan_late", 3.0, 1.0).success)
+        wait_until("late scans", lambda: 0.9 < self.age_of_scan() < 1.5)
+        wait_until("scans in time", lambda: self.age_of_scan() < 0.5)
+
+    def age_of_scan(self):
+        return (self.odometry[-1].header.stamp - self.scans[-1].header.stamp).to_sec()
+
     def longest_gap(self):
         stamps = [message.header.stamp.to_sec() for message in self.odometry]
         return max(np.diff(stamps), default=0.0)

@@ -1,18 +1,20 @@
 from pathlib import Path
 
-from home_service.rehearsal import Rehearsal
+from home_service.rehearsal import Conditions, Rehearsal
 from pick_objects import errand_mission, parse_mission
 from planar import load_map
 from planar.maps.places import places_of_errand
 from sim_bridge import load_world, robot_named
+from sim_bridge.faults import Fault
 
 MAP = Path(__file__).resolve().parents[3] / "map"
 
 
-def rehearsed(seed):
+def rehearsed(seed, *faults):
     errand = errand_mission(*places_of_errand(MAP / "zones.yaml"))
     world, grid = load_world(MAP / "home.world"), load_map(MAP / "home.yaml")
-    return Rehearsal(world, robot_named("turtlebot_lidar"), grid, errand, seed=seed).run(240.0)
+    stage = (world, robot_named("turtlebot_lidar"), grid, errand)
+    return Rehearsal(*stage, seed=seed, conditions=Conditions(faults=faults)).run(240.0)
 
 
 def test_a_seed_repeats_the_whole_mission_bit_for_bit_and_another_does_not():
@@ -21,6 +23,11 @@ def test_a_seed_repeats_the_whole_mission_bit_for_bit_and_another_does_not():
     assert first.trajectory_hash != other.trajectory_hash
     assert first.verdict.success, first.verdict.reason
     assert other.verdict.success, other.verdict.reason
+
+
+def test_scans_that_come_late_are_seen_from_where_the_robot_was():
+    run = rehearsed(5, Fault("scan_late", start=8.0, strength=0.5))
+    assert run.verdict.success, run.verdict.reason
 
 
 def test_a_mission_that_takes_too_long_fails_and_says_so():

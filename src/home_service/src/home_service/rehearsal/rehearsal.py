@@ -175,6 +175,8 @@ class Rehearsal:
         if odom_in_map is None:
             return None
         base_in_map = odom_in_map @ odometry.base_in_odom
+        if scan is not None:
+            scan = self._senses.as_seen_now(scan, self._now, odometry.base_in_odom)
         self._note(observation, base_in_map)
         if self._goal is not None:
             self._navigator.set_goal(self._goal)

@@ -1,10 +1,11 @@
 """What a rehearsed robot feels, and whether it can be so."""
 
 from collections import deque
+from dataclasses import replace
 from typing import Deque, Optional, Tuple
 
 from move_base_lite.plausibility import SensorWatch
-from planar import Pose2, Twist2
+from planar import Pose2, Scan, Twist2
 from sim_bridge import Observation
 from sim_bridge.sensors.odometry import Odometer
 
@@ -38,6 +39,13 @@ class Senses:
     def base_at(self, stamp: float) -> Pose2:
         """Where odometry had the robot at a time, or as near to it as is remembered."""
         return min(reversed(self._odometry), key=lambda known: abs(known[0] - stamp))[1]
+
+    def as_seen_now(self, scan: Scan, now: float, base_in_odom: Pose2) -> Scan:
+        """A scan that comes late, as if taken from the present pose: what move_base makes of it."""
+        if scan.stamp == now:
+            return scan
+        moved = base_in_odom.inverse() @ self.base_at(scan.stamp)
+        return replace(scan, laser_in_base=moved @ scan.laser_in_base)
 
     def complaint(self, now: float) -> Optional[str]:
         """Which sensor cannot be trusted; None if all can."""

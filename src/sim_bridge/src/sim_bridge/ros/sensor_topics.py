@@ -5,6 +5,7 @@ from typing import Any, Callable, Dict, List, Protocol, Tuple
 import rospy
 from sensor_msgs.msg import Imu
 
+from planar import Scan
 from planar_ros.messages.conversion import LaserScanArrays, time_of
 from sim_bridge.robot import Observation, Robot
 from sim_bridge.ros.camera_topics import CameraTopics
@@ -84,4 +85,6 @@ class RobotSensors:
         for name, topics in self._topics:
             reading = observation.readings.get(name)
             if reading is not None:
-                topics.publish(reading.value, time_of(reading.stamp))
+                # A scan has a stamp of its own; that it comes late, or is misdated, is told by it.
+                stamp = reading.value.stamp if isinstance(reading.value, Scan) else reading.stamp
+                topics.publish(reading.value, time_of(max(stamp, 0.0)))
