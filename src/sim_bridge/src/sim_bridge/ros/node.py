@@ -26,10 +26,10 @@ from sim_bridge.ros.fault_control import FaultControl
 from sim_bridge.ros.fleet import Fleet
 from sim_bridge.ros.gazebo import GazeboInterface
 from sim_bridge.ros.gazebo.server import NAMESPACE
-from sim_bridge.ros.lock_step import LockStep
 from sim_bridge.ros.orders import Orders
 from sim_bridge.ros.performance import Performance
-from sim_bridge.ros.time_control import TimeControl
+from sim_bridge.ros.timing.lock_step import LockStep
+from sim_bridge.ros.timing.time_control import TimeControl
 from sim_bridge.scene import Scene
 from sim_bridge.sdf import load_world
 from sim_bridge.simulation import ROBOT_NAME, box_on_floor

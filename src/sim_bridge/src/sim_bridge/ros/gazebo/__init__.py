@@ -11,7 +11,7 @@ from sim_bridge.ros.gazebo.server import Server
 from sim_bridge.ros.gazebo.spawning import SpawnServices
 from sim_bridge.ros.gazebo.states import StateServices
 from sim_bridge.ros.orders import Orders
-from sim_bridge.ros.time_control import TimeControl
+from sim_bridge.ros.timing.time_control import TimeControl
 from sim_bridge.scene import Scene
 
 __all__ = ["GazeboInterface"]

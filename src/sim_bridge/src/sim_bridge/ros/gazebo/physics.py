@@ -15,7 +15,7 @@ from planar_ros.node.reconfigure import Tuning
 from sim_bridge.config import HIGHEST_PHYSICS_RATE
 from sim_bridge.errors import WorldError
 from sim_bridge.ros.gazebo.server import NAMESPACE, Server
-from sim_bridge.ros.time_control import TimeControl
+from sim_bridge.ros.timing.time_control import TimeControl
 from sim_bridge.scene import Scene
 
 # What dynamic_reconfigure offers (Physics.cfg of gazebo_ros), but for ODE's own.

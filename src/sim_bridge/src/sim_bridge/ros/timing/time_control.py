@@ -15,8 +15,8 @@ from planar_ros.node.reconfigure import Reconfiguration
 from planar_ros.node.waiting import Waiting
 from sim_bridge.config import RunTimeSettings
 from sim_bridge.pacing import Pacer
-from sim_bridge.ros.lock_step import LockStep
 from sim_bridge.ros.orders import Orders
+from sim_bridge.ros.timing.lock_step import LockStep
 from sim_bridge.scene import Scene
 
 # So that a shutdown is noticed soon.

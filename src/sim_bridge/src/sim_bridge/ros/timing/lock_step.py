@@ -14,8 +14,8 @@ from planar_ros.step.inbox import Inbox
 from planar_ros.step.step import WAIT_FOR_PARAMETER
 from planar_ros.step.transport import ANSWER_TOPIC, MOMENT_TOPIC, CountedConnection
 from sim_bridge.conducting import Conductor
-from sim_bridge.ros.loop_watch import LoopWatch
 from sim_bridge.ros.orders import Orders
+from sim_bridge.ros.timing.loop_watch import LoopWatch
 
 # Latched: why the run may not be repeatable, one reason a line.
 REMARKS_TOPIC = "/simulation/remarks"

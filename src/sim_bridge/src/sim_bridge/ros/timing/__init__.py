@@ -1,0 +1,1 @@
+"""How simulated time passes: lock-step with nodes, pausing, stepping, resetting."""
