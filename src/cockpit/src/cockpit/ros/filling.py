@@ -1,5 +1,6 @@
 """Messages as people write them: a template in YAML, filled in as for rostopic pub and rosservice call."""
 
+from io import BytesIO
 from typing import Any, Callable, Optional, Type
 
 import genpy
@@ -41,6 +42,7 @@ def filled(kind: Type[Any], text: str) -> Any:
             arguments = fields if isinstance(fields, list) else [fields]
             genpy.message.fill_message_args(message, arguments, {"now": now, "auto": _header(now)})
         message._check_types()
+        message.serialize(BytesIO())  # genpy of Debian 11 looks at no floating-point number before
     except yaml.YAMLError as error:
         where = getattr(error, "problem_mark", None)
         line = "" if where is None else f", line {where.line + 1}"
