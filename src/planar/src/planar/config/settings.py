@@ -53,9 +53,13 @@ def check(condition: bool, name: str, requirement: str, value: Any) -> None:
 
 def _converted(kind: Any, value: Any, name: str) -> Any:
     if kind is float and isinstance(value, (int, float)) and not isinstance(value, bool):
-        if math.isnan(value):
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.nan
+        if math.isnan(number):
             raise SettingsError(f"{name} must be a number, got {value!r}")
-        return float(value)
+        return number
     if kind is int and isinstance(value, float) and value.is_integer():
         return int(value)
     if kind in (int, str, bool):

@@ -142,7 +142,7 @@ class Table:
 
     def choice(self, key: str, choices: Iterable[str], default: str = _REQUIRED) -> str:
         value = self._needed(key, default)
-        if value not in choices:
+        if not isinstance(value, str) or value not in choices:
             raise self.complaint(key, f"must be one of {', '.join(choices)}, got {value!r}")
         return value
 
