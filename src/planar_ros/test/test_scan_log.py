@@ -11,8 +11,8 @@ from planar_ros.messages.conversion import transform_msg
 LASER_IN_BASE = Pose2(0.1, 0.0, 0.0)
 
 
-def write_bag(path, static_at):
-    """Scans of a robot that drives on at 1 m/s, and where its laser is, at scan ``static_at`` of 20."""
+def write_bag(path, static):
+    """Scans of a robot that drives on at 1 m/s, and where its laser is, by the number of the scan, of 20."""
     with rosbag.Bag(str(path), "w") as bag:
         for i in range(20):
             stamp = rospy.Time.from_sec(100.0 + 0.1 * i)
@@ -21,17 +21,29 @@ def write_bag(path, static_at):
             scan = LaserScan(ranges=[1.0] * 3, range_max=10.0)
             scan.header.frame_id, scan.header.stamp = "laser", stamp
             bag.write("/scan", scan, stamp)
-            if i == static_at:
-                laser = transform_msg(LASER_IN_BASE, "base_link", "laser", stamp)
+            if i in static:
+                laser = transform_msg(static[i], "base_link", "laser", stamp)
                 bag.write("/tf_static", TFMessage([laser]), stamp)
     return path
 
 
-@pytest.mark.parametrize("static_at", [0, 15])
+@pytest.mark.parametrize("static_at", [[0], [15], [3, 9, 15]], ids=["first", "late", "repeated"])
 def test_static_transforms_hold_from_the_start_wherever_they_are_in_the_bag(tmp_path, static_at):
     warnings = []
-    log = ScanLog(write_bag(tmp_path / "late.bag", static_at), "/scan", "base_link", "odom", warnings.append)
+    bag = write_bag(tmp_path / "late.bag", dict.fromkeys(static_at, LASER_IN_BASE))
+    log = ScanLog(bag, "/scan", "base_link", "odom", warnings.append)
     logged = list(log)
     assert warnings == []
     assert [one.scan.laser_in_base for one in logged] == 20 * [LASER_IN_BASE]
     assert [one.base_in_odom.x for one in logged] == pytest.approx([0.1 * i for i in range(20)])
+
+
+def test_static_transforms_that_contradict_each_other_are_named(tmp_path):
+    warnings, moved = [], Pose2(0.3, 0.0, 0.0)
+    bag = write_bag(tmp_path / "moved.bag", {0: LASER_IN_BASE, 5: LASER_IN_BASE, 10: moved, 15: moved})
+    logged = list(ScanLog(bag, "/scan", "base_link", "odom", warnings.append))
+    assert warnings == [
+        f"{bag}: /tf_static contradicts itself about base_link -> laser (from now on the later one holds), "
+        "at stamp 101.000, 53 % into the bag"
+    ]
+    assert [one.scan.laser_in_base for one in logged] == 11 * [LASER_IN_BASE] + 9 * [moved]

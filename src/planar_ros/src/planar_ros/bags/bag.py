@@ -1,17 +1,21 @@
 """A bag: what is in it, its messages in order, and how far it can be read."""
 
 import contextlib
+import math
 import shutil
 import tempfile
 from pathlib import Path
 from typing import Any, Dict, Iterable, Iterator, List, NamedTuple, Optional, Tuple, Union
 
 import rosbag
+import rospy
+from roslib.message import get_message_class
 
 from planar import PlanarError
 
 TF, TF_STATIC = "/tf", "/tf_static"
 LASER_SCAN = "sensor_msgs/LaserScan"
+TICK = 1e-6
 
 
 class BagError(PlanarError):
@@ -30,8 +34,8 @@ class Bag:
     """A bag opened for reading alone; one that was cut off is read as far as it goes.
 
     Topics have their full names, "/scan", also where they were recorded without the slash. ``types``: that of
-    each. ``start``, ``end``: seconds, 0 if it is empty. ``gap``: what is missing at its end, if anything is.
-    Raises BagError.
+    each. ``foreign``: topics whose types are not installed, or otherwise than they were recorded. ``start``,
+    ``end``: seconds, 0 if it is empty. ``gap``: what is missing at its end, if anything is. Raises BagError.
     """
 
     def __init__(self, path: Union[str, Path]):
@@ -46,20 +50,29 @@ class Bag:
             self.gap = f"cut off {self.end - self.start:.1f} s after its start"
 
     def _look_over(self) -> None:
-        topics = self._bag.get_type_and_topic_info().topics
+        sums, topics = self._bag.get_type_and_topic_info()
         self.types: Dict[str, str] = {full_name(topic): info.msg_type for topic, info in topics.items()}
+        self.foreign = {topic for topic, kind in self.types.items() if not _is_installed(kind, sums[kind])}
         self._spellings = {topic: full_name(topic) for topic in topics}
         self.is_empty = self._bag.get_message_count() == 0
         self.start = 0.0 if self.is_empty else self._bag.get_start_time()
         self.end = 0.0 if self.is_empty else self._bag.get_end_time()
 
-    def messages(self, topics: Iterable[str]) -> Iterator[Played]:
-        """The messages of ``topics`` in the order in which they were recorded. Raises BagError."""
+    def messages(
+        self, topics: Iterable[str], since: float = 0.0, until: float = math.inf
+    ) -> Iterator[Played]:
+        """The messages of ``topics`` in the order in which they were recorded, and when. Raises BagError.
+
+        ``since``, ``until``: those that were recorded between, both included, s.
+        """
         wanted = set(map(full_name, topics))
         spelled = [spelling for spelling, topic in self._spellings.items() if topic in wanted]
-        if not spelled:  # of which rosbag would make all
+        if not spelled or since > self.end or until < self.start:  # of no topics rosbag would make all
             return
-        reader, now = self._bag.read_messages(spelled), self.start
+        # To the nanosecond a time is no float: what lies on a bound is taken rather twice than not at all.
+        first = rospy.Time.from_sec(max(since - TICK, 0.0))
+        last = None if until >= self.end else rospy.Time.from_sec(until + TICK)
+        reader, now = self._bag.read_messages(spelled, first, last), self.start
         while True:
             try:
                 topic, message, recorded = next(reader)
@@ -86,6 +99,11 @@ class Bag:
 
 def full_name(topic: str) -> str:
     return "/" + topic.lstrip("/")
+
+
+def _is_installed(kind: str, md5sum: str) -> bool:
+    found = get_message_class(kind)
+    return found is not None and found._md5sum == md5sum
 
 
 def _open(path: Path) -> Tuple[rosbag.Bag, bool]:

@@ -1,7 +1,8 @@
 """The bags of a recording, in the order of time."""
 
+import math
 from pathlib import Path
-from typing import Dict, Iterable, Iterator, List, Sequence, Tuple
+from typing import Any, Dict, Iterable, Iterator, List, Sequence, Set, Tuple
 
 from planar_ros.bags.bag import Bag, BagError, Played
 
@@ -26,14 +27,29 @@ class Recording:
         """The type of each topic."""
         return {topic: kind for bag in self._bags for topic, kind in bag.types.items()}
 
+    @property
+    def foreign(self) -> Set[str]:
+        """The topics whose types are not installed, or otherwise than they were recorded."""
+        return set().union(*(bag.foreign for bag in self._bags))
+
     def topics_of(self, *types: str) -> List[str]:
         return sorted(topic for topic, kind in self.types.items() if kind in types)
 
-    def messages(self, topics: Iterable[str]) -> Iterator[Played]:
-        """The messages of ``topics`` in the order in which they were recorded. Raises BagError."""
+    def messages(
+        self, topics: Iterable[str], since: float = 0.0, until: float = math.inf
+    ) -> Iterator[Played]:
+        """The messages of ``topics`` in the order in which they were recorded, and when. Raises BagError.
+
+        ``since``, ``until``: those that were recorded between, both included, s.
+        """
         topics = list(topics)
         for bag in self._bags:
-            yield from bag.messages(topics)
+            yield from bag.messages(topics, since, until)
+
+    def first_static_transforms(self) -> List[Any]:
+        """Of each frame the first on /tf_static, wherever it is."""
+        every = [transform for bag in self._bags for transform in bag.first_static_transforms()]
+        return list({transform.child_frame_id: transform for transform in reversed(every)}.values())
 
 
 def bag_paths(paths: Sequence[Path]) -> List[Path]:

@@ -83,7 +83,7 @@ class ScanLog:
             if played.topic == self._scan_topic:
                 waiting.append(played)
             else:
-                self._transforms.add(played.message, is_static=played.topic == TF_STATIC)
+                self._add_transforms(played)
             while waiting and self._is_ripe(waiting[0], played.stamp):
                 yield from self._with_odometry(waiting.popleft())
         for scan in waiting:
@@ -91,13 +91,20 @@ class ScanLog:
         if self._bag.gap:
             raise BagError(f"{self.path}: {self._bag.gap}")
 
+    def _add_transforms(self, played: Played) -> None:
+        for pair in self._transforms.add(played.message, is_static=played.topic == TF_STATIC):
+            what = f"{TF_STATIC} contradicts itself about {pair}"
+            self._tell(what, "(from now on the later one holds)", played.stamp, self._position(played))
+
+    def _position(self, played: Played) -> float:
+        return (played.stamp - self._bag.start) / max(self._bag.end - self._bag.start, 1e-9)
+
     def _is_ripe(self, scan: Played, now: float) -> bool:
         latest = self._transforms.latest_stamp(self._odom, self._base)
         return now - scan.stamp > _PATIENCE or (latest is not None and latest >= scan.message.header.stamp)
 
     def _with_odometry(self, played: Played) -> Iterator[LoggedScan]:
-        message, bag = played.message, self._bag
-        position = (played.stamp - bag.start) / max(bag.end - bag.start, 1e-9)
+        message, position = played.message, self._position(played)
         stamp = message.header.stamp.to_sec()
         if not is_stamp(message.header.stamp):
             self._tell("a scan is left out", "(its stamp means nothing)", stamp, position)

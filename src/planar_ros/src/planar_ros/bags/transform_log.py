@@ -2,6 +2,7 @@
 
 from typing import Any, Dict, Iterable, List, Optional, Tuple
 
+import numpy as np
 import tf2_py
 from genpy import Duration, Time
 from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
@@ -11,6 +12,9 @@ from planar import Pose2
 from planar_ros.messages.border import MessageError, is_stamp
 from planar_ros.messages.conversion import frame_name, pose2_of
 
+# Static transforms that differ by less, metres or parts of a quaternion, are the same.
+_ROUNDING = 1e-4
+
 
 class TransformLog:
     """Answers where a frame lies in another, by the transforms that it was given.
@@ -19,20 +23,25 @@ class TransformLog:
     """
 
     def __init__(self, static: Iterable[Any]) -> None:
-        self._static: List[TransformStamped] = [
-            typed for typed in map(_typed, static) if is_stamp(typed.header.stamp)
-        ]
-        self._frames = {name for one in self._static for name in (one.header.frame_id, one.child_frame_id)}
+        self._static: Dict[str, TransformStamped] = {}
+        for typed in map(_typed, static):
+            if is_stamp(typed.header.stamp):
+                self._static[typed.child_frame_id] = typed
+        self._frames = {
+            name for one in self._static.values() for name in (one.header.frame_id, one.child_frame_id)
+        }
         self.clear()
 
     def clear(self) -> None:
         """Forgets all but the static ones."""
         self._buffer = tf2_py.BufferCore(Duration(30.0))
         self._newest: Dict[str, Time] = {}
-        for transform in self._static:
+        for transform in self._static.values():
             self._buffer.set_transform_static(transform, "bag")
 
-    def add(self, message, is_static: bool) -> None:
+    def add(self, message, is_static: bool) -> List[str]:
+        """Takes in a message; returns the static transforms in it that contradict what held so far."""
+        contradicted: List[str] = []
         for logged in message.transforms:
             transform = _typed(logged)
             parent, child = transform.header.frame_id, transform.child_frame_id
@@ -40,11 +49,15 @@ class TransformLog:
             if not is_stamp(transform.header.stamp):
                 continue
             if is_static:
-                self._static.append(transform)
+                known = self._static.get(child)
+                if known is not None and not _is_same(known, transform):
+                    contradicted.append(f"{known.header.frame_id} -> {child}")
+                self._static[child] = transform
                 self._buffer.set_transform_static(transform, "bag")
             elif self._newest.get(child) != transform.header.stamp:
                 self._newest[child] = transform.header.stamp
                 self._buffer.set_transform(transform, "bag")
+        return contradicted
 
     def latest_stamp(self, target: str, source: str) -> Optional[Time]:
         try:
@@ -88,6 +101,17 @@ class TransformLog:
             return self._buffer.lookup_transform_core(target, source, stamp).transform
         except tf2_py.TransformException:
             return None
+
+
+def _is_same(one: TransformStamped, other: TransformStamped) -> bool:
+    """Whether two transforms have the same parent and, but for rounding, put the child to the same place."""
+    a, b = (
+        np.array([getattr(part, axis) for part in (t.translation, t.rotation) for axis in part.__slots__])
+        for t in (one.transform, other.transform)
+    )
+    turned = np.concatenate((b[:3], -b[3:]))  # the same rotation
+    near = min(np.abs(a - b).max(), np.abs(a - turned).max()) < _ROUNDING
+    return one.header.frame_id == other.header.frame_id and bool(near)
 
 
 def _typed(logged) -> TransformStamped:

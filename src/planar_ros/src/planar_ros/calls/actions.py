@@ -1,16 +1,32 @@
 """Clients and servers of actions."""
 
+from typing import Any, List, Sequence
+
 import actionlib
+import rospy
 
 from planar_ros.step import Step
 
+# Goals that have ended are told of for a while, but of no more than so many: each goal that comes is looked
+# up among them, and has all of them told of again.
+MOST_ENDED = 20
+
 
 class ActionServer(actionlib.SimpleActionServer):
-    """A server that tells its status at moments, and also after time was set back, unlike actionlib's own."""
+    """A server that tells its status at moments, and also after time was set back, unlike actionlib's own.
+
+    A client that sends goals without end does not slow it down.
+    """
 
     def start(self) -> None:
         server, step = self.action_server, Step.of_node()
-        tell = server.publish_status
+        tell_all = server.publish_status
+
+        def tell() -> None:
+            with server.lock:
+                server.status_list[:] = without_most_ended(server.status_list)
+                tell_all()
+
         if step.is_on:  # clients connect between this moment and the next, and either all hear it or none
             server.publish_status = lambda: None
         super().start()
@@ -19,6 +35,13 @@ class ActionServer(actionlib.SimpleActionServer):
             server.status_timer.shutdown()
         period = 1.0 / server.status_frequency
         step.every(lambda: period, lambda _now: tell(), lambda: None)
+
+
+def without_most_ended(trackers: Sequence[Any]) -> List[Any]:
+    """The goals of a server (actionlib's StatusTracker), of those that have ended the last ``MOST_ENDED``."""
+    ended = [tracker for tracker in trackers if tracker.handle_destruction_time != rospy.Time()]
+    forgotten = {id(tracker) for tracker in ended[:-MOST_ENDED]}
+    return [tracker for tracker in trackers if id(tracker) not in forgotten]
 
 
 def server_is_ready(client: actionlib.SimpleActionClient) -> bool:
