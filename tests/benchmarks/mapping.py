@@ -32,7 +32,7 @@ from sim_bridge import RobotProfile, Simulation, load_world, robot_named
 from sim_bridge.world import World
 from slam_lite.config import NodeSettings
 from slam_lite.mapper import Mapper
-from slam_lite.rendering import MapRenderer, on_canvas
+from slam_lite.rendering import SessionRenderer, on_canvas
 
 ROOT = Path(__file__).resolve().parents[2]
 KINECT_CONFIG = ROOT / "src/move_base_lite/config/turtlebot_kinect.yaml"
@@ -67,7 +67,7 @@ class MappingRun:
         self._simulation = Simulation(world, robot, seed=seed)
         self._settings, _ = settings_from_yaml(NodeSettings, SLAM_CONFIG)
         self.mapper = Mapper(self._settings)
-        self._renderer = MapRenderer(self._settings.resolution, self._settings.occupied_threshold)
+        self._renderer = SessionRenderer(self._settings.resolution, self._settings.occupied_threshold)
         field_of_view = robot.laser.beams * robot.laser.angle_increment
         self._explorer = Explorer(ExplorerSettings(field_of_view=field_of_view))
         navigation = load_settings(NAVIGATION_CONFIG, *([KINECT_CONFIG] if field_of_view < math.pi else []))
@@ -133,7 +133,7 @@ class MappingRun:
 
     def grid(self) -> OccupancyGrid:
         """The map as the node would publish it now."""
-        self._renderer.update(*self.mapper.evidence())
+        self._renderer.update(self.mapper.evidence())
         return self._renderer.grid()
 
 

@@ -1,6 +1,7 @@
 import math
 
 import numpy as np
+import pytest
 
 from planar import Pose2, wrap
 from slam_lite.matching.correlative import (
@@ -170,11 +171,12 @@ def test_points_are_thinned_and_walls_have_normals(office):
     assert np.all((np.abs(lengths - 1.0) < 1e-5) | (lengths == 0.0))
 
 
-def test_many_coarse_shifts_are_bounded_as_few_are(office):
+@pytest.mark.parametrize("at", [(500, 450), (4000, 450), (-3000, 450), (500, 4000), (500, -3000)])
+def test_many_coarse_shifts_are_bounded_as_few_are_also_off_the_map(office, at):
     local_map = local_map_at(office, HERE)
     coarse = _maxima(local_map.likelihood)[-1]
     surface = surface_at(office, HERE)
-    cells = np.floor(surface.points_xy / local_map.resolution).astype(np.int64)[None] + [[[500, 450]]]
+    cells = np.floor(surface.points_xy / local_map.resolution).astype(np.int64)[None] + [[at]]
     few, many = _bounds_of_few, _bounds_of_many
     cols, rows = (np.ascontiguousarray(cells[:, :, axis]) for axis in (0, 1))
     assert np.array_equal(few(coarse, cols, rows, 100), many(_phases(coarse), cols, rows, 100))

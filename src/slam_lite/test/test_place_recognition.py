@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from planar import Pose2, wrap
-from slam_lite.drift import drift_along, shortest_ways
+from slam_lite.graph.drift import drift_along, shortest_ways
+from slam_lite.graph.pose_graph import Edge, edges_of
+from slam_lite.loops.place_recognition import Hypothesis, appearance_of, hypotheses, say_the_same
+from slam_lite.loops.sight import share_seen_through
 from slam_lite.mapper import Mapper
-from slam_lite.place_recognition import Hypothesis, appearance_of, hypotheses, say_the_same
-from slam_lite.pose_graph import Edge, edges_of
-from slam_lite.sight import share_seen_through
 from slam_lite.surface import Surface, joined, surface_of
 
 # two bins of the profiles, and what an axis may err

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from planar import Pose2
-from slam_lite.pose_graph import Edge, EdgeList, chi_squares, edges_of, optimise
+from slam_lite.graph.pose_graph import Edge, EdgeList, chi_squares, edges_of, optimise
 
 SURE = np.diag([1e4, 1e4, 1e5])
 DOUBTFUL = np.diag([1e3, 1e3, 1e3])

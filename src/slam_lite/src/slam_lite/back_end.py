@@ -5,14 +5,15 @@ the front end goes on: ``result = back_end.task().run()``, then ``back_end.adopt
 """
 
 from dataclasses import dataclass
-from typing import List, Sequence, Tuple
+from typing import Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from planar import Pose2
+from planar import Pose2, wrap
 from slam_lite.config import MapperSettings
-from slam_lite.drift import drift_along, shortest_ways
-from slam_lite.loop_closure import (
+from slam_lite.graph.drift import drift_along, shortest_ways
+from slam_lite.graph.pose_graph import Edge, EdgeList, Edges, chi_squares, edges_of, optimise
+from slam_lite.loops.loop_closure import (
     Candidate,
     Closure,
     agree,
@@ -25,16 +26,26 @@ from slam_lite.loop_closure import (
     lengths_of,
     recognised,
 )
+from slam_lite.loops.place_recognition import (
+    Appearance,
+    Hypothesis,
+    Memory,
+    hypotheses,
+    remembered,
+    ways_along,
+)
+from slam_lite.loops.relocation import KnownMap
 from slam_lite.matching.local_map import LocalMap
-from slam_lite.place_recognition import Appearance, Hypothesis, Memory, hypotheses, remembered, ways_along
-from slam_lite.pose_graph import Edge, EdgeList, Edges, chi_squares, edges_of, optimise
 from slam_lite.surface import Surface
 
 # Errors that a match's own information knows nothing of: between consecutive keys, and across a closure.
 _STEP_SIGMA_XY, _STEP_SIGMA_YAW = 0.01, 0.003
 _CLOSURE_SIGMA_XY, _CLOSURE_SIGMA_YAW = 0.02, 0.005
-# How well a robot that goes on from a saved map is believed to be placed.
+# How well a robot that goes on from a saved map is believed to be placed; and one of which nothing is known.
 _GUESS_SIGMA_XY, _GUESS_SIGMA_YAW = 0.5, 0.3
+_LOST_SIGMA_XY, _LOST_SIGMA_YAW = 1e3, 1e2
+# Key scans that are put together to find a lost robot, and how far beside the map it is put until then.
+_LOST_KEYS, _BESIDE = 20, 30.0
 # A new closure with a larger chi-square, or this many smaller ones, are worth an optimisation.
 _NEWS_CHI_SQUARE, _NEWS_COUNT = 10.0, 20
 _MAX_PENDING = 50
@@ -60,7 +71,10 @@ class ClosureResult:
 
 @dataclass(frozen=True, eq=False)
 class ClosureTask:
-    """The search for closures of the newest of some keys, and the optimisation if there is news."""
+    """The search for closures of the newest of some keys, and the optimisation if there is news.
+
+    ``lost_since``: the first key of a trajectory that is not yet joined with those before, if it is not.
+    """
 
     settings: MapperSettings
     local_map: LocalMap
@@ -70,16 +84,14 @@ class ClosureTask:
     pending: Sequence[Closure]
     memory: Memory
     unsettled: int
+    lost_since: Optional[int]
 
     def run(self) -> ClosureResult:
         """Does the work; touches nothing but ``local_map``."""
         accepted: List[Closure] = []
         pending = list(self.pending)
         memory, alike = self._look()
-        for candidate in [*candidates(len(self.poses) - 1, self.poses, self.edges, self.settings), *alike]:
-            closure = find_closure(candidate, self.poses, self.surfaces, self.local_map, self.settings)
-            if closure is None:
-                continue
+        for closure in self._found(alike):
             witnesses = [other for other in pending if agree(closure, other, self.poses)]
             if is_confirmed(closure, witnesses, self.poses) and not self._is_disputed(
                 closure, witnesses, pending
@@ -91,8 +103,35 @@ class ClosureTask:
         edges = [_widened(closure.edge, _CLOSURE_SIGMA_XY, _CLOSURE_SIGMA_YAW) for closure in accepted]
         if not self._is_news(edges):
             return ClosureResult(edges, self.poses, pending, memory, False)
-        poses = optimise(self.poses, _with(self.edges, edges), _ROUGHLY, fresh=len(edges))
+        poses = optimise(self._joined(edges), _with(self.edges, edges), _ROUGHLY, fresh=len(edges))
         return ClosureResult(edges, poses, pending, memory, True)
+
+    def _found(self, alike: Sequence[Candidate]) -> Iterator[Closure]:
+        """All closures of the newest key, whether they are believed or not."""
+        near = candidates(len(self.poses) - 1, self.poses, self.edges, self.settings)
+        for candidate in (*near, *alike):
+            closure = find_closure(candidate, self.poses, self.surfaces, self.local_map, self.settings)
+            if closure is not None:
+                yield closure
+        if self.lost_since is not None:
+            known = KnownMap(self.surfaces[: self.lost_since], self.poses[: self.lost_since], self.local_map)
+            closure = known.closure(
+                self.surfaces, self.poses, min(_LOST_KEYS, len(self.poses) - self.lost_since)
+            )
+            if closure is not None:
+                yield closure
+
+    def _joined(self, edges: Sequence[Edge]) -> np.ndarray:
+        """The poses (N, 3), with a lost trajectory moved to where one of ``edges`` puts it."""
+        for edge in edges:
+            if self.lost_since is not None and edge.first < self.lost_since <= edge.second:
+                place, recent = (Pose2.from_array(self.poses[key]) for key in (edge.first, edge.second))
+                move = place @ edge.second_in_first @ recent.inverse()
+                poses = self.poses.copy()
+                poses[self.lost_since :, :2] = move.transform_points(poses[self.lost_since :, :2])
+                poses[self.lost_since :, 2] = wrap(poses[self.lost_since :, 2] + move.yaw)
+                return poses
+        return self.poses
 
     def _look(self) -> Tuple[Memory, List[Candidate]]:
         """What to remember of the places passed since the last look, and where it looked alike before."""
@@ -155,6 +194,7 @@ class BackEnd:
         self._pending: Sequence[Closure] = ()
         self._memory = Memory()
         self._unsettled = 0
+        self._lost_since: Optional[int] = None
 
     def __len__(self) -> int:
         return len(self.surfaces)
@@ -173,14 +213,29 @@ class BackEnd:
         """Where a key lies in the map."""
         return Pose2.from_array(self._poses[key])
 
-    def add_first(self, surface: Surface, base_in_map: Pose2) -> None:
-        """Adds the first key, or after ``restore`` one whose tie to the last key is but a guess."""
+    def place_of(self, surface: Surface, believed: Optional[Pose2] = None) -> Optional[Pose2]:
+        """Where a scan was taken, looked for around ``believed`` first; None if it cannot be told."""
+        return KnownMap(self.surfaces, self.poses, self._local_map).find([(surface, Pose2())], believed)
+
+    def beside(self, surface: Surface) -> Pose2:
+        """A pose from which a scan sees nothing of what was seen so far."""
+        ends = [pose[0] + _reach(known) for known, pose in zip(self.surfaces, self.poses)]
+        return Pose2(max(ends, default=0.0) + _BESIDE + _reach(surface), 0.0, 0.0)
+
+    def add_first(self, surface: Surface, base_in_map: Pose2, is_lost: bool = False) -> None:
+        """Adds the first key of a trajectory.
+
+        Its tie to the key before, if there is one, is but a guess, or nothing at all if the robot is lost.
+        """
         last_in_map = self.pose(len(self) - 1) if len(self) else None
         self._append(surface, base_in_map)
         if last_in_map is not None:
             last = len(self) - 2
-            guess = np.diag([_GUESS_SIGMA_XY**-2, _GUESS_SIGMA_XY**-2, _GUESS_SIGMA_YAW**-2])
-            self._edges.append(Edge(last, last + 1, last_in_map.inverse() @ base_in_map, guess))
+            xy, yaw = (_LOST_SIGMA_XY, _LOST_SIGMA_YAW) if is_lost else (_GUESS_SIGMA_XY, _GUESS_SIGMA_YAW)
+            tie = np.diag([xy**-2, xy**-2, yaw**-2])
+            self._edges.append(Edge(last, last + 1, last_in_map.inverse() @ base_in_map, tie))
+            self._lost_since = last + 1 if is_lost else None
+            self._memory = self._memory.anew(len(self) - 1)
 
     def restore(self, surfaces: Sequence[Surface], poses: np.ndarray, edges: Edges) -> None:
         """Takes over the keys and edges of a saved graph, while there are none."""
@@ -214,6 +269,7 @@ class BackEnd:
             self._pending,
             self._memory,
             self._unsettled,
+            self._lost_since,
         )
 
     def adopt(self, result: ClosureResult) -> None:
@@ -227,14 +283,22 @@ class BackEnd:
             self._poses[:known] = result.poses
         for edge in result.edges:
             self._edges.append(edge)
+            if self._lost_since is not None and edge.first < self._lost_since <= edge.second:
+                self._lost_since = None
         self._pending = result.pending
-        self._memory = result.memory
+        if known > self._memory.start:  # otherwise a new way has begun since
+            self._memory = result.memory
         self._unsettled = 0 if result.moved else self._unsettled + len(result.edges)
 
     def settle(self) -> None:
         """Optimises to the end."""
         self._poses[: len(self)] = optimise(self.poses, self.edges, _EXACTLY)
         self._unsettled = 0
+
+
+def _reach(surface: Surface) -> float:
+    """How far a scan sees, metres."""
+    return float(np.sqrt((surface.points_xy**2).sum(axis=1).max(initial=0.0)))
 
 
 def _with(edges: Edges, more: Sequence[Edge]) -> Edges:

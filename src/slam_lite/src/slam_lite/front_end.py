@@ -120,6 +120,7 @@ class FrontEnd:
         self._last_in_odom: Optional[Pose2] = None
         self._last_in_track = base_in_track
         self._matched_motion = Pose2()
+        self._found_again: Optional[Pose2] = None
         self.odometry_is_stuck = False
 
     def track(self, base_in_odom: Pose2, surface: Surface) -> Tracked:
@@ -127,7 +128,10 @@ class FrontEnd:
         last_in_track = base_in_odom if self._last_in_track is None else self._last_in_track
         motion = Pose2() if self._last_in_odom is None else self._last_in_odom.inverse() @ base_in_odom
         variance = self._motion_variance(motion)
-        if self.odometry_is_stuck and not moves(motion):
+        if self._found_again is not None:
+            match = self._match(surface, self._found_again, Pose2(), _STEADY_MOTION_VARIANCE)
+            self._found_again = None
+        elif self.odometry_is_stuck and not moves(motion):
             match = self._match(surface, last_in_track, self._matched_motion, _STEADY_MOTION_VARIANCE)
         else:
             match = self._match(surface, last_in_track, motion, variance)
@@ -137,6 +141,18 @@ class FrontEnd:
         self.odometry_is_stuck = not moves(motion) and moves(self._matched_motion, _STUCK)
         self._last_in_odom, self._last_in_track = base_in_odom, match.base_pose
         return Tracked(match.base_pose, match.information, match.response, surprise)
+
+    def finds_again(self, surface: Surface) -> bool:
+        """Whether a scan shows that the robot is still where it was; it is tracked from there then."""
+        last_in_track = self._last_in_track
+        if last_in_track is None or self._scans.local_map.count == 0:
+            return False
+        unknown = Match(last_in_track, _NO_BELIEF, 0.0)
+        match = self._search_wide(surface, (last_in_track,), unknown)
+        if match is unknown:
+            return False
+        self._found_again = match.base_pose
+        return True
 
     def _match(self, surface: Surface, last_in_track: Pose2, motion: Pose2, variance: np.ndarray) -> Match:
         prior = np.diag(1.0 / variance)

@@ -10,8 +10,12 @@ from planar import OccupancyGrid, Pose2, Scan
 from planar.geometry.pose import check_place
 from slam_lite.back_end import BackEnd, ClosureResult, ClosureTask
 from slam_lite.config import MapperSettings
-from slam_lite.front_end import FrontEnd, KnownScans, RecentScans, Tracked, moves
-from slam_lite.rendering import Beams, MapRenderer, beams_of
+from slam_lite.continuity import Continuity, Pause
+from slam_lite.front_end import FrontEnd, KnownScans, RecentScans, Tracked
+from slam_lite.loops.relocation import KnownMap
+from slam_lite.matching.local_map import LocalMap
+from slam_lite.rendering import Beams, Evidence, SessionRenderer, beams_of
+from slam_lite.sessions import renewed
 from slam_lite.state import MapState
 from slam_lite.surface import Surface, surface_of
 
@@ -62,8 +66,13 @@ class Mapper:
         self._beams: List[Beams] = []
         self._searched = 0
         self._key_in_track: Optional[Pose2] = None
-        self._pause = _Pause(settings.still_interval)
+        self._pause, self._continuity = Pause(settings.still_interval), Continuity()
         self._last_in_key = Pose2()
+        self._session = 0
+        self._sessions: List[int] = []
+        # Whether the robot has to be found in the map, and where it is believed to be in a finished one.
+        self._is_to_be_found, self._is_lost = False, False
+        self._believed: Optional[Pose2] = None
 
     def insert(self, base_in_odom: Pose2, scan: Scan) -> Optional[MapUpdate]:
         """Takes one scan in; None if it says nothing new because the robot stands still.
@@ -75,6 +84,10 @@ class Mapper:
             return None
         max_range, usable_range = ranges_of(scan, self._settings)
         surface = surface_of(scan, usable_range, self._settings.point_spacing)
+        if self._continuity.breaks(base_in_odom, scan.stamp):
+            self._is_to_be_found = not self._front_end.finds_again(surface)
+        if self._is_to_be_found:
+            self._find(surface)
         tracked = self._front_end.track(base_in_odom, surface)
         is_key = self._is_key(tracked.base_in_track)
         if is_key:
@@ -127,14 +140,15 @@ class Mapper:
         """How many loop closures tie the graph."""
         return int(self._back_end.edges.is_loop.sum())
 
-    def evidence(self) -> Tuple[List[Beams], np.ndarray]:
-        """What a MapRenderer draws: the beams of all key scans and their present poses (N, 3)."""
-        return list(self._beams), self._back_end.poses.copy()
+    def evidence(self) -> Evidence:
+        """What a SessionRenderer draws: the beams of all key scans and their present poses."""
+        older = int(np.searchsorted(self._sessions, self._session))
+        return Evidence(list(self._beams), self._back_end.poses.copy(), older)
 
     def grid(self) -> OccupancyGrid:
         """The map of all key scans at their present poses, drawn from scratch."""
-        renderer = MapRenderer(self._settings.resolution, self._settings.occupied_threshold)
-        renderer.update(*self.evidence())
+        renderer = SessionRenderer(self._settings.resolution, self._settings.occupied_threshold)
+        renderer.update(self.evidence())
         return renderer.grid()
 
     def state(self) -> MapState:
@@ -145,20 +159,43 @@ class Mapper:
             self._back_end.poses.copy(),
             self._back_end.edges,
             self.last_in_map,
+            np.array(self._sessions, dtype=np.int64),
         )
 
     def resume(self, state: MapState, base_in_map: Optional[Pose2] = None) -> None:
-        """Goes on from a state with the robot near ``base_in_map``, default: where it was last."""
+        """Goes on from a state in a new session, with the robot near ``base_in_map``.
+
+        By default the first scan tells where it is: where it was last, or anywhere else in the map. If that
+        cannot be told, a trajectory beside the map begins, to be joined with it when a place is recognised.
+        """
+        state = renewed(state)
         self._back_end = BackEnd(self._settings)
         self._back_end.restore(state.surfaces, state.poses, state.edges)
         self._beams = list(state.beams)
         self._searched = 0
-        self._key_in_track = None
+        self._sessions = list(state.sessions)
+        self._session = self._sessions[-1] + 1 if self._sessions else 0
+        self._continuity = Continuity()
+        self._believed, self._is_lost = state.base_in_map, False
+        self._is_to_be_found = base_in_map is None and len(state.poses) > 0
         start = base_in_map or state.base_in_map
         if len(state.poses):
             self._last_in_key = Pose2.from_array(state.poses[-1]).inverse() @ start
+        self._begin(start)
+
+    def _find(self, surface: Surface) -> None:
+        """Begins a trajectory where the scan says that the robot is, or beside the map.
+
+        One scan is enough in a finished map; in one that grows, it may look the same elsewhere.
+        """
+        found = None if self._believed is None else self._back_end.place_of(surface, self._believed)
+        self._is_to_be_found, self._is_lost, self._believed = False, found is None, None
+        self._begin(found or self._back_end.beside(surface))
+
+    def _begin(self, base_in_track: Pose2) -> None:
+        self._key_in_track = None
         self._recent = RecentScans(self._settings.window_keys)
-        self._front_end = FrontEnd(self._settings, self._recent, start)
+        self._front_end = FrontEnd(self._settings, self._recent, base_in_track)
 
     def _is_key(self, base_in_track: Pose2) -> bool:
         if self._key_in_track is None:
@@ -169,7 +206,7 @@ class Mapper:
 
     def _add_key(self, tracked: Tracked, surface: Surface, beams: Beams) -> None:
         if self._key_in_track is None:
-            self._back_end.add_first(surface, tracked.base_in_track)
+            self._back_end.add_first(surface, tracked.base_in_track, self._is_lost)
         else:
             base_in_last = self._key_in_track.inverse() @ tracked.base_in_track
             turned = _rotated(tracked.information, -self._key_in_track.yaw)
@@ -177,6 +214,7 @@ class Mapper:
         self._key_in_track = tracked.base_in_track
         self._recent.add(surface, tracked.base_in_track)
         self._beams.append(beams)
+        self._sessions.append(self._session)
         if not self._deferred:
             task = self.task()
             if task is not None:
@@ -184,18 +222,23 @@ class Mapper:
 
 
 class Follower:
-    """Follows the robot in a finished map, which stays as it is."""
+    """Follows the robot in a finished map, which stays as it is.
+
+    Without ``base_in_map`` the first scan tells where the robot is, if it can, or else the last pose does.
+    """
 
     def __init__(self, settings: MapperSettings, state: MapState, base_in_map: Optional[Pose2] = None):
         self._settings = settings
         self._state = state
-        self._pause = _Pause(settings.still_interval)
+        self._pause = Pause(settings.still_interval)
         self.place(base_in_map or state.base_in_map)
+        self._is_to_be_found = base_in_map is None
 
     def place(self, base_in_map: Pose2) -> None:
         """Says where the robot is; it may be a few decimetres off."""
         known = KnownScans(self._state.surfaces, self._state.poses)
         self._front_end = FrontEnd(self._settings, known, base_in_map)
+        self._is_to_be_found = False
 
     def insert(self, base_in_odom: Pose2, scan: Scan) -> Optional[PoseUpdate]:
         """Follows one scan; None if the robot stands still. Raises OutOfRangeError, as ``Mapper.insert``."""
@@ -203,28 +246,15 @@ class Follower:
         if self._pause.lasts(base_in_odom, scan.stamp) and not self._front_end.odometry_is_stuck:
             return None
         _, usable_range = ranges_of(scan, self._settings)
-        tracked = self._front_end.track(
-            base_in_odom, surface_of(scan, usable_range, self._settings.point_spacing)
-        )
+        surface = surface_of(scan, usable_range, self._settings.point_spacing)
+        if self._is_to_be_found:
+            known = KnownMap(self._state.surfaces, self._state.poses, LocalMap())
+            found = known.find([(surface, Pose2())], self._state.base_in_map)
+            self.place(found or self._state.base_in_map)
+        tracked = self._front_end.track(base_in_odom, surface)
         base_in_map = tracked.base_in_track
         odom_in_map = base_in_map @ base_in_odom.inverse()
         return PoseUpdate(base_in_map, odom_in_map, tracked.information, tracked.response, tracked.surprise)
-
-
-class _Pause:
-    """Tells when the robot stands still, so that its scans need only be looked at now and then."""
-
-    def __init__(self, interval: float):
-        self._interval = interval
-        self._stamp = -math.inf
-        self._base_in_odom = Pose2()
-
-    def lasts(self, base_in_odom: Pose2, stamp: float) -> bool:
-        still = not moves(self._base_in_odom.inverse() @ base_in_odom)
-        if still and 0.0 <= stamp - self._stamp < self._interval:
-            return True
-        self._stamp, self._base_in_odom = stamp, base_in_odom
-        return False
 
 
 def ranges_of(scan: Scan, settings: MapperSettings) -> Tuple[float, float]:

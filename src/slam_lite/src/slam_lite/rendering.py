@@ -7,7 +7,7 @@ and put in anew. They are kept in tiles, and only where a beam has been: of a la
 
 import math
 from dataclasses import dataclass
-from typing import List, Sequence, Tuple
+from typing import List, NamedTuple, Sequence, Tuple
 
 import numba
 import numpy as np
@@ -18,6 +18,8 @@ _GROWTH = 10.0
 # Side of a tile, cells, and how many there is room for at first.
 _TILE, _FIRST_TILES = 64, 256
 _SIZE_MULTIPLE = 32
+# From so many beams on, the present session knows a cell, whatever older ones say.
+_ENOUGH_VISITS = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +51,39 @@ def beams_of(scan: Scan, max_range: float, usable_range: float) -> Beams:
     return Beams(laser_xy, ends_xy.astype(np.float32), marks)
 
 
+class Evidence(NamedTuple):
+    """What a map is drawn from: the ``beams`` of N key scans and their ``poses`` (N, 3).
+
+    The first ``older`` ones are of sessions before the present one.
+    """
+
+    beams: Sequence[Beams]
+    poses: np.ndarray
+    older: int = 0
+
+
+class SessionRenderer:
+    """Draws the key scans of several sessions: what the present one has seen enough of is as it says.
+
+    So furniture that has moved since is drawn where it is now, however often it was seen before.
+    """
+
+    def __init__(self, resolution: float, occupied_threshold: float):
+        self._before, self._now = (MapRenderer(resolution, occupied_threshold) for _ in range(2))
+
+    def update(self, evidence: Evidence) -> None:
+        """Brings the map up to date; ``evidence``: as many ``older`` scans as ever."""
+        beams, poses, older = evidence
+        self._before.update(beams[:older], poses[:older])
+        self._now.update(beams[older:], poses[older:])
+
+    def grid(self) -> OccupancyGrid:
+        """The map as it is now, and where that was not seen, as it was."""
+        if self._before.is_empty:
+            return self._now.grid()
+        return overlaid([self._now.grid(), self._before.grid(), self._now.grid(_ENOUGH_VISITS)])
+
+
 class MapRenderer:
     """Counts beams per cell and turns the counts into a grid."""
 
@@ -61,6 +96,11 @@ class MapRenderer:
         self._used = 0
         self._index = np.empty((0, 0), dtype=np.int32)
         self._corner = np.zeros(2, dtype=np.int64)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether no scan was counted yet."""
+        return not self._placed
 
     def update(self, beams: Sequence[Beams], poses: np.ndarray) -> None:
         """Brings the counts up to date with the scans' present poses (N, 3) in the map."""
@@ -78,12 +118,13 @@ class MapRenderer:
         x, y, turn = pose - self._placed[i]
         return math.hypot(x, y) > 0.5 * self._resolution or abs(wrap(float(turn))) > 0.005
 
-    def grid(self) -> OccupancyGrid:
-        """The map of all scans counted so far, as large as what they reached."""
+    def grid(self, least_visits: int = 1) -> OccupancyGrid:
+        """The map of all scans counted so far, as large as what they reached; fewer beams leave UNKNOWN."""
         row, col, end_row, end_col = _extent(self._tiles, self._index)
         if end_row <= row:
             return OccupancyGrid(np.full((1, 1), UNKNOWN, dtype=np.int8), self._resolution)
-        cells = _judged(self._tiles, self._index, self._threshold, row, col, end_row, end_col)
+        box = row, col, end_row, end_col
+        cells = _judged(self._tiles, self._index, self._threshold, least_visits, *box)
         x, y = (self._corner * _TILE + [col, row]) * self._resolution
         return OccupancyGrid(cells, self._resolution, Pose2(float(x), float(y), 0.0))
 
@@ -131,6 +172,23 @@ def _with_room(tiles: np.ndarray) -> np.ndarray:
     larger = np.zeros((2 * len(tiles) + _FIRST_TILES, *tiles.shape[1:]), dtype=tiles.dtype)
     larger[: len(tiles)] = tiles
     return larger
+
+
+def overlaid(grids: Sequence[OccupancyGrid]) -> OccupancyGrid:
+    """Grids of one resolution as one, each over those before it wherever it knows something."""
+    resolution = grids[0].resolution
+    corners = [
+        np.rint(np.array([grid.origin.x, grid.origin.y]) / resolution).astype(np.int64) for grid in grids
+    ]
+    ends = [corner + [grid.cols, grid.rows] for corner, grid in zip(corners, grids)]
+    lowest, highest = np.min(corners, axis=0), np.max(ends, axis=0)
+    cells = np.full((highest - lowest)[::-1], UNKNOWN, dtype=np.int8)
+    for grid, corner in zip(grids, corners):
+        col, row = corner - lowest
+        below = cells[row : row + grid.rows, col : col + grid.cols]
+        np.copyto(below, grid.cells, where=grid.cells != UNKNOWN)
+    x, y = lowest * resolution
+    return OccupancyGrid(cells, resolution, Pose2(float(x), float(y)))
 
 
 def on_canvas(grid: OccupancyGrid, extent: Tuple[float, float, float, float]) -> OccupancyGrid:
@@ -211,7 +269,7 @@ def _extent(tiles, index):
 
 
 @numba.njit(cache=True, nogil=True)
-def _judged(tiles, index, threshold, first_row, first_col, end_row, end_col):
+def _judged(tiles, index, threshold, least_visits, first_row, first_col, end_row, end_col):
     """The cells of a box, FREE, OCCUPIED or UNKNOWN, that these counts speak for."""
     cells = np.full((end_row - first_row, end_col - first_col), UNKNOWN, dtype=np.int8)
     for row in range(first_row, end_row):
@@ -220,6 +278,6 @@ def _judged(tiles, index, threshold, first_row, first_col, end_row, end_col):
             if tile < 0:
                 continue
             hits, visits = tiles[tile, 0, row % _TILE, col % _TILE], tiles[tile, 1, row % _TILE, col % _TILE]
-            if visits > 0:
+            if visits >= least_visits:
                 cells[row - first_row, col - first_col] = OCCUPIED if hits > threshold * visits else FREE
     return cells

@@ -9,7 +9,7 @@ import numpy as np
 from planar import PlanarError, Pose2, write_atomically
 from planar.files.reading import read_arrays
 from planar.geometry.limits import FARTHEST
-from slam_lite.pose_graph import Edges
+from slam_lite.graph.pose_graph import Edges
 from slam_lite.rendering import Beams
 from slam_lite.surface import Surface
 
@@ -23,13 +23,17 @@ class StateFileError(PlanarError):
 
 @dataclass(frozen=True, eq=False)
 class MapState:
-    """All that is needed to go on mapping: ``poses`` (N, 3) of the keys, and where the robot was last."""
+    """All that is needed to go on mapping: ``poses`` (N, 3) of the keys, and where the robot was last.
+
+    ``sessions``: (N,), the number of the session in which each was seen, growing.
+    """
 
     surfaces: Sequence[Surface]
     beams: Sequence[Beams]
     poses: np.ndarray
     edges: Edges
     base_in_map: Pose2
+    sessions: np.ndarray
 
 
 def save_state(state: MapState, path) -> None:
@@ -48,6 +52,7 @@ def save_state(state: MapState, path) -> None:
         beam_counts=[len(beams.marks) for beams in state.beams],
         poses=state.poses,
         base_in_map=state.base_in_map.as_array(),
+        sessions=state.sessions,
         **{"edge_" + name: array for name, array in vars(state.edges).items()},
     )
     write_atomically(path, file.getvalue())
@@ -66,6 +71,7 @@ def load_state(path) -> MapState:
     version = table.get("version", np.array(0))
     if version.shape != () or version != VERSION:
         raise StateFileError(f"{path}: version {version}, but this program reads {VERSION}")
+    table.setdefault("sessions", np.zeros(len(np.atleast_1d(table.get("poses", ()))), dtype=np.int64))
     problem = _problem_of(table)
     if problem:
         raise StateFileError(f"{path}: {problem}")
@@ -79,6 +85,7 @@ def load_state(path) -> MapState:
         table["poses"],
         Edges(*(table["edge_" + name] for name in ("nodes", "measured", "information", "is_loop"))),
         Pose2.from_array(table["base_in_map"]),
+        table["sessions"],
     )
 
 
@@ -93,6 +100,7 @@ _LAYOUT = {
     "beam_counts": ("iuf", "k"),
     "poses": ("f", "k3"),
     "base_in_map": ("f", "3"),
+    "sessions": ("iu", "k"),
     "edge_nodes": ("iu", "e2"),
     "edge_measured": ("f", "e3"),
     "edge_information": ("f", "e33"),

@@ -139,17 +139,18 @@ def search_far(
     promising = np.flatnonzero(bounds > min_score)
     order = promising[np.argsort(-bounds.ravel()[promising], kind="stable")]
     search = (maxima, bounds, order, cols, rows, cells)
-    best, score = _climb(*search, min_score, 2.0, np.zeros(3, dtype=np.int64), 0.0, 0, np.zeros(2))
+    best, score = _climb(*search, min_score, 2.0, np.zeros(3, dtype=np.int64), (0.0, 0, 0), np.zeros(2))
     if score <= min_score:
         return None
     enough = _RIVAL_SHARE * score
-    apart_cells, apart_angles = apart / resolution, math.ceil(0.5 / angle_step)
+    apart_angles = math.ceil(0.5 / angle_step)
+    is_far = apart / resolution, apart_angles, round(2.0 * math.pi / angle_step)
     slide = np.zeros(2)
-    rival, rival_score = _climb(*search, enough, enough, best, apart_cells, apart_angles, slide)
+    rival, rival_score = _climb(*search, enough, enough, best, is_far, slide)
     is_unique = rival_score <= enough
     if not is_unique and abs(rival[2] - best[2]) < apart_angles:
         slide = (rival - best)[:2] / np.hypot(*(rival - best)[:2])
-        _, rival_score = _climb(*search, enough, enough, best, apart_cells, apart_angles, slide)
+        _, rival_score = _climb(*search, enough, enough, best, is_far, slide)
         is_unique = rival_score <= enough
     x, y = start[:2] + (best[:2] + corner) * resolution
     yaw = wrap(start[2] + (best[2] - angle_steps) * angle_step)
@@ -259,7 +260,8 @@ def _bounds_of_many(phases, cols, rows, cells):
             row, col = rows[k, p] - cells, cols[k, p] - cells
             plane = phases[row % _COARSE, col % _COARSE]
             row, col = row // _COARSE, col // _COARSE
-            first, end = max(0, -col), min(side, wide - col)
+            first = min(max(0, -col), side)
+            end = max(min(side, wide - col), first)
             for j in range(max(0, -row), min(side, high - row)):
                 line, total = plane[row + j, col + first : col + end], totals[j, first:end]
                 for i in range(len(total)):
@@ -271,9 +273,7 @@ def _bounds_of_many(phases, cols, rows, cells):
 
 
 @numba.njit(cache=True, nogil=True)
-def _climb(
-    maxima, bounds, order, cols, rows, cells, min_score, enough, excluded, apart_cells, apart_angles, slide
-):
+def _climb(maxima, bounds, order, cols, rows, cells, min_score, enough, excluded, is_far, slide):
     """Best (col shift, row shift, angle index) above ``min_score``, and its score, by branch and bound.
 
     Poses near the ``excluded`` one, or near the line through it along ``slide``, do not count. Ends early
@@ -300,7 +300,7 @@ def _climb(
                 depth += 4
                 continue
             is_inside = abs(u) <= cells and abs(v) <= cells
-            if is_inside and _is_apart(u, v, k, excluded, apart_cells, apart_angles, slide):
+            if is_inside and _is_apart(u - excluded[0], v - excluded[1], k - excluded[2], is_far, slide):
                 best_score = stack_bounds[depth]
                 best[0], best[1], best[2] = u, v, k
     return best, best_score
@@ -323,9 +323,12 @@ def _split(finer, cols, rows, stack, stack_bounds, first):
 
 
 @numba.njit(cache=True, nogil=True)
-def _is_apart(u, v, k, excluded, apart_cells, apart_angles, slide):
-    """Whether a pose is far from the excluded one, and from the line through it along ``slide``."""
-    du, dv = u - excluded[0], v - excluded[1]
+def _is_apart(du, dv, dk, is_far, slide):
+    """Whether poses that differ by (du, dv, dk) are far from each other, also across the direction ``slide``.
+
+    ``is_far``: from how many cells or angle steps on, and how many of these make a full turn.
+    """
+    cells, angles, full_turn = is_far
     along = slide[0] * du + slide[1] * dv
-    is_near = du * du + dv * dv - along * along < apart_cells * apart_cells
-    return not (is_near and abs(k - excluded[2]) < apart_angles)
+    turn = min(abs(dk), full_turn - abs(dk))
+    return du * du + dv * dv - along * along >= cells * cells or turn >= angles

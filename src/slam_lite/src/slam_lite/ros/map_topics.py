@@ -51,11 +51,11 @@ class MapTopics:
 
     def grid(self) -> Optional[OccupancyGrid]:
         """The map as far as it is known now, None before the first scan."""
-        renderer, beams, poses, _ = self._mapping.evidence()
+        renderer, evidence, _ = self._mapping.drawing()
         with self._drawing:
-            renderer.update(beams, poses)
+            renderer.update(evidence)
             grid = renderer.grid()
-        return grid if len(poses) else None
+        return grid if len(evidence.poses) else None
 
     def draw_if_due(self) -> None:
         if self._is_due.is_set() and not rospy.is_shutdown():
@@ -73,9 +73,9 @@ class MapTopics:
 
     def _publish(self) -> None:
         settings = self._settings
-        renderer, beams, poses, information = self._mapping.evidence()
+        renderer, evidence, information = self._mapping.drawing()
         with self._drawing:
-            renderer.update(beams, poses)
+            renderer.update(evidence)
             grid = on_canvas(renderer.grid(), settings.extent)
         message = grid_to_msg(grid, rospy.Time.now(), frame_name(settings.map_frame))
         self._message = message

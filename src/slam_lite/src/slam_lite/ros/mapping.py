@@ -1,7 +1,7 @@
 """The one mapper of the node, for all its threads."""
 
 import threading
-from typing import List, NamedTuple, Optional
+from typing import NamedTuple, Optional
 
 import numpy as np
 import rospy
@@ -10,19 +10,18 @@ from planar import Pose2, Scan
 from planar_ros.step import Step
 from slam_lite.config import NodeSettings
 from slam_lite.mapper import Follower, Mapper, PoseUpdate
-from slam_lite.rendering import Beams, MapRenderer
+from slam_lite.rendering import Evidence, SessionRenderer
 from slam_lite.state import MapState, load_state
 
 
-class Evidence(NamedTuple):
+class Drawing(NamedTuple):
     """What a map is drawn from, and the renderer that drew the one before.
 
-    ``beams``: of N key scans, at ``poses`` (N, 3); ``information``: (3, 3), of the robot's pose, if known.
+    ``information``: (3, 3), of the robot's pose, if known.
     """
 
-    renderer: MapRenderer
-    beams: List[Beams]
-    poses: np.ndarray
+    renderer: SessionRenderer
+    evidence: Evidence
     information: Optional[np.ndarray]
 
 
@@ -38,7 +37,7 @@ class Mapping:
         self._has_keys = threading.Condition(self._lock)
         self._mapper = Mapper(settings, deferred=True)
         self._follower: Optional[Follower] = None
-        self._renderer = MapRenderer(settings.resolution, settings.occupied_threshold)
+        self._renderer = self._empty_renderer()
         self._base_in_odom: Optional[Pose2] = None
         self._information: Optional[np.ndarray] = None
         self.odom_in_map = Pose2()
@@ -60,14 +59,14 @@ class Mapping:
             if self._follower is not None:
                 self._follower.place(base_in_map)
             elif len(self._mapper.key_poses):
-                self._mapper.resume(self._mapper.state(), base_in_map)
+                self._go_on(self._mapper.state(), base_in_map)
             if self._base_in_odom is not None:
                 self.odom_in_map = base_in_map @ self._base_in_odom.inverse()
 
-    def evidence(self) -> Evidence:
+    def drawing(self) -> Drawing:
         """What the map is to be drawn from now."""
         with self._lock:
-            return Evidence(self._renderer, *self._mapper.evidence(), self._information)
+            return Drawing(self._renderer, self._mapper.evidence(), self._information)
 
     def state(self) -> MapState:
         """All that it takes to go on later."""
@@ -79,11 +78,17 @@ class Mapping:
         state = load_state(path)
         settings = self._settings
         with self._lock:
-            self._mapper = Mapper(settings, deferred=True)
-            self._mapper.resume(state)
+            self._go_on(state)
             self._follower = Follower(settings, state) if settings.localization_only else None
-            self._renderer = MapRenderer(settings.resolution, settings.occupied_threshold)
         rospy.loginfo("loaded a map of %d scans from %s", len(state.poses), path)
+
+    def _go_on(self, state: MapState, base_in_map: Optional[Pose2] = None) -> None:
+        self._mapper = Mapper(self._settings, deferred=True)
+        self._mapper.resume(state, base_in_map)
+        self._renderer = self._empty_renderer()
+
+    def _empty_renderer(self) -> SessionRenderer:
+        return SessionRenderer(self._settings.resolution, self._settings.occupied_threshold)
 
     def start(self) -> None:
         """Closes loops from now on."""

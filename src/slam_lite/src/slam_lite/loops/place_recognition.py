@@ -107,6 +107,10 @@ class Memory:
         places = self.places if place is None else (*self.places, place)
         return Memory(places, (*self.looks, tuple(look))[-_LOOKS:], stretch.last, self.start)
 
+    def anew(self, key: int) -> "Memory":
+        """The memory of a robot whose present way begins at ``key``."""
+        return Memory(self.places, (), key, key)
+
     def has_seen(self, hypothesis: Hypothesis, poses: np.ndarray) -> bool:
         """Whether one of the last looks said the same."""
         return any(say_the_same(hypothesis, other, poses) for look in self.looks for other in look)

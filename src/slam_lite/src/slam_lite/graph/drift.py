@@ -7,16 +7,18 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
-from slam_lite.pose_graph import Edges
+from slam_lite.graph.pose_graph import Edges
 
 
-def shortest_ways(start: int, count: int, edges: Edges, lengths: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+def shortest_ways(
+    start: int, count: int, edges: Edges, lengths: np.ndarray, limit: float = np.inf
+) -> Tuple[np.ndarray, np.ndarray]:
     """Length (N,) of the shortest way from ``start`` to each of ``count`` nodes, and the node before on it.
 
-    ``lengths``: (E,) of the edges.
+    ``lengths``: (E,) of the edges. Ways longer than ``limit`` are not followed and count as infinite.
     """
     graph = csr_matrix((lengths, tuple(edges.nodes.T)), shape=(count, count))
-    return dijkstra(graph, directed=False, indices=start, return_predecessors=True)
+    return dijkstra(graph, directed=False, indices=start, return_predecessors=True, limit=limit)
 
 
 def drift_along(

@@ -15,27 +15,26 @@ import numpy as np
 
 from planar import Pose2, wrap
 from slam_lite.config import MapperSettings
-from slam_lite.drift import shortest_ways
+from slam_lite.graph.drift import shortest_ways
+from slam_lite.graph.pose_graph import Edge, Edges
+from slam_lite.loops.place_recognition import Hypothesis
+from slam_lite.loops.sight import Placed, clash
 from slam_lite.matching.correlative import Window, scores, search_far
 from slam_lite.matching.local_map import LocalMap, Match
 from slam_lite.matching.refinement import refine
-from slam_lite.place_recognition import Hypothesis
-from slam_lite.pose_graph import Edge, Edges
-from slam_lite.sight import share_seen_through
 from slam_lite.surface import Surface, joined, thinned
-
-Placed = Tuple[Surface, Pose2]
 
 # Growth of the search window with the way along the graph: metres and radians per metre.
 _DRIFT_DISTANCE, _DRIFT_ANGLE = 0.04, 0.008
 # The size of windows that are searched once an interval.
 _OFTEN_DISTANCE = 8.0
 _MIN_WINDOW, _MAX_WINDOW = Window(0.3, 0.1), Window(12.0, 0.8)
+# From this way on the window does not grow any more, metres.
+_FARTHEST = _MAX_WINDOW.distance / _DRIFT_DISTANCE
 # By how many standard deviations the graph may be off; those that matches tell of themselves are cautious.
 _CREDIBLE = 1.5
-# Share of the walls that may be seen through where a place is doubtful, as by people who have gone on; one of
-# so many scans is asked.
-_MAX_CLASH, _EVERY = 0.025, 4
+# Share of the walls that may be seen through where a place is doubtful, as by people who have gone on.
+_MAX_CLASH = 0.025
 # Two closures that differ by more than this, metres, put the robot to different places.
 _ELSEWHERE = 3.0
 # How far off the pose may be at which two places look alike.
@@ -108,7 +107,7 @@ def candidates(recent: int, poses: np.ndarray, edges: Edges, settings: MapperSet
     straight = np.hypot(poses[:, 0] - poses[recent, 0], poses[:, 1] - poses[recent, 1])
     if np.count_nonzero(straight < _MAX_WINDOW.distance + 2.0) <= _RECENT_KEYS:
         return []
-    detours, _ = shortest_ways(recent, len(poses), edges, lengths_of(edges))
+    detours, _ = shortest_ways(recent, len(poses), edges, lengths_of(edges), _FARTHEST)
     windows = np.clip(_DRIFT_DISTANCE * detours, _MIN_WINDOW.distance, _MAX_WINDOW.distance)
     possible = (detours > settings.closure_min_detour + 2.0 * straight) & (straight < windows + 2.0)
     # A wide window is searched more seldom: it stays much the same while the robot goes on.
@@ -169,7 +168,7 @@ def find_closure(
     moved = peak.base_pose.inverse() @ match.base_pose
     if math.hypot(moved.x, moved.y) > 0.3 or abs(moved.yaw) > 0.1:
         return None
-    if candidate.is_doubtful and _clash(there, here, match.base_pose) > _MAX_CLASH:
+    if candidate.is_doubtful and clash(there, here, match.base_pose) > _MAX_CLASH:
         return None
     if peak.slide.any():
         information = _blurred(match.information, candidate.window.distance * peak.slide)
@@ -187,15 +186,6 @@ def _around(
     keys = range(max(0, place - reach), min(end, place + reach + 1))
     seen = [(surfaces[key], _between(poses[place], poses[key])) for key in keys]
     return [(surface, pose) for surface, pose in seen if math.hypot(pose.x, pose.y) < scale * _PLACE_RADIUS]
-
-
-def _clash(there: Sequence[Placed], here: Sequence[Placed], recent_in_place: Pose2) -> float:
-    """Share of the walls of one stretch that the other one's scans see through, 0 to 1, whichever is more."""
-    here = [(surface, recent_in_place @ pose) for surface, pose in here]
-    return max(
-        share_seen_through(thinned(joined(solid), _MAX_POINTS), scans[::_EVERY])
-        for solid, scans in ((there, here), (here, there))
-    )
 
 
 def _without_slides(match: Match, surface: Surface, local_map: LocalMap) -> np.ndarray:

@@ -1,18 +1,22 @@
 """Whether scans see through what others take for walls."""
 
 import math
-from typing import Iterable, Tuple
+from typing import Iterable, Sequence, Tuple
 
 import numba
 import numpy as np
 
 from planar import Pose2
-from slam_lite.surface import Surface
+from slam_lite.surface import Surface, joined, thinned
+
+Placed = Tuple[Surface, Pose2]
 
 # Beams are told apart by their direction in so many sectors of the circle.
 _SECTORS = 360
 # A point is seen through if the beams beside it end so much behind it, met if they end so near to it, metres.
 _BEHIND, _AT = 0.4, 0.2
+# Of two stretches of the way, so many points are looked at, and one of so many scans.
+_MAX_POINTS, _EVERY = 500, 4
 
 
 def share_seen_through(solid: Surface, scans: Iterable[Tuple[Surface, Pose2]]) -> float:
@@ -23,6 +27,15 @@ def share_seen_through(solid: Surface, scans: Iterable[Tuple[Surface, Pose2]]) -
         counts = _sight(inverse.transform_points(solid.points_xy), scan.points_xy)
         through, met = through + counts[0], met + counts[1]
     return through / max(through + met, 1)
+
+
+def clash(there: Sequence[Placed], here: Sequence[Placed], recent_in_place: Pose2) -> float:
+    """Share of the walls of one stretch that the other one's scans see through, 0 to 1, whichever is more."""
+    here = [(surface, recent_in_place @ pose) for surface, pose in here]
+    return max(
+        share_seen_through(thinned(joined(solid), _MAX_POINTS), scans[::_EVERY])
+        for solid, scans in ((there, here), (here, there))
+    )
 
 
 @numba.njit(cache=True, nogil=True)

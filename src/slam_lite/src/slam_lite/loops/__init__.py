@@ -1,0 +1,1 @@
+"""Loops: places that were seen before, told by their looks and by the graph."""

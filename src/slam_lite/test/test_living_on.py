@@ -1,0 +1,211 @@
+"""Maps that live on: sessions one after the other, robots that are carried, furniture that moves."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, wrap
+from slam_lite.config import MapperSettings
+from slam_lite.continuity import Continuity
+from slam_lite.graph.condensing import condensed
+from slam_lite.graph.pose_graph import Edge, chi_squares, edges_of
+from slam_lite.loops.relocation import KnownMap, spread
+from slam_lite.mapper import Follower, Mapper
+from slam_lite.matching.local_map import LocalMap
+from slam_lite.rendering import Beams, Evidence, SessionRenderer
+from slam_lite.sessions import renewed
+from slam_lite.surface import surface_of
+
+# as in test_mapper: half a cell of the truth and what a lap drifts; and a cell of the map, for a single scan
+FOLLOWED, FOUND = 0.15, 0.05
+
+
+def mapped(drive, mapper):
+    updates = [mapper.insert(sighting.base_in_odom, sighting.scan) for sighting in drive]
+    mapper.settle()
+    return updates
+
+
+def errors(drive, updates, mapper):
+    """How far off the key scans of a drive are."""
+    keys = [sighting.base_in_map for sighting, update in zip(drive, updates) if update and update.is_key]
+    poses = mapper.key_poses[-len(keys) :]
+    return [key.distance_to(Pose2.from_array(pose)) for key, pose in zip(keys, poses)]
+
+
+def restarted(drive, stamp=0.0):
+    """The drive with odometry that begins at zero, and the clock at ``stamp``."""
+    back, earlier = drive[0].base_in_odom.inverse(), drive[0].scan.stamp - stamp
+    return [
+        s._replace(
+            base_in_odom=back @ s.base_in_odom, scan=dataclasses.replace(s.scan, stamp=s.scan.stamp - earlier)
+        )
+        for s in drive
+    ]
+
+
+@pytest.fixture(scope="module")
+def drive(office):
+    return office.drive(laps=1.0)
+
+
+@pytest.fixture(scope="module")
+def state(drive):
+    mapper = Mapper()
+    mapped(drive, mapper)
+    return mapper.state()
+
+
+@pytest.mark.parametrize("seen_from", [Pose2(13.6, 5.0, -1.9), Pose2(8.0, 9.2, 2.9), Pose2(2.3, 6.0, 0.4)])
+def test_a_robot_is_found_in_a_map_without_a_guess(office, state, seen_from):
+    surface = surface_of(office.scan(seen_from), 20.0, 0.03)
+    known = KnownMap(state.surfaces, state.poses, LocalMap())
+    found = known.find([(surface, Pose2())])
+    assert found.distance_to(seen_from) < FOUND
+    assert abs(wrap(found.yaw - seen_from.yaw)) < 0.02
+
+
+def test_what_fits_in_two_places_is_found_in_neither(office, state):
+    twin = Pose2(60.0, 0.0, 0.0)
+    moved = np.array([(twin @ Pose2.from_array(pose)).as_array() for pose in state.poses])
+    known = KnownMap([*state.surfaces, *state.surfaces], np.vstack((state.poses, moved)), LocalMap())
+    surface = surface_of(office.scan(Pose2(13.6, 5.0, -1.9)), 20.0, 0.03)
+    assert known.find([(surface, Pose2())]) is None
+    believed = Pose2(13.7, 5.2, -2.0)
+    assert known.find([(surface, Pose2())], believed).distance_to(Pose2(13.6, 5.0, -1.9)) < FOUND
+
+
+def test_places_are_spread_over_the_map(state):
+    places = spread(state.poses, 4.0)
+    chosen = state.poses[places, :2]
+    apart = np.hypot(*(chosen[:, None] - chosen[None]).transpose(2, 0, 1))
+    assert apart[apart > 0.0].min() > 4.0
+    assert np.hypot(*(state.poses[:, None, :2] - chosen[None]).transpose(2, 0, 1)).min(axis=1).max() <= 4.0
+
+
+@pytest.mark.parametrize("start, found_after", [(0, 0), (45, 0), (130, 100)])
+def test_a_session_begins_anywhere_in_the_map_without_a_start_pose(office, state, start, found_after):
+    """In a smooth corridor one scan does not tell where; a stretch of way does."""
+    resumed = Mapper()
+    resumed.resume(state)
+    elsewhere = restarted(office.drive(laps=1.0, seed=3)[start:])
+    updates = mapped(elsewhere, resumed)
+    found, there = updates[found_after].base_in_map, elsewhere[found_after].base_in_map
+    assert found.distance_to(there) < FOLLOWED
+    assert max(errors(elsewhere, updates, resumed)) < FOLLOWED
+
+
+def test_a_follower_begins_anywhere_in_the_map_without_a_start_pose(office, state):
+    elsewhere = restarted(office.drive(laps=0.5, seed=3)[45:])
+    follower = Follower(MapperSettings(), state)
+    updates = [follower.insert(s.base_in_odom, s.scan) for s in elsewhere]
+    there = [u.base_in_map.distance_to(s.base_in_map) for s, u in zip(elsewhere, updates) if u is not None]
+    assert max(there) < FOLLOWED
+
+
+def test_a_log_that_stops_and_starts_elsewhere_is_one_map(office, drive):
+    mapper = Mapper()
+    mapped(drive, mapper)
+    after = restarted(office.drive(laps=1.0, seed=4)[150:], drive[-1].scan.stamp + 100.0)
+    updates = mapped(after, mapper)
+    assert max(errors(after, updates, mapper)) < FOLLOWED
+
+
+def test_what_is_never_recognised_lies_beside_the_map_and_is_not_lost(office, state):
+    strange = OccupancyGrid(np.full((60, 60), FREE, dtype=np.int8), 0.05, Pose2(0.0, 0.0))
+    strange.cells[[0, -1], :] = strange.cells[:, [0, -1]] = OCCUPIED
+    room = office._replace(truth=strange)
+    mapper = Mapper()
+    mapper.resume(state)
+    for i in range(20):
+        mapper.insert(Pose2(1.0 + 0.05 * i, 1.5, 0.1 * i), room.scan(Pose2(1.0 + 0.05 * i, 1.5, 0.1 * i), i))
+    mapper.settle()
+    assert np.abs(mapper.key_poses[: len(state.poses)] - state.poses).max() < 0.01
+    new = mapper.key_poses[len(state.poses) :]
+    assert len(new) > 3
+    assert new[:, 0].min() > 30.0
+    grid = mapper.grid()
+    there = grid.points_of(np.argwhere(grid.cells == OCCUPIED))
+    assert np.count_nonzero(there[:, 0] > 25.0) > 100
+
+
+@pytest.mark.parametrize("elapsed, jump", [(0.25, Pose2(-9.0, 3.0, 2.0)), (-500.0, Pose2(0.0, 0.0, 0.0))])
+def test_odometry_that_is_reset_and_time_that_jumps_leave_the_robot_where_it_is(office, elapsed, jump):
+    drive = office.drive(laps=0.6)
+    middle = len(drive) // 2
+    later = elapsed - 0.25
+    broken = drive[:middle] + [
+        s._replace(
+            base_in_odom=jump @ s.base_in_odom, scan=dataclasses.replace(s.scan, stamp=s.scan.stamp + later)
+        )
+        for s in drive[middle:]
+    ]
+    mapper = Mapper()
+    updates = mapped(broken, mapper)
+    assert max(errors(broken, updates, mapper)) < FOLLOWED
+
+
+def test_a_break_is_told_from_a_drive():
+    continuity = Continuity()
+    driven = [(Pose2(0.5 * i, 0.0, 0.0), 1.0 * i) for i in range(5)]
+    assert not any(continuity.breaks(*seen) for seen in driven)
+    assert not continuity.breaks(Pose2(22.0, 0.0, 0.0), 64.0)  # a minute without scans, but odometry went on
+    assert continuity.breaks(Pose2(22.0, 0.0, 0.0), 124.0)  # as if switched off, and perhaps carried
+    assert continuity.breaks(Pose2(0.0, 0.0, 0.0), 124.1)  # reset
+    assert not continuity.breaks(Pose2(9.0, 0.0, 0.0), 150.0)
+    assert continuity.breaks(Pose2(0.0, 0.0, 0.0), 180.0)  # switched on again
+    assert not continuity.breaks(Pose2(0.1, 0.0, 0.0), 180.2)
+    assert continuity.breaks(Pose2(0.1, 0.0, 0.0), 7.0)  # the clock, too
+
+
+def test_a_graph_of_fewer_nodes_is_tied_as_it_was():
+    rng = np.random.default_rng(0)
+    ring = np.array([[5 * math.cos(a), 5 * math.sin(a), wrap(a + 1.5)] for a in np.linspace(0.0, 6.0, 40)])
+    poses = [Pose2.from_array(pose) for pose in ring]
+    sure = np.diag([400.0, 400.0, 2500.0])
+    chain = [Edge(i, i + 1, poses[i].inverse() @ poses[i + 1], sure) for i in range(39)]
+    loops = [Edge(i, 39 - i, poses[i].inverse() @ poses[39 - i], sure, is_loop=True) for i in range(4)]
+    kept = np.sort(rng.choice(40, 15, replace=False))
+    fewer = condensed(ring, edges_of(*chain, *loops), kept)
+    assert chi_squares(ring[kept], fewer) == pytest.approx(np.zeros(len(fewer)), abs=1e-6)
+    assert fewer.is_loop.any()
+    assert fewer.nodes.max() == 14
+    skips = fewer.information[:14][np.diff(kept) > 1]
+    assert (skips[:, 0, 0] < 400.0).all()
+
+
+def test_older_sessions_give_way_to_newer_ones_that_saw_the_same(office, state):
+    size = len(state.poses)
+    for seed in (5, 6, 7):
+        mapper = Mapper()
+        mapper.resume(state, Pose2(2.0, 2.0, 0.0))
+        mapped(office.drive(laps=1.0, seed=seed), mapper)
+        state = mapper.state()
+    assert len(state.poses) < 2.3 * size
+    assert len(np.unique(state.sessions)) > 1
+    last = state.sessions == state.sessions[-1]
+    kept = renewed(state)
+    assert np.array_equal(kept.poses[kept.sessions == state.sessions[-1]], state.poses[last])
+    assert len(kept.poses) < 1.3 * size
+
+
+def test_what_has_moved_is_drawn_where_it_is_now():
+    ahead = np.zeros((5, 2), dtype=np.float32)
+    near, far = ahead.copy(), ahead.copy()
+    near[:, 0], far[:, 0] = 1.02, 2.02
+    box = Beams(np.zeros(2), near, np.ones(5, dtype=bool))
+    wall = Beams(np.zeros(2), far, np.ones(5, dtype=bool))
+    renderer = SessionRenderer(0.1, 0.25)
+    renderer.update(Evidence([box] * 9, np.zeros((9, 3)), 9))
+    assert value_at(renderer.grid(), 1.02) == OCCUPIED
+    renderer.update(Evidence([box] * 9 + [wall], np.zeros((10, 3)), 9))
+    assert value_at(renderer.grid(), 1.02) == FREE
+    assert value_at(renderer.grid(), 2.02) == OCCUPIED
+
+
+def value_at(grid, x):
+    return grid.cells[
+        int((0.0 - grid.origin.y) / grid.resolution), int((x - grid.origin.x) / grid.resolution)
+    ]

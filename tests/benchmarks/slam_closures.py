@@ -1,0 +1,158 @@
+#!/usr/bin/env python3
+"""Counts right and wrong loop closures on made logs, by the truth that they were made with.
+
+    python3 tests/benchmarks/slam_closures.py repetitive --seeds 100-109
+    python3 tests/benchmarks/slam_closures.py site --seeds 100-109 --json runs/closures.json
+
+A closure is wrong if it is off by more than a metre or 0.1 rad, and by more than it says that it may be, as
+along a smooth corridor; it does harm if the graph follows it. Seeds below 100 are for choosing settings, from
+100 on for judging them.
+"""
+
+import argparse
+import json
+import sys
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import List, Tuple
+
+import numpy as np
+from helpers.bags import START
+from helpers.drives import Sighting
+from slam import relation_errors
+from slam_logs import DRIVES, made, relations_of
+
+from planar import wrap
+from slam_lite.config import NodeSettings
+from slam_lite.graph.pose_graph import chi_squares
+from slam_lite.mapper import Mapper
+from slam_lite.trajectory import Trajectory
+
+# How far off a wrong closure is at least: metres, radians, and standard deviations of its own.
+WRONG_XY, WRONG_YAW, WRONG_SIGMAS = 1.0, 0.1, 4.0
+# A closure is followed if the graph meets it to this chi-square.
+FOLLOWED = 10.0
+
+
+@dataclass(frozen=True)
+class Closures:
+    """One log: its closures, the error over its relations, and the time a scan took. Metres, milliseconds."""
+
+    log: str
+    seed: int
+    scans: int
+    keys: int
+    right: int
+    wrong: int
+    harmful: int
+    mean_error: float
+    median_error: float
+    end_off: float
+    cpu_mean: float
+    cpu_p99: float
+    cpu_mean_of_last_quarter: float
+
+
+def main() -> int:
+    options = _options()
+    results = []
+    for seed in options.seeds:
+        results.append(judge(options.log, seed))
+        print(_line(results[-1]), flush=True)
+    right, wrong = sum(one.right for one in results), sum(one.wrong for one in results)
+    mean = np.mean([one.mean_error for one in results])
+    print(f"{options.log}: {right} right closures, {wrong} wrong, mean error {mean:.3f} m")
+    if options.json:
+        options.json.write_text(json.dumps([asdict(one) for one in results], indent=2) + "\n")
+    return 0
+
+
+def judge(name: str, seed: int) -> Closures:
+    """Maps one log and compares it with the truth."""
+    _, _, sightings = made(name, seed)
+    mapper, trajectory, true_keys, spent = mapped(sightings)
+    measured, real = _closures(mapper, true_keys)
+    off = measured - real
+    off[:, 2] = wrap(off[:, 2])
+    is_wrong = (np.hypot(off[:, 0], off[:, 1]) > WRONG_XY) | (np.abs(off[:, 2]) > WRONG_YAW)
+    edges = mapper.state().edges
+    chi = np.einsum("ni,nij,nj->n", off, edges.information[edges.is_loop], off)
+    is_wrong &= chi > WRONG_SIGMAS**2
+    is_followed = chi_squares(mapper.key_poses, edges)[edges.is_loop] < FOLLOWED
+    poses = trajectory.poses(mapper.key_poses, of_laser=True)
+    poses[:, 0] += START
+    errors, _ = relation_errors(poses, relations_of(sightings))
+    ends = np.array([[0, len(true_keys) - 1]])
+    end_off = _seen_from(mapper.key_poses, ends) - _seen_from(true_keys, ends)
+    return Closures(
+        name,
+        seed,
+        len(sightings),
+        len(true_keys),
+        right=int(np.count_nonzero(~is_wrong)),
+        wrong=int(np.count_nonzero(is_wrong)),
+        harmful=int(np.count_nonzero(is_wrong & is_followed)),
+        mean_error=float(errors.mean()),
+        median_error=float(np.median(errors)),
+        end_off=float(np.hypot(*end_off[0, :2])),
+        cpu_mean=float(spent.mean()),
+        cpu_p99=float(np.percentile(spent, 99)),
+        cpu_mean_of_last_quarter=float(spent[-len(spent) // 4 :].mean()),
+    )
+
+
+def mapped(sightings: List[Sighting]) -> Tuple[Mapper, Trajectory, np.ndarray, np.ndarray]:
+    """The mapper after a log, where each scan was taken, the true poses (N, 3) of keys, and ms of CPU."""
+    mapper, trajectory = Mapper(NodeSettings()), Trajectory()
+    true_keys, spent = [], []
+    for sighting in sightings:
+        start = time.process_time()
+        update = mapper.insert(sighting.base_in_odom, sighting.scan)
+        spent.append(1000.0 * (time.process_time() - start))
+        trajectory.add(sighting.base_in_odom, sighting.scan, update)
+        if update is not None and update.is_key:
+            true_keys.append(sighting.base_in_map.as_array())
+    mapper.settle()
+    return mapper, trajectory, np.array(true_keys), np.array(spent)
+
+
+def _closures(mapper: Mapper, true_keys: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """What each closure measured, (N, 3), and what it should have."""
+    edges = mapper.state().edges
+    return edges.measured[edges.is_loop], _seen_from(true_keys, edges.nodes[edges.is_loop])
+
+
+def _seen_from(poses: np.ndarray, pairs: np.ndarray) -> np.ndarray:
+    """For pairs (N, 2) of poses (M, 3) the second one as seen from the first, (N, 3)."""
+    first, step = poses[pairs[:, 0]], poses[pairs[:, 1]] - poses[pairs[:, 0]]
+    c, s = np.cos(first[:, 2]), np.sin(first[:, 2])
+    ahead, left = c * step[:, 0] + s * step[:, 1], c * step[:, 1] - s * step[:, 0]
+    return np.column_stack((ahead, left, wrap(step[:, 2])))
+
+
+def _line(one: Closures) -> str:
+    return (
+        f"{one.log} {one.seed}: {one.scans} scans, {one.keys} kept; "
+        f"closures {one.right} right, {one.wrong} wrong "
+        f"({one.harmful} followed); error {one.mean_error:.3f} m, median {one.median_error:.3f}, "
+        f"end off {one.end_off:.2f}; a scan {one.cpu_mean:.1f} ms, p99 {one.cpu_p99:.1f}, "
+        f"in the last quarter {one.cpu_mean_of_last_quarter:.1f}"
+    )
+
+
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("log", choices=[*DRIVES, "site"], help="which logs")
+    parser.add_argument("--seeds", type=_seeds, default=range(1), help="such as 100-109 (default: 0)")
+    parser.add_argument("--json", type=Path, help="write the figures here")
+    return parser.parse_args()
+
+
+def _seeds(text: str) -> range:
+    first, _, last = text.partition("-")
+    return range(int(first), int(last or first) + 1)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,221 @@
+#!/usr/bin/env python3
+"""How a map lives on: session after session in a home whose furniture moves, and missions on the last map.
+
+Each session begins somewhere else, without a start pose, with half of the furniture at other places, and goes
+on in the state that the one before has saved.
+
+    python3 tests/benchmarks/slam_sessions.py --sessions 10 --seed 100 --mission map/mission.yaml
+
+Seeds below 100 are for choosing settings, from 100 on for judging them.
+"""
+
+import argparse
+import json
+import math
+import sys
+import time
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Iterator, List, Sequence, Tuple
+
+import numpy as np
+from helpers.drives import Sighting, Tour, drive
+
+from home_service.judging.map_truth import score_against_world
+from home_service.rehearsal import Rehearsal
+from pick_objects import load_mission
+from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, save_map
+from planar.config.settings_file import settings_from_yaml
+from planar.geometry.distance_field import distance_field
+from sim_bridge import load_world, robot_named
+from sim_bridge.simulation import box_on_floor
+from sim_bridge.views.true_map import true_map
+from sim_bridge.world import World
+from slam_lite.config import NodeSettings
+from slam_lite.mapper import Mapper
+from slam_lite.state import load_state, save_state
+
+ROOT = Path(__file__).resolve().parents[2]
+SLAM_CONFIG = ROOT / "src/slam_lite/config/turtlebot.yaml"
+# Furniture: how many pieces, how large, how likely each is moved, and how far off walls and places, metres.
+PIECES, SIZES, MOVES, TO_WALL, TO_PLACES, TO_OTHERS = 8, (0.3, 0.7), 0.5, 0.55, 1.0, 1.1
+# The mapper has found itself where it is off by less than this, metres.
+FOUND = 0.3
+
+
+@dataclass(frozen=True)
+class Session:
+    """One session: what was kept, how far off the new key scans are, and how good the map is."""
+
+    session: int
+    keys: int
+    kilobytes: float
+    found_after: float
+    mean_error: float
+    max_error: float
+    recall: float
+    precision: float
+    doubled_walls: int
+    stale_pieces: int
+    cpu_seconds: float
+
+
+class Home:
+    """A world with pieces of furniture that move from session to session."""
+
+    def __init__(self, world: World, height: float, places: Sequence[Pose2], seed: int):
+        self._world, self._rng = world, np.random.default_rng([seed, 18])
+        self._grid = true_map(world, height)
+        self._clearance = distance_field(self._grid.cells != FREE, self._grid.resolution)
+        self._places = [(place.x, place.y) for place in places]
+        self._pieces: List[Tuple[Pose2, Tuple[float, float, float]]] = []
+        for _ in range(PIECES):
+            self._pieces.append(self._placed([pose for pose, _ in self._pieces]))
+
+    def move(self) -> List[Pose2]:
+        """Moves some pieces; returns where they stood."""
+        left: List[Pose2] = []
+        for i, (pose, _) in enumerate(self._pieces):
+            if self._rng.random() < MOVES:
+                left.append(pose)
+                self._pieces[i] = self._placed([*left, *(other for other, _ in self._pieces)])
+        return left
+
+    def world(self) -> World:
+        """The home as it is furnished now."""
+        boxes = [box_on_floor(f"piece_{i}", size, pose) for i, (pose, size) in enumerate(self._pieces)]
+        return replace(self._world, bodies=(*self._world.bodies, *boxes))
+
+    def start(self) -> Pose2:
+        """A free place to begin at."""
+        return self._free_place([pose for pose, _ in self._pieces])
+
+    def _placed(self, others: Sequence[Pose2]) -> Tuple[Pose2, Tuple[float, float, float]]:
+        width, depth = self._rng.uniform(*SIZES, size=2)
+        return self._free_place(others), (float(width), float(depth), 0.6)
+
+    def _free_place(self, others: Sequence[Pose2]) -> Pose2:
+        spots = self._grid.points_of(np.argwhere(self._clearance > TO_WALL))
+        kept = [(xy, TO_PLACES) for xy in [(0.0, 0.0), *self._places]]
+        for xy, apart in [*kept, *(((pose.x, pose.y), TO_OTHERS) for pose in others)]:
+            spots = spots[np.hypot(*(spots - xy).T) > apart]
+        x, y = spots[self._rng.integers(len(spots))]
+        return Pose2(float(x), float(y), float(self._rng.uniform(-math.pi, math.pi)))
+
+
+def main() -> int:
+    options = _options()
+    mission = load_mission(options.mission)
+    robot = robot_named(options.robot)
+    height = float(robot.laser.pose_in_base[2, 3])
+    places = [place.pose for place in mission.places.values()]
+    home = Home(load_world(ROOT / "map/home.world"), height, places, options.seed)
+    options.out.mkdir(parents=True, exist_ok=True)
+    state = options.out / "home.npz"
+    state.unlink(missing_ok=True)
+    sessions: List[Session] = []
+    left: List[Pose2] = []
+    for number in range(options.sessions):
+        left = home.move() if number else left
+        world = home.world()
+        start = home.start() if number else Pose2()
+        grid = true_map(world, height)
+        tour = Tour(grid, *_reachable(grid, places))
+        sightings = drive(
+            world, tour, options.seed * 100 + number, options.seconds, start=start, robot=options.robot
+        )
+        session, mapped = _map(number, sightings, state)
+        score = score_against_world(mapped, world, robot)
+        stale = sum(_is_drawn(mapped, pose) for pose in left)
+        session = replace(session, **asdict(score), stale_pieces=stale)
+        sessions.append(session)
+        print(_line(session, len(left)), flush=True)
+        save_map(mapped, options.out / f"session_{number}")
+    (options.out / "sessions.json").write_text(json.dumps([asdict(one) for one in sessions], indent=2) + "\n")
+    verdicts = [
+        Rehearsal(world, robot, mapped, mission, options.seed + i).run().verdict
+        for i in range(options.missions)
+    ]
+    for verdict in verdicts:
+        print(f"mission on the last map: {'SUCCESS' if verdict.success else 'FAILURE'}: {verdict.reason}")
+    return 0 if all(verdict.success for verdict in verdicts) else 1
+
+
+def _map(number: int, sightings: List[Sighting], path: Path) -> Tuple[Session, OccupancyGrid]:
+    """Maps one session on top of the state at ``path``, if there is one, and saves the new one there."""
+    start = time.process_time()
+    settings, _ = settings_from_yaml(NodeSettings, SLAM_CONFIG)
+    mapper = Mapper(settings)
+    if number:
+        mapper.resume(load_state(path))
+    true_keys, found_after = [], math.nan
+    for sighting in sightings:
+        update = mapper.insert(sighting.base_in_odom, sighting.scan)
+        if update is None:
+            continue
+        if math.isnan(found_after) and update.base_in_map.distance_to(sighting.base_in_map) < FOUND:
+            found_after = sighting.scan.stamp - sightings[0].scan.stamp
+        if update.is_key:
+            true_keys.append(sighting.base_in_map.as_array()[:2])
+    mapper.settle()
+    grid = mapper.grid()
+    cpu_seconds = time.process_time() - start
+    save_state(mapper.state(), path)
+    errors = np.hypot(*(mapper.key_poses[-len(true_keys) :, :2] - np.array(true_keys)).T)
+    session = Session(
+        number,
+        len(mapper.key_poses),
+        path.stat().st_size / 1000.0,
+        found_after,
+        float(errors.mean()),
+        float(errors.max()),
+        recall=0.0,
+        precision=0.0,
+        doubled_walls=0,
+        stale_pieces=0,
+        cpu_seconds=cpu_seconds,
+    )
+    return session, grid
+
+
+def _reachable(grid: OccupancyGrid, places: Sequence[Pose2]) -> Iterator[Tuple[float, float]]:
+    """For each place the nearest one where there is room for the driver."""
+    clearance = distance_field(grid.cells == OCCUPIED, grid.resolution)
+    free = grid.points_of(np.argwhere((clearance > 0.35) & (grid.cells == FREE)))
+    for place in places:
+        x, y = free[np.argmin(np.hypot(*(free - (place.x, place.y)).T))]
+        yield float(x), float(y)
+
+
+def _is_drawn(grid: OccupancyGrid, piece: Pose2) -> bool:
+    """Whether the map shows something where a piece of furniture has stood."""
+    occupied = grid.points_of(np.argwhere(grid.cells == OCCUPIED))
+    return bool((np.hypot(*(occupied - (piece.x, piece.y)).T) < TO_WALL - 0.1).any())
+
+
+def _line(one: Session, moved: int) -> str:
+    return (
+        f"session {one.session}: {one.keys} key scans, {one.kilobytes:.0f} kB, "
+        f"found after {one.found_after:.1f} s, "
+        f"keys off by {one.mean_error:.3f} m (at most {one.max_error:.3f}), recall {one.recall:.3f}, "
+        f"precision {one.precision:.3f}, {one.doubled_walls} doubled walls, "
+        f"{one.stale_pieces} of {moved} moved pieces still drawn, {one.cpu_seconds:.0f} s of CPU"
+    )
+
+
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--sessions", type=int, default=10, help="default: 10")
+    parser.add_argument("--seed", type=int, default=0, help="of furniture, starts and noise (default: 0)")
+    parser.add_argument("--seconds", type=float, default=180.0, help="of a session, simulated (default: 180)")
+    parser.add_argument("--robot", default="turtlebot_lidar", help="profile (default: turtlebot_lidar)")
+    parser.add_argument(
+        "--mission", type=Path, default=ROOT / "map/mission.yaml", help="default: map/mission.yaml"
+    )
+    parser.add_argument("--missions", type=int, default=3, help="how many are driven at the end (default: 3)")
+    parser.add_argument("--out", type=Path, default=Path("runs/sessions"), help="default: runs/sessions")
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
