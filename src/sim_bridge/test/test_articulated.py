@@ -102,6 +102,14 @@ def test_a_drawer_slides_along_its_axis():
     assert scene.models.link_motion("m::drawer").pose[:3, 3] == pytest.approx([0.2, 0.0, 1.0], abs=1e-6)
 
 
+@pytest.mark.parametrize("bounds", [("-1.79769e+308", "1.79769e+308"), ("-inf", "inf"), ("-1e+16", "1e+16")])
+def test_what_gazebo_writes_where_there_is_no_limit_bounds_nothing(bounds):
+    lower, upper = bounds
+    limits = f"<lower>{lower}</lower><upper>{upper}</upper><effort>1.79769e+308</effort>"
+    _, world = scene_of(link("wheel"), joint("revolute", "world", "wheel", limits=limits))
+    assert (world.joints[0].lower, world.joints[0].upper, world.joints[0].effort) == (-np.inf, np.inf, np.inf)
+
+
 def test_what_is_fixed_together_falls_together():
     scene, _ = scene_of(link("a", "0 0 9 0 0 0"), link("b", "1 0 9 0 0 0", 5.0), joint("fixed", "a", "b"))
     run(scene, 1.0)

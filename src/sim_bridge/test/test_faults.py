@@ -92,6 +92,23 @@ def test_a_robot_that_is_kidnapped_is_elsewhere(clean):
     assert seen[-1].odometry.base_in_odom.distance_to(clean[-1].odometry.base_in_odom) < 0.2
 
 
+def test_a_robot_that_is_kidnapped_is_not_set_down_in_a_wall():
+    """Found by falsify.sh: it counted as the robot's collision."""
+    floor = Body("floor::l", np.eye(4), (Collision(Plane(), np.eye(4)),))
+    at = np.eye(4)
+    at[:3, 3] = (0.0, 0.6, 0.5)
+    wall = Body("wall::l", at, (Collision(Box((8.0, 0.2, 1.0)), np.eye(4)),))
+    simulation = Simulation(World("w", (floor, wall)), settings=EXACT)
+    faults, touched, seen = Faults([Fault("kidnapped", START, strength=0.5)]), [], None
+    for _ in range(100):
+        seen = simulation.step()
+        touched += seen.contacts
+        faults.disturb(seen.stamp, Stage(simulation.scene, ROBOT_NAME, seen.base_in_world))
+    simulation.close()
+    assert touched == []
+    assert 0.15 < seen.base_in_world.y < 0.35
+
+
 def test_faults_are_read_from_a_file(tmp_path):
     path = tmp_path / "faults.yaml"
     path.write_text(

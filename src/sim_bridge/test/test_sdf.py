@@ -145,6 +145,12 @@ def test_plugins_of_worlds_that_are_not_needed_are_left_out_in_silence(load, lib
     assert load(f"<plugin name='p' filename='{library}'/>" + model()).warnings == ()
 
 
+def test_a_bracket_in_an_attribute_is_read_as_gazebo_reads_it(load):
+    world = load("<plugin name='<hello>' filename=\"lib<hello>.so\"/>" + model())
+    assert len(world.bodies) == 1
+    assert "plugin '<hello>'" in world.warnings[0]
+
+
 def test_an_include_that_includes_itself_is_an_error(load, tmp_path):
     add_model(tmp_path, "loop", "<model name='loop'><include><uri>model://loop</uri></include></model>")
     with pytest.raises(WorldError, match="includes itself"):
@@ -400,6 +406,12 @@ def test_colours_come_from_the_material_or_its_script(load):
         + model(f"<link name='l'><visual name='v'>{UNIT_BOX}</visual></link>", "o")
     )
     assert [body.visuals[0].colour for body in world.bodies] == [(1.0, 0.5, 0.0), (0.0, 0.0, 1.0), None]
+
+
+def test_what_is_emissive_glows(load):
+    material = "<material><emissive>0.5 2 0 1</emissive></material>"
+    world = load(model(f"<link name='l'><visual name='v'>{UNIT_BOX}{material}</visual></link>"))
+    assert world.bodies[0].visuals[0].glow == (0.5, 1.0, 0.0)
 
 
 def test_inertia_is_turned_to_its_principal_axes(load):

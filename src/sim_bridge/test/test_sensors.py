@@ -51,6 +51,14 @@ def test_a_wall_ahead_is_as_deep_everywhere_as_it_is_far():
     assert (seen.rgb[..., 1:] == 0).all()
 
 
+def test_what_glows_is_as_bright_from_all_sides():
+    drawing = Drawing()
+    ball = Visual(Sphere(0.5), np.eye(4), (1.0, 1.0, 1.0), glow=(1.0, 1.0, 1.0))
+    drawing.add(Body("ball::link", pose3(3.0, 0.0, 1.0), (), visuals=(ball,)))
+    seen = camera(SMALL).picture(*drawing.triangles(lambda name: np.eye(4)), pose3(z=1.0))
+    assert (seen.rgb[np.isfinite(seen.depth)] == 255).all()
+
+
 def test_the_floor_is_seen_where_geometry_says():
     seen = picture(SMALL, FLOOR)
     _, centre_y = SMALL.centre

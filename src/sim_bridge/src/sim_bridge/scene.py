@@ -12,6 +12,7 @@ from sim_bridge.courses import Courses
 from sim_bridge.description import RobotProfile
 from sim_bridge.errors import UnknownEntityError, WorldError
 from sim_bridge.geometry.pose3 import from_pose2
+from sim_bridge.people.crowd import Crowd
 from sim_bridge.physics.engine import Engine
 from sim_bridge.physics.forces import Forces
 from sim_bridge.physics.model_joints import ModelJoints
@@ -32,9 +33,9 @@ MENDABLE_DEPTH, MOST_PUSHES = 0.15, 10
 class Scene:
     """Models that stand and move, robots that are commanded. The same seed and calls give the same results.
 
-    A model is known by its name; a robot is a model. ``models``, ``joints`` and ``forces`` tell and change
-    what there is, ``sight`` shows it. Methods that take a name raise UnknownEntityError if there is nothing
-    of that name. ``fitting``: what is put before the sensors and drives of the robots.
+    A model is known by its name; so is a robot. ``models``, ``joints``, ``forces`` tell and change what there
+    is, ``sight`` shows it, ``crowd``: its people. Methods that take a name raise UnknownEntityError if
+    nothing is called so. ``fitting``: what is put before the sensors and drives of the robots.
     """
 
     def __init__(
@@ -46,11 +47,11 @@ class Scene:
     ):
         self.settings = settings
         self.lights = {light.name: light for light in world.lights}
-        self._seed = seed
-        self._fitting = fitting
+        self._seed, self._fitting = seed, fitting
         self.courses = Courses(world.courses)
+        self.crowd = Crowd(world.walkers, world)
         self._begin(world.gravity)
-        self.add(world.bodies, world.joints)
+        self.add([*world.bodies, *self.crowd.bodies], world.joints)
 
     @property
     def stamp(self) -> float:
@@ -76,7 +77,9 @@ class Scene:
             self.robot(name).command(command)
         robots = self._robots.values()
         for _ in range(self.settings.physics_rate // self.settings.odometry_rate):
-            self.courses.follow(self._engine, self._physics_steps, self.settings.physics_rate, self.stamp)
+            moment = (self._physics_steps, self.settings.physics_rate, self.stamp)
+            self.courses.follow(self._engine, *moment)
+            self.crowd.follow(self._engine, *moment, robots)
             for robot in robots:
                 robot.begin_step()
             self.forces.apply(self.stamp)
@@ -101,9 +104,9 @@ class Scene:
         """
         if name in self.models.names():
             raise WorldError(f"{name} is in the world already")
+        where = f"({base_in_world.x:g}, {base_in_world.y:g})"
         floor = self._engine.touch.floor_below(base_in_world.x, base_in_world.y, z + FLOOR_SEARCH)
         if floor is None:
-            where = f"({base_in_world.x:g}, {base_in_world.y:g})"
             raise WorldError(f"the robot would start at {where}, where there is no floor")
         start, left = base_in_world, Overlap((), 0.0, 0.0)
         for _ in range(MOST_PUSHES):
@@ -116,7 +119,6 @@ class Scene:
             start = Pose2(start.x + overlap.x, start.y + overlap.y, start.yaw)
             if start.distance_to(base_in_world) > MENDABLE_DEPTH:
                 break
-        where = f"({base_in_world.x:g}, {base_in_world.y:g})"
         raise WorldError(f"the robot would start at {where}, inside {', '.join(left.links)}")
 
     def robot(self, name: str) -> Robot:
@@ -211,9 +213,8 @@ class Scene:
 
     def _begin(self, gravity: float) -> None:
         """An empty world at time 0."""
-        self._physics_steps = 0
-        # When the present rate of physics began.
-        self._stamp_at_rate = 0.0
+        # The second: when the present rate of physics began.
+        self._physics_steps, self._stamp_at_rate = 0, 0.0
         self._engine = Engine(self.settings.physics_rate, gravity)
         self.sight = Sight(self._engine.pose_of)
         self.joints = ModelJoints(self._engine)

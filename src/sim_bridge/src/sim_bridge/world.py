@@ -8,8 +8,10 @@ import numpy as np
 from sim_bridge.courses import Course
 from sim_bridge.geometry.pose3 import IDENTITY
 from sim_bridge.geometry.shapes import Look, Shape
+from sim_bridge.people.walker import Walker
 
 Colour = Tuple[float, float, float]
+DARK: Colour = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,11 +26,15 @@ class Collision:
 
 @dataclass(frozen=True, eq=False)
 class Visual:
-    """What a camera sees of a body, ``pose_in_body``: (4, 4); no ``colour`` (0 to 1): that of the mesh."""
+    """What a camera sees of a body, ``pose_in_body``: (4, 4); no ``colour`` (0 to 1): that of the mesh.
+
+    ``glow``: what it shows of itself, without any light.
+    """
 
     shape: Look
     pose_in_body: np.ndarray
     colour: Optional[Colour] = None
+    glow: Colour = DARK
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,7 +136,9 @@ class Light:
 
 @dataclass(frozen=True)
 class World:
-    """Bodies, joints between them, robots, courses, and in words what its file holds that was left out."""
+    """Bodies, joints between them, robots, courses, people, and in words what its file holds that was left
+    out. ``bodies`` are without those of people.
+    """
 
     name: str
     bodies: Tuple[Body, ...]
@@ -140,3 +148,4 @@ class World:
     robots: Tuple[DrivenModel, ...] = ()
     lights: Tuple[Light, ...] = ()
     courses: Tuple[Course, ...] = ()
+    walkers: Tuple[Walker, ...] = ()

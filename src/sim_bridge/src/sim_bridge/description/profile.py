@@ -1,6 +1,7 @@
 """What a robot is made of and can do, as data."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Optional, Tuple, Type, TypeVar
 
 from sim_bridge.description.structure import RobotModel
@@ -46,7 +47,7 @@ class RobotProfile:
         """Those of the sensors whose specs are of a class."""
         return tuple(sensor for sensor in self.sensors if isinstance(sensor, kind))
 
-    @property
+    @cached_property
     def scanner(self) -> str:
         """The name that the first range finder tells its scans by; empty if there is none."""
         return next((laser.topic for laser in self.sensors_of(LaserProfile)), "")

@@ -5,7 +5,7 @@ from typing import Tuple
 
 from planar.config.yaml_table import Table, read_table
 from sim_bridge.faults.kind import Fault
-from sim_bridge.faults.registry import KINDS
+from sim_bridge.faults.registry import KINDS, usual_strength, why_not_of_strength
 
 KEYS = ("kind", "start", "end", "strength", "seed")
 
@@ -23,14 +23,14 @@ def faults_from(table: Table) -> Tuple[Fault, ...]:
 def _fault(entry: Table) -> Fault:
     entry.allow_only(*KEYS)
     name = entry.choice("kind", KINDS)
-    usual, least, largest = KINDS[name].strength
     start, end = entry.number("start", 0.0), float("inf")
     entry.check(start >= 0.0, "start", "not negative")
     if "end" in entry:
         end = entry.number("end")
         entry.check(end > start, "end", f"after start ({start:g})")
-    strength = entry.number("strength", usual)
-    entry.check(least <= strength <= largest, "strength", f"from {least:g} to {largest:g}")
+    strength = entry.number("strength", usual_strength(name))
+    expected = why_not_of_strength(name, strength)
+    entry.check(expected is None, "strength", expected or "")
     seed = entry.value("seed") or 0
     is_seed = isinstance(seed, int) and not isinstance(seed, bool) and seed >= 0
     entry.check(is_seed, "seed", "a whole number from 0")

@@ -1,6 +1,6 @@
 """All kinds of faults, by the names that files give them."""
 
-from typing import Dict, Type
+from typing import Dict, Optional, Type
 
 from sim_bridge.faults.kind import FaultKind
 from sim_bridge.faults.odometry.frozen import FrozenOdometry
@@ -62,3 +62,14 @@ KINDS: Dict[str, Type[FaultKind]] = {
     "object_in_way": ObjectInWay,
     "way_closed": WayClosed,
 }
+
+
+def usual_strength(kind: str) -> float:
+    """The strength of a fault that says nothing of it."""
+    return KINDS[kind].strength[0]
+
+
+def why_not_of_strength(kind: str, strength: float) -> Optional[str]:
+    """What a strength of the kind must be, if it is not: "from -5 to 5"; None if it is."""
+    _, least, largest = KINDS[kind].strength
+    return None if least <= strength <= largest else f"from {least:g} to {largest:g}"

@@ -8,7 +8,15 @@ import rospy
 from sim_bridge_msgs.srv import AddFault, AddFaultResponse
 
 from planar.config.hints import hint
-from sim_bridge.faults import KINDS, Fault, Faults, Stage, load_faults
+from sim_bridge.faults import (
+    KINDS,
+    Fault,
+    Faults,
+    Stage,
+    load_faults,
+    usual_strength,
+    why_not_of_strength,
+)
 from sim_bridge.robot import Fitting, Observation
 from sim_bridge.ros.orders import Orders
 from sim_bridge.scene import Scene
@@ -34,10 +42,10 @@ class FaultControl:
     def _on_fault(self, request):
         if request.kind not in KINDS:
             return AddFaultResponse(False, f"there is no fault {request.kind!r}{hint(request.kind, KINDS)}")
-        usual, least, largest = KINDS[request.kind].strength
-        strength = request.strength or usual
-        if not least <= strength <= largest:
-            return AddFaultResponse(False, f"strength must be from {least:g} to {largest:g}")
+        strength = request.strength or usual_strength(request.kind)
+        expected = why_not_of_strength(request.kind, strength)
+        if expected is not None:
+            return AddFaultResponse(False, f"strength must be {expected}")
         if not request.seconds >= 0.0:
             return AddFaultResponse(False, "seconds must not be negative")
         return self._orders.ask(lambda: self._add(request.kind, request.seconds or float("inf"), strength))

@@ -1,5 +1,6 @@
 """XML elements that know where they stand, so that an error can name its place."""
 
+import math
 import re
 from pathlib import Path
 from typing import Iterator, List, Optional, Sequence, Tuple
@@ -15,6 +16,9 @@ from sim_bridge.geometry.pose3 import pose3
 
 # More than any number in a file of Gazebo's, and small enough to be multiplied.
 LARGEST = 1e30
+# Gazebo writes its largest number where there is no bound.
+UNLIMITED = 1e15
+_VALUE_WITH_BRACKET = re.compile(r"""=(?:"[^"\n]*<[^"\n]*"|'[^'\n]*<[^'\n]*')""")
 _VERSION_NUMBER = re.compile(r"[0-9]{1,9}$")
 
 
@@ -122,6 +126,17 @@ class Element:
         element = self.child(*path)
         return element.numbers(1)[0] if element is not None else default
 
+    def bound(self, *path: str, default: float) -> float:
+        """The number along a path of tags, infinite if it is too large to bound anything."""
+        element = self.child(*path)
+        try:
+            value = float(element.text) if element is not None else default
+        except ValueError:
+            value = math.nan
+        if math.isnan(value) and element is not None:
+            raise element.error(f"expected a number, got {element.text!r}")
+        return value if abs(value) < UNLIMITED else math.copysign(math.inf, value)
+
     def count(self, *path: str, most: int, default: int) -> int:
         """The whole number from 1 to ``most`` along a path of tags; ``default`` if it is not there."""
         element = self.child(*path)
@@ -144,7 +159,7 @@ def parse(path: Path) -> Element:
 def parse_text(text, file: str, roots: Sequence[str] = ("sdf", "gazebo")) -> Element:
     """The root element of XML in memory, one of ``roots``; ``file`` names it in errors. Raises WorldError."""
     try:
-        root = defusedxml.ElementTree.fromstring(text, forbid_dtd=False)
+        root = _root_of(text)
     except DefusedXmlException as error:
         raise WorldError(f"{file}: refused, defines entities ({type(error).__name__})") from None
     except (defusedxml.ElementTree.ParseError, ValueError) as error:
@@ -152,6 +167,18 @@ def parse_text(text, file: str, roots: Sequence[str] = ("sdf", "gazebo")) -> Ele
     if root.tag not in roots:
         raise WorldError(f"{file}: its root is <{root.tag}>, expected <{roots[0]}>")
     return Element(root, file)
+
+
+def _root_of(text):
+    """The root of XML that is also read if attributes hold a bare "<", as Gazebo's own reader does."""
+    try:
+        return defusedxml.ElementTree.fromstring(text, forbid_dtd=False)
+    except defusedxml.ElementTree.ParseError:
+        lenient = text.decode("utf-8", "replace") if isinstance(text, bytes) else text
+        lenient = _VALUE_WITH_BRACKET.sub(lambda match: match.group().replace("<", "&lt;"), lenient)
+        if lenient == text:
+            raise
+        return defusedxml.ElementTree.fromstring(lenient, forbid_dtd=False)
 
 
 def version_of(text: str) -> Tuple[int, ...]:

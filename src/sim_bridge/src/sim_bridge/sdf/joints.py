@@ -13,8 +13,6 @@ from sim_bridge.sdf.warnings import Warnings
 from sim_bridge.world import Joint
 
 KINDS = ("fixed", "revolute", "prismatic")
-# Gazebo's largest number means no limit.
-UNLIMITED = 1e15
 
 
 def read_joint(
@@ -79,14 +77,11 @@ def _moving(
     fixed: Joint, kind: str, axis: Element, in_model: np.ndarray, frames: Frames, warnings: Warnings
 ) -> Joint:
     warnings.check_children(axis)
-    lower = axis.number("limit", "lower", default=-np.inf)
-    upper = axis.number("limit", "upper", default=np.inf)
-    lower, upper = (
-        bound if abs(bound) < UNLIMITED else np.copysign(np.inf, bound) for bound in (lower, upper)
-    )
+    lower = axis.bound("limit", "lower", default=-np.inf)
+    upper = axis.bound("limit", "upper", default=np.inf)
     if lower > upper:
         raise axis.error(f"the lower limit {lower:g} is above the upper one {upper:g}")
-    effort = axis.number("limit", "effort", default=-1.0)
+    effort = axis.bound("limit", "effort", default=-1.0)
     return Joint(
         fixed.name,
         kind,

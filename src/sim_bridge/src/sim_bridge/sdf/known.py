@@ -11,10 +11,11 @@ def _tags(text: str) -> FrozenSet[str]:
 
 
 HONOURED: Dict[str, FrozenSet[str]] = {
-    "world": _tags("model include frame state gravity physics"),
+    "world": _tags("model actor include frame state gravity physics"),
     "insertions": _tags("model include"),
     "physics": _tags("gravity"),
     "model": _tags("pose static link joint frame model include"),
+    "actor": _tags("pose script"),
     "link": _tags("pose inertial collision visual gravity kinematic velocity_decay"),
     "inertial": _tags("pose mass inertia"),
     "collision": _tags("pose geometry surface laser_retro"),
@@ -33,6 +34,7 @@ WITHOUT_BEARING: Dict[str, FrozenSet[str]] = {
         "ode bullet simbody dart max_step_size real_time_factor real_time_update_rate max_contacts"
     ),
     "model": _tags("allow_auto_disable self_collide enable_wind"),
+    "actor": _tags("skin animation static plugin"),
     "link": _tags("light self_collide enable_wind must_be_base_link"),
     "collision": _tags("max_contacts"),
     "surface": _tags("contact"),

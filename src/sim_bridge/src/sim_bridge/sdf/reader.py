@@ -5,16 +5,18 @@ from typing import Iterator, List, Optional, Sequence, Tuple, cast
 
 import numpy as np
 
+from sim_bridge.courses import Course
 from sim_bridge.geometry.meshes import load_mesh
 from sim_bridge.geometry.pose3 import inverse
 from sim_bridge.geometry.shapes import Look, MeshFile, Plane, Shape, scaled
+from sim_bridge.sdf.actors import read_actor
 from sim_bridge.sdf.element import Element, parse, parse_text
 from sim_bridge.sdf.frames import Frames
 from sim_bridge.sdf.inertia import read_inertia, read_mass
 from sim_bridge.sdf.joints import read_joint, started, trees_of
 from sim_bridge.sdf.lights import read_lights
 from sim_bridge.sdf.models import Model, ModelReader, declare_frames
-from sim_bridge.sdf.shapes.colours import read_colour
+from sim_bridge.sdf.shapes.colours import read_colour, read_glow
 from sim_bridge.sdf.shapes.geometry import LeftOutError, MissingError, read_shape
 from sim_bridge.sdf.state import ModelState, read_states
 from sim_bridge.sdf.warnings import Warnings
@@ -61,6 +63,7 @@ class _Reader:
         self._joints: List[Joint] = []
         self._robots: List[DrivenModel] = []
         self._lights: List[Light] = []
+        self._courses: List[Course] = []
         self._model_folders = model_folders
         self._warnings = warnings
         self._models = ModelReader(model_folders, warnings)
@@ -75,6 +78,7 @@ class _Reader:
             tuple(self._joints),
             tuple(self._robots),
             tuple(self._lights),
+            tuple(self._courses),
         )
 
     def read_world(self, world: Element, folder: Path) -> None:
@@ -97,6 +101,10 @@ class _Reader:
         for model in models:
             if model.name not in gone:
                 self._put(model, frames.frame(model.name, model.element), overrides.get(model.name))
+        for actor in world.children("actor"):
+            body, course = read_actor(actor, self._warnings)
+            self._bodies.append(body)
+            self._courses += [course] if course else []
 
     def read_model(self, element: Element, name: str, pose: np.ndarray) -> None:
         self._put(self._models.model(element, element, Path(), name), pose, None)
@@ -208,7 +216,8 @@ class _Reader:
             self._warnings.check_children(part)
             look = self._look(part, model, state)
             if look is not None:
-                yield Visual(look, _pose_in_link(part, link, model, in_model), read_colour(part))
+                placed = _pose_in_link(part, link, model, in_model)
+                yield Visual(look, placed, read_colour(part), read_glow(part))
 
     def _look(self, part: Element, model: Model, state: ModelState) -> Optional[Look]:
         try:

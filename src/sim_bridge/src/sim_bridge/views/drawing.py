@@ -18,13 +18,15 @@ GREY: Colour = (0.7, 0.7, 0.7)
 PLANE_REACH, PLANE_TILES = 60.0, 12
 CIRCLE_CORNERS = 24
 
+# Triangles (T, 3, 3) in a body's own frame, their colours and what they glow of themselves (T, 3), 0 to 1.
+_Looks = Tuple[np.ndarray, np.ndarray, np.ndarray]
+
 
 @dataclass(frozen=True, eq=False)
 class _Drawn:
-    """A body's triangles (T, 3, 3) in its own frame, and in the world with the body ``at`` (4, 4)."""
+    """A body's looks, and its triangles (T, 3, 3) in the world with the body ``at`` (4, 4)."""
 
-    in_body: np.ndarray
-    own_colours: np.ndarray
+    looks: _Looks
     at: np.ndarray
     triangles: np.ndarray
     colours: np.ndarray
@@ -44,18 +46,19 @@ class Drawing:
         parts = []
         for visual in visible_parts(body):
             try:
-                parts.append(_triangles_of(visual))
+                parts.append(_looks_of(visual))
             except WorldError as error:
                 self.warnings.append(f"not to be seen: {error}")
-        triangles = np.concatenate([np.empty((0, 3, 3)), *(triangles for triangles, _ in parts)])
-        colours = np.concatenate([np.empty((0, 3)), *(colours for _, colours in parts)])
-        self._place(body.name, body.keeps_still, triangles, colours, body.pose_in_world)
+        triangles = np.concatenate([np.empty((0, 3, 3)), *(triangles for triangles, _, _ in parts)])
+        colours = np.concatenate([np.empty((0, 3)), *(colours for _, colours, _ in parts)])
+        glows = np.concatenate([np.empty((0, 3)), *(glows for _, _, glows in parts)])
+        self._place(body.name, body.keeps_still, (triangles, colours, glows), body.pose_in_world)
 
     def move(self, name: str, pose: np.ndarray) -> None:
         """A body that otherwise keeps still has been put to another place."""
         if name in self._still:
             drawn = self._still[name]
-            self._place(name, True, drawn.in_body, drawn.own_colours, pose)
+            self._place(name, True, drawn.looks, pose)
 
     def remove(self, name: str) -> None:
         self._moving.pop(name, None)
@@ -73,16 +76,17 @@ class Drawing:
         for name, drawn in list(self._moving.items()):
             pose = pose_of(name)
             if not np.array_equal(pose, drawn.at):
-                self._place(name, False, drawn.in_body, drawn.own_colours, pose)
+                self._place(name, False, drawn.looks, pose)
         seen = [drawn for name, drawn in self._moving.items() if name.split("::", 1)[0] != but]
         return (
             np.concatenate([self._all_still[0], *(drawn.triangles for drawn in seen)]),
             np.concatenate([self._all_still[1], *(drawn.colours for drawn in seen)]),
         )
 
-    def _place(self, name: str, still: bool, in_body, own_colours, pose) -> None:
+    def _place(self, name: str, still: bool, looks: _Looks, pose) -> None:
+        in_body, own_colours, glows = looks
         triangles = transform_points(pose, in_body.reshape(-1, 3)).reshape(-1, 3, 3)
-        drawn = _Drawn(in_body, own_colours, pose, triangles, shades(triangles, own_colours))
+        drawn = _Drawn(looks, pose, triangles, shades(triangles, own_colours, glows))
         if still:
             self._still[name] = drawn
             self._all_still = None
@@ -95,13 +99,13 @@ def visible_parts(body: Body) -> Sequence[Visual]:
     return body.visuals or [Visual(part.shape, part.pose_in_body) for part in body.collisions]
 
 
-def _triangles_of(visual: Visual) -> Tuple[np.ndarray, np.ndarray]:
-    """Triangles (T, 3, 3) in the body and their colours (T, 3), 0 to 1."""
+def _looks_of(visual: Visual) -> _Looks:
     mesh = mesh_of(visual.shape)
     triangles = transform_points(visual.pose_in_body, mesh.vertices)[mesh.triangles]
+    count = len(triangles)
     if visual.colour is None and mesh.colours is not None:
-        return triangles, mesh.colours
-    return triangles, np.tile(visual.colour or GREY, (len(triangles), 1))
+        return triangles, mesh.colours, np.zeros((count, 3))
+    return triangles, np.tile(visual.colour or GREY, (count, 1)), np.tile(visual.glow, (count, 1))
 
 
 def mesh_of(shape: Look) -> Mesh:

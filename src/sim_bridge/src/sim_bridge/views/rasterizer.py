@@ -29,13 +29,17 @@ class Projection:
     perspective: bool = True
 
 
-def shades(triangles_xyz: np.ndarray, colours: np.ndarray) -> np.ndarray:
-    """What triangles (T, 3, 3) in the world show of their ``colours`` (T, 3), 0 to 1, in the light: uint8."""
+def shades(triangles_xyz: np.ndarray, colours: np.ndarray, glows: np.ndarray) -> np.ndarray:
+    """What triangles (T, 3, 3) in the world show of their ``colours`` (T, 3), 0 to 1, in the light: uint8.
+
+    ``glows``, (T, 3), 0 to 1: what they add to that by themselves.
+    """
     sides = triangles_xyz[:, 1:] - triangles_xyz[:, :1]
     normals = np.cross(sides[:, 0], sides[:, 1])
     lengths = np.linalg.norm(normals, axis=1)
     facing = np.abs(normals @ LIGHT) / np.maximum(lengths, 1e-12)
-    return np.rint(255.0 * colours * (AMBIENT + (1.0 - AMBIENT) * facing)[:, None]).astype(np.uint8)
+    lit = colours * (AMBIENT + (1.0 - AMBIENT) * facing)[:, None]
+    return np.rint(255.0 * np.minimum(lit + glows, 1.0)).astype(np.uint8)
 
 
 def draw(

@@ -55,10 +55,11 @@ def true_map(
 
 
 def outlines_of(world: World, bottom: float, top: float) -> List[np.ndarray]:
-    """The convex outlines (N, 2) of all that is solid between two heights, metres."""
+    """The convex outlines (N, 2) of all that is solid and stays, between two heights, metres."""
     return [
         outline
         for body in world.bodies
+        if not body.is_on_course
         for part in body.collisions
         for outline in cut(part.shape, body.pose_in_world @ part.pose_in_body, bottom, top)
     ]

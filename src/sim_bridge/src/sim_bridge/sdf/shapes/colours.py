@@ -3,7 +3,7 @@
 from typing import Optional
 
 from sim_bridge.sdf.element import Element
-from sim_bridge.world import Colour
+from sim_bridge.world import DARK, Colour
 
 DEFAULT: Colour = (0.7, 0.7, 0.7)
 # Gazebo's materials by name: their diffuse colour, or what their texture looks like from afar.
@@ -47,8 +47,18 @@ def read_colour(visual: Element) -> Optional[Colour]:
     for tag in ("diffuse", "ambient"):
         element = visual.child("material", tag)
         if element is not None:
-            count = min(max(len(element.text.split()), 3), 4)
-            red, green, blue, *_ = (min(max(number, 0.0), 1.0) for number in element.numbers(count))
-            return (red, green, blue)
+            return _colour(element)
     name = visual.child("material", "script", "name")
     return NAMED.get(name.text.rsplit("/", 1)[-1], DEFAULT) if name is not None else None
+
+
+def read_glow(visual: Element) -> Colour:
+    """The colour in which a <visual> shines by itself."""
+    element = visual.child("material", "emissive")
+    return DARK if element is None else _colour(element)
+
+
+def _colour(element: Element) -> Colour:
+    count = min(max(len(element.text.split()), 3), 4)
+    red, green, blue, *_ = (min(max(number, 0.0), 1.0) for number in element.numbers(count))
+    return (red, green, blue)

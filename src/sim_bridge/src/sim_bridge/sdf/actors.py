@@ -1,0 +1,55 @@
+"""<actor> elements: people, as upright bodies that go the way of their trajectory."""
+
+from typing import List, Optional, Tuple
+
+import numpy as np
+
+from sim_bridge.courses import Course
+from sim_bridge.geometry.pose3 import IDENTITY, pose3
+from sim_bridge.geometry.shapes import Cylinder
+from sim_bridge.sdf.element import Element
+from sim_bridge.sdf.plugins import NEEDLESS, plugin_name
+from sim_bridge.sdf.warnings import Warnings
+from sim_bridge.world import Body, Collision
+
+# Of a person who walks: metres, about the one of Gazebo's own skins.
+RADIUS, HEIGHT = 0.25, 1.7
+# Seconds that who has arrived for good stays there.
+FOR_EVER = 1e9
+
+
+def read_actor(actor: Element, warnings: Warnings) -> Tuple[Body, Optional[Course]]:
+    """The body of an actor, and the way it goes; None if it stays. Raises WorldError."""
+    warnings.check_children(actor)
+    for plugin in actor.children("plugin"):
+        if plugin_name(plugin) not in NEEDLESS:
+            warnings.leave_out(plugin, "left out, it moves by its trajectory alone")
+    link = f"{actor.name}::link"
+    course = _course(actor, link)
+    stands = actor.raw_pose()
+    x, y = course.at(0.0) if course else ((0.0, 0.0) if stands is None else stands[:2, 3])
+    solid = Collision(Cylinder(RADIUS, HEIGHT), IDENTITY)
+    place = pose3(x, y, HEIGHT / 2.0)
+    return Body(link, place, (solid,), is_on_course=course is not None), course
+
+
+def _course(actor: Element, link: str) -> Optional[Course]:
+    script, trajectory = actor.child("script"), actor.child("script", "trajectory")
+    waypoints = [] if trajectory is None else list(trajectory.children("waypoint"))
+    if script is None or not waypoints:
+        return None
+    delay = max(script.number("delay_start", default=0.0), 0.0)
+    keyframes: List[Tuple[float, float, float]] = []
+    for waypoint in waypoints:
+        pose = waypoint.raw_pose()
+        if pose is None:
+            raise waypoint.error("<pose> is missing")
+        keyframes.append((delay + waypoint.required("time").numbers(1)[0], pose[0, 3], pose[1, 3]))
+    keyframes.sort(key=lambda keyframe: keyframe[0])
+    if keyframes[0][0] > 0.0:
+        keyframes.insert(0, (0.0, *keyframes[0][1:]))
+    is_repeated = script.child("loop") is None or script.flag("loop")
+    if len(keyframes) == 1 or not is_repeated:
+        keyframes.append((keyframes[-1][0] + FOR_EVER, *keyframes[-1][1:]))
+    times, *points = np.array(keyframes).T
+    return Course(link, times, np.column_stack(points))
