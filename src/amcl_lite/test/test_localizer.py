@@ -150,6 +150,21 @@ def test_a_kidnapped_robot_knows_that_it_is_lost_and_is_found_again():
     assert not localizer.is_lost
 
 
+def test_a_robot_that_is_carried_away_while_it_stands_finds_itself_without_a_motion():
+    toy = Toy(START)
+    localizer = started(toy)
+    tracking_errors(toy, localizer, THROUGH_ALL_ROOMS[:30])
+    toy.base_in_map = toy.base_in_map @ Pose2(0.0, 0.5)
+    updates = localizer.updates
+    errors = tracking_errors(toy, localizer, [Pose2()] * 40)
+    assert errors[0, 0] > 0.4
+    assert errors[-1, 0] < 0.1
+    assert localizer.updates > updates
+    settled = localizer.updates
+    tracking_errors(toy, localizer, [Pose2()] * 10)
+    assert localizer.updates == settled, "scans that fit are not worked in while the robot stands"
+
+
 def test_without_recovery_a_kidnapped_robot_stays_lost():
     toy = Toy(START)
     localizer = started(toy, replace(TURTLEBOT, recover_when_lost=False))

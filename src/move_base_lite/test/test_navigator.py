@@ -169,6 +169,16 @@ def test_a_new_goal_is_taken_over_without_stopping(settings):
     assert_arrived(robot, drive_to_end(robot, navigator), goal)
 
 
+def test_a_robot_that_is_carried_away_while_it_turns_at_its_goal_drives_back(settings):
+    grid, goal = room(4.0, 4.0), Pose2(2.0, 2.0, 3.0)
+    robot, navigator = Robot(grid, Pose2(1.2, 2.0)), Navigator(settings, grid)
+    navigator.set_goal(goal)
+    while not (robot.pose.distance_to(goal) < 0.1 and robot.twist.omega > 0.2):
+        robot.tick(navigator)
+    robot.pose = robot.pose @ Pose2(0.0, -0.5)
+    assert_arrived(robot, drive_to_end(robot, navigator), goal)
+
+
 def test_an_ended_goal_says_so_once_and_leaves_the_robot_alone(settings):
     grid = room(3.0, 3.0)
     robot, navigator = Robot(grid, Pose2(1.5, 1.5)), Navigator(settings, grid)

@@ -25,7 +25,7 @@ class Drive:
             self.now, self.x = self.now + PERIOD, self.x + v * PERIOD
             ranges = scan(self.truth())
             if ranges is not None:
-                self.watch.see_scan(ranges, MIN, MAX)
+                self.watch.see_scan(ranges, MIN, MAX, 2.0 * math.pi)
             pose = odometry(Pose2(self.x, 0.0))
             if pose is not None:
                 self.watch.see_odometry(self.now, pose, Twist2(v, 0.0))
@@ -118,3 +118,44 @@ def test_all_is_forgotten_when_time_jumps(drive):
     assert drive.go(0.5, scan=filled(math.nan))
     drive.watch.forget()
     assert drive.watch.complaint(drive.now + 100.0) is None
+
+
+class Camera:
+    """What a watch hears of a depth camera, NaN where it measures nothing, as the robot drives to a wall."""
+
+    NEAREST, FARTHEST, SPAN = 0.45, 5.0, math.radians(58.0)
+
+    def __init__(self):
+        self.watch = SensorWatch()
+
+    def see(self, distance, yaw=0.0, wall=3.0):
+        self.watch.see_odometry(0.0, Pose2(wall - distance, 0.0, yaw), AHEAD)
+        self.show(distance / np.cos(np.linspace(-self.SPAN / 2.0, self.SPAN / 2.0, BEAMS)))
+        return self.watch.complaint(0.0)
+
+    def show(self, ranges):
+        is_seen = (ranges >= self.NEAREST) & (ranges <= self.FARTHEST)
+        told = np.where(is_seen, ranges, math.nan).astype(np.float32)
+        self.watch.see_scan(told, self.NEAREST, 10.0, self.SPAN)
+
+    def blank(self):
+        self.show(np.full(BEAMS, math.nan))
+        return self.watch.complaint(0.0)
+
+
+def test_a_depth_camera_before_a_wall_that_is_too_near_is_trusted():
+    camera = Camera()
+    assert [camera.see(distance) for distance in np.arange(3.0, 0.2, -0.05)] == [None] * 56
+
+
+def test_a_depth_camera_that_looks_from_a_wall_into_the_open_is_trusted():
+    camera = Camera()
+    assert camera.see(2.0) is None
+    assert camera.see(9.0, yaw=0.5, wall=10.0) is None
+
+
+def test_a_depth_camera_that_goes_blind_in_the_middle_of_a_room_is_named():
+    camera = Camera()
+    for distance in (4.5, 3.0, 2.5, 2.4):
+        assert camera.see(distance) is None
+    assert "lost sight" in camera.blank()

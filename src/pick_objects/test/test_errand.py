@@ -14,6 +14,7 @@ from pick_objects import (
     MissionError,
     Stage,
     WaysMeasured,
+    believed,
     errand_mission,
 )
 from planar import Pose2, SettingsError
@@ -225,3 +226,12 @@ def test_the_time_left_shrinks_to_nothing():
     assert left == sorted(left, reverse=True)
     assert left[0] > 10.0
     assert left[-1] == 0.0
+
+
+@pytest.mark.parametrize("fit, is_believed", [(None, True), (0.9, True), (0.05, False)])
+def test_a_robot_that_sees_something_else_does_not_claim_to_have_arrived(fit, is_believed):
+    event = believed(GoalReached(), fit)
+    assert (event == GoalReached()) is is_believed
+    refused = GoalRefused("blocked")
+    assert believed(refused, fit) is refused
+    assert believed(None, fit) is None

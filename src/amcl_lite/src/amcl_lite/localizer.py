@@ -186,6 +186,8 @@ class Localizer:
         base_in_map = self._odom_in_map @ base_in_odom
         self._quality = quality_of(base_in_map, beams, self._likelihood.field, self._grid)
         self._detector.take(self._quality, stamp)
+        if self._settings.recover_when_lost and self._quality.is_doubtful:
+            self._update_policy.request()  # a robot that stands would never find itself
 
 
 def warm_up(settings: LocalizerSettings) -> None:

@@ -1,6 +1,7 @@
 """Missions of deliveries between named places; pure but for node.py and nodes."""
 
 from pick_objects.approach import GoTo
+from pick_objects.arrival import believed
 from pick_objects.config import ErrandSettings
 from pick_objects.errand import Errand, MeasureWays, WaysMeasured
 from pick_objects.job import ErrandState, Job, Stage, Whereabouts
@@ -26,6 +27,7 @@ __all__ = [
     "Thing",
     "WaysMeasured",
     "Whereabouts",
+    "believed",
     "errand_mission",
     "load_mission",
     "parse_mission",

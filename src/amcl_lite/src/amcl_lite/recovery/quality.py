@@ -41,6 +41,11 @@ class Quality:
     through: float
     mean_distance: float
 
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether the scan speaks against the pose."""
+        return self.probability < LOST_BELOW
+
 
 def quality_of(base_in_map: Pose2, beams: Beams, field: LikelihoodField, grid: OccupancyGrid) -> Quality:
     """Judges a pose by the beams of a scan; the fewer of them met anything, the less they tell."""

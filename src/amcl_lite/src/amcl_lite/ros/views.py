@@ -8,6 +8,7 @@ from std_msgs.msg import ColorRGBA, Float32, String
 from visualization_msgs.msg import Marker
 
 from amcl_lite.localizer import Estimate, Localizer
+from amcl_lite.recovery.misfit import MisfitAlarm
 from amcl_lite.ros.shared_localizer import SharedLocalizer
 from planar import OccupancyGrid
 from planar_ros.messages.conversion import (
@@ -21,6 +22,7 @@ from planar_ros.messages.conversion import (
 DIAGNOSTICS_PERIOD = 1.0
 # The weighted particles are drawn as lines of this length, metres, and at most so many of them.
 MARKER_LENGTH, MARKER_COUNT = 0.1, 500
+MISFIT = "the scan does not fit the map: are its resolution, its origin and the initial pose right?"
 
 
 class Views:
@@ -36,6 +38,7 @@ class Views:
         self._particles = rospy.Publisher("~weighted_particles", Marker, queue_size=1)
         self._field = rospy.Publisher("~likelihood_field", OccupancyGridArrays, queue_size=1, latch=True)
         self._shown_state = ""
+        self._misfit = MisfitAlarm()
         self._diagnosed = rospy.Time(0)
 
     @property
@@ -67,6 +70,8 @@ class Views:
             return
         if self._quality.get_num_connections() > 0:
             self._quality.publish(localizer.quality.probability)
+        if self._misfit.take(localizer.quality, rospy.get_time()):
+            rospy.logwarn(MISFIT)
         state = "lost" if localizer.is_lost else "ok"
         if state != self._shown_state:
             self._shown_state = state

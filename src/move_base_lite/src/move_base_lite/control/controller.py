@@ -20,6 +20,9 @@ ALIGNED_ANGLE = 0.3
 FOLLOWED_ANGLE = 0.1
 # Share of the acceleration with which the robot slows down towards the plan's end.
 GENTLE = 0.3
+# Metres that a robot which has been near its goal can be beyond the tolerance and have come there by itself,
+# rolling on and turning; farther off it has been carried away, or was never there.
+ROLLED = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,11 +151,10 @@ class Controller:
         return Control(command, _here(situation), path_xy)
 
     def _is_near(self, base_in_map: Pose2) -> bool:
-        is_near = base_in_map.distance_to(self._goal_in_map) <= self._settings.xy_goal_tolerance
-        if self._settings.latch_xy_goal_tolerance:
-            self._arrived = self._arrived or is_near
-            return self._arrived
-        return is_near
+        beyond = base_in_map.distance_to(self._goal_in_map) - self._settings.xy_goal_tolerance
+        is_latched = self._settings.latch_xy_goal_tolerance and self._arrived and beyond <= ROLLED
+        self._arrived = beyond <= 0.0 or is_latched
+        return self._arrived
 
     def _should_turn(self, error: float) -> bool:
         threshold = self._settings.rotate_to_path_angle

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Sequence, Tuple
 
 import numba
@@ -21,7 +22,7 @@ class Footprint:
 
     corners_xy: np.ndarray
 
-    @property
+    @cached_property
     def inscribed_radius(self) -> float:
         """Largest circle about the base frame's origin that fits in: metres."""
         starts, ends = self.corners_xy, np.roll(self.corners_xy, -1, axis=0)
@@ -29,7 +30,7 @@ class Footprint:
         along = np.clip(-(starts * edges).sum(axis=1) / (edges * edges).sum(axis=1), 0.0, 1.0)
         return float(np.linalg.norm(starts + along[:, None] * edges, axis=1).min())
 
-    @property
+    @cached_property
     def circumscribed_radius(self) -> float:
         """Smallest circle about the base frame's origin that holds everything: metres."""
         return float(np.linalg.norm(self.corners_xy, axis=1).max())

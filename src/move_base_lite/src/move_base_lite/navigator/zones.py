@@ -92,7 +92,7 @@ def _corners(table: Table) -> Tuple[Tuple[float, float], ...]:
     value = table.value("corners")
     try:
         corners = tuple((float(x), float(y)) for x, y in value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         corners = ()
     if len(corners) < 3 or not np.isfinite(corners).all():
         raise table.complaint("corners", f"must be at least 3 points [x, y], got {value!r}")

@@ -2,13 +2,12 @@
 
 from typing import Any, Dict, List, Mapping, Tuple
 
-import yaml
-
 from move_base_lite.config import MoveBaseSettings, NavigatorSettings
 from move_base_lite.parameters.costmaps import costmap_settings
 from move_base_lite.parameters.planners import controller_settings, planner_settings
 from move_base_lite.parameters.reader import Reader, below
 from move_base_lite.parameters.recoveries import recovery_settings
+from planar.config.yaml_table import read_table
 
 # Parameters that are known but mean nothing here: of a robot that moves sideways, of details of the official
 # code, or read by it and never used.
@@ -22,12 +21,11 @@ _MOVE_BASE_IGNORED = {
 def load_settings(*paths, **chosen: Any) -> NavigatorSettings:
     """Settings from YAML files of official parameters, later ones over earlier, as ``rosparam load`` does.
 
-    ``chosen``: parameters of move_base over those of all files.
+    ``chosen``: parameters of move_base over those of all files. Raises SettingsError.
     """
     parameters: Dict[str, Any] = {}
     for path in paths:
-        with open(path, encoding="utf-8") as file:  # noqa: PTH123
-            parameters = _merged(parameters, yaml.safe_load(file) or {})
+        parameters = _merged(parameters, read_table(path).values())
     return settings_from_parameters(_merged(parameters, chosen), f"{paths[-1]}: ")[0]
 
 

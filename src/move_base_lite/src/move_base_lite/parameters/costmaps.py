@@ -83,8 +83,11 @@ def _keys_of(kind: Plugin[Layer]) -> Set[str]:
 def layers_of(reader: Reader, values: Tree, name: str) -> Dict[str, Plugin[Layer]]:
     """The kind of each layer that there is here, by its name, in order."""
     layers = {}
-    for plugin in values["plugins"]:
-        if not isinstance(plugin, dict) or not {"name", "type"} <= set(plugin):
+    plugins = values["plugins"]
+    for plugin in plugins if isinstance(plugins, list) else [plugins]:
+        if not isinstance(plugin, dict) or not all(
+            isinstance(plugin.get(key), str) for key in ("name", "type")
+        ):
             raise SettingsError(
                 f"{reader.where}{name}/plugins must be a list of {{name, type}}, got {plugin!r}"
             )
@@ -116,5 +119,5 @@ def _corners(value: Any, name: str) -> Tuple[Tuple[float, float], ...]:
     try:
         points = yaml.safe_load(value) if isinstance(value, str) else value
         return tuple((float(x), float(y)) for x, y in points)
-    except (yaml.YAMLError, TypeError, ValueError):
+    except (yaml.YAMLError, TypeError, ValueError, OverflowError):
         raise SettingsError(f"{name} must be a list of points [x, y], got {value!r}") from None

@@ -1,6 +1,7 @@
 """Sensors that are dead and look alive: each is held against what the others and the commands say."""
 
 import math
+from dataclasses import dataclass
 from typing import Optional
 
 import numpy as np
@@ -12,6 +13,11 @@ NEARLY_ALL = 0.95
 # A scan that shows that much is not followed by one that shows nothing, before the robot has gone far.
 ENOUGH = 0.5
 NOT_FAR = 0.3
+# Radians: a sensor that looks around always has something in sight within a room. One that looks ahead, as a
+# depth camera, has not, before a wall that is too near, or into the open; turned by that share of its view
+# it sees something else.
+ALL_AROUND = math.radians(120.0)
+SAME_VIEW = 0.25
 # Motion, metres or radians, in which a scan with noise cannot stay the same to the last bit; between so many
 # scans, and between two of them at least.
 NOTICEABLE, ENOUGH_SCANS, LEAST_STEP = 0.15, 3, 0.005
@@ -22,6 +28,14 @@ FAST = 0.1
 CHANGED = 0.1
 # Seconds without odometry that had come before. Scans that stay away are what expected_update_rate is for.
 SILENCE = 2.0
+
+
+@dataclass(frozen=True)
+class _View:
+    """Where the robot was when its scan showed enough, and how far it can go until that is out of range."""
+
+    base: Pose2
+    room: float
 
 
 class SensorWatch:
@@ -39,16 +53,17 @@ class SensorWatch:
         self._scan_when_still: Optional[np.ndarray] = None
         self._ranges: Optional[np.ndarray] = None
         self._base_at_scan, self._same_way, self._same_scans = Pose2(), 0.0, 0
-        self._base_when_seeing: Optional[Pose2] = None
+        self._view: Optional[_View] = None
+        self._farthest = 0.0
         self._blindness = self._sameness = ""
 
     def forget(self) -> None:
         """Time has jumped: what was heard is worthless."""
         self.__init__()  # type: ignore[misc]
 
-    def see_scan(self, ranges: np.ndarray, range_min: float, range_max: float) -> None:
-        """A scan has come; ``ranges``: (N,), metres."""
-        self._blindness = self._why_blind(ranges, range_min, range_max)
+    def see_scan(self, ranges: np.ndarray, range_min: float, range_max: float, span: float) -> None:
+        """A scan has come; ``ranges``: (N,), metres; ``span``: the angle between its outer beams, radians."""
+        self._blindness = self._why_blind(ranges, range_min, range_max, span)
         self._sameness = self._why_frozen(ranges)
         self._ranges = ranges
 
@@ -72,7 +87,7 @@ class SensorWatch:
             return "odometry: it stands still while the robot is told to move and its scans change"
         return None
 
-    def _why_blind(self, ranges: np.ndarray, range_min: float, range_max: float) -> str:
+    def _why_blind(self, ranges: np.ndarray, range_min: float, range_max: float, span: float) -> str:
         if not len(ranges):
             return "it has no beams"
         with np.errstate(invalid="ignore"):
@@ -80,17 +95,26 @@ class SensorWatch:
                 "NaN": np.isnan(ranges).mean(),
                 f"nearer than {range_min:g} m": (ranges < max(range_min, 1e-3)).mean(),
             }
-            seeing = ((ranges >= range_min) & (ranges < range_max)).mean()
+            seen = ranges[(ranges >= range_min) & (ranges < range_max)]
+        looks_around = abs(span) > ALL_AROUND
         for what, share in shares.items():
-            if share >= NEARLY_ALL:
+            if share >= NEARLY_ALL and looks_around:
                 return f"nearly all of its beams are {what}"
-        if seeing >= ENOUGH:
-            self._base_when_seeing = self._base
-        elif seeing <= 1.0 - NEARLY_ALL and self._base_when_seeing is not None:
-            gone = self._base_when_seeing.distance_to(self._base)
-            if gone < NOT_FAR:
+        if len(seen) >= ENOUGH * len(ranges):
+            self._view = _View(self._base, NOT_FAR if looks_around else self._room(seen, range_min))
+        elif len(seen) <= (1.0 - NEARLY_ALL) * len(ranges) and self._view is not None:
+            moved = self._view.base.inverse() @ self._base
+            gone = math.hypot(moved.x, moved.y)
+            is_same_view = looks_around or abs(moved.yaw) < SAME_VIEW * abs(span)
+            if gone < self._view.room and is_same_view:
                 return f"it has lost sight of everything within {gone:.1f} m"
         return ""
+
+    def _room(self, seen: np.ndarray, range_min: float) -> float:
+        """Metres by which half of what is seen may come nearer or go away and still be seen."""
+        self._farthest = max(self._farthest, float(seen.max()))
+        inside = np.minimum(seen - range_min, self._farthest - seen)
+        return min(NOT_FAR, float(np.median(inside)))
 
     def _why_frozen(self, ranges: np.ndarray) -> str:
         """A single jump of odometry between two scans is none of the robot's motion."""

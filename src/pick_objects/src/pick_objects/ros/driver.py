@@ -3,13 +3,20 @@
 from typing import Optional, Union
 
 import rospy
+from std_msgs.msg import Float32
 
 from pick_objects.approach import GoTo
+from pick_objects.arrival import believed
 from pick_objects.errand import MeasureWays, WaysMeasured
 from planar import Pose2
 from planar.driving import GoalReached, GoalRefused
 from planar_ros.calls.move_base import MoveBase
 from planar_ros.calls.services import ServiceError
+
+# Who localizes the robot tells here how well each scan fits; the official amcl does not.
+QUALITY_TOPIC = "amcl/localization_quality"
+# Seconds after which what was told of a scan means nothing any more.
+STALE = 2.0
 
 
 class Driver:
@@ -18,6 +25,8 @@ class Driver:
     def __init__(self, frame_id: str):
         self.move_base = MoveBase(frame_id)
         self._order: Optional[GoTo] = None
+        self._fit, self._fit_at = 0.0, rospy.Time(0)
+        rospy.Subscriber(QUALITY_TOPIC, Float32, self._keep_fit, queue_size=1)
 
     @property
     def robot_in_map(self) -> Pose2:
@@ -35,7 +44,7 @@ class Driver:
         outcome = self.move_base.outcome()
         if outcome is None or self._order is None:
             return None
-        event = outcome.event
+        event = believed(outcome.event, self._last_fit)
         if isinstance(event, GoalRefused):
             rospy.logwarn("place %s: %s", self._order.place.name, event.reason)
         return event
@@ -48,3 +57,12 @@ class Driver:
             rospy.logwarn("the order of the deliveries goes by straight lines: %s", error)
             lines = ((start or self.robot_in_map).distance_to(end) for start, end in order.ways)
             return WaysMeasured(tuple(lines))
+
+    @property
+    def _last_fit(self) -> Optional[float]:
+        """How well the last scan fits the map; None if nobody has told lately."""
+        is_fresh = abs((rospy.Time.now() - self._fit_at).to_sec()) < STALE
+        return self._fit if is_fresh else None
+
+    def _keep_fit(self, message: Float32) -> None:
+        self._fit, self._fit_at = message.data, rospy.Time.now()

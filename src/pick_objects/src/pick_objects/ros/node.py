@@ -3,7 +3,7 @@
 import sys
 import threading
 import time
-from typing import Callable, List, Optional
+from typing import Callable, Dict, List, Optional
 
 import rospy
 from home_service_msgs.msg import DeliverGoal
@@ -20,7 +20,7 @@ from pick_objects.ros.driver import Driver
 from pick_objects.ros.mission_topics import MissionTopics, delivery_from_msg
 from planar import OccupancyGrid
 from planar.driving import Finish
-from planar.maps.places import load_places, places_of_errand, why_unreachable
+from planar.maps.places import Place, load_places, places_of_errand, why_unreachable
 from planar_ros.messages.border import listen
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg
 from planar_ros.node.keepsake import Keepsake
@@ -42,6 +42,7 @@ class PickObjects:
         self._map: Optional[OccupancyGrid] = None
         self._zones = load_places(self._settings.zones_file)
         self._mission = self._read_mission()
+        rospy.set_param("~places", sorted(self._places))  # for those who offer them to people
         self._errand: Optional[Errand] = None
         self._keepsake = Keepsake() if self._settings.resume else None
         self._lock = threading.Lock()
@@ -84,6 +85,10 @@ class PickObjects:
         if settings.serve:
             return None
         return errand_mission(*places_of_errand(settings.zones_file), self._defaults)
+
+    @property
+    def _places(self) -> Dict[str, Place]:
+        return {**self._zones, **(self._mission.places if self._mission else {})}
 
     def _read_again(self, mission: Mission) -> Mission:
         """The mission, now that there is a map to check it against."""
@@ -141,7 +146,7 @@ class PickObjects:
         return next((problem for problem in problems if problem), None)
 
     def _understand(self, goal: DeliverGoal) -> Mission:
-        places = {**self._zones, **(self._mission.places if self._mission else {})}
+        places = self._places
         if goal.mission:
             if goal.deliveries:
                 raise MissionError("a goal holds either a mission or deliveries, not both")

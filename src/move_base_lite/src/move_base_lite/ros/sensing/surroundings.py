@@ -120,7 +120,8 @@ class Surroundings:
         self._watch.see_odometry(rospy.get_time(), pose, self._command)
 
     def _on_scan(self, message):
-        self._watch.see_scan(message.ranges, message.range_min, message.range_max)
+        span = message.angle_increment * (len(message.ranges) - 1)
+        self._watch.see_scan(message.ranges, message.range_min, message.range_max, span)
 
 
 class _Sensor:

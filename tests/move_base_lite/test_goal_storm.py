@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""A client that sends goals without end, and cancels them, keeps nobody else from driving for long."""
+
+import time
+import unittest
+
+import actionlib
+import rospy
+import rostest
+from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
+from move_base_client import pose_at
+from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseGoal
+from waiting import wait_until
+
+GOALS = 5000
+MOST_TOLD = 40
+SECONDS = 40.0
+
+
+class TestGoalStorm(unittest.TestCase):
+    def test_a_goal_after_a_storm_of_goals_is_reached_soon(self):
+        client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
+        self.assertTrue(client.wait_for_server(rospy.Duration(30.0)))
+        told = []
+        rospy.Subscriber("move_base/status", GoalStatusArray, lambda list: told.append(len(list.status_list)))
+        goals = rospy.Publisher("move_base/goal", MoveBaseActionGoal, queue_size=GOALS)
+        cancels = rospy.Publisher("move_base/cancel", GoalID, queue_size=GOALS)
+        wait_until("move_base to hear", lambda: goals.get_num_connections() and cancels.get_num_connections())
+        for number in range(GOALS):
+            goals.publish(self.goal(number))
+            if number % 10 == 0:
+                cancels.publish(GoalID(id=f"storm {number}"))
+        sent_at = time.monotonic()
+        client.send_goal(MoveBaseGoal(pose_at(0.5, 0.0)))
+        wait_until("its end", lambda: client.simple_state == actionlib.SimpleGoalState.DONE, SECONDS)
+        seconds = time.monotonic() - sent_at
+        print(f"{seconds:.1f} s, at most {max(told)} goals told of")
+        self.assertEqual(client.get_state(), GoalStatus.SUCCEEDED, client.get_goal_status_text())
+        self.assertLessEqual(max(told), MOST_TOLD)
+
+    @staticmethod
+    def goal(number):
+        message = MoveBaseActionGoal(goal=MoveBaseGoal(pose_at(0.5, 0.001 * (number % 100))))
+        message.goal_id.id = f"storm {number}"
+        return message
+
+
+if __name__ == "__main__":
+    rospy.init_node("test_goal_storm")
+    rostest.rosrun("home_service_tests", "goal_storm", TestGoalStorm)
