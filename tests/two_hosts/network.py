@@ -6,7 +6,7 @@ import signal
 import subprocess
 import uuid
 from pathlib import Path
-from typing import List
+from typing import List, Optional
 
 CLONE_NEWNET = 0x40000000
 MASTER_PORT = 11311
@@ -27,10 +27,13 @@ class Host:
             "ROS_IP": self.address,
         }
 
-    def start(self, master: "Host", *command: str) -> subprocess.Popen:
-        """Starts a program on this host."""
+    def start(self, master: "Host", *command: str, folder: Optional[Path] = None) -> subprocess.Popen:
+        """Starts a program on this host; in a ``folder``, or here."""
         process = subprocess.Popen(
-            ["ip", "netns", "exec", self.name, *command], env=self.environment(master), start_new_session=True
+            ["ip", "netns", "exec", self.name, *command],
+            env=self.environment(master),
+            cwd=folder,
+            start_new_session=True,
         )
         self._processes.append(process)
         return process

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import label
 
-from laboratory.generators.homes import APART, ROOM_TO_PASS, Homes
+from laboratory.generators.homes import APART, ROOM_TO_PASS, ROOM_TO_STAND, Homes
 from laboratory.generators.raster import Raster
 from laboratory.generators.rooms import SMALLEST_SIDE, Room, floor_plan
 from laboratory.scenario import read_scenario
@@ -16,6 +16,16 @@ SEEDS = range(6)
 @pytest.fixture(scope="module")
 def homes():
     return [Homes(30.0, 80.0).arena(seed) for seed in SEEDS]
+
+
+@pytest.mark.parametrize("seed", [8, 41])
+def test_no_furniture_stands_where_the_robot_starts(seed):
+    """Homes whose map had the robot shut in by what the coarser raster took for far enough."""
+    arena = Homes().arena(seed)
+    distances = distance_field(arena.grid.cells != FREE, arena.grid.resolution)
+    ((row, col),) = arena.grid.cells_of([[0.0, 0.0]])
+    assert distances[row, col] > ROOM_TO_STAND
+    assert len(arena.places) >= 2
 
 
 def test_the_same_seed_makes_the_same_home_and_another_another(homes):

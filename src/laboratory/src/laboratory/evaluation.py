@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import List, Optional, Sequence, Tuple
+from typing import Any, Callable, List, Optional, Sequence, Tuple
 
 from laboratory.campaign import Campaign, Mission, Workers
 from laboratory.campaign.progress import Told
@@ -42,20 +42,24 @@ class Evaluation:
         if not missions:
             return
         with workers.client() as client, Told(len(missions)) as told:
-            count = count_of(client)
-            campaign = Campaign(client, self._store, lambda _, run: told.count(run.is_success), count)
-            campaign.run(missions)
+            self.play_on(client, told.count)
+
+    def play_on(self, client: Any, heard: Callable[[bool], None] = lambda is_success: None) -> None:
+        """The same by workers that are there; ``heard``: told of each run whether it succeeded."""
+        missions, _ = self.missions()
+        campaign = Campaign(client, self._store, lambda _, run: heard(run.is_success), count_of(client))
+        campaign.run(missions)
 
     def missions(self) -> Tuple[List[Mission], int]:
         """Those that have not been played, and how many there are in all."""
         played = self._store.played(version())
-        missions = [
-            Mission(scenario, seed, digest)
+        missions = {
+            (digest, seed): Mission(scenario, seed, digest)
             for scenario, digest, seeds in self._scenarios
             for seed in seeds
             if (digest, seed) not in played
-        ]
-        return missions, sum(len(seeds) for _, _, seeds in self._scenarios)
+        }
+        return list(missions.values()), sum(len(seeds) for _, _, seeds in self._scenarios)
 
     def version_like(self, beginning: str) -> str:
         """The latest version in the file that begins so. Raises SettingsError."""

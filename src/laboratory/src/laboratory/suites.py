@@ -28,6 +28,16 @@ def scenarios_of(suites: Sequence[str], planners: Sequence[str] = ()) -> Tuple[L
     return scenarios, complaints
 
 
+def one_scenario(name: str, planner: str = "") -> Scenario:
+    """The scenario of a file or name. Raises SettingsError, also if that is wrong or there are several."""
+    scenarios, complaints = scenarios_of([name], [planner] if planner else [])
+    if complaints:
+        raise SettingsError(complaints[0])
+    if len(scenarios) != 1:
+        raise SettingsError(f"{name}: {len(scenarios)} scenarios, not one")
+    return scenarios[0]
+
+
 def _files(suite: str) -> List[Path]:
     for path in (Path(suite), FOLDER / f"{suite}.yaml"):
         if path.is_file():

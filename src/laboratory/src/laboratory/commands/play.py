@@ -14,16 +14,11 @@ class Play:
 
     def run(self) -> int:
         from laboratory.playing import play
-        from laboratory.suites import scenarios_of
-        from planar import SettingsError
+        from laboratory.suites import one_scenario
 
-        scenarios, complaints = scenarios_of([self.scenario], [self.planner] if self.planner else [])
-        if complaints:
-            raise SettingsError(complaints[0])
-        if len(scenarios) != 1:
-            raise SettingsError(f"{self.scenario}: {len(scenarios)} scenarios, not one")
-        result = play(scenarios[0], self.seed)
-        print(f"{scenarios[0].label}, seed {self.seed}: {result.outcome.upper()}: {result.reason}")
+        scenario = one_scenario(self.scenario, self.planner)
+        result = play(scenario, self.seed)
+        print(f"{scenario.label}, seed {self.seed}: {result.outcome.upper()}: {result.reason}")
         if result.seconds is not None:
             print(
                 f"  {result.seconds:.1f} s simulated, {result.driven:.1f} m driven, trajectory {result.hash}"

@@ -9,7 +9,7 @@ from typing import List, Tuple
 import numpy as np
 from scipy.ndimage import label
 
-from laboratory.generators.raster import Raster
+from laboratory.generators.raster import RESOLUTION, Raster
 from laboratory.generators.rooms import THICKNESS, Room, floor_plan
 from laboratory.worlds.source import Arena
 from planar import FREE, OccupancyGrid, Pose2, SettingsError
@@ -86,6 +86,8 @@ def _furniture(
             if len(pieces) == wanted:
                 break
             piece = _piece(room, rng)
+            if piece.distance_to(*start) < ROOM_TO_STAND + RESOLUTION:
+                continue
             tried = raster.copy()
             tried.fill(*piece.corners)
             left = tried.reach(*start, ROOM_TO_PASS)

@@ -1,5 +1,6 @@
 """A floor plan: a rectangle cut into rooms, each cut a wall with a door, so that all rooms are connected."""
 
+import math
 from dataclasses import dataclass
 from typing import List, Tuple
 
@@ -33,6 +34,11 @@ class Room:
     def corners(self) -> Tuple[float, float, float, float]:
         """x, y of the least, x, y of the greatest."""
         return self.x, self.y, self.x + self.width, self.y + self.depth
+
+    def distance_to(self, x: float, y: float) -> float:
+        """Metres from a place; 0 within."""
+        off_x = max(self.x - x, x - self.x - self.width, 0.0)
+        return math.hypot(off_x, max(self.y - y, y - self.y - self.depth, 0.0))
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,13 @@
 """What a run came to, as it is kept."""
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import lru_cache
 from typing import NamedTuple, Optional
 
 import numpy as np
 
+from laboratory.results.people import manners, seconds_still
 from laboratory.tasks.task import COLLISION, ERROR, SUCCESS, Play
 from laboratory.worlds.source import Arena
 from planar import OCCUPIED, OccupancyGrid, wrap
@@ -31,6 +32,8 @@ class Result:
     ``way``: the shortest that there was, ``clearance``: the least between the robot's middle and anything
     solid, ``turning``: rad turned for each metre driven, ``score``: of a benchmark. ``hash``: the same for
     two runs only if every bit of their true trajectories is. ``track``: (N, 4) float32, thinned, as bytes.
+    ``still``: seconds without moving. ``ran_into_robot``: how many people did; what follows it is told in
+    laboratory.results.people.
     """
 
     digest: str
@@ -54,6 +57,14 @@ class Result:
     hash: str = ""
     wall_seconds: float = 0.0
     track: bytes = b""
+    still: Optional[float] = None
+    ran_into_robot: Optional[int] = None
+    intimate: Optional[float] = None
+    personal: Optional[float] = None
+    social: Optional[float] = None
+    person_nearest: Optional[float] = None
+    person_distance: Optional[float] = None
+    social_work: Optional[float] = None
 
     @property
     def is_success(self) -> bool:
@@ -89,6 +100,9 @@ def result_of(play: Play, arena: Arena, arena_number: int, key: Key, wall_second
         hash=hashlib.sha256(np.ascontiguousarray(track).tobytes()).hexdigest()[:16],
         wall_seconds=wall_seconds,
         track=thinned(track).astype(np.float32).tobytes(),
+        still=seconds_still(track),
+        ran_into_robot=len(play.ran_into_robot) if arena.world.walkers else None,
+        **asdict(manners(track, play.people)),
     )
 
 

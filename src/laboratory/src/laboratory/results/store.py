@@ -4,14 +4,15 @@ import sqlite3
 from contextlib import contextmanager
 from dataclasses import astuple, fields
 from pathlib import Path
-from typing import Iterator, List, Optional, Set, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Set, Tuple
 
 from laboratory.errors import ResultsError
 from laboratory.results.result import Result
 from laboratory.tasks.task import ERROR
 
 SCHEMA = 1
-KINDS = {int: "INTEGER", str: "TEXT", bytes: "BLOB", float: "REAL", Optional[float]: "REAL"}
+KINDS: Dict[Any, str] = {int: "INTEGER", float: "REAL", str: "TEXT", bytes: "BLOB"}
+KINDS.update({Optional[int]: "INTEGER", Optional[float]: "REAL"})
 COLUMNS = {field.name: KINDS[field.type] for field in fields(Result)}
 # Seconds that another writer is waited for.
 PATIENCE = 30.0
@@ -36,7 +37,10 @@ class Store:
         """Keeps a result; one of the same scenario, seed and version is replaced."""
         marks = ", ".join("?" * len(COLUMNS))
         with self._telling():
-            self._connection.execute(f"INSERT OR REPLACE INTO results VALUES ({marks})", astuple(result))
+            columns = ", ".join(COLUMNS)
+            self._connection.execute(
+                f"INSERT OR REPLACE INTO results ({columns}) VALUES ({marks})", astuple(result)
+            )
 
     def played(self, version: str) -> Set[Tuple[str, int]]:
         """Digests and seeds of what has been played; errors are worth another try."""
@@ -46,7 +50,7 @@ class Store:
 
     def results(self, digest: str, version: str) -> List[Result]:
         """Those of a scenario, in the order of their seeds."""
-        query = "SELECT * FROM results WHERE digest = ? AND version = ? ORDER BY seed"
+        query = f"SELECT {', '.join(COLUMNS)} FROM results WHERE digest = ? AND version = ? ORDER BY seed"
         with self._telling():
             return [Result(*row) for row in self._connection.execute(query, (digest, version))]
 
@@ -63,6 +67,9 @@ class Store:
         columns = ", ".join(f"{name} {kind}" for name, kind in COLUMNS.items())
         key = "PRIMARY KEY (digest, seed, version)"
         self._connection.execute(f"CREATE TABLE IF NOT EXISTS results ({columns}, {key})")
+        known = {column[1] for column in self._connection.execute("PRAGMA table_info(results)")}
+        for name in [each for each in COLUMNS if each not in known]:  # of a file from before they were told
+            self._connection.execute(f"ALTER TABLE results ADD COLUMN {name} {COLUMNS[name]}")
         self._connection.execute(f"PRAGMA user_version = {SCHEMA}")
 
     @contextmanager

@@ -8,6 +8,7 @@ from laboratory.scenario.scenario import Scenario
 from laboratory.scenario.seeds import seeds_of
 from laboratory.tasks.reach import config_of
 from laboratory.tasks.registry import TASKS
+from laboratory.worlds.people import People, read_people
 from laboratory.worlds.registry import SOURCES
 from move_base_lite import settings_from_parameters
 from planar import Pose2, SettingsError
@@ -28,7 +29,7 @@ def read_scenario(path: Path) -> Scenario:
     table = read_table(path)
     table.allow_only(*KEYS)
     robot, start = _robot(_part(table, "robot", "profile", "start"))
-    happens = _part(table, "happens", "boxes", "faults")
+    happens = _part(table, "happens", "boxes", "people", "faults")
     planner = _part(table, "planner", "name", "parameters")
     return Scenario(
         name=path.stem,
@@ -39,7 +40,8 @@ def read_scenario(path: Path) -> Scenario:
         robot=robot,
         start=start,
         simulation=_simulation(table),
-        boxes=happens.count("boxes") if happens and "boxes" in happens else 0,
+        **_boxes(happens),
+        people=read_people(happens) if happens else People(),
         faults=faults_from(happens) if happens else (),
         planner=planner.text("name") if planner and "name" in planner else "",
         parameters=_parameters(planner, robot) if planner else {},
@@ -65,6 +67,18 @@ def _chosen(table: Table, key: str, kinds: Mapping[str, Callable[[Table, Path], 
         given = next(iter(part), "")
         raise table.complaint(key, f"needs one of {', '.join(kinds)}{hint(given, kinds)}")
     return kinds[found[0]](part, folder)
+
+
+def _boxes(happens: Any) -> Dict[str, Any]:
+    """How many, or where each is."""
+    if happens is None or "boxes" not in happens:
+        return {}
+    if not isinstance(happens.value("boxes"), list):
+        return {"boxes": happens.count("boxes")}
+    places = happens.tables("boxes")
+    for place in places:
+        place.allow_only("x", "y", "yaw")
+    return {"boxes_at": tuple(map(pose_from, places))}
 
 
 def _robot(table: Any) -> Tuple[str, Pose2]:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Mapping, Tuple
 
 from laboratory.tasks.task import Task
+from laboratory.worlds.people import People, with_people
 from laboratory.worlds.source import Arena, WorldSource
 from planar import Pose2
 from sim_bridge import SimulationSettings
@@ -16,8 +17,9 @@ from sim_bridge.faults import Fault
 @dataclass(frozen=True)
 class Scenario:
     """``file``: where it was read; ``start``: where the robot begins, of the world; ``boxes``: how many that
-    its map does not show stand about; ``planner``: a local one other than the robot's; ``parameters``: of
-    move_base, over those of the robot; ``seconds``: simulated ones that a run may take.
+    its map does not show stand about, ``boxes_at``: or where; ``people``: who walks about; ``planner``: a
+    local one other than the robot's; ``parameters``: of move_base, over those of the robot; ``seconds``:
+    simulated ones that a run may take.
     """
 
     name: str
@@ -29,6 +31,8 @@ class Scenario:
     start: Pose2 = Pose2()
     simulation: SimulationSettings = SimulationSettings()
     boxes: int = 0
+    boxes_at: Tuple[Pose2, ...] = ()
+    people: People = People()
     faults: Tuple[Fault, ...] = ()
     planner: str = ""
     parameters: Mapping[str, Any] = field(default_factory=dict)
@@ -61,11 +65,15 @@ class Scenario:
 
     def arena(self, seed: int) -> Arena:
         """The world of a seed, with what stands about in it. Raises PlanarError."""
-        from laboratory.worlds.boxes import with_boxes
+        from laboratory.worlds.boxes import with_boxes, with_boxes_at
 
         arena = self.world.arena(seed)
         if self.boxes:
             arena = with_boxes(arena, self.boxes, seed, (self.start, *self.task.places(arena)))
+        if self.boxes_at:
+            arena = with_boxes_at(arena, self.boxes_at)
+        if self.people.count:
+            arena = with_people(arena, self.people, seed, self.start, self.task.places(arena))
         return arena
 
 

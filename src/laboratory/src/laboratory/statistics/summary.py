@@ -1,7 +1,8 @@
 """The figures of a scenario, with how sure they are."""
 
 from dataclasses import dataclass
-from typing import Callable, Dict, List, NamedTuple, Optional, Sequence
+from operator import attrgetter
+from typing import Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 from scipy.stats import bootstrap
@@ -13,6 +14,12 @@ from laboratory.tasks.task import COLLISION, ERROR, FAILURE, OUTCOMES, TIMEOUT
 # Of intervals; and how often bootstrap draws, from which seed, how many at a time.
 CONFIDENCE = 0.95
 RESAMPLES, SEED, BATCH = 4000, 0, 50
+
+# Means, where there are people.
+OF_PEOPLE = (
+    *("ran_into_robot", "intimate", "personal", "social", "person_nearest", "person_distance"),
+    "social_work",
+)
 
 
 class Estimate(NamedTuple):
@@ -42,7 +49,7 @@ def summary(results: Sequence[Result]) -> Summary:
     outcomes = {name: sum(result.outcome == name for result in results) for name in OUTCOMES}
     figures = {name: share(count, len(results)) for name, count in outcomes.items()}
     won = [result for result in results if result.is_success]
-    for name, of, values in (
+    rows: List[Tuple[str, Sequence[Result], Callable[[Result], Optional[float]]]] = [
         ("seconds", won, lambda run: run.seconds),
         ("driven", won, lambda run: run.driven),
         ("spl", results, success_by_way),
@@ -50,7 +57,10 @@ def summary(results: Sequence[Result]) -> Summary:
         ("clearance", results, lambda run: run.clearance),
         ("turning", won, lambda run: run.turning),
         ("localization", results, lambda run: run.localization_mean),
-    ):
+        ("still", won, lambda run: run.still),
+        *((name, results, attrgetter(name)) for name in OF_PEOPLE),
+    ]
+    for name, of, values in rows:
         known = _known(of, values)
         if known:
             figures[name] = mean(known)
@@ -60,7 +70,8 @@ def summary(results: Sequence[Result]) -> Summary:
 # What can be told of runs, and asked for by --require.
 FIGURES = (
     *("success", COLLISION, TIMEOUT, FAILURE, ERROR),
-    *("seconds", "driven", "spl", "score", "clearance", "turning", "localization"),
+    *("seconds", "driven", "spl", "score", "clearance", "turning", "localization", "still"),
+    *OF_PEOPLE,
 )
 
 

@@ -70,6 +70,8 @@ def play_mission(
         run.trajectory,
         run.localization_error,
         run.ledger.collisions,
+        people=run.people,
+        ran_into_robot=run.ran_into_robot,
     )
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
+from home_service.judging.company import Company
 from home_service.judging.verdict import collision
 from home_service.rehearsal import NAVIGATION_CONFIG, Conditions
 from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, Play
@@ -39,7 +40,17 @@ class Reach:
         points = None
         if arena.way is not None:
             points = score(float(track[-1, 0]), arena.way) if outcome == SUCCESS else 0.0
-        return Play(outcome, reason, track, np.zeros(0), touched, arena.way, points)
+        return Play(
+            outcome,
+            reason,
+            track,
+            np.zeros(0),
+            touched,
+            arena.way,
+            points,
+            drive.company.track,
+            drive.company.ran_into_robot,
+        )
 
     def places(self, arena: Arena) -> Sequence[Pose2]:
         return ()
@@ -63,6 +74,7 @@ class _Drive:
             scenario.start,
             self._faults.fitting,
         )
+        self.company = Company(self._simulation)
         self._steps = round(1.0 / settings.move_base.controller_frequency / self._simulation.step_seconds)
         self._task, self._goal = task, scenario.start @ task.goal
         self.trajectory: list = []
@@ -107,12 +119,13 @@ class _Drive:
         for _ in range(self._steps):
             observation = self._simulation.step(command)
             command, scan = None, observation.scan or scan
-            self.touched.update(observation.contacts)
+            self.touched.update(self.company.contacts(observation))
         return observation, scan
 
     def _note(self, observation: Observation, began: float) -> None:
         truth = observation.base_in_world
         self.trajectory.append((observation.stamp - began, truth.x, truth.y, truth.yaw))
+        self.company.note()
 
 
 def config_of(robot: str) -> Path:

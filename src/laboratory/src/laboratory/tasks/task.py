@@ -4,7 +4,7 @@ A task is a frozen dataclass of its own file, with a function that reads it from
 and one line of the registry.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional, Protocol, Sequence, Tuple
 
@@ -31,7 +31,8 @@ class Play:
 
     ``trajectory``: (N, 4) stamp, true x, y, yaw. ``localization_error``: (M,), metres, of a robot with a map.
     ``touched``: names of what it bumped into. ``way``: metres of the shortest way there is.
-    ``score``: that of a benchmark.
+    ``score``: that of a benchmark. ``people``: (N, P, 5), and who of them ``ran_into_robot``: of
+    home_service.judging.company.
     """
 
     outcome: str
@@ -41,6 +42,8 @@ class Play:
     touched: Sequence[str] = ()
     way: Optional[float] = None
     score: Optional[float] = None
+    people: np.ndarray = field(default_factory=lambda: np.empty((0, 0, 5)))
+    ran_into_robot: Sequence[str] = ()
 
 
 class Task(Protocol):

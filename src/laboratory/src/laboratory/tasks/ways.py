@@ -5,15 +5,11 @@ from functools import lru_cache
 from typing import Optional, Sequence, Tuple
 
 import numpy as np
-from scipy.sparse import coo_matrix, csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
 from planar import FREE, OccupancyGrid, Pose2
 from planar.geometry.distance_field import distance_field
-
-# Steps to half of a cell's neighbours on three rings; the others are the same backwards. Their ways are at
-# most 1.4 % longer than straight ones.
-STEPS = ((0, 1), (1, 0), (1, 1), (1, -1), (1, 2), (2, 1), (1, -2), (2, -1), (1, 3), (3, 1), (1, -3), (3, -1))
+from planar.geometry.ways import graph_of
 
 
 class Ways:
@@ -22,7 +18,7 @@ class Ways:
     def __init__(self, grid: OccupancyGrid, radius: float):
         self._grid = grid
         self._is_open = distance_field(grid.cells != FREE, grid.resolution) > radius
-        self._graph = _graph_of(self._is_open, grid.resolution)
+        self._graph = graph_of(self._is_open, grid.resolution)
 
     def length(self, places: Sequence[Pose2]) -> Optional[float]:
         """Metres from place to place, straight to the nearest open cells; None if there is no way."""
@@ -42,21 +38,6 @@ class Ways:
         nearest = int(np.argmin(distances))
         row, col = cells[nearest]
         return int(row * self._grid.cols + col), float(distances[nearest])
-
-
-def _graph_of(is_open: np.ndarray, resolution: float) -> csr_matrix:
-    numbers = np.arange(is_open.size).reshape(is_open.shape)
-    rows, cols = is_open.shape
-    starts, ends, lengths = [], [], []
-    for down, right in STEPS:
-        here = (slice(0, rows - down), slice(max(0, -right), cols - max(0, right)))
-        there = (slice(down, rows), slice(max(0, right), cols + min(0, right)))
-        both = is_open[here] & is_open[there]
-        starts.append(numbers[here][both])
-        ends.append(numbers[there][both])
-        lengths.append(np.full(int(both.sum()), resolution * math.hypot(down, right)))
-    pairs = (np.concatenate(starts), np.concatenate(ends))
-    return coo_matrix((np.concatenate(lengths), pairs), shape=(is_open.size, is_open.size)).tocsr()
 
 
 @lru_cache(maxsize=8)

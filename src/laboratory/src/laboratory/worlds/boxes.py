@@ -10,7 +10,6 @@ from laboratory.worlds.source import Arena
 from planar import FREE, Pose2, SettingsError
 from planar.geometry.distance_field import distance_field
 from sim_bridge.simulation import box_on_floor
-from sim_bridge.world import Body
 
 SIZE = (0.35, 0.35, 0.5)
 # Metres: from a box's middle to a wall, so that a robot gets past, to another box, and to start and goals.
@@ -23,19 +22,36 @@ def with_boxes(arena: Arena, count: int, seed: int, places: Sequence[Pose2]) -> 
 
     Raises SettingsError if the arena has no map or no room for them.
     """
-    if arena.grid is None:
-        raise SettingsError("boxes need a world with a map")
     rng = np.random.default_rng([seed, _STREAM])
-    clearance = distance_field(arena.grid.cells != FREE, arena.grid.resolution)
-    spots_xy = arena.grid.points_of(np.argwhere(clearance > TO_WALL))
-    for place in places:
-        spots_xy = spots_xy[np.hypot(*(spots_xy - (place.x, place.y)).T) > TO_PLACES]
-    boxes: List[Body] = []
+    spots_xy = spots_for_boxes(arena, places)
+    poses: List[Pose2] = []
     for number in range(count):
         if not len(spots_xy):
             raise SettingsError(f"there is room for {number} boxes only, not for {count}")
         x, y = spots_xy[rng.integers(len(spots_xy))]
         pose = Pose2(float(x), float(y), float(rng.uniform(-math.pi, math.pi)))
-        boxes.append(box_on_floor(f"box_{number}", SIZE, pose))
-        spots_xy = spots_xy[np.hypot(*(spots_xy - (x, y)).T) > TO_OTHERS]
+        poses.append(pose)
+        spots_xy = apart_from(spots_xy, pose)
+    return with_boxes_at(arena, poses)
+
+
+def with_boxes_at(arena: Arena, poses: Sequence[Pose2]) -> Arena:
+    """The arena with boxes there."""
+    boxes = [box_on_floor(f"box_{number}", SIZE, pose) for number, pose in enumerate(poses)]
     return replace(arena, world=replace(arena.world, bodies=(*arena.world.bodies, *boxes)))
+
+
+def spots_for_boxes(arena: Arena, places: Sequence[Pose2]) -> np.ndarray:
+    """Where a box leaves a way past, off ``places``; (N, 2). Raises SettingsError without a map."""
+    if arena.grid is None:
+        raise SettingsError("boxes need a world with a map")
+    clearance = distance_field(arena.grid.cells != FREE, arena.grid.resolution)
+    spots_xy = arena.grid.points_of(np.argwhere(clearance > TO_WALL))
+    for place in places:
+        spots_xy = spots_xy[np.hypot(*(spots_xy - (place.x, place.y)).T) > TO_PLACES]
+    return spots_xy
+
+
+def apart_from(spots_xy: np.ndarray, box: Pose2) -> np.ndarray:
+    """Those of some spots (N, 2) where another leaves a way between."""
+    return spots_xy[np.hypot(*(spots_xy - (box.x, box.y)).T) > TO_OTHERS]

@@ -1,0 +1,49 @@
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Optional
+
+from home_service.options import count, seed
+from supervision.command_line import argument, option
+
+
+@dataclass(frozen=True)
+class Falsify:
+    """Searches for what breaks the robot in a scenario, and shrinks it to the least that still does."""
+
+    scenario: str = argument("file of a scenario, or its name in scenarios/", metavar="SCENARIO")
+    trials: int = option(200, "cases that are tried at most", type=count)
+    boxes: int = option(4, "boxes at most", type=int)
+    people: int = option(2, "people at most", type=int)
+    faults: int = option(1, "faults at most", type=int)
+    seed: int = option(0, "of the search", type=seed)
+    planner: str = option("", "local planner (default: that of the scenario)", metavar="NAME")
+    workers: Optional[int] = option(None, "processes (default: one for each core)", type=count)
+    scheduler: str = option("", "Dask's, instead of processes here: tcp://HOST:8786", metavar="ADDRESS")
+    output: Path = option(Path("runs/falsify"), "what is found is kept here", type=Path)
+
+    def run(self) -> int:
+        from laboratory.campaign import Workers
+        from laboratory.search.cases import Ingredients
+        from laboratory.search.falsifying import Search
+        from laboratory.search.writing import write_case
+        from laboratory.suites import one_scenario
+        from planar import SettingsError
+        from supervision.interruption import raise_when_interrupted
+
+        ingredients = Ingredients(self.boxes, self.people, self.faults)
+        if min(self.boxes, self.people, self.faults) < 0:
+            raise SettingsError("--boxes, --people and --faults must not be negative")
+        scenario = one_scenario(self.scenario, self.planner)
+        raise_when_interrupted()
+        search = Search(scenario, ingredients, self.seed, self.output)
+        with Workers(self.workers or 0, self.scheduler).client() as client:
+            found = search.run(client, self.trials)
+        if found is None:
+            print(f"nothing found in {search.tried} cases; the hardest had an ease of {search.least:.2f}")
+            return 0
+        case, result = search.shrink(found)
+        path = write_case(scenario, case, result, self.output)
+        print(f"{result.outcome.upper()}: {result.reason}")
+        print(f"{len(found.pieces)} pieces shrunk to {len(case.pieces)}: ./scripts/play.sh {path}", end=" ")
+        print(f"--seed {case.seed}")
+        return 1

@@ -1,0 +1,1 @@
+"""Searches over what is played: for better parameters, and for what breaks the robot."""

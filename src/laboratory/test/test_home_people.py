@@ -1,0 +1,138 @@
+"""People in scenarios: who they are, where they are, and what they had of the robot."""
+
+import sqlite3
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from laboratory.playing import play
+from laboratory.results.people import manners, seconds_still
+from laboratory.results.result import Result
+from laboratory.results.store import COLUMNS, Store
+from laboratory.scenario import read_scenario
+from laboratory.suites import FOLDER
+from laboratory.worlds.people import APART, TO_START, People
+from planar import SettingsError
+
+SCENARIO = FOLDER / "home_people.yaml"
+
+
+def written(tmp_path, people):
+    path = tmp_path / "scenario.yaml"
+    text = SCENARIO.read_text().replace("../map", str(FOLDER.parent / "map"))
+    path.write_text(text.replace("people: 4", f"people: {people}"))
+    return path
+
+
+def test_as_many_are_there_as_asked_for_and_others_for_each_seed():
+    scenario = read_scenario(SCENARIO)
+    crowds = [scenario.arena(seed).world.walkers for seed in range(12)]
+    assert [len(walkers) for walkers in crowds] == [4] * 12
+    again = scenario.arena(5).world.walkers
+    assert [walker.goals_xy.tolist() for walker in again] == [w.goals_xy.tolist() for w in crowds[5]]
+    firsts = np.array([[walker.goals_xy[0] for walker in walkers] for walkers in crowds])
+    assert len(np.unique(firsts.reshape(-1, 2), axis=0)) > 40
+    assert np.hypot(*firsts.reshape(-1, 2).T).min() > TO_START
+    for starts in firsts:
+        gaps = [np.hypot(*(a - b)) for n, a in enumerate(starts) for b in starts[:n]]
+        assert min(gaps) > APART
+    kinds = {(walker.radius, len(walker.goals_xy) > 1, walker.group > 0) for ws in crowds for walker in ws}
+    assert {(0.2, True, False), (0.15, True, False), (0.2, False, False), (0.2, True, True)} <= kinds
+
+
+def test_they_can_be_told_apart(tmp_path):
+    people = "{adults: 1, children: 2, standing: 1, groups: [3]}"
+    scenario = read_scenario(written(tmp_path, people))
+    assert scenario.people == People(adults=1, children=2, standing=1, groups=(3,))
+    walkers = scenario.arena(0).world.walkers
+    assert [walker.group > 0 for walker in walkers] == [False] * 3 + [True] * 3 + [False]
+    assert [walker.height for walker in walkers] == [1.7, 1.1, 1.1, 1.7, 1.7, 1.7, 1.7]
+    assert [len(walker.goals_xy) for walker in walkers] == [4] * 6 + [1]
+
+
+def test_all_may_be_known_of_them(tmp_path):
+    people = "[{goals: [[1.0, 2.0], [2, 3]], speed: 0.7}, {goals: [[0.5, 2.0]]}]"
+    walkers = read_scenario(written(tmp_path, people)).arena(0).world.walkers
+    assert [walker.goals_xy.tolist() for walker in walkers] == [[[1.0, 2.0], [2.0, 3.0]], [[0.5, 2.0]]]
+    assert [walker.speed for walker in walkers] == [0.7, 1.0]
+
+
+@pytest.mark.parametrize(
+    ("people", "complaint"),
+    [
+        ("-1", ":4: happens.people must be"),
+        ("many", ":4: happens.people must be a table"),
+        ("{adlts: 1}", ":4: happens.people.adlts is not known; did you mean adults?"),
+        ("{groups: [1]}", ":4: happens.people.groups must be a list of how many walk together"),
+        ("{groups: 2}", ":4: happens.people.groups must be a list of how many walk together"),
+        ("[{goals: []}]", ":4: happens.people[1].goals must be a list of places"),
+        ("[{goals: [[1, a]]}]", ":4: happens.people[1].goals must be a list of places"),
+        ("[{goals: [[1, 2]], speed: 0}]", ":4: happens.people[1].speed must be positive"),
+        ("50", ":4: happens.people must be at most 40"),
+    ],
+)
+def test_a_mistake_is_told_with_line_and_key(tmp_path, people, complaint):
+    with pytest.raises(SettingsError) as caught:
+        read_scenario(written(tmp_path, people))
+    assert complaint in str(caught.value)
+
+
+def test_too_many_for_a_small_place_are_an_error():
+    scenario = replace(read_scenario(SCENARIO), people=People(adults=400))
+    result = play(scenario, 0)
+    assert result.outcome == "error" and "no room for so many people" in result.reason
+
+
+def test_a_run_among_people_is_played_alike_and_measured():
+    scenario = read_scenario(SCENARIO)
+    first, again = play(scenario, 3), play(scenario, 3)
+    assert replace(first, wall_seconds=0.0) == replace(again, wall_seconds=0.0)
+    assert first.hash != play(replace(scenario, people=People()), 3).hash
+    assert first.is_success, first.reason
+    shares = (first.intimate, first.personal, first.social)
+    assert all(share is not None and 0.0 <= share <= 1.0 for share in shares) and sum(shares) <= 1.0
+    assert first.person_nearest is not None and 0.3 < first.person_nearest < first.person_distance
+    assert first.social_work is not None and first.social_work > 0.0
+    assert first.ran_into_robot == 0
+
+
+def test_spaces_are_told_by_the_nearest_person():
+    track = np.column_stack((np.arange(5) * 0.1, np.zeros((5, 3))))
+    people = np.zeros((5, 2, 5))
+    people[:, 0, 0], people[:, 1, 0] = (0.4, 0.45, 1.0, 1.2, 4.0), 9.0
+    found = manners(track, people)
+    assert (found.intimate, found.personal, found.social) == (0.2, 0.4, 0.2)
+    assert found.person_nearest == pytest.approx(0.4)
+    assert found.person_distance == pytest.approx(7.05 / 5)
+    assert manners(track, np.empty((5, 0, 5))).intimate is None
+
+
+def test_social_work_is_the_less_the_farther_off_people_are():
+    track = np.column_stack((np.arange(5) * 0.1, np.zeros((5, 3))))
+    works = []
+    for distance in (0.6, 1.2, 3.0):
+        people = np.tile((distance, 0.0, 0.0, 0.0, 0.2), (5, 1, 1))
+        works.append(manners(track, people).social_work)
+    assert works[0] > 2.0 * works[1] > 20.0 * works[2] > 0.0
+
+
+def test_standing_still_is_measured_in_seconds():
+    x = np.array([0.0, 0.0, 0.1, 0.2, 0.2])
+    yaw = np.array([0.0, 0.0, 0.0, 0.0, 0.1])
+    track = np.column_stack((np.arange(5) * 0.5, x, np.zeros(5), yaw))
+    assert seconds_still(track) == pytest.approx(0.5), "who turns moves"
+
+
+def test_a_file_of_results_from_before_there_were_people_is_gone_on_with(tmp_path):
+    path = tmp_path / "results.sqlite"
+    columns = [f"{name} {kind}" for name, kind in COLUMNS.items() if name != "social_work"]
+    with sqlite3.connect(str(path)) as connection:
+        connection.execute(
+            f"CREATE TABLE results ({', '.join(columns)}, PRIMARY KEY (digest, seed, version))"
+        )
+        connection.execute("INSERT INTO results (digest, seed, version) VALUES ('d', 1, 'v')")
+    store = Store(path)
+    store.add(Result("d", 2, "v", "success", "fine", social_work=1.5))
+    assert [run.social_work for run in store.results("d", "v")] == [None, 1.5]
+    store.close()

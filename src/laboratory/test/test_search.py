@@ -1,0 +1,157 @@
+"""Searches repeat themselves, go on where they were stopped, and find what there is to find."""
+
+import math
+from dataclasses import replace
+
+import pytest
+import yaml
+from optuna.distributions import FloatDistribution
+
+from laboratory.results.result import Result
+from laboratory.scenario import read_scenario
+from laboratory.search.cases import Case, Ingredients, Noise
+from laboratory.search.falsifying import ease, shrunk
+from laboratory.search.study import BATCH, Study
+from laboratory.search.tuning import cost, merged, nested, read_space, text_of, with_values
+from laboratory.search.writing import scenario_text, write_case
+from laboratory.suites import FOLDER
+from laboratory.worlds.boxes import TO_OTHERS
+from laboratory.worlds.people import Walk
+from planar import Pose2, SettingsError
+from sim_bridge.faults import Fault
+
+ERRAND = FOLDER / "home_errand.yaml"
+SPACE = {"x": FloatDistribution(-2.0, 2.0), "y": FloatDistribution(-2.0, 2.0)}
+BOX, WALK = Pose2(1.0, 2.0, 0.5), Walk(((1.0, 1.0), (2.0, 2.0)), 0.8)
+FAULT = Fault("scan_noisy", 2.0, 4.0, 0.1)
+
+
+def bowl(batch):
+    return [(values["x"] - 1.0) ** 2 + (values["y"] + 0.5) ** 2 for values in batch]
+
+
+def asked(path, trials, stop_after=math.inf):
+    """All values that a search asks for; after so many batches it is stopped in the middle of one."""
+    seen = []
+
+    def costs_of(batch):
+        if len(seen) >= stop_after * BATCH:
+            raise KeyboardInterrupt
+        seen.extend(batch)
+        return bowl(batch)
+
+    study = Study(path, "bowl", SPACE, seed=3)
+    try:
+        study.run(trials, costs_of)
+    except KeyboardInterrupt:
+        return seen
+    return seen, study.best
+
+
+def test_a_search_comes_near_the_least_cost(tmp_path):
+    _, best = asked(tmp_path / "journal", 64)
+    assert math.hypot(best["x"] - 1.0, best["y"] + 0.5) < 0.3
+
+
+def test_a_search_that_was_stopped_goes_on_as_if_it_had_not_been(tmp_path):
+    whole, best = asked(tmp_path / "whole", 20)
+    first = asked(tmp_path / "stopped", 20, stop_after=1)
+    rest, again = asked(tmp_path / "stopped", 20)
+    assert first + rest == whole and again == best
+
+
+def test_a_journal_that_is_none_is_named(tmp_path):
+    with pytest.raises(Exception, match="cannot be used as a journal"):
+        Study(tmp_path, "bowl", SPACE, 0)
+
+
+def test_cases_are_as_hard_as_allowed_and_no_harder():
+    base = read_scenario(ERRAND)
+    ingredients = Ingredients(boxes=3, people=2, faults=1)
+    values = {name: 0.4 for name in ingredients.space()}
+    values.update({"seed": 7, "noise": "bad", "fault0/kind": "scan_nan", "fault0/start": 3.0})
+    case = ingredients.case(base, {**values, "fault0/seconds": 2.0})
+    boxes = case.of(Pose2)
+    assert [len(case.of(kind)) for kind in (Pose2, Walk, Fault, Noise)] == [3, 2, 1, 1]
+    gaps = [a.distance_to(b) for number, a in enumerate(boxes) for b in boxes[:number]]
+    assert min(gaps) >= TO_OTHERS - 0.01, "a way is left between boxes, also if all are wanted in one place"
+    scenario = case.scenario(base)
+    assert scenario.simulation.encoder_scale > base.simulation.encoder_scale
+    assert scenario.simulation.scan_rate == base.simulation.scan_rate
+    arena = scenario.arena(7)
+    assert sum(body.name.startswith("box_") for body in arena.world.bodies) == 3
+    assert len(arena.world.walkers) == 2
+    assert scenario.faults == (Fault("scan_nan", 3.0, 5.0, scenario.faults[0].strength),)
+
+
+def test_only_the_pieces_that_it_takes_are_left():
+    case = Case(4, (BOX, WALK, FAULT, Noise("bad")))
+    tried = []
+
+    def fails(less):
+        tried.append(less)
+        return WALK in less.pieces and Noise("bad") in less.pieces
+
+    assert shrunk(case, fails).pieces == (WALK, Noise("bad"))
+    assert len(tried) < 12
+    assert shrunk(case, lambda less: True).pieces == ()
+    assert shrunk(case, lambda less: False) == case
+
+
+def test_a_failure_is_harder_than_any_success_and_an_error_is_none():
+    won = Result("d", 1, "v", "success", "", seconds=30.0, clearance=0.3, localization_max=0.1)
+    close = replace(won, clearance=0.2)
+    assert ease(close, 600.0) < ease(won, 600.0)
+    assert ease(replace(won, seconds=500.0), 600.0) < ease(won, 600.0)
+    assert ease(replace(won, outcome="timeout"), 600.0) < 0.0 < ease(close, 600.0)
+    assert ease(replace(won, outcome="error"), 600.0) >= ease(won, 600.0)
+
+
+def test_a_case_is_written_as_a_scenario_that_is_played_alike(tmp_path):
+    base = read_scenario(ERRAND)
+    case = Case(4, (BOX, WALK, FAULT, Noise("bad")))
+    path = write_case(base, case, Result("d", 4, "v", "timeout", "too late"), tmp_path)
+    again = read_scenario(path)
+    assert again.digest() == case.scenario(base).digest()
+    assert again.seeds == (4,) and "too late" in again.about
+    nothing = yaml.safe_load(scenario_text(base, Case(4, ()), "", tmp_path))
+    assert "happens" not in nothing
+
+
+def test_parameters_are_nested_as_move_base_has_them(tmp_path):
+    path = tmp_path / "space.yaml"
+    path.write_text("Planner: {speed: [0.1, 0.5], Inner: {weight: [1, 2]}}\npatience: [1.0, 5.0]\n")
+    space = read_space(path)
+    assert {name: (each.low, each.high) for name, each in space.items()} == {
+        "Planner/speed": (0.1, 0.5),
+        "Planner/Inner/weight": (1.0, 2.0),
+        "patience": (1.0, 5.0),
+    }
+    values = {"Planner/speed": 0.2, "Planner/Inner/weight": 1.5, "patience": 2.0}
+    assert nested(values) == {"Planner": {"speed": 0.2, "Inner": {"weight": 1.5}}, "patience": 2.0}
+    assert yaml.safe_load(text_of(values)) == nested(values)
+    assert merged({"a": {"b": 1, "c": 2}}, {"a": {"c": 3}}) == {"a": {"b": 1, "c": 3}}
+
+
+def test_a_space_that_is_none_is_told_with_line_and_key(tmp_path):
+    path = tmp_path / "space.yaml"
+    path.write_text("Planner:\n  speed: [0.5, 0.1]\n")
+    with pytest.raises(SettingsError, match=r"space.yaml:2: Planner.speed must be two numbers, the lesser"):
+        read_space(path)
+
+
+def test_the_space_that_is_tuned_by_default_is_one_of_parameters_that_there_are(tmp_path):
+    base = read_scenario(ERRAND)
+    space = read_space(FOLDER / "tuning/mppi.yaml")
+    values = {name: (each.low + each.high) / 2.0 for name, each in space.items()}
+    text = yaml.safe_load(ERRAND.read_text().replace("../map", str(FOLDER.parent / "map")))
+    path = tmp_path / "tuned.yaml"
+    path.write_text(yaml.safe_dump({**text, "planner": {"parameters": nested(values)}}))
+    assert read_scenario(path).parameters == with_values(base, values).parameters
+
+
+def test_a_failed_run_costs_more_than_any_that_succeeds():
+    base = replace(read_scenario(ERRAND), seconds=100.0)
+    won = Result("d", 1, "v", "success", "", seconds=30.0)
+    assert cost(base, [won, replace(won, seconds=40.0)]) == 35.0
+    assert cost(base, [won, replace(won, outcome="collision", seconds=5.0)]) == 115.0

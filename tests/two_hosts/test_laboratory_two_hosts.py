@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+"""A campaign over two hosts with one scheduler comes to what one process comes to, bit for bit."""
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from dataclasses import replace
+from importlib.util import find_spec
+from pathlib import Path
+
+import rostest
+from network import Cable
+
+from laboratory.playing import play
+from laboratory.results.store import Store
+from laboratory.results.version import version
+from laboratory.scenario import read_scenario
+
+ROOT = Path(__file__).resolve().parents[2]
+SEEDS, PORT = range(6), 8786
+SCENARIO = f"""\
+world: {{file: {ROOT}/map/home.world, map: {ROOT}/map/home.yaml}}
+task: {{errand: {ROOT}/map/zones.yaml}}
+happens: {{people: 2}}
+limits: {{seconds: 4}}
+"""
+START_SECONDS, CAMPAIGN_SECONDS = 90.0, 150.0
+# Who is there, by their addresses.
+WHO = """\
+import sys
+from distributed import Client
+print(*Client(sys.argv[1], timeout=5).scheduler_info(n_workers=-1)["workers"])
+"""
+
+
+@unittest.skipUnless(os.geteuid() == 0, "only root can make network namespaces")
+@unittest.skipUnless(find_spec("distributed"), "Dask comes with the first run of evaluate.sh")
+class LaboratoryOnTwoHostsTest(unittest.TestCase):
+    def test_two_hosts_make_what_one_process_makes(self):
+        with tempfile.TemporaryDirectory() as name, Cable() as cable:
+            folder, scheduler = Path(name), f"tcp://{cable.desk.address}:{PORT}"
+            (folder / "errand.yaml").write_text(SCENARIO)
+            options = ("--host", cable.desk.address, "--port", str(PORT), "--no-dashboard")
+            cable.desk.start(cable.desk, sys.executable, "-m", "distributed.cli.dask_scheduler", *options)
+            for host in (cable.desk, cable.robot):
+                options = ("--nthreads", "1", "--host", host.address, "--no-dashboard", "--no-nanny")
+                worker = (sys.executable, "-m", "distributed.cli.dask_worker", scheduler, *options)
+                host.start(cable.desk, *worker, "--local-directory", str(folder / host.name))
+            self.wait_for_workers(cable, scheduler)
+            words = ("errand.yaml", "--seeds", "0-5", "--scheduler", scheduler, "--output", ".")
+            command = (sys.executable, "-m", "laboratory", "evaluate", *words)
+            campaign = cable.desk.start(cable.desk, *command, folder=folder)
+            self.assertEqual(campaign.wait(CAMPAIGN_SECONDS), 0)
+            self.assertEqual(self.results_in(folder), self.results_here(folder))
+
+    def wait_for_workers(self, cable, scheduler):
+        """Until there is one on each host."""
+        deadline, told = time.monotonic() + START_SECONDS, ""
+        while time.monotonic() < deadline:
+            ask = ("ip", "netns", "exec", cable.desk.name, sys.executable, "-c", WHO, scheduler)
+            told = subprocess.run(ask, capture_output=True, text=True, timeout=START_SECONDS).stdout
+            if cable.desk.address in told and cable.robot.address in told:
+                return
+        self.fail(f"not both workers have come within {START_SECONDS:g} s: {told or 'none'}")
+
+    def results_in(self, folder):
+        store = Store(folder / "results.sqlite")
+        results = store.results(read_scenario(folder / "errand.yaml").digest(), version())
+        store.close()
+        return [replace(result, wall_seconds=0.0) for result in results]
+
+    def results_here(self, folder):
+        scenario = read_scenario(folder / "errand.yaml")
+        return [replace(play(scenario, seed), wall_seconds=0.0) for seed in SEEDS]
+
+
+if __name__ == "__main__":
+    rostest.rosrun("home_service_tests", "laboratory_two_hosts", LaboratoryOnTwoHostsTest)
