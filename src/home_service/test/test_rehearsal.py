@@ -1,5 +1,7 @@
 from pathlib import Path
 
+import pytest
+
 from home_service.rehearsal import Conditions, Rehearsal
 from pick_objects import errand_mission, parse_mission
 from planar import load_map
@@ -27,6 +29,12 @@ def test_a_seed_repeats_the_whole_mission_bit_for_bit_and_another_does_not():
 
 def test_scans_that_come_late_are_seen_from_where_the_robot_was():
     run = rehearsed(5, Fault("scan_late", start=8.0, strength=0.5))
+    assert run.verdict.success, run.verdict.reason
+
+
+@pytest.mark.parametrize("start", [8.0, 8.9])
+def test_a_robot_that_is_carried_away_before_it_arrives_claims_nothing_that_is_not_so(start):
+    run = rehearsed(1, Fault("kidnapped", start=start, strength=0.5))
     assert run.verdict.success, run.verdict.reason
 
 

@@ -67,6 +67,12 @@ class FrameTree:
         self._transforms.clear()
         self._past.clear()
 
+    def begin_anew(self) -> None:
+        """Time has: what moves is nowhere until it is told again."""
+        for child in [child for child, told in self._transforms.items() if not told.is_static]:
+            del self._transforms[child]
+            del self._past[child]
+
     def transforms(self) -> Dict[str, Transform]:
         """That of each frame that has a parent."""
         return dict(self._transforms)

@@ -22,14 +22,22 @@ PR_SET_PDEATHSIG = 1
 class CockpitProcess:
     """Serves the page of the graph of ``ROS_MASTER_URI``, whose master may come later; logs to ``log``.
 
+    ``tool``: that is open at first.
     Raises PortError if it cannot be served at ``where``, [ADDRESS:]PORT, CockpitError if it does not start.
     """
 
-    def __init__(self, where: str, log: Path, environment: Optional[Mapping[str, str]] = None):
+    def __init__(
+        self,
+        where: str,
+        log: Path,
+        environment: Optional[Mapping[str, str]] = None,
+        tool: Optional[str] = None,
+    ):
         self._lines: List[str] = []
         self._log = log
+        opened = [] if tool is None else ["--tool", tool]
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "cockpit.ros.node", "--web-port", where],
+            [sys.executable, "-m", "cockpit.ros.node", "--web-port", where, *opened],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,

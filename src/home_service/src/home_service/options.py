@@ -155,6 +155,11 @@ class RunOptions:
         return False
 
     @property
+    def tool(self) -> Optional[str]:
+        """The tool of the page in the browser that is open at first."""
+        return None
+
+    @property
     def time_limit(self) -> float:
         """Wall-clock seconds that the run may take."""
         if self.timeout is not None:

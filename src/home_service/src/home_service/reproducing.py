@@ -7,6 +7,7 @@ from typing import Any, Dict
 from home_service import cli
 from home_service.judging.trace import first_difference, read_trace
 from planar import SettingsError
+from planar.files.reading import read_text
 from supervision.versions import versions
 
 NOTHING = "nothing more"
@@ -42,12 +43,16 @@ def read_result(folder: Path) -> Dict[str, Any]:
     """What result.json of a run folder tells. Raises SettingsError if that does not suffice to repeat it."""
     path = folder / "result.json"
     try:
-        result = json.loads(path.read_text(encoding="utf-8"))
+        result = json.loads(read_text(path))
     except OSError as error:
         raise SettingsError(f"{path}: {error.strerror}") from None
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise SettingsError(f"{path}: not JSON ({error})") from None
     for key in ("command", "arguments", "hash", "versions"):
         if not isinstance(result, dict) or key not in result:
             raise SettingsError(f"{path}: no {key}: that run cannot be made again")
+    kinds = {"command": str, "arguments": list, "hash": str, "versions": dict}
+    for key, kind in kinds.items():
+        if not isinstance(result[key], kind):
+            raise SettingsError(f"{path}: {key} is not what a run writes there")
     return result

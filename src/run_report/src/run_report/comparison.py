@@ -46,7 +46,7 @@ def load_run(folder: Path) -> Run:
         raise RecordError(f"{path}: not the result of a run")
     try:
         dict(figures(result)), _made_from(result)
-    except (TypeError, ValueError, LookupError, AttributeError) as error:
+    except (TypeError, ValueError, LookupError, AttributeError, OverflowError) as error:
         raise RecordError(f"{path}: not the result of a run ({error})") from None
     return Run(folder, result, load_record(folder))
 

@@ -7,6 +7,7 @@ from cockpit.models.tables import table
 
 # Those of a home_service_msgs/DeliveryState, by number.
 STATES = ("waiting", "fetching", "picking up", "carrying", "setting down", "delivered", "failed", "cancelled")
+FIRST_END = STATES.index("delivered")
 HEADS = ("Object", "From", "To", "State")
 
 
@@ -21,6 +22,11 @@ def mission_html(mission: Any) -> str:
     return f'<div style="margin:0 12px 6px 12px;font-size:12px">{told}</div>' + table(
         HEADS, map(_row, mission.deliveries)
     )
+
+
+def is_running(mission: Any) -> bool:
+    """Whether any delivery of a home_service_msgs/MissionState is still to be made."""
+    return any(each.state < FIRST_END for each in mission.deliveries)
 
 
 def _row(each: Any):

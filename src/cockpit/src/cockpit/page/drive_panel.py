@@ -17,7 +17,7 @@ BUTTONS = (("U", "u"), ("I", "i"), ("O", "o"), ("J", "j"), ("K", "k"), ("L", "l"
 ARROWS = {"U": "forward left", "I": "forward", "O": "forward right", "J": "turn left", "K": "stop"}
 ARROWS.update({"L": "turn right", "M": "back"})
 HOLD_HZ = 10.0
-NOBODY, NOTHING = "(nobody yet)", "(nothing yet)"
+NOBODY, NOTHING, NOWHERE = "(nobody yet)", "(nothing yet)", "(no place yet)"
 SPEEDS = ("as fast as it keeps up", "0.5 x", "1 x", "2 x", "5 x")
 FACTORS = (0.0, 0.5, 1.0, 2.0, 5.0)
 
@@ -39,6 +39,8 @@ class Driver(Protocol):
 
     def cancel(self) -> None: ...
 
+    def deliver(self) -> None: ...
+
     def cancel_mission(self) -> None: ...
 
 
@@ -51,17 +53,18 @@ class DrivePanel:
             self._build_pointing()
             self._build_teleop()
             self._build_time()
-            with gui.add_folder("Mission"):
-                self.mission = gui.add_html(_note("No mission is told of."))
-                end = gui.add_button("Cancel the mission", color="gray")
-                end.on_click(guarded(lambda _: driver.cancel_mission()))
+            self._build_mission()
         self._build_keys()
 
-    def offer(self, robots: Sequence[str], topics: Sequence[str], things: Sequence[str]) -> None:
-        """The robots that take goals, the topics that take velocities, what can be moved."""
+    def offer(
+        self, robots: Sequence[str], topics: Sequence[str], things: Sequence[str], places: Sequence[str]
+    ) -> None:
+        """Robots that take goals, topics that take velocities, what can be moved, and carried where."""
         _offer(self.robot, robots)
         _offer(self.topic, topics)
         _offer(self.thing, things)
+        for end in (self.source, self.destination):
+            _offer(end, places)
 
     def look(self) -> None:
         """Pointing is over."""
@@ -91,6 +94,17 @@ class DrivePanel:
                 button = gui.add_button(f"{label}  {ARROWS[label]}")
                 hold = self._guarded(lambda event, key=key: self._driver.press(key, event.client_id))
                 button.on_hold(hold, callback_hz=HOLD_HZ)
+
+    def _build_mission(self) -> None:
+        gui, driver, guarded = self._gui, self._driver, self._guarded
+        with gui.add_folder("Mission"):
+            self.mission = gui.add_html(_note("No mission is told of."))
+            self.object = gui.add_text("Object", "parcel")
+            self.source = gui.add_dropdown("From", (NOWHERE,))
+            self.destination = gui.add_dropdown("To", (NOWHERE,))
+            start, end = gui.add_button("Deliver it"), gui.add_button("Cancel the mission", color="gray")
+            start.on_click(guarded(lambda _: driver.deliver()))
+            end.on_click(guarded(lambda _: driver.cancel_mission()))
 
     def _build_keys(self) -> None:
         for label, key in BUTTONS:

@@ -31,6 +31,8 @@ LOOKING_SECONDS = 1.0
 IDLE_SECONDS = 0.5
 FIXED_FRAMES = ("map", "odom", "world")
 FRAMES = "frames"
+# Time that jumps back further has begun anew.
+JITTER_SECONDS = 0.1
 
 
 class Cockpit:
@@ -53,7 +55,7 @@ class Cockpit:
         self._layers = Layers(self._graph, self._drawer, self._warn)
         self._follower = Follower(page)
         page.on_leave(self._driving.teleop.release)
-        self._look_at = 0.0
+        self._look_at = self._newest = 0.0
         self._trouble = self._complaint = ""
 
     def _build(self) -> None:
@@ -95,6 +97,7 @@ class Cockpit:
         self.toolbox.pause()
 
     def _turn(self, now: float) -> None:
+        self._watch_time(rospy.get_time())
         try:
             self._transforms.listen(True)
             if now >= self._look_at:
@@ -109,6 +112,13 @@ class Cockpit:
         self._layers.update(now)
         self._show(now)
         self.toolbox.update(now)
+
+    def _watch_time(self, stamp: float) -> None:
+        """``stamp``: seconds of ROS time."""
+        if stamp < self._newest - JITTER_SECONDS:
+            self._layers.begin_anew()
+            self._frames.begin_anew()
+        self._newest = stamp
 
     def _look_around(self) -> None:
         """What there is, and what of it is to be shown. Raises CockpitError."""

@@ -9,9 +9,9 @@ from std_msgs.msg import String
 
 from cockpit.errors import CockpitError
 from cockpit.frames import FrameTree
-from cockpit.models.mission import mission_html
+from cockpit.models.mission import is_running, mission_html
 from cockpit.models.tables import table
-from cockpit.page.drive_panel import BOX, GOAL, LOOK, MOVE, NOBODY, NOTHING, POINT, POSE, DrivePanel
+from cockpit.page.drive_panel import BOX, GOAL, LOOK, MOVE, NOBODY, NOTHING, NOWHERE, POINT, POSE, DrivePanel
 from cockpit.page.pointer import Pointer
 from cockpit.ros.graph import Feed, Graph
 from cockpit.ros.orders import BOX_SIZE, Orders
@@ -39,6 +39,7 @@ class Driving:
         self._tell, self._fixed = tell, fixed
         self._orders, self.teleop = Orders(graph), PageTeleop()
         self._feeds: dict = {}
+        self._is_on_mission = False
         self._panel: Optional[DrivePanel] = None
 
     def build(self, gui, tab, guarded) -> None:
@@ -47,7 +48,8 @@ class Driving:
     def look_around(self) -> None:
         """Raises CockpitError."""
         assert self._panel is not None
-        self._panel.offer(self._orders.robots(), self._orders.velocity_topics(), self._world.view.models)
+        orders, things = self._orders, self._world.view.models
+        self._panel.offer(orders.robots(), orders.velocity_topics(), things, orders.places())
         types = self._graph.topics()
         for topic, kind in ((MISSION, MissionState), (ERRAND, String)):
             if topic in types and topic not in self._feeds:
@@ -59,6 +61,7 @@ class Driving:
         for topic in (MISSION, ERRAND):
             for message in self._feeds[topic].take() if topic in self._feeds else ():
                 if topic == MISSION:
+                    self._is_on_mission = is_running(message)
                     self._panel.mission.content = mission_html(message)
                 elif MISSION not in self._feeds:
                     self._panel.mission.content = table(("Errand",), [(message.data,)])
@@ -101,6 +104,17 @@ class Driving:
     def cancel(self) -> None:
         assert self._panel is not None
         self._orders.cancel(self._panel.robot.value)
+
+    def deliver(self) -> None:
+        assert self._panel is not None
+        thing, ends = (
+            self._panel.object.value.strip(),
+            (self._panel.source.value, self._panel.destination.value),
+        )
+        if NOWHERE in ends:
+            raise CockpitError("nobody has told of places to deliver between")
+        self._orders.deliver(thing, *ends, joins=self._is_on_mission)
+        self._tell(f"{thing}: from {ends[0]} to {ends[1]}")
 
     def cancel_mission(self) -> None:
         self._orders.cancel_mission()

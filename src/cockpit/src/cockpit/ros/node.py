@@ -17,10 +17,10 @@ from cockpit.ros.cockpit import Cockpit
 from cockpit.ros.tools import names
 from planar import PlanarError
 from supervision.command_line import option, parse
-from supervision.ros.node_api import is_master_online
+from supervision.ros.node_api import is_master_online, node_names
 
 FREE_PORT = "127.0.0.1:0"
-MASTER_SECONDS = 0.2
+MASTER_SECONDS, NODES_SECONDS = 0.2, 3.0
 
 
 @dataclass(frozen=True)
@@ -45,14 +45,14 @@ def serve(where: str, tool: Optional[str], words: Tuple[str, ...] = ()) -> int:
 
     Raises CockpitError if the options make no sense.
     """
-    if tool is not None and tool not in names():
-        raise CockpitError(f"--tool: there is no '{tool}', only {', '.join(names())}")
+    check_tool(tool)
     page = Page(*address_of(where))
     print(f"cockpit: {page.url}", flush=True)
     if not is_master_online():
         print(f"cockpit: waiting for a ROS master at {get_master_uri()}", flush=True)
     while not is_master_online():
         time.sleep(MASTER_SECONDS)
+    _wait_for_nodes()
     rospy.init_node("cockpit", anonymous=True, log_level=rospy.WARN)
     cockpit = Cockpit(page)
     if tool is not None:
@@ -60,6 +60,19 @@ def serve(where: str, tool: Optional[str], words: Tuple[str, ...] = ()) -> int:
     cockpit.run()
     page.close()
     return 0
+
+
+def _wait_for_nodes() -> None:
+    """A graph that just begins says whose time it has before its first nodes come; a node asks once."""
+    deadline = time.monotonic() + NODES_SECONDS
+    while time.monotonic() < deadline and not set(node_names()) - {"/rosout"}:
+        time.sleep(MASTER_SECONDS)
+
+
+def check_tool(name: Optional[str]) -> None:
+    """Raises CockpitError if it is neither None nor the name of a tool."""
+    if name is not None and name not in names():
+        raise CockpitError(f"--tool: there is no '{name}', only {', '.join(names())}")
 
 
 def address_of(text: str) -> Tuple[str, int]:

@@ -9,7 +9,8 @@ import numpy as np
 import rospy
 from actionlib_msgs.msg import GoalID
 from geometry_msgs.msg import PointStamped, Pose, PoseStamped, PoseWithCovarianceStamped
-from home_service_msgs.srv import CancelDelivery
+from home_service_msgs.msg import DeliverActionGoal, DeliverGoal, Delivery
+from home_service_msgs.srv import AddDelivery, CancelDelivery
 from sim_bridge_msgs.srv import Step
 from std_srvs.srv import Empty
 
@@ -21,6 +22,7 @@ from cockpit.ros.graph import Graph
 
 GOAL, ESTIMATE, POINT = "move_base_simple/goal", "initialpose", "clicked_point"
 CANCEL = "move_base/cancel"
+MISSIONS = "/pick_objects"
 TWIST = "geometry_msgs/Twist"
 # Those that a person is to drive by come first.
 LIKELY = ("input/teleop", "teleop/cmd_vel", "cmd_vel", "velocity")
@@ -81,9 +83,24 @@ class Orders:
     def cancel(self, robot: str) -> None:
         self._send(robot + CANCEL, GoalID())
 
+    def places(self) -> List[str]:
+        """The names of those that things are carried between. Raises CockpitError."""
+        return list(self._graph.parameter(f"{MISSIONS}/places", []))
+
+    def deliver(self, thing: str, source: str, destination: str, joins: bool) -> None:
+        """``joins``: as one more delivery of the mission that is running; else as a mission of its own."""
+        delivery = Delivery(object=thing, source=source, destination=destination)
+        if joins:
+            _check(call(f"{MISSIONS}/add_delivery", AddDelivery, delivery))
+            return
+        goal = "/deliver/goal"
+        if not self._graph.subscribers().get(goal):
+            raise CockpitError("nobody waits for missions (home_service.sh --serve does)")
+        self._send(goal, DeliverActionGoal(goal=DeliverGoal(deliveries=[delivery])))
+
     def cancel_mission(self) -> None:
         """All deliveries; an object on the robot is left where the robot stands."""
-        _check(call("/pick_objects/cancel_delivery", CancelDelivery, ""))
+        _check(call(f"{MISSIONS}/cancel_delivery", CancelDelivery, ""))
 
     def pause(self, is_paused: bool) -> None:
         call(f"/gazebo/{'pause' if is_paused else 'unpause'}_physics", Empty)

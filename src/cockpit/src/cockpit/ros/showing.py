@@ -18,7 +18,10 @@ class ShownTopic:
         """Raises CockpitError."""
         self.topic, self.layer = topic, layer
         self._feed: Feed = graph.feed(topic, kind, layer.needs_all)
-        self._draw: Draw = layer.make()
+        self.begin_anew()
+
+    def begin_anew(self) -> None:
+        self._draw: Draw = self.layer.make()
         self._due = 0.0
 
     def drawings(self, now: float) -> List[Drawing]:
@@ -68,6 +71,12 @@ class Layers:
             except Exception as error:  # what a graph sends may be anything
                 self._complain(topic, said(error))
 
+    def begin_anew(self) -> None:
+        """Time has: what was shown belongs to another."""
+        for topic, shown in self._shown.items():
+            shown.begin_anew()
+            self._clear(topic)
+
     def close(self) -> None:
         """Subscribes to nothing; what is shown stays to be seen by who comes next."""
         for shown in self._shown.values():
@@ -82,6 +91,9 @@ class Layers:
 
     def _close(self, topic: str) -> None:
         self._shown.pop(topic).close()
+        self._clear(topic)
+
+    def _clear(self, topic: str) -> None:
         self._drawer.clear(topic)
         self.screens.pop(topic, None)
 

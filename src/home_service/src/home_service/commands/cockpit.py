@@ -1,19 +1,43 @@
 from dataclasses import dataclass
-from typing import Optional
+from pathlib import Path
+from typing import Optional, Tuple
 
-from supervision.command_line import option
+from home_service.options import RunOptions
+from supervision.command_line import argument, option
 
 
 @dataclass(frozen=True)
 class Cockpit:
-    """Shows a running ROS graph in the browser, and drives it."""
+    """Shows a running ROS graph, or a recording, in the browser, and drives it."""
 
+    recordings: Tuple[Path, ...] = argument(
+        "bags, or folders of them or of runs, to be played",
+        default=(),
+        type=Path,
+        nargs="*",
+        metavar="RECORDING",
+    )
     web_port: str = option(
         "127.0.0.1:0", "where the page is served; 0: a free port", metavar="[ADDRESS:]PORT"
     )
     tool: Optional[str] = option(None, "open this tool at once", metavar="NAME")
+    output: Path = option(Path("runs"), "where the run folder of a recording's show is made", type=Path)
 
     def run(self) -> int:
+        return self._show_recording() if self.recordings else self._show_graph()
+
+    def _show_recording(self) -> int:
+        from cockpit.ros.node import check_tool
+        from home_service.recorded import showing_plan
+        from home_service.ros.conducting import stay_open
+        from home_service.ros.replaying import open_recording
+
+        check_tool(self.tool)
+        recording = open_recording(self.recordings, needs_scans=False)
+        showing = Showing(web_port=self.web_port, tool=self.tool or "replay", output=self.output)
+        return stay_open(showing, showing_plan(recording.paths, stays=True), "Ctrl-C closes it")
+
+    def _show_graph(self) -> int:
         import os
 
         from cockpit.ros.node import serve
@@ -25,3 +49,12 @@ class Cockpit:
             if masters:
                 os.environ["ROS_MASTER_URI"] = masters[0]
         return serve(self.web_port, self.tool)
+
+
+@dataclass(frozen=True)
+class Showing(RunOptions):
+    """A recording on show, until Ctrl-C."""
+
+    tool: Optional[str] = option(None, "the tool that is open at first")
+
+    is_ended_by_a_person = True

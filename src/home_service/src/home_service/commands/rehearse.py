@@ -32,18 +32,13 @@ class Rehearse(MissionOptions):
         from planar import write_atomically
         from sim_bridge.faults import KINDS
 
-        twins = Twins(
-            read_mission(self),
-            self.mission is None,
-            self.planner,
-            range(self.seed, self.seed + self.runs),
-            self.timeout,
-        )
+        seeds = range(self.seed, self.seed + self.runs)
+        twins = Twins(read_mission(self), self.mission is None, self.planner, seeds, self.timeout)
         rows: List[Row] = []
         for name in KINDS:
             rows.append(twins.compare(name))
             print(rows[-1].line, flush=True)
-            write_atomically(table, page(rows, self.runs).encode("utf-8"))
+            write_atomically(table, page(rows, seeds, self.timeout).encode("utf-8"))
         return int(any(row.false_verdicts or row.is_needless_failure for row in rows))
 
     def _rehearse(self) -> int:

@@ -1,7 +1,7 @@
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Optional, Tuple
+from typing import Optional, Sequence, Tuple
 
 from home_service.options import ROOT, LaunchPlan, RunOptions, seed
 from supervision.command_line import argument, option
@@ -31,16 +31,28 @@ class Replay(RunOptions):
     seed: int = option(0, "of every particle", type=seed)
     save: Optional[Path] = option(None, "for slam: where to save the map", type=Path, metavar="STEM")
 
+    @property
+    def tool(self) -> Optional[str]:
+        return "replay" if self.estimator == "recorded" else None
+
     def run(self) -> int:
         from home_service.ros.replaying import open_recording, play
-        from planar import load_map
 
         recording = open_recording(self.bags, needs_scans=self.estimator != "recorded")
+        launch = self._launch(recording.paths)
+        return play(self, launch, recording, saves_map=self.estimator == "slam", stem=self.save)
+
+    def _launch(self, bags: Sequence[Path]) -> LaunchPlan:
+        from home_service.recorded import showing_plan
+        from planar import load_map
+
+        if self.estimator == "recorded":
+            return showing_plan(bags)
         if self.estimator == "amcl":
             load_map(self.map)  # so that a mistake is told before anything is started
         x, y, yaw = self.start
         arguments = {
-            "bags": os.pathsep.join(str(path.resolve()) for path in recording.paths),
+            "bags": os.pathsep.join(str(path.resolve()) for path in bags),
             "estimator": self.estimator,
             "map_file": self.map.resolve(),
             "x": x,
@@ -48,5 +60,4 @@ class Replay(RunOptions):
             "yaw": yaw,
             "seed": self.seed,
         }
-        launch = LaunchPlan("replay.launch", arguments, is_simulated=False)
-        return play(self, launch, recording, saves_map=self.estimator == "slam", stem=self.save)
+        return LaunchPlan("replay.launch", arguments, is_simulated=False)

@@ -5,10 +5,12 @@ ROS (docs/logical_time.md): what one part tells, the others know one control per
 """
 
 import hashlib
+import json
 import time
 from collections import deque
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Deque, List, Mapping, Optional, Sequence, Tuple, Union
 
@@ -18,6 +20,7 @@ from add_markers import CarriedParcel, Solid
 from amcl_lite import Localizer, LocalizerSettings
 from amcl_lite.config import InitialPose
 from amcl_lite.errors import LocalizationError
+from home_service.judging.company import Company
 from home_service.judging.delivery_watch import DeliveryWatch
 from home_service.judging.verdict import ERRAND, MARKERS, Ledger, Verdict, judge
 from home_service.rehearsal.bodies import RehearsedBodies, solids_of
@@ -30,13 +33,24 @@ from move_base_lite import (
     Status,
     load_settings,
 )
-from pick_objects import Errand, Finish, GoalReached, GoalRefused, GoTo, MeasureWays, Mission, WaysMeasured
+from pick_objects import (
+    Errand,
+    Finish,
+    GoalReached,
+    GoalRefused,
+    GoTo,
+    MeasureWays,
+    Mission,
+    WaysMeasured,
+    believed,
+)
 from pick_objects.errand import Order
 from planar import OccupancyGrid, Pose2, Scan, Twist2
 from planar.config.settings_file import settings_from_yaml
 from sim_bridge import Observation, RobotProfile, Simulation, SimulationSettings
 from sim_bridge.config import LATENCY
 from sim_bridge.faults import Fault, Faults, Stage
+from sim_bridge.sensors.lidar import LaserProfile
 from sim_bridge.simulation import ROBOT_NAME
 from sim_bridge.world import World
 
@@ -67,7 +81,7 @@ class Conditions:
     def navigation(self, config: Path) -> NavigatorSettings:
         """The parameters of a robot's file, with these over them. Raises SettingsError."""
         planner = {"base_local_planner": self.planner} if self.planner else {}
-        return load_settings(config, **{**self.parameters, **planner})
+        return _navigation(config, json.dumps({**self.parameters, **planner}))
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +89,8 @@ class Rehearsed:
     """How a rehearsal went.
 
     ``trajectory``: (N, 4) stamp, true x, y, yaw at each control period. ``localization_error``: (N,), metres.
-    ``diagnosis``: the first sensor that was not trusted, and why.
+    ``diagnosis``: the first sensor that was not trusted, and why. ``people``: (N, P, 5), and who of them
+    ``ran_into_robot``: home_service.judging.company.
     """
 
     verdict: Verdict
@@ -84,6 +99,8 @@ class Rehearsed:
     localization_error: np.ndarray
     wall_seconds: float
     diagnosis: str = ""
+    people: np.ndarray = field(default_factory=lambda: np.empty((0, 0, 5)))
+    ran_into_robot: Sequence[str] = ()
 
     @property
     def simulated_seconds(self) -> float:
@@ -121,8 +138,9 @@ class Rehearsal:
         start = conditions.start
         self._faults = Faults(conditions.faults, seed)
         self._simulation = Simulation(
-            world, robot, conditions.simulation, seed, start, fitting=self._faults.fitting
+            world, _with_what_it_uses(robot), conditions.simulation, seed, start, fitting=self._faults.fitting
         )
+        self._company = Company(self._simulation)
         self._localizer = _localizer(grid, seed, start)
         navigation = conditions.navigation(NAVIGATION_CONFIG)
         self._navigator = Navigator(navigation, grid)
@@ -165,6 +183,8 @@ class Rehearsal:
             np.array(self._errors),
             time.perf_counter() - start,
             self._senses.diagnosis,
+            self._company.track,
+            self._company.ran_into_robot,
         )
 
     def _play_moment(self) -> Optional[Finish]:
@@ -186,7 +206,8 @@ class Rehearsal:
         complaint = self._senses.complaint(self._now)
         self._command = decision.command if complaint is None else Twist2()
         order = self._advance_errand(base_in_map, observation.base_in_world)
-        self._event = _event_of(decision)
+        quality = self._localizer.quality
+        self._event = believed(_event_of(decision), None if quality is None else quality.probability)
         if complaint is not None and self._senses.is_out_of_patience(self._now):
             # As move_base does with a sensor that it cannot trust.
             self._navigator.forget_goal()
@@ -216,7 +237,7 @@ class Rehearsal:
             if step == self._steps_of_latency:
                 sent = self._command
             observation = self._simulation.step(sent)
-            self._ledger.collisions.extend(observation.contacts)
+            self._ledger.collisions.extend(self._company.contacts(observation))
             self._senses.feel(observation, self._command or Twist2())
             if observation.scan is not None:
                 scan = observation.scan
@@ -232,6 +253,7 @@ class Rehearsal:
         truth = observation.base_in_world
         self._trajectory.append((observation.stamp, truth.x, truth.y, truth.yaw))
         self._errors.append(truth.distance_to(base_in_map))
+        self._company.note()
         if self._parcel is not None:
             self._note_marker(self._parcel.update(observation.stamp, base_in_map))
 
@@ -259,11 +281,27 @@ class Rehearsal:
 
 def _localizer(grid: OccupancyGrid, seed: int, start: Pose2) -> Localizer:
     """One that knows where it starts, about."""
-    settings, _ = settings_from_yaml(LocalizerSettings, LOCALIZATION_CONFIG)
-    localizer = Localizer(grid, settings, np.random.default_rng(seed))
+    localizer = Localizer(grid, _localization(), np.random.default_rng(seed))
     if start != Pose2():
         localizer.set_pose(start, InitialPose().covariance)
     return localizer
+
+
+@lru_cache(maxsize=1)
+def _localization() -> LocalizerSettings:
+    """Read once, however many missions a process plays."""
+    return settings_from_yaml(LocalizerSettings, LOCALIZATION_CONFIG)[0]
+
+
+@lru_cache(maxsize=8)
+def _navigation(config: Path, chosen: str) -> NavigatorSettings:
+    """As above; ``chosen``: parameters, as JSON."""
+    return load_settings(config, **json.loads(chosen))
+
+
+def _with_what_it_uses(robot: RobotProfile) -> RobotProfile:
+    """The robot without the sensors that nobody asks here: bumpers, cliff sensors and cameras take time."""
+    return replace(robot, sensors=robot.sensors_of(LaserProfile))
 
 
 def parcel_of(errand: Mission) -> CarriedParcel:

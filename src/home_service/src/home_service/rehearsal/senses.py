@@ -1,5 +1,6 @@
 """What a rehearsed robot feels, and whether it can be so."""
 
+import math
 from collections import deque
 from dataclasses import replace
 from typing import Deque, Optional, Tuple
@@ -34,11 +35,17 @@ class Senses:
             self._watch.see_odometry(observation.stamp, observation.odometry.base_in_odom, command)
         if observation.scan is not None:
             scan = observation.scan
-            self._watch.see_scan(scan.ranges, scan.range_min, scan.range_max)
+            span = scan.angle_increment * (len(scan.ranges) - 1)
+            self._watch.see_scan(scan.ranges, scan.range_min, scan.range_max, span)
 
     def base_at(self, stamp: float) -> Pose2:
         """Where odometry had the robot at a time, or as near to it as is remembered."""
-        return min(reversed(self._odometry), key=lambda known: abs(known[0] - stamp))[1]
+        nearest, base_in_odom = math.inf, self._odometry[-1][1]
+        for known_at, known in reversed(self._odometry):
+            if abs(known_at - stamp) >= nearest:
+                break  # stamps rise, so that all before are farther off
+            nearest, base_in_odom = abs(known_at - stamp), known
+        return base_in_odom
 
     def as_seen_now(self, scan: Scan, now: float, base_in_odom: Pose2) -> Scan:
         """A scan that comes late, as if taken from the present pose: what move_base makes of it."""

@@ -6,7 +6,7 @@ from typing import Dict, Sequence
 from home_service.judging.verdict import collision
 from home_service.rehearsal.rehearsal import Conditions, Rehearsal, Rehearsed, parcel_of
 from home_service.stage import MissionHome
-from sim_bridge.faults import KINDS, Fault
+from sim_bridge.faults import KINDS, Fault, usual_strength
 
 # Simulated seconds: on the way to the object.
 START = 8.0
@@ -14,7 +14,7 @@ HEAD = """# Faults
 
 What becomes of the errand when something goes wrong {start:g} s after the start and stays so: each kind of
 fault beside its clean twin of the same seed, in one process, over {seeds}. Made by
-`./scripts/rehearse.sh --runs {runs} --timeout 400 --each-fault docs/faults.md`.
+`./scripts/rehearse.sh --seed {seed} --runs {runs} --timeout {timeout:g} --each-fault docs/faults.md`.
 
 A verdict is false if the robot says that it has delivered and has not, or the other way round. *Lost* is the
 simulated time beyond the clean twin's. *Named* is the sensor that the robot did not trust, and why.
@@ -94,7 +94,7 @@ class Twins:
 
     def compare(self, kind: str) -> Row:
         """What the kind of fault does."""
-        fault = Fault(kind, START, strength=KINDS[kind].strength[0])
+        fault = Fault(kind, START, strength=usual_strength(kind))
         pairs = [(self._twin(seed), self._play(seed, (fault,))) for seed in self._seeds]
         won = [(clean, run) for clean, run in pairs if run.verdict.success]
         lost = sum(run.simulated_seconds - clean.simulated_seconds for clean, run in won)
@@ -125,10 +125,12 @@ class Twins:
         return rehearsal.run(self._timeout)
 
 
-def page(rows: Sequence[Row], runs: int) -> str:
-    """The table, as a page of the documentation."""
-    seeds = "one seed" if runs == 1 else f"{runs} seeds"
-    return HEAD.format(start=START, seeds=seeds, runs=runs) + "".join(row.table_line for row in rows) + TAIL
+def page(rows: Sequence[Row], seeds: Sequence[int], timeout: float) -> str:
+    """The table, as a page of the documentation; how it was made: ``seeds`` in a row, simulated seconds."""
+    runs = len(seeds)
+    told = "one seed" if runs == 1 else f"{runs} seeds"
+    head = HEAD.format(start=START, seeds=told, seed=seeds[0], runs=runs, timeout=timeout)
+    return head + "".join(row.table_line for row in rows) + TAIL
 
 
 def _is_false(run: Rehearsed) -> bool:

@@ -8,7 +8,7 @@ from std_msgs.msg import String
 
 from home_service.judging.verdict import Verdict
 from home_service.options import LaunchPlan, RunOptions
-from home_service.ros.bags.player import BROKEN, ENDED
+from home_service.ros.bags.states import BROKEN, ENDED
 from home_service.ros.mapping import save_map
 from home_service.ros.referee import Referee
 from home_service.ros.run import Run

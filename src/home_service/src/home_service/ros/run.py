@@ -16,6 +16,7 @@ from home_service.options import LaunchPlan, RunOptions
 from home_service.result import Result
 from home_service.ros.bags.rosbag_process import RosbagProcess
 from home_service.ros.run_trace import RunTrace
+from home_service.ros.standstill import Standstill
 from planar import PlanarError, SettingsError
 from run_report import summary, write_report
 from supervision.command_line import words
@@ -54,6 +55,7 @@ class Run:
         self._bags: Optional[RosbagProcess] = None
         self._cockpit: Optional[CockpitProcess] = None
         self._trace = RunTrace()
+        self._standstill = Standstill(display.say)
 
     def __enter__(self) -> "Run":
         raise_when_interrupted()
@@ -93,7 +95,13 @@ class Run:
 
         Raises LaunchError if a node refused its input, RunInterruptedError at Ctrl-C.
         """
-        return self._supervisor.watch(is_over, self._judge.status)
+        failure = self._supervisor.watch(is_over, self._status)
+        standstill = self._standstill.reason
+        return f"{failure}; {standstill}" if failure and standstill else failure
+
+    def _status(self) -> str:
+        self._standstill.look()
+        return self._judge.status()
 
     def conclude(self, verdict: Verdict, **findings: Any) -> int:
         """Keeps the findings for result.json, prints the verdict, and returns the exit code it deserves."""
@@ -108,7 +116,9 @@ class Run:
         self._supervisor.start("home_service", self._launch.file, arguments, self._launch.comes_back)
         if self._options.is_on_the_web:
             where = self._options.web_port or FREE_PORT
-            self._cockpit = CockpitProcess(where, self.folder / "log" / "cockpit.log")
+            self._cockpit = CockpitProcess(
+                where, self.folder / "log" / "cockpit.log", tool=self._options.tool
+            )
             self.display.say(f"cockpit: {self._cockpit.url}")
         wait_for = self._supervisor.wait_for
         wait_for("the ROS master", is_master_online)
@@ -117,6 +127,8 @@ class Run:
             wait_for("simulated time", lambda: rospy.has_param("/use_sim_time"))
             self._bags = RosbagProcess(self._launch.bags, self.folder / "bag")
         self._trace.start()
+        if self._launch.is_simulated:
+            self._standstill.start()
         self._judge.start()
         self._recorder.start()
         if self._launch.is_simulated:

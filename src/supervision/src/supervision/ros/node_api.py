@@ -38,6 +38,15 @@ def answers(uri: str) -> bool:
     return code == 1
 
 
+def node_names() -> Set[str]:
+    """The nodes that publish, subscribe or serve; none if the master does not answer."""
+    try:
+        _code, state = _ask(rosgraph.get_master_uri(), "getSystemState")
+    except _SILENCE:
+        return set()
+    return {node for part in state for _name, nodes in part for node in nodes}
+
+
 def hears_all(node: str, topics: Container[str]) -> bool:
     """Whether each publisher of ``topics`` sends to ``node`` by now."""
     master = rosgraph.get_master_uri()

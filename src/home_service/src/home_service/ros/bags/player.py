@@ -5,11 +5,9 @@ can take its place.
 """
 
 import itertools
-import os
 import threading
 import time
-from pathlib import Path
-from typing import Iterable, Iterator, List, Optional, Set
+from typing import Iterable, Iterator, Optional, Set
 
 import rospy
 from rosgraph_msgs.msg import Clock
@@ -17,7 +15,7 @@ from roslib.message import get_message_class
 from std_msgs.msg import Header, String
 from tf2_msgs.msg import TFMessage
 
-from planar import SettingsError
+from home_service.ros.bags.states import BROKEN, ENDED, PLAYING, bags_of
 from planar_ros.bags.bag import LASER_SCAN, TF_STATIC, BagError, Played
 from planar_ros.bags.recording import Recording
 from planar_ros.messages.conversion import frame_name, time_of
@@ -25,7 +23,6 @@ from planar_ros.node.progress import TOPIC as PROGRESS_TOPIC
 from planar_ros.node.shell import run
 from sim_bridge.pacing import Pacer
 
-PLAYING, ENDED, BROKEN = "playing", "ended", "broken: "
 LISTENER_SECONDS = 30.0
 CLOCK_SECONDS = 0.01
 AHEAD_SECONDS = 0.5
@@ -39,8 +36,7 @@ class BagPlayer:
     """Publishes a recording's messages and its clock; ``~state`` says when it has ended."""
 
     def __init__(self):
-        self._recording = Recording(_paths(rospy.get_param("~bags")))
-        self._has_all = bool(rospy.get_param("~all", False))
+        self._recording = Recording(bags_of(rospy.get_param("~bags")))
         speed, wait_for = float(rospy.get_param("~speed", 1.0)), rospy.get_param("~wait_for", "").split()
         self._pacer = Pacer(speed, wait_for, shortest_period=AHEAD_SECONDS)
         self._changed = threading.Condition()
@@ -51,9 +47,9 @@ class BagPlayer:
         rospy.Subscriber("/tf", TFMessage, self._see_estimate, queue_size=100)
         rospy.Subscriber(PROGRESS_TOPIC, Header, self._keep_progress, queue_size=50, tcp_nodelay=True)
         types = self._recording.types
-        inputs = {topic for topic, kind in types.items() if self._has_all or kind in INPUT_TYPES}
-        self._topics: Set[str] = inputs - {"/clock"}
-        if not self._has_all and LASER_SCAN not in types.values():
+        self._topics: Set[str] = {topic for topic, kind in types.items() if kind in INPUT_TYPES}
+        self._topics -= self._recording.foreign
+        if LASER_SCAN not in types.values():
             there = ", ".join(sorted(types)) or "none"
             raise BagError(f"{self._recording.paths[0]}: no laser scans; topics: {there}")
         self._scans = [topic for topic in self._topics if types[topic] == LASER_SCAN]
@@ -110,7 +106,7 @@ class BagPlayer:
             time.sleep(BEGINNING_SECONDS)
 
     def _publish(self, topic: str, message) -> None:
-        if topic == "/tf" and not self._has_all:
+        if topic == "/tf":
             message.transforms = [
                 transform
                 for transform in message.transforms
@@ -135,7 +131,7 @@ class BagPlayer:
         """Until somebody listens to the scans, or for half a minute."""
         scans = [self._publishers[topic] for topic in self._scans]
         deadline = time.monotonic() + LISTENER_SECONDS
-        while not self._has_all and time.monotonic() < deadline and not rospy.is_shutdown():
+        while time.monotonic() < deadline and not rospy.is_shutdown():
             self._tell_time(self._recording.start)
             if any(publisher.get_num_connections() > 0 for publisher in scans):
                 return
@@ -164,12 +160,6 @@ class BagPlayer:
         with self._changed:
             self._pacer.report(message.frame_id, message.stamp.to_sec())
             self._changed.notify_all()
-
-
-def _paths(text: str) -> List[Path]:
-    if not text:
-        raise SettingsError(f"~bags must name bags, separated by '{os.pathsep}'")
-    return [Path(name) for name in text.split(os.pathsep)]
 
 
 def main():

@@ -1,0 +1,93 @@
+"""Replay: where in a recording one is; another place, another pace, a pause."""
+
+from typing import Callable, List, Optional
+
+from home_service_msgs.srv import Seek, SetPlaybackSpeed
+from std_srvs.srv import SetBool
+
+from cockpit.errors import CockpitError
+from cockpit.ros.aside import Aside
+from cockpit.ros.calls import call
+from cockpit.ros.graph import Feed
+from cockpit.ros.tool import Desk
+
+KIND, TOPIC = "home_service_msgs/Playback", "/playback"
+PAUSE, SEEK, SPEED = "/pause_playback", "/seek", "/set_speed"
+PACES = ("0.1 x", "0.5 x", "1 x", "2 x", "5 x", "20 x", "as fast as it goes")
+FACTORS = (0.1, 0.5, 1.0, 2.0, 5.0, 20.0, 0.0)
+STEP_SECONDS = 0.1
+
+
+class Replay:
+    name, title, seconds, width = "replay", "Replay", 0.1, 420
+
+    def __init__(self, desk: Desk):
+        self._desk = desk
+        self._feed: Optional[Feed] = None
+        self._player = ""
+        self._aside = Aside()
+        self._wanted: Optional[float] = None
+
+    def build(self) -> None:
+        gui, guarded = self._desk.gui, self._desk.guarded
+        self._position = gui.add_slider("Time, s", 0.0, 1.0, STEP_SECONDS, 0.0)
+        self._pace = gui.add_dropdown("Pace", PACES, initial_value="1 x")
+        pause, go_on = gui.add_button("Pause"), gui.add_button("Go on")
+        self._status = gui.add_markdown("No recording is played.")
+        self._position.on_update(guarded(self._turned))
+        self._pace.on_update(guarded(self._paced))
+        pause.on_click(guarded(lambda _: self._ask(PAUSE, SetBool, True)))
+        go_on.on_click(guarded(lambda _: self._ask(PAUSE, SetBool, False)))
+
+    def update(self, now: float) -> None:
+        if self._feed is None:
+            self._listen()
+        for answer in self._aside.take():
+            if not answer.success:
+                raise CockpitError(answer.message)
+        if self._wanted is not None and not self._aside.is_busy:
+            wanted, self._wanted = self._wanted, None
+            self._aside.start(self._calling(SEEK, Seek, wanted))
+        for playback in self._feed.take() if self._feed is not None else ():
+            self._show(playback)
+
+    def pause(self) -> None:
+        if self._feed is not None:
+            self._feed.close()
+            self._feed = None
+
+    close = pause
+
+    def _listen(self) -> None:
+        found: List[str] = [topic for topic, kind in self._desk.graph.topics().items() if kind == KIND]
+        if found:
+            self._player = found[0][: -len(TOPIC)]
+            self._feed = self._desk.graph.feed(found[0], KIND)
+
+    def _show(self, playback) -> None:
+        self._position.max = max(playback.length, STEP_SECONDS)
+        if self._wanted is None and not self._aside.is_busy:
+            self._position.value = min(playback.position, self._position.max)
+        state = "paused" if playback.is_paused else "playing"
+        self._status.content = f"{state}: {playback.position:.1f} s of {playback.length:.1f} s"
+
+    def _turned(self, event) -> None:
+        """By a person; what the player has told is nobody's wish."""
+        if event.client is not None:
+            self._wanted = float(self._position.value)
+
+    def _paced(self, event) -> None:
+        if event.client is not None:
+            self._ask(SPEED, SetPlaybackSpeed, FACTORS[PACES.index(self._pace.value)])
+
+    def _ask(self, service: str, kind: type, value) -> None:
+        self._aside.start(self._calling(service, kind, value))
+
+    def _calling(self, service: str, kind: type, value) -> Callable:
+        if not self._player:
+            raise CockpitError("no recording is played")
+        name = self._player + service
+        return lambda: call(name, kind, value)
+
+
+TOOL = Replay

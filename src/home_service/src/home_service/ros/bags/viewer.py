@@ -1,0 +1,165 @@
+"""The node ``bag_viewer``: plays all that was recorded, from wherever one likes, at any pace."""
+
+import math
+import threading
+import time
+from typing import Iterable
+
+import rospy
+from home_service_msgs.msg import Playback
+from home_service_msgs.srv import Seek, SetPlaybackSpeed
+from rosgraph_msgs.msg import Clock
+from roslib.message import get_message_class
+from std_msgs.msg import String
+from std_srvs.srv import SetBool
+from tf2_msgs.msg import TFMessage
+from visualization_msgs.msg import Marker, MarkerArray
+
+from home_service.ros.bags.states import BROKEN, ENDED, PLAYING, bags_of
+from planar_ros.bags.bag import TF_STATIC, BagError, Played
+from planar_ros.bags.playhead import Playhead
+from planar_ros.bags.recording import Recording
+from planar_ros.bags.standing import MARKERS, standing_at
+from planar_ros.messages.conversion import time_of
+from planar_ros.node.shell import run
+
+CLOCK_SECONDS, TOLD_SECONDS, POLL_SECONDS = 0.01, 0.2, 0.1
+# Those who look see by the clock that time begins anew, and clear what they show.
+ANEW_SECONDS = 0.3
+
+
+class BagViewer:
+    """``~state`` says when it has ended; with ``~stays`` one may go back then."""
+
+    def __init__(self):
+        self._recording = Recording(bags_of(rospy.get_param("~bags")))
+        self._stays = bool(rospy.get_param("~stays", False))
+        speed = float(rospy.get_param("~speed", 1.0))
+        self._head = Playhead(self._recording.start, self._recording.end, speed, time.monotonic())
+        self._changed = threading.Condition()
+        self._jumps = 0
+        self._state = rospy.Publisher("~state", String, queue_size=10, latch=True)
+        self._playback = rospy.Publisher("~playback", Playback, queue_size=1, latch=True)
+        self._told_at = -math.inf
+        self._clock = rospy.Publisher("/clock", Clock, queue_size=10, tcp_nodelay=True)
+        self._clock_stamp = -math.inf
+        types, foreign = self._recording.types, self._recording.foreign
+        for topic in foreign:
+            rospy.logwarn("%s is left out: %s is not installed as it was recorded", topic, types[topic])
+        self._topics = set(types) - foreign - {"/clock", TF_STATIC}
+        # Latched: what stands still while it is paused is heard by those who come then.
+        self._publishers = {
+            topic: rospy.Publisher(
+                topic, get_message_class(types[topic]), queue_size=100, latch=True, tcp_nodelay=True
+            )
+            for topic in self._topics
+        }
+        self._static = rospy.Publisher(TF_STATIC, TFMessage, queue_size=1, latch=True)
+        rospy.Service("~pause_playback", SetBool, self._pause)  # as of rosbag play
+        rospy.Service("~seek", Seek, self._seek)
+        rospy.Service("~set_speed", SetPlaybackSpeed, self._set_speed)
+
+    def work(self) -> None:
+        """Plays to the end, and stays, so that what was latched stays."""
+        self._static.publish(TFMessage(self._recording.first_static_transforms()))
+        self._state.publish(PLAYING)
+        try:
+            while not rospy.is_shutdown():
+                if self._play_on():
+                    self._state.publish("; ".join([ENDED, *self._recording.gaps]))
+                    if not self._stays:
+                        return
+                    self._wait_for_a_jump()
+                    self._state.publish(PLAYING)
+        except BagError as error:
+            self._state.publish(BROKEN + str(error))
+
+    def _play_on(self) -> bool:
+        """From where the playhead is; whether it got to the end."""
+        with self._changed:
+            jump, start = self._jumps, self._head.position
+        if jump:
+            self._clear_markers()
+        self._tell_time(start)
+        if jump:
+            time.sleep(ANEW_SECONDS)
+        self._publish(standing_at(self._recording, self._topics, start))
+        for played in self._recording.messages(self._topics, since=start):
+            if not self._wait_until_due(played.stamp, jump):
+                return False
+            self._tell_time(played.stamp)
+            self._publish((played,))
+        return self._wait_until_due(self._recording.end + 2.0 * CLOCK_SECONDS, jump)
+
+    def _wait_until_due(self, stamp: float, jump: int) -> bool:
+        """False if there was a jump meanwhile, or this is the end."""
+        while not rospy.is_shutdown():
+            with self._changed:
+                if self._jumps != jump:
+                    return False
+                wall = time.monotonic()
+                delay = self._head.delay(stamp, wall)
+                self._tell(wall)
+                if delay <= 0.0:
+                    self._head.reach(min(stamp, self._recording.end))
+                    return True
+                self._changed.wait(min(delay, POLL_SECONDS))
+        return False
+
+    def _wait_for_a_jump(self) -> None:
+        with self._changed:
+            jump = self._jumps
+            while self._jumps == jump and not rospy.is_shutdown():
+                self._tell(time.monotonic())
+                self._changed.wait(POLL_SECONDS)
+
+    def _publish(self, messages: Iterable[Played]) -> None:
+        for played in messages:
+            self._publishers[played.topic].publish(played.message)
+
+    def _clear_markers(self) -> None:
+        """Those of another time."""
+        every = Marker(action=Marker.DELETEALL)
+        for topic in set(self._recording.topics_of(*MARKERS)) & self._topics:
+            is_one = self._recording.types[topic] == MARKERS[0]
+            self._publishers[topic].publish(every if is_one else MarkerArray([every]))
+
+    def _tell_time(self, stamp: float) -> None:
+        if not 0.0 <= stamp - self._clock_stamp < CLOCK_SECONDS:
+            self._clock_stamp = stamp
+            self._clock.publish(Clock(time_of(stamp)))
+
+    def _tell(self, wall: float) -> None:
+        if wall >= self._told_at + TOLD_SECONDS:
+            self._told_at, head = wall, self._head
+            length, position = head.end - head.start, head.position - head.start
+            self._playback.publish(Playback(length, position, head.speed, head.is_paused))
+
+    def _pause(self, request):
+        with self._changed:
+            self._head.pause(request.data, time.monotonic())
+            return True, self._changed_now()
+
+    def _seek(self, request):
+        if not math.isfinite(request.position):
+            return False, f"there is no position {request.position}"
+        with self._changed:
+            self._jumps += 1
+            self._head.seek(request.position, time.monotonic())
+            return True, self._changed_now()
+
+    def _set_speed(self, request):
+        if not 0.0 <= request.speed < math.inf:
+            return False, f"{request.speed} is no pace: a number from 0"
+        with self._changed:
+            self._head.set_speed(request.speed, time.monotonic())
+            return True, self._changed_now()
+
+    def _changed_now(self) -> str:
+        self._told_at = -math.inf
+        self._changed.notify_all()
+        return ""
+
+
+def main():
+    run("bag_viewer", lambda: BagViewer().work())

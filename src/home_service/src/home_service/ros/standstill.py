@@ -1,0 +1,61 @@
+"""Notices that simulated time stands still, and says why."""
+
+import threading
+import time
+from typing import Callable, Optional
+
+import rospy
+from gazebo_msgs.srv import GetPhysicsProperties, GetPhysicsPropertiesRequest
+from rosgraph_msgs.msg import Clock
+
+from planar_ros.calls.services import ServiceError, call_service
+
+# Wall seconds after which it is worth a word, and that the simulator has to answer.
+STANDING_SECONDS, ANSWER_SECONDS = 15.0, 3.0
+
+
+class Standstill:
+    """``look`` is to be called again and again; ``reason``: why time stands still, in words, None if it goes.
+
+    ``say`` is given the same when it begins.
+    """
+
+    def __init__(self, say: Callable[[str], None], patience: float = STANDING_SECONDS):
+        self.reason: Optional[str] = None
+        self._say, self._patience = say, patience
+        self._stamp: Optional[float] = None
+        self._since = 0.0
+        self._is_asking = False
+
+    def start(self) -> None:
+        """This process is a node by then."""
+        rospy.Subscriber("/clock", Clock, lambda message: self.hear(message.clock.to_sec()), queue_size=1)
+
+    def hear(self, stamp: float) -> None:
+        """What time it is, seconds."""
+        if stamp != self._stamp:
+            self._stamp, self._since, self.reason = stamp, time.monotonic(), None
+
+    def look(self) -> None:
+        """Whether it has stood still for too long."""
+        stands = self._stamp is not None and time.monotonic() - self._since > self._patience
+        if stands and self.reason is None and not self._is_asking:
+            self._is_asking = True
+            threading.Thread(target=self._ask, args=(self._stamp,), daemon=True).start()
+
+    def _ask(self, stamp: float) -> None:
+        why = why_time_stands()
+        if stamp == self._stamp:
+            self.reason = f"simulated time stands still at {stamp:.1f} s: {why}"
+            self._say(self.reason)
+        self._is_asking = False
+
+
+def why_time_stands() -> str:
+    """What the simulator says of it."""
+    request, name = GetPhysicsPropertiesRequest(), "/gazebo/get_physics_properties"
+    try:
+        is_paused = call_service(name, GetPhysicsProperties, request, ANSWER_SECONDS).pause
+    except ServiceError as error:
+        return f"the simulator does not answer ({error})"
+    return "the simulation is paused" if is_paused else "the simulator waits for nodes (see doctor.sh)"

@@ -1,0 +1,141 @@
+#!/usr/bin/env python3
+"""A recording in the browser: played, paused, and looked at from any place of it."""
+
+import os
+import signal
+import subprocess
+import tempfile
+import threading
+import unittest
+from pathlib import Path
+
+import rosbag
+import rospy
+import rostest
+from browser import Browser
+from geometry_msgs.msg import PoseStamped, TransformStamped
+from nav_msgs.msg import Path as PathMsg
+from rosgraph_msgs.msg import Clock
+from std_msgs.msg import Float64
+from tf2_msgs.msg import TFMessage
+from visualization_msgs.msg import Marker
+from waiting import wait_until
+
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+PICTURES = os.environ.get("COCKPIT_PICTURES")
+START, SECONDS, END_SECONDS = 100.0, 60, 40.0
+
+
+class CockpitReplayTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def test_a_recording_is_looked_at_from_any_place(self):
+        record(self.folder / "drive.bag")
+        with Showing(self.folder / "drive.bag", self.folder / "runs") as showing, Browser() as browser:
+            page = browser.open(showing.url, 1400, 900)
+            page.wait_for("Replay", "playing", seconds=60.0)
+            page.click("Pause")
+            page.wait_for("paused")
+            at = {name: Heard(name, kind) for name, kind in (("/number", Float64), ("/clock", Clock))}
+            for wanted in (45, 12):
+                page.fill_in("Time, s", str(wanted))
+                page.wait_for(f"paused: {wanted}.0 s of 59.9 s")
+                wait_until(f"the number of second {wanted}", lambda: at["/number"].newest.data == wanted)  # noqa: B023
+                self.assertAlmostEqual(at["/clock"].newest.clock.to_sec(), START + wanted, delta=0.1)
+                if PICTURES:
+                    page.screenshot(Path(PICTURES) / f"replay_{wanted}.png")
+            page.choose("Pace", "20 x")
+            page.click("Go on")
+            page.wait_for("59.9 s of 59.9 s", seconds=30.0)
+            page.fill_in("Time, s", "30")
+            wait_until("a number after the end", lambda: 30 <= at["/number"].newest.data < 59)
+            self.assertEqual(page.errors, [])
+
+    def test_what_is_no_recording_is_told_before_anything_starts(self):
+        (self.folder / "broken.bag").write_text("no bag")
+        for name, why in (("broken.bag", "not a readable bag"), ("none.bag", "no such bag")):
+            command = [str(SCRIPTS / "cockpit.sh"), str(self.folder / name)]
+            done = subprocess.run(command, capture_output=True, text=True, timeout=END_SECONDS)
+            self.assertEqual(done.returncode, 2, done.stdout)
+            self.assertIn(f"{name}: {why}", done.stderr)
+
+
+class Showing:
+    """``cockpit.sh`` with a recording, from its URL to Ctrl-C."""
+
+    def __init__(self, bag, output):
+        self._process = subprocess.Popen(
+            [str(SCRIPTS / "cockpit.sh"), str(bag), "--output", str(output)],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        self._lines = []
+        threading.Thread(target=lambda: self._lines.extend(self._process.stdout), daemon=True).start()
+
+    def __enter__(self):
+        wait_until("the URL", lambda: self._told("cockpit: ") and self._told("ROS_MASTER_URI="), 90.0)
+        self.url = self._told("cockpit: ")
+        os.environ["ROS_MASTER_URI"] = self._told("ROS_MASTER_URI=")
+        rospy.init_node("looker_on", disable_signals=True)
+        return self
+
+    def __exit__(self, *_):
+        self._process.send_signal(signal.SIGINT)
+        self._process.wait(END_SECONDS)
+        print("".join(self._lines))
+
+    def _told(self, beginning):
+        lines = [line.strip() for line in list(self._lines)]
+        return next((line[len(beginning) :] for line in lines if line.startswith(beginning)), None)
+
+
+class Heard:
+    """The newest message of a topic."""
+
+    def __init__(self, topic, kind):
+        self.newest = kind()
+        rospy.Subscriber(topic, kind, lambda message: setattr(self, "newest", message))
+
+
+def record(path):
+    """A robot that drives along x, 1 m/s, with a number for each second and a marker for each ten."""
+    with rosbag.Bag(str(path), "w") as bag:
+        for tick in range(10 * SECONDS):
+            now = rospy.Time.from_sec(START + 0.1 * tick)
+            odom = TransformStamped(child_frame_id="base_link")
+            odom.header.frame_id, odom.header.stamp = "map", now
+            odom.transform.translation.x, odom.transform.rotation.w = 0.1 * tick, 1.0
+            bag.write("/tf", TFMessage([odom]), now)
+            if tick % 10 == 0:
+                bag.write("/number", Float64(tick // 10), now)
+            if tick % 100 == 0:
+                bag.write("/markers", cube(tick // 10, now), now)
+            if tick == 300:
+                bag.write("/plan", plan(now), now)
+
+
+def cube(number, now):
+    marker = Marker(id=number, type=Marker.CUBE)
+    marker.header.frame_id, marker.header.stamp = "map", now
+    marker.pose.position.x, marker.pose.orientation.w = float(number), 1.0
+    marker.scale.x = marker.scale.y = marker.scale.z = 0.5
+    marker.color.g = marker.color.a = 1.0
+    return marker
+
+
+def plan(now):
+    path = PathMsg()
+    path.header.frame_id, path.header.stamp = "map", now
+    for metres in range(SECONDS):
+        pose = PoseStamped(header=path.header)
+        pose.pose.position.x, pose.pose.orientation.w = float(metres), 1.0
+        path.poses.append(pose)
+    return path
+
+
+if __name__ == "__main__":
+    rostest.rosrun("home_service_tests", "replay_in_browser", CockpitReplayTest)
