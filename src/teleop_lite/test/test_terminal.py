@@ -1,10 +1,11 @@
 import os
 import pty
 import termios
+from pathlib import Path
 
 import pytest
 
-from teleop_lite.terminal import CTRL_C, Pipe, Terminal
+from teleop_lite.terminal import CTRL_C, NoKeysError, Pipe, Terminal
 
 
 @pytest.fixture
@@ -53,3 +54,8 @@ def test_a_pipe_gives_whole_lines_and_at_its_end_the_rest():
     assert pipe.read() == "k:3"
     assert pipe.is_at_end
     os.close(theirs)
+
+
+def test_what_is_no_terminal_is_refused_in_a_sentence():
+    with Path(os.devnull).open() as nothing, pytest.raises(NoKeysError, match="no keyboard here"):
+        Terminal(nothing.fileno())

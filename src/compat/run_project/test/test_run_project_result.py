@@ -28,6 +28,7 @@ class FakeRun:
         ledger.see_status(2.0, "goal", 3, "")
         ledger.see_marker(3.0, ("cube", 0), (1.0, 0.5))
         self.observer = SimpleNamespace(ledger=ledger, simulated_time=12.34)
+        self.person = None
         self._is_interrupted = is_interrupted
 
     def __enter__(self):

@@ -21,6 +21,8 @@ class Terminal:
 
     def __init__(self, descriptor: int):
         self._descriptor = descriptor
+        if not os.isatty(descriptor):
+            raise NoKeysError("there is no keyboard here: standard input is no terminal")
         if _is_in_background(descriptor):
             raise NoKeysError("the terminal belongs to another process: start this in the foreground")
 

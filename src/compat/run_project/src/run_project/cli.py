@@ -17,10 +17,12 @@ from run_project.checkout.told import told_by
 from run_project.errors import BuildError, ProjectError
 from run_project.judging.complaints import complaints_in
 from run_project.judging.verdict import Ledger, Verdict, judge
+from run_project.lessons.plan import Lesson, Plan, plan_of
 from run_project.options import Options, parse
 from run_project.preparing.building import Workspace, build, copy_checkout, environment
 from run_project.preparing.private_root import prefix
 from run_project.ros.headless_rviz import SHOWN
+from run_project.ros.people import DEEDS
 from run_project.ros.running import Job, ProjectRun
 from run_project.stand_ins.folders import PACKAGE_FOLDER
 from run_project.stand_ins.terminal import LOGS
@@ -65,9 +67,10 @@ def run(options: Options) -> int:
         raise ProjectError("--rviz: there is no display (the variable DISPLAY is not set)")
     started = time.time()
     checkout = read_checkout(options.path)
-    script = str(choose_script(checkout, options.script))
-    texts = read_texts(checkout, script)
     with _WorkFolder(checkout.root) as work, Display() as display:
+        plan = _plan(checkout, options)
+        script = _script(checkout, options, plan, work.path)
+        texts = read_texts(checkout, script)
         placement = find_place(checkout, script, texts, work.path, options.script_arguments)
         folder = create_run_folder(options.output.resolve(), "run_project")
         logs = folder / "log"
@@ -85,10 +88,34 @@ def run(options: Options) -> int:
         job = _job(options, workspace, placement, texts, script, work.path, logs)
         for target in sorted(placement.mounts):
             display.say(f"provides {target}, for this run alone")
-        display.say(f"runs {script}; times are simulated:")
-        return run_job(
-            options, job, folder, workspace, display, {"project": str(checkout.root), "script": script}
-        )
+        display.say(f"runs {_name_of(script, plan)}; times are simulated:")
+        about = {"project": str(checkout.root), "script": _name_of(script, plan)}
+        return run_job(options, job, folder, workspace, display, about, plan)
+
+
+def _plan(checkout: Checkout, options: Options) -> Optional[Plan]:
+    """The lesson of the course that it is, if it has no script for it."""
+    named = options.script in [lesson.value for lesson in Lesson]
+    if not named and (options.script is not None or any(is_errand(str(s)) for s in checkout.scripts())):
+        return None
+    plan = plan_of(checkout.packages, read_texts(checkout), options.script)
+    if named and plan is None:
+        raise ProjectError(f"{checkout.root}: no launch files of {options.script} in it")
+    return plan
+
+
+def _script(checkout: Checkout, options: Options, plan: Optional[Plan], work: Path) -> str:
+    """The script to run, relative to the checkout; that of a lesson is made in the folder ``work``."""
+    if plan is None:
+        return str(choose_script(checkout, options.script))
+    made = work / f"{plan.lesson.value}.sh"
+    made.write_text(plan.script())
+    made.chmod(0o755)
+    return str(made)
+
+
+def _name_of(script: str, plan: Optional[Plan]) -> str:
+    return script if plan is None else plan.lesson.value
 
 
 def find_place(
@@ -106,10 +133,10 @@ def find_place(
     return place(checkout, script, texts, home, user)
 
 
-def read_texts(checkout: Checkout, script: str) -> Dict[str, str]:
+def read_texts(checkout: Checkout, script: str = "") -> Dict[str, str]:
     """The contents of the files that may name paths."""
     texts = {}
-    for file in {*checkout.files, script}:
+    for file in {*checkout.files, *([script] if script else [])}:
         path = checkout.root / file
         is_text = path.suffix in READ_SUFFIXES or file == script
         if is_text and path.is_file() and path.stat().st_size < LARGEST_TEXT:
@@ -149,11 +176,18 @@ def _stand_in_for_ros(folder: Path, workspace: Workspace) -> Path:
 
 
 def run_job(
-    options: Options, job: Job, folder: Path, workspace: Workspace, display: Display, about: Dict[str, str]
+    options: Options,
+    job: Job,
+    folder: Path,
+    workspace: Workspace,
+    display: Display,
+    about: Dict[str, str],
+    plan: Optional[Plan] = None,
 ) -> int:
     """Runs the script, judges what it did, and writes that down; returns the exit code."""
     started = time.monotonic()
-    run = ProjectRun(job, folder / "log", _parameters(options), display)
+    parameters = _parameters(options, plan)
+    run = ProjectRun(job, folder / "log", parameters, display, DEEDS[plan.lesson] if plan else None)
     failure, is_interrupted = None, False
     try:
         with run:
@@ -163,29 +197,30 @@ def run_job(
     except RunInterruptedError as error:
         failure, is_interrupted = str(error), True
     ledger = run.observer.ledger
-    verdict = judge(ledger, failure, is_errand(about["script"]), options.expect)
+    verdict = _judged(run, failure, is_errand(about["script"]), options)
     complaints = complaints_in(folder / "log")
-    path = write_result(
-        folder,
-        {
-            "command": "run_project",
-            **about,
-            "success": verdict.success,
-            "reason": verdict.reason,
-            **ledger.findings(),
-            "simulated_seconds": round(run.observer.simulated_time, 1),
-            "wall_seconds": round(time.monotonic() - started, 1),
-            "speed": options.wanted_speed,
-            "seed": options.seed,
-            "left_out": workspace.missing,
-            "complaints": complaints,
-            "versions": versions(),
-            "missing": [],
-        },
-    )
+    found = {
+        "success": verdict.success,
+        "reason": verdict.reason,
+        **ledger.findings(),
+        "simulated_seconds": round(run.observer.simulated_time, 1),
+        "wall_seconds": round(time.monotonic() - started, 1),
+        "speed": parameters["/gazebo/speed"],
+        "seed": options.seed,
+        "left_out": workspace.missing,
+        "complaints": complaints,
+    }
+    always = {"command": "run_project", "versions": versions(), "missing": []}
+    path = write_result(folder, {**always, **about, **found})
     _report(display, verdict, ledger, complaints)
     display.say(f"result in {path}, a log of each window in {folder / 'log'}")
     return INTERRUPTED if is_interrupted else 0 if verdict.success else FAILURE
+
+
+def _judged(run: ProjectRun, failure: Optional[str], is_of_home_service: bool, options: Options) -> Verdict:
+    if run.person is None:
+        return judge(run.observer.ledger, failure, is_of_home_service, options.expect)
+    return run.person.outcome.verdict(failure)
 
 
 def _watch(run: ProjectRun, options: Options, folder: Path, display: Display) -> Optional[str]:
@@ -203,11 +238,15 @@ def _watch(run: ProjectRun, options: Options, folder: Path, display: Display) ->
         cockpit.close()
 
 
-def _parameters(options: Options) -> Dict[str, object]:
-    """What the simulator is told; every other parameter is the project's own business."""
+def _parameters(options: Options, plan: Optional[Plan]) -> Dict[str, object]:
+    """What the simulator is told; every other parameter is the project's own business.
+
+    A person who drives the robot has to keep up, so a lesson runs in real time if nothing else is wanted.
+    """
+    speed = options.wanted_speed if plan is None or options.speed is not None else 1.0
     return {
         "/use_sim_time": True,
-        "/gazebo/speed": options.wanted_speed,
+        "/gazebo/speed": speed,
         "/gazebo/seed": options.seed,
         **{f"/gazebo/{name}": value for name, value in SIMULATOR.items()},
     }

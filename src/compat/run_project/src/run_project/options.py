@@ -42,7 +42,10 @@ class Options:
 
     path: Path = argument("the project's checkout", metavar="PATH", type=Path)
     script: Optional[str] = argument(
-        "the script to run, if it is not home_service.sh", default=None, metavar="SCRIPT", nargs="?"
+        "the script to run, if it is not home_service.sh, or go_chase_it, where_am_i, map_my_world",
+        default=None,
+        metavar="SCRIPT",
+        nargs="?",
     )
     speed: Optional[float] = option(
         None, "1 real time, N times that, 0 as fast as the nodes keep up", type=_speed
@@ -62,7 +65,7 @@ class Options:
 
     @property
     def wanted_speed(self) -> float:
-        """Simulated seconds per second; 0: as fast as the nodes keep up."""
+        """Simulated seconds per second; 0: as fast as the nodes keep up. Real time where people look on."""
         return float(self.rviz or self.is_on_the_web) if self.speed is None else self.speed
 
     @property

@@ -13,6 +13,7 @@ import psutil
 import rospy
 
 from run_project.ros.observer import Observer
+from run_project.ros.people import Person
 from run_project.stand_ins.terminal import WindowLogs
 from supervision.display import Display
 from supervision.errors import LaunchError
@@ -52,12 +53,13 @@ class Job:
 class ProjectRun:
     """Context of a run: entering starts a master, leaving ends every process of the run."""
 
-    def __init__(self, job: Job, logs: Path, parameters: Mapping[str, object], display: Display):
+    def __init__(self, job: Job, logs: Path, parameters: Mapping[str, object], display: Display, deed=None):
         self._job = job
         self._logs = logs
         self._display = display
         self._parameters = parameters
         self.observer = Observer(self._tell)
+        self.person = None if deed is None else Person(deed, logs.parent, self._tell)
         self._helpers: List[subprocess.Popen] = []
         self._windows = WindowLogs(logs)
         self._news_wall = time.monotonic()
@@ -74,12 +76,16 @@ class ProjectRun:
                 rospy.set_param(name, value)
             rospy.init_node("run_project", anonymous=True, disable_signals=True, log_level=rospy.ERROR)
             self.observer.start()
+            if self.person is not None:
+                self.person.start()
         except BaseException:
             self.__exit__()
             raise
         return self
 
     def __exit__(self, *_):
+        if self.person is not None:
+            self.person.stop()
         rospy.signal_shutdown("the run is over")
         others = _others(self._helpers)
         for process in others:
@@ -130,6 +136,8 @@ class ProjectRun:
 
     def _is_done(self, script_is_over: bool, quiet_wall: float, nodes_are_gone: bool) -> bool:
         ledger = self.observer.ledger
+        if self.person is not None:
+            return self.person.is_done
         if (script_is_over and not _others(self._helpers)) or ledger.two_rounds:
             return True
         if nodes_are_gone and script_is_over:

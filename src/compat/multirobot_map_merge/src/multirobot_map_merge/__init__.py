@@ -1,0 +1,1 @@
+"""One map of those of several robots."""

@@ -1,0 +1,1 @@
+"""What speaks ROS in multirobot_map_merge."""

@@ -1,0 +1,81 @@
+"""The node ``map_merge``, with the parameters of multirobot_map_merge, for robots whose places are known."""
+
+import threading
+from typing import Dict, List, Tuple
+
+import rosgraph
+import rospy
+from nav_msgs.msg import OccupancyGrid as OccupancyGridMsg
+
+from multirobot_map_merge.merging import merged
+from planar import OccupancyGrid, PlanarError, Pose2
+from planar_ros.messages.conversion import frame_name, grid_from_msg, grid_to_msg
+from planar_ros.messages.transforms import Transforms
+from planar_ros.node.shell import run
+
+
+class MapMerge:
+    """Finds the robots' maps, and publishes one of them all."""
+
+    def __init__(self) -> None:
+        self._map_topic = rospy.get_param("~robot_map_topic", "map")
+        self._namespace = rospy.get_param("~robot_namespace", "")
+        self._frame = frame_name(rospy.get_param("~world_frame", "world"))
+        self._topic = rospy.resolve_name(rospy.get_param("~merged_map_topic", "map"))
+        if not rospy.get_param("~known_init_poses", True):
+            rospy.logwarn("places of the robots are not guessed here: tf and init_pose have to tell them")
+        self._transforms = Transforms()
+        self._lock = threading.Lock()
+        self._maps: Dict[str, Tuple[str, OccupancyGrid]] = {}
+        self._subscribers: Dict[str, rospy.Subscriber] = {}
+        self._publisher = rospy.Publisher(self._topic, OccupancyGridMsg, queue_size=1, latch=True)
+        self._discover()
+        rospy.Timer(_period("~discovery_rate", 0.05), self._discover, reset=True)
+        rospy.Timer(_period("~merging_rate", 4.0), self._merge, reset=True)
+
+    def _discover(self, _event=None) -> None:
+        for topic, kind in rosgraph.Master(rospy.get_name()).getTopicTypes():
+            robot, _, name = topic.rpartition("/")
+            is_map = kind == OccupancyGridMsg._type and name == self._map_topic and topic != self._topic
+            if is_map and self._namespace in robot and topic not in self._subscribers:
+                rospy.loginfo("adding the map of %s", robot or "/")
+                callback = lambda message, robot=robot: self._see(robot, message)  # noqa: E731
+                self._subscribers[topic] = rospy.Subscriber(topic, OccupancyGridMsg, callback, queue_size=1)
+
+    def _see(self, robot: str, message: OccupancyGridMsg) -> None:
+        with self._lock:
+            self._maps[robot] = (frame_name(message.header.frame_id), grid_from_msg(message))
+
+    def _merge(self, _event=None) -> None:
+        with self._lock:
+            maps = dict(self._maps)
+        if not maps:
+            return
+        placed: List[Tuple[Pose2, OccupancyGrid]] = [
+            (self._place_of(robot, frame), grid) for robot, (frame, grid) in sorted(maps.items())
+        ]
+        try:
+            grid = merged(placed)
+        except PlanarError as error:
+            rospy.logwarn_throttle(10.0, "not merged: %s", error)
+            return
+        self._publisher.publish(grid_to_msg(grid, rospy.Time.now(), self._frame))
+
+    def _place_of(self, robot: str, frame: str) -> Pose2:
+        """Where a map's frame lies in the world: as tf has it, else as the robot's parameters say."""
+        place = self._transforms.lookup(self._frame, frame)
+        if place is not None:
+            return place
+        names = (f"{robot}/map_merge/init_pose_{name}" for name in ("x", "y", "yaw"))
+        return Pose2(*(float(rospy.get_param(name, 0.0)) for name in names))
+
+
+def _period(parameter: str, default: float) -> rospy.Duration:
+    rate = float(rospy.get_param(parameter, default))
+    if not rate > 0.0:
+        raise PlanarError(f"{parameter} must be positive, got {rate:g}")
+    return rospy.Duration(1.0 / rate)
+
+
+def main() -> None:
+    run("map_merge", MapMerge)

@@ -1,0 +1,1 @@
+"""rtabmap's nodes, answered by what there is here."""

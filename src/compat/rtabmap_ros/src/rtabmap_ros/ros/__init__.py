@@ -1,0 +1,1 @@
+"""What speaks ROS in rtabmap_ros."""

@@ -1,0 +1,1 @@
+"""The projects of the course before the home-service robot: what they are, and how they went."""

@@ -1,0 +1,107 @@
+"""Go Chase It: a white ball is put before the robot's camera, and taken away."""
+
+import math
+from functools import partial
+from typing import TYPE_CHECKING, Optional
+
+import rospy
+from gazebo_msgs.msg import ModelState, ModelStates
+from gazebo_msgs.srv import SetModelState, SpawnModel
+from geometry_msgs.msg import Pose
+
+from planar import Pose2
+from planar_ros.messages.conversion import quaternion_of
+
+if TYPE_CHECKING:
+    from run_project.ros.people.person import Person
+
+# Radians to the left of where the robot looks.
+BEARINGS = (0.0, 0.35, -0.35)
+# Metres to the ball, and from it to what is behind it; share of the way that the robot has to go.
+FAR, NEAR, BEHIND, SHARE = 2.0, 0.8, 0.4, 0.5
+# Simulated seconds to chase it, and to stop without it.
+CHASE_SECONDS, STOP_SECONDS = 30.0, 5.0
+# Metres, in a second, below which a robot stands.
+STANDS = 0.02
+SERVICE_SECONDS = 30.0
+RADIUS = 0.1
+AWAY = 500.0
+_MATERIAL = "<material><diffuse>1 1 1 1</diffuse><emissive>1 1 1 1</emissive></material>"
+_SHAPE = f"<geometry><sphere><radius>{RADIUS}</radius></sphere></geometry>"
+BALL = f"""<sdf version="1.6"><model name="white_ball"><link name="link"><inertial><mass>1</mass></inertial>
+<collision name="c">{_SHAPE}</collision><visual name="v">{_SHAPE}{_MATERIAL}</visual></link></model></sdf>"""
+
+
+def chase(person: "Person") -> None:
+    """Places the ball ahead, to the left and to the right, and takes it away each time."""
+    person.wait(lambda: person.has_node("process_image"), 120.0, "no process_image ran", is_wall=True)
+    for service in ("set_model_state", "spawn_sdf_model"):
+        rospy.wait_for_service(f"/gazebo/{service}", SERVICE_SECONDS)
+    states = rospy.wait_for_message("/gazebo/model_states", ModelStates, SERVICE_SECONDS)
+    robot = min(states.name, key=lambda name: _gap(states, name, person.base))
+    ball = next((name for name in states.name if "ball" in name.lower() and name != robot), None)
+    if ball is None:
+        ball = _spawn_ball()
+    _put(ball, Pose2(AWAY, AWAY))
+    _wait_until_it_stands(person)
+    for bearing in BEARINGS:
+        _turn_to_room(person, robot, bearing)
+        start = person.base
+        distance = max(min(FAR, person.room(bearing) - BEHIND), NEAR)
+        at = start @ Pose2(distance * math.cos(bearing), distance * math.sin(bearing))
+        _put(ball, at)
+        near = distance * SHARE
+        is_chased = person.wait(partial(_is_near, person, at, near), CHASE_SECONDS)
+        left = person.base.distance_to(at)
+        told = "chased" if is_chased else "did not chase"
+        person.note(
+            is_chased, f"{told} the ball at {math.degrees(bearing):+.0f} deg: {distance:.1f} to {left:.1f} m"
+        )
+        _put(ball, Pose2(AWAY, AWAY))
+        stops = _wait_until_it_stands(person)
+        if bearing == BEARINGS[-1]:
+            person.note(stops, "stands without it" if stops else "goes on without it")
+
+
+def _is_near(person: "Person", place: Pose2, near: float) -> bool:
+    return person.base.distance_to(place) < near
+
+
+def _wait_until_it_stands(person: "Person") -> bool:
+    """Whether the robot stands still for a second, within a few."""
+    deadline = rospy.get_time() + STOP_SECONDS
+    while rospy.get_time() < deadline:
+        before = person.base
+        person.sleep(1.0)
+        if person.base.distance_to(before) < STANDS:
+            return True
+    return False
+
+
+def _turn_to_room(person: "Person", robot: str, bearing: float) -> None:
+    """A robot that stands before a wall is turned by hand, as Gazebo's window lets one do."""
+    if person.room(bearing) < NEAR + BEHIND:
+        turned = person.base @ Pose2(0.0, 0.0, person.roomiest() - bearing)
+        _put(robot, turned, height=0.05)
+        person.sleep(1.0)
+
+
+def _gap(states: ModelStates, name: str, base: Pose2) -> float:
+    position = states.pose[states.name.index(name)].position
+    return math.hypot(position.x - base.x, position.y - base.y)
+
+
+def _spawn_ball() -> str:
+    pose = Pose()
+    pose.position.x, pose.position.y, pose.position.z = AWAY, AWAY, RADIUS
+    pose.orientation.w = 1.0
+    rospy.ServiceProxy("/gazebo/spawn_sdf_model", SpawnModel)("white_ball", BALL, "", pose, "world")
+    return "white_ball"
+
+
+def _put(model: str, place: Pose2, height: Optional[float] = None) -> None:
+    state = ModelState(model_name=model, reference_frame="world")
+    position = state.pose.position
+    position.x, position.y, position.z = place.x, place.y, RADIUS if height is None else height
+    state.pose.orientation = quaternion_of(place.yaw)
+    rospy.ServiceProxy("/gazebo/set_model_state", SetModelState)(state)

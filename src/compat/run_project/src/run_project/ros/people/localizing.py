@@ -1,0 +1,80 @@
+"""Where Am I: the robot is sent to a place in sight and back, or turned, and has to know where it is."""
+
+import math
+from typing import TYPE_CHECKING, List
+
+import rospy
+from actionlib_msgs.msg import GoalID
+from geometry_msgs.msg import PoseStamped
+from move_base_msgs.msg import MoveBaseActionResult
+
+from planar import Pose2
+from planar_ros.messages.conversion import pose2_to_msg
+from planar_ros.messages.transforms import Transforms
+
+if TYPE_CHECKING:
+    from run_project.ros.people.person import Person
+
+# Metres by which the robot may be wrong; how far it is sent, and the share of what is free.
+ALLOWED, FAR, SHARE = 0.3, 2.0, 0.6
+# Simulated seconds for a goal, and rad/s to turn round once.
+GOAL_SECONDS, TURN = 120.0, 0.5
+SETTLE_SECONDS = 2.0
+SUCCEEDED = 3
+# Metres and radians without which being localized proves nothing.
+ENOUGH = 0.5
+
+
+def localize(person: "Person") -> None:
+    """Sends the robot there and back where it has a move_base, else turns it; looks how far off it is."""
+    person.wait(lambda: person.has_node("amcl"), 120.0, "no amcl ran", is_wall=True)
+    transforms = Transforms()
+    frames = (
+        rospy.get_param("/amcl/global_frame_id", "map"),
+        rospy.get_param("/amcl/base_frame_id", "base_link"),
+    )
+    global_frame, base_frame = (frame.lstrip("/") for frame in frames)
+    person.wait(
+        lambda: transforms.lookup(global_frame, base_frame) is not None,
+        120.0,
+        f"no transform from {global_frame} to {base_frame}",
+        is_wall=True,
+    )
+    begun = transforms.lookup(global_frame, base_frame)
+    assert begun is not None
+    if person.topic_of("actionlib_msgs/GoalStatusArray"):
+        bearing = person.roomiest()
+        distance = min(FAR, SHARE * person.room(bearing))
+        there = begun @ Pose2(distance * math.cos(bearing), distance * math.sin(bearing), bearing)
+        _go(person, there, global_frame)
+        _go(person, begun, global_frame)
+    else:
+        since = rospy.get_time()
+        while not person.wait(lambda: rospy.get_time() - since > math.tau / TURN, 0.2):
+            person.drive(0.0, TURN)
+        person.drive(0.0, 0.0)
+    person.sleep(SETTLE_SECONDS)
+    estimate = transforms.lookup(global_frame, base_frame)
+    assert estimate is not None
+    off = estimate.distance_to(person.base)
+    person.note(person.moved > ENOUGH, f"moved by {person.moved:.0f} m and rad")
+    person.note(off < ALLOWED, f"localized within {off:.2f} m (at most {ALLOWED:g} m off)")
+
+
+def _go(person: "Person", place: Pose2, frame: str) -> None:
+    """As with rviz's 2D Nav Goal."""
+    results: List[MoveBaseActionResult] = []
+    listener = rospy.Subscriber("/move_base/result", MoveBaseActionResult, results.append, queue_size=5)
+    goals = rospy.Publisher("/move_base_simple/goal", PoseStamped, queue_size=1)
+    person.wait(lambda: goals.get_num_connections() > 0, 60.0, "no move_base listened", is_wall=True)
+    goal = PoseStamped()
+    goal.header.frame_id, goal.header.stamp, goal.pose = frame, rospy.get_rostime(), pose2_to_msg(place)
+    goals.publish(goal)
+    is_there = person.wait(lambda: bool(results), GOAL_SECONDS) and results[0].status.status == SUCCEEDED
+    if not results:
+        canceller = rospy.Publisher("/move_base/cancel", GoalID, queue_size=1)
+        person.wait(lambda: canceller.get_num_connections() > 0, 10.0, is_wall=True)
+        canceller.publish(GoalID())
+        person.wait(lambda: bool(results), SETTLE_SECONDS)
+    listener.unregister()
+    person.tell(f"{'reached' if is_there else 'did not reach'} ({place.x:.2f}, {place.y:.2f})")

@@ -1,0 +1,69 @@
+"""Projects of the course are recognised by their launch files, and judged by what came of each trial."""
+
+from pathlib import Path
+
+from run_project.lessons.outcome import Outcome
+from run_project.lessons.plan import Lesson, Plan, plan_of
+
+WORLD = '<launch><include file="$(find gazebo_ros)/launch/empty_world.launch"/></launch>'
+CHASER = '<launch><node name="p" type="process_image" pkg="ball_chaser"/></launch>'
+AMCL = '<launch><node name="amcl" pkg="amcl" type="amcl"/></launch>'
+RTABMAP = '<launch><node name="rtabmap" pkg="rtabmap_ros" type="rtabmap"/></launch>'
+PACKAGES = {"my_robot": Path("my_robot"), "ball_chaser": Path("ball_chaser")}
+CHASE_FILES = {
+    "my_robot/launch/world.launch": WORLD,
+    "ball_chaser/launch/ball_chaser.launch": CHASER,
+}
+
+
+def planned(more=(), wanted=None):
+    return plan_of(PACKAGES, {**CHASE_FILES, **dict(more)}, wanted)
+
+
+def test_a_robot_with_a_world_and_process_image_chases_a_ball():
+    assert planned() == Plan(Lesson.CHASE, ("my_robot world.launch", "ball_chaser ball_chaser.launch"))
+
+
+def test_the_last_project_that_is_there_counts_as_each_contains_the_earlier_ones():
+    amcl = {"my_robot/launch/amcl.launch": AMCL}
+    assert planned(amcl).lesson is Lesson.LOCALIZE
+    assert planned({**amcl, "my_robot/launch/mapping.launch": RTABMAP}).lesson is Lesson.MAP
+
+
+def test_an_earlier_one_may_be_named():
+    assert planned({"my_robot/launch/amcl.launch": AMCL}, "go_chase_it").lesson is Lesson.CHASE
+    assert planned(wanted="map_my_world") is None
+
+
+def test_mapping_is_begun_without_a_database():
+    files = {"my_robot/launch/localization.launch": RTABMAP, "my_robot/launch/rtab.launch": RTABMAP}
+    assert planned(files).launches == ("my_robot world.launch", "my_robot rtab.launch")
+
+
+def test_a_launch_file_that_brings_the_world_along_needs_no_other():
+    files = {"my_robot/launch/amcl.launch": AMCL + '<include file="$(find my_robot)/launch/world.launch"/>'}
+    assert planned(files).launches == ("my_robot amcl.launch",)
+
+
+def test_what_stands_in_comments_starts_nothing():
+    assert plan_of(PACKAGES, {"my_robot/launch/a.launch": f"<!-- {AMCL} -->"}, None) is None
+
+
+def test_its_script_opens_a_window_for_each_launch_file():
+    lines = planned().script().splitlines()
+    assert lines[1:] == [
+        'xterm -e "roslaunch my_robot world.launch" &',
+        'xterm -e "roslaunch ball_chaser ball_chaser.launch" &',
+        "wait",
+    ]
+
+
+def test_a_lesson_succeeds_if_all_that_was_tried_went_well():
+    outcome = Outcome()
+    assert not outcome.verdict().success, "nothing was tried"
+    outcome.note(True, "chased the ball")
+    assert outcome.verdict().success
+    assert outcome.verdict().reason == "1 of 1 as meant: chased the ball"
+    assert not outcome.verdict("interrupted").success
+    outcome.note(False, "goes on without it")
+    assert not outcome.verdict().success

@@ -1,0 +1,40 @@
+"""The node ``turtlebot3_obstacle``: goes ahead, and stops before what is there."""
+
+import math
+
+import rospy
+from geometry_msgs.msg import Twist
+from sensor_msgs.msg import LaserScan
+
+from planar_ros.node.shell import run
+
+# m/s, and metres: the distance to stop at with the lidar's error.
+SPEED, SAFE_DISTANCE = 0.22, 0.25
+
+
+class Obstacle:
+    """Answers each scan with a velocity."""
+
+    def __init__(self) -> None:
+        self._is_moving = True
+        self._publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+        rospy.on_shutdown(lambda: self._publisher.publish(Twist()))
+        rospy.Subscriber("scan", LaserScan, self._see, queue_size=1)
+
+    def _see(self, scan: LaserScan) -> None:
+        ahead = scan.ranges[0] if scan.ranges else math.nan
+        ahead = 0.0 if math.isnan(ahead) else min(ahead, scan.range_max)
+        message = Twist()
+        if ahead < SAFE_DISTANCE:
+            if self._is_moving:
+                rospy.loginfo("Stop!")
+            self._is_moving = False
+        else:
+            self._is_moving = True
+            message.linear.x = SPEED
+            rospy.loginfo("Distance of the obstacle : %f", ahead)
+        self._publisher.publish(message)
+
+
+def main() -> None:
+    run("turtlebot3_obstacle", Obstacle)

@@ -1,0 +1,53 @@
+"""The command turtlebot3_client: asks for a patrol, and sends the robot on it."""
+
+import sys
+
+import actionlib
+import rospy
+
+from turtlebot3_example.msg import Turtlebot3Action, Turtlebot3Goal
+
+MESSAGE = """
+patrol your TurtleBot3!
+-----------------------
+mode : s - Patrol to Square
+       t - Patrol to Triangle
+       c - Patrol to Circle
+
+area : Square, Triangle mode - length of side (m)
+       Circle mode - radius (m)
+
+count - patrol count
+
+If you want to close, insert 'x'
+| mode | area | count |
+"""
+MODES = {"s": 1, "t": 2, "c": 3}
+SERVER_SECONDS = 30.0
+
+
+def main() -> None:
+    """Exit code 0 if the last patrol went well or none was asked for, 1 if not, 2 on nonsense."""
+    rospy.init_node("turtlebot3_client")
+    client = actionlib.SimpleActionClient("turtlebot3", Turtlebot3Action)
+    is_done = True
+    print(MESSAGE, flush=True)
+    for line in sys.stdin:
+        if line.strip() in ("", "x"):
+            break
+        try:
+            mode, area, count = line.split()
+            goal = Turtlebot3Goal()
+            goal.goal.x, goal.goal.y, goal.goal.z = MODES[mode], float(area), int(count)
+        except (KeyError, ValueError):
+            print(f"expected a mode (s, t, c), an area and a count, got {line.strip()!r}", file=sys.stderr)
+            sys.exit(2)
+        if not client.wait_for_server(rospy.Duration(SERVER_SECONDS)):
+            print("no turtlebot3_server answers", file=sys.stderr)
+            sys.exit(1)
+        client.send_goal_and_wait(goal)
+        is_done = client.get_state() == actionlib.GoalStatus.SUCCEEDED
+        result = client.get_result()
+        rospy.loginfo(result.result if result else "cancelled")
+        print(MESSAGE, flush=True)
+    sys.exit(0 if is_done else 1)

@@ -1,0 +1,42 @@
+"""The command turtlebot3_pointop_key: goes to the places that are typed, x, y in odom and degrees."""
+
+import math
+import sys
+
+import rospy
+
+from planar import Pose2
+from turtlebot3_example.ros.robot import Robot
+
+MESSAGE = """
+control your Turtlebot3!
+-----------------------
+Insert xyz - coordinate.
+x : position x (m)
+y : position y (m)
+z : orientation z (degree: -180 ~ 180)
+If you want to close, insert 's'
+-----------------------
+| x | y | z |
+"""
+
+
+def main() -> None:
+    """Exit code 0, or 2 if what is typed is no place."""
+    rospy.init_node("turtlebot3_pointop_key")
+    robot = Robot()
+    print(MESSAGE, flush=True)
+    for line in sys.stdin:
+        if line.strip() in ("", "s"):
+            break
+        try:
+            x, y, degrees = (float(word) for word in line.split())
+        except ValueError:
+            x = y = degrees = math.nan
+        if not all(map(math.isfinite, (x, y))) or not -180.0 <= degrees <= 180.0:
+            print(f"expected x, y and -180 to 180 degrees, got {line.strip()!r}", file=sys.stderr)
+            sys.exit(2)
+        robot.go([Pose2(x, y, math.radians(degrees))], turns=True)
+        base = robot.base()
+        rospy.loginfo("there: %.2f %.2f %.0f", base.x, base.y, math.degrees(base.yaw))
+        print(MESSAGE, flush=True)

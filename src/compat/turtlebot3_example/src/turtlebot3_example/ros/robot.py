@@ -1,0 +1,57 @@
+"""A robot that goes where it is told by odometry."""
+
+from typing import Callable, Iterable, Optional
+
+import rospy
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+
+from planar import Pose2, Twist2
+from planar_ros.messages.conversion import pose2_from_msg
+from turtlebot3_example.going import velocity_to
+
+RATE, ODOMETRY_SECONDS = 15.0, 60.0
+
+
+class Robot:
+    """Told where it is by ``odom``, driven by ``cmd_vel``."""
+
+    def __init__(self) -> None:
+        self._base: Optional[Pose2] = None
+        self._publisher = rospy.Publisher("cmd_vel", Twist, queue_size=5)
+        rospy.on_shutdown(self.stop)
+        rospy.Subscriber("odom", Odometry, self._see, queue_size=1)
+
+    def base(self) -> Pose2:
+        """Where it is in ``odom``. Raises rospy.ROSException if nobody says so."""
+        if self._base is None:
+            rospy.wait_for_message("odom", Odometry, ODOMETRY_SECONDS)
+            rospy.sleep(0.1)
+        assert self._base is not None
+        return self._base
+
+    def go(self, places: Iterable[Pose2], turns: bool, goes_on: Callable[[], bool] = lambda: True) -> bool:
+        """Whether it has been at all places, one after the other, while ``goes_on``."""
+        rate = rospy.Rate(RATE)
+        for place in places:
+            velocity = velocity_to(self.base(), place, turns)
+            while velocity is not None:
+                if rospy.is_shutdown() or not goes_on():
+                    self.stop()
+                    return False
+                self.drive(velocity)
+                rate.sleep()
+                velocity = velocity_to(self.base(), place, turns)
+        self.stop()
+        return True
+
+    def drive(self, velocity: Twist2) -> None:
+        message = Twist()
+        message.linear.x, message.angular.z = velocity.v, velocity.omega
+        self._publisher.publish(message)
+
+    def stop(self) -> None:
+        self.drive(Twist2())
+
+    def _see(self, message: Odometry) -> None:
+        self._base = pose2_from_msg(message.pose.pose)
