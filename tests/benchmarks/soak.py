@@ -1,0 +1,196 @@
+#!/usr/bin/env python3
+"""Shows what lasts: missions in a row, starts and stops, deliveries of one graph; what is left, what grows.
+
+python3 tests/benchmarks/soak.py missions [--runs 20] [--seed 0]
+python3 tests/benchmarks/soak.py starts [--runs 20]
+python3 tests/benchmarks/soak.py serve [--runs 100]
+"""
+
+import argparse
+import ctypes
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Dict, List, Sequence
+
+import numpy as np
+import psutil
+
+ROOT = Path(__file__).resolve().parents[2]
+SHARED_MEMORY = Path("/dev/shm")
+PR_SET_CHILD_SUBREAPER = 36
+RUNS = "runs"
+RUN_SECONDS, UP_SECONDS, DOWN_SECONDS = 300.0, 90.0, 60.0
+# Of the deliveries of a graph the first ones fill caches.
+SETTLED = 0.2
+MISSION = """
+places: {here: {x: 0.0, y: 0.0}, there: {x: 0.9, y: 0.2}}
+settings: {pickup_seconds: 0.2}
+deliveries: [{object: cup, from: %s, to: %s}]
+"""
+
+
+class Traces:
+    """What graphs leave behind: processes, and files where temporary ones and shared memory are."""
+
+    def __init__(self) -> None:
+        ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+        self._folder = tempfile.TemporaryDirectory()
+        self._shared = set(SHARED_MEMORY.iterdir())
+        self.environment = {**os.environ, "TMPDIR": self._folder.name, "PYTHONUNBUFFERED": "1"}
+
+    def left(self) -> List[str]:
+        """Of what has ended by now. Whatever else uses shared memory meanwhile is counted too."""
+        processes = psutil.Process().children(recursive=True)
+        alive = [process for process in processes if process.status() != psutil.STATUS_ZOMBIE]
+        sockets = [f"socket {each.laddr}" for process in alive for each in process.connections("inet")]
+        temporary = (path for path in Path(self._folder.name).iterdir() if path.name != RUNS)
+        files = [*temporary, *(set(SHARED_MEMORY.iterdir()) - self._shared)]
+        return [f"process {process.pid}" for process in alive] + sockets + list(map(str, files))
+
+
+class Graph:
+    """A script that has brought a graph up: what it says, and its nodes."""
+
+    def __init__(self, traces: Traces, *command: str):
+        self._log = tempfile.NamedTemporaryFile("w+", prefix="soak")  # noqa: SIM115
+        script, output = ROOT / "scripts" / command[0], Path(traces.environment["TMPDIR"]) / RUNS
+        self.process = subprocess.Popen(
+            [str(script), *command[1:], "--output", str(output)],
+            env=traces.environment,
+            stdin=subprocess.DEVNULL,
+            stdout=self._log,
+            stderr=subprocess.STDOUT,
+        )
+
+    @property
+    def said(self) -> str:
+        return Path(self._log.name).read_text(errors="replace")
+
+    def wait_for(self, pattern: str) -> str:
+        """The first group of what it says; exits if it does not."""
+        deadline = time.monotonic() + UP_SECONDS
+        while time.monotonic() < deadline and self.process.poll() is None:
+            found = re.search(pattern, self.said)
+            if found:
+                return found[1]
+            time.sleep(0.05)
+        said = self.said
+        self.end()
+        sys.exit(f"soak.py: not within {UP_SECONDS:g} s: {pattern}\n{said}")
+
+    def end(self) -> int:
+        self.process.send_signal(signal.SIGINT)
+        try:
+            return self.process.wait(DOWN_SECONDS)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            return self.process.wait()
+
+    def memory(self) -> Dict[str, int]:
+        """Bytes of each node that are its own, by its name."""
+        found = {}
+        for process in psutil.Process(self.process.pid).children(recursive=True):
+            name = re.search(r"__name:=(\S+)", " ".join(process.cmdline()))
+            if name:
+                found[name[1]] = process.memory_full_info().uss
+        return found
+
+
+def missions(options: argparse.Namespace, traces: Traces) -> int:
+    """One after the other, each with the next seed."""
+    failures, left = [], []
+    for seed in range(options.seed, options.seed + options.runs):
+        graph = Graph(traces, "home_service.sh", "--seed", str(seed), "--timeout", str(RUN_SECONDS))
+        code = graph.process.wait(RUN_SECONDS + DOWN_SECONDS)
+        left += traces.left()
+        if code:
+            failures.append(seed)
+            print(graph.said, flush=True)
+        print(f"seed {seed}: exit code {code}, {len(left)} things left", flush=True)
+    print(f"{options.runs - len(failures)} of {options.runs} succeeded; failed: {failures}; left: {left}")
+    return int(bool(failures or left))
+
+
+def starts(options: argparse.Namespace, traces: Traces) -> int:
+    """The whole graph brought up and ended by Ctrl-C."""
+    codes, left = [], []
+    for number in range(options.runs):
+        graph = Graph(traces, "launch.sh")
+        graph.wait_for(r"ROS_MASTER_URI=(\S+)")
+        codes.append(graph.end())
+        left += traces.left()
+        print(f"start {number + 1}: exit code {codes[-1]}, {len(left)} things left", flush=True)
+    print(f"{options.runs} starts and stops, exit codes {sorted(set(codes))}; left: {left}")
+    return int(any(codes) or bool(left))
+
+
+def serve(options: argparse.Namespace, traces: Traces) -> int:
+    """Deliveries of one graph, and what each node's memory becomes."""
+    graph = Graph(traces, "home_service.sh", "--serve", "--speed", "0")
+    os.environ.update(ROS_MASTER_URI=graph.wait_for(r"ROS_MASTER_URI=(\S+)"), ROS_IP="127.0.0.1")
+    memory, failures = [], 0
+    for number in range(options.runs):
+        failures += not _deliver(("here", "there") if number % 2 == 0 else ("there", "here"))
+        memory.append(graph.memory())
+        if number % 10 == 9:
+            total = sum(memory[-1].values()) >> 20
+            print(f"delivery {number + 1}: {failures} failed, {total} MB", flush=True)
+    code = graph.end()
+    for line in growth(memory):
+        print(line)
+    left = traces.left()
+    print(f"{options.runs - failures} of {options.runs} delivered, exit code {code}; left: {left}")
+    return int(bool(failures or code or left))
+
+
+def _deliver(ends: Sequence[str]) -> bool:
+    """Whether the mission was done, by the one client that there is."""
+    import actionlib
+    import rospy
+    from actionlib_msgs.msg import GoalStatus
+    from home_service_msgs.msg import DeliverAction, DeliverGoal
+
+    if not rospy.core.is_initialized():
+        rospy.init_node("soak", disable_signals=True)
+        _deliver.client = actionlib.SimpleActionClient("deliver", DeliverAction)  # type: ignore[attr-defined]
+        _deliver.client.wait_for_server()  # type: ignore[attr-defined]
+    client = _deliver.client  # type: ignore[attr-defined]
+    client.send_goal(DeliverGoal(mission=MISSION % tuple(ends)))
+    deadline = time.monotonic() + RUN_SECONDS
+    while client.simple_state != actionlib.SimpleGoalState.DONE and time.monotonic() < deadline:
+        time.sleep(0.02)
+    return bool(client.get_state() == GoalStatus.SUCCEEDED)
+
+
+def growth(memory: Sequence[Dict[str, int]]) -> List[str]:
+    """Of each node, and of all, once it has settled: a line through what was seen."""
+    settled = memory[int(SETTLED * len(memory)) :]
+    lines = []
+    nodes = sorted(set.intersection(*map(set, settled))) if len(settled) > 2 else []
+    series = {node: [seen[node] for seen in settled] for node in nodes}
+    series["all"] = [sum(seen[node] for node in nodes) for seen in settled]
+    for name, values in series.items():
+        slope, start = np.polyfit(np.arange(len(values)), values, 1)
+        share = 100.0 * slope * len(values) / max(start, 1.0)
+        megabytes, each = start / 2**20, slope / 2**10
+        lines.append(f"{name}: {megabytes:.1f} MB, {each:+.1f} kB a delivery, {share:+.1f} % in all")
+    return lines
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("what", choices=("missions", "starts", "serve"))
+    parser.add_argument("--runs", type=int, default=20, help="default: 20")
+    parser.add_argument("--seed", type=int, default=0, help="the first of the missions (default: 0)")
+    options = parser.parse_args()
+    return {"missions": missions, "starts": starts, "serve": serve}[options.what](options, Traces())
+
+
+if __name__ == "__main__":
+    sys.exit(main())
