@@ -13,7 +13,7 @@ readonly root
 readonly noetic=/opt/ros/noetic
 # shellcheck source=scripts/setup/environment.sh
 . "$root/scripts/setup/environment.sh"
-readonly experiments=(play evaluate)   # the commands of the laboratory
+readonly experiments=(play evaluate tune falsify)   # the commands of the laboratory
 readonly environments=(gymnasium train) # those of home_service_gym
 step_pid=
 clock_pid=

@@ -10,7 +10,7 @@
 #   --projects   also what run_project.sh needs: libraries for projects in C++
 #   --rviz       also rviz
 #   --web        also the cockpit in the browser
-#   --laboratory also what evaluate.sh needs: Dask, statsmodels, pyarrow
+#   --laboratory also what evaluate.sh needs: Dask, statsmodels, pyarrow, Optuna
 #   --gymnasium  also what the environments need: gymnasium
 #   --packages   only the Debian and Python packages, as for a cached layer of an image
 #   --help       this text

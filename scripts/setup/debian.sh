@@ -37,8 +37,10 @@ apt_get() { # NAME...
     for name in http_proxy https_proxy no_proxy; do # sudo would drop them
         [[ -z ${!name:-} ]] || as_root+=("$name=${!name}")
     done
-    # An interrupted installation is finished first; a source that is down matters only if a package comes from it.
-    "${as_root[@]}" sh -c 'dpkg --configure -a && apt-get -f install "$@"' sh "${options[@]}" &&
+    # An interrupted installation is finished first: by dpkg only if apt-get refuses, since dpkg waits for nobody.
+    # A source that is down matters only if a package comes from it.
+    "${as_root[@]}" sh -c 'mend() { apt-get -f install "$@"; }; mend "$@" || { dpkg --configure -a && mend "$@"; }' \
+        sh "${options[@]}" &&
         { "${as_root[@]}" apt-get update -o Acquire::Retries=3 || true; } &&
         "${as_root[@]}" apt-get install "${options[@]}" "$@"
 }

@@ -288,6 +288,29 @@ def test_without_network_the_package_lists_are_not_to_blame(tmp_path):
     assert said.stderr.startswith("error: no network: the packages could not be downloaded")
 
 
+DPKG = """
+    mkdir bin; PATH=$PWD/bin:$PATH; sudo=()
+    printf '#!/bin/sh\\n%s\\n' "$APT" >bin/apt-get
+    printf '#!/bin/sh\\n%s\\n' "$DPKG" >bin/dpkg
+    chmod +x bin/*
+    apt_get catkin
+"""
+
+
+@pytest.mark.parametrize(
+    ("apt", "dpkg"),
+    [
+        pytest.param("exit 0", "echo frontend lock was locked; exit 2", id="another installation at work"),
+        pytest.param("[ -e finished ] || exit 100", "touch finished", id="an interrupted installation"),
+    ],
+)
+def test_other_installations_are_waited_for_or_finished(tmp_path, monkeypatch, apt, dpkg):
+    monkeypatch.setenv("APT", apt)
+    monkeypatch.setenv("DPKG", dpkg)
+    said = in_workspace(tmp_path, DPKG)
+    assert said.returncode == 0, said.stdout + said.stderr
+
+
 def test_a_proxy_that_is_down_is_told_without_its_password(tmp_path, monkeypatch):
     monkeypatch.setenv("https_proxy", "http://me:secret@127.0.0.1:9")
     said = in_workspace(

@@ -16,7 +16,7 @@ STOREYS = (
     | {"pick_objects", "add_markers", "follow_me", "teleop_lite"},
     {"cockpit"},
     {"home_service", "plugin_examples", "turtle_world", "gazebo_ros", "ros_tools", "ament_index_python"}
-    | {"turtlebot3_fake", "turtlebot3_gazebo"},
+    | {"turtlebot3_fake", "turtlebot3_gazebo", "turtlebot3_example", "rtabmap_ros", "multirobot_map_merge"},
     {"run_project", "laboratory"},
     {"home_service_gym"},
 )
