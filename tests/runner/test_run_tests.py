@@ -36,6 +36,10 @@ def test_a_report_is_counted_over_all_its_suites(tmp_path):
             "<error>Traceback\n  File x\nAssertionError: 3 m too far\n</error>",
             "test_b: AssertionError: 3 m too far",
         ),
+        (
+            "<error>AssertionError: no answer\n    wait_for(answer)\n    ~~~~^^^^^^\n</error>",
+            "test_b: wait_for(answer)",
+        ),
     ],
 )
 def test_the_reason_is_what_the_first_failure_says(tmp_path, kind, told):

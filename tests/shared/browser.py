@@ -176,7 +176,8 @@ class Tab:
         self.evaluate("document.activeElement.select && document.activeElement.select()")
         self._ask("Input.insertText", text=text)
         self.evaluate("document.activeElement.blur()")
-        time.sleep(TYPING_SECONDS)
+        # The page's own time: one that is too busy to send is too busy to be over with it.
+        self.evaluate(f"new Promise((done) => setTimeout(done, {TYPING_SECONDS * 1000}))")
 
     def screenshot(self, path):
         picture = self._ask("Page.captureScreenshot", format="png")["data"]

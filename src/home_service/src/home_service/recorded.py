@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Dict, Sequence
 
 from home_service.options import LaunchPlan
-from planar import SettingsError
-from sim_bridge import robot_named
+from planar.files.reading import exists, read_text
+from sim_bridge import RobotError, robot_named
 
 
 def showing_plan(bags: Sequence[Path], stays: bool = False) -> LaunchPlan:
@@ -21,15 +21,15 @@ def showing_plan(bags: Sequence[Path], stays: bool = False) -> LaunchPlan:
 def _stage_of(bag: Path) -> Dict[str, str]:
     """Arguments for its launch file, by the result.json of the run that the bag is of, if there is one."""
     try:
-        told = json.loads((bag.resolve().parent.parent / "result.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        told = json.loads(read_text(bag.resolve().parent.parent / "result.json"))
+    except (OSError, ValueError, RecursionError):
         return {}
     world, robot = (told.get(key) if isinstance(told, dict) else None for key in ("world", "robot"))
     stage = {}
-    if isinstance(world, str) and Path(world).is_file():
+    if isinstance(world, str) and exists(Path(world)) and Path(world).is_file():
         stage["world_file"] = world
     if isinstance(robot, str):
-        with suppress(SettingsError):
+        with suppress(RobotError):
             robot_named(robot)
             stage["robot"] = robot
     return stage
