@@ -83,8 +83,8 @@ def first_failure(report: ElementTree.Element) -> str:
         for kind in ("failure", "error"):
             found = case.find(kind)
             if found is not None:
-                told = [line for line in (found.text or "").splitlines() if line.strip(" ^~")]
-                message = found.get("message") or (told or [""])[-1]
+                # pytest's is an attribute; rosunit's stands before the traceback.
+                message = found.get("message") or (found.text or "").strip().partition("\n")[0]
                 return f"{case.get('name')}: {' '.join(message.split())[:300]}"
     return ""
 
