@@ -112,7 +112,9 @@ class CockpitToolsTest(unittest.TestCase):
 
     def test_parameters_are_shown_and_set(self):
         self.open("Parameters")
+        self.page.wait_for("/rosdistro")
         self.page.fill_in("Filter", "answ")
+        wait_until("the others to vanish", lambda: "/rosdistro" not in self.page.text())
         self.page.wait_for("/answer", "42")
         self.page.fill_in("Name", "/answer")
         self.page.fill_in("Value", "[1, 2]")

@@ -18,6 +18,7 @@ from websockets.sync.client import connect
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 # A page that saves messages sends the last of what is typed or turned within such a time.
 TYPING_SECONDS = 0.6
+STILL_SECONDS = 0.1
 START_SECONDS, ANSWER_SECONDS = 60.0, 60.0
 # It draws without a graphics card, and calls nobody.
 OPTIONS = (
@@ -112,7 +113,7 @@ class Tab:
 
     def click(self, text, seconds=20.0):
         """The innermost thing that has this text, or whose label it is."""
-        wait_until(f"'{text}' to click", lambda: self._place_of(text) is not None, seconds)
+        wait_until(f"'{text}' to click", lambda: self._rests(text), seconds)
         self.click_at(*self._place_of(text))
 
     def click_at(self, x, y):
@@ -192,7 +193,13 @@ class Tab:
         self.evaluate(f"({FIND_INPUT})({json.dumps(label)}).focus()")
 
     def _place_of(self, text):
-        return self.evaluate(f"({MIDDLE})(({FIND_TEXT})({json.dumps(text)}))")
+        return self.evaluate(f"({UNCOVERED})(({FIND_TEXT})({json.dumps(text)}), {MIDDLE})")
+
+    def _rests(self, text):
+        """Whether it is seen, with nothing before it, and does not move just now."""
+        place = self._place_of(text)
+        time.sleep(STILL_SECONDS)
+        return place is not None and place == self._place_of(text)
 
     def _place_of_input(self, label):
         return self.evaluate(f"({MIDDLE})(({FIND_INPUT})({json.dumps(label)}))")
@@ -250,4 +257,10 @@ MIDDLE = """(one) => {
     one.scrollIntoView({block: 'nearest'});
     const box = one.getBoundingClientRect();
     return [box.x + box.width / 2, box.y + box.height / 2];
+}"""
+# The middle of a thing, unless something else lies over it: a click would be that one's.
+UNCOVERED = """(one, middle) => {
+    const place = middle(one);
+    const top = place && document.elementFromPoint(...place);
+    return top && (one.contains(top) || top.contains(one)) ? place : null;
 }"""
