@@ -3,6 +3,8 @@
 import contextlib
 import http.client
 import socket
+import subprocess
+import sys
 import time
 
 import msgspec.msgpack
@@ -29,6 +31,27 @@ CAMERA = {
     "look_at": [0.0, 0.0, 0.0],
     "up_direction": [0.0, 0.0, 1.0],
 }
+DRAG = {
+    "type": "SceneNodeDragMessage",
+    "phase": "start",
+    "name": "/floor/slab",
+    "instance_index": None,
+    "start_position": [0.0, 0.0, 0.0],
+    "start_screen_pos": [0.0, 0.0],
+    "end_position": [0.0, 0.0, 0.0],
+    "end_screen_pos": [0.0, 0.0],
+    "button": "left",
+    "modifier": None,
+    "owner": "server",
+}
+FEW_FILES = 1024
+WITH_FEW_FILES = f"""
+import resource, time
+from cockpit.page.server import Page
+resource.setrlimit(resource.RLIMIT_NOFILE, ({FEW_FILES}, {FEW_FILES}))
+print(Page("127.0.0.1", 0).url.split(":")[2].split("/")[0], flush=True)
+time.sleep(60.0)
+"""
 
 
 @pytest.fixture(scope="module")
@@ -139,9 +162,24 @@ def test_who_has_the_cookie_is_shown_the_page_and_counts_as_watching(page, port,
         (msgspec.msgpack.encode({"type": "ShareUrlRequest"}), 1003),
         (msgspec.msgpack.encode({**CAMERA, "position": [float("nan"), 0.0, 0.0]}), 1003),
         (msgspec.msgpack.encode({"type": "ViewerCameraMessage"}), 1003),
+        (msgspec.msgpack.encode({**CAMERA, "position": [0.0, 0.0]}), 1003),
+        (msgspec.msgpack.encode({**CAMERA, "fov": "wide"}), 1003),
+        (msgspec.msgpack.encode({"type": "CommandTriggerMessage", "uuid": {"__binary_index": 9}}), 1003),
+        (msgspec.msgpack.encode({**DRAG, "button": "\N{SNOWMAN}" * 200}), 1003),
         (b"\x00" * 10_000_000, 1009),
     ],
-    ids=["garbage", "text", "sharing", "nan", "incomplete", "10 MB"],
+    ids=[
+        "garbage",
+        "text",
+        "sharing",
+        "nan",
+        "incomplete",
+        "too short",
+        "no number",
+        "no name",
+        "no button",
+        "10 MB",
+    ],
 )
 def test_nonsense_ends_the_connection_that_sent_it_and_no_other(page, port, cookie, sent, code):
     with open_page(port, cookie) as good, open_page(port, cookie) as bad:
@@ -161,6 +199,47 @@ def test_a_flood_of_messages_ends_the_connection(page, port, cookie):
                 bad.send(message)
         assert closing_code(bad) in (1008, None)
     assert is_shown(page, port, cookie)
+
+
+def update(control, value):
+    """As a page tells that a person has changed a control."""
+    told = {"type": "GuiUpdateMessage", "uuid": control._impl.uuid, "updates": {"value": value}}
+    return msgspec.msgpack.encode(told)
+
+
+@pytest.mark.parametrize(
+    ("kind", "value"),
+    [
+        ("slider", "nan"),
+        ("slider", 1e6),
+        ("slider", [1.0]),
+        ("number", "9" * 40),
+        ("number", 1e300),
+        ("list", "/cmd_vel of another"),
+        ("box", "yes"),
+        ("text", 5),
+        ("text", None),
+    ],
+)
+def test_a_value_that_its_control_cannot_have_changes_nothing(page, port, cookie, kind, value):
+    controls = {
+        "slider": page.gui.add_slider("a", 0.0, 2.0, 0.1, 1.0),
+        "number": page.gui.add_number("b", 3),
+        "list": page.gui.add_dropdown("c", ("/cmd_vel",)),
+        "box": page.gui.add_checkbox("d", False),
+        "text": page.gui.add_text("e", "before"),
+        "last": page.gui.add_text("f", "before"),
+    }
+    before = controls[kind].value
+    with open_page(port, cookie) as sender:
+        sender.send(msgspec.msgpack.encode(CAMERA))
+        sender.send(update(controls[kind], value))
+        sender.send(update(controls["last"], "after"))
+        wait_until(lambda: controls["last"].value == "after")
+        assert controls[kind].value == before
+    assert is_shown(page, port, cookie)
+    for control in controls.values():
+        control.remove()
 
 
 def test_so_many_pages_and_no_more(page, port, cookie):
@@ -184,6 +263,21 @@ def test_a_thousand_connections_that_say_nothing_leave_the_page_alive(page, port
             stack.enter_context(socket.create_connection(("127.0.0.1", port), DEADLINE))
         assert get(port, Cookie=cookie)[0].status == 200
         assert is_shown(page, port, cookie)
+
+
+def test_so_many_connections_that_files_are_left_for_ros():
+    server = subprocess.Popen([sys.executable, "-c", WITH_FEW_FILES], stdout=subprocess.PIPE, text=True)
+    with contextlib.ExitStack() as stack:
+        stack.callback(server.wait)
+        stack.callback(server.kill)
+        port = int(server.stdout.readline())
+        for _ in range(FEW_FILES):
+            stack.enter_context(socket.create_connection(("127.0.0.1", port), DEADLINE))
+        held = psutil.Process(server.pid)
+        wait_until(lambda: held.num_fds() > FEW_FILES // 2)
+        for _ in range(20):
+            assert held.num_fds() < 0.75 * FEW_FILES
+            time.sleep(0.05)
 
 
 def test_it_listens_on_the_loopback_alone(port):

@@ -10,21 +10,17 @@ LARGEST_MESSAGE = 256 * 1024
 MESSAGES_PER_SECOND, BURST = 240.0, 960.0
 DEEPEST = 8
 
-# What a page of viser's sends of itself; what it also knows (files, sharing, pictures) is not wanted.
+# What a page sends for the controls that ours has; what viser's also knows (files, forms, sharing, pictures)
+# is not wanted: some of it is kept for ever.
 KINDS = frozenset(
     {
         "ViewerCameraMessage",
         "GuiUpdateMessage",
         "GuiButtonHoldMessage",
-        "GuiFormSubmitMessage",
-        "GuiFormDirtyMessage",
         "CommandTriggerMessage",
         "SceneNodeClickMessage",
         "SceneNodeDragMessage",
         "ScenePointerMessage",
-        "TransformControlsUpdateMessage",
-        "TransformControlsDragStartMessage",
-        "TransformControlsDragEndMessage",
     }
 )
 

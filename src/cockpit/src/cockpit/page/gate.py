@@ -10,19 +10,25 @@ import resource
 import socket
 import time
 from contextlib import contextmanager
+from functools import partial
 from http import HTTPStatus
-from typing import Any, Callable, Iterator
+from typing import Any, Callable, Iterator, Mapping
 
-import msgspec.msgpack
+import msgspec
 import websockets.asyncio.server as library
+from viser import _messages as forms
 from websockets.exceptions import ConnectionClosed
 
 from cockpit.access import OK, SEE_OTHER, Access
 from cockpit.errors import PortError, RefusedError
-from cockpit.inbound import LARGEST_MESSAGE, Allowance, check
+from cockpit.inbound import KINDS, LARGEST_MESSAGE, Allowance, check
+from cockpit.page.controls import can_have
 
 MOST_PAGES = 32
 OPEN_FILES = 4096
+MOST_REASON = 100  # bytes of why a connection is closed: the protocol has room for some more
+# What each kind of message consists of.
+FORMS = {kind: getattr(forms, kind) for kind in KINDS}
 POLICY = (
     "default-src 'self'; connect-src 'self' ws: data: blob:; img-src 'self' data: blob:; "
     "font-src 'self' data:; style-src 'self' 'unsafe-inline'; worker-src 'self' blob: data:; "
@@ -51,9 +57,15 @@ class Gate:
     def __init__(self, listening: socket.socket, access: Access):
         self._socket, self._access = listening, access
         self._pages = 0
-        _allow_open_files()
+        self._controls: Mapping[str, Any] = {}
+        # The other half is for ROS, which needs files too.
+        self._most_connections = _allow_open_files() // 2
         # It would print the traceback of every request that is refused.
         logging.getLogger("websockets.server").setLevel(logging.CRITICAL)
+
+    def know(self, gui: Any) -> None:
+        """Whose controls get only such values as they can have: viser's ``gui``."""
+        self._controls = gui._gui_input_handle_from_uuid
 
     @contextmanager
     def guarding(self) -> Iterator[None]:
@@ -61,7 +73,8 @@ class Gate:
         serve = library.serve
 
         def guarded(handler, _host, _port, *, process_request, **options):
-            options.update(max_size=LARGEST_MESSAGE, create_connection=_Connection, sock=self._socket)
+            connection = partial(_Connection, most=self._most_connections, is_of_use=self._is_of_use)
+            options.update(max_size=LARGEST_MESSAGE, create_connection=connection, sock=self._socket)
             return serve(self._seeing_out(handler), process_request=self._before(process_request), **options)
 
         library.serve = guarded  # type: ignore[assignment, misc]
@@ -69,6 +82,11 @@ class Gate:
             yield
         finally:
             library.serve = serve  # type: ignore[misc]
+
+    def _is_of_use(self, message: Mapping[str, Any]) -> bool:
+        """Controls come and go, so that a page may well speak of one as it was."""
+        control = self._controls.get(message.get("uuid", ""))
+        return control is None or all(can_have(control, each) for each in message.get("updates", {}).values())
 
     def _before(self, process_request: Callable) -> Callable:
         """What judges a request before viser sees it."""
@@ -116,21 +134,39 @@ class Gate:
 class _Connection(library.ServerConnection):
     """Passes on what a page may send; closes at the first thing that it may not."""
 
-    def __init__(self, *arguments: Any, **options: Any):
+    def __init__(
+        self, *arguments: Any, most: int, is_of_use: Callable[[Mapping[str, Any]], bool], **options: Any
+    ):
         super().__init__(*arguments, **options)
+        self._most, self._is_of_use = most, is_of_use
         self._allowance = Allowance()
 
+    def connection_made(self, transport: Any) -> None:
+        super().connection_made(transport)
+        if len(self.server.handlers) > self._most:
+            transport.abort()
+
     async def recv(self, *arguments: Any, **options: Any):
-        message = await super().recv(*arguments, **options)
-        if not self._allowance.take(time.monotonic()):
-            await self.close(1008, "too many messages")
-            return await super().recv(*arguments, **options)
-        try:
-            check(msgspec.msgpack.decode(message))  # type: ignore[arg-type]  # text raises TypeError
-        except (RefusedError, msgspec.DecodeError, TypeError) as error:
-            await self.close(1003, str(error)[:100])
-            return await super().recv(*arguments, **options)
-        return message
+        while True:
+            message = await super().recv(*arguments, **options)
+            if not self._allowance.take(time.monotonic()):
+                await self.close(1008, "too many messages")
+                continue  # which raises that it is closed
+            try:
+                told = _read(message)
+            except (RefusedError, msgspec.MsgspecError, TypeError) as error:
+                await self.close(1003, str(error).encode()[:MOST_REASON].decode(errors="ignore"))
+                continue
+            if self._is_of_use(told):
+                return message
+
+
+def _read(message: Any) -> Mapping[str, Any]:
+    """Raises RefusedError, msgspec's errors, or for text TypeError."""
+    told = msgspec.msgpack.decode(message)
+    check(told)
+    msgspec.convert(told, FORMS[told["type"]])
+    return told
 
 
 def _with_policy(response):
@@ -142,9 +178,11 @@ def _with_policy(response):
     return response
 
 
-def _allow_open_files() -> None:
-    """So many that a thousand connections leave some for ROS."""
+def _allow_open_files() -> int:
+    """So many that a thousand connections leave some for ROS; returns how many there may be."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     wanted = OPEN_FILES if hard == resource.RLIM_INFINITY else min(OPEN_FILES, hard)
     if soft != resource.RLIM_INFINITY and soft < wanted:
         resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
+        return wanted
+    return OPEN_FILES if soft == resource.RLIM_INFINITY else soft

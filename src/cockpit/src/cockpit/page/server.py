@@ -33,9 +33,11 @@ class Page:
         self._on_leave: List[Callable[[int], None]] = []
         self._is_watched = threading.Event()
         # viser greets on the standard output, with a URL that has no token.
-        with Gate(listening, access).guarding(), contextlib.redirect_stdout(io.StringIO()):
+        gate = Gate(listening, access)
+        with gate.guarding(), contextlib.redirect_stdout(io.StringIO()):
             self._server = viser.ViserServer(address, port, label=NAME, verbose=False)
         self.gui, self.scene = self._server.gui, self._server.scene
+        gate.know(self.gui)
         self._server.on_client_connect(self._came)
         self._server.on_client_disconnect(self._left)
         self._dress()
