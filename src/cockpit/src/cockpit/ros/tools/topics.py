@@ -4,7 +4,7 @@ from typing import Dict, Optional
 
 from cockpit.errors import CockpitError
 from cockpit.models.rates import Rate
-from cockpit.models.tables import table
+from cockpit.models.tables import preformatted, table
 from cockpit.models.text import outline
 from cockpit.ros.graph import Feed
 from cockpit.ros.tool import Desk
@@ -20,6 +20,8 @@ class Topics:
         self._feeds: Dict[str, Feed] = {}
         self._rates: Dict[str, Rate] = {}
         self._latest: Optional[str] = None
+        # Why a topic is listed without figures.
+        self._troubles: Dict[str, str] = {}
 
     def build(self) -> None:
         gui = self._desk.gui
@@ -62,8 +64,9 @@ class Topics:
             try:
                 self._feeds[topic] = self._desk.graph.feed(topic)
                 self._rates[topic] = Rate()
-            except CockpitError:  # of a type that is not installed: listed without figures
-                continue
+                self._troubles.pop(topic, None)
+            except CockpitError as error:  # of a type that is not installed
+                self._troubles[topic] = str(error)
 
     def _figures(self, topic: str, now: float):
         feed = self._feeds.get(topic)
@@ -75,7 +78,8 @@ class Topics:
     def _show_values(self) -> None:
         feed = self._feeds.get(self._watched.value)
         if feed is None:
-            self._values.content = self._latest = ""
+            self._latest = None
+            self._values.content = preformatted(self._troubles.get(self._watched.value, ""))
             return
         messages = feed.take()
         if messages:

@@ -1,0 +1,125 @@
+"""A page without a browser: the socket that it opens, and what it is sent."""
+
+import threading
+from contextlib import suppress
+from urllib.parse import urlsplit
+
+import msgspec.msgpack
+import viser
+import zstandard
+from waiting import wait_until
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import connect
+
+OPEN_SECONDS = 30.0
+HOLD_HZ = 10.0
+CAMERA = {
+    "type": "ViewerCameraMessage",
+    "wxyz": [1.0, 0.0, 0.0, 0.0],
+    "position": [0.0, 0.0, 5.0],
+    "fov": 1.0,
+    "near": 0.1,
+    "far": 100.0,
+    "image_height": 600,
+    "image_width": 800,
+    "look_at": [0.0, 0.0, 0.0],
+    "up_direction": [0.0, 0.0, 1.0],
+}
+
+
+class PageClient:
+    """``told``: the notes that it was shown; ``controls``: the number of each control by its label.
+
+    ``texts``: what the HTML of each panel says; ``things``: the paths of what is in the scene;
+    ``pictures``: how many times it was sent something.
+    """
+
+    def __init__(self, url, origin=None):
+        """Raises InvalidHandshake if it is not let in. ``origin``: the site whose page it claims to be."""
+        site, _, token = url.partition("/?token=")
+        self._socket = connect(
+            site.replace("http", "ws") + "/",
+            origin=origin or site,
+            additional_headers={"Cookie": f"cockpit_{urlsplit(site).port}={token}"},
+            subprotocols=[f"viser-v{viser.__version__}"],
+            max_size=None,
+            open_timeout=OPEN_SECONDS,
+            close_timeout=0.2,
+        )
+        self.protocol = self._socket.subprotocol
+        self.told, self.controls, self.texts, self.things = [], {}, {}, set()
+        self._options = {}
+        self.pictures = 0
+        self.is_open = True
+        threading.Thread(target=self._read, daemon=True).start()
+        self.send(CAMERA)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def close(self):
+        self._socket.close()
+
+    def send(self, message):
+        """A message, or bytes and text as they are."""
+        is_raw = isinstance(message, (bytes, str))
+        self._socket.send(message if is_raw else msgspec.msgpack.encode(message))
+
+    def press(self, label):
+        """What a page sends again and again while a button is held."""
+        self.send({"type": "GuiButtonHoldMessage", "uuid": self.control(label), "frequency": HOLD_HZ})
+
+    def set(self, label, value):
+        told = {"type": "GuiUpdateMessage", "uuid": self.control(label), "updates": {"value": value}}
+        self.send(told)
+
+    def control(self, label):
+        wait_until(f"a control {label}", lambda: label in self.controls, OPEN_SECONDS)
+        return self.controls[label]
+
+    def options(self, label):
+        """What a list offers."""
+        return self._options[self.control(label)]
+
+    def wait_for_pictures(self, count=10):
+        """So many more are sent: it is alive."""
+        before = self.pictures
+        wait_until("pictures", lambda: self.pictures >= before + count)
+
+    def wait_for_note(self, text):
+        wait_until(f"a note of {text}", lambda: any(text in note for note in list(self.told)))
+
+    def wait_for_text(self, text):
+        wait_until(f"{text} on the page", lambda: any(text in each for each in list(self.texts.values())))
+
+    def wait_until_closed(self):
+        wait_until("the end of the connection", lambda: not self.is_open)
+
+    def _read(self):
+        with suppress(ConnectionClosed):
+            for content in self._socket:
+                size, packed = (int.from_bytes(content[at : at + 8], "little") for at in (0, 8))
+                inner = zstandard.decompress(content[16 : 16 + packed], max_output_size=size)
+                for message in msgspec.msgpack.decode(inner)["messages"]:
+                    self._take(message)
+                self.pictures += 1
+        self.is_open = False
+
+    def _take(self, message):
+        kind, props = message["type"], message.get("props") or {}
+        if kind == "NotificationShowMessage":
+            self.told.append(props["body"])
+        elif kind.startswith("Gui") and "label" in props:
+            self.controls[props["label"]] = message["uuid"]
+        elif kind == "RemoveSceneNodeMessage":
+            self.things.discard(message["name"])
+        elif "name" in message and "props" in message:
+            self.things.add(message["name"])
+        changed = props or message.get("updates") or {}
+        if isinstance(changed.get("content"), str):
+            self.texts[message["uuid"]] = changed["content"]
+        if "options" in changed:
+            self._options[message["uuid"]] = changed["options"]
