@@ -19,10 +19,13 @@ from waiting import wait_until
 
 from cockpit.page.server import CAMERA, FIELD_OF_VIEW, LOOK_AT
 from cockpit.process import FREE_PORT, CockpitProcess
+from teleop_lite.teleop import RAMP
 
 PICTURES = os.environ.get("COCKPIT_PICTURES")
 TELEOP = "/cmd_vel_mux/input/teleop"
 GOAL = (1.5, 0.3)
+# Keys, and whither they drive: the signs of the velocities along x and to the left.
+DIRECTIONS = (("i", 1, 0), ("u", 1, 1), ("o", 1, -1), ("j", 0, 1), ("l", 0, -1), ("m", -1, 0))
 # A pixel is some centimetres of the floor; the robot stops within 0.25 m of where it was told to.
 POINTING, ARRIVAL = 0.1, 0.35
 
@@ -39,6 +42,8 @@ class CockpitHomeTest(unittest.TestCase):
             ("/gazebo/model_states", ModelStates),
         ):
             rospy.Subscriber(topic, kind, lambda message, topic=topic: cls.newest.update({topic: message}))
+        cls.velocities = []
+        rospy.Subscriber(TELEOP, Twist, cls.velocities.append)
         cls.folder = tempfile.mkdtemp()
         cls.cockpit = CockpitProcess(FREE_PORT, Path(cls.folder) / "cockpit.log")
         cls.browser = Browser()
@@ -107,14 +112,47 @@ class CockpitHomeTest(unittest.TestCase):
         self.assertGreater(self.distance_to(*start), 0.1)
         wait_until("rest", lambda: self.newest[TELEOP] == Twist())
 
-    def test_7_a_tab_that_is_closed_lets_go(self):
+    def test_7_a_key_drives_as_long_as_it_is_held(self):
+        for key, forward, left in DIRECTIONS:
+            self.page.hold_key(key, f"driving by {key}", lambda: self.drives(forward, left))  # noqa: B023
+            wait_until("the robot to move", self.is_moving)
+            self.page.let_go_key(key)
+            self.wait_until_standing()
+
+    def test_7_k_stops_without_a_ramp(self):
+        self.page.hold_key("i", "driving", lambda: self.newest[TELEOP].linear.x > 5.0 * RAMP.v)
+        self.page.let_go_key("i")
+        del self.velocities[:-1]
+        self.page.hold_key("k", "a stop", lambda: self.newest[TELEOP] == Twist())
+        self.page.let_go_key("k")
+        speeds = [velocity.linear.x for velocity in self.velocities]
+        self.assertGreater(max(a - b for a, b in zip(speeds, speeds[1:])), 2.0 * RAMP.v)
+        self.wait_until_standing()
+
+    def test_7_letters_that_are_written_do_not_drive(self):
+        del self.velocities[:]
+        self.page.tick("Object")
+        self.page.hold_key("i", "letters", lambda: "iii" in self.page.value_of("Object"))
+        self.page.let_go_key("i")
+        self.page.evaluate("document.activeElement.blur()")
+        self.assertEqual([velocity for velocity in self.velocities if velocity != Twist()], [])
+
+    def test_9_a_tab_that_is_closed_while_a_key_is_held_lets_go(self):
+        page = self.browser.open(self.cockpit.url)
+        page.wait_for("/scan", "/amcl", seconds=60.0)
+        page.hold_key("j", "turning", lambda: self.newest[TELEOP].angular.z > 0.2)
+        page.close()
+        wait_until("rest", lambda: self.newest[TELEOP] == Twist(), 3.0)
+        self.wait_until_standing()
+
+    def test_9_a_tab_that_is_closed_lets_go(self):
         self.page.press("J turn left")
         wait_until("turning", lambda: self.newest[TELEOP].angular.z > 0.2)
         self.page.close()
         wait_until("rest", lambda: self.newest[TELEOP] == Twist(), 3.0)
         wait_until("the robot to stand", lambda: not self.is_moving(), 3.0)
 
-    def test_8_nothing_is_subscribed_while_nobody_looks(self):
+    def test_9b_nothing_is_subscribed_while_nobody_looks(self):
         wait_until("silence", lambda: not self.heard_by_cockpit(), 10.0)
         page = self.browser.open(self.cockpit.url)
         wait_until("scans", lambda: "/scan" in self.heard_by_cockpit(), 30.0)
@@ -134,6 +172,15 @@ class CockpitHomeTest(unittest.TestCase):
     def truth(self):
         position = self.newest["/base_pose_ground_truth"].pose.pose.position
         return position.x, position.y
+
+    def drives(self, forward, left):
+        """Whether the robot is told to, in that direction."""
+        told = self.newest[TELEOP]
+        return (np.sign(told.linear.x), np.sign(told.angular.z)) == (forward, left)
+
+    def wait_until_standing(self):
+        wait_until("rest", lambda: self.newest[TELEOP] == Twist())
+        wait_until("the robot to stand", lambda: not self.is_moving())
 
     def is_moving(self):
         twist = self.newest["/base_pose_ground_truth"].twist.twist

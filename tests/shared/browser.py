@@ -19,6 +19,8 @@ NAMES = ("chromium", "chromium-browser", "google-chrome")
 # A page that saves messages sends the last of what is typed or turned within such a time.
 TYPING_SECONDS = 0.6
 STILL_SECONDS = 0.1
+# Of a keyboard, as desktops set it at first.
+REPEAT_DELAY_SECONDS, REPEAT_SECONDS = 0.5, 0.033
 START_SECONDS, ANSWER_SECONDS = 60.0, 60.0
 # It draws without a graphics card, and calls nobody.
 OPTIONS = (
@@ -145,6 +147,22 @@ class Tab:
         self._mouse("mouseMoved", *place)
         self._mouse("mousePressed", *place, button="left", clickCount=1, buttons=1)
 
+    def hold_key(self, key, what, is_met):
+        """Presses a letter's key, which repeats as a keyboard's does, until ``what`` is so: it stays down."""
+        self._key("keyDown", key)
+        deadline = time.monotonic() + REPEAT_DELAY_SECONDS
+
+        def is_met_or_repeats():
+            time.sleep(REPEAT_SECONDS)
+            if time.monotonic() > deadline:
+                self._key("keyDown", key, autoRepeat=True)
+            return is_met()
+
+        wait_until(what, is_met_or_repeats)
+
+    def let_go_key(self, key):
+        self._key("keyUp", key)
+
     def choose(self, label, option):
         """An option of the list with this label."""
         wait_until(f"a list {label}", lambda: self._place_of_input(label) is not None)
@@ -209,6 +227,19 @@ class Tab:
 
     def _mouse(self, kind, x, y, **more):
         self._ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
+
+    def _key(self, kind, key, **more):
+        code = ord(key.upper())
+        self._ask(
+            "Input.dispatchKeyEvent",
+            type=kind,
+            key=key,
+            code=f"Key{key.upper()}",
+            text="" if kind == "keyUp" else key,
+            windowsVirtualKeyCode=code,
+            nativeVirtualKeyCode=code,
+            **more,
+        )
 
     def _ask(self, method, **parameters):
         number = next(self._numbers)

@@ -10,6 +10,7 @@ import zstandard
 from waiting import wait_until
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
+from websockets.typing import Subprotocol
 
 OPEN_SECONDS = 30.0
 HOLD_HZ = 10.0
@@ -41,7 +42,7 @@ class PageClient:
             site.replace("http", "ws") + "/",
             origin=origin or site,
             additional_headers={"Cookie": f"cockpit_{urlsplit(site).port}={token}"},
-            subprotocols=[f"viser-v{viser.__version__}"],
+            subprotocols=[Subprotocol(f"viser-v{viser.__version__}")],
             max_size=None,
             open_timeout=OPEN_SECONDS,
             close_timeout=0.2,
@@ -101,9 +102,7 @@ class PageClient:
     def _read(self):
         with suppress(ConnectionClosed):
             for content in self._socket:
-                size, packed = (int.from_bytes(content[at : at + 8], "little") for at in (0, 8))
-                inner = zstandard.decompress(content[16 : 16 + packed], max_output_size=size)
-                for message in msgspec.msgpack.decode(inner)["messages"]:
+                for message in _messages_in(content):
                     self._take(message)
                 self.pictures += 1
         self.is_open = False
@@ -123,3 +122,10 @@ class PageClient:
             self.texts[message["uuid"]] = changed["content"]
         if "options" in changed:
             self._options[message["uuid"]] = changed["options"]
+
+
+def _messages_in(content):
+    """Of one picture: the length of its messages, that of them packed, they themselves, then arrays."""
+    size, packed = (int.from_bytes(content[at : at + 8], "little") for at in (0, 8))
+    inner = zstandard.decompress(content[16 : 16 + packed], max_output_size=size)
+    return msgspec.msgpack.decode(inner)["messages"]
