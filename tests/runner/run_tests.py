@@ -27,10 +27,12 @@ ROSTEST_DEFAULT_SECONDS = 60.0  # of a <test> without time-limit
 START_AND_STOP_SECONDS = 60.0  # of everything around the <test>s of a file
 GRACE_SECONDS = 15.0
 PR_SET_CHILD_SUBREAPER = 36
-# Commands that scripts/setup.sh --dev installs, by the folder of tests that need one of them.
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+# Commands that scripts/setup.sh --dev installs, by the test, or folder of tests, that needs one of them.
 NEEDS = {
-    "tests/cockpit": ("chromium", "chromium-browser", "google-chrome"),
+    "tests/cockpit": BROWSERS,
     "tests/two_hosts": ("ip",),
+    "tests/two_hosts/cockpit_alone.test": BROWSERS,
 }
 
 
@@ -117,8 +119,11 @@ def judge_ros_test(test_names: Sequence[str], reports: Path, exit_code: int) -> 
 
 def lacking(path: Path, find=shutil.which) -> Optional[str]:
     """The command that the tests of a .test file need and this machine has not."""
-    names = NEEDS.get(path.parent.relative_to(ROOT).as_posix(), ())
-    return names[0] if names and not any(map(find, names)) else None
+    place = path.relative_to(ROOT)
+    for names in (NEEDS.get(each.as_posix(), ()) for each in (place.parent, place)):
+        if names and not any(map(find, names)):
+            return names[0]
+    return None
 
 
 def time_limits(path: Path) -> Dict[str, float]:

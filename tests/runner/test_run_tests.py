@@ -102,5 +102,12 @@ def test_what_needs_a_command_that_is_not_there_is_left_out():
     assert lacking(mission, find=lambda name: None) is None
 
 
-def test_the_folders_that_need_a_command_are_there():
-    assert all((ROOT / folder).is_dir() for folder in NEEDS)
+def test_a_test_may_need_more_than_its_folder_does():
+    alone = ROOT / "tests" / "two_hosts" / "cockpit_alone.test"
+    assert lacking(alone, find=lambda name: name == "ip") == "chromium"
+    assert lacking(alone, find=lambda name: name == "google-chrome") == "ip"
+    assert lacking(alone, find=lambda name: name in ("ip", "google-chrome")) is None
+
+
+def test_what_needs_a_command_is_there():
+    assert all((ROOT / place).exists() for place in NEEDS)

@@ -1,4 +1,4 @@
-"""Two hosts with a cable between them: network namespaces of this machine. Needs root."""
+"""Two hosts with a cable between them, or one without any: network namespaces of this machine. Needs root."""
 
 import ctypes
 import os
@@ -13,7 +13,7 @@ MASTER_PORT = 11311
 
 
 class Host:
-    """A network namespace with one address, ``address``, on its end of a cable."""
+    """A network namespace with one address, ``address``: on its end of a cable, or its loopback's."""
 
     def __init__(self, name: str, address: str):
         self.name, self.address = name, address
@@ -54,6 +54,22 @@ class Host:
         with Path("/var/run/netns", self.name).open("rb") as namespace:
             if ctypes.CDLL(None, use_errno=True).setns(namespace.fileno(), CLONE_NEWNET) != 0:
                 raise OSError(ctypes.get_errno(), f"cannot enter {self.name}")
+
+
+class Island:
+    """A host that reaches nobody but itself; a context that takes it away in the end."""
+
+    def __init__(self):
+        self._host = Host(f"island{uuid.uuid4().hex[:6]}", "127.0.0.1")
+
+    def __enter__(self) -> Host:
+        _ip("netns", "add", self._host.name)
+        _ip("-n", self._host.name, "link", "set", "lo", "up")
+        return self._host
+
+    def __exit__(self, *_) -> None:
+        self._host.stop_all()
+        _ip("netns", "delete", self._host.name)
 
 
 class Cable:
@@ -98,6 +114,12 @@ class Cable:
 
     def mend(self) -> None:
         _ip("-n", self.desk.name, "link", "set", "cable", "up")
+
+
+def routes_of(host: Host) -> str:
+    """What ``ip route`` says there, a line each."""
+    asked = ["ip", "-n", host.name, "route"]
+    return subprocess.run(asked, check=True, capture_output=True, text=True).stdout
 
 
 def _ip(*arguments: str) -> None:

@@ -1,0 +1,54 @@
+#!/usr/bin/env python3
+"""The page on a machine without any network: cockpit, graph and browser have nothing but the loopback."""
+
+import os
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import rosgraph
+import rostest
+from browser import Browser
+from network import Island, routes_of
+from waiting import wait_until
+
+from cockpit.process import FREE_PORT, CockpitProcess
+
+STAGE = Path(__file__).resolve().parents[1] / "cockpit" / "stage.py"
+PICTURES = os.environ.get("COCKPIT_PICTURES")
+START_SECONDS = 60.0
+IS_DRAWN = "[...document.querySelectorAll('canvas')].some((one) => one.width > 100 && one.height > 100)"
+
+
+@unittest.skipUnless(os.geteuid() == 0, "only root can make network namespaces")
+class CockpitAloneTest(unittest.TestCase):
+    def test_the_page_works_where_no_route_leads_anywhere(self):
+        with tempfile.TemporaryDirectory() as folder, Island() as island:
+            island.start(island, "rosmaster", "--core")
+            os.environ.update(island.environment(island))
+            island.enter()  # and so do the cockpit and the browser, its children
+            self.assertEqual(routes_of(island), "")
+            wait_until("a master", rosgraph.is_master_online, START_SECONDS)
+            island.start(island, sys.executable, str(STAGE))
+            cockpit = CockpitProcess(FREE_PORT, Path(folder) / "cockpit.log", tool="topics")
+            try:
+                with Browser() as browser:
+                    self.look_at(browser.open(cockpit.url), cockpit.url.partition("/?")[0])
+            finally:
+                cockpit.close()
+
+    def look_at(self, page, own):
+        page.wait_for("View", "Drive", "Tools", "/camera/image", "std_msgs/Float64", seconds=START_SECONDS)
+        page.choose("Watch", "/sine")
+        page.wait_for("data: ")
+        wait_until("the world", lambda: page.evaluate(IS_DRAWN))
+        if PICTURES:
+            page.screenshot(Path(PICTURES) / "alone.png")
+        allowed = (own, own.replace("http", "ws"), f"blob:{own}", "data:")
+        self.assertEqual([url for url in page.requests if not url.startswith(allowed)], [])
+        self.assertEqual(page.errors, [])
+
+
+if __name__ == "__main__":
+    rostest.rosrun("home_service_tests", "cockpit_alone", CockpitAloneTest)
