@@ -28,6 +28,7 @@ from nav_msgs.msg import OccupancyGrid
 from page_client import CAMERA, PageClient
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float64, String
+from std_srvs.srv import Empty, EmptyResponse
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker
 from waiting import wait_until
@@ -221,12 +222,30 @@ class CockpitHostileTest(unittest.TestCase):
         frames = rospy.Publisher("/tf", TFMessage, queue_size=1)
         cloud = rospy.Publisher("/particlecloud", PoseArray, queue_size=1, latch=True)
         cloud.publish(particles)
-        for _ in range(10):
+        shelf = TransformStamped(child_frame_id="shelf")
+        shelf.header.frame_id, shelf.transform.rotation.w = "odom", 1.0
+        still = rospy.Publisher("/tf_static", TFMessage, queue_size=1, latch=True)
+        still.publish(TFMessage([shelf]))
+
+        def knows_the_shelf():
             frames.publish(TFMessage([frame]))
-            rospy.rostime.wallsleep(0.05)
+            rospy.rostime.wallsleep(0.02)
+            return "shelf" in self.good.options("Fixed frame")
+
+        wait_until("what is told beside it", knows_the_shelf)
+        self.good.wait_for_text("sends a transform of nowhere that is none")
         wait_until("the particles", lambda: any("particlecloud" in one for one in self.good.things))
-        frames.unregister()
-        cloud.unregister()
+        for publisher in (frames, cloud, still):
+            publisher.unregister()
+
+    def test_a_node_that_does_not_answer_is_waited_for_no_longer_than_some_seconds(self):
+        over = threading.Event()
+        self.addCleanup(over.set)
+        rospy.Service("/gazebo/pause_physics", Empty, lambda _: over.wait() and EmptyResponse())
+        with PageClient(self.cockpit.url) as driver:
+            driver.set("Pause", True)
+            self.drive(driver)
+        self.good.wait_for_note("no answer of the service /gazebo/pause_physics")
 
     def test_a_topic_of_an_unknown_type_is_listed_and_watching_it_says_why_nothing_is_seen(self):
         publisher = rospy.Publisher("/odd", Odd, queue_size=1, latch=True)

@@ -48,6 +48,12 @@ def test_a_scan_is_the_points_that_were_seen():
     assert np.allclose(part.thing.points, [(1.0, 0.0, 0.0), (0.0, 2.0, 0.0)])
 
 
+def test_a_scan_at_angles_that_are_none_is_no_points():
+    scan = LaserScan(angle_min=math.nan, angle_increment=math.inf, range_max=5.0, ranges=[1.0, 2.0])
+    (part,) = drawn(scan, "sensor_msgs/LaserScan").parts
+    assert part.thing.points.shape == (0, 3)
+
+
 def grid(data, width=2, height=2):
     message = OccupancyGrid(data=data)
     message.info.width, message.info.height, message.info.resolution = width, height, 0.5

@@ -10,8 +10,14 @@ COLOUR = (230, 57, 70)
 
 def draw(message) -> Drawing:
     ranges = np.asarray(message.ranges, dtype=float)
-    angles = message.angle_min + message.angle_increment * np.arange(len(ranges))
-    seen = np.isfinite(ranges) & (ranges >= message.range_min) & (ranges <= message.range_max)
+    with np.errstate(invalid="ignore"):  # angles may be anything
+        angles = message.angle_min + message.angle_increment * np.arange(len(ranges))
+    seen = (
+        np.isfinite(ranges)
+        & np.isfinite(angles)
+        & (ranges >= message.range_min)
+        & (ranges <= message.range_max)
+    )
     ranges, angles = ranges[seen], angles[seen]
     points = np.column_stack((ranges * np.cos(angles), ranges * np.sin(angles), np.zeros(len(ranges))))
     header = message.header

@@ -4,21 +4,24 @@ import time
 from typing import Any
 
 import rospy
+from rospy.msg import args_kwds_to_message
 
 from cockpit.errors import CockpitError
+from planar_ros.calls.services import ServiceError, call_service
 
-# So long is waited for a service to be there.
-SERVICE_SECONDS = 1.0
+# So long is waited for a service to be there, and for its answer; of one that has much to do.
+SERVICE_SECONDS, ANSWER_SECONDS, LONG_SECONDS = 1.0, 10.0, 60.0
 LISTENER_SECONDS, POLL_SECONDS = 1.0, 0.02
 
 
-def call(name: str, kind: type, *arguments: Any) -> Any:
-    """The answer. Raises CockpitError if there is none."""
+def call(name: str, kind: Any, *arguments: Any, seconds: float = ANSWER_SECONDS) -> Any:
+    """The answer. Raises CockpitError if there is none within ``seconds``, as of a node that hangs."""
     try:
         rospy.wait_for_service(name, SERVICE_SECONDS)
-        return rospy.ServiceProxy(name, kind)(*arguments)
-    except (rospy.ROSException, rospy.ServiceException) as error:
-        raise CockpitError(f"{name}: {error}") from None
+        request = args_kwds_to_message(kind._request_class, arguments, {})
+        return call_service(name, kind, request, seconds)
+    except (rospy.ROSException, ServiceError) as error:
+        raise CockpitError(str(error)) from None
 
 
 def join(publisher: rospy.Publisher, listeners: int) -> None:

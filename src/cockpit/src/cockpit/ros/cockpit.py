@@ -103,8 +103,8 @@ class Cockpit:
             if now >= self._look_at:
                 self._look_at = now + LOOKING_SECONDS
                 self._look_around()
-            self._transforms.update()
             self._driving.update()
+            self._transforms.update()
             self._trouble = ""
         except Exception as error:  # the rest is shown nevertheless
             self._trouble = said(error)

@@ -35,20 +35,23 @@ class Feed:
         self._subscriber = rospy.Subscriber(topic, rospy.AnyMsg, self._on_message, tcp_nodelay=True)
 
     def take(self) -> List[Any]:
-        """The messages that have come since the last call. Raises CockpitError if one is malformed."""
+        """The messages that have come since the last call. Raises CockpitError if all are malformed."""
         return [message for _, message, _ in self.take_stamped()]
 
     def take_stamped(self) -> List[Tuple[float, Any, str]]:
         """The same, each with when it came, in seconds by a steady clock, and the node that sent it."""
-        taken = []
+        taken, trouble = [], ""
         while self._waiting:
             at, content, sender = self._waiting.popleft()
             message = self._class()
             try:
                 message.deserialize(content)
             except Exception as error:  # genpy raises whatever struct and numpy do
-                raise CockpitError(f"{self.topic}: not a {self.kind} ({error})") from None
-            taken.append((at, message, sender))
+                trouble = f"{self.topic}: not a {self.kind} ({error})"
+            else:
+                taken.append((at, message, sender))
+        if trouble and not taken:
+            raise CockpitError(trouble)
         return taken
 
     def close(self) -> None:

@@ -1,7 +1,7 @@
 """/tf and /tf_static into a tree of frames."""
 
 from collections import Counter
-from typing import List
+from typing import Iterator, List
 
 from cockpit.errors import CockpitError
 from cockpit.frames import FrameTree, Transform, pose_matrix
@@ -28,17 +28,28 @@ class TransformListener:
             self._feeds = []
 
     def update(self) -> None:
-        """Takes in what has come. Raises CockpitError."""
-        for feed in self._feeds:
+        """Takes in what has come. Raises CockpitError if some of it makes no sense, after all the rest."""
+        troubles = [trouble for feed in self._feeds for trouble in self._update_from(feed)]
+        if troubles:
+            raise CockpitError(troubles[0])
+
+    def _update_from(self, feed: Feed) -> Iterator[str]:
+        """What is wrong with what has come."""
+        try:
             for _, message, sender in feed.take_stamped():
                 for stamped in message.transforms:
-                    self._take(stamped, feed.topic == TOPICS[1], sender)
+                    if not self._take(stamped, feed.topic == TOPICS[1], sender):
+                        yield f"{sender} sends a transform of {stamped.child_frame_id} that is none"
+        except CockpitError as error:
+            yield str(error)
 
-    def _take(self, stamped, is_static: bool, sender: str) -> None:
+    def _take(self, stamped, is_static: bool, sender: str) -> bool:
+        """Whether it is a transform."""
         p, q = stamped.transform.translation, stamped.transform.rotation
         pose = pose_matrix((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
         if pose is None:
-            raise CockpitError(f"{sender} sends a transform of {stamped.child_frame_id} that is none")
+            return False
         parent, stamp = stamped.header.frame_id.lstrip("/"), stamped.header.stamp.to_sec()
         self.counts[stamped.child_frame_id.lstrip("/")] += 1
         self._frames.put(stamped.child_frame_id, Transform(parent, pose, stamp, is_static, sender))
+        return True

@@ -119,8 +119,13 @@ class Bag:
         found = [name for name in self._desk.graph.services() if name.endswith(PAUSE)]
         if not found:
             raise CockpitError("no bag is played")
-        for name in found:
-            call(name, SetBool, is_paused)
+
+        def ask():
+            for name in found:
+                call(name, SetBool, is_paused)
+            return lambda: None
+
+        self._aside.start(ask)
 
     def _end_player(self) -> None:
         if self._player is not None:

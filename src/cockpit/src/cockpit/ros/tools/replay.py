@@ -7,7 +7,7 @@ from std_srvs.srv import SetBool
 
 from cockpit.errors import CockpitError
 from cockpit.ros.aside import Aside
-from cockpit.ros.calls import call
+from cockpit.ros.calls import LONG_SECONDS, call
 from cockpit.ros.graph import Feed
 from cockpit.ros.tool import Desk
 
@@ -87,7 +87,7 @@ class Replay:
         if not self._player:
             raise CockpitError("no recording is played")
         name = self._player + service
-        return lambda: call(name, kind, value)
+        return lambda: call(name, kind, value, seconds=LONG_SECONDS)
 
 
 TOOL = Replay

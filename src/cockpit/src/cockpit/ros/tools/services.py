@@ -8,7 +8,7 @@ from cockpit.errors import CockpitError
 from cockpit.models.tables import preformatted, table
 from cockpit.models.text import outline
 from cockpit.ros.aside import Aside
-from cockpit.ros.calls import call
+from cockpit.ros.calls import LONG_SECONDS, call
 from cockpit.ros.filling import filled, service_class, template
 from cockpit.ros.tool import Desk
 
@@ -78,7 +78,7 @@ class Services:
             raise CockpitError("choose a service first")
         kind = service_class(self._types[name])
         request = filled(kind._request_class, self._fields.value)
-        self._calling.start(lambda: call(name, kind, request))
+        self._calling.start(lambda: call(name, kind, request, seconds=LONG_SECONDS))
         self._answer.content = preformatted("...")
 
 
