@@ -120,7 +120,7 @@ class CockpitHomeTest(unittest.TestCase):
             self.wait_until_standing()
 
     def test_7_k_stops_without_a_ramp(self):
-        self.page.hold_key("i", "driving", lambda: self.newest[TELEOP].linear.x > 5.0 * RAMP.v)
+        self.page.hold_key("i", "driving", lambda: self.newest[TELEOP].linear.x > 8.0 * RAMP.v)
         self.page.let_go_key("i")
         del self.velocities[:-1]
         self.page.hold_key("k", "a stop", lambda: self.newest[TELEOP] == Twist())

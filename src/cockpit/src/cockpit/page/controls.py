@@ -13,14 +13,11 @@ def can_have(control: Any, value: Any) -> bool:
     """``control``: a handle of viser's with a value; ``value``: finite, as it was decoded."""
     kind = type(control.value)
     if kind is int or kind is float:
-        return _is_number(value) and _is_between(control, value)
+        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        return is_number and (kind is float or abs(value) <= LARGEST_WHOLE) and _is_between(control, value)
     if kind is str:
         return isinstance(value, str) and value in getattr(control, "options", (value,))
     return type(value) is kind
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= LARGEST_WHOLE
 
 
 def _is_between(control: Any, value: float) -> bool:
