@@ -1,6 +1,7 @@
 """The tab in which a person drives: its panel, the mouse over the floor, and what both make the graph do."""
 
 import math
+import threading
 from typing import Callable, Optional, Tuple
 
 import rospy
@@ -40,6 +41,7 @@ class Driving:
         self._orders, self.teleop = Orders(graph), PageTeleop()
         self._feeds: dict = {}
         self._is_on_mission = False
+        self._ordering = threading.Lock()
         self._panel: Optional[DrivePanel] = None
 
     def build(self, gui, tab, guarded) -> None:
@@ -90,16 +92,16 @@ class Driving:
         self.teleop.press(key, client, self._panel.topic.value)
 
     def pause(self, is_paused: bool) -> None:
-        self._orders.pause(is_paused)
+        self._alone(lambda: self._orders.pause(is_paused))
 
     def step(self) -> None:
-        self._orders.step()
+        self._alone(self._orders.step)
 
     def reset(self) -> None:
-        self._orders.reset()
+        self._alone(self._orders.reset)
 
     def set_speed(self, factor: float) -> None:
-        self._orders.set_speed(factor)
+        self._alone(lambda: self._orders.set_speed(factor))
 
     def cancel(self) -> None:
         assert self._panel is not None
@@ -113,12 +115,21 @@ class Driving:
         )
         if NOWHERE in ends:
             raise CockpitError("nobody has told of places to deliver between")
-        self._orders.deliver(thing, *ends, joins=self._is_on_mission)
+        self._alone(lambda: self._orders.deliver(thing, *ends, joins=self._is_on_mission))
         self._tell(f"{thing}: from {ends[0]} to {ends[1]}")
 
     def cancel_mission(self) -> None:
-        self._orders.cancel_mission()
+        self._alone(self._orders.cancel_mission)
         self._tell("the mission is cancelled")
+
+    def _alone(self, order: Callable[[], None]) -> None:
+        """One order at a time: those that a node leaves unanswered must not hold up who drives."""
+        if not self._ordering.acquire(blocking=False):
+            raise CockpitError("the answer before is still awaited")
+        try:
+            order()
+        finally:
+            self._ordering.release()
 
     def _pointed(self, x: float, y: float, yaw: Optional[float], _client: int) -> None:
         assert self._panel is not None
