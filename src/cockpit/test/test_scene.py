@@ -7,6 +7,7 @@ import numpy as np
 from cockpit.models.pointing import facing, on_floor
 from cockpit.models.solids import ball, box, cylinder
 from cockpit.scene.look import Look, Piece, cut_at, merged
+from cockpit.scene.reading import world_look
 
 
 def wall(low, high, colour=(1, 2, 3)):
@@ -56,3 +57,23 @@ def test_a_press_without_a_turn_has_no_direction_of_its_own():
     assert facing((0.0, 0.0), (0.0, 1.0), 7.0) == math.pi / 2
     assert facing((0.0, 0.0), (0.05, 0.0), 7.0) == 7.0
     assert facing((0.0, 0.0), None, 7.0) == 7.0
+
+
+def test_a_door_is_shut_at_the_limit_where_it_was_built_and_what_has_none_is_opened_a_little(tmp_path):
+    world = tmp_path / "doors.world"
+    joint = (
+        "<joint name='{0}' type='{1}'><parent>{0}_a</parent><child>{0}_b</child>"
+        "<axis><xyz>0 0 1</xyz>{2}</axis></joint>"
+    )
+    links = "<link name='{0}_a'/><link name='{0}_b'><inertial><mass>1</mass></inertial></link>"
+    limited = "<limit><lower>-1.5</lower><upper>0</upper></limit>"
+    content = "".join(
+        links.format(name) + joint.format(name, kind, limit)
+        for name, kind, limit in (("hinge", "revolute", limited), ("rail", "prismatic", ""))
+    )
+    world.write_text(f"<sdf version='1.6'><world name='w'><model name='m'>{content}</model></world></sdf>")
+    look = Look.from_bytes(world_look(world, ()).to_bytes())
+    assert [(hinge.model, hinge.name, hinge.opened(0.0), hinge.opened(1.0)) for hinge in look.hinges] == [
+        ("m", "hinge", 0.0, -1.5),
+        ("m", "rail", 0.0, 0.5),
+    ]

@@ -43,6 +43,8 @@ class Driver(Protocol):
 
     def cancel_mission(self) -> None: ...
 
+    def swing(self) -> None: ...
+
 
 class DrivePanel:
     """``guarded`` wraps what controls call."""
@@ -54,15 +56,19 @@ class DrivePanel:
             self._build_teleop()
             self._build_time()
             self._build_mission()
+            self._build_hinges()
         self._build_keys()
 
-    def offer(
-        self, robots: Sequence[str], topics: Sequence[str], things: Sequence[str], places: Sequence[str]
-    ) -> None:
-        """Robots that take goals, topics that take velocities, what can be moved, and carried where."""
+    def offer_world(self, things: Sequence[str], hinges: Sequence[str]) -> None:
+        """What can be moved, and opened."""
+        _offer(self.thing, things)
+        _offer(self.hinge, hinges)
+        self._hinges.visible = bool(hinges)
+
+    def offer(self, robots: Sequence[str], topics: Sequence[str], places: Sequence[str]) -> None:
+        """Robots that take goals, topics that take velocities, and where things are carried."""
         _offer(self.robot, robots)
         _offer(self.topic, topics)
-        _offer(self.thing, things)
         for end in (self.source, self.destination):
             _offer(end, places)
 
@@ -105,6 +111,13 @@ class DrivePanel:
             start, end = gui.add_button("Deliver it"), gui.add_button("Cancel the mission", color="gray")
             start.on_click(guarded(lambda _: driver.deliver()))
             end.on_click(guarded(lambda _: driver.cancel_mission()))
+
+    def _build_hinges(self) -> None:
+        self._hinges = self._gui.add_folder("Doors and drawers", visible=False)
+        with self._hinges:
+            self.hinge = self._gui.add_dropdown("Of", (NOTHING,))
+            self.opened = self._gui.add_slider("Open, %", 0, 100, 5, 0)
+            self.opened.on_update(self._guarded(lambda _: self._driver.swing()))
 
     def _build_keys(self) -> None:
         for label, key in BUTTONS:

@@ -7,7 +7,7 @@ import numpy as np
 import viser.transforms
 
 from cockpit.frames import FrameTree
-from cockpit.scene.look import Look, Piece, cut_at, merged
+from cockpit.scene.look import Hinge, Look, Piece, cut_at, merged
 
 STILL = 1e-5
 
@@ -62,6 +62,7 @@ class WorldView:
         self._things: Dict[str, Thing] = {}
         self._poses: Dict[str, np.ndarray] = {}
         self._height = np.inf
+        self.hinges: Dict[str, Hinge] = {}
         self.is_shown = True
 
     @property
@@ -77,6 +78,7 @@ class WorldView:
         def thing_of(piece: Piece) -> str:
             return f"{piece.model}::{piece.link}"
 
+        self.hinges.update({f"{hinge.model}: {hinge.name}": hinge for hinge in look.hinges})
         for name, pieces in groupby(sorted(look.pieces, key=thing_of), thing_of):
             thing = Thing(self._scene, f"/world/{name.replace('/', ':')}", tuple(pieces))
             thing.draw(self._height)

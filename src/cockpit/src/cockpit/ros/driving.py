@@ -41,6 +41,7 @@ class Driving:
         self._orders, self.teleop = Orders(graph), PageTeleop()
         self._feeds: dict = {}
         self._is_on_mission = False
+        self._swung: Optional[Tuple[str, str, float]] = None
         self._ordering = threading.Lock()
         self._panel: Optional[DrivePanel] = None
 
@@ -50,8 +51,9 @@ class Driving:
     def look_around(self) -> None:
         """Raises CockpitError."""
         assert self._panel is not None
-        orders, things = self._orders, self._world.view.models
-        self._panel.offer(orders.robots(), orders.velocity_topics(), things, orders.places())
+        orders, view = self._orders, self._world.view
+        self._panel.offer(orders.robots(), orders.velocity_topics(), orders.places())
+        self._panel.offer_world(view.models, sorted(view.hinges))
         types = self._graph.topics()
         for topic, kind in ((MISSION, MissionState), (ERRAND, String)):
             if topic in types and topic not in self._feeds:
@@ -130,6 +132,24 @@ class Driving:
             order()
         finally:
             self._ordering.release()
+
+    def swing(self) -> None:
+        """To where the slider is now; where it passes by during an answer is left out."""
+        while self._swung != self._wanted_swing() and self._ordering.acquire(blocking=False):
+            try:
+                wanted = self._wanted_swing()
+                self._orders.swing(*wanted)
+                self._swung = wanted
+            finally:
+                self._ordering.release()
+
+    def _wanted_swing(self) -> Tuple[str, str, float]:
+        """Model, joint and position. Raises CockpitError."""
+        assert self._panel is not None
+        hinge = self._world.view.hinges.get(self._panel.hinge.value)
+        if hinge is None:
+            raise CockpitError("there is nothing to open")
+        return hinge.model, hinge.name, hinge.opened(self._panel.opened.value / 100.0)
 
     def _pointed(self, x: float, y: float, yaw: Optional[float], _client: int) -> None:
         assert self._panel is not None

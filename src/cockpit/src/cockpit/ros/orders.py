@@ -154,6 +154,18 @@ class Orders:
         _check(call("/gazebo/set_model_state", gazebo_msgs.srv.SetModelState, state))
         return _matrix(state.pose) @ inverse(before)
 
+    def swing(self, model: str, joint: str, position: float) -> None:
+        """``position``: of a door's or a drawer's joint, rad or m."""
+        answer = call(
+            "/gazebo/set_model_configuration",
+            gazebo_msgs.srv.SetModelConfiguration,
+            model,
+            "robot_description",
+            [joint],
+            [position],
+        )
+        _check(answer)
+
     def _send(self, topic: str, message: Any, needs_listener: bool = True) -> None:
         if topic not in self._publishers:
             self._publishers[topic] = rospy.Publisher(topic, type(message), queue_size=1)

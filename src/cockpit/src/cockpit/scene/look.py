@@ -2,7 +2,7 @@
 
 import io
 import json
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from typing import Dict, List, Tuple
 
 import numpy as np
@@ -27,12 +27,27 @@ class Piece:
     moves: bool = False
 
 
+@dataclass(frozen=True)
+class Hinge:
+    """A door or a drawer: the joint ``name`` of a ``model``, and where it is shut and wide open, rad or m."""
+
+    model: str
+    name: str
+    shut: float
+    wide: float
+
+    def opened(self, share: float) -> float:
+        """Its position when it is open by so much, 0 to 1."""
+        return self.shut + share * (self.wide - self.shut)
+
+
 @dataclass(frozen=True, eq=False)
 class Look:
     """``warnings``: what cannot be shown, in words."""
 
     pieces: Tuple[Piece, ...]
     warnings: Tuple[str, ...] = ()
+    hinges: Tuple[Hinge, ...] = ()
 
     def to_bytes(self) -> bytes:
         """As another process reads it with ``from_bytes``."""
@@ -45,7 +60,8 @@ class Look:
             arrays[f"p{number}"] = piece.pose
             arrays[f"v{number}"] = piece.vertices.astype(np.float32)
             arrays[f"t{number}"] = piece.triangles.astype(np.int32)
-        index = json.dumps({"pieces": about, "warnings": self.warnings})
+        hinges = [astuple(hinge) for hinge in self.hinges]
+        index = json.dumps({"pieces": about, "warnings": self.warnings, "hinges": hinges})
         file = io.BytesIO()
         np.savez(file, index=np.array(index), **arrays)
         return file.getvalue()
@@ -66,7 +82,8 @@ class Look:
                 )
                 for number, about in enumerate(index["pieces"])
             ]
-        return Look(tuple(pieces), tuple(index["warnings"]))
+        hinges = tuple(Hinge(*hinge) for hinge in index["hinges"])
+        return Look(tuple(pieces), tuple(index["warnings"]), hinges)
 
 
 def cut_at(piece: Piece, height: float) -> Piece:

@@ -4,13 +4,14 @@ It brings physics along, which is not to stay in the cockpit's memory: cockpit.r
 of its own, and whatever a foreign mesh does to its parser is over with that.
 """
 
+import math
 from pathlib import Path
 from typing import Dict, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
 from cockpit.drawing import Colour
-from cockpit.scene.look import Look, Piece
+from cockpit.scene.look import Hinge, Look, Piece
 from planar import PlanarError
 from sim_bridge import load_world
 from sim_bridge.description.urdf import FindFile
@@ -19,9 +20,12 @@ from sim_bridge.geometry.shapes import Box, Cylinder, MeshFile, Plane, Sphere
 from sim_bridge.geometry.shapes import Look as Shape
 from sim_bridge.sdf.element import Element, parse_text
 from sim_bridge.views.drawing import GREY, mesh_of, visible_parts
+from sim_bridge.world import Joint
 
 # Colours of a mesh's triangles that differ by less are one, of 255: each is a surface of its own.
 COARSENESS = 16
+# How far what has no limits is opened, rad and m; a limit beyond the second is none.
+FREELY, BEYOND = {"revolute": math.pi / 2.0, "prismatic": 0.5}, 1000.0
 
 
 def world_look(path: Path, folders: Sequence[Path]) -> Look:
@@ -34,7 +38,8 @@ def world_look(path: Path, folders: Sequence[Path]) -> Look:
             if not isinstance(visual.shape, Plane):  # the page has a floor of its own
                 place = model, link, body.pose_in_world, body.mass is not None
                 collector.add(place, visual.shape, visual.pose_in_body, visual.colour)
-    return Look(tuple(collector.pieces), (*world.warnings, *collector.warnings))
+    hinges = tuple(_hinge(joint) for joint in world.joints if joint.kind in FREELY)
+    return Look(tuple(collector.pieces), (*world.warnings, *collector.warnings), hinges)
 
 
 def robot_look(text: str, find_file: FindFile) -> Look:
@@ -52,6 +57,14 @@ def robot_look(text: str, find_file: FindFile) -> Look:
             own = None if material is None else _rgb(material) or named.get(material.name)
             collector.add(("", link.name, IDENTITY, True), shape, _origin(visual), own)
     return Look(tuple(collector.pieces), tuple(collector.warnings))
+
+
+def _hinge(joint: Joint) -> Hinge:
+    """The limit that is nearer to 0, where it is as built, is that of a thing that is shut."""
+    shut, wide = sorted((joint.lower, joint.upper), key=abs)
+    if abs(wide) > BEYOND:
+        shut, wide = 0.0, FREELY[joint.kind]
+    return Hinge(joint.model, joint.name.partition("::")[2], shut, wide)
 
 
 class _Collector:
