@@ -1,4 +1,7 @@
 import math
+import os
+import subprocess
+import sys
 from argparse import ArgumentTypeError
 
 import pytest
@@ -100,3 +103,20 @@ def test_a_zone_in_a_wall_or_outside_the_map_is_refused_before_anything_is_start
     zones.write_text("pickup: {x: 2.0, y: 3.0, yaw: 0.0}\ndropoff: {x: 40.0, y: 3.0, yaw: 0.0}\n")
     assert main(["home_service", "--zones", str(zones)]) == 2
     assert f"error: {zones}: place dropoff (40, 3) lies outside the map" in capsys.readouterr().err
+
+
+def test_a_run_for_which_too_few_open_files_are_allowed_is_refused_and_leaves_nothing(tmp_path):
+    command = [sys.executable, "-m", "home_service", "home_service", "--output", tmp_path / "runs"]
+    run = subprocess.run(
+        ["bash", "-c", 'ulimit -n 64; exec "$@"', "bash", *command],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+        capture_output=True,
+        text=True,
+        timeout=60.0,
+        check=False,
+    )
+    assert run.returncode == 2
+    assert run.stderr == (
+        "error: no more than 64 open files are allowed (ulimit -n), and the nodes need 256\n"
+    )
+    assert not list(tmp_path.iterdir())

@@ -6,7 +6,6 @@ receive. The version of viser is pinned, and test_gate.py tries it all on the re
 """
 
 import logging
-import resource
 import socket
 import time
 from contextlib import contextmanager
@@ -23,9 +22,10 @@ from cockpit.access import OK, SEE_OTHER, Access
 from cockpit.errors import PortError, RefusedError
 from cockpit.inbound import KINDS, LARGEST_MESSAGE, Allowance, check
 from cockpit.page.controls import can_have
+from supervision.open_files import allow_open_files
 
 MOST_PAGES = 32
-OPEN_FILES = 4096
+OPEN_FILES = 4096  # so many that a thousand connections leave some for ROS
 MOST_REASON = 100  # bytes of why a connection is closed: the protocol has room for some more
 # What each kind of message consists of.
 FORMS = {kind: getattr(forms, kind) for kind in KINDS}
@@ -59,7 +59,7 @@ class Gate:
         self._pages = 0
         self._controls: Mapping[str, Any] = {}
         # The other half is for ROS, which needs files too.
-        self._most_connections = _allow_open_files() // 2
+        self._most_connections = allow_open_files(OPEN_FILES) // 2
         # It would print the traceback of every request that is refused.
         logging.getLogger("websockets.server").setLevel(logging.CRITICAL)
 
@@ -176,13 +176,3 @@ def _with_policy(response):
         response.headers["X-Content-Type-Options"] = "nosniff"
         response.headers["Referrer-Policy"] = "no-referrer"
     return response
-
-
-def _allow_open_files() -> int:
-    """So many that a thousand connections leave some for ROS; returns how many there may be."""
-    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    wanted = OPEN_FILES if hard == resource.RLIM_INFINITY else min(OPEN_FILES, hard)
-    if soft != resource.RLIM_INFINITY and soft < wanted:
-        resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
-        return wanted
-    return OPEN_FILES if soft == resource.RLIM_INFINITY else soft

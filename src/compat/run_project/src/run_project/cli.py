@@ -29,6 +29,7 @@ from run_project.stand_ins.terminal import LOGS
 from supervision.display import Display, complain
 from supervision.errors import LaunchError
 from supervision.interruption import INTERRUPTED, RunInterruptedError, raise_when_interrupted
+from supervision.open_files import check_open_files
 from supervision.run_folder import create_run_folder, write_result
 from supervision.versions import versions
 
@@ -65,6 +66,7 @@ def run(options: Options) -> int:
     """Builds and runs the project that the options name."""
     if options.rviz and not os.environ.get("DISPLAY"):
         raise ProjectError("--rviz: there is no display (the variable DISPLAY is not set)")
+    check_open_files()
     started = time.time()
     checkout = read_checkout(options.path)
     with _WorkFolder(checkout.root) as work, Display() as display:

@@ -22,6 +22,7 @@ from run_report import summary, write_report
 from supervision.command_line import words
 from supervision.display import Display
 from supervision.interruption import RunInterruptedError, raise_if_interrupted, raise_when_interrupted
+from supervision.open_files import check_open_files
 from supervision.processes import start_of_this_process
 from supervision.ros.node_api import is_master_online
 from supervision.ros.supervisor import Supervisor
@@ -46,6 +47,7 @@ class Run:
         """Makes the run folder. Raises SettingsError."""
         if options.rviz and not os.environ.get("DISPLAY"):
             raise SettingsError(NO_DISPLAY)
+        check_open_files()
         self._options, self._launch = options, launch
         self._judge, self._recorder = judge, recorder
         self.display = display
