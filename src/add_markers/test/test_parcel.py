@@ -48,3 +48,10 @@ def test_the_demo_follows_the_clock():
 def test_an_unknown_source_of_the_pose_is_refused():
     with pytest.raises(SettingsError, match="pose_source must be one of tf"):
         MarkerSettings(zones_file="x", pose_source="gps")
+
+
+def test_a_clock_that_jumps_forth_and_back_does_not_hold_the_parcel_back():
+    carried, timed = CarriedParcel(PICKUP, DROPOFF, 5.0), TimedParcel(PICKUP, DROPOFF, 5.0, 5.0)
+    for now in (1e6, 0.0):
+        assert carried.update(now, PICKUP.pose) == timed.update(now) == PICKUP.pose
+    assert carried.update(5.0, PICKUP.pose) is timed.update(5.0) is None

@@ -166,3 +166,11 @@ def test_a_robot_in_no_free_space_waits_for_a_better_map_but_not_for_ever():
 def test_senseless_settings_are_refused(name, value):
     with pytest.raises(SettingsError, match=name):
         ExplorerSettings(**{name: value})
+
+
+def test_a_clock_that_jumps_forth_and_back_keeps_the_robot_from_nothing():
+    task = explorer()
+    task.advance(0.0, grid(OPEN_TO_THE_RIGHT), ROBOT)
+    task.advance(1e6, grid(OPEN_TO_THE_RIGHT), ROBOT)
+    assert task.advance(5.0, grid(CLOSED), Pose2(3.0, 1.25)) is None
+    assert task.advance(10.0, None, Pose2(3.0, 1.25)) == GoTo(ROBOT)

@@ -4,6 +4,7 @@ import enum
 from typing import Optional
 
 from planar import Pose2
+from planar.elapsed import Elapsed
 from planar.maps.places import Place
 
 
@@ -26,12 +27,13 @@ class CarriedParcel:
         self._pickup = pickup
         self._dropoff = dropoff
         self._pickup_seconds = pickup_seconds
+        self._elapsed = Elapsed()
         self._arrived_at: Optional[float] = None
 
     def update(self, now: float, robot: Optional[Pose2]) -> Optional[Pose2]:
         """Where the object is shown, or None while it is hidden. ``robot``: its pose in the map, if known."""
         if robot is not None:
-            self._follow(now, robot)
+            self._follow(self._elapsed.at(now), robot)
         return {Stage.WAITING: self._pickup.pose, Stage.DELIVERED: self._dropoff.pose}.get(self.stage)
 
     def _follow(self, now: float, robot: Pose2) -> None:
@@ -54,13 +56,11 @@ class TimedParcel:
         self._dropoff = dropoff
         self._hide_after = show_seconds
         self._show_after = show_seconds + hide_seconds
-        self._start: Optional[float] = None
+        self._elapsed = Elapsed()
 
     def update(self, now: float, robot: Optional[Pose2] = None) -> Optional[Pose2]:
         """Where the object is shown, or None while it is hidden; the clock starts with the first call."""
-        if self._start is None:
-            self._start = now
-        elapsed = now - self._start
+        elapsed = self._elapsed.at(now)
         if elapsed < self._hide_after:
             return self._pickup.pose
         return None if elapsed < self._show_after else self._dropoff.pose

@@ -13,6 +13,7 @@ from explorer_lite.progress import ProgressWatch
 from explorer_lite.targets import Reach, Target, TargetFinder, reach_of
 from planar import FREE, OccupancyGrid, Pose2
 from planar.driving import Finish, GoalReached, GoalRefused
+from planar.elapsed import Elapsed
 
 RESEND_DISTANCE = 0.5
 SETTLE_SECONDS = 1.0
@@ -50,6 +51,7 @@ class Explorer:
     def __init__(self, settings: ExplorerSettings = ExplorerSettings(), return_to_start: bool = True):
         self._settings = settings
         self._return_to_start = return_to_start
+        self._elapsed = Elapsed()
         self._grid: Optional[OccupancyGrid] = None
         self._grid_time = 0.0
         self._start = Pose2()
@@ -86,6 +88,7 @@ class Explorer:
         ``now``: seconds; ``grid``: a map not given before, or None; ``robot``: its pose in that map;
         ``event``: what came of the last order.
         """
+        now = self._elapsed.at(now)
         if grid is not None:
             self._grid, self._grid_time = known_part(grid), now
         if self._grid is None or self.state in (ExplorerState.DONE, ExplorerState.FAILED):

@@ -51,13 +51,6 @@ class Carrier:
             self._fail(answer.reason)
         return self._arrive(now) if isinstance(answer, Arrived) else None
 
-    def leave_object(self) -> None:
-        """The object, if it is on the robot, is set down where the robot stands."""
-        thing = self.job.delivery.thing
-        where = self._whereabouts[thing]
-        if where.is_carried:
-            self._whereabouts[thing] = Whereabouts(None, where.pose)
-
     def _go(self, now: float, stage: Stage) -> GoTo:
         delivery, mission = self.job.delivery, self._mission
         place = mission.places[delivery.source if stage is Stage.FETCHING else delivery.destination]
@@ -94,4 +87,5 @@ class Carrier:
 
     def _fail(self, reason: str) -> None:
         self.job.fail(reason)
-        self.leave_object()
+        thing = self.job.delivery.thing
+        self._whereabouts[thing] = self._whereabouts[thing].left

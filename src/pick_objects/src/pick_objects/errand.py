@@ -6,11 +6,12 @@ from typing import Dict, List, Mapping, Optional, Sequence, Tuple, Union
 from pick_objects.approach import GoTo
 from pick_objects.carrier import Carrier
 from pick_objects.forecast import Forecast
-from pick_objects.job import ENDED, STATE_OF_STAGE, ErrandState, Job, Stage, Whereabouts
+from pick_objects.job import ENDED, ON_ROBOT, STATE_OF_STAGE, ErrandState, Job, Stage, Whereabouts
 from pick_objects.mission import Delivery, Mission, MissionError
 from pick_objects.schedule import Schedule
 from planar import Pose2
 from planar.driving import Finish, GoalReached, GoalRefused
+from planar.elapsed import Elapsed
 from planar.maps.places import Place
 
 
@@ -35,7 +36,7 @@ Event = Union[GoalReached, GoalRefused, WaysMeasured]
 class Errand:
     """A mission under way, told the time and what happened, answering what to do next.
 
-    ``whereabouts``: of each object. ``reason``: how it ended, in words.
+    ``whereabouts``: of each object. ``is_cancelled``: the whole of it. ``reason``: how it ended, in words.
     """
 
     def __init__(self, mission: Mission):
@@ -45,21 +46,20 @@ class Errand:
         self._note_objects()
         self._schedule = Schedule(mission)
         self._carrier: Optional[Carrier] = None
-        self._is_measuring = self._is_cancelled = self._is_over = False
+        self.is_cancelled = self._is_measuring = self._is_over = False
         self._forecast = Forecast()
+        self._elapsed = Elapsed()
 
     def advance(self, now: float, event: Optional[Event] = None) -> Optional[Order]:
         """The next order, or None to carry on. ``now``: seconds; ``event``: what came of the last order."""
+        now = self._elapsed.at(now)
         if self._is_over:
             return None
-        if self._is_cancelled:
-            return self._stop_all()
+        if self.is_cancelled:
+            return self._end("cancelled")
         if self._is_measuring:
             return self._take_order(now, event)
-        if self._carrier is None:
-            return self._begin_next(now)
-        if self._carrier.job.stage is Stage.CANCELLED:
-            self._carrier.leave_object()
+        if self._carrier is None or self._carrier.job.stage is Stage.CANCELLED:
             return self._begin_next(now)
         order = self._carrier.advance(now, None if isinstance(event, WaysMeasured) else event)
         return self._begin_next(now) if self._carrier.job.stage in ENDED else order
@@ -73,29 +73,32 @@ class Errand:
         self._note_objects()
         return added
 
-    def resume(self, jobs: Sequence[Job], whereabouts: Mapping[str, Whereabouts]) -> None:
+    def resume(
+        self, jobs: Sequence[Job], whereabouts: Mapping[str, Whereabouts], is_cancelled: bool = False
+    ) -> None:
         """Goes on where an earlier errand of this mission was cut short; comes before the first advance.
 
         A job may be CARRYING; no other is under way.
         """
         self._schedule.jobs = list(jobs)
         self.whereabouts.update(whereabouts)
+        self.is_cancelled = is_cancelled
 
     def cancel(self, name: str = "") -> None:
-        """Cancels the delivery of that name, or the whole mission, at the next call of advance.
+        """Cancels the delivery of that name, or the whole mission; what is on the robot for it is set down.
 
-        Raises MissionError.
+        The next call of advance tells where to go now. Raises MissionError.
         """
         self._refuse_if_over()
-        if not name:
-            self._is_cancelled = True
-            return
-        job = next((job for job in self.jobs if job.delivery.name == name), None)
-        if job is None:
-            raise MissionError(f"there is no delivery {name}")
-        if job.stage in ENDED:
-            raise MissionError(f"delivery {name} is {job.stage.name.lower()} already")
-        job.cancel()
+        if name:
+            jobs = [self._unfinished(name)]
+        else:
+            jobs, self.is_cancelled = [job for job in self.jobs if job.stage not in ENDED], True
+        for job in jobs:
+            if job.stage in ON_ROBOT:
+                thing = job.delivery.thing
+                self.whereabouts[thing] = self.whereabouts[thing].left
+            job.cancel()
 
     @property
     def state(self) -> ErrandState:
@@ -137,7 +140,7 @@ class Errand:
         if self._is_over:
             return 0.0
         settings, places, where = self.mission.settings, self.mission.places, self.place
-        left = 0.0
+        left = self._forecast.seconds_left(self._elapsed.at(now))
         for job in self.jobs:
             if job.stage in ENDED:
                 continue
@@ -149,7 +152,7 @@ class Errand:
                 left += self._forecast.seconds_between(source.pose, destination.pose)
             left += settings.dropoff_seconds
             where = destination
-        return left + self._forecast.seconds_left(now)
+        return left
 
     def _begin_next(self, now: float) -> Order:
         while True:
@@ -176,13 +179,13 @@ class Errand:
         self._schedule.settle(event.lengths)
         return self._begin_next(now)
 
-    def _stop_all(self) -> Finish:
-        for job in self.jobs:
-            if job.stage not in ENDED:
-                job.cancel()
-        if self._carrier is not None:
-            self._carrier.leave_object()
-        return self._end("cancelled")
+    def _unfinished(self, name: str) -> Job:
+        job = next((job for job in self.jobs if job.delivery.name == name), None)
+        if job is None:
+            raise MissionError(f"there is no delivery {name}")
+        if job.stage in ENDED:
+            raise MissionError(f"delivery {name} is {job.stage.name.lower()} already")
+        return job
 
     def _conclude(self) -> Finish:
         failed = [job for job in self.jobs if job.stage is Stage.FAILED]
@@ -201,9 +204,9 @@ class Errand:
 
     @property
     def _final_state(self) -> ErrandState:
-        if self._schedule.has_failed and not self._is_cancelled:
+        if self._schedule.has_failed and not self.is_cancelled:
             return ErrandState.FAILED
-        if self._is_cancelled or all(job.stage is Stage.CANCELLED for job in self.jobs):
+        if self.is_cancelled or all(job.stage is Stage.CANCELLED for job in self.jobs):
             return ErrandState.CANCELLED
         return ErrandState.DELIVERED
 

@@ -36,6 +36,8 @@ class Stage(enum.Enum):
 
 
 ENDED = (Stage.DELIVERED, Stage.FAILED, Stage.CANCELLED)
+ON_ROBOT = (Stage.CARRYING, Stage.SETTING_DOWN)
+"""Where the object of a delivery is then."""
 STATE_OF_STAGE = {
     Stage.FETCHING: ErrandState.GOING_TO_PICKUP,
     Stage.PICKING_UP: ErrandState.PICKING_UP,
@@ -71,3 +73,8 @@ class Whereabouts:
     place: Optional[str]
     pose: Pose2
     is_carried: bool = False
+
+    @property
+    def left(self) -> "Whereabouts":
+        """Set down where the robot stands, if it was on it."""
+        return Whereabouts(None, self.pose) if self.is_carried else self

@@ -19,6 +19,7 @@ def record_of(errand: Errand) -> Dict[str, Any]:
     """Made of what JSON knows."""
     return {
         "mission": errand.mission.name,
+        "is_cancelled": errand.is_cancelled,
         "jobs": [
             {
                 "delivery": asdict(job.delivery),
@@ -52,7 +53,7 @@ def resumed(mission: Mission, record: Mapping[str, Any]) -> Optional[Errand]:
         thing: Whereabouts(told["place"], Pose2(**told["pose"]), told["is_carried"])
         for thing, told in record["whereabouts"].items()
     }
-    errand.resume(jobs, places)
+    errand.resume(jobs, places, record["is_cancelled"])
     return errand
 
 

@@ -114,7 +114,9 @@ class Navigator:
         self._new_goal = goal_in_map
 
     def cancel(self, now: float) -> Decision:
-        """Ends the goal under way: the robot is to stop at once."""
+        """Ends the goal under way, if there is one: the robot is to stop at once."""
+        if not self.is_active:
+            return Decision(Status.IDLE)
         return self._end(Status.CANCELLED, "", self._outcome(now, CANCELLED_OUTCOME, "CANCELLED", ""))
 
     def forget_goal(self) -> None:
