@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A run whose simulation is paused for ever says so, and ends with that for its reason."""
+"""Runs that cannot go on: each says why, and ends with that for its reason."""
 
 import os
 import re
@@ -14,13 +14,30 @@ from waiting import wait_until
 
 SCRIPT = Path(__file__).resolve().parents[2] / "scripts/home_service.sh"
 TIMEOUT, RUN_SECONDS = 75.0, 150.0
+LOST_ODOMETRY = "faults: [{kind: odometry_stopped, start: 8.0}]\n"
 
 
 class StandstillTest(unittest.TestCase):
     def test_a_pause_for_ever_is_told(self):
+        code, said = self.run_to_its_end("--speed", "2", "--timeout", str(TIMEOUT), do=self.pause)
+        self.assertEqual(code, 1)
+        self.assertRegex(said, r"time stands still at [\d.]+ s: the simulation is paused")
+        self.assertRegex(said, r"FAILURE: not done within .*; simulated time stands still at")
+
+    def test_odometry_that_is_lost_for_good_ends_the_run_long_before_its_time(self):
+        """Three times the patience of move_base, at as many times real time as ever."""
+        with tempfile.NamedTemporaryFile("w", suffix=".yaml") as faults:
+            faults.write(LOST_ODOMETRY)
+            faults.flush()
+            code, said = self.run_to_its_end("--faults", faults.name)
+        self.assertEqual(code, 1)
+        self.assertRegex(said, r"FAILURE: place pickup not reached .*odometry: none for [\d.]+ s")
+
+    def run_to_its_end(self, *options, do=lambda folder: None):
+        """Exit code and what was said; ``do`` is done with the folder of runs when the robot sets out."""
         with tempfile.TemporaryDirectory() as folder:
             run = subprocess.Popen(
-                [str(SCRIPT), "--speed", "2", "--timeout", str(TIMEOUT), "--output", folder],
+                [str(SCRIPT), "--output", folder, *options],
                 env={**os.environ, "PYTHONUNBUFFERED": "1"},
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
@@ -28,17 +45,17 @@ class StandstillTest(unittest.TestCase):
                 text=True,
             )
             said = []
-            threading.Thread(target=lambda: said.extend(run.stdout), daemon=True).start()
+            hearing = threading.Thread(target=lambda: said.extend(run.stdout), daemon=True)
+            hearing.start()
             try:
                 wait_until("the robot to set out", lambda: "driving to" in "".join(said), TIMEOUT)
-                self.pause(Path(folder))
+                do(Path(folder))
                 code = run.wait(RUN_SECONDS)
             finally:
                 run.kill()
+            hearing.join(TIMEOUT)
         print("".join(said))
-        self.assertEqual(code, 1)
-        self.assertRegex("".join(said), r"time stands still at [\d.]+ s: the simulation is paused")
-        self.assertRegex("".join(said), r"FAILURE: not done within .*; simulated time stands still at")
+        return code, "".join(said)
 
     @staticmethod
     def pause(folder):

@@ -11,7 +11,7 @@ from supervision.ros.supervisor import Supervisor
 @pytest.fixture
 def graph(monkeypatch):
     deaths = SimpleNamespace(failure=None, restarts=[])
-    graph = SimpleNamespace(deaths=deaths, is_running=True, log_gap=None)
+    graph = SimpleNamespace(deaths=deaths, is_running=True, how_it_ended="ended", log_gap=None)
     monkeypatch.setattr(supervisor, "RosGraph", lambda *_: graph)
     return graph
 
@@ -51,3 +51,9 @@ def test_what_was_waited_for_when_the_graph_ended_is_named(graph, tmp_path):
         supervised(tmp_path).wait_for("the simulator", lambda: False)
     assert str(error.value) == f"roslaunch ended before the simulator was there, see {tmp_path}"
     assert supervised(tmp_path).watch(lambda: False, str) == f"roslaunch ended, see {tmp_path}"
+
+
+def test_how_roslaunch_was_killed_is_told(graph, tmp_path):
+    graph.is_running, graph.how_it_ended = False, "was ended by SIGKILL"
+    reason = supervised(tmp_path).watch(lambda: False, str)
+    assert reason == f"roslaunch was ended by SIGKILL, see {tmp_path}"

@@ -59,18 +59,18 @@ class Deaths:
             self._note(death.group("node") or self._required, int(death.group("code")))
 
     def _note(self, node: str, code: int) -> None:
-        reason = self._complaints.pop(node, None) or _end_in_words(code)
+        reason = self._complaints.pop(node, None) or end_in_words(code)
         self._deaths[node] += 1
         is_accident = code not in (BAD_INPUT, VERDICT)
         if node in self._comes_back and is_accident and self._deaths[node] <= MOST_RESTARTS:
             self.restarts.append(Restart(node, reason))
         elif self.failure is None:
             again = f", after {MOST_RESTARTS} restarts" if self._deaths[node] > MOST_RESTARTS else ""
-            where = f", see {self._log_folder}" if reason == _end_in_words(code) else ""
+            where = f", see {self._log_folder}" if reason == end_in_words(code) else ""
             self.failure = NodeFailure(f"{node}: {reason}{again}{where}", code == BAD_INPUT)
 
 
-def _end_in_words(code: int) -> str:
+def end_in_words(code: int) -> str:
     """What an exit code means; a negative one is a signal's number."""
     if code >= 0:
         return f"died with exit code {code}"

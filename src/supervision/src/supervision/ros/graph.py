@@ -12,7 +12,7 @@ from typing import IO, Collection, Mapping, Optional
 
 import psutil
 
-from supervision.deaths import Deaths
+from supervision.deaths import Deaths, end_in_words
 from supervision.errors import LaunchError
 from supervision.processes import adopt_orphans, end_descendants, end_with_parent, free_port
 
@@ -66,6 +66,12 @@ class RosGraph:
     @property
     def is_running(self) -> bool:
         return self._roslaunch.poll() is None
+
+    @property
+    def how_it_ended(self) -> str:
+        """Of roslaunch, once it does not run any more."""
+        code = self._roslaunch.poll() or 0
+        return end_in_words(code) if code < 0 else "ended"
 
     def close(self) -> None:
         """Ends every process of the graph: SIGINT first, then SIGTERM, then SIGKILL."""

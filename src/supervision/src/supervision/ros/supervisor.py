@@ -88,4 +88,6 @@ class Supervisor:
             raise LaunchError(failure.text, is_bad_input=True)
         if failure is not None:
             return failure.text
-        return None if self._graph.is_running else f"roslaunch ended{when}, see {self._log_folder}"
+        if self._graph.is_running:
+            return None
+        return f"roslaunch {self._graph.how_it_ended}{when}, see {self._log_folder}"

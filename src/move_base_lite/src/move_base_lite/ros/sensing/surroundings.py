@@ -98,8 +98,9 @@ class Surroundings:
         self._diagnostics.tell(complaint, now)
         if complaint is not None:
             return f"a trustworthy sensor ({complaint})"
-        pairs = (self._global_frame, self._local_frame), (self._local_frame, self._base_frame)
-        for (parent, child), tolerance in zip(pairs, self._tolerances):
+        # Odometry first: without it nobody can localize either, and that would be named.
+        links = [(self._global_frame, self._local_frame), (self._local_frame, self._base_frame)]
+        for (parent, child), tolerance in reversed(list(zip(links, self._tolerances))):
             latest = self._transforms.latest_stamp(parent, child)
             if latest is None:
                 return f"the transform {parent} -> {child}"
