@@ -116,3 +116,12 @@ def test_a_delivery_that_is_sent_again_by_the_same_name_is_judged_again(referee)
     first, second = referee.ledger.deliveries
     assert first.state == "delivered"
     assert second.pickup_error == pytest.approx(0.04)
+
+
+def test_a_marker_that_comes_before_its_mission_is_told_by_the_ends_of_its_delivery(referee):
+    referee._see_marker(marker_of_lamp(4.9))
+    referee._see_goal(DeliverActionGoal(goal=DeliverGoal(mission=MISSION)))
+    referee._see_mission(moment(1.0, DeliveryState.FETCHING))
+    assert referee.ledger.markers == []
+    referee._see_truth(truth(1.0, 6.9))
+    assert referee.ledger.markers == ["lamp at attic"]

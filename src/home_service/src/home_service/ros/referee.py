@@ -6,7 +6,7 @@ import re
 import threading
 import time
 from collections import deque
-from typing import Any, Callable, Deque, Dict, Iterable, Mapping, Optional, Set, Tuple
+from typing import Any, Callable, Deque, Dict, Mapping, Optional, Set, Tuple
 
 from home_service_msgs.msg import DeliverActionGoal, MissionState
 from move_base_msgs.msg import MoveBaseActionResult
@@ -16,6 +16,7 @@ from std_msgs.msg import String
 from visualization_msgs.msg import Marker
 
 from home_service.judging.delivery_watch import DeliveryWatch
+from home_service.judging.marker_log import MarkerLog, Shown
 from home_service.judging.verdict import Ledger, Verdict, collision, judge
 from home_service.ros.goal_watch import GoalWatch
 from home_service.ros.hearing import hear
@@ -27,8 +28,6 @@ from supervision.processes import start_of_this_process
 
 MOTION_DISTANCE = 0.02
 NUMBER = re.compile(r"\d[\d.]*")
-# Name space of the errand's marker; those of a mission have their objects' names.
-PARCEL = "parcel"
 CONNECTION_CHATTER = "tcpros_base.py"
 # Ground truth is remembered for so many messages, to look up where the robot stood at a stamp.
 REMEMBERED = 500
@@ -59,6 +58,7 @@ class Referee:
         self._recent: Deque[Tuple[float, Pose2]] = deque(maxlen=REMEMBERED)
         self._unjudged: Deque[MissionState] = deque()
         self._deliveries = DeliveryWatch(self._places, self.ledger.deliveries, say)
+        self._markers = MarkerLog(self._places, self.ledger)
         self._told: Set[str] = set()
         self._lock = threading.Lock()
         self._has_started = False
@@ -176,6 +176,7 @@ class Referee:
                 delivery = Delivery(told.name, told.object, told.source, told.destination)
                 self._deliveries.see(delivery, Stage(state.state), state.attempts, state.reason, truth)
             self.ledger.reason, self.ledger.final_state = message.reason, message.state
+            self._markers.tell()
 
     def _truth_at(self, stamp: float) -> Optional[Pose2]:
         if not self._recent:
@@ -189,23 +190,9 @@ class Referee:
 
     def _see_marker(self, message):
         is_hidden = message.action == Marker.DELETE
-        if not self._places or (is_hidden and message.ns != PARCEL):
-            return
-        if message.ns == PARCEL:
-            event = "hidden" if is_hidden else f"shown at {self._nearest_place(message, self._places)}"
-        elif message.frame_locked:
-            event = f"{message.ns} carried"
-        else:
-            records = [record for record in self.ledger.deliveries if record.object == message.ns]
-            ends = [name for record in records for name in (record.source, record.destination)]
-            names = [name for name in ends if name in self._places]
-            event = f"{message.ns} at {self._nearest_place(message, names or self._places)}"
-        if not self.ledger.markers or self.ledger.markers[-1] != event:
-            self.ledger.markers.append(event)
-
-    def _nearest_place(self, marker, names: Iterable[str]) -> str:
-        shown = pose2_from_msg(marker.pose)
-        return min(names, key=lambda name: self._places[name].distance_to(shown))
+        pose = Pose2() if is_hidden else pose2_from_msg(message.pose)
+        with self._lock:
+            self._markers.see(Shown(message.ns, pose, message.frame_locked, is_hidden))
 
     def _see_plan(self, message):
         points = [(pose.pose.position.x, pose.pose.position.y) for pose in message.poses]
