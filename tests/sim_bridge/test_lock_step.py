@@ -29,15 +29,15 @@ class TestLockStep(unittest.TestCase):
 
         rospy.Subscriber("scan", LaserScanArrays, work, queue_size=100, tcp_nodelay=True)
         rospy.Subscriber("sim_bridge/real_time_factor", Float64, lambda message: factors.append(message.data))
-        wait_until("speed and odometry", lambda: len(factors) >= 2 and len(stamps) > 50, 25.0)
+        wait_until("scans", lambda: len(stamps) > 50, 25.0)
+        wait_until("more than real time", lambda: max(factors, default=0.0) > 1.5, 25.0)
         gaps = [later - earlier for earlier, later in zip(stamps, stamps[1:])]
         self.assertLess(max(gaps), PERIOD + 1e-6)
         self.assertLess(max(ahead[10:]), PERIOD + 1e-6, "but for the first, which start the lock-step")
-        self.assertGreater(max(factors), 1.5)
 
         working = False
         count = len(stamps)
-        wait_until("odometry", lambda: len(stamps) > count + 20, 25.0)
+        wait_until("more scans", lambda: len(stamps) > count + 20, 25.0)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,6 @@
 """Resets in the middle of a goal: every node survives them and reaches the next goal."""
 
 import math
-import time
 import unittest
 
 import actionlib
@@ -32,21 +31,19 @@ class TestReset(unittest.TestCase):
         wait_until("the simulation", lambda: self.truth, PATIENCE_SECONDS)
 
     def test_reset_world_in_the_middle_of_a_goal(self):
-        self.start_goal(2.0, 3.0)
-        wait_until("the robot to set off", lambda: self.distance_from(0.0, 0.0) > 0.7, PATIENCE_SECONDS)
+        self.set_off_for(2.0, 3.0)
         self.reset("/gazebo/reset_world")
-        self.assertLess(self.distance_from(0.0, 0.0), 0.5)
         stamps = [message.header.stamp.to_sec() for message in self.truth]
         self.assertEqual(stamps, sorted(stamps), "time goes on")
         self.tell_initial_pose()
         self.assert_nodes_work()
 
     def test_reset_simulation_in_the_middle_of_a_goal(self):
-        self.start_goal(2.0, 3.0)
-        wait_until("the robot to set off", lambda: self.distance_from(0.0, 0.0) > 0.7, PATIENCE_SECONDS)
-        self.reset("/gazebo/reset_simulation")
-        wait_until("time to begin anew", lambda: self.truth[-1].header.stamp.to_sec() < 5.0, PATIENCE_SECONDS)
-        self.assertLess(self.distance_from(0.0, 0.0), 0.5)
+        self.set_off_for(2.0, 3.0)
+        last = self.truth[-1].header.stamp
+        first_anew = self.reset("/gazebo/reset_simulation")
+        self.assertLess(first_anew.header.stamp, last, "time begins anew")
+        self.assertLess(first_anew.header.stamp.to_sec(), 5.0)
         self.assert_status_is_told()
         self.tell_initial_pose()
         self.assert_nodes_work()
@@ -68,10 +65,22 @@ class TestReset(unittest.TestCase):
         client.send_goal(goal)
         return client
 
+    def set_off_for(self, x, y):
+        here = self.truth[-1].pose.pose.position
+        self.start_goal(x, y)
+        wait_until("the robot to set off", lambda: self.distance_from(here.x, here.y) > 0.7, PATIENCE_SECONDS)
+
     def reset(self, name):
+        """The first truth of the robot where it started; a moment later it may have driven on."""
         rospy.wait_for_service(name, 20.0)
+        first = len(self.truth)
         rospy.ServiceProxy(name, Empty)()
-        time.sleep(0.1)
+
+        def back():
+            return next((truth for truth in self.truth[first:] if distance(truth, 0.0, 0.0) < 0.5), None)
+
+        wait_until("the robot to be back", back, PATIENCE_SECONDS)
+        return back()
 
     def tell_initial_pose(self):
         """Where the robot was a moment ago, as a person would click it: its goal goes on meanwhile."""
@@ -107,8 +116,12 @@ class TestReset(unittest.TestCase):
         self.assertLess(self.distance_from(1.0, 0.3), 0.3)
 
     def distance_from(self, x, y):
-        position = self.truth[-1].pose.pose.position
-        return ((position.x - x) ** 2 + (position.y - y) ** 2) ** 0.5
+        return distance(self.truth[-1], x, y)
+
+
+def distance(truth, x, y):
+    position = truth.pose.pose.position
+    return math.hypot(position.x - x, position.y - y)
 
 
 if __name__ == "__main__":

@@ -43,16 +43,19 @@ class TestSimBridge(unittest.TestCase):
             for topic in ("cmd_vel", "mobile_base/commands/velocity")
         }
         cls.boxes = rospy.Publisher("sim_bridge/add_box", Marker, queue_size=1)
-        wait_until("the simulation", lambda: cls.scan.messages and cls.boxes.get_num_connections())
+        wait_until("scans", lambda: cls.scan.messages)
+        publishers = (*cls.commands.values(), cls.boxes)
+        wait_until("the simulation", lambda: all(one.get_num_connections() for one in publishers))
 
-    def drive(self, topic, v, omega, messages=25):
-        """Commands a speed for so many periods of the odometry; returns the last odometry."""
+    def drive(self, topic, v, omega):
+        """Commands a speed for a period of the odometry, which is returned."""
         command = Twist()
         command.linear.x, command.angular.z = v, omega
-        for _ in range(messages):
-            self.commands[topic].publish(command)
-            odometry = self.odom.next()
-        return odometry
+        self.commands[topic].publish(command)
+        return self.odom.next()
+
+    def turn_by(self, topic):
+        wait_until("a turn", lambda: abs(self.drive(topic, 0.0, 0.8).twist.twist.angular.z - 0.8) < 0.1)
 
     def test_every_topic_comes_at_its_rate_and_time_never_goes_back(self):
         self.assertTrue(np.allclose(periods(self.odom.following(50)), 0.02))
@@ -63,8 +66,7 @@ class TestSimBridge(unittest.TestCase):
         self.assertTrue(np.allclose(np.diff(times), 0.02))
 
     def test_simulated_time_passes_at_the_speed_asked_for(self):
-        factor = self.real_time_factor.next()
-        self.assertAlmostEqual(factor.data, 1.5, delta=0.25)
+        wait_until("1.5 times real time", lambda: abs(self.real_time_factor.next().data - 1.5) < 0.25)
 
     def test_frames_are_those_of_a_turtlebot(self):
         odometry = self.odom.next()
@@ -79,28 +81,32 @@ class TestSimBridge(unittest.TestCase):
             wait_until("its transform", lambda frame=frame: self.transforms.lookup("odom", frame) is not None)
 
     def test_odom_to_base_footprint_is_sent_with_the_odometry(self):
-        def transform():
-            sent = [one for message in self.tf.following(3) for one in message.transforms]
-            return next((one for one in sent if one.child_frame_id == "base_footprint"), None)
+        def parents():
+            sent = [one for message in list(self.tf.messages) for one in message.transforms]
+            return {one.header.frame_id for one in sent if one.child_frame_id == "base_footprint"}
 
-        wait_until("its transform", lambda: transform() is not None)
-        self.assertEqual(transform().header.frame_id, "odom")
+        wait_until("its transform", parents)
+        self.assertEqual(parents(), {"odom"})
 
     def test_both_command_topics_drive_the_robot_and_silence_stops_it(self):
         for topic in self.commands:
-            self.assertAlmostEqual(self.drive(topic, 0.0, 0.8).twist.twist.angular.z, 0.8, delta=0.1)
-            stopped = self.odom.following(60)[-1]
-            self.assertAlmostEqual(stopped.twist.twist.angular.z, 0.0, delta=0.05)
+            self.turn_by(topic)
+            wait_until("a stop", lambda: abs(self.odom.next().twist.twist.angular.z) < 0.05)
 
     def test_wheels_turn_in_joint_states(self):
-        self.drive("cmd_vel", 0.1, 0.0)
-        joints = self.joints.next()
-        self.assertEqual(joints.name, ["wheel_left_joint", "wheel_right_joint"])
-        self.assertGreater(min(joints.velocity), 1.0)
+        self.assertEqual(self.joints.next().name, ["wheel_left_joint", "wheel_right_joint"])
+
+        def wheels_turn():
+            self.drive("cmd_vel", 0.1, 0.0)
+            return min(self.joints.messages[-1].velocity) > 1.0
+
+        wait_until("both wheels to turn", wheels_turn)
 
     def test_a_command_that_is_not_a_number_stops_the_robot(self):
-        self.drive("cmd_vel", 0.0, 0.8)
-        self.assertAlmostEqual(self.drive("cmd_vel", math.nan, 0.8).twist.twist.angular.z, 0.0, delta=0.05)
+        self.turn_by("cmd_vel")
+        for _ in range(25):
+            odometry = self.drive("cmd_vel", math.nan, 0.8)
+        self.assertAlmostEqual(odometry.twist.twist.angular.z, 0.0, delta=0.05)
 
     def test_an_added_box_is_seen_and_what_is_touched_is_named(self):
         box = Marker(type=Marker.CUBE, ns="crate")
@@ -124,7 +130,7 @@ class TestSimBridge(unittest.TestCase):
 
     def _push_until(self, done):
         while not done.is_set():
-            self.drive("cmd_vel", 0.4, 0.0, messages=1)
+            self.drive("cmd_vel", 0.4, 0.0)
 
 
 if __name__ == "__main__":
