@@ -10,10 +10,12 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from dynamic_reconfigure.client import Client
 from geometry_msgs.msg import PoseArray, PoseWithCovarianceStamped
+from rosgraph_msgs.msg import Log
 from std_msgs.msg import Float32, String
 from std_srvs.srv import Empty
 from tf2_msgs.msg import TFMessage
 from toy_robot import BEAMS, ToyRobot
+from waiting import PATIENCE_SECONDS, wait_until
 
 from planar import Pose2, wrap
 from planar_ros.messages.conversion import SetMapArrays, frame_name, pose2_from_msg, pose2_to_msg
@@ -23,6 +25,8 @@ STEP = Pose2(0.2, 0.0, 0.0)
 TURN = Pose2(0.0, 0.0, 0.4)
 # Of the position and the heading of a tracked pose, metres and radians.
 NEAR, NEAR_ANGLE = 0.15, 0.1
+# As the node's transform_tolerance.
+POST_DATED = rospy.Duration(0.3)
 
 
 class Latest:
@@ -32,14 +36,14 @@ class Latest:
         self.messages = []
         self._subscriber = rospy.Subscriber(topic, kind, self.messages.append)
 
-    def wait(self, is_it, seconds=5.0):
+    def wait(self, is_it):
         """The first message for which ``is_it`` holds; fails if none comes."""
-        for _ in range(int(seconds / 0.02)):
-            for message in self.messages:
-                if is_it(message):
-                    return message
-            rospy.sleep(0.02)
-        raise AssertionError(f"no such message among {len(self.messages)}")
+
+        def found():
+            return next((message for message in list(self.messages) if is_it(message)), None)
+
+        wait_until("such a message", lambda: found() is not None)
+        return found()
 
 
 class AmclContractTest(unittest.TestCase):
@@ -50,21 +54,30 @@ class AmclContractTest(unittest.TestCase):
         cls.poses = Latest("amcl_pose", PoseWithCovarianceStamped)
         cls.transforms = Latest("/tf", TFMessage)
         cls.initial_pose = rospy.Publisher("initialpose", PoseWithCovarianceStamped, queue_size=2)
+        cls.words = Latest("/rosout", Log)
         for service in ("global_localization", "request_nomotion_update", "set_map"):
             rospy.wait_for_service(service, 20.0)
         rospy.wait_for_service("amcl/get_loggers", 20.0)
-        cls.robot.sense()
-        for _ in range(100):
+        wait_until("amcl_lite to listen", cls.initial_pose.get_num_connections)
+
+        def is_localized():
             cls.robot.sense()
             rospy.sleep(0.1)
-            if cls.poses.messages:
-                return
-        raise AssertionError("amcl_lite did not start")
+            return cls.poses.messages
+
+        wait_until("amcl_lite to start", is_localized)
+        cls.words.wait(lambda said: said.name == "/amcl")
 
     def setUp(self):
         self.set_pose(self.robot.base_in_map)
 
-    def set_pose(self, pose, frame="map", stamp=None, spread=0.1):
+    def set_pose(self, pose, **how):
+        """Tells a pose and waits until the node has taken or refused it."""
+        self.words.messages.clear()
+        self.tell_pose(pose, **how)
+        self.words.wait(lambda said: said.msg.startswith(("Setting pose", "Ignoring initial pose")))
+
+    def tell_pose(self, pose, frame="map", stamp=None, spread=0.1):
         message = PoseWithCovarianceStamped()
         message.header.frame_id = frame
         message.header.stamp = stamp or rospy.Time(0)
@@ -72,7 +85,6 @@ class AmclContractTest(unittest.TestCase):
         covariance = np.diag([spread**2, spread**2, 0, 0, 0, spread**2 / 4])
         message.pose.covariance = covariance.ravel().tolist()
         self.initial_pose.publish(message)
-        rospy.sleep(0.3)
 
     def estimate(self):
         """The pose that belongs to a new scan at which an update is due."""
@@ -109,15 +121,15 @@ class AmclContractTest(unittest.TestCase):
         self.estimate()
         for _ in range(3):
             stamp = self.robot.sense()
-            transform = self.map_to_odom(stamp + rospy.Duration(0.3))
+            transform = self.map_to_odom(stamp + POST_DATED)
             self.assertEqual(transform.header.frame_id, "map")
             rospy.sleep(0.05)
 
     def test_pose_and_cloud_are_latched(self):
         self.estimate()
         rospy.sleep(0.2)
-        pose = rospy.wait_for_message("amcl_pose", PoseWithCovarianceStamped, 2.0)
-        cloud = rospy.wait_for_message("particlecloud", PoseArray, 2.0)
+        pose = rospy.wait_for_message("amcl_pose", PoseWithCovarianceStamped, PATIENCE_SECONDS)
+        cloud = rospy.wait_for_message("particlecloud", PoseArray, PATIENCE_SECONDS)
         self.assertEqual(pose.header.stamp, self.poses.messages[-1].header.stamp)
         self.assertGreaterEqual(len(cloud.poses), 500)
         self.assertLess(pose2_from_msg(cloud.poses[0]).distance_to(self.robot.base_in_map), 1.0)
@@ -127,8 +139,7 @@ class AmclContractTest(unittest.TestCase):
         rospy.sleep(0.2)
         count = len(self.poses.messages)
         for _ in range(5):
-            self.robot.sense()
-            rospy.sleep(0.05)
+            self.map_to_odom(self.robot.sense() + POST_DATED)
         self.assertEqual(len(self.poses.messages), count)
         rospy.ServiceProxy("request_nomotion_update", Empty)()
         self.estimate()
@@ -141,10 +152,9 @@ class AmclContractTest(unittest.TestCase):
 
     def test_an_initial_pose_of_the_past_is_moved_on_by_odometry(self):
         then, pose_then = self.robot.sense(), self.robot.base_in_map
-        rospy.sleep(0.1)
+        self.map_to_odom(then + POST_DATED)
         self.robot.move(Pose2(0.0, 0.0, math.pi / 2))
-        self.robot.sense()
-        rospy.sleep(0.1)
+        self.map_to_odom(self.robot.sense() + POST_DATED)
         self.set_pose(pose_then, stamp=then, spread=0.01)
         self.assert_near(self.estimate(), self.robot.base_in_map)
 
@@ -157,7 +167,7 @@ class AmclContractTest(unittest.TestCase):
         for value in (math.nan, math.inf, 0.0, -1.0):
             self.robot.move(TURN)
             stamp = self.robot.sense(ranges=np.full(BEAMS, value, dtype=np.float32))
-            transform = self.map_to_odom(stamp + rospy.Duration(0.3)).transform
+            transform = self.map_to_odom(stamp + POST_DATED).transform
             self.assertTrue(math.isfinite(transform.translation.x + transform.rotation.w))
         self.robot.move(TURN)
         self.assert_near(self.estimate(), self.robot.base_in_map)
@@ -181,17 +191,19 @@ class AmclContractTest(unittest.TestCase):
 
     def test_the_pose_is_saved_as_the_next_start(self):
         self.estimate()
-        for _ in range(3):
-            rospy.sleep(0.15)
+
+        def is_saved():
             self.robot.sense()
-        rospy.sleep(0.3)
-        saved = [rospy.get_param("/amcl/initial_pose_" + name) for name in "xya"]
-        self.assertLess(Pose2(*saved).distance_to(self.robot.base_in_map), NEAR)
+            rospy.sleep(0.15)
+            saved = [rospy.get_param("/amcl/initial_pose_" + name) for name in "xya"]
+            return Pose2(*saved).distance_to(self.robot.base_in_map) < NEAR
+
+        wait_until("the pose to be saved", is_saved)
         self.assertGreater(rospy.get_param("/amcl/initial_cov_xx"), 0.0)
 
     def test_parameters_change_while_the_node_runs_and_come_back(self):
-        client = Client("amcl", timeout=5.0)
-        started_with = client.get_configuration(timeout=5.0)
+        client = Client("amcl", timeout=PATIENCE_SECONDS)
+        started_with = client.get_configuration(timeout=PATIENCE_SECONDS)
         self.assertEqual((started_with["max_particles"], started_with["transform_tolerance"]), (2000, 0.3))
         self.assertEqual(started_with["recovery_alpha_slow"], 0.001)
         self.estimate()
@@ -209,12 +221,15 @@ class AmclContractTest(unittest.TestCase):
     def test_diagnostics_tell_the_spread_and_the_quality(self):
         diagnostics = Latest("/diagnostics", DiagnosticArray)
         quality = Latest("amcl/localization_quality", Float32)
-        rospy.sleep(0.5)
-        for _ in range(12):
+
+        def is_sure():
             self.robot.move(TURN)
-            self.robot.sense()
-            rospy.sleep(0.1)
-        spread, fit = diagnostics.wait(lambda message: len(message.status) == 2).status
+            self.map_to_odom(self.robot.sense() + POST_DATED)
+            told = diagnostics.messages and quality.messages
+            return told and diagnostics.messages[-1].status[0].level == DiagnosticStatus.OK
+
+        wait_until("diagnostics and quality", is_sure)
+        spread, fit = diagnostics.messages[-1].status
         self.assertEqual((spread.name, spread.hardware_id), ("amcl: Standard deviation", "None"))
         keys = [value.key for value in spread.values]
         self.assertEqual(keys[:3], ["std_x", "std_y", "std_yaw"])
@@ -222,10 +237,11 @@ class AmclContractTest(unittest.TestCase):
         self.assertEqual((spread.level, spread.message), (DiagnosticStatus.OK, "OK"))
         self.assertEqual(fit.message, "ok")
         self.assertGreater(quality.messages[-1].data, 0.9)
-        self.assertEqual(rospy.wait_for_message("amcl/localization_state", String, 2.0).data, "ok")
+        state = rospy.wait_for_message("amcl/localization_state", String, PATIENCE_SECONDS)
+        self.assertEqual(state.data, "ok")
 
     def test_frames_are_sent_without_a_leading_slash(self):
-        transform = self.map_to_odom(self.robot.sense() + rospy.Duration(0.3))
+        transform = self.map_to_odom(self.robot.sense() + POST_DATED)
         self.assertEqual(transform.child_frame_id, frame_name(transform.child_frame_id))
 
     def test_messages_that_mean_nothing_leave_the_node_as_it_was(self):
@@ -233,7 +249,7 @@ class AmclContractTest(unittest.TestCase):
         for name in ("angle_min", "angle_increment", "range_max"):
             self.robot.sense(changed={name: math.nan})
         for far, spread in ((1e300, 0.1), (1e18, 0.1), (0.0, 1e150)):
-            self.set_pose(Pose2(far, 0.0), spread=spread)
+            self.tell_pose(Pose2(far, 0.0), spread=spread)
             self.robot.sense()
         self.poses.messages.clear()
         self.set_pose(self.robot.base_in_map)

@@ -18,7 +18,7 @@ from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg, g
 
 HOME = grid_from_picture("####\n#..#\n#?.#\n####", resolution=0.5, origin=Pose2(-1.0, -2.0, 0.5))
 OTHER = grid_from_picture("##\n#.", resolution=0.25)
-END_SECONDS = 60.0
+START_SECONDS, END_SECONDS = 30.0, 60.0
 
 
 def command(name, *arguments):
@@ -62,7 +62,7 @@ class MapLiteTest(unittest.TestCase):
 
     def test_a_map_is_latched_and_served(self):
         self.start("map_server", self.yaml, "_frame_id:=home")
-        message = rospy.wait_for_message("map", OccupancyGrid, 10.0)
+        message = rospy.wait_for_message("map", OccupancyGrid, START_SECONDS)
         self.assert_same(message, HOME)
         self.assertEqual(message.header.frame_id, "home")
         self.assertGreater(message.info.map_load_time, rospy.Time(0))
@@ -74,7 +74,7 @@ class MapLiteTest(unittest.TestCase):
     @unittest.skipIf(LoadMap is None, "this nav_msgs has no LoadMap")
     def test_change_map_answers_with_the_map_or_the_reason(self):
         self.start("map_server", self.yaml)
-        rospy.wait_for_service("change_map", 10.0)
+        rospy.wait_for_service("change_map", START_SECONDS)
         change_map = rospy.ServiceProxy("change_map", LoadMap)
         other = save_map(OTHER, self.folder / "other")
         response = change_map(f"file://{other}")
@@ -96,7 +96,7 @@ class MapLiteTest(unittest.TestCase):
 
     def test_an_image_with_a_resolution_is_a_map_too(self):
         self.start("map_server", self.folder / "home.pgm", "0.5")
-        message = rospy.wait_for_message("map", OccupancyGrid, 10.0)
+        message = rospy.wait_for_message("map", OccupancyGrid, START_SECONDS)
         self.assertEqual(grid_from_msg(message).cells.tolist(), HOME.cells.tolist())
         self.assertEqual(message.info.origin.position.x, 0.0)
 
@@ -114,7 +114,7 @@ class MapLiteTest(unittest.TestCase):
 
     def test_a_saved_map_loads_again_wherever_its_files_are_moved(self):
         self.start("map_server", self.yaml)
-        rospy.wait_for_message("map", OccupancyGrid, 10.0)
+        rospy.wait_for_message("map", OccupancyGrid, START_SECONDS)
         code, output = outcome("map_saver", "-f", self.folder / "saved")
         self.assertEqual(code, 0, output)
         elsewhere = self.folder / "elsewhere"

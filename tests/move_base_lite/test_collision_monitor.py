@@ -9,6 +9,7 @@ from geometry_msgs.msg import Twist
 from move_base_client import Heard
 from nav_msgs.msg import Odometry
 from std_msgs.msg import String
+from waiting import wait_until
 
 DRIVES = [(0.6, 0.0, 8.0), (-0.4, 0.6, 8.0), (0.6, -1.0, 6.0), (0.5, 0.3, 8.0), (-0.5, 0.0, 8.0)]
 
@@ -18,10 +19,8 @@ class TestCollisionMonitor(unittest.TestCase):
         state, odometry = Heard("collision_monitor/state", String), Heard("odom", Odometry)
         contacts = Heard("contacts", String)
         publisher = rospy.Publisher("cmd_vel_raw", Twist, queue_size=1)
-        odometry.wait(30.0)
-        until = rospy.get_time() + 10.0
-        while not publisher.get_num_connections() and rospy.get_time() < until:
-            rospy.sleep(0.1)
+        odometry.wait()
+        wait_until("the monitor", publisher.get_num_connections)
         for v, omega, seconds in DRIVES:
             command = Twist()
             command.linear.x, command.angular.z = v, omega

@@ -8,9 +8,11 @@ import actionlib
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
-from move_base_client import pose_at
+from move_base_client import START_SECONDS, pose_at
 from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseGoal
 from waiting import wait_until
+
+from planar_ros.calls.actions import server_is_ready
 
 GOALS = 5000
 MOST_TOLD = 40
@@ -20,7 +22,7 @@ SECONDS = 40.0
 class TestGoalStorm(unittest.TestCase):
     def test_a_goal_after_a_storm_of_goals_is_reached_soon(self):
         client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
-        self.assertTrue(client.wait_for_server(rospy.Duration(30.0)))
+        wait_until("move_base", lambda: server_is_ready(client), START_SECONDS)
         told = []
         rospy.Subscriber("move_base/status", GoalStatusArray, lambda list: told.append(len(list.status_list)))
         goals = rospy.Publisher("move_base/goal", MoveBaseActionGoal, queue_size=GOALS)

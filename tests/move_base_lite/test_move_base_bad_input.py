@@ -10,13 +10,14 @@ import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from geometry_msgs.msg import PoseStamped, Twist
-from move_base_client import Heard, MoveBaseTestCase, pose_at
+from move_base_client import START_SECONDS, Heard, MoveBaseTestCase, pose_at
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal, RecoveryStatus
 from nav_msgs.msg import OccupancyGrid, Path
 from nav_msgs.srv import GetPlan
 from roslib.packages import find_node
 from sensor_msgs.msg import PointCloud2
 from stage import Stage
+from waiting import wait_until
 
 from planar import Pose2
 from planar_ros.calls.actions import server_is_ready
@@ -47,17 +48,13 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
         rospy.sleep(2.0)
         assert not server_is_ready(client), "no localization"
         cls.stage.has_localization = True
-        assert client.wait_for_server(rospy.Duration(20.0))
+        wait_until("the server", lambda: server_is_ready(client), START_SECONDS)
 
     def setUp(self):
         self.stage.has_localization = self.stage.has_odometry = self.stage.has_scan = True
         self.stage.scan_frame, self.stage.cloud_xyz = "laser", None
         self.stage.base_in_odom, self.stage.odom_in_map = HERE, Pose2()
         rospy.sleep(1.0)
-
-    def result_of(self, seconds=30.0):
-        self.assertTrue(self.client.wait_for_result(rospy.Duration(seconds)), "no result")
-        return self.client.get_state(), self.client.get_goal_status_text()
 
     def assert_stands(self, after=0.3):
         """From ``after`` seconds on, nothing but zero velocities for a while."""
@@ -69,7 +66,7 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
     def assert_stops_when_cancelled(self):
         at = rospy.get_time()
         self.client.cancel_goal()
-        self.assertEqual(self.result_of(5.0)[0], GoalStatus.PREEMPTED)
+        self.assertEqual(self.result_of()[0], GoalStatus.PREEMPTED)
         self.wait_until(lambda: STOP in self.commands.since(at), 2.0)
         heard = enumerate(zip(self.commands.times, self.commands.messages))
         stop, when = next((index, when) for index, (when, command) in heard if when >= at and command == STOP)

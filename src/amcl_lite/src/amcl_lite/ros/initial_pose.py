@@ -36,8 +36,8 @@ class InitialPoses:
         motion = self._tf_bridge.motion_since(message.header.stamp)
         pose, covariance = pose2_from_msg(message.pose.pose) @ motion, _planar(message.pose.covariance)
         check_within(FARTHEST, "an initial pose", covariance=float(np.abs(covariance).max()))
-        rospy.loginfo("Setting pose (%.6f): %.3f %.3f %.3f", rospy.get_time(), pose.x, pose.y, pose.yaw)
         self._shared.set_pose(pose, covariance, force_update)
+        rospy.loginfo("Setting pose (%.6f): %.3f %.3f %.3f", rospy.get_time(), pose.x, pose.y, pose.yaw)
 
     def _on_initial_pose(self, message):
         self.take(message, self._shared.settings.force_update_after_initialpose)
