@@ -19,6 +19,7 @@ from std_srvs.srv import Empty
 from turtlesim.msg import Color, Pose
 from turtlesim.srv import Kill, SetPen, Spawn, TeleportAbsolute, TeleportRelative
 from visualization_msgs.msg import MarkerArray
+from waiting import PATIENCE_SECONDS
 
 MIDDLE, SIDE = 5.544445, 11.088889
 # So many poses in a row tell their rate.
@@ -35,7 +36,7 @@ MD5_SUMS = {
 }
 
 
-def wait_until(is_so, seconds=10.0):
+def wait_until(is_so, seconds=PATIENCE_SECONDS):
     """Whether it has become so in time."""
     deadline = time.monotonic() + seconds
     while not is_so():
@@ -50,18 +51,19 @@ class TurtlesimContractTest(unittest.TestCase):
     def setUpClass(cls):
         rospy.init_node("test_turtlesim_contract")
         rospy.wait_for_service("/reset", 30.0)
-        cls.cmd_vel = rospy.Publisher("/turtle1/cmd_vel", Twist, queue_size=1)
 
     def setUp(self):
         rospy.ServiceProxy("/reset", Empty)()
-        # The topics of turtle1 are new ones.
+        # The topics of turtle1 are new ones: a publisher from before would still count its old connection.
+        self.cmd_vel = rospy.Publisher("/turtle1/cmd_vel", Twist, queue_size=1)
+        self.addCleanup(self.cmd_vel.unregister)
         self.assertTrue(wait_until(lambda: self.cmd_vel.get_num_connections() > 0))
 
     def pose(self, turtle="turtle1"):
-        return rospy.wait_for_message(f"/{turtle}/pose", Pose, 5.0)
+        return rospy.wait_for_message(f"/{turtle}/pose", Pose, PATIENCE_SECONDS)
 
     def color(self):
-        color = rospy.wait_for_message("/turtle1/color_sensor", Color, 5.0)
+        color = rospy.wait_for_message("/turtle1/color_sensor", Color, PATIENCE_SECONDS)
         return color.r, color.g, color.b
 
     def tell(self, forward=0.0, turn=0.0):
@@ -104,9 +106,15 @@ class TurtlesimContractTest(unittest.TestCase):
         subscriber.unregister()
 
     def test_a_command_lasts_one_second(self):
+        velocities = []
+        heard = rospy.Subscriber(
+            "/turtle1/pose", Pose, lambda pose: velocities.append(pose.linear_velocity), queue_size=1000
+        )
+        self.addCleanup(heard.unregister)
+        self.assertTrue(wait_until(lambda: velocities))
         self.tell(forward=1.0)
-        self.assertTrue(wait_until(lambda: self.pose().linear_velocity == 1.0))
-        self.assertTrue(wait_until(lambda: self.pose().linear_velocity == 0.0))
+        self.assertTrue(wait_until(lambda: 1.0 in velocities))
+        self.assertTrue(wait_until(lambda: velocities[-1] == 0.0))
         self.assertAlmostEqual(self.pose().x, MIDDLE + 1.0, delta=0.05)
 
     def test_a_wall_stops_the_turtle(self):
@@ -152,7 +160,7 @@ class TurtlesimContractTest(unittest.TestCase):
 
     def test_rviz_can_see_turtles_and_strokes(self):
         rospy.ServiceProxy("/turtle1/teleport_relative", TeleportRelative)(2.0, 1.0)
-        markers = rospy.wait_for_message("/turtlesim/markers", MarkerArray, 5.0).markers
+        markers = rospy.wait_for_message("/turtlesim/markers", MarkerArray, PATIENCE_SECONDS).markers
         self.assertLessEqual({"turtles", "strokes"}, {marker.ns for marker in markers})
 
     def test_the_arrow_keys_drive_turtle1(self):
@@ -160,11 +168,14 @@ class TurtlesimContractTest(unittest.TestCase):
         teleop = subprocess.Popen(["rosrun", "turtlesim", "turtle_teleop_key"], stdin=terminal)
         try:
             self.assertTrue(wait_until(lambda: self.cmd_vel_publishers() > 1, 20.0))
-            time.sleep(0.5)  # for turtlesim to connect to a publisher it has only just heard of
-            os.write(keyboard, b"\x1b[A")
-            self.assertTrue(wait_until(lambda: self.pose().x > MIDDLE + 1.0))
+
+            def drives():
+                os.write(keyboard, b"\x1b[A")  # lost, as long as turtlesim has not connected
+                return self.pose().x > MIDDLE + 1.0
+
+            self.assertTrue(wait_until(drives))
             os.write(keyboard, b"q")
-            self.assertEqual(teleop.wait(10.0), 0)
+            self.assertEqual(teleop.wait(PATIENCE_SECONDS), 0)
         finally:
             teleop.kill()
             teleop.wait()
@@ -183,7 +194,7 @@ class TurtlesimContractTest(unittest.TestCase):
                 rospy.ServiceProxy("/paint/turtle1/set_pen", SetPen)(250, 0, 0, 4, 0)
                 rospy.ServiceProxy("/paint/turtle1/teleport_absolute", TeleportAbsolute)(9.0, 9.0, 0.0)
                 node.send_signal(signal.SIGINT)
-                node.wait(10.0)
+                node.wait(PATIENCE_SECONDS)
             finally:
                 node.kill()
                 node.wait()
