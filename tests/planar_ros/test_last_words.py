@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """What a node says at its end is heard, also by those who are slow to listen."""
 
+import signal
 import subprocess
 import time
 import unittest
@@ -21,10 +22,20 @@ class LastWordsTest(unittest.TestCase):
         every = [f"delivered {number}" for number in range(TIMES)]
         for number, word in enumerate(every):
             speak(f"_number:={number}")
-            wait_until(word, lambda: word in heard, 1.0)  # noqa: B023
+            wait_until(word, lambda: word in heard)  # noqa: B023
         wait_until("the slow listener", lambda: set(every) <= set(slow))
         # What is latched may come once more to one who connects just then.
         self.assertEqual([word for word in dict.fromkeys(slow) if word != "nearly"], every)
+
+    def test_what_is_to_be_said_at_the_end_is_heard_every_time(self):
+        for _ in range(TIMES):
+            heard = []
+            listener = rospy.Subscriber("farewell", String, lambda message: heard.append(message.data))  # noqa: B023
+            with subprocess.Popen(["rosrun", "home_service_tests", "node_of_last_words.py"]) as node:
+                wait_until("the node", lambda: heard == ["here"])  # noqa: B023
+                node.send_signal(signal.SIGINT)
+            wait_until("its last word", lambda: heard == ["here", "gone"])  # noqa: B023
+            listener.unregister()
 
     def test_nobody_is_waited_for_in_vain(self):
         started = time.monotonic()

@@ -5,6 +5,7 @@ import time
 from contextlib import suppress
 from typing import List
 
+import genpy
 import rosgraph
 import rospy
 
@@ -33,6 +34,16 @@ def wait_until_heard(*publishers: rospy.Publisher, patience: float = PATIENCE_SE
             each.shutdown(socket.SHUT_WR)
     for each in sockets:
         _wait_for_end(each, deadline)
+
+
+def say_at_end(publisher: rospy.Publisher, message: genpy.Message) -> None:
+    """Has whoever listens then hear ``message`` when the node ends: rospy alone would drop it."""
+
+    def say():
+        publisher.publish(message)
+        wait_until_heard(publisher)
+
+    rospy.on_shutdown(say)
 
 
 def _listeners(topic: str) -> int:

@@ -12,6 +12,7 @@ import rospy
 from geometry_msgs.msg import Twist
 
 from planar import PlanarError, Twist2
+from planar_ros.node.last_words import wait_until_heard
 from planar_ros.node.parameters import read_settings
 from planar_ros.node.progress import Progress
 from planar_ros.node.shell import run
@@ -40,7 +41,7 @@ CTRL-C to quit
 CHANGES_PER_BANNER = 15
 LISTENER_SECONDS = 60.0
 POLL_SECONDS = 0.02
-DELIVERY_SECONDS = 0.1
+DELIVERY_SECONDS = 2.0
 
 
 class Driver(Protocol):
@@ -131,8 +132,7 @@ class KeyboardTeleop:
                 return
             self._is_stopped = True
             self._publisher.publish(Twist())
-            # rospy delivers in another thread and would drop the message with the connection.
-            time.sleep(DELIVERY_SECONDS)
+            wait_until_heard(self._publisher, patience=DELIVERY_SECONDS)
 
     def _wait_for_listener(self):
         conditions = {

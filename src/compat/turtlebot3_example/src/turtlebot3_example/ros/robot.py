@@ -1,5 +1,6 @@
 """A robot that goes where it is told by odometry."""
 
+import time
 from typing import Callable, Iterable, Optional
 
 import rospy
@@ -8,9 +9,10 @@ from nav_msgs.msg import Odometry
 
 from planar import Pose2, Twist2
 from planar_ros.messages.conversion import pose2_from_msg
+from planar_ros.node.last_words import say_at_end
 from turtlebot3_example.going import velocity_to
 
-RATE, ODOMETRY_SECONDS = 15.0, 60.0
+RATE, ODOMETRY_SECONDS, POLL_SECONDS = 15.0, 60.0, 0.02
 
 
 class Robot:
@@ -19,15 +21,18 @@ class Robot:
     def __init__(self) -> None:
         self._base: Optional[Pose2] = None
         self._publisher = rospy.Publisher("cmd_vel", Twist, queue_size=5)
-        rospy.on_shutdown(self.stop)
+        say_at_end(self._publisher, Twist())
         rospy.Subscriber("odom", Odometry, self._see, queue_size=1)
 
     def base(self) -> Pose2:
         """Where it is in ``odom``. Raises rospy.ROSException if nobody says so."""
-        if self._base is None:
-            rospy.wait_for_message("odom", Odometry, ODOMETRY_SECONDS)
-            rospy.sleep(0.1)
-        assert self._base is not None
+        deadline = time.monotonic() + ODOMETRY_SECONDS
+        while self._base is None:
+            if rospy.is_shutdown():
+                raise rospy.ROSInterruptException("interrupted")
+            if time.monotonic() > deadline:
+                raise rospy.ROSException(f"no odometry on {rospy.resolve_name('odom')}")
+            time.sleep(POLL_SECONDS)
         return self._base
 
     def go(self, places: Iterable[Pose2], turns: bool, goes_on: Callable[[], bool] = lambda: True) -> bool:

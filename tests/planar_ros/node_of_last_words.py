@@ -1,0 +1,18 @@
+#!/usr/bin/env python3
+"""A node that says a word when it begins and another when it is ended."""
+
+import rospy
+from std_msgs.msg import String
+
+from planar_ros.node.last_words import say_at_end
+from planar_ros.node.shell import run
+
+
+def start():
+    words = rospy.Publisher("farewell", String, queue_size=10, latch=True)
+    words.publish("here")
+    say_at_end(words, String("gone"))
+    return words
+
+
+run("node_of_last_words", start)
