@@ -38,6 +38,8 @@ faults:
 `rosservice call /sim_bridge/add_fault scan_nan 5.0 0.0` has something go wrong for so many seconds (0: for
 ever), with that strength (0: the usual one). A kind is a class in a file of its own in
 `sim_bridge/faults/` and a line of `registry.py` there.
+
+What becomes of a mission whose nodes die: [killed nodes](killed_nodes.md).
 """
 
 

@@ -1,0 +1,146 @@
+#!/usr/bin/env python3
+"""Shows what becomes of a mission when each of its processes is killed by SIGKILL in turn.
+
+python3 tests/benchmarks/killed_nodes.py [--seed 61] [--only amcl ...] [--table docs/killed_nodes.md]
+"""
+
+import argparse
+import json
+import multiprocessing
+import os
+import re
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Dict, List, Optional
+
+import psutil
+from soak import ROOT, RUN_SECONDS, RUNS, Graph, Traces
+
+# Of each node that comes back, a topic on which it is heard as soon as it is at work again.
+WORK = {
+    "amcl": "/tf",
+    "move_base": "/cmd_vel",
+    "pick_objects": "/pick_objects/mission_state",
+    "map_server": "/map",
+    "add_markers": "/visualization_marker",
+    "robot_state_publisher": "/tf_static",
+}
+FATAL = ("sim_bridge", "rosmaster", "roslaunch")
+# A mission is over too soon otherwise; the robot is on its way by then.
+SPEED, DRIVING_SECONDS = 4, 2.0
+# What a node has sent before its end is heard by then, and none is back so soon.
+LAST_WORDS_SECONDS = 0.3
+PAGE = """# Killed nodes
+
+What becomes of `./scripts/home_service.sh --mission map/mission.yaml --speed {speed}` when one of its
+processes is killed (`kill -9`) while the robot drives: wall seconds until the node is heard at work again,
+and until the run has ended; and what of the run is left then, processes, sockets, temporary files. Made by
+`python3 tests/benchmarks/killed_nodes.py --seed {seed} --table docs/killed_nodes.md`.
+
+| killed | at work again, s | ended after, s | exit code | what the run says | left |
+| --- | --- | --- | --- | --- | --- |
+{rows}
+
+A node that has come back goes on with what it has left at the master: amcl with its pose, pick_objects with
+how far its deliveries are and what is carried. Each may die three times. Without the simulator, the master
+or roslaunch there is no run. What else goes wrong: [faults](faults.md).
+"""
+
+
+@dataclass(frozen=True)
+class Fate:
+    """What became of a run; ``back``: seconds until the node that was killed was heard again."""
+
+    killed: str
+    back: Optional[float]
+    ended: float
+    code: int
+    reason: str
+    left: int
+
+    @property
+    def row(self) -> str:
+        back = "" if self.back is None else f"{self.back:.1f}"
+        told = (self.killed, back, f"{self.ended:.1f}", self.code, self.reason, self.left)
+        return f"| `{told[0]}` | " + " | ".join(map(str, told[1:])) + " |"
+
+
+def fate_of(killed: str, seed: int) -> Fate:
+    """For a process of its own: rospy knows one master."""
+    traces = Traces()
+    mission = ("--mission", str(ROOT / "map/mission.yaml"), "--speed", str(SPEED), "--seed", str(seed))
+    graph = Graph(traces, "home_service.sh", *mission)
+    graph.wait_for("(driving to)")
+    folder = next((Path(traces.environment["TMPDIR"]) / RUNS).iterdir())
+    heard = _listen(killed, folder) if killed in WORK else []
+    time.sleep(DRIVING_SECONDS)
+    for process in _processes_of(graph, killed):
+        process.kill()
+    killed_at = time.monotonic()
+    code = _wait(graph)
+    ended = time.monotonic() - killed_at
+    back = next((moment - killed_at for moment in heard if moment > killed_at + LAST_WORDS_SECONDS), None)
+    reason = json.loads((folder / "result.json").read_text())["reason"]
+    return Fate(killed, back, ended, code, reason.replace(f", see {folder / 'log'}", ""), len(traces.left()))
+
+
+def _wait(graph: Graph) -> int:
+    try:
+        return graph.process.wait(RUN_SECONDS)
+    except subprocess.TimeoutExpired:
+        return graph.end()
+
+
+def _listen(node: str, folder: Path) -> List[float]:
+    """A list that grows by the moments at which the node is heard at work."""
+    import rospy
+
+    log = (folder / "log/roslaunch.log").read_text()
+    uri = re.search(r"ROS_MASTER_URI=(http://[\d.:]+)", log)
+    assert uri is not None
+    os.environ.update(ROS_MASTER_URI=uri[1], ROS_IP="127.0.0.1")
+    rospy.init_node("killer", anonymous=True, disable_signals=True)
+    heard: List[float] = []
+
+    def hear(message):
+        if message._connection_header["callerid"] == f"/{node}":
+            heard.append(time.monotonic())
+
+    rospy.Subscriber(WORK[node], rospy.AnyMsg, hear)
+    return heard
+
+
+def _processes_of(graph: Graph, name: str) -> List[psutil.Process]:
+    """Those of a node, or of one of ROS' own programs."""
+    found = []
+    for process in psutil.Process(graph.process.pid).children(recursive=True):
+        words = process.cmdline()
+        if f"__name:={name}" in words or any(Path(word).name == name for word in words[:2]):
+            found.append(process)
+    return found
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seed", type=int, default=61, help="default: 61")
+    parser.add_argument("--only", nargs="+", default=[*WORK, *FATAL], choices=[*WORK, *FATAL], metavar="NODE")
+    parser.add_argument("--table", type=Path, help="Markdown file for the table", metavar="FILE")
+    options = parser.parse_args()
+    fates: Dict[str, Fate] = {}
+    for name in options.only:
+        with multiprocessing.Pool(1) as pool:
+            fates[name] = pool.apply(fate_of, (name, options.seed))
+        print(fates[name].row, flush=True)
+    if options.table:
+        rows = "\n".join(fate.row for fate in fates.values())
+        options.table.write_text(PAGE.format(speed=SPEED, seed=options.seed, rows=rows))
+    survivors = [name for name in WORK if name in fates]
+    is_well = all(fates[name].code == 0 and fates[name].back is not None for name in survivors)
+    return int(not is_well or any(fate.left for fate in fates.values()))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
