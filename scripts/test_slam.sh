@@ -3,17 +3,18 @@
 #
 # Starts home and SLAM; the robot is driven with the keys of the terminal or of a pipe, such as
 #   echo i:2.0 j:1.5 | ./scripts/test_slam.sh
-# or by itself. Saves the map at the end. Sets everything up first if need be.
+# at the page in the browser, or by itself. Saves the map at the end. Sets everything up first if need be.
 # Exit code: 0 success, 1 failure, 2 bad input, 130 interrupted.
 #
-#   --drive WHO      keys, or auto: the robot explores by itself (default: keys)
+#   --drive WHO      keys; page: in the browser, until Ctrl-C, --web is implied; auto: the robot explores by itself
+#                    (default: keys)
 #   --save STEM      write STEM.pgm and STEM.yaml (default: map in the run folder)
 #   --rviz           show it in rviz, where there is a display
 #   --web            show it in the browser: prints the URL of the page (docs/cockpit.md)
 #   --web-port [ADDRESS:]PORT
 #                    where that page is served (default: a free port of 127.0.0.1); --web is implied
 #   --speed N        1 real time, N times that, 0 as fast as the nodes keep up
-#                    (default: with keys or --rviz 1, else 0)
+#                    (default: 1; with --drive auto and no view 0)
 #   --world FILE     SDF world (default: map/home.world)
 #   --robot NAME     robot profile of sim_bridge (default: turtlebot_lidar)
 #   --seed N         seed of every noise (default: 0)

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import List, Optional
 
 import numpy as np
+from helpers.command_line import seeds
 
 from explorer_lite import Explorer, ExplorerSettings, Finish, GoalReached, GoalRefused, GoTo
 from home_service.judging.map_truth import LEAST_PRECISION, LEAST_RECALL, score_against_world
@@ -217,18 +218,13 @@ def _one(options, world: World, robot: RobotProfile, seed: int) -> Mapped:
 
 def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seeds", type=_seeds, default=range(10), help="such as 0-9 (default) or 7")
+    parser.add_argument("--seeds", type=seeds, default=range(10), help="such as 0-9 (default) or 7")
     parser.add_argument("--world", type=Path, default=ROOT / "map/home.world", help="default: the home")
     parser.add_argument("--robot", default="turtlebot_lidar", help="profile (default: turtlebot_lidar)")
     parser.add_argument("--maps", type=Path, metavar="FOLDER", help="keep the maps there")
     parser.add_argument("--json", type=Path, help="write the figures here")
     parser.add_argument("--mission", type=Path, metavar="FILE", help="drive this on each map")
     return parser.parse_args()
-
-
-def _seeds(text: str) -> range:
-    first, _, last = text.partition("-")
-    return range(int(first), int(last or first) + 1)
 
 
 if __name__ == "__main__":

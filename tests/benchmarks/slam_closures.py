@@ -19,6 +19,7 @@ from typing import List, Tuple
 
 import numpy as np
 from helpers.bags import START
+from helpers.command_line import seeds
 from helpers.drives import Sighting
 from slam import relation_errors
 from slam_logs import DRIVES, made, relations_of
@@ -144,14 +145,9 @@ def _line(one: Closures) -> str:
 def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("log", choices=[*DRIVES, "site"], help="which logs")
-    parser.add_argument("--seeds", type=_seeds, default=range(1), help="such as 100-109 (default: 0)")
+    parser.add_argument("--seeds", type=seeds, default=range(1), help="such as 100-109 (default: 0)")
     parser.add_argument("--json", type=Path, help="write the figures here")
     return parser.parse_args()
-
-
-def _seeds(text: str) -> range:
-    first, _, last = text.partition("-")
-    return range(int(first), int(last or first) + 1)
 
 
 if __name__ == "__main__":

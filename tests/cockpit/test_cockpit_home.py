@@ -15,9 +15,9 @@ from browser import Browser
 from gazebo_msgs.msg import ModelStates
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped, Twist
 from nav_msgs.msg import Odometry
+from seeing import pixel
 from waiting import wait_until
 
-from cockpit.page.server import CAMERA, FIELD_OF_VIEW, LOOK_AT
 from cockpit.process import FREE_PORT, CockpitProcess
 from teleop_lite.teleop import RAMP
 
@@ -70,7 +70,7 @@ class CockpitHomeTest(unittest.TestCase):
         self.page.click("Drive")
         wait_until("a robot that takes goals", lambda: _subscribers("/move_base_simple/goal"), 60.0)
         self.aim("Goal", "Press on the floor")
-        self.page.click_at(*self.pixel(*GOAL))
+        self.page.click_at(*pixel(self.page, *GOAL))
         self.page.wait_for("goal sent")
         wait_until("the goal", lambda: "/move_base_simple/goal" in self.newest)
         goal = self.newest["/move_base_simple/goal"].pose.position
@@ -83,7 +83,7 @@ class CockpitHomeTest(unittest.TestCase):
             "standing", lambda: abs(self.newest["/base_pose_ground_truth"].twist.twist.linear.x) < 0.01
         )
         x, y = self.truth()
-        self.page.drag(self.pixel(x, y), self.pixel(x, y + 1.0))
+        self.page.drag(pixel(self.page, x, y), pixel(self.page, x, y + 1.0))
         self.page.wait_for("pose estimate sent")
         wait_until("the estimate", lambda: "/initialpose" in self.newest)
         told = self.newest["/initialpose"].pose.pose
@@ -93,7 +93,7 @@ class CockpitHomeTest(unittest.TestCase):
 
     def test_4_a_box_is_dropped_where_it_was_clicked(self):
         self.aim("Box", "a box is dropped there")
-        self.page.click_at(*self.pixel(-0.5, 1.0))
+        self.page.click_at(*pixel(self.page, -0.5, 1.0))
         self.page.wait_for("dropped")
         wait_until("the box", lambda: self.box() is not None)
         self.assertLess(math.hypot(self.box().x + 0.5, self.box().y - 1.0), 0.2)
@@ -101,7 +101,7 @@ class CockpitHomeTest(unittest.TestCase):
     def test_5_furniture_is_moved_to_where_it_was_pressed(self):
         self.aim("Move", "Press where the thing is to stand")
         self.page.choose("Thing", "armchair")
-        self.page.drag(self.pixel(-1.0, -3.2), self.pixel(-1.0, -2.2))
+        self.page.drag(pixel(self.page, -1.0, -3.2), pixel(self.page, -1.0, -2.2))
         self.page.wait_for("armchair moved to")
         wait_until("the armchair", lambda: self.place_of("armchair").y < -2.9)
         self.assertLess(math.hypot(self.place_of("armchair").x + 1.0, self.place_of("armchair").y + 3.2), 0.2)
@@ -197,21 +197,6 @@ class CockpitHomeTest(unittest.TestCase):
         states = self.newest["/gazebo/model_states"]
         places = [pose for name, pose in zip(states.name, states.pose) if name.startswith(model)]
         return places[0].position if places else None
-
-    def pixel(self, x, y):
-        """Where a place of the floor is on the page, seen by the camera as it is at first."""
-        forward = (LOOK_AT - CAMERA) / np.linalg.norm(LOOK_AT - CAMERA)
-        right = np.cross(forward, (0.0, 0.0, 1.0))
-        right /= np.linalg.norm(right)
-        seen = np.array((x, y, 0.0)) - CAMERA
-        depth = seen @ forward
-        left, top, width, height = self.page.evaluate(
-            "(({x, y, width, height}) => [x, y, width, height])"
-            "(document.querySelector('canvas').getBoundingClientRect())"
-        )
-        scale = height / 2.0 / math.tan(FIELD_OF_VIEW / 2.0) / depth
-        across, up = seen @ right * scale, seen @ np.cross(right, forward) * scale
-        return left + width / 2.0 + across, top + height / 2.0 - up
 
 
 def _subscribers(topic):

@@ -2,10 +2,8 @@
 """A recording in the browser: played, paused, and looked at from any place of it."""
 
 import os
-import signal
 import subprocess
 import tempfile
-import threading
 import unittest
 from pathlib import Path
 
@@ -13,6 +11,7 @@ import rosbag
 import rospy
 import rostest
 from browser import Browser
+from command import Command
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from nav_msgs.msg import Path as PathMsg
 from rosgraph_msgs.msg import Clock
@@ -34,7 +33,10 @@ class CockpitReplayTest(unittest.TestCase):
 
     def test_a_recording_is_looked_at_from_any_place(self):
         record(self.folder / "drive.bag")
-        with Showing(self.folder / "drive.bag", self.folder / "runs") as showing, Browser() as browser:
+        bag, runs = self.folder / "drive.bag", self.folder / "runs"
+        with Command(SCRIPTS / "cockpit.sh", bag, "--output", runs) as showing, Browser() as browser:
+            os.environ["ROS_MASTER_URI"] = showing.told("ROS_MASTER_URI=")
+            rospy.init_node("looker_on", disable_signals=True)
             page = browser.open(showing.url, 1400, 900)
             page.wait_for("Replay", "playing", seconds=60.0)
             page.click("Pause")
@@ -61,36 +63,6 @@ class CockpitReplayTest(unittest.TestCase):
             done = subprocess.run(command, capture_output=True, text=True, timeout=END_SECONDS)
             self.assertEqual(done.returncode, 2, done.stdout)
             self.assertIn(f"{name}: {why}", done.stderr)
-
-
-class Showing:
-    """``cockpit.sh`` with a recording, from its URL to Ctrl-C."""
-
-    def __init__(self, bag, output):
-        self._process = subprocess.Popen(
-            [str(SCRIPTS / "cockpit.sh"), str(bag), "--output", str(output)],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            text=True,
-        )
-        self._lines = []
-        threading.Thread(target=lambda: self._lines.extend(self._process.stdout), daemon=True).start()
-
-    def __enter__(self):
-        wait_until("the URL", lambda: self._told("cockpit: ") and self._told("ROS_MASTER_URI="), 90.0)
-        self.url = self._told("cockpit: ")
-        os.environ["ROS_MASTER_URI"] = self._told("ROS_MASTER_URI=")
-        rospy.init_node("looker_on", disable_signals=True)
-        return self
-
-    def __exit__(self, *_):
-        self._process.send_signal(signal.SIGINT)
-        self._process.wait(END_SECONDS)
-        print("".join(self._lines))
-
-    def _told(self, beginning):
-        lines = [line.strip() for line in list(self._lines)]
-        return next((line[len(beginning) :] for line in lines if line.startswith(beginning)), None)
 
 
 class Heard:

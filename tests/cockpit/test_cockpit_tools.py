@@ -2,7 +2,6 @@
 """Each tool of the cockpit, worked as a person does: in a browser, beside a small graph."""
 
 import os
-import signal
 import subprocess
 import tempfile
 import threading
@@ -13,6 +12,7 @@ import rosgraph
 import rospy
 import rostest
 from browser import Browser
+from command import Command
 from std_msgs.msg import String
 from waiting import wait_until
 
@@ -203,15 +203,12 @@ class CockpitToolsTest(unittest.TestCase):
         self.assertIn("there is no 'rqt_dream' here", done.stderr)
 
     def assert_shows(self, command, *texts):
-        run = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-        line = run.stdout.readline()
-        self.assertTrue(line.startswith("cockpit: http"), line)
-        page = self.browser.open(line.split()[1])
-        page.wait_for(*texts)
-        self.assertEqual(page.errors, [])
-        page.close()
-        run.send_signal(signal.SIGINT)
-        self.assertEqual(run.wait(30.0), 0)
+        with Command(*command) as run:
+            page = self.browser.open(run.url)
+            page.wait_for(*texts)
+            self.assertEqual(page.errors, [])
+            page.close()
+            self.assertEqual(run.end(), 0)
 
 
 def nodes_of(topic):

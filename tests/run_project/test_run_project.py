@@ -15,6 +15,7 @@ from pathlib import Path
 
 import rostest
 from processes import processes_with
+from projects import remove_work_folder
 
 SCRIPT = Path(__file__).resolve().parents[2] / "scripts/run_project.sh"
 SAMPLE = Path(__file__).resolve().parent / "sample_project"
@@ -41,7 +42,7 @@ class RunProjectTest(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self._folder)
         self._checkout = self._folder / f"somebodys_project_{self._mark}"
         shutil.copytree(SAMPLE, self._checkout)
-        self.addCleanup(_remove_work_folder, self._checkout)
+        self.addCleanup(remove_work_folder, self._checkout)
 
     def test_a_project_is_built_run_and_judged_without_a_trace(self):
         hash_before = _hash_of(self._checkout)
@@ -88,11 +89,6 @@ class RunProjectTest(unittest.TestCase):
             stderr=subprocess.STDOUT,
             text=True,
         )
-
-
-def _remove_work_folder(checkout):
-    for folder in (SCRIPT.parents[1] / "build/projects").glob(f"{checkout.name}-*"):
-        shutil.rmtree(folder)
 
 
 def _hash_of(folder):

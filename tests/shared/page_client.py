@@ -28,6 +28,25 @@ CAMERA = {
 }
 
 
+def open_page(url, origin=None):
+    """The socket of a page that looks on. ``origin``: the site whose page it claims to be.
+
+    Raises InvalidHandshake if it is not let in.
+    """
+    site, _, token = url.partition("/?token=")
+    socket = connect(
+        site.replace("http", "ws") + "/",
+        origin=origin or site,
+        additional_headers={"Cookie": f"cockpit_{urlsplit(site).port}={token}"},
+        subprotocols=[Subprotocol(f"viser-v{viser.__version__}")],
+        max_size=None,
+        open_timeout=OPEN_SECONDS,
+        close_timeout=0.2,
+    )
+    socket.send(msgspec.msgpack.encode(CAMERA))
+    return socket
+
+
 class PageClient:
     """``told``: the notes that it was shown; ``controls``: the number of each control by its label.
 
@@ -36,24 +55,14 @@ class PageClient:
     """
 
     def __init__(self, url, origin=None):
-        """Raises InvalidHandshake if it is not let in. ``origin``: the site whose page it claims to be."""
-        site, _, token = url.partition("/?token=")
-        self._socket = connect(
-            site.replace("http", "ws") + "/",
-            origin=origin or site,
-            additional_headers={"Cookie": f"cockpit_{urlsplit(site).port}={token}"},
-            subprotocols=[Subprotocol(f"viser-v{viser.__version__}")],
-            max_size=None,
-            open_timeout=OPEN_SECONDS,
-            close_timeout=0.2,
-        )
+        """Raises InvalidHandshake if it is not let in; see ``open_page``."""
+        self._socket = open_page(url, origin)
         self.protocol = self._socket.subprotocol
         self.told, self.controls, self.texts, self.things = [], {}, {}, set()
         self._options = {}
         self.pictures = 0
         self.is_open = True
         threading.Thread(target=self._read, daemon=True).start()
-        self.send(CAMERA)
 
     def __enter__(self):
         return self

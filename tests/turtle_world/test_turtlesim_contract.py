@@ -161,7 +161,7 @@ class TurtlesimContractTest(unittest.TestCase):
     def test_rviz_can_see_turtles_and_strokes(self):
         rospy.ServiceProxy("/turtle1/teleport_relative", TeleportRelative)(2.0, 1.0)
         markers = rospy.wait_for_message("/turtlesim/markers", MarkerArray, PATIENCE_SECONDS).markers
-        self.assertLessEqual({"turtles", "strokes"}, {marker.ns for marker in markers})
+        self.assertLessEqual({"floor", "turtles", "strokes"}, {marker.ns for marker in markers})
 
     def test_the_arrow_keys_drive_turtle1(self):
         keyboard, terminal = pty.openpty()

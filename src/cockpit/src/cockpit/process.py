@@ -8,7 +8,7 @@ import sys
 import threading
 import time
 from pathlib import Path
-from typing import List, Mapping, Optional
+from typing import List, Mapping, Optional, Sequence
 
 from cockpit.errors import CockpitError, PortError
 
@@ -22,7 +22,7 @@ PR_SET_PDEATHSIG = 1
 class CockpitProcess:
     """Serves the page of the graph of ``ROS_MASTER_URI``, whose master may come later; logs to ``log``.
 
-    ``tool``: that is open at first.
+    ``tool``: that is open at first. ``prefix``: before its command, as that of a file system of its own.
     Raises PortError if it cannot be served at ``where``, [ADDRESS:]PORT, CockpitError if it does not start.
     """
 
@@ -32,12 +32,13 @@ class CockpitProcess:
         log: Path,
         environment: Optional[Mapping[str, str]] = None,
         tool: Optional[str] = None,
+        prefix: Sequence[str] = (),
     ):
         self._lines: List[str] = []
         self._log = log
         opened = [] if tool is None else ["--tool", tool]
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "cockpit.ros.node", "--web-port", where, *opened],
+            [*prefix, sys.executable, "-m", "cockpit.ros.node", "--web-port", where, *opened],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,

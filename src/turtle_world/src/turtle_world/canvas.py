@@ -37,13 +37,14 @@ class Stroke:
 
 
 class Canvas:
-    """The floor; ``strokes`` are all lines on it, older ones first."""
+    """The floor, of the color ``background``; ``strokes`` are all lines on it, older ones first."""
 
     def __init__(self, background: Color = BACKGROUND):
         self.clear(background)
 
     def clear(self, background: Color) -> None:
         """Wipes everything."""
+        self.background = background
         self.strokes: List[Stroke] = []
         self._image = Image.new("RGB", (PIXELS, PIXELS), background)
         self._draw = ImageDraw.Draw(self._image)

@@ -164,9 +164,9 @@ def _job(
     root.mkdir(exist_ok=True)
     file = workspace.checkout / script
     shell = [] if file.read_bytes()[:2] == b"#!" else ["bash"]
-    command = [*prefix(mounts, root), *shell, str(file), *options.script_arguments]
+    command = [*shell, str(file), *options.script_arguments]
     variables = {**environment(workspace), LOGS: str(logs), **({SHOWN: "1"} if options.rviz else {})}
-    return Job(command, tree / placement.start, variables, work)
+    return Job(command, tree / placement.start, variables, work, prefix(mounts, root))
 
 
 def _stand_in_for_ros(folder: Path, workspace: Workspace) -> Path:
@@ -195,7 +195,7 @@ def run_job(
         with run:
             if options.record:
                 run.record(folder / "run.bag")
-            failure = _watch(run, options, folder, display)
+            failure = _watch(run, job, options, folder, display)
     except RunInterruptedError as error:
         failure, is_interrupted = str(error), True
     ledger = run.observer.ledger
@@ -225,11 +225,12 @@ def _judged(run: ProjectRun, failure: Optional[str], is_of_home_service: bool, o
     return run.person.outcome.verdict(failure)
 
 
-def _watch(run: ProjectRun, options: Options, folder: Path, display: Display) -> Optional[str]:
+def _watch(run: ProjectRun, job: Job, options: Options, folder: Path, display: Display) -> Optional[str]:
     """Why the project cannot go on, or None; with its page in the browser beside, if that is wanted."""
     if not options.is_on_the_web:
         return run.watch(options.timeout)
-    cockpit = CockpitProcess(options.web_port or FREE_PORT, folder / "log" / "cockpit.log")
+    log = folder / "log" / "cockpit.log"
+    cockpit = CockpitProcess(options.web_port or FREE_PORT, log, run.environment(), prefix=job.prefix)
     try:
         display.say(f"cockpit: {cockpit.url}")
         failure = run.watch(options.timeout)

@@ -1,9 +1,11 @@
 """Maps made by hand, or by a robot that explores the world."""
 
+import os
 import subprocess
+from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
-from typing import Optional
+from typing import Callable, Optional
 
 import actionlib
 from actionlib_msgs.msg import GoalStatus
@@ -20,18 +22,21 @@ from planar import Pose2, SettingsError, load_map
 from planar_ros.calls.actions import goal_is_over, server_is_ready
 from supervision.display import Display
 from supervision.errors import LaunchError
+from supervision.interruption import RunInterruptedError
 
 SAVE_SECONDS = 30.0
+# Has the robot driven until the map is made; why that failed, or None.
+Driver = Callable[[Run, Referee], Optional[str]]
 TELEOP = ["rosrun", "teleop_lite", "turtlebot_teleop_key", "turtlebot_teleop_keyboard/cmd_vel:=cmd_vel"]
 
 
-def make_map(options: MappingOptions, launch: LaunchPlan, by_keys: bool) -> int:
-    """Runs SLAM, driven by keys or by the explorer, and saves the map; returns the exit code."""
+def make_map(options: MappingOptions, launch: LaunchPlan, drive: Driver) -> int:
+    """Runs SLAM while ``drive`` does, and saves the map; returns the exit code."""
     _check_place_to_save(options.save)
     display = Display()
     referee = Referee({}, display.say)
     with Run(options, launch, referee, RunRecorder({}), display) as run:
-        failure = _drive_by_keys(run) if by_keys else _explore(run, referee)
+        failure = drive(run, referee)
         path = save_map(run.folder, options.save)
         return run.conclude(Verdict(failure is None, failure or f"map saved in {path}"))
 
@@ -42,7 +47,7 @@ def make_scored_map(options: MappingOptions, launch: LaunchPlan, stage: Stage) -
     display = Display()
     referee = Referee({}, display.say)
     with Run(options, launch, referee, RunRecorder({}), display) as run:
-        failure = _explore(run, referee)
+        failure = explore(run, referee)
         path = save_map(run.folder, options.save)
         way_home = referee.distance_from(Pose2())
         score = score_against_world(load_map(path), stage.world, stage.robot)
@@ -51,8 +56,8 @@ def make_scored_map(options: MappingOptions, launch: LaunchPlan, stage: Stage) -
         return run.conclude(verdict, map=str(path), **asdict(score))
 
 
-def _explore(run: Run, referee: Referee) -> Optional[str]:
-    """Has the robot explore and return; why that failed, or None."""
+def explore(run: Run, referee: Referee) -> Optional[str]:
+    """A driver: the robot explores by itself and returns."""
     client = actionlib.SimpleActionClient("explore", ExploreAction)
     failure = run.watch(lambda: server_is_ready(client))
     if failure:
@@ -71,14 +76,23 @@ def _explore(run: Run, referee: Referee) -> Optional[str]:
     return failure
 
 
-def _drive_by_keys(run: Run) -> Optional[str]:
-    """Leaves terminal or pipe to the keyboard teleop until it ends; why the run cannot go on, or None."""
+def drive_by_keys(run: Run, _referee: Referee) -> Optional[str]:
+    """A driver: terminal or pipe are left to the keyboard teleop until it ends."""
     run.display.hush()
     teleop = subprocess.Popen(TELEOP)
     failure = run.watch(lambda: teleop.poll() is not None)
     if failure is None and teleop.returncode != 0:
         raise LaunchError("the keyboard teleop has failed", is_bad_input=teleop.returncode == 2)
     return failure
+
+
+def drive_at_the_page(run: Run, _referee: Referee) -> Optional[str]:
+    """A driver: a person drives in the browser until Ctrl-C."""
+    run.display.say(f"ROS_MASTER_URI={os.environ['ROS_MASTER_URI']}")
+    run.display.say("drive at the page; Ctrl-C ends, and saves the map")
+    with suppress(RunInterruptedError):
+        return run.watch(lambda: False)
+    return None
 
 
 def _check_place_to_save(stem: Optional[Path]) -> None:

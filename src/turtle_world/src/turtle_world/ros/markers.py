@@ -1,4 +1,4 @@
-"""The turtles and their strokes for rviz, in the frame world."""
+"""The turtles, their floor and their strokes for rviz and the cockpit, in the frame world."""
 
 import math
 
@@ -7,7 +7,7 @@ from geometry_msgs.msg import Point, Quaternion
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
-from turtle_world.canvas import PIXELS_PER_METRE, Color
+from turtle_world.canvas import PIXELS_PER_METRE, SIDE, Color
 from turtle_world.physics import HEIGHT, RADIUS
 from turtle_world.world import TurtleWorld
 
@@ -15,6 +15,7 @@ FRAME = "world"
 BODY_COLOR: Color = (0x2E, 0x2E, 0x2E)
 # Strokes lie a little above the floor.
 STROKE_HEIGHT = 0.01
+FLOOR_THICKNESS = 0.02
 
 
 class Markers:
@@ -26,11 +27,19 @@ class Markers:
     def show(self, world: TurtleWorld) -> None:
         if self._publisher.get_num_connections() == 0:
             return
-        everything = [Marker(action=Marker.DELETEALL)]
+        everything = [Marker(action=Marker.DELETEALL), _floor(world.canvas.background)]
         for number, name in enumerate(world.names):
             everything += [_body(number, world.place_of(name)), _nose(number, world.place_of(name))]
         everything += [_line(number, stroke) for number, stroke in enumerate(world.canvas.strokes)]
         self._publisher.publish(everything)
+
+
+def _floor(color):
+    marker = _marker("floor", 0, Marker.CUBE, color)
+    marker.scale.x = marker.scale.y = SIDE
+    marker.scale.z = FLOOR_THICKNESS
+    marker.pose.position = Point(0.5 * SIDE, 0.5 * SIDE, -0.5 * FLOOR_THICKNESS)
+    return marker
 
 
 def _body(number, place):

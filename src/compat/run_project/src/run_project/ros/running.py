@@ -7,7 +7,7 @@ import subprocess
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Mapping, Optional
+from typing import Dict, List, Mapping, Optional, Sequence
 
 import psutil
 import rospy
@@ -42,12 +42,16 @@ SETUP_TOOL = "_setup_util.py"
 
 @dataclass(frozen=True)
 class Job:
-    """A command in a folder, with an environment; ``work`` is where the project's own files are."""
+    """A command in a folder, with an environment; ``work`` is where the project's own files are.
+
+    ``prefix``: before a command for it to see the project's folders where its files name them.
+    """
 
     command: List[str]
     folder: Path
     environment: Mapping[str, str]
     work: Path
+    prefix: Sequence[str] = ()
 
 
 class ProjectRun:
@@ -96,6 +100,11 @@ class ProjectRun:
             helper.send_signal(signal.SIGINT)
         psutil.wait_procs(psutil.Process().children(recursive=True), SIGINT_SECONDS)
         end_descendants(2.0)
+
+    def environment(self) -> Dict[str, str]:
+        """Of what sees the graph as the project does."""
+        own = {name: os.environ[name] for name in ("ROS_MASTER_URI", "ROS_LOG_DIR")}
+        return {**self._job.environment, **own}
 
     def record(self, bag: Path) -> None:
         """Records everything but pictures into a bag, from now on."""
@@ -168,14 +177,11 @@ class ProjectRun:
             )
 
     def _start_script(self) -> "subprocess.Popen[bytes]":
-        environment: Dict[str, str] = dict(self._job.environment)
-        for name in ("ROS_MASTER_URI", "ROS_LOG_DIR"):
-            environment[name] = os.environ[name]
         with (self._logs / "script.log").open("w") as log:
             return subprocess.Popen(
-                self._job.command,
+                [*self._job.prefix, *self._job.command],
                 cwd=str(self._job.folder),
-                env=environment,
+                env=self.environment(),
                 stdin=subprocess.PIPE,
                 stdout=log,
                 stderr=subprocess.STDOUT,
