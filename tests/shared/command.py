@@ -29,9 +29,10 @@ class Command:
     def __enter__(self):
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, kind, *_):
         self.end()
-        print("".join(self.lines))
+        if kind is not None:
+            print("".join(self.lines))
 
     @property
     def url(self):
