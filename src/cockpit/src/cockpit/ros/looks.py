@@ -15,7 +15,7 @@ WORLD, ROBOT = "world", "robot"
 
 def read_look(kind: str, text: str) -> Look:
     """Of the SDF file named ``text``, or of the robot whose URDF it is. Raises CockpitError."""
-    command = [sys.executable, "-m", __name__, kind]
+    command = ["nice", sys.executable, "-m", __name__, kind]
     try:
         done = subprocess.run(command, input=text.encode(), capture_output=True, timeout=READING_SECONDS)
     except subprocess.TimeoutExpired:
