@@ -4,56 +4,63 @@ import subprocess
 import sys
 import threading
 from pathlib import Path
-from typing import Callable, Optional
+from typing import Callable, List, Sequence, Tuple, Union
 
-from cockpit.errors import CockpitError
+import msgspec.msgpack
+
 from cockpit.scene.look import Look
 
 READING_SECONDS = 120.0
+# Where processors are short, the graph goes first, but this must not starve.
+NICENESS = "5"
 WORLD, ROBOT = "world", "robot"
+# WORLD and the name of an SDF file, or ROBOT and the text of its URDF.
+Request = Tuple[str, str]
+# A look, or why there is none.
+Answer = Union[Look, str]
 
 
-def read_look(kind: str, text: str) -> Look:
-    """Of the SDF file named ``text``, or of the robot whose URDF it is. Raises CockpitError."""
-    command = ["nice", sys.executable, "-m", __name__, kind]
+def read_looks(requests: Sequence[Request]) -> List[Answer]:
+    """By one process for all of them: what it needs to read is most of the work."""
     try:
-        done = subprocess.run(command, input=text.encode(), capture_output=True, timeout=READING_SECONDS)
+        done = subprocess.run(
+            ["nice", "-n", NICENESS, sys.executable, "-m", __name__],
+            input=msgspec.msgpack.encode(requests),
+            capture_output=True,
+            timeout=READING_SECONDS,
+        )
     except subprocess.TimeoutExpired:
-        raise CockpitError(f"the {kind} was not read within {READING_SECONDS:g} s") from None
-    if done.returncode != 0:
-        lines = done.stderr.decode(errors="replace").strip().splitlines()
-        raise CockpitError(lines[-1] if lines else f"the {kind} could not be read")
-    return Look.from_bytes(done.stdout)
+        return [f"was not read within {READING_SECONDS:g} s"] * len(requests)
+    if done.returncode == 0:
+        answers = msgspec.msgpack.decode(done.stdout)
+        return [Look.from_bytes(answer) if isinstance(answer, bytes) else answer for answer in answers]
+    if len(requests) > 1:  # one of them has ended it
+        return [answer for request in requests for answer in read_looks([request])]
+    lines = done.stderr.decode(errors="replace").strip().splitlines()
+    return [lines[-1] if lines else "could not be read"]
 
 
-def read_aside(kind: str, text: str, take: Callable[[Optional[Look], str], None]) -> None:
-    """Reads in a thread; ``take`` is given the look, or None and why there is none."""
-
-    def read():
-        try:
-            look = read_look(kind, text)
-        except CockpitError as error:
-            take(None, str(error))
-        else:
-            take(look, "")
-
-    threading.Thread(target=read, daemon=True).start()
+def read_aside(requests: Sequence[Request], take: Callable[[List[Answer]], None]) -> None:
+    """Reads in a thread, which gives ``take`` the answers."""
+    threading.Thread(target=lambda: take(read_looks(requests)), daemon=True).start()
 
 
 def main() -> None:
+    requests = msgspec.msgpack.decode(sys.stdin.buffer.read(), type=List[Request])
+    answers = [_read(kind, text) for kind, text in requests]
+    sys.stdout.buffer.write(msgspec.msgpack.encode(answers))
+
+
+def _read(kind: str, text: str) -> Union[bytes, str]:
     from cockpit.scene.reading import robot_look, world_look
     from planar import PlanarError
     from sim_bridge.ros.cli import find_file, model_folders
 
-    text = sys.stdin.buffer.read().decode(errors="replace")
     try:
-        if sys.argv[1] == WORLD:
-            look = world_look(Path(text), model_folders())
-        else:
-            look = robot_look(text, find_file)
+        look = world_look(Path(text), model_folders()) if kind == WORLD else robot_look(text, find_file)
     except PlanarError as error:
-        sys.exit(str(error))
-    sys.stdout.buffer.write(look.to_bytes())
+        return str(error)
+    return look.to_bytes()
 
 
 if __name__ == "__main__":

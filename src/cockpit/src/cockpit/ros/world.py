@@ -2,7 +2,7 @@
 
 from contextlib import suppress
 from functools import partial
-from typing import Callable, Dict, List, Optional
+from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from cockpit.frames import FrameTree, pose_matrix
 from cockpit.models import solids
 from cockpit.page.world_view import RobotView, WorldView
 from cockpit.ros.graph import Feed, Graph
-from cockpit.ros.looks import ROBOT, WORLD, read_aside
+from cockpit.ros.looks import ROBOT, WORLD, Answer, read_aside
 from cockpit.scene.look import Look, Piece
 
 # Of the simulator under its own name and under that of Gazebo.
@@ -30,19 +30,20 @@ class World:
         self._graph, self._scene, self._tell = graph, scene, tell
         self.view = WorldView(scene)
         self.robots: Dict[str, RobotView] = {}
-        self._asked: Dict[str, str] = {}
+        self._asked: Set[str] = set()
         self._arrived: List[Callable[[], None]] = []
         self._states: Optional[Feed] = None
 
     def look_for(self) -> None:
         """Reads, in the background, what has come since the last call. Raises CockpitError."""
         names = self._graph.parameter_names()
-        for name in WORLD_PARAMETERS:
-            if name in names:
-                self._read(WORLD, name, self._show_world)
-        for name in names:
-            if name.rpartition("/")[2] == DESCRIPTION:
-                self._read(ROBOT, name, partial(self._show_robot, name))
+        worlds = [(WORLD, name, self._show_world) for name in WORLD_PARAMETERS if name in names]
+        robots = [
+            (ROBOT, name, partial(self._show_robot, name))
+            for name in names
+            if name.rpartition("/")[2] == DESCRIPTION
+        ]
+        self._read([*worlds, *robots])
 
     def update(self, frames: FrameTree, fixed: str, shows_world: bool, shows_robots: bool) -> None:
         while self._arrived:
@@ -83,19 +84,22 @@ class World:
                 if pose is not None:
                     self.view.place(name, pose)
 
-    def _read(self, kind: str, parameter: str, show: Callable[[Look], None]) -> None:
-        if parameter in self._asked:
+    def _read(self, found: Sequence[Tuple[str, str, Callable[[Look], None]]]) -> None:
+        """Those that have not been read: of which kind each is, its parameter, and what shows its look."""
+        new = [(kind, name, show) for kind, name, show in found if name not in self._asked]
+        if not new:
             return
-        value = self._graph.parameter(parameter)
-        self._asked[parameter] = str(value)
+        requests = [(kind, str(self._graph.parameter(name))) for kind, name, _ in new]
+        self._asked.update(name for _, name, _ in new)
 
-        def take(look: Optional[Look], why: str) -> None:
-            if look is None:
-                self._tell(f"{parameter}: {why}")
-            else:
-                self._arrived.append(lambda: show(look))
+        def take(answers: List[Answer]) -> None:
+            for (_, name, show), answer in zip(new, answers):
+                if isinstance(answer, Look):
+                    self._arrived.append(partial(show, answer))
+                else:
+                    self._tell(f"{name}: {answer}")
 
-        read_aside(kind, str(value), take)
+        read_aside(requests, take)
 
     def _show_world(self, look: Look) -> None:
         self.view.show(look)

@@ -1,0 +1,39 @@
+"""Looks are read by a process of their own: one answer for each, whatever becomes of the others."""
+
+from pathlib import Path
+
+from cockpit.ros import looks
+from cockpit.ros.looks import ROBOT, WORLD, read_looks
+from cockpit.scene.look import Look
+
+HOME = Path(__file__).resolve().parents[3] / "map/home.world"
+ROBOT_TEXT = "<robot name='a'><link name='base'/></robot>"
+
+
+def test_each_is_answered_by_a_look_or_by_why_there_is_none():
+    world, robot, nonsense, missing = read_looks(
+        [(WORLD, str(HOME)), (ROBOT, ROBOT_TEXT), (ROBOT, "nonsense"), (WORLD, "/nowhere.world")]
+    )
+    assert isinstance(world, Look) and len(world.pieces) > 10
+    assert isinstance(robot, Look)
+    assert "not well-formed" in nonsense
+    assert missing.startswith("/nowhere.world: cannot be read")
+
+
+def test_one_that_ends_the_process_leaves_the_others(monkeypatch):
+    answered = []
+    true_run = looks.subprocess.run
+
+    def run(command, **options):
+        answered.append(options["input"])
+        return true_run(["false"] if b"deadly" in options["input"] else command, **options)
+
+    monkeypatch.setattr(looks.subprocess, "run", run)
+    deadly, robot = read_looks([(ROBOT, "deadly"), (ROBOT, ROBOT_TEXT)])
+    assert (deadly, type(robot)) == ("could not be read", Look)
+    assert len(answered) == 3
+
+
+def test_one_that_takes_too_long_is_told(monkeypatch):
+    monkeypatch.setattr(looks, "READING_SECONDS", 0.001)
+    assert read_looks([(ROBOT, ROBOT_TEXT)]) == ["was not read within 0.001 s"]
