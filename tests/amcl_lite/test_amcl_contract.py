@@ -72,7 +72,11 @@ class AmclContractTest(unittest.TestCase):
         self.set_pose(self.robot.base_in_map)
 
     def set_pose(self, pose, **how):
-        """Tells a pose and waits until the node has taken or refused it."""
+        """Tells a pose and waits until the node has taken or refused it.
+
+        The scans before it are worked in by then: the update that is due after it is that of the next one.
+        """
+        self.map_to_odom(self.robot.sense() + POST_DATED)
         self.words.messages.clear()
         self.tell_pose(pose, **how)
         self.words.wait(lambda said: said.msg.startswith(("Setting pose", "Ignoring initial pose")))
