@@ -28,6 +28,7 @@ class TestGoalStorm(unittest.TestCase):
         goals = rospy.Publisher("move_base/goal", MoveBaseActionGoal, queue_size=GOALS)
         cancels = rospy.Publisher("move_base/cancel", GoalID, queue_size=GOALS)
         wait_until("move_base to hear", lambda: goals.get_num_connections() and cancels.get_num_connections())
+        wait_until("time to begin", lambda: rospy.get_time() > 0.0)
         for number in range(GOALS):
             goals.publish(self.goal(number))
             if number % 10 == 0:
@@ -43,7 +44,8 @@ class TestGoalStorm(unittest.TestCase):
     @staticmethod
     def goal(number):
         message = MoveBaseActionGoal(goal=MoveBaseGoal(pose_at(0.5, 0.001 * (number % 100))))
-        message.goal_id.id = f"storm {number}"
+        # As clients do: a goal without a stamp is as new as the moment at which it is worked in.
+        message.goal_id.stamp, message.goal_id.id = rospy.Time.now(), f"storm {number}"
         return message
 
 
