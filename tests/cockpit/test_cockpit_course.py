@@ -85,7 +85,7 @@ class CockpitCourseTest(unittest.TestCase):
             self, "rqt_service_caller", "rosrun", "rqt_service_caller", "rqt_service_caller"
         ) as page:
             page.choose("Service", "/turtle1/teleport_absolute")
-            page.wait_for("turtlesim/TeleportAbsolute")
+            wait_until("the template", lambda: "theta" in (page.value_of("Request") or ""))
             page.fill_in("Request", "{x: 9.0, y: 8.0, theta: 0.0}")
             page.click("Call")
             wait_until("the turtle there", lambda: math.hypot(*place(self.newest["turtle1"])) > 12.0)

@@ -103,6 +103,7 @@ class CockpitToolsTest(unittest.TestCase):
         self.open("Services")
         self.page.choose("Service", "/switch")
         self.page.wait_for("std_srvs/SetBool")
+        wait_until("the template", lambda: "data" in (self.page.value_of("Request") or ""))
         self.page.fill_in("Request", "data: true")
         self.page.click("Call")
         self.page.wait_for("success: True", "message: told True")

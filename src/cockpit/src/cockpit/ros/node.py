@@ -3,10 +3,12 @@
 cockpit [--web-port [ADDRESS:]PORT] [--tool NAME]
 """
 
+import faulthandler
 import os
 import sys
 import time
 from dataclasses import dataclass
+from functools import partial
 from typing import Optional, Tuple
 
 import rospy
@@ -18,10 +20,12 @@ from cockpit.ros.cockpit import Cockpit
 from cockpit.ros.tools import names
 from planar import PlanarError
 from supervision.command_line import option, parse
+from supervision.interruption import leave
 from supervision.ros.node_api import is_master_online, node_names
 
 FREE_PORT = "127.0.0.1:0"
 MASTER_SECONDS, NODES_SECONDS = 0.2, 3.0
+CLOSE_SECONDS = 15.0
 # Where processors are short, the graph goes first.
 NICENESS = 5
 
@@ -37,7 +41,7 @@ class Options:
 def main() -> None:
     options = parse(Options, rospy.myargv()[1:], "cockpit")
     try:
-        sys.exit(serve(options.web_port, options.tool))
+        leave(serve(options.web_port, options.tool))
     except PlanarError as error:
         print(f"error: {error}", file=sys.stderr)
         sys.exit(2)
@@ -58,6 +62,8 @@ def serve(where: str, tool: Optional[str], words: Tuple[str, ...] = ()) -> int:
         time.sleep(MASTER_SECONDS)
     _wait_for_nodes()
     rospy.init_node("cockpit", anonymous=True, log_level=rospy.WARN)
+    # Whatever is still waited for then: it ends, and says what that was.
+    rospy.on_shutdown(partial(faulthandler.dump_traceback_later, CLOSE_SECONDS, exit=True))
     cockpit = Cockpit(page)
     if tool is not None:
         cockpit.toolbox.open(tool, words)

@@ -8,6 +8,7 @@ from typing import Dict, List, Optional, Tuple
 import rospy
 
 from planar import PlanarError
+from supervision.interruption import leave
 
 # The whole cockpit, and its tools.
 WHOLE = ("rqt", "rqt_gui", "gzclient")
@@ -36,7 +37,7 @@ def main() -> None:
     arguments = rospy.myargv()[1:]
     try:
         tool, words = chosen(Path(sys.argv[0]).name, arguments)
-        sys.exit(serve(FREE_PORT, tool, words))
+        leave(serve(FREE_PORT, tool, words))
     except PlanarError as error:
         sys.exit(_complain(str(error)))
 
