@@ -114,7 +114,7 @@ class Looking:
             self._page.close()
             code = self._command.end()
         if kind is None:
-            self._test.assertEqual((errors, code), ([], 0))
+            self._test.assertEqual((errors, code), ([], 0), "".join(self._command.lines))
 
 
 def place(pose):

@@ -5,11 +5,12 @@ cockpit [--web-port [ADDRESS:]PORT] [--tool NAME]
 
 import faulthandler
 import os
+import signal
 import sys
+import threading
 import time
 from dataclasses import dataclass
-from functools import partial
-from typing import Optional, Tuple
+from typing import Any, Callable, Optional, Tuple
 
 import rospy
 from rosgraph import get_master_uri
@@ -20,7 +21,7 @@ from cockpit.ros.cockpit import Cockpit
 from cockpit.ros.tools import names
 from planar import PlanarError
 from supervision.command_line import option, parse
-from supervision.interruption import leave
+from supervision.interruption import SIGNALS, leave
 from supervision.ros.node_api import is_master_online, node_names
 
 FREE_PORT = "127.0.0.1:0"
@@ -50,6 +51,7 @@ def main() -> None:
 def serve(where: str, tool: Optional[str], words: Tuple[str, ...] = ()) -> int:
     """Until the process is interrupted; ``words``: what the tool is to show at first.
 
+    The end of the process is the end of the page: viser would wait for browsers that are gone.
     Raises CockpitError if the options make no sense.
     """
     check_tool(tool)
@@ -61,15 +63,30 @@ def serve(where: str, tool: Optional[str], words: Tuple[str, ...] = ()) -> int:
     while not is_master_online():
         time.sleep(MASTER_SECONDS)
     _wait_for_nodes()
-    rospy.init_node("cockpit", anonymous=True, log_level=rospy.WARN)
-    # Whatever is still waited for then: it ends, and says what that was.
-    rospy.on_shutdown(partial(faulthandler.dump_traceback_later, CLOSE_SECONDS, exit=True))
+    is_asked_to_end = _hear_signals()
+    rospy.init_node("cockpit", anonymous=True, log_level=rospy.WARN, disable_signals=True)
     cockpit = Cockpit(page)
     if tool is not None:
         cockpit.toolbox.open(tool, words)
-    cockpit.run()
-    page.close()
+    cockpit.run(lambda: is_asked_to_end() or rospy.is_shutdown())
+    rospy.signal_shutdown("the cockpit ends")
     return 0
+
+
+def _hear_signals() -> Callable[[], bool]:
+    """Tells whether one has come; the process ends in time whatever is waited for, and says what that was.
+
+    rospy's own handler asks the master, in the middle of what the thread it interrupts may just ask it.
+    """
+    ending = threading.Event()
+
+    def end(_number: int, _frame: Any) -> None:
+        faulthandler.dump_traceback_later(CLOSE_SECONDS, exit=True)
+        ending.set()
+
+    for number in SIGNALS:
+        signal.signal(number, end)
+    return ending.is_set
 
 
 def _wait_for_nodes() -> None:
