@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A door and a drawer opened from a page in a browser; judged by the simulator."""
+"""A world that changes: a door and a drawer opened from a page in a browser, models that come and go."""
 
 import os
 import tempfile
@@ -9,12 +9,19 @@ from pathlib import Path
 import rospy
 import rostest
 from browser import Browser
-from gazebo_msgs.srv import GetJointProperties
+from gazebo_msgs.srv import DeleteModel, GetJointProperties, SpawnModel
+from geometry_msgs.msg import Point, Pose, Quaternion
+from page_client import PageClient
 from waiting import wait_until
 
 from cockpit.process import FREE_PORT, CockpitProcess
 
 PICTURES = os.environ.get("COCKPIT_PICTURES")
+CUP = """<sdf version="1.6"><model name="cup"><link name="cup">
+<inertial><mass>0.2</mass></inertial>
+<collision name="c"><geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision>
+<visual name="v"><geometry><box><size>0.2 0.2 0.2</size></box></geometry>
+<material><diffuse>0.8 0.1 0.1 1</diffuse></material></visual></link></model></sdf>"""
 
 
 class CockpitDoorsTest(unittest.TestCase):
@@ -45,6 +52,22 @@ class CockpitDoorsTest(unittest.TestCase):
         self.open("doorway: hinge", 0)
         wait_until("the door shut", lambda: abs(self.position("doorway::hinge")) < 0.05)
         self.assertEqual(self.page.errors, [])
+
+    def test_a_model_that_is_spawned_is_shown_until_it_is_deleted(self):
+        rospy.wait_for_service("/gazebo/spawn_sdf_model", 60.0)
+        with PageClient(self.cockpit.url) as client:
+
+            def is_shown():
+                return "/world/cup::cup" in client.things
+
+            pose = Pose(Point(1.0, 0.5, 0.1), Quaternion(w=1.0))
+            answer = rospy.ServiceProxy("/gazebo/spawn_sdf_model", SpawnModel)("cup", CUP, "", pose, "world")
+            self.assertTrue(answer.success, answer.status_message)
+            wait_until("the cup", is_shown, 30.0)
+            if PICTURES:
+                self.page.screenshot(Path(PICTURES) / "spawned.png")
+            rospy.ServiceProxy("/gazebo/delete_model", DeleteModel)("cup")
+            wait_until("no cup", lambda: not is_shown())
 
     def open(self, hinge, percent):
         self.page.choose("Of", hinge)

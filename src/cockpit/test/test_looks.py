@@ -2,17 +2,30 @@
 
 from pathlib import Path
 
+import pytest
+
 from cockpit.ros import looks
-from cockpit.ros.looks import ROBOT, WORLD, read_looks
+from cockpit.ros.looks import MODEL, ROBOT, WORLD, read_looks
 from cockpit.scene.look import Look
 
 HOME = Path(__file__).resolve().parents[3] / "map/home.world"
+SDF = """<sdf version="1.6"><model name="m"><link name="l">
+<visual name="v"><geometry><box><size>0.2 0.2 0.2</size></box></geometry></visual></link></model></sdf>"""
+URDF = """<robot name="m"><link name="l"><inertial><mass value="1"/>
+<inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>
+<visual><geometry><box size="0.2 0.2 0.2"/></geometry></visual>
+<collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link></robot>"""
 ROBOT_TEXT = "<robot name='a'><link name='base'/></robot>"
 
 
 def test_each_is_answered_by_a_look_or_by_why_there_is_none():
     world, robot, nonsense, missing = read_looks(
-        [(WORLD, str(HOME)), (ROBOT, ROBOT_TEXT), (ROBOT, "nonsense"), (WORLD, "/nowhere.world")]
+        [
+            (WORLD, str(HOME), ""),
+            (ROBOT, "", ROBOT_TEXT),
+            (ROBOT, "", "nonsense"),
+            (WORLD, "/nowhere.world", ""),
+        ]
     )
     assert isinstance(world, Look) and len(world.pieces) > 10
     assert isinstance(robot, Look)
@@ -29,11 +42,19 @@ def test_one_that_ends_the_process_leaves_the_others(monkeypatch):
         return true_run(["false"] if b"deadly" in options["input"] else command, **options)
 
     monkeypatch.setattr(looks.subprocess, "run", run)
-    deadly, robot = read_looks([(ROBOT, "deadly"), (ROBOT, ROBOT_TEXT)])
+    deadly, robot = read_looks([(ROBOT, "", "deadly"), (ROBOT, "", ROBOT_TEXT)])
     assert (deadly, type(robot)) == ("could not be read", Look)
     assert len(answered) == 3
 
 
 def test_one_that_takes_too_long_is_told(monkeypatch):
     monkeypatch.setattr(looks, "READING_SECONDS", 0.001)
-    assert read_looks([(ROBOT, ROBOT_TEXT)]) == ["was not read within 0.001 s"]
+    assert read_looks([(ROBOT, "", ROBOT_TEXT)]) == ["was not read within 0.001 s"]
+
+
+def test_a_model_is_shown_under_the_name_that_it_was_spawned_by():
+    for text in (SDF, URDF):
+        (answer,) = read_looks([(MODEL, "cup", text)])
+        (piece,) = answer.pieces
+        assert (piece.model, piece.link) == ("cup", "l")
+        assert abs(piece.vertices).max() == pytest.approx(0.1)

@@ -85,6 +85,13 @@ class WorldView:
             self._things[name] = thing
             self._poses[name] = thing.pieces[0].pose
 
+    def remove(self, model: str) -> None:
+        """If there is such a model."""
+        for name in [name for name, thing in self._things.items() if thing.pieces[0].model == model]:
+            self._things.pop(name).remove()
+            del self._poses[name]
+        self.hinges = {name: hinge for name, hinge in self.hinges.items() if hinge.model != model}
+
     def cut(self, height: float) -> None:
         """Takes off what is above ``height``, metres: roofs, and the upper part of walls."""
         self._height = height

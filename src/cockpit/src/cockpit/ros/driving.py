@@ -15,7 +15,7 @@ from cockpit.models.tables import table
 from cockpit.page.drive_panel import BOX, GOAL, LOOK, MOVE, NOBODY, NOTHING, NOWHERE, POINT, POSE, DrivePanel
 from cockpit.page.pointer import Pointer
 from cockpit.ros.graph import Feed, Graph
-from cockpit.ros.orders import BOX_SIZE, Orders
+from cockpit.ros.orders import Orders
 from cockpit.ros.teleop import PageTeleop
 from cockpit.ros.world import World, world_in
 
@@ -189,7 +189,6 @@ class Driving:
 
     def _drop(self, x: float, y: float) -> None:
         name = self._orders.drop_box(x, y)
-        self._world.add_box(name, BOX_SIZE, x, y)
         self._tell(f"{name} dropped")
 
     def _move(self, x: float, y: float, yaw: Optional[float]) -> None:

@@ -13,9 +13,9 @@ from cockpit.scene.look import Look
 READING_SECONDS = 120.0
 # Where processors are short, the graph goes first, but this must not starve.
 NICENESS = "5"
-WORLD, ROBOT = "world", "robot"
-# WORLD and the name of an SDF file, or ROBOT and the text of its URDF.
-Request = Tuple[str, str]
+WORLD, ROBOT, MODEL = "world", "robot", "model"
+# WORLD, an SDF file, and nothing; ROBOT, its parameter, and its URDF; MODEL, its name, and its SDF or URDF.
+Request = Tuple[str, str, str]
 # A look, or why there is none.
 Answer = Union[Look, str]
 
@@ -47,17 +47,22 @@ def read_aside(requests: Sequence[Request], take: Callable[[List[Answer]], None]
 
 def main() -> None:
     requests = msgspec.msgpack.decode(sys.stdin.buffer.read(), type=List[Request])
-    answers = [_read(kind, text) for kind, text in requests]
+    answers = [_read(*request) for request in requests]
     sys.stdout.buffer.write(msgspec.msgpack.encode(answers))
 
 
-def _read(kind: str, text: str) -> Union[bytes, str]:
-    from cockpit.scene.reading import robot_look, world_look
+def _read(kind: str, name: str, text: str) -> Union[bytes, str]:
+    from cockpit.scene.reading import model_look, robot_look, world_look
     from planar import PlanarError
     from sim_bridge.ros.cli import find_file, model_folders
 
     try:
-        look = world_look(Path(text), model_folders()) if kind == WORLD else robot_look(text, find_file)
+        if kind == WORLD:
+            look = world_look(Path(name), model_folders())
+        elif kind == ROBOT:
+            look = robot_look(text, find_file)
+        else:
+            look = model_look(text, name, model_folders(), find_file)
     except PlanarError as error:
         return str(error)
     return look.to_bytes()

@@ -8,11 +8,11 @@ import numpy as np
 
 from cockpit.errors import CockpitError
 from cockpit.frames import FrameTree, pose_matrix
-from cockpit.models import solids
 from cockpit.page.world_view import RobotView, WorldView
 from cockpit.ros.graph import Feed, Graph
-from cockpit.ros.looks import ROBOT, WORLD, Answer, read_aside
-from cockpit.scene.look import Look, Piece
+from cockpit.ros.looks import ROBOT, WORLD, Answer, Request, read_aside
+from cockpit.ros.spawned import Spawned
+from cockpit.scene.look import Look
 
 # Of the simulator under its own name and under that of Gazebo.
 WORLD_PARAMETERS = ("/sim_bridge/world", "/gazebo/world")
@@ -20,7 +20,6 @@ DESCRIPTION, PREFIX = "robot_description", "tf_prefix"
 # The frame of a world file; a map made or rendered of that world coincides with it.
 WORLD_FRAME, MAP_FRAME = "world", "map"
 LINK_STATES = "/gazebo/link_states"
-BOX_COLOUR = (217, 140, 51)
 
 
 class World:
@@ -33,6 +32,7 @@ class World:
         self._asked: Set[str] = set()
         self._arrived: List[Callable[[], None]] = []
         self._states: Optional[Feed] = None
+        self._spawned = Spawned(graph, self.view, tell)
 
     def look_for(self) -> None:
         """Reads, in the background, what has come since the last call. Raises CockpitError."""
@@ -44,6 +44,7 @@ class World:
             if name.rpartition("/")[2] == DESCRIPTION
         ]
         self._read([*worlds, *robots])
+        self._spawned.look_for()
 
     def update(self, frames: FrameTree, fixed: str, shows_world: bool, shows_robots: bool) -> None:
         while self._arrived:
@@ -51,29 +52,26 @@ class World:
         self.view.is_shown = shows_world
         with suppress(CockpitError):  # of a master that is gone; the status tells of that
             self._follow_things(shows_world)
+            self._spawned.update()
         self.view.update(world_in(frames, fixed))
         for robot in self.robots.values():
             robot.update(frames, fixed, shows_robots)
 
     def rest(self) -> None:
         """Nobody looks."""
+        self._spawned.rest()
+        self._stop_following()
+
+    def _stop_following(self) -> None:
         if self._states is not None:
             self._states.close()
             self._states = None
-
-    def add_box(self, name: str, size: float, x: float, y: float) -> None:
-        """One that was dropped at a place of the world."""
-        pose = np.eye(4)
-        pose[:3, 3] = x, y, size / 2.0
-        vertices, triangles = solids.box()
-        piece = Piece(name, "box", pose, vertices * size, triangles, BOX_COLOUR, moves=True)
-        self._arrived.append(lambda: self.view.show(Look((piece,))))
 
     def _follow_things(self, wanted: bool) -> None:
         """Those that physics may move; where there are none the simulator is not asked."""
         movable = self.view.movable
         if not wanted or not movable:
-            self.rest()
+            self._stop_following()
         elif self._states is None and LINK_STATES in self._graph.publishers():
             self._states = self._graph.feed(LINK_STATES, "gazebo_msgs/LinkStates")
         for message in self._states.take() if self._states is not None else ():
@@ -89,7 +87,11 @@ class World:
         new = [(kind, name, show) for kind, name, show in found if name not in self._asked]
         if not new:
             return
-        requests = [(kind, str(self._graph.parameter(name))) for kind, name, _ in new]
+        values = [str(self._graph.parameter(name)) for _, name, _ in new]
+        requests: List[Request] = [
+            (kind, value, "") if kind == WORLD else (kind, name, value)
+            for (kind, name, _), value in zip(new, values)
+        ]
         self._asked.update(name for _, name, _ in new)
 
         def take(answers: List[Answer]) -> None:

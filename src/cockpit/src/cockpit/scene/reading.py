@@ -14,13 +14,15 @@ from cockpit.drawing import Colour
 from cockpit.scene.look import Hinge, Look, Piece
 from planar import PlanarError
 from sim_bridge import load_world
+from sim_bridge.description import read_prop
 from sim_bridge.description.urdf import FindFile
 from sim_bridge.geometry.pose3 import IDENTITY, pose3, transform_points
 from sim_bridge.geometry.shapes import Box, Cylinder, MeshFile, Plane, Sphere
 from sim_bridge.geometry.shapes import Look as Shape
+from sim_bridge.sdf import read_model
 from sim_bridge.sdf.element import Element, parse_text
 from sim_bridge.views.drawing import GREY, mesh_of, visible_parts
-from sim_bridge.world import Joint
+from sim_bridge.world import Joint, World
 
 # Colours of a mesh's triangles that differ by less are one, of 255: each is a surface of its own.
 COARSENESS = 16
@@ -30,7 +32,17 @@ FREELY, BEYOND = {"revolute": math.pi / 2.0, "prismatic": 0.5}, 1000.0
 
 def world_look(path: Path, folders: Sequence[Path]) -> Look:
     """The bodies of an SDF file. Raises PlanarError."""
-    world = load_world(path, folders)
+    return _look_of(load_world(path, folders))
+
+
+def model_look(text: str, name: str, folders: Sequence[Path], find_file: FindFile) -> Look:
+    """The bodies of the SDF or URDF of one model, called ``name``, at the origin. Raises PlanarError."""
+    if parse_text(text, name, ("sdf", "gazebo", "robot")).tag == "robot":
+        return _look_of(read_prop(text, name, IDENTITY, find_file))
+    return _look_of(read_model(text, name, IDENTITY, folders))
+
+
+def _look_of(world: World) -> Look:
     collector = _Collector()
     for body in world.bodies:
         model, _, link = body.name.partition("::")

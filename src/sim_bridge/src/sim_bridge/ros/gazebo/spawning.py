@@ -15,6 +15,7 @@ from sim_bridge.physics.motion import Motion
 from sim_bridge.ros.cli import find_file
 from sim_bridge.ros.fleet import Fleet
 from sim_bridge.ros.gazebo.server import SCOPE_HINT, Server, frame_named
+from sim_bridge.ros.gazebo.spawned import Spawned
 from sim_bridge.ros.messages import pose3_from_msg
 from sim_bridge.scene import Scene
 from sim_bridge.sdf import read_model
@@ -38,6 +39,7 @@ class SpawnServices:
     def __init__(self, scene: Scene, fleet: Fleet, server: Server, model_folders):
         self._scene, self._fleet, self._server = scene, fleet, server
         self._model_folders = model_folders
+        self._spawned = Spawned()
         server.serve_aside("spawn_sdf_model", srv.SpawnModel, partial(self._on_spawn, self._read_sdf))
         server.serve_aside("spawn_urdf_model", srv.SpawnModel, partial(self._on_spawn, self._read_urdf))
         server.serve("delete_model", srv.DeleteModel, self._on_delete)
@@ -71,23 +73,26 @@ class SpawnServices:
 
     def _read_sdf(self, request, pose: np.ndarray) -> Arrivals:
         model = read_model(request.model_xml, request.model_name, pose, self._model_folders)
-        return self._arrivals(request, model)
+        return self._arrivals(request, model, pose)
 
     def _read_urdf(self, request, pose: np.ndarray) -> Arrivals:
         try:
             robot = read_urdf_robot(request.model_xml, request.model_name, find_file)
         except NoDriveError:
             prop = read_prop(request.model_xml, request.model_name, pose, find_file)
-            return self._arrivals(request, prop)
+            return self._arrivals(request, prop, pose)
         return [partial(self._add_robot, request, robot, pose)]
 
-    def _arrivals(self, request, model: World) -> Arrivals:
+    def _arrivals(self, request, model: World, pose: np.ndarray) -> Arrivals:
         if not (model.bodies or model.robots):
             raise WorldError("; ".join([f"{request.model_name} has no links", *model.warnings]))
         for warning in model.warnings:
             rospy.logwarn("%s", warning)
         robots = [partial(self._add_robot, request, *read_sdf_robot(robot)) for robot in model.robots]
-        return [partial(self._scene.add, model.bodies, model.joints), *robots]
+        told = (
+            [partial(self._spawned.add, request.model_name, request.model_xml, pose)] if model.bodies else []
+        )
+        return [partial(self._scene.add, model.bodies, model.joints), *robots, *told]
 
     def _add_robot(self, request, robot: RobotProfile, pose: np.ndarray) -> None:
         self._fleet.add(request.model_name, robot, to_pose2(pose), float(pose[2, 3]), request.robot_namespace)
@@ -97,4 +102,5 @@ class SpawnServices:
             self._fleet.remove(request.model_name)
         except UnknownEntityError:
             return srv.DeleteModelResponse(False, "DeleteModel: model does not exist")
+        self._spawned.remove(request.model_name)
         return srv.DeleteModelResponse(True, "DeleteModel: successfully deleted model")
