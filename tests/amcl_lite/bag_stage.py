@@ -121,7 +121,9 @@ class BagStage:
 
     def _wait_for_node(self, stamp):
         deadline = time.monotonic() + START_SECONDS
-        while self._scans.get_num_connections() == 0 or self._static.get_num_connections() == 0:
+        publishers = (self._scans, self._static, self._initial_pose)
+        # Besides the node this stage itself hears transforms.
+        while self._tf.get_num_connections() < 2 or not all(one.get_num_connections() for one in publishers):
             self._clock.publish(stamp)
             if time.monotonic() > deadline:
                 raise AssertionError("the node does not listen to scans")

@@ -10,6 +10,7 @@ import rostest
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 from toy_robot import room
+from waiting import PATIENCE_SECONDS
 
 from planar import wrap
 from planar_ros.messages.conversion import SetMapArrays, grid_to_msg, pose2_from_msg
@@ -32,8 +33,12 @@ class SpinUntilLocalizedTest(unittest.TestCase):
         done = spin("--timeout", "60")
         self.assertEqual(done.returncode, 0, done.stderr.decode())
         self.assertIn("localized at", done.stdout.decode())
-        found = pose2_from_msg(rospy.wait_for_message("amcl_pose", PoseWithCovarianceStamped, 5.0).pose.pose)
-        truth = pose2_from_msg(rospy.wait_for_message("base_pose_ground_truth", Odometry, 5.0).pose.pose)
+        found = pose2_from_msg(
+            rospy.wait_for_message("amcl_pose", PoseWithCovarianceStamped, PATIENCE_SECONDS).pose.pose
+        )
+        truth = pose2_from_msg(
+            rospy.wait_for_message("base_pose_ground_truth", Odometry, PATIENCE_SECONDS).pose.pose
+        )
         # Since the last pose the robot may have turned on for a moment, but not driven.
         self.assertLess(found.distance_to(truth), NEAR)
 
@@ -62,7 +67,7 @@ class SpinUntilLocalizedTest(unittest.TestCase):
 
     def heading_after(self, seconds):
         rospy.sleep(seconds)
-        message = rospy.wait_for_message("base_pose_ground_truth", Odometry, 5.0)
+        message = rospy.wait_for_message("base_pose_ground_truth", Odometry, PATIENCE_SECONDS)
         return pose2_from_msg(message.pose.pose).yaw
 
 

@@ -42,7 +42,7 @@ class NavigationTest(unittest.TestCase):
         self._wait("a subscriber of boxes", lambda: self.boxes.get_num_connections() > 0)
         goal = Pose2(-0.3, 0.2, 3.14)
         self._send(goal)
-        self._wait("motion", lambda: self.referee.truth.x < 2.6)
+        self._wait("motion", lambda: self.referee.truth.x < 3.3)
         self._drop_box(Pose2(1.0, self.referee.truth.y))
         self._assert_arrival(goal)
 

@@ -32,7 +32,7 @@ class TurtleBot3Test(unittest.TestCase):
             self.assertEqual(message._md5sum, md5, message._type)
 
     def test_2_its_topics_tell_what_the_official_ones_do(self):
-        scan = rospy.wait_for_message("scan", LaserScan, PATIENCE_SECONDS)
+        scan = rospy.wait_for_message("scan", LaserScan, BRING_UP_SECONDS)
         self.assertEqual((len(scan.ranges), scan.header.frame_id), (360, "base_scan"))
         self.assertAlmostEqual(scan.range_max, 3.5, places=5)
         joints = rospy.wait_for_message("joint_states", JointState, PATIENCE_SECONDS)
@@ -47,7 +47,11 @@ class TurtleBot3Test(unittest.TestCase):
         pose.pose.covariance[0] = pose.pose.covariance[7] = 0.25
         pose.pose.covariance[35] = 0.07
         publisher.publish(pose)
-        wait_until("the localization to believe it", lambda: self._believed().distance_to(START) < 0.3)
+        wait_until(
+            "the localization to believe it",
+            lambda: self._believed().distance_to(START) < 0.3,
+            BRING_UP_SECONDS,
+        )
         client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
         wait_until("move_base", lambda: server_is_ready(client), BRING_UP_SECONDS)
         goal = MoveBaseGoal()
@@ -62,7 +66,7 @@ class TurtleBot3Test(unittest.TestCase):
         return pose2_from_msg(states.pose[states.name.index("turtlebot3_burger")])
 
     def _believed(self):
-        message = rospy.wait_for_message("amcl_pose", PoseWithCovarianceStamped, PATIENCE_SECONDS)
+        message = rospy.wait_for_message("amcl_pose", PoseWithCovarianceStamped, BRING_UP_SECONDS)
         return pose2_from_msg(message.pose.pose)
 
 

@@ -15,7 +15,7 @@ from learning_server.srv import IntPlus
 from roslaunch.config import load_config_default
 from std_srvs.srv import Empty, Trigger
 from turtlesim.msg import Pose
-from waiting import wait_until
+from waiting import PATIENCE_SECONDS, wait_until
 
 RADIUS = 0.5 / 0.2  # metres: of the circle that turtle_velocity_publisher drives
 
@@ -61,7 +61,7 @@ class CourseTest(unittest.TestCase):
         rospy.ServiceProxy("/reset", Empty)()
 
     def pose(self):
-        return rospy.wait_for_message("/turtle1/pose", Pose, 5.0)
+        return rospy.wait_for_message("/turtle1/pose", Pose, PATIENCE_SECONDS)
 
     def test_the_velocity_publisher_drives_a_circle(self):
         places_xy = []

@@ -7,7 +7,8 @@ import pytest
 
 from planar import load_map
 from sim_bridge import load_world
-from sim_bridge.ros.cli import render_map, robot_description
+from sim_bridge.description.urdf import read_urdf
+from sim_bridge.ros.cli import find_file, render_map, robot_description
 from sim_bridge.views.true_map import true_map
 
 HOME = Path(__file__).resolve().parents[3] / "map" / "home.world"
@@ -41,3 +42,16 @@ def test_robot_description_prints_a_urdf(monkeypatch, capsys):
     monkeypatch.setattr("sys.argv", ["robot_description", "turtlebot_kinect"])
     robot_description()
     assert "camera_depth_frame" in capsys.readouterr().out
+
+
+def test_a_description_with_frames_of_its_own_is_the_same_robot(monkeypatch, capsys):
+    described = []
+    for frames in ([], ["--frames", "alice"]):
+        monkeypatch.setattr("sys.argv", ["robot_description", "turtlebot_kinect", *frames])
+        robot_description()
+        described.append(capsys.readouterr().out)
+    plain, framed = (read_urdf(text, "robot", find_file)[0] for text in described)
+    assert list(framed.links) == [f"alice/{name}" for name in plain.links]
+    assert [(name, joint.parent, joint.child) for name, joint in framed.joints.items()] == [
+        (name, f"alice/{joint.parent}", f"alice/{joint.child}") for name, joint in plain.joints.items()
+    ]

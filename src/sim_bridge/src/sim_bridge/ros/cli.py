@@ -13,6 +13,7 @@ from PIL import Image
 from rospkg import ResourceNotFound, RosPack
 
 from planar import PlanarError, save_map, write_atomically
+from sim_bridge.description.frames import with_frames_of
 from sim_bridge.robots import ROBOTS, robot_named
 from sim_bridge.sdf import load_world
 from sim_bridge.sdf.includes import resolve
@@ -93,7 +94,10 @@ def robot_description() -> None:
         prog="robot_description", description="Prints the URDF of a robot that sim_bridge simulates."
     )
     parser.add_argument("robot", metavar="ROBOT", help=", ".join(ROBOTS) + "; or a .urdf or .xacro file")
+    parser.add_argument("--frames", metavar="NAME", help="puts NAME/ before the names of its frames")
+    arguments = parser.parse_args()
     try:
-        print(robot_named(parser.parse_args().robot, find_file).description())
+        urdf = robot_named(arguments.robot, find_file).description()
     except PlanarError as error:
         parser.exit(2, f"robot_description: error: {error}\n")
+    print(with_frames_of(arguments.frames, urdf) if arguments.frames else urdf)
