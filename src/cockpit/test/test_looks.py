@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from cockpit.ros import looks
-from cockpit.ros.looks import MODEL, ROBOT, WORLD, read_looks
+from cockpit.ros.world import looks
+from cockpit.ros.world.looks import MODEL, ROBOT, WORLD, read_looks
 from cockpit.scene.look import Look
 
 HOME = Path(__file__).resolve().parents[3] / "map/home.world"

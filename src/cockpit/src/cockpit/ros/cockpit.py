@@ -23,7 +23,7 @@ from cockpit.ros.showing import Layers
 from cockpit.ros.tool import said
 from cockpit.ros.toolbox import Toolbox
 from cockpit.ros.transforms import TransformListener
-from cockpit.ros.world import World
+from cockpit.ros.world.world import World
 
 PERIOD = 0.1
 # How often it is asked what there is.

@@ -17,7 +17,7 @@ from cockpit.page.pointer import Pointer
 from cockpit.ros.graph import Feed, Graph
 from cockpit.ros.orders import Orders
 from cockpit.ros.teleop import PageTeleop
-from cockpit.ros.world import World, world_in
+from cockpit.ros.world.world import World, world_in
 
 BASE_FRAMES = ("base_footprint", "base_link")
 MISSION, ERRAND = "/pick_objects/mission_state", "/pick_objects/state"

@@ -1,7 +1,7 @@
 """The look of worlds and robots, from SDF and URDF.
 
-It brings physics along, which is not to stay in the cockpit's memory: cockpit.ros.looks runs it in a process
-of its own, and whatever a foreign mesh does to its parser is over with that.
+It brings physics along, which is not to stay in the cockpit's memory: cockpit.ros.world.looks runs it in a
+process of its own, and whatever a foreign mesh does to its parser is over with that.
 """
 
 import math

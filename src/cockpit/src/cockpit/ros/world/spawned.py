@@ -6,7 +6,7 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 from cockpit.frames import pose_matrix
 from cockpit.page.world_view import WorldView
 from cockpit.ros.graph import Feed, Graph
-from cockpit.ros.looks import MODEL, Answer, Request, read_aside
+from cockpit.ros.world.looks import MODEL, Answer, Request, read_aside
 from cockpit.scene.look import Look
 
 TYPE = "sim_bridge_msgs/SpawnedModels"

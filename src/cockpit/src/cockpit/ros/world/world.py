@@ -10,8 +10,8 @@ from cockpit.errors import CockpitError
 from cockpit.frames import FrameTree, pose_matrix
 from cockpit.page.world_view import RobotView, WorldView
 from cockpit.ros.graph import Feed, Graph
-from cockpit.ros.looks import ROBOT, WORLD, Answer, Request, read_aside
-from cockpit.ros.spawned import Spawned
+from cockpit.ros.world.looks import ROBOT, WORLD, Answer, Request, read_aside
+from cockpit.ros.world.spawned import Spawned
 from cockpit.scene.look import Look
 
 # Of the simulator under its own name and under that of Gazebo.
