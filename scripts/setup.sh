@@ -46,7 +46,7 @@ set_up() { # EXTRA...: brings the workspace up to date; extras are dev, projects
         finish_python
         exec 9<&- # what is run now must not keep others from setting up
     fi
-    [[ -z $failure ]] || warn_of_failure
+    if [[ -n $failure ]]; then warn_of_failure; else take_in_all; fi
 }
 
 look_for_missing() { # EXTRA...: each of the variables is empty when nothing of its kind is missing

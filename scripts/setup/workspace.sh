@@ -27,7 +27,8 @@ build_workspace() {
     fi
     if step "Building the workspace" "$log" catkin_build; then
         say "$inputs" >"$stamp"
-        rm -rf "$last" "$root/build/.failed"
+        rm -rf "$last"
+        take_in_all
     else
         restore_last_build
         leave_out_invalid
@@ -79,21 +80,31 @@ restore_last_build() { # after one that failed or was cut short
 }
 
 leave_out_invalid() { # ROS's tools read each package in the source space, and end at the first that is not valid
-    local sources=$root/devel/.catkin
-    [[ -e $sources ]] || return 0
-    packages_in_source | /usr/bin/python3 -c '
+    [[ -e $root/devel/.catkin ]] || return 0
+    /usr/bin/python3 -c '
 import os, sys
 from catkin_pkg.package import InvalidPackage, parse_package
+from catkin_pkg.packages import find_package_paths
 
 valid = []
-for line in sys.stdin:
-    folder = os.path.abspath(line.rstrip("\n").split(" ", 1)[1])
+for path in sorted(find_package_paths(sys.argv[1])):
+    folder = os.path.join(sys.argv[1], path)
     try:
         parse_package(folder)
         valid.append(folder)
     except InvalidPackage:
         pass
-print(";".join(valid), end="")' >"$sources.new" && mv "$sources.new" "$sources"
+print(";".join(valid), end="")' "$root/src" | say_source_space
+}
+
+take_in_all() { # once the package that was at fault has gone
+    [[ -e $root/build/.failed && -w $root/build ]] || return 0
+    [[ ! -e $root/devel/.catkin ]] || printf %s "$root/src" | say_source_space
+    rm "$root/build/.failed"
+}
+
+say_source_space() { # as told on stdin
+    cat >"$root/devel/.catkin.new" && mv "$root/devel/.catkin.new" "$root/devel/.catkin"
 }
 
 parts_of_build() { # FOLDER ACTION...: what catkin made in it

@@ -120,11 +120,18 @@ def test_a_package_that_does_not_build_leaves_the_last_good_build_in_use(tmp_pat
 def test_ros_does_not_meet_an_invalid_package_while_the_last_build_is_in_use(tmp_path):
     set_up_once(tmp_path)
     write_package(tmp_path / "src/good", "good", VALID)
+    write_package(tmp_path / "src/good/lent/rviz", "rviz", VALID)  # catkin does not look into packages
+    write_package(tmp_path / "src/ignored", "ignored", VALID)
+    (tmp_path / "src/ignored/CATKIN_IGNORE").touch()
+    well = "catkin_build() { mkdir -p build devel; printf %s $root/src >devel/.catkin; }"
+    in_workspace(tmp_path, f"{well}; retry=''; look_for_missing; build_workspace")
     write_package(tmp_path / "src/nested/mine", "mine", VALID.replace("a@b.org", "nobody"))
-    (tmp_path / "devel/.catkin").write_text(f"{tmp_path}/src")
     said = in_workspace(tmp_path, FAILING + "set_up; echo used")
     assert said.stdout.endswith("used\n"), said.stderr
     assert (tmp_path / "devel/.catkin").read_text() == f"{tmp_path}/src/good"
+    shutil.rmtree(tmp_path / "src/nested")
+    in_workspace(tmp_path, FAILING + "set_up")
+    assert (tmp_path / "devel/.catkin").read_text() == f"{tmp_path}/src"
 
 
 def test_the_set_up_itself_fails_on_a_package_that_does_not_build(tmp_path):
