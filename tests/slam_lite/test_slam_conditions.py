@@ -40,6 +40,8 @@ class Robot:
         self._scans = rospy.Publisher(f"/{name}/scan", LaserScanArrays, queue_size=10)
         self._tf = rospy.Publisher(f"/{name}/tf", TFMessage, queue_size=10)
         rospy.Subscriber(f"/{name}/tf", TFMessage, self._on_tf)
+        self.is_mapped = False
+        rospy.Subscriber(f"/{name}/map", rospy.AnyMsg, self._on_map)
 
     @property
     def is_heard(self) -> bool:
@@ -62,6 +64,9 @@ class Robot:
     def error(self) -> float:
         """How far off the node believes the robot to be, metres."""
         return (self.odom_in_map @ self.base_in_odom).distance_to(self.base_in_map)
+
+    def _on_map(self, message):
+        self.is_mapped = True
 
     def _on_tf(self, message):
         for transform in message.transforms:
@@ -99,13 +104,21 @@ class SlamConditionsTest(unittest.TestCase):
 
     @classmethod
     def drive(cls, robots, first, earlier=0.0):
-        """STEPS scans from step ``first`` on, stamped ``earlier`` seconds earlier than they are."""
+        """STEPS scans from step ``first`` on, stamped ``earlier`` seconds earlier than they are.
+
+        They stand until each has a map, whose origin is where the first scan was made.
+        """
         cls.wait_for(lambda: all(robot.is_heard for robot in robots), "the nodes")
-        for step in range(first, first + STEPS + STAND):
+
+        def sense_all(step):
             for robot in robots:
-                stamp = rospy.Time.now() - rospy.Duration(earlier)
-                robot.sense(cls.grid, min(step, first + STEPS - 1), stamp)
+                robot.sense(cls.grid, step, rospy.Time.now() - rospy.Duration(earlier))
             rospy.sleep(0.1)
+            return all(robot.is_mapped for robot in robots)
+
+        cls.wait_for(lambda: sense_all(first), "a map of each")
+        for step in range(first, first + STEPS + STAND):
+            sense_all(min(step, first + STEPS - 1))
 
     def robot(self, name) -> Robot:
         return next(robot for robot in self.robots if robot.name == name)

@@ -31,9 +31,8 @@ class ComingBackTest(unittest.TestCase):
                     run.kill(node)
                 code = run.process.wait(RUN_SECONDS)
             finally:
-                run.process.kill()
+                run.end()
             result = json.loads(next(Path(folder).glob("*/result.json")).read_text())
-        print("".join(run.said))
         self.assertEqual(code, 0)
         self.assertEqual([restart["node"] for restart in result["restarts"]], list(NODES))
         self.assertEqual({restart["reason"] for restart in result["restarts"]}, {"was ended by SIGKILL"})
@@ -49,8 +48,7 @@ class ComingBackTest(unittest.TestCase):
                     run.kill("map_server")
                 code = run.process.wait(RUN_SECONDS)
             finally:
-                run.process.kill()
-        print("".join(run.said))
+                run.end()
         self.assertEqual(code, 1)
         self.assertTrue(run.has_said("FAILURE: map_server: was ended by SIGKILL, after 3 restarts"))
 
@@ -72,6 +70,11 @@ class Run:
 
     def has_said(self, text):
         return any(text in line for line in list(self.said))
+
+    def end(self):
+        """Whatever has become of it; shows what it has said."""
+        self.process.kill()
+        print("".join(self.said))
 
     def kill(self, node):
         """Ends the node with SIGKILL once it is there, and gives the others a moment to notice."""
