@@ -2,6 +2,7 @@
 """However a run is ended from outside, it leaves no process behind and is no success."""
 
 import os
+import random
 import signal
 import subprocess
 import tempfile
@@ -17,6 +18,10 @@ from waiting import wait_until
 SCRIPT = Path(__file__).resolve().parents[2] / "scripts/home_service.sh"
 MOMENTS = (0.1, 0.6, 1.5, 3.0, 6.0)
 START_SECONDS, EXIT_SECONDS = 60.0, 20.0
+# Killed by SIGKILL so often, so many seconds after roslaunch has begun, which starts the nodes in these; of
+# what is left then, nothing is after so many.
+STARTS, STARTING_SECONDS, LEFT_SECONDS = 12, (0.0, 2.5), 5.0
+ROSLAUNCH, MOVE_BASE = "/roslaunch --port", "__name:=move_base"
 
 
 class InterruptTest(unittest.TestCase):
@@ -54,16 +59,27 @@ class InterruptTest(unittest.TestCase):
 
     def test_a_terminal_that_closes_ends_the_run(self):
         mark = f"HOME_SERVICE_TEST={uuid.uuid4()}"
-        self.assertEqual(self._interrupted_run(None, mark, signal.SIGHUP), 130)
+        self.assertEqual(self._interrupted_run(0.0, mark, signal.SIGHUP, MOVE_BASE), 130)
         self.assertEqual(processes_with(mark), [])
 
     def test_a_killed_run_takes_its_nodes_along(self):
         mark = f"HOME_SERVICE_TEST={uuid.uuid4()}"
         self._interrupted_run(8.0, mark, signal.SIGKILL)
-        wait_until("the nodes to end", lambda: not processes_with(mark), EXIT_SECONDS)
+        wait_until("the nodes to end", lambda: not processes_with(mark), LEFT_SECONDS)
 
-    def _interrupted_run(self, moment, mark, number=signal.SIGINT):
-        """The exit code; ``moment``: wall seconds after its start, None for when the robot is there."""
+    def test_a_run_that_is_killed_while_it_starts_leaves_nothing(self):
+        moments = random.Random(16)
+        for _ in range(STARTS):
+            mark, moment = f"HOME_SERVICE_TEST={uuid.uuid4()}", moments.uniform(*STARTING_SECONDS)
+            self._interrupted_run(moment, mark, signal.SIGKILL, ROSLAUNCH)
+            killed_at = time.monotonic()
+            wait_until(f"nothing of it, {moment:.2f} s", lambda: not processes_with(mark), LEFT_SECONDS)  # noqa: B023
+            print(
+                f"killed after {moment:.2f} s of roslaunch: gone after {time.monotonic() - killed_at:.1f} s"
+            )
+
+    def _interrupted_run(self, moment, mark, number=signal.SIGINT, after=SCRIPT.name):
+        """The exit code; ``moment``: wall seconds after there is a process with ``after`` in its command."""
         name, value = mark.split("=")
         with tempfile.TemporaryDirectory() as folder:
             run = subprocess.Popen(
@@ -73,16 +89,14 @@ class InterruptTest(unittest.TestCase):
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,
             )
-            if moment is None:
-                wait_until("the robot", lambda: _is_there("move_base", mark), START_SECONDS)
-            else:
-                time.sleep(moment)
+            wait_until(after, lambda: _is_there(after, mark), START_SECONDS)
+            time.sleep(moment)
             run.send_signal(number)
             return run.wait(EXIT_SECONDS)
 
 
-def _is_there(node, mark):
-    return any(f"__name:={node}" in line for line in processes_with(mark))
+def _is_there(part, mark):
+    return any(part in line for line in processes_with(mark))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,6 @@
 """The cockpit beside a run: a process of its own, which ends with the one that has started it."""
 
 import contextlib
-import ctypes
 import signal
 import subprocess
 import sys
@@ -11,12 +10,12 @@ from pathlib import Path
 from typing import List, Mapping, Optional, Sequence
 
 from cockpit.errors import CockpitError, PortError
+from supervision.processes import ending_with_parent
 
 # Where a page is served if nobody says.
 FREE_PORT = "127.0.0.1:0"
 URL, ERROR = "cockpit: http", "error: "
 START_SECONDS, CLOSE_SECONDS, POLL_SECONDS = 30.0, 2.0, 0.02
-PR_SET_PDEATHSIG = 1
 
 
 class CockpitProcess:
@@ -46,7 +45,7 @@ class CockpitProcess:
             errors="replace",
             env=None if environment is None else dict(environment),
             start_new_session=True,
-            preexec_fn=_end_with_parent,
+            preexec_fn=ending_with_parent(signal.SIGTERM),
         )
         threading.Thread(target=self._read, daemon=True).start()
         self.url = self._wait_for_url()
@@ -87,7 +86,3 @@ class CockpitProcess:
                     with contextlib.suppress(OSError):
                         # The log stays when the run is over: the token is for who started it.
                         log.write(line.partition("?token=")[0].rstrip() + "\n")
-
-
-def _end_with_parent() -> None:
-    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)

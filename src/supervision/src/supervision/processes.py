@@ -2,17 +2,13 @@
 
 import contextlib
 import ctypes
-import random
+import os
 import signal
-import socket
 import time
-from typing import List
+from typing import Callable, List
 
 import psutil
 
-from supervision.errors import LaunchError
-
-FIRST_PORT, FIRST_OUTGOING_PORT = 20000, 32768
 PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
 
 
@@ -21,46 +17,56 @@ def start_of_this_process() -> float:
     return psutil.Process().create_time()
 
 
-def free_port() -> int:
-    """A TCP port on the loopback interface that nobody listens on right now.
-
-    It lies below those that the system hands out for outgoing connections: one of these, of another graph for
-    example, might take it before a master listens there.
-    """
-    ports = range(FIRST_PORT, FIRST_OUTGOING_PORT)
-    for port in random.Random().sample(ports, len(ports)):
-        with socket.socket() as probe, contextlib.suppress(OSError):
-            probe.bind(("127.0.0.1", port))
-            return port
-    raise LaunchError(f"every port from {ports[0]} to {ports[-1]} is in use")
-
-
 def adopt_orphans() -> None:
     """Makes this process the parent of every descendant whose own parent dies, so that none can hide."""
     ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
 
 
-def end_with_parent() -> None:
-    """For a child between fork and exec: it is sent SIGINT when its parent ends, be it by SIGKILL."""
-    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGINT, 0, 0, 0)
+def ending_with_parent(number: int = signal.SIGINT) -> Callable[[], None]:
+    """For a child between fork and exec: it is sent the signal when this process ends, be it by SIGKILL.
+
+    Linux takes the end of the thread that forks for that of the process: it is to be the main one.
+    """
+    parent = os.getpid()
+
+    def follow() -> None:
+        # What a handler of the parent's were to note here, the program to come would never hear.
+        signal.signal(number, signal.SIG_DFL)
+        end_when_orphaned(parent, number)
+
+    return follow
+
+
+def end_when_orphaned(parent: int, number: int) -> None:
+    """This process is sent the signal when ``parent`` ends, and at once if it has ended already."""
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, number, 0, 0, 0)
+    if os.getppid() != parent:
+        os.kill(os.getpid(), number)
 
 
 def end_descendants(patience: float) -> None:
     """Terminates and, after ``patience`` seconds, kills every descendant of this process, however deep."""
     deadline = time.monotonic() + patience
-    descendants: List[psutil.Process] = psutil.Process().children(recursive=True)
+    descendants = _living_descendants()
     for process in descendants:
         _signal(process, signal.SIGTERM)
     while descendants:
         psutil.wait_procs(descendants, timeout=0.1)
-        descendants = [
-            process
-            for process in psutil.Process().children(recursive=True)
-            if process.status() != psutil.STATUS_ZOMBIE
-        ]
+        descendants = _living_descendants()
         if time.monotonic() > deadline:
             for process in descendants:
                 _signal(process, signal.SIGKILL)
+
+
+def _living_descendants() -> List[psutil.Process]:
+    return [process for process in psutil.Process().children(recursive=True) if _is_alive(process)]
+
+
+def _is_alive(process: psutil.Process) -> bool:
+    """A zombie is not, nor one that has ended since it was listed."""
+    with contextlib.suppress(psutil.NoSuchProcess):
+        return process.status() != psutil.STATUS_ZOMBIE
+    return False
 
 
 def _signal(process: psutil.Process, number: int) -> None:

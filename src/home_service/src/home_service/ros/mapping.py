@@ -23,6 +23,7 @@ from planar_ros.calls.actions import goal_is_over, server_is_ready
 from supervision.display import Display
 from supervision.errors import LaunchError
 from supervision.interruption import RunInterruptedError
+from supervision.processes import ending_with_parent
 
 SAVE_SECONDS = 30.0
 # Has the robot driven until the map is made; why that failed, or None.
@@ -79,7 +80,7 @@ def explore(run: Run, referee: Referee) -> Optional[str]:
 def drive_by_keys(run: Run, _referee: Referee) -> Optional[str]:
     """A driver: terminal or pipe are left to the keyboard teleop until it ends."""
     run.display.hush()
-    teleop = subprocess.Popen(TELEOP)
+    teleop = subprocess.Popen(TELEOP, preexec_fn=ending_with_parent())
     failure = run.watch(lambda: teleop.poll() is not None)
     if failure is None and teleop.returncode != 0:
         raise LaunchError("the keyboard teleop has failed", is_bad_input=teleop.returncode == 2)

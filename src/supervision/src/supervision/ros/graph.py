@@ -14,7 +14,9 @@ import psutil
 
 from supervision.deaths import Deaths, end_in_words
 from supervision.errors import LaunchError
-from supervision.processes import adopt_orphans, end_descendants, end_with_parent, free_port
+from supervision.guard import guarded, ignore_ctrl_c
+from supervision.ports import free_port
+from supervision.processes import adopt_orphans, end_descendants
 
 SIGINT_SECONDS = 8.0
 HEARING_SECONDS = 2.0
@@ -24,7 +26,7 @@ ENDING = "killing on exit"
 
 
 class RosGraph:
-    """Runs ``roslaunch`` under a master of its own; leaves no process behind when it is closed.
+    """Runs ``roslaunch`` under a master of its own; leaves no process behind when it is closed, or killed.
 
     What roslaunch prints, and each node on stderr, goes to ``log_folder``/roslaunch.log. ``deaths``: of
     nodes; those in ``comes_back`` the launch file has started again.
@@ -50,12 +52,12 @@ class RosGraph:
         if shutil.which("roslaunch") is None:
             raise LaunchError("roslaunch is not on the PATH: run scripts/setup.sh")
         self._roslaunch = subprocess.Popen(
-            command,
+            guarded(command),
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             start_new_session=True,
-            preexec_fn=end_with_parent,
+            preexec_fn=ignore_ctrl_c,
             text=True,
             errors="replace",
         )
@@ -76,7 +78,7 @@ class RosGraph:
     def close(self) -> None:
         """Ends every process of the graph: SIGINT first, then SIGTERM, then SIGKILL."""
         if self.is_running:
-            self._roslaunch.send_signal(signal.SIGINT)
+            os.killpg(self._roslaunch.pid, signal.SIGINT)
         self._wait_for_roslaunch()
         end_descendants(SIGTERM_SECONDS)
         self._pump.join(1.0)
@@ -85,7 +87,8 @@ class RosGraph:
         """Patiently while it ends nodes: it may not hear before it has any, and stay on after the last."""
         started = time.monotonic()
         while self.is_running:
-            ends_nodes = self._is_ending.is_set() and psutil.Process(self._roslaunch.pid).children()
+            below_guard = psutil.Process(self._roslaunch.pid).children(recursive=True)
+            ends_nodes = self._is_ending.is_set() and len(below_guard) > 1  # roslaunch itself is one
             if time.monotonic() - started > (SIGINT_SECONDS if ends_nodes else HEARING_SECONDS):
                 return
             time.sleep(POLL_SECONDS)

@@ -17,7 +17,8 @@ from run_project.ros.people import Person
 from run_project.stand_ins.terminal import WindowLogs
 from supervision.display import Display
 from supervision.errors import LaunchError
-from supervision.processes import adopt_orphans, end_descendants, free_port
+from supervision.ports import free_port
+from supervision.processes import adopt_orphans, end_descendants
 from supervision.ros.node_api import is_master_online
 
 POLL_SECONDS = 0.2

@@ -9,7 +9,7 @@ from typing import List
 import roslib.packages
 
 from supervision.errors import LaunchError
-from supervision.processes import end_with_parent
+from supervision.processes import ending_with_parent
 from supervision.ros.node_api import hears_all
 
 PROFILES = {
@@ -47,7 +47,7 @@ class RosbagProcess:
                 stdout=log,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
-                preexec_fn=end_with_parent,
+                preexec_fn=ending_with_parent(),
             )
 
     def is_ready(self) -> bool:

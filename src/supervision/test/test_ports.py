@@ -1,7 +1,7 @@
 import socket
 from pathlib import Path
 
-from supervision.processes import free_port
+from supervision.ports import free_port
 
 OUTGOING = Path("/proc/sys/net/ipv4/ip_local_port_range")
 

@@ -1,0 +1,62 @@
+"""A command that leaves no process behind, also if whoever has started it is killed at any moment.
+
+python3 -m supervision.guard PARENT COMMAND...
+
+Started by the process PARENT, it runs the command until that ends, or this is sent SIGTERM, or PARENT is no
+more; upon which the command is ended as by Ctrl-C, and then whatever it has started. The exit code is the
+command's. SIGINT is for the command alone, which is in the same process group.
+"""
+
+import os
+import signal
+import subprocess
+import sys
+from contextlib import suppress
+from threading import Timer
+from typing import List, NoReturn
+
+from supervision.processes import adopt_orphans, end_descendants, end_when_orphaned, ending_with_parent
+
+SIGINT_SECONDS, SIGTERM_SECONDS = 2.0, 2.0
+
+
+def guarded(command: List[str]) -> List[str]:
+    """The command line of a guard of ``command``, for a child of this process, started by its main thread."""
+    return [sys.executable, "-m", "supervision.guard", str(os.getpid()), *command]
+
+
+def ignore_ctrl_c() -> None:
+    """For a guard between fork and exec."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def main() -> NoReturn:
+    parent, *command = sys.argv[1:]
+    adopt_orphans()
+    process = subprocess.Popen(command, stdin=subprocess.DEVNULL, preexec_fn=ending_with_parent())
+    signal.signal(signal.SIGTERM, lambda _number, _frame: _interrupt(process))
+    end_when_orphaned(int(parent), signal.SIGTERM)
+    process.wait()
+    end_descendants(SIGTERM_SECONDS)
+    _end_as(process.returncode)
+
+
+def _interrupt(process: subprocess.Popen) -> None:
+    """As Ctrl-C does; kills it if it takes too long over that."""
+    process.send_signal(signal.SIGINT)
+    impatience = Timer(SIGINT_SECONDS, process.kill)
+    impatience.daemon = True
+    impatience.start()
+
+
+def _end_as(code: int) -> NoReturn:
+    """A negative ``code`` is the number of the signal that has ended the command."""
+    if code < 0:
+        with suppress(OSError):  # nobody may tell what SIGKILL is to do
+            signal.signal(-code, signal.SIG_DFL)
+        os.kill(os.getpid(), -code)
+    sys.exit(code)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,101 @@
+"""What is guarded ends with who has started it, whatever it is at."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+import uuid
+from pathlib import Path
+
+import psutil
+import pytest
+
+MARK = "GUARD_TEST"
+LEFT_SECONDS, START_SECONDS = 5.0, 10.0
+STARTER = """
+import subprocess, sys, time
+from supervision.guard import guarded, ignore_ctrl_c
+guard = subprocess.Popen(guarded(sys.argv[1:]), start_new_session=True, preexec_fn=ignore_ctrl_c)
+print("started", flush=True)
+sys.exit(guard.wait())
+"""
+# As roslaunch while it starts a node: deaf, with children in sessions of their own, some of them stubborn.
+STUBBORN = "trap '' INT TERM; while true; do sleep 0.05; done"
+DEAF_PARENT = f'trap "" INT TERM; for i in 1 2 3 4 5; do setsid bash -c "{STUBBORN}" & sleep 0.05; done; wait'
+
+
+@pytest.fixture
+def mark():
+    mark = str(uuid.uuid4())
+    yield mark
+    for process in processes_of(mark):
+        process.kill()
+
+
+def start(mark, *command):
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), MARK: mark}
+    starter = [sys.executable, "-c", STARTER, *command]
+    return subprocess.Popen(starter, env=environment, stdout=subprocess.PIPE)
+
+
+def processes_of(mark):
+    found = []
+    for process in psutil.process_iter():
+        try:
+            is_one = f"{MARK}={mark}".encode() in Path(f"/proc/{process.pid}/environ").read_bytes()
+            if is_one and process.status() != psutil.STATUS_ZOMBIE:
+                found.append(process)
+        except (OSError, psutil.Error):
+            continue
+    return found
+
+
+def seconds_until(is_so, most):
+    started = time.monotonic()
+    while not is_so():
+        assert time.monotonic() - started < most, "in vain"
+        time.sleep(0.02)
+    return time.monotonic() - started
+
+
+def test_nothing_outlives_who_is_killed_at_any_moment(mark):
+    moments = random.Random(1)
+    for _ in range(8):
+        starter = start(mark, "bash", "-c", DEAF_PARENT)
+        starter.stdout.readline()
+        time.sleep(moments.uniform(0.0, 0.4))
+        starter.kill()
+        starter.wait()
+        seconds_until(lambda: not processes_of(mark), LEFT_SECONDS)
+
+
+def test_a_guard_that_is_asked_to_end_interrupts_its_command_first(mark, tmp_path):
+    told = tmp_path / "told"
+    hearing = f"trap 'echo INT > {told}; exit 3' INT; while true; do sleep 0.05; done"
+    starter = start(mark, "bash", "-c", hearing)
+    seconds_until(lambda: len(processes_of(mark)) >= 3, START_SECONDS)
+    time.sleep(0.2)
+    guard = psutil.Process(starter.pid).children()[0]
+    guard.terminate()
+    assert starter.wait(LEFT_SECONDS) == 3
+    assert told.read_text() == "INT\n"
+
+
+def test_ctrl_c_is_for_the_command(mark):
+    starter = start(mark, "bash", "-c", "trap 'exit 4' INT; echo ready; while true; do sleep 0.05; done")
+    assert [starter.stdout.readline() for _ in range(2)]
+    os.killpg(psutil.Process(starter.pid).children()[0].pid, signal.SIGINT)
+    assert starter.wait(LEFT_SECONDS) == 4
+
+
+@pytest.mark.parametrize("how, code", [("exit 5", 5), ("kill -KILL $$", 256 - signal.SIGKILL)])
+def test_it_ends_as_its_command_has_ended(mark, how, code):
+    assert start(mark, "bash", "-c", how).wait(START_SECONDS) == code
+
+
+def test_what_a_command_leaves_behind_is_ended(mark):
+    starter = start(mark, "bash", "-c", f'setsid bash -c "{STUBBORN}" & exit 0')
+    assert starter.wait(START_SECONDS) == 0
+    assert not processes_of(mark)
