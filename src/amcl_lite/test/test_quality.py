@@ -9,7 +9,7 @@ from amcl_lite.recovery.quality import LOST_BELOW, LostDetector, Quality, qualit
 from amcl_lite.sensor.beams import Beams
 from amcl_lite.sensor.likelihood_field import likelihood_field
 from amcl_lite.sensor.scan_matching import matched
-from planar import OccupancyGrid, Pose2, grid_from_picture, wrap
+from planar import FREE, OccupancyGrid, Pose2, grid_from_picture, wrap
 from planar.geometry.ray_casting import cast_rays
 
 FLAT = """
@@ -161,6 +161,15 @@ def test_the_true_place_is_among_the_hypotheses():
     nearest = min(Pose2.from_array(pose).distance_to(HERE) for pose in hypotheses.poses)
     assert nearest < 0.1 and len(hypotheses) <= 10
     assert hypotheses.draw(100, rng).shape == (100, 3)
+
+
+def test_nothing_is_drawn_into_a_wall():
+    beside_a_wall = Pose2(0.5, 2.9, 0.3)
+    rng = np.random.default_rng(0)
+    poses = find_hypotheses(beams_at(beside_a_wall), FIELD, GRID, FreeSpace(GRID), rng).draw(2000, rng)
+    near = poses[np.hypot(*(poses[:, :2] - (beside_a_wall.x, beside_a_wall.y)).T) < 0.5]
+    assert len(near) > 100
+    assert {GRID.value_at(x, y) for x, y, _ in poses} == {FREE}
 
 
 def test_a_scan_that_fits_nowhere_gives_no_hypothesis():

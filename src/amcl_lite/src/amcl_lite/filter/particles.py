@@ -58,6 +58,13 @@ class FreeSpace:
         positions_xy = self._grid.points_of(row_col + within_cell)
         return np.column_stack((positions_xy, rng.uniform(-np.pi, np.pi, count)))
 
+    def contains(self, poses: np.ndarray) -> np.ndarray:
+        """Which of the poses (N, 3) lie in a free cell: bool (N,)."""
+        cells = self._grid.cells_of(poses[:, :2])
+        is_free = self._grid.contains(cells)
+        is_free[is_free] = self._grid.cells[tuple(cells[is_free].T)] == FREE
+        return is_free
+
 
 @numba.njit(cache=True)
 def _cells_numbered(numbers, counts, cells, kind):

@@ -10,7 +10,7 @@ from amcl_lite.sensor.beams import Beams
 from amcl_lite.sensor.likelihood_field import LikelihoodField
 from amcl_lite.sensor.scan_matching import matched
 from amcl_lite.sensor.sensor_model import mean_fits
-from planar import OccupancyGrid, Pose2
+from planar import OCCUPIED, OccupancyGrid, Pose2
 
 _DRAWN, _MATCHED, _KEPT = 6000, 40, 10
 # How far a drawn pose may be from the place that scan matching pulls it to: metres, metres, radians.
@@ -24,16 +24,18 @@ _BEAMS_TO_DRAW_BY = 30
 class Hypotheses:
     """Some poses at which a scan fits the map, better ones first; ``poses``: (N, 3)."""
 
-    def __init__(self, poses: np.ndarray):
+    def __init__(self, poses: np.ndarray, free_space: FreeSpace):
         self.poses = poses
+        self._free_space = free_space
 
     def __len__(self) -> int:
         return len(self.poses)
 
     def draw(self, count: int, rng: np.random.Generator) -> np.ndarray:
-        """Poses (count, 3) strewn about the hypotheses."""
+        """Poses (count, 3) strewn about the hypotheses, as far as a robot can be there."""
         chosen = self.poses[rng.integers(len(self.poses), size=count)]
-        return chosen + rng.standard_normal((count, 3)) * _SPREAD
+        strewn = chosen + rng.standard_normal((count, 3)) * _SPREAD
+        return np.where(self._free_space.contains(strewn)[:, None], strewn, chosen)
 
 
 def find_hypotheses(
@@ -51,8 +53,11 @@ def find_hypotheses(
     found: List[Tuple[float, Pose2]] = []
     for pose in best:
         place = matched(Pose2.from_array(pose), _REACH, ends_xy, field)
+        if grid.value_at(place.x, place.y) == OCCUPIED:
+            continue
         probability = quality_of(place, beams, field, grid).probability
         if probability > _BELIEVABLE and all(place.distance_to(other) > 0.2 for _, other in found):
             found.append((probability, place))
     found.sort(key=lambda pair: -pair[0])
-    return Hypotheses(np.array([place.as_array() for _, place in found[:_KEPT]]).reshape(-1, 3))
+    poses = np.array([place.as_array() for _, place in found[:_KEPT]]).reshape(-1, 3)
+    return Hypotheses(poses, free_space)
