@@ -5,6 +5,7 @@ import time
 import unittest
 
 import actionlib
+import rosnode
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
@@ -13,7 +14,7 @@ from move_base_msgs.msg import MoveBaseAction
 from waiting import wait_until
 
 from planar import Pose2, grid_from_picture
-from planar_ros.calls.actions import goal_is_over, server_is_ready
+from planar_ros.calls.actions import KILLED_TEXT, goal_is_over, server_is_ready
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_to_msg, pose2_from_msg
 from planar_ros.messages.transforms import Transforms
 
@@ -35,6 +36,10 @@ class ToyWorld:
         self._server.start()
         pose_timer = rospy.Timer(rospy.Duration(0.05), self._tell_pose)
         rospy.on_shutdown(pose_timer.shutdown)
+
+    @property
+    def is_driving(self):
+        return self._server.is_active()
 
     def reset(self, manner):
         self.robot, self.manner, self.cancelled = START, manner, 0
@@ -108,6 +113,17 @@ class ExploreTest(unittest.TestCase):
             self.lonely.get_goal_status_text(),
             "a map on /lonely/map and the action /lonely/move_base missing for 1 s",
         )
+
+    def test_zz_the_robot_stops_and_the_goal_ends_when_the_node_does(self):
+        """After all others, as there is no explorer any more."""
+        self.feedback.clear()
+        self._explore(self.client, "dawdles")
+        wait_until("feedback", lambda: self.feedback)
+        wait_until("a goal", lambda: self.world.is_driving)
+        rosnode.kill_nodes(["/explore"])
+        self.assertEqual(self._end(self.client), GoalStatus.ABORTED)
+        self.assertEqual(self.client.get_goal_status_text(), KILLED_TEXT)
+        wait_until("the cancel", lambda: self.world.cancelled == 1)
 
     def _explore(self, client, manner):
         self.world.reset(manner)

@@ -6,10 +6,15 @@ import subprocess
 import time
 import unittest
 
+import actionlib
 import rospy
 import rostest
+from actionlib_msgs.msg import GoalStatus
+from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from std_msgs.msg import String
 from waiting import wait_until
+
+from planar_ros.calls.actions import KILLED_TEXT, goal_is_over, server_is_ready
 
 TIMES = 10
 
@@ -36,6 +41,18 @@ class LastWordsTest(unittest.TestCase):
                 node.send_signal(signal.SIGINT)
             wait_until("its last word", lambda: heard == ["here", "gone"])  # noqa: B023
             listener.unregister()
+
+    def test_who_has_sent_a_goal_hears_every_time_that_its_node_ends(self):
+        for _ in range(TIMES):
+            client = actionlib.SimpleActionClient("errand", MoveBaseAction)
+            with subprocess.Popen(["rosrun", "home_service_tests", "node_of_an_action.py"]) as node:
+                wait_until("the action", lambda: server_is_ready(client))  # noqa: B023
+                client.send_goal(MoveBaseGoal())
+                wait_until("its start", lambda: client.get_state() == GoalStatus.ACTIVE)  # noqa: B023
+                node.send_signal(signal.SIGINT)
+            wait_until("its end", lambda: goal_is_over(client))  # noqa: B023
+            told = client.get_state(), client.get_goal_status_text()
+            self.assertEqual(told, (GoalStatus.ABORTED, KILLED_TEXT))
 
     def test_nobody_is_waited_for_in_vain(self):
         started = time.monotonic()

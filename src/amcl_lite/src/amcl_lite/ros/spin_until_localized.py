@@ -17,6 +17,7 @@ from std_srvs.srv import Empty
 from planar import PlanarError
 from planar_ros.messages.border import listen
 from planar_ros.messages.conversion import pose2_from_msg
+from planar_ros.node.last_words import say_at_end
 from planar_ros.node.shell import fail, run
 
 # The particles are in one place when their standard deviations, metres and radians, are below these.
@@ -41,6 +42,7 @@ class SpinUntilLocalized:
         self._pose: Optional[PoseWithCovarianceStamped] = None
         self._asked_at = rospy.Time(0)
         self._cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+        say_at_end(self._cmd_vel, Twist())
         rospy.Subscriber(f"{node}/localization_state", String, self._on_state, queue_size=2)
         listen("amcl_pose", PoseWithCovarianceStamped, self._on_pose, queue_size=2)
 
@@ -49,16 +51,13 @@ class SpinUntilLocalized:
         _wait_for_time()
         self._ask_for_global_localization()
         clock = _Clock()
-        try:
-            while not self._is_localized():
-                if clock.elapsed() > timeout:
-                    raise NotLocalizedError(f"not localized within {timeout:g} s: {self._why_not()}")
-                turn = Twist()
-                turn.angular.z = turn_speed
-                self._cmd_vel.publish(turn)
-                time.sleep(POLL_SECONDS)
-        finally:
-            self._cmd_vel.publish(Twist())
+        while not self._is_localized():
+            if clock.elapsed() > timeout:
+                raise NotLocalizedError(f"not localized within {timeout:g} s: {self._why_not()}")
+            turn = Twist()
+            turn.angular.z = turn_speed
+            self._cmd_vel.publish(turn)
+            time.sleep(POLL_SECONDS)
         assert self._pose is not None
         pose = pose2_from_msg(self._pose.pose.pose)
         return f"localized at ({pose.x:.2f}, {pose.y:.2f}, {pose.yaw:.2f}) after {clock.elapsed():.1f} s"

@@ -7,10 +7,13 @@ from typing import Optional
 import rospy
 from geometry_msgs.msg import Twist
 
+from planar_ros.node.last_words import wait_until_heard
 from teleop_lite.teleop import TICK_SECONDS, Teleop
 
 # So long after it has come to rest the robot is told so, then others may drive it.
 RESTING_SECONDS = 0.5
+# Wall seconds at the end for the robot to hear that it is to stop.
+LAST_WORD_SECONDS = 1.0
 FORCE_STOP = "k"
 
 
@@ -46,8 +49,12 @@ class PageTeleop:
                 self._stop()
 
     def close(self) -> None:
+        """For good, before the node ends: the robot hears that it is to stop."""
         with self._lock:
+            is_driving = self._driver is not None
             self._stop()
+            if is_driving and self._publisher is not None:
+                wait_until_heard(self._publisher, patience=LAST_WORD_SECONDS)
 
     def _stop(self) -> None:
         self._teleop.press(FORCE_STOP)

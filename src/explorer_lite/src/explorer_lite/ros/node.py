@@ -47,7 +47,7 @@ class Explore:
         self._move_base = MoveBase(self._settings.global_frame)
         listen("map", OccupancyGridArrays, self._keep_map, queue_size=1, tcp_nodelay=True)
         self._scans = listen("scan", LaserScanArrays, self._measure_view, queue_size=1)
-        rospy.on_shutdown(self._move_base.cancel_all)
+        self._move_base.cancel_all_at_end()
         frames = f"{self._settings.global_frame} to {self._settings.robot_base_frame}"
         self._conditions = {
             f"a map on {rospy.resolve_name('map')}": lambda: self._map is not None,
@@ -76,6 +76,8 @@ class Explore:
         start = rospy.get_time()
         rospy.loginfo("exploring")
         end = self._explore(explorer)
+        if rospy.is_shutdown():  # the action has then been aborted
+            return
         self._stop()
         result = ExploreResult(
             explored_area=explorer.explored_area,

@@ -15,6 +15,7 @@ from planar.config.settings import settings_from
 from planar_ros.messages.border import listen
 from planar_ros.messages.conversion import LaserScanArrays, frame_name, scan_from_msg
 from planar_ros.messages.transforms import Transforms
+from planar_ros.node.last_words import say_at_end
 from planar_ros.node.parameters import parameters_below
 from planar_ros.node.shell import run
 
@@ -39,6 +40,7 @@ class CollisionMonitorNode:
         self._reason = ""
         self._state = rospy.Publisher("~state", String, queue_size=1, latch=True)
         self._out = rospy.Publisher("cmd_vel_out", Twist, queue_size=1, tcp_nodelay=True)
+        say_at_end(self._out, Twist())
         listen("scan", LaserScanArrays, self._on_scan, queue_size=1, tcp_nodelay=True)
         listen("cmd_vel_in", Twist, self._on_command, queue_size=1, tcp_nodelay=True)
 

@@ -32,7 +32,6 @@ from planar_ros.node.waiting import Waiting
 from planar_ros.step import Step, is_heard_in_step
 
 WARN_SECONDS = 5.0
-KILLED_TEXT = "Aborting on the goal because the node has been killed"
 TIME_JUMP_TEXT = "Aborting on the goal because time has jumped back"
 
 
@@ -231,10 +230,11 @@ class MoveBaseNode:
             rospy.logwarn_throttle(WARN_SECONDS, decision.text)
 
     def _on_shutdown(self):
+        """The action ends by itself."""
         with self._lock:
+            self._navigator = self._new_map = None
             if self._goals.is_active:
-                self._topics.command(Twist2())
-                self._goals.end(Status.ABORTED, KILLED_TEXT)
+                self._topics.stop_for_good()
 
 
 def _checked_settings(parameters) -> NavigatorSettings:

@@ -52,6 +52,8 @@ class DeliverServer:
             self._server.set_aborted(DeliverResult(reason=str(error)), str(error))
             return
         outcome = self._carry_out(mission, self._watch)
+        if rospy.is_shutdown():  # the goal has then been aborted
+            return
         states = self._states()
         result = DeliverResult(outcome.reason, states, rospy.Time.now() - start)
         if outcome.success:

@@ -5,17 +5,19 @@ from typing import Any, List, Sequence
 import actionlib
 import rospy
 
+from planar_ros.node.last_words import wait_until_heard
 from planar_ros.step import Step
 
 # Goals that have ended are told of for a while, but of no more than so many: each goal that comes is looked
 # up among them, and has all of them told of again.
 MOST_ENDED = 20
+KILLED_TEXT = "Aborting on the goal because the node has been killed"
 
 
 class ActionServer(actionlib.SimpleActionServer):
     """A server that tells its status at moments, and also after time was set back, unlike actionlib's own.
 
-    A client that sends goals without end does not slow it down.
+    A client that sends goals without end does not slow it down, and none is left waiting when the node ends.
     """
 
     def start(self) -> None:
@@ -35,6 +37,16 @@ class ActionServer(actionlib.SimpleActionServer):
             server.status_timer.shutdown()
         period = 1.0 / server.status_frequency
         step.every(lambda: period, lambda _now: tell(), lambda: None)
+        rospy.on_shutdown(self._abort_at_end)
+
+    def _abort_at_end(self) -> None:
+        with self.action_server.lock, self.lock:
+            if self.is_new_goal_available():
+                self.accept_new_goal()
+            if not self.is_active():
+                return
+            self.set_aborted(text=KILLED_TEXT)
+        wait_until_heard(self.action_server.result_pub, self.action_server.status_pub)
 
 
 def without_most_ended(trackers: Sequence[Any]) -> List[Any]:

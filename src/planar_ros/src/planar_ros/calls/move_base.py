@@ -16,6 +16,7 @@ from planar.driving import DriveOutcome
 from planar_ros.calls.actions import goal_is_over, server_is_ready
 from planar_ros.calls.services import call_service
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
+from planar_ros.node.last_words import wait_until_heard
 
 PLAN_SECONDS = 5.0
 POLL_SECONDS = 0.02
@@ -91,6 +92,17 @@ class MoveBase:
         """Gives all goals up, also those of others."""
         self._is_driving = False
         self._client.cancel_all_goals()
+
+    def cancel_all_at_end(self) -> None:
+        """Has all goals given up when the node ends, and move_base hear of it."""
+
+        def cancel() -> None:
+            inner = self._client.action_client
+            wait_until_heard(inner.pub_goal)  # lest a goal comes after what cancels it
+            self.cancel_all()
+            wait_until_heard(inner.pub_cancel)
+
+        rospy.on_shutdown(cancel)
 
     def plan_length(self, start: Optional[Pose2], end: Pose2) -> Optional[float]:
         """Metres of its plan from ``start``, or from the robot, to ``end``; None if it finds no way.

@@ -14,6 +14,7 @@ from move_base_lite.ros.topics.exploration import ExplorationTopics
 from move_base_lite.ros.topics.plan_messages import path_msg, plan_msg, pose_msg, trajectory_msg
 from move_base_lite.ros.topics.status_messages import outcome_msg, progress_msg
 from planar import Pose2, Twist2
+from planar_ros.node.last_words import wait_until_heard
 
 FEEDBACK_PERIOD = rospy.Duration(0.2)
 # Where rviz's configurations look for the plans of any local planner.
@@ -41,6 +42,11 @@ class DecisionTopics:
         message = Twist()
         message.linear.x, message.angular.z = command.v, command.omega
         self._command.publish(message)
+
+    def stop_for_good(self) -> None:
+        """The last command of all, which is heard."""
+        self.command(Twist2())
+        wait_until_heard(self._command)
 
     def tell_end(self, decision: Decision) -> None:
         """The last command for a goal, and how it ended."""

@@ -1,0 +1,28 @@
+#!/usr/bin/env python3
+"""move_base that is ended while it drives: the robot stops, and who has sent the goal hears of it."""
+
+import rosnode
+import rospy
+import rostest
+from actionlib_msgs.msg import GoalStatus
+from geometry_msgs.msg import Twist
+from move_base_client import MoveBaseTestCase, pose_at
+
+from planar_ros.calls.actions import KILLED_TEXT
+
+
+class TestMoveBaseEnd(MoveBaseTestCase):
+    def test_the_last_command_is_to_stop_and_the_goal_is_aborted(self):
+        self.drive(pose_at(2.0, 3.0))
+        rosnode.kill_nodes(["/move_base"])
+        self.assertEqual(self.result_of(), (GoalStatus.ABORTED, KILLED_TEXT))
+        self.wait_until(lambda: "/move_base" not in rosnode.get_node_names())
+        self.assertEqual(self.commands.messages[-1], Twist())
+
+    def tearDown(self):
+        """Nobody is left to come to rest."""
+
+
+if __name__ == "__main__":
+    rospy.init_node("test_move_base_end")
+    rostest.rosrun("home_service_tests", "move_base_end", TestMoveBaseEnd)

@@ -1,0 +1,17 @@
+#!/usr/bin/env python3
+"""A node that accepts goals and comes to the end of none."""
+
+from move_base_msgs.msg import MoveBaseAction
+
+from planar_ros.calls.actions import ActionServer
+from planar_ros.node.shell import run
+
+
+def start():
+    server = ActionServer("errand", MoveBaseAction, auto_start=False)
+    server.register_goal_callback(server.accept_new_goal)
+    server.start()
+    return server
+
+
+run("node_of_an_action", start)
