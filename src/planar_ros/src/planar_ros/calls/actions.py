@@ -8,9 +8,9 @@ import rospy
 from planar_ros.node.last_words import wait_until_heard
 from planar_ros.step import Step
 
-# Goals that have ended are told of for a while, but of no more than so many: each goal that comes is looked
-# up among them, and has all of them told of again.
-MOST_ENDED = 20
+# Goals that have ended are told of for a while, but of no more than so many, and no more than so many are
+# kept: each goal that comes is looked up among them.
+MOST_ENDED, MOST_KEPT = 20, 60
 KILLED_TEXT = "Aborting on the goal because the node has been killed"
 
 
@@ -22,22 +22,33 @@ class ActionServer(actionlib.SimpleActionServer):
 
     def start(self) -> None:
         server, step = self.action_server, Step.of_node()
-        tell_all = server.publish_status
-
-        def tell() -> None:
-            with server.lock:
-                server.status_list[:] = without_most_ended(server.status_list)
-                tell_all()
-
+        self._publish_status, self._is_to_tell = server.publish_status, False
         if step.is_on:  # clients connect between this moment and the next, and either all hear it or none
             server.publish_status = lambda: None
         super().start()
-        server.publish_status = tell
+        server.publish_status = self._tell_soon
         if server.status_timer is not None:
             server.status_timer.shutdown()
         period = 1.0 / server.status_frequency
-        step.every(lambda: period, lambda _now: tell(), lambda: None)
+        step.every(lambda: period, lambda _now: self._tell(), lambda: None)
         rospy.on_shutdown(self._abort_at_end)
+
+    def _tell_soon(self) -> None:
+        """How all goals stand: once for all that have changed at a moment, which may be thousands."""
+        server = self.action_server
+        with server.lock:
+            if len(server.status_list) > MOST_KEPT:
+                server.status_list[:] = without_most_ended(server.status_list)
+            if not self._is_to_tell:
+                self._is_to_tell = True
+                Step.of_node().soon(self._tell)
+
+    def _tell(self) -> None:
+        server = self.action_server
+        with server.lock:
+            self._is_to_tell = False
+            server.status_list[:] = without_most_ended(server.status_list)
+            self._publish_status()
 
     def _abort_at_end(self) -> None:
         with self.action_server.lock, self.lock:
@@ -46,6 +57,7 @@ class ActionServer(actionlib.SimpleActionServer):
             if not self.is_active():
                 return
             self.set_aborted(text=KILLED_TEXT)
+            self._tell()
         wait_until_heard(self.action_server.result_pub, self.action_server.status_pub)
 
 
