@@ -4,7 +4,9 @@ from home_service_msgs.msg import DeliverActionGoal, DeliverGoal, Delivery, Deli
 from nav_msgs.msg import Odometry
 from visualization_msgs.msg import Marker
 
+from home_service.judging.verdict import ERRAND, OBJECTS
 from home_service.ros.referee import Referee
+from pick_objects import Stage
 from planar import Pose2
 from planar.maps.places import Place
 
@@ -59,6 +61,21 @@ def test_the_marker_of_an_object_may_be_taken_away_and_shown_anew(referee):
         message.pose.position.x, message.pose.orientation.w = x, 1.0
         referee._see_marker(message)
     assert referee.ledger.markers == ["letter at hall", "letter carried"]
+
+
+def test_markers_that_never_come_are_not_waited_for_without_end(referee, monkeypatch):
+    wall = [100.0]
+    monkeypatch.setattr("time.monotonic", lambda: wall[0])
+    delivered = arrival(0.0)
+    delivered.state, delivered.deliveries[0].state = "delivered", Stage.DELIVERED.value
+    referee._see_truth(truth(1.0, 2.0))
+    referee._see_mission(delivered)
+    assert not referee.has_seen({ERRAND, OBJECTS})
+    referee._see_truth(truth(50.0, 2.0))
+    assert not referee.has_seen({ERRAND, OBJECTS})  # it may be this process that is late
+    wall[0] = 150.0
+    assert referee.has_seen({ERRAND, OBJECTS})
+    assert referee.verdict({OBJECTS}).reason == "the markers of letter did not go with the objects"
 
 
 MISSION = """

@@ -17,7 +17,7 @@ from visualization_msgs.msg import Marker
 
 from home_service.judging.delivery_watch import DeliveryWatch
 from home_service.judging.marker_log import MarkerLog, Shown
-from home_service.judging.verdict import Ledger, Verdict, collision, judge
+from home_service.judging.verdict import FINAL_STATES, Ledger, Verdict, collision, judge
 from home_service.ros.goal_watch import GoalWatch
 from home_service.ros.hearing import hear
 from pick_objects import Delivery, Stage, parse_mission
@@ -32,6 +32,8 @@ CONNECTION_CHATTER = "tcpros_base.py"
 # Ground truth is remembered for so many messages, to look up where the robot stood at a stamp.
 REMEMBERED = 500
 SPOKEN_NODES = ("/pick_objects", "/add_markers")
+# Of simulated and of wall time, after the end of a mission: what has not been told by then does not come.
+LATE_SECONDS = 10.0
 
 
 class Referee:
@@ -62,6 +64,8 @@ class Referee:
         self._told: Set[str] = set()
         self._lock = threading.Lock()
         self._has_started = False
+        # Simulated and wall time of the end of the mission, once it has come.
+        self._over_since: Optional[Tuple[float, float]] = None
         self._goals = GoalWatch(say, lambda: self.truth) if tells_goals else None
 
     def start(self) -> None:
@@ -86,7 +90,7 @@ class Referee:
 
     def has_seen(self, expected: Set[str]) -> bool:
         """Whether everything expected has been seen, or can no longer come."""
-        return self.ledger.is_complete(expected)
+        return self.ledger.is_complete(expected) or self._is_long_over()
 
     def verdict(self, expected: Set[str], failure: Optional[str] = None) -> Verdict:
         """Whether all that was expected truly came about; ``failure``: why the run was cut short, if so."""
@@ -177,6 +181,16 @@ class Referee:
                 self._deliveries.see(delivery, Stage(state.state), state.attempts, state.reason, truth)
             self.ledger.reason, self.ledger.final_state = message.reason, message.state
             self._markers.tell()
+        if self.ledger.final_state not in FINAL_STATES:
+            self._over_since = None
+        elif self._over_since is None:
+            self._over_since = (self.simulated_time, time.monotonic())
+
+    def _is_long_over(self) -> bool:
+        now = (self.simulated_time, time.monotonic())
+        return self._over_since is not None and all(
+            moment > since + LATE_SECONDS for moment, since in zip(now, self._over_since)
+        )
 
     def _truth_at(self, stamp: float) -> Optional[Pose2]:
         if not self._recent:
