@@ -27,6 +27,7 @@ WORK = {
     "map_server": "/map",
     "add_markers": "/visualization_marker",
     "robot_state_publisher": "/tf_static",
+    "rosout": "/rosout_agg",
 }
 FATAL = ("sim_bridge", "rosmaster", "roslaunch")
 # A mission is over too soon otherwise; the robot is on its way by then.
@@ -45,8 +46,8 @@ and until the run has ended; and what of the run is left then, processes, socket
 {rows}
 
 A node that has come back goes on with what it has left at the master: amcl with its pose, pick_objects with
-how far its deliveries are and what is carried. Each may die three times. Without the simulator, the master
-or roslaunch there is no run. What else goes wrong: [faults](faults.md).
+how far its deliveries are and what is carried. rosout collects what nodes log, and nobody waits for it. Each
+may die three times. Without the simulator, the master or roslaunch there is no run. What else goes wrong: [faults](faults.md).
 """
 
 

@@ -15,7 +15,7 @@ import rostest
 from waiting import wait_until
 
 ROOT = Path(__file__).resolve().parents[2]
-NODES = ("amcl", "move_base", "pick_objects", "map_server", "add_markers", "robot_state_publisher")
+NODES = ("amcl", "move_base", "pick_objects", "map_server", "add_markers", "robot_state_publisher", "rosout")
 RUN_SECONDS = 200.0
 BACK_SECONDS = 20.0
 APART_SECONDS = 1.0

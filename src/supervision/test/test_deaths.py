@@ -69,3 +69,9 @@ def test_what_a_node_refuses_or_decides_is_final():
         ).failure
         assert failure.text == "pick_objects: place pickup not reached"
         assert failure.is_bad_input is is_bad_input
+
+
+def test_a_graph_goes_on_without_what_collects_its_logs():
+    read = deaths(killed("rosout"), comes_back=("amcl",))
+    assert read.failure is None
+    assert read.restarts == [Restart("rosout", "was ended by SIGKILL")]

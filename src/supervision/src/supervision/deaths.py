@@ -16,6 +16,8 @@ BAD_INPUT = 2
 # A verdict of the node's own, as of a mission that has failed: no accident.
 VERDICT = 1
 MOST_RESTARTS = 3
+# Collects what nodes log; nobody needs it to go on, and every roslaunch starts it again.
+COLLECTOR = "rosout"
 
 
 @dataclass(frozen=True)
@@ -35,7 +37,7 @@ class Restart:
 
 
 class Deaths:
-    """Takes down who died. Of the nodes in ``comes_back`` each is started again, a few times.
+    """Takes down who died. Of the nodes in ``comes_back`` each is started again, a few times, as rosout is.
 
     ``failure``: the first death for good, None so far. ``restarts``: the others.
     """
@@ -43,7 +45,7 @@ class Deaths:
     def __init__(self, log_folder: Path, comes_back: Collection[str] = ()):
         self.failure: Optional[NodeFailure] = None
         self.restarts: List[Restart] = []
-        self._log_folder, self._comes_back = log_folder, frozenset(comes_back)
+        self._log_folder, self._comes_back = log_folder, {COLLECTOR, *comes_back}
         self._complaints: Dict[str, str] = {}
         self._required = "a node"
         self._deaths: Counter = Counter()
