@@ -47,7 +47,8 @@ and until the run has ended; and what of the run is left then, processes, socket
 
 A node that has come back goes on with what it has left at the master: amcl with its pose, pick_objects with
 how far its deliveries are and what is carried. rosout collects what nodes log, and nobody waits for it. Each
-may die three times. Without the simulator, the master or roslaunch there is no run. What else goes wrong: [faults](faults.md).
+may die three times. Without the simulator, the master or roslaunch there is no run. What else
+goes wrong: [faults](faults.md).
 """
 
 

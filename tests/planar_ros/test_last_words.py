@@ -15,6 +15,7 @@ from std_msgs.msg import String
 from waiting import wait_until
 
 from planar_ros.calls.actions import KILLED_TEXT, goal_is_over, server_is_ready
+from planar_ros.node.last_words import PATIENCE_SECONDS, wait_until_heard
 
 TIMES = 10
 
@@ -58,6 +59,16 @@ class LastWordsTest(unittest.TestCase):
         started = time.monotonic()
         speak("_number:=0", "words:=unheard")
         print(f"ended after {time.monotonic() - started:.1f} s")
+
+    def test_who_was_killed_is_not_waited_for(self):
+        publisher = rospy.Publisher("deserted", String, queue_size=1)
+        with subprocess.Popen(["rostopic", "echo", "deserted"], stdout=subprocess.DEVNULL) as listener:
+            wait_until("a listener", publisher.get_num_connections)
+            listener.kill()
+        wait_until("its end", lambda: not publisher.get_num_connections())
+        started = time.monotonic()
+        wait_until_heard(publisher)
+        self.assertLess(time.monotonic() - started, PATIENCE_SECONDS / 2)
 
 
 def speak(*arguments):

@@ -4,6 +4,7 @@ import socket
 import time
 from contextlib import suppress
 from typing import List
+from urllib.parse import urlsplit
 
 import genpy
 import rosgraph
@@ -13,6 +14,7 @@ from planar_ros.step import transport
 
 PATIENCE_SECONDS = 3.0
 POLL_SECONDS = 0.01
+CONNECT_SECONDS = 0.5
 
 
 def wait_until_heard(*publishers: rospy.Publisher, patience: float = PATIENCE_SECONDS) -> None:
@@ -47,11 +49,21 @@ def say_at_end(publisher: rospy.Publisher, message: genpy.Message) -> None:
 
 
 def _listeners(topic: str) -> int:
-    """How many nodes listen to a topic, as far as the master knows."""
+    """How many nodes listen to a topic."""
+    master = rosgraph.Master(rospy.get_name())
     with suppress(OSError, rosgraph.MasterException):
-        subscribers = dict(rosgraph.Master(rospy.get_name()).getSystemState()[1])
-        return len(set(subscribers.get(topic, ())) - {rospy.get_name()})
+        subscribers = dict(master.getSystemState()[1]).get(topic, ())
+        return sum(_is_there(master, name) for name in set(subscribers) - {rospy.get_name()})
     return 0
+
+
+def _is_there(master: rosgraph.Master, node: str) -> bool:
+    """The master also knows nodes that were killed."""
+    with suppress(OSError, rosgraph.MasterException):
+        address = urlsplit(master.lookupNode(node))
+        with socket.create_connection((address.hostname, address.port), CONNECT_SECONDS):
+            return True
+    return False
 
 
 def _flushed(publisher: rospy.Publisher, deadline: float) -> List[socket.socket]:
