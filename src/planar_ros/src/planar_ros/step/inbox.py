@@ -22,14 +22,29 @@ _receive = _SubscriberImpl.receive_callback
 
 
 class _Channel:
-    """The messages of one connection: how many have come, and those that wait."""
+    """The messages of one connection: how many have come, and those that wait.
 
-    def __init__(self, subscriber: Any, connection: Any):
+    What waits from a connection ``before`` is not counted, and overdue.
+    """
+
+    def __init__(self, subscriber: Any, connection: Any, before: Optional["_Channel"]):
         self.subscriber, self.connection = subscriber, connection
         self.message_class = connection.protocol.recv_data_class
         self.received = 0
         self.waiting: Deque[Frame] = deque()
         self.latch: Any = None
+        self._overdue: List[Frame] = [] if before is None else [*before._overdue, *before.waiting]
+        self._socket = connection.socket
+
+    def is_of(self, connection: Any) -> bool:
+        """Whether it is that of a connection, and not of one that rospy has made anew in the same object."""
+        return self.connection is connection and self._socket is connection.socket
+
+    def take(self, number: Optional[int]) -> List[Frame]:
+        """What is overdue, and the first ``number`` of those that wait, or all."""
+        number = len(self.waiting) if number is None else min(max(number, 0), len(self.waiting))
+        overdue, self._overdue = self._overdue, []
+        return overdue + [self.waiting.popleft() for _ in range(number)]
 
 
 class Inbox:
@@ -74,7 +89,7 @@ class Inbox:
             for (topic, sender), channel in self._channels.items():
                 handed_on = channel.received - len(channel.waiting)
                 number = required.get((topic, sender), 0) - handed_on if sender in self.members else None
-                frames = _taken(channel.waiting, number)
+                frames = channel.take(number)
                 if frames:
                     due.append((topic, sender, channel, frames))
         for _, _, channel, frames in sorted(due, key=_order):
@@ -85,9 +100,9 @@ class Inbox:
         """Hands on what nodes that are not in step have sent."""
         with self._changed:
             due = [
-                (topic, sender, channel, _taken(channel.waiting, None))
+                (topic, sender, channel, channel.take(None))
                 for (topic, sender), channel in self._channels.items()
-                if channel.waiting and sender not in self.members
+                if sender not in self.members
             ]
         for _, _, channel, frames in sorted(due, key=_order):
             _deliver(channel, frames)
@@ -104,8 +119,8 @@ class Inbox:
             self._note_stranger(topic, sender)
         with self._changed:
             channel = self._channels.get((topic, sender))
-            if channel is None or channel.connection is not connection:
-                channel = self._channels[topic, sender] = _Channel(subscriber, connection)
+            if channel is None or not channel.is_of(connection):
+                channel = self._channels[topic, sender] = _Channel(subscriber, connection, channel)
             connection.latch = channel.latch  # rospy has put a frame there
             channel.received += len(frames)
             if self._holds(topic, sender):
@@ -130,12 +145,6 @@ class Inbox:
         if count <= (0 if channel is None else channel.received):
             return True
         return topic not in rospy.topics.get_topic_manager().subs  # not listened to any more
-
-
-def _taken(waiting: Deque[Frame], number: Optional[int]) -> List[Frame]:
-    """The first ``number`` of those that wait, or all."""
-    number = len(waiting) if number is None else min(max(number, 0), len(waiting))
-    return [waiting.popleft() for _ in range(number)]
 
 
 def _order(entry) -> Tuple[int, str, str]:

@@ -1,0 +1,79 @@
+"""Messages that wait for their moment."""
+
+from io import BytesIO
+from types import SimpleNamespace
+
+import pytest
+from std_msgs.msg import String
+
+from planar_ros.step import inbox as inbox_module
+from planar_ros.step.inbox import Inbox
+from planar_ros.step.transport import Frame
+
+CHANNEL = ("/state", "/pick_objects")
+
+
+@pytest.fixture
+def heard(monkeypatch):
+    """What the callbacks of subscribers have been given."""
+    heard = []
+    monkeypatch.setattr(
+        inbox_module, "_receive", lambda _to, messages, _by: heard.extend(each.data for each in messages)
+    )
+    return heard
+
+
+@pytest.fixture
+def inbox():
+    inbox = Inbox(True, lambda text: None)
+    inbox.members = frozenset(("/pick_objects",))
+    return inbox
+
+
+def connection():
+    return SimpleNamespace(
+        callerid_pub="/pick_objects",
+        is_latched=True,
+        header={},
+        latch=None,
+        socket=object(),
+        protocol=SimpleNamespace(recv_data_class=String),
+    )
+
+
+SUBSCRIBER = SimpleNamespace(resolved_name="/state", queue_size=None, callbacks=[(None, None)])
+
+
+def take(inbox, by, *words):
+    for word in words:
+        content = BytesIO()
+        String(word).serialize(content)
+        inbox._take(SUBSCRIBER, [Frame(content.getvalue())], by)
+
+
+def test_what_waits_is_handed_on_when_its_moment_has_come(inbox, heard):
+    take(inbox, connection(), "going", "picking up")
+    assert heard == []
+    assert inbox.release({CHANNEL: 1}) == []
+    assert heard == ["going"]
+    assert inbox.release({CHANNEL: 2}) == []
+    assert heard == ["going", "picking up"]
+
+
+def test_the_last_word_is_heard_though_its_connection_has_been_made_anew(inbox, heard):
+    """rospy of Debian 11 connects again, by the same object, to who has closed a connection."""
+    by = connection()
+    take(inbox, by, "going", "picking up")
+    inbox.release({CHANNEL: 2})
+    take(inbox, by, "delivered")
+    by.socket = object()
+    take(inbox, by, "delivered")  # which is latched
+    inbox.release({CHANNEL: 1})  # counted anew
+    assert heard == ["going", "picking up", "delivered", "delivered"]
+
+
+def test_the_last_word_of_a_node_that_has_died_is_heard(inbox, heard):
+    take(inbox, connection(), "going")
+    take(inbox, connection(), "going again")
+    inbox.release({CHANNEL: 1})
+    assert heard == ["going", "going again"]
