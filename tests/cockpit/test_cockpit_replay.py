@@ -14,7 +14,7 @@ from browser import Browser
 from command import Command
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from nav_msgs.msg import Path as PathMsg
-from rosgraph_msgs.msg import Clock
+from rosgraph_msgs.msg import Clock, Log
 from std_msgs.msg import Float64
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker
@@ -23,6 +23,7 @@ from waiting import wait_until
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 PICTURES = os.environ.get("COCKPIT_PICTURES")
 START, SECONDS, END_SECONDS = 100.0, 60, 40.0
+SAID = "two thirds of the way"
 
 
 class CockpitReplayTest(unittest.TestCase):
@@ -49,9 +50,12 @@ class CockpitReplayTest(unittest.TestCase):
                 wait_until("its time", lambda: abs(at["/clock"].newest.clock.to_sec() - START - wanted) < 0.1)  # noqa: B023
                 if PICTURES:
                     page.screenshot(Path(PICTURES) / f"replay_{wanted}.png")
+            told_before = told_times(showing)
             page.choose("Pace", "20 x")
             page.click("Go on")
             page.wait_for("59.9 s of 59.9 s", seconds=30.0)
+            wait_until("what was said", lambda: told_times(showing) > told_before)
+            self.assertEqual(told_times(showing), told_before + 1)
             page.fill_in("Time, s", "30")
             wait_until("a number after the end", lambda: 30 <= at["/number"].newest.data < 59)
             self.assertEqual(page.errors, [])
@@ -73,8 +77,15 @@ class Heard:
         rospy.Subscriber(topic, kind, lambda message: setattr(self, "newest", message))
 
 
+def told_times(showing):
+    return sum(f"pick_objects: {SAID}" in line for line in list(showing.lines))
+
+
 def record(path):
-    """A robot that drives along x, 1 m/s, with a number for each second and a marker for each ten."""
+    """A robot that drives along x, 1 m/s, with a number for each second and a marker for each ten.
+
+    What is said at second 40 was recorded as it was said, and as rosout passed it on.
+    """
     with rosbag.Bag(str(path), "w") as bag:
         for tick in range(10 * SECONDS):
             now = rospy.Time.from_sec(START + 0.1 * tick)
@@ -88,6 +99,9 @@ def record(path):
                 bag.write("/markers", cube(tick // 10, now), now)
             if tick == 300:
                 bag.write("/plan", plan(now), now)
+            if tick == 400:
+                for topic in ("/rosout", "/rosout_agg"):
+                    bag.write(topic, Log(name="/pick_objects", level=Log.INFO, msg=SAID), now)
 
 
 def cube(number, now):

@@ -23,6 +23,8 @@ from planar_ros.bags.standing import MARKERS, standing_at
 from planar_ros.messages.conversion import time_of
 from planar_ros.node.shell import run
 
+# What was said is said once: passed on by the graph's own rosout, and not when it is only looked back upon.
+SAID, PASSED_ON = "/rosout", "/rosout_agg"
 CLOCK_SECONDS, TOLD_SECONDS, POLL_SECONDS = 0.01, 0.2, 0.1
 # Those who look see by the clock that time begins anew, and clear what they show.
 ANEW_SECONDS = 0.3
@@ -46,7 +48,7 @@ class BagViewer:
         types, foreign = self._recording.types, self._recording.foreign
         for topic in foreign:
             rospy.logwarn("%s is left out: %s is not installed as it was recorded", topic, types[topic])
-        self._topics = set(types) - foreign - {"/clock", TF_STATIC}
+        self._topics = set(types) - foreign - {"/clock", TF_STATIC, PASSED_ON}
         # Latched: what stands still while it is paused is heard by those who come then.
         self._publishers = {
             topic: rospy.Publisher(
@@ -83,7 +85,7 @@ class BagViewer:
         self._tell_time(start)
         if jump:
             time.sleep(ANEW_SECONDS)
-        self._publish(standing_at(self._recording, self._topics, start))
+        self._publish(standing_at(self._recording, self._topics - {SAID}, start))
         for played in self._recording.messages(self._topics, since=start):
             if not self._wait_until_due(played.stamp, jump):
                 return False
