@@ -1,4 +1,5 @@
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from amcl_lite.recovery.quality import LOST_BELOW, LostDetector, Quality, qualit
 from amcl_lite.sensor.beams import Beams
 from amcl_lite.sensor.likelihood_field import likelihood_field
 from amcl_lite.sensor.scan_matching import matched
-from planar import FREE, OccupancyGrid, Pose2, grid_from_picture, wrap
+from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, grid_from_picture, load_map, wrap
 from planar.geometry.ray_casting import cast_rays
 
 FLAT = """
@@ -23,6 +24,7 @@ FLAT = """
 #..................#
 ####################
 """
+HOME = Path(__file__).resolve().parents[3] / "map/home.yaml"
 MAX_RANGE = 8.0
 HERE = Pose2(2.0, 1.9, 0.4)
 
@@ -142,6 +144,20 @@ def test_along_a_corridor_the_guess_stands():
     ends_xy = beams_at(middle, corridor).ends_xy
     found = matched(guess, np.diag((0.2, 0.2, 0.1)) ** 2, ends_xy, likelihood_field(corridor, 0.2, 2.0))
     assert abs(found.x - guess.x) < 0.03 and abs(found.y - middle.y) < 0.03 and abs(found.yaw) < 0.02
+
+
+def test_what_is_not_on_the_map_is_not_matched_with_a_wall_out_of_reach():
+    """Between a board that most beams meet and an outer wall, behind which the scan fits better."""
+    home = load_map(HOME)
+    with_board = home.cells.copy()
+    board_xy = np.stack(np.meshgrid(np.arange(0.9, 3.1, 0.02), np.arange(3.9, 4.1, 0.02)), axis=-1).reshape(
+        -1, 2
+    )
+    with_board[tuple(home.cells_of(board_xy).T)] = OCCUPIED
+    here = Pose2(2.0, 4.43, 0.0)
+    ends_xy = beams_at(here, OccupancyGrid(with_board, home.resolution, home.origin)).ends_xy
+    found = matched(here, np.diag((0.08, 0.1, 0.07)) ** 2, ends_xy, likelihood_field(home, 0.2, 2.0))
+    assert found.distance_to(here) < 0.05
 
 
 def test_without_beams_the_guess_stands():

@@ -20,6 +20,9 @@ _MISFIT_SPREAD = 0.25
 _SHARPNESS = 4
 # The descent ends after so many steps, or with one shorter than this: cells, and radians.
 _STEPS, _SMALL_STEP, _SMALL_TURN = 10, 0.01, 1e-4
+# A match farther from the guess than so many standard deviations, and than these (cells are added as metres,
+# and radians) would explain, is that of something that is not on the map with another wall.
+_FARTHEST, _UNSURE = 4.0, 0.05
 # Two descents that end this near to each other, in cells, have found the same place.
 _SAME_PLACE = 0.5
 
@@ -29,20 +32,36 @@ def matched(guess: Pose2, covariance: np.ndarray, points_xy: np.ndarray, field: 
     into = field.into_cells
     jacobian = np.array(((into.cos, -into.sin, 0.0), (into.sin, into.cos, 0.0), (0.0, 0.0, 1.0)))
     spread = jacobian @ covariance @ jacobian.T + np.diag((1e-3, 1e-3, 1e-6))
-    return field.from_cells(*_matched(guess.x, guess.y, guess.yaw, spread, points_xy, into, field.fit))
+    unsure = np.diag((_UNSURE * into.scale, _UNSURE * into.scale, _UNSURE)) ** 2
+    return field.from_cells(
+        *_matched(guess.x, guess.y, guess.yaw, spread, unsure, points_xy, into, field.fit)
+    )
 
 
 @numba.njit(cache=True)
-def _matched(x, y, yaw, spread, points_xy, into_cells, fit):
-    """The better of two sharp matches: one from the guess itself, one from where a blunt match leads."""
+def _matched(x, y, yaw, spread, unsure, points_xy, into_cells, fit):
+    """The better of two sharp matches: one from the guess itself, one from where a blunt match leads.
+
+    The guess itself if neither is near enough to it.
+    """
     col, row, _, _ = placed(x, y, yaw, into_cells)
     start, prior, points = (col, row, yaw + into_cells.yaw), _inverse(spread), points_xy * into_cells.scale
+    belief = _inverse(spread + unsure)
     near, near_cost = _descended(start, start, prior, points, fit, _SHARPNESS)
+    if not _is_within_reach(near, start, belief):
+        near, near_cost = start, np.inf
     blunt, _ = _descended(start, start, prior, points, fit, 1)
     if abs(blunt[0] - near[0]) + abs(blunt[1] - near[1]) < _SAME_PLACE:
         return near
     far, far_cost = _descended(blunt, start, prior, points, fit, _SHARPNESS)
-    return near if near_cost <= far_cost else far
+    return far if far_cost < near_cost and _is_within_reach(far, start, belief) else near
+
+
+@numba.njit(cache=True)
+def _is_within_reach(pose, start, belief):
+    off = np.array((pose[0] - start[0], pose[1] - start[1], pose[2] - start[2]))
+    far = _product(belief, off)
+    return off[0] * far[0] + off[1] * far[1] + off[2] * far[2] <= _FARTHEST**2
 
 
 @numba.njit(cache=True)
