@@ -191,6 +191,13 @@ def test_a_change_of_settings_goes_on_from_the_estimate():
     assert tracking_errors(toy, localizer, THROUGH_ALL_ROOMS[20:])[:, 0].max() < 0.15
 
 
+def test_a_motion_just_after_new_settings_is_not_lost():
+    toy = Toy(START)
+    localizer = started(toy)
+    localizer.reconfigure(replace(TURTLEBOT, max_particles=1000, refine_pose=False))
+    assert tracking_errors(toy, localizer, [Pose2(0.0, 0.0, 0.5)])[0, 1] < 0.1
+
+
 def test_furniture_that_is_not_on_the_map_does_no_harm():
     toy = Toy(START)
     localizer = started(toy)

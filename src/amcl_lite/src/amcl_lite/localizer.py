@@ -97,6 +97,7 @@ class Localizer:
         self._configure(settings)
         if self._odom_in_map is not None:
             self.set_pose(self._odom_in_map @ self._base_in_odom, self._covariance)
+            self._update_policy = UpdatePolicy(self._base_in_odom)
 
     def set_pose(self, base_in_map: Pose2, pose_covariance: np.ndarray) -> None:
         """Starts anew around a pose; ``pose_covariance``: (3, 3), m^2 and rad^2."""
@@ -129,7 +130,7 @@ class Localizer:
             self._move(base_before, base_in_odom)
             self._weigh(beams)
             is_resampled = self._resample_if_due(beams)
-            if is_resampled or base_before is None:
+            if is_resampled or self._updates == 1:
                 estimate = self._estimate(base_in_odom, scan)
         self._judge(base_in_odom, beams, scan.stamp)
         return estimate

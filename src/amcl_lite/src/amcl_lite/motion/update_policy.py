@@ -7,13 +7,16 @@ from planar import Pose2, wrap
 
 
 class UpdatePolicy:
-    """The first scan counts; after a motion, a long stand or a request, each laser's next scan does, once."""
+    """The first scan counts; after a motion, a long stand or a request, each laser's next scan does, once.
 
-    def __init__(self) -> None:
-        self._updated_at: Optional[Pose2] = None
+    ``updated_at``: where the odometry had the robot when it was last known where it is, if it was.
+    """
+
+    def __init__(self, updated_at: Optional[Pose2] = None) -> None:
+        self._updated_at = updated_at
         self._updated_stamp = 0.0
         self._lasers_done: Set[str] = set()
-        self._is_requested = False
+        self._is_requested = True
 
     def request(self) -> None:
         """Makes the next scan count even if the robot stands still."""
