@@ -44,9 +44,11 @@ class LastWordsTest(unittest.TestCase):
             listener.unregister()
 
     def test_who_has_sent_a_goal_hears_every_time_that_its_node_ends(self):
-        for _ in range(TIMES):
-            client = actionlib.SimpleActionClient("errand", MoveBaseAction)
-            with subprocess.Popen(["rosrun", "home_service_tests", "node_of_an_action.py"]) as node:
+        for number in range(TIMES):
+            name = f"errand_{number}"  # its own: rospy may not have noticed yet that the one before has ended
+            client = actionlib.SimpleActionClient(name, MoveBaseAction)
+            command = ["rosrun", "home_service_tests", "node_of_an_action.py", f"errand:={name}"]
+            with subprocess.Popen(command) as node:
                 wait_until("the action", lambda: server_is_ready(client))  # noqa: B023
                 client.send_goal(MoveBaseGoal())
                 wait_until("its start", lambda: client.get_state() == GoalStatus.ACTIVE)  # noqa: B023
