@@ -6,13 +6,16 @@ import re
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
 from pathlib import Path
 
 import numpy as np
+import rosgraph
 import rospy
 import rostest
 from bag_stage import BagStage
+from waiting import wait_until
 
 from planar import FREE, UNKNOWN, OccupancyGrid, Pose2, save_map, wrap
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_to_msg
@@ -98,6 +101,23 @@ class AmclBagsTest(unittest.TestCase):
         x, y, yaw, stamp = map(float, place.groups())
         seen = min(self.sightings, key=lambda one: abs(one.scan.stamp - (stamp - 10.0)))
         self.assert_near(Pose2(x, y, yaw), seen.base_in_map)
+
+    def test_the_node_does_not_hear_the_scans_that_it_plays(self):
+        bag = str(self.folder / "base_scan.bag")
+        write_bag(bag, self.sightings, scan_topic="base_scan")
+        parameters = {**self.parameters, "bag_scan_period": 0.05}
+        running = threading.Thread(
+            target=self.node.run_node, args=(self.grid, parameters, "--run-from-bag", bag)
+        )
+        running.start()
+        master = rosgraph.Master(rospy.get_name())
+
+        def nodes_at(topic):
+            return [dict(table).get(topic, []) for table in master.getSystemState()[:2]]
+
+        wait_until("scans", lambda: "/amcl" in nodes_at("/base_scan")[0])
+        self.assertNotIn("/amcl", nodes_at("/base_scan")[1])
+        running.join()
 
     def test_a_bag_in_a_loop_is_followed_again_from_its_start(self):
         self.node.start_node(self.grid, self.parameters)

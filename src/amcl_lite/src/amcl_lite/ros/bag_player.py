@@ -53,6 +53,8 @@ def play_bag(path: Path, transforms: Transforms, scans: ScanQueue, scan_period: 
     BagError, if the bag was cut off when what there is of it has been dealt with.
     """
     scan_topic = full_name(scans.topic)
+    # On a busy machine the echo comes so late that time seems to have jumped back.
+    scans.hear_no_more()
     scan_publisher = rospy.Publisher(scans.topic, LaserScanArrays, queue_size=100)
     tf_publisher = rospy.Publisher("/tf", TFMessage, queue_size=100)
     bag = Bag(path)

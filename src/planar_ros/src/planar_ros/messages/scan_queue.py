@@ -53,7 +53,7 @@ class ScanQueue:
         # Subscribed to after the listener, whose callback has then already taken in the same message.
         rospy.Subscriber("/tf", TFMessage, self._on_transforms, tcp_nodelay=True)
         rospy.Subscriber("/tf_static", TFMessage, self._on_transforms)
-        rospy.Subscriber(topic, LaserScanArrays, self.take, queue_size=size, tcp_nodelay=True)
+        self._heard = rospy.Subscriber(topic, LaserScanArrays, self.take, queue_size=size, tcp_nodelay=True)
 
     @property
     def has_received(self) -> bool:
@@ -83,6 +83,10 @@ class ScanQueue:
             self._received += 1
             self._waiting[self._received] = message
         self._wake()
+
+    def hear_no_more(self) -> None:
+        """Only what is given to ``take`` counts; it may be published on the topic and does not come again."""
+        self._heard.unregister()
 
     def take_no_more(self) -> None:
         """Nothing more will come: what cannot be handed on now is skipped."""
