@@ -81,7 +81,8 @@ restore_last_build() { # after one that failed or was cut short
 
 leave_out_invalid() { # ROS's tools read each package in the source space, and end at the first that is not valid
     [[ -e $root/devel/.catkin ]] || return 0
-    /usr/bin/python3 -c '
+    local valid
+    valid=$(/usr/bin/python3 -c '
 import os, sys
 from catkin_pkg.package import InvalidPackage, parse_package
 from catkin_pkg.packages import find_package_paths
@@ -92,19 +93,19 @@ for path in sorted(find_package_paths(sys.argv[1])):
     try:
         parse_package(folder)
         valid.append(folder)
-    except InvalidPackage:
+    except (InvalidPackage, UnicodeDecodeError):
         pass
-print(";".join(valid), end="")' "$root/src" | say_source_space
+print(";".join(valid))' "$root/src") && say_source_space "$valid"
 }
 
 take_in_all() { # once the package that was at fault has gone
     [[ -e $root/build/.failed && -w $root/build ]] || return 0
-    [[ ! -e $root/devel/.catkin ]] || printf %s "$root/src" | say_source_space
+    [[ ! -e $root/devel/.catkin ]] || say_source_space "$root/src"
     rm "$root/build/.failed"
 }
 
-say_source_space() { # as told on stdin
-    cat >"$root/devel/.catkin.new" && mv "$root/devel/.catkin.new" "$root/devel/.catkin"
+say_source_space() { # FOLDERS, as catkin has it: separated by semicolons
+    printf %s "$1" >"$root/devel/.catkin.new" && mv "$root/devel/.catkin.new" "$root/devel/.catkin"
 }
 
 parts_of_build() { # FOLDER ACTION...: what catkin made in it

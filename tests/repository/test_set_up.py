@@ -134,6 +134,21 @@ def test_ros_does_not_meet_an_invalid_package_while_the_last_build_is_in_use(tmp
     assert (tmp_path / "devel/.catkin").read_text() == f"{tmp_path}/src"
 
 
+def test_a_package_that_is_no_text_does_not_take_the_others_along(tmp_path):
+    set_up_once(tmp_path)
+    write_package(tmp_path / "src/good", "good", VALID)
+    in_workspace(
+        tmp_path, "catkin_build() { mkdir -p build devel; }; retry=''; look_for_missing; build_workspace"
+    )
+    (tmp_path / "devel/.catkin").write_text(f"{tmp_path}/src")
+    write_package(tmp_path / "src/mine", "mine", VALID)
+    with (tmp_path / "src/mine/package.xml").open("ab") as manifest:
+        manifest.write(b"\xff\xfe")
+    said = in_workspace(tmp_path, FAILING + "set_up; echo used")
+    assert said.stdout.endswith("used\n"), said.stderr
+    assert (tmp_path / "devel/.catkin").read_text() == f"{tmp_path}/src/good"
+
+
 def test_the_set_up_itself_fails_on_a_package_that_does_not_build(tmp_path):
     set_up_once(tmp_path)
     write_package(tmp_path / "src/mine", "mine")
