@@ -2,7 +2,7 @@
 
 from collections import deque
 from dataclasses import dataclass
-from typing import Deque, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Deque, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -27,6 +27,12 @@ def pose_matrix(position: Sequence[float], quaternion: Sequence[float]) -> Optio
         [s * (x * z - y * w), s * (y * z + x * w), 1.0 - s * (x * x + y * y)],
     ]
     return matrix
+
+
+def told_pose(position: Any, orientation: Any) -> Optional[np.ndarray]:
+    """The same as messages of geometry_msgs tell it: of a Point or Vector3, and a Quaternion."""
+    p, q = position, orientation
+    return pose_matrix((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
 
 
 def inverse(pose: np.ndarray) -> np.ndarray:

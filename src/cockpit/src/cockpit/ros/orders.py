@@ -15,7 +15,7 @@ from sim_bridge_msgs.srv import Step
 from std_srvs.srv import Empty
 
 from cockpit.errors import CockpitError
-from cockpit.frames import inverse, pose_matrix
+from cockpit.frames import inverse, told_pose
 from cockpit.models.pointing import quaternion_of
 from cockpit.ros.calls import call, join
 from cockpit.ros.graph import Graph
@@ -191,8 +191,7 @@ def _pose(x: float, y: float, yaw: float) -> Pose:
 
 def _matrix(pose: Pose) -> np.ndarray:
     """Raises CockpitError."""
-    p, q = pose.position, pose.orientation
-    matrix = pose_matrix((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
+    matrix = told_pose(pose.position, pose.orientation)
     if matrix is None:
         raise CockpitError("the simulator tells a pose that is none")
     return matrix

@@ -4,7 +4,7 @@ from collections import Counter
 from typing import Iterator, List
 
 from cockpit.errors import CockpitError
-from cockpit.frames import FrameTree, Transform, pose_matrix
+from cockpit.frames import FrameTree, Transform, told_pose
 from cockpit.ros.graph import Feed
 
 TOPICS = ("/tf", "/tf_static")
@@ -45,8 +45,7 @@ class TransformListener:
 
     def _take(self, stamped, is_static: bool, sender: str) -> bool:
         """Whether it is a transform."""
-        p, q = stamped.transform.translation, stamped.transform.rotation
-        pose = pose_matrix((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
+        pose = told_pose(stamped.transform.translation, stamped.transform.rotation)
         if pose is None:
             return False
         parent, stamp = stamped.header.frame_id.lstrip("/"), stamped.header.stamp.to_sec()

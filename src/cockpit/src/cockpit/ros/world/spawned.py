@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
-from cockpit.frames import pose_matrix
+from cockpit.frames import told_pose
 from cockpit.page.world_view import WorldView
 from cockpit.ros.graph import Feed, Graph
 from cockpit.ros.world.looks import MODEL, Answer, Request, read_aside
@@ -55,8 +55,7 @@ class Spawned:
             read_aside(requests, lambda answers: self._arrived.append((new, answers)))
 
     def _show(self, model: Any, answer: Answer) -> None:
-        p, q = model.pose.position, model.pose.orientation
-        pose = pose_matrix((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
+        pose = told_pose(model.pose.position, model.pose.orientation)
         if not isinstance(answer, Look):
             self._tell(f"{model.name}: {answer}")
         elif pose is not None:

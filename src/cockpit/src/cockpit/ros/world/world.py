@@ -7,7 +7,7 @@ from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple
 import numpy as np
 
 from cockpit.errors import CockpitError
-from cockpit.frames import FrameTree, pose_matrix
+from cockpit.frames import FrameTree, told_pose
 from cockpit.page.world_view import RobotView, WorldView
 from cockpit.ros.graph import Feed, Graph
 from cockpit.ros.world.looks import ROBOT, WORLD, Answer, Request, read_aside
@@ -77,8 +77,7 @@ class World:
         for message in self._states.take() if self._states is not None else ():
             found = dict(zip(message.name, message.pose))
             for name in set(movable) & set(found):
-                p, q = found[name].position, found[name].orientation
-                pose = pose_matrix((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
+                pose = told_pose(found[name].position, found[name].orientation)
                 if pose is not None:
                     self.view.place(name, pose)
 
