@@ -5,6 +5,7 @@ import math
 import unittest
 from typing import get_type_hints
 
+import numpy as np
 import rospy
 import rosservice
 import rostest
@@ -67,8 +68,8 @@ CART = f"""<sdf version="1.6"><model name="any"><link name="chassis"><pose>0 0 0
 <rightJoint>right_hinge</rightJoint><wheelSeparation>0.3</wheelSeparation><wheelDiameter>0.2</wheelDiameter>
 <robotBaseFrame>chassis</robotBaseFrame></plugin></model></sdf>"""
 
-# Simulated seconds between two commands, of a machine that is not too busy, and how often that is tried.
-SHORT_PAUSE, TRIES = 0.15, 10
+# Simulated seconds over which an acceleration is told.
+RISE_SECONDS = 0.7
 
 
 def spawn(name, text, x, y, yaw, namespace="", kind="urdf"):
@@ -169,31 +170,27 @@ class TestRobots(unittest.TestCase):
         wait_until("silence", lambda: self.is_driven_by("idle"))
 
     def test_5_raw_commands_are_smoothed(self):
-        for _ in range(TRIES):
-            seconds, pause = self.speed_up()
-            if pause < SHORT_PAUSE:
-                break
-        self.assertLess(pause, SHORT_PAUSE, "a machine too busy to command steadily")
-        self.assertGreaterEqual(
-            round(seconds, 6), 0.7, "at 2 rad/s^2; the robot itself could do it in 0.27 s"
-        )
-        self.assertLess(seconds, 1.2)
+        rises = []
+
+        def speeds_up():
+            rises.append(self.steepest_rise())
+            return rises[-1] > 1.35
+
+        # A pause between commands, on a busy machine, lets the smoother brake: then it is tried again.
+        wait_until("nearly 2 rad/s^2", speeds_up)
+        self.assertLess(max(rises), 2.3, "the robot itself could do 6 rad/s^2")
         wait_until("rest", lambda: self.turns(0.0, self.raw))
 
-    def speed_up(self):
-        """Simulated seconds from 0.2 to 1.8 rad/s, and of the longest pause between two commands."""
+    def steepest_rise(self):
+        """Greatest mean acceleration over RISE_SECONDS, in rad/s^2, from rest to nearly 2 rad/s."""
         wait_until("rest", lambda: self.turns(0.0, self.raw))
-        first, commanded = len(self.odom.messages), []
-
-        def is_fast():
-            odometry = self.command(0.0, 2.0, self.raw)
-            commanded.append(odometry.header.stamp.to_sec())
-            return odometry.twist.twist.angular.z > 1.8
-
-        wait_until("two radians a second", is_fast)
+        first = len(self.odom.messages)
+        wait_until("two radians a second", lambda: self.turns(2.0, self.raw))
         seen = [(one.header.stamp.to_sec(), one.twist.twist.angular.z) for one in self.odom.messages[first:]]
-        start, end = (next(stamp for stamp, rate in seen if rate > limit) for limit in (0.2, 1.8))
-        return end - start, max(later - earlier for earlier, later in zip(commanded, commanded[1:]))
+        stamps, rates = (np.array(column) for column in zip(*seen))
+        grid = np.arange(stamps[0], stamps[-1] - RISE_SECONDS, 0.01)
+        rises = np.interp(grid + RISE_SECONDS, stamps, rates) - np.interp(grid, stamps, rates)
+        return rises.max() / RISE_SECONDS
 
     def test_6_kobuki_hears_its_commands_and_tells_of_bumps(self):
         navi = self.inputs["navi"]
