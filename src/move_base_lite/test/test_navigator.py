@@ -211,6 +211,17 @@ def test_a_robot_pushed_against_a_wall_gets_away_from_it(settings):
     assert_arrived(robot, drive_to_end(robot, navigator), goal)
 
 
+def test_a_robot_that_does_not_move_is_given_up_with_that_reason(settings):
+    grid = room(6.0, 4.0)
+    robot, navigator = Robot(grid, Pose2(1.0, 2.0)), Navigator(settings, grid)
+    robot.drive = lambda command: setattr(robot, "now", robot.now + PERIOD)
+    navigator.set_goal(Pose2(5.0, 2.0))
+    decisions = drive_to_end(robot, navigator)
+    assert decisions[-1].outcome.reason == "OSCILLATION"
+    assert decisions[-1].text.endswith("the robot does not move when it is told to]")
+    assert sum(decision.recovery is not None for decision in decisions) == 4
+
+
 def test_after_move_slow_and_clear_the_robot_is_slow_until_it_has_moved_on(settings):
     slow = SlowSettings(limited_trans_speed=0.2, limited_distance=0.5)
     recovery = NamedRecovery("slow", slow)

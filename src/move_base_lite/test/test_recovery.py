@@ -17,7 +17,7 @@ from move_base_lite.recovery import (
     RotateSettings,
     SlowSettings,
 )
-from planar import Pose2, SettingsError, Twist2
+from planar import Pose2, SettingsError, Twist2, wrap
 
 PERIOD = 0.1
 NEAR_XY, FAR_XY = (5.5, 5.0), (8.0, 5.0)
@@ -25,10 +25,13 @@ HERE = Pose2(5.0, 5.0)
 
 
 class Bench:
-    """A robot that does at once what a behaviour says, on costmaps with a near and a far obstacle."""
+    """A robot that does at once what a behaviour says, on costmaps with a near and a far obstacle.
 
-    def __init__(self, pose=HERE, **footprint):
-        self.limits = []
+    ``slip``: the share of a turn that it does not make.
+    """
+
+    def __init__(self, pose=HERE, slip=0.0, **footprint):
+        self.limits, self.slip = [], slip
         self.pose, self.twist = pose, Twist2()
         sources = (SourceSettings(topic="cloud", obstacle_range=9.0, raytrace_range=9.0),)
         settings = CostmapSettings(
@@ -52,8 +55,8 @@ class Bench:
             if command is None:
                 return commands
             commands.append(command)
-            self.twist = command
-            self.pose = self.pose @ Pose2(0.0, 0.0, command.omega * PERIOD)
+            self.twist = Twist2(command.v, (1.0 - self.slip) * command.omega)
+            self.pose = self.pose @ Pose2(0.0, 0.0, self.twist.omega * PERIOD)
         raise AssertionError(f"not at an end after {seconds} s")
 
     def marked(self, xy):
@@ -99,6 +102,14 @@ def test_looking_around_is_a_full_turn_to_the_left_within_the_limits():
     rates = [0.0, *(command.omega for command in commands)]
     assert max(rates) <= settings.max_vel_theta
     assert max(np.diff(rates)) <= settings.acc_lim_theta * PERIOD + 1e-9
+
+
+@pytest.mark.parametrize("slip, turned", [(1.0, 0.0), (0.99, 0.0), (0.5, 2.0 * math.pi)])
+def test_a_robot_that_does_not_turn_is_not_told_to_for_ever(slip, turned):
+    bench = Bench(slip=slip)
+    commands = bench.run(RotateSettings())
+    assert bench.pose.yaw == pytest.approx(wrap(turned), abs=0.1)
+    assert turned > 0.0 or len(commands) * PERIOD < 10.0
 
 
 def test_a_long_robot_that_would_touch_something_stops_turning():

@@ -81,7 +81,8 @@ class Navigator:
             self._take_goal(moment)
             if self._pursuit is None:
                 return Decision(Status.IDLE)
-            self._pursuit.advance(moment, self.settings.move_base.oscillation_distance)
+            distance = self.settings.move_base.oscillation_distance
+            self._pursuit.advance(moment, distance, self._crew.in_force, self._crew.period)
             decision = step(self._pursuit, moment, self._crew)
         except HasArrived:
             outcome = self._outcome(now, SUCCEEDED_OUTCOME, "SUCCESS", SUCCESS_TEXT)

@@ -13,6 +13,8 @@ from planar import Pose2, Twist2, wrap
 
 # Metres after which the speed so far tells how long the rest will take.
 TELLING_DISTANCE = 1.0
+# Metres and radians that it is told to move, and the share of them that it moves at least, or it cannot.
+TELLING_EFFORT, LEAST_EFFECT = 1.0, 0.1
 
 
 @dataclass(frozen=True)
@@ -30,6 +32,8 @@ class Pursuit:
     """What the Navigator remembers while it has a goal; ``pose`` is where the robot was seen last.
 
     ``path_xy``: (N, 2) in the map, the plan in use, made at ``planned_at``; empty if the last one failed.
+    ``told``, ``moved``: since the last progress, metres and radians together that it was told to move, and
+    that odometry says it has.
     """
 
     goal: Pose2
@@ -48,6 +52,8 @@ class Pursuit:
     reason: Optional[NavigationError] = None
     travelled: float = 0.0
     recoveries_used: int = 0
+    told: float = 0.0
+    moved: float = 0.0
     slow: Optional[Tuple[SpeedLimit, Pose2]] = None
     path_xy: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
     planned_at: float = -math.inf
@@ -58,12 +64,18 @@ class Pursuit:
         now, here = moment.now, moment.base_in_map
         return cls(goal, now, here, here, now, now, now)
 
-    def advance(self, moment: Moment, oscillation_distance: float) -> None:
-        """The robot has moved on; so many metres from where it was before are progress."""
+    def advance(self, moment: Moment, oscillation_distance: float, told: Twist2, period: float) -> None:
+        """The robot has moved on; so many metres from where it was before are progress.
+
+        ``told``: the velocity that was in force, for ``period`` seconds.
+        """
+        self.told += (abs(told.v) + abs(told.omega)) * period
+        self.moved += (abs(moment.twist.v) + abs(moment.twist.omega)) * period
         self.travelled += self.pose.distance_to(moment.base_in_map)
         self.pose = moment.base_in_map
         if self.pose.distance_to(self.progress_pose) >= oscillation_distance:
-            self.progress_pose, self.last_progress = self.pose, moment.now
+            self.progress_pose = self.pose
+            self._count_from(moment.now)
             self.has_overcome(Trigger.OSCILLATION)
 
     def speed_limit(self, base_in_odom: Pose2, allowed: float) -> Twist2:
@@ -117,8 +129,17 @@ class Pursuit:
         """One behaviour has ended; the next trouble gets the next one."""
         self.recovery = None
         self.recovery_index += 1
-        self.last_progress, self.control_fails_since = now, None
+        self.control_fails_since = None
+        self._count_from(now)
         self.plan_anew(now)
+
+    @property
+    def obeys(self) -> bool:
+        """Whether the robot does, to some extent, what it has been told since the last progress."""
+        return self.told < TELLING_EFFORT or self.moved > LEAST_EFFECT * self.told
+
+    def _count_from(self, now: float) -> None:
+        self.last_progress, self.told, self.moved = now, 0.0, 0.0
 
     def progress(self, now: float, distance_left: float, usual_speed: float) -> Progress:
         """How it stands; before the robot's own speed tells, the usual one says how long the rest takes."""

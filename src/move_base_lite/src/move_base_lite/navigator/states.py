@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from move_base_lite.config import MoveBaseSettings
 from move_base_lite.errors import (
     ControlError,
     NavigationError,
@@ -108,9 +109,7 @@ def _drive(pursuit: Pursuit, moment: Moment, crew: Crew) -> Decision:
     plan_xy = pursuit.path_xy if pursuit.planned_at == now else None
     if 0.0 < settings.oscillation_timeout < now - pursuit.last_progress:
         pursuit.clear_up(Trigger.OSCILLATION)
-        pursuit.reason = Oscillation(
-            f"less than {settings.oscillation_distance:g} m driven in {settings.oscillation_timeout:g} s"
-        )
+        pursuit.reason = _oscillation(pursuit, settings)
         return Decision(pursuit.status, Twist2(), plan_xy=plan_xy)
     highest = pursuit.speed_limit(moment.base_in_odom, crew.zones.max_speed(pursuit.pose))
     try:
@@ -127,6 +126,12 @@ def _drive(pursuit: Pursuit, moment: Moment, crew: Crew) -> Decision:
         followed_xy=control.path_xy,
         exploration=control.exploration,
     )
+
+
+def _oscillation(pursuit: Pursuit, settings: MoveBaseSettings) -> Oscillation:
+    distance, seconds = settings.oscillation_distance, settings.oscillation_timeout
+    text = f"less than {distance:g} m driven in {seconds:g} s"
+    return Oscillation(text if pursuit.obeys else f"{text}, the robot does not move when it is told to")
 
 
 def _clear_up(pursuit: Pursuit, moment: Moment, crew: Crew) -> Decision:

@@ -10,6 +10,8 @@ from planar import Twist2, wrap
 from planar.config.parameters import POSITIVE, check_parameters, parameter
 
 LOOKAHEAD_ANGLE = 0.4
+# Radians that it is told to turn, and the share of them that it turns at least, or it cannot.
+TOLD_ANGLE, TURNED_SHARE = 1.5, 0.1
 
 
 @dataclass(frozen=True)
@@ -26,12 +28,17 @@ class RotateSettings:
 
 
 class Rotate(RecoveryBehavior):
-    """One full turn to the left to look around; ends early if the footprint would touch something."""
+    """One full turn to the left to look around.
+
+    Ends early if the footprint would touch something, or if the robot does not turn: the official one then
+    never ends.
+    """
 
     def __init__(self, settings: RotateSettings):
         self._settings = settings
         self._last_yaw: Optional[float] = None
-        self._left = 2.0 * math.pi
+        self._left = self._left_before = 2.0 * math.pi
+        self._told = 0.0
 
     def step(self, context: RecoveryContext) -> Optional[Twist2]:
         settings, base = self._settings, context.base_in_local
@@ -40,11 +47,24 @@ class Rotate(RecoveryBehavior):
         self._last_yaw = base.yaw
         if self._left <= settings.yaw_goal_tolerance:
             return None
+        if self._is_stuck():
+            return None
         if not context.local_costmap.has_room_to_turn(base, min(LOOKAHEAD_ANGLE, self._left)):
             return None
         stoppable = math.sqrt(2.0 * settings.acc_lim_theta * self._left)
         speed = min(max(stoppable, settings.min_in_place_vel_theta), settings.max_vel_theta)
-        return Twist2(0.0, min(speed, context.twist.omega + settings.acc_lim_theta * context.period))
+        command = Twist2(0.0, min(speed, context.twist.omega + settings.acc_lim_theta * context.period))
+        self._told += command.omega * context.period
+        return command
+
+    def _is_stuck(self) -> bool:
+        """Whether it has hardly turned for all that it was told to; asked anew after that."""
+        if self._told < TOLD_ANGLE:
+            return False
+        turned = self._left_before - self._left
+        is_stuck = turned < TURNED_SHARE * self._told
+        self._told, self._left_before = 0.0, self._left
+        return is_stuck
 
 
 ROTATE: Plugin[RecoveryBehavior] = Plugin(
