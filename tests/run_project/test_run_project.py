@@ -70,6 +70,17 @@ class RunProjectTest(unittest.TestCase):
         self.assertEqual(run.returncode, 130)
         self.assertEqual(processes_with(self._mark), [])
 
+    def test_a_killed_run_leaves_nothing_behind(self):
+        run = self._start(self._checkout, "--speed", "1")
+        while "shown at" not in run.stdout.readline() and run.poll() is None:
+            pass
+        run.kill()
+        started = time.monotonic()
+        while processes_with(self._mark) and time.monotonic() - started < EXIT_SECONDS:
+            time.sleep(0.1)
+        print(f"nothing left {time.monotonic() - started:.1f} s after it was killed")
+        self.assertEqual(processes_with(self._mark), [])
+
     def test_what_is_no_project_is_refused_in_one_line(self):
         for path, words in ((self._folder / "nowhere", "no such folder"), (self._folder, "")):
             with self.subTest(path=path):

@@ -21,6 +21,11 @@ guard = subprocess.Popen(guarded(sys.argv[1:]), start_new_session=True, preexec_
 print("started", flush=True)
 sys.exit(guard.wait())
 """
+WAITER = """
+import sys
+from supervision.guard import run_guarded
+sys.exit(run_guarded(sys.argv[1:], 3.0))
+"""
 # As roslaunch while it starts a node: deaf, with children in sessions of their own, some of them stubborn.
 STUBBORN = "trap '' INT TERM; while true; do sleep 0.05; done"
 DEAF_PARENT = f'trap "" INT TERM; for i in 1 2 3 4 5; do setsid bash -c "{STUBBORN}" & sleep 0.05; done; wait'
@@ -34,9 +39,9 @@ def mark():
         process.kill()
 
 
-def start(mark, *command):
+def start(mark, *command, by=STARTER):
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), MARK: mark}
-    starter = [sys.executable, "-c", STARTER, *command]
+    starter = [sys.executable, "-c", by, *command]
     return subprocess.Popen(starter, env=environment, stdout=subprocess.PIPE)
 
 
@@ -99,3 +104,23 @@ def test_what_a_command_leaves_behind_is_ended(mark):
     starter = start(mark, "bash", "-c", f'setsid bash -c "{STUBBORN}" & exit 0')
     assert starter.wait(START_SECONDS) == 0
     assert not processes_of(mark)
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])
+def test_who_runs_a_guarded_command_waits_for_its_end(mark, number):
+    hearing = "trap 'sleep 2.5; exit 3' INT; trap '' HUP; echo ready; while true; do sleep 0.05; done"
+    starter = start(mark, "bash", "-c", hearing, by=WAITER)
+    assert starter.stdout.readline() == b"ready\n"
+    starter.send_signal(number)
+    assert starter.wait(LEFT_SECONDS) == 3
+    assert not processes_of(mark)
+
+
+def test_nothing_outlives_a_guarded_command_or_who_runs_it(mark):
+    for place in (0, 1, 2):
+        starter = start(mark, "bash", "-c", f"echo ready; {DEAF_PARENT}", by=WAITER)
+        assert starter.stdout.readline() == b"ready\n"
+        chain = [starter, *psutil.Process(starter.pid).children(recursive=True)]
+        chain[place].kill()
+        starter.wait(2 * LEFT_SECONDS)
+        seconds_until(lambda: not processes_of(mark), 2 * LEFT_SECONDS)

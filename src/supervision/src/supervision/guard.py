@@ -1,10 +1,10 @@
 """A command that leaves no process behind, also if whoever has started it is killed at any moment.
 
-python3 -m supervision.guard PARENT COMMAND...
+python3 -m supervision.guard PARENT PATIENCE COMMAND...
 
 Started by the process PARENT, it runs the command until that ends, or this is sent SIGTERM, or PARENT is no
-more; upon which the command is ended as by Ctrl-C, and then whatever it has started. The exit code is the
-command's. SIGINT is for the command alone, which is in the same process group.
+more; upon which the command is ended as by Ctrl-C, within PATIENCE seconds, and then whatever it has started.
+The exit code is the command's. SIGINT is for the command alone, which is in the same process group.
 """
 
 import os
@@ -15,36 +15,52 @@ from contextlib import suppress
 from threading import Timer
 from typing import List, NoReturn
 
+from supervision.interruption import SIGNALS
 from supervision.processes import adopt_orphans, end_descendants, end_when_orphaned, ending_with_parent
 
 SIGINT_SECONDS, SIGTERM_SECONDS = 2.0, 2.0
 
 
-def guarded(command: List[str]) -> List[str]:
+def guarded(command: List[str], patience: float = SIGINT_SECONDS) -> List[str]:
     """The command line of a guard of ``command``, for a child of this process, started by its main thread."""
-    return [sys.executable, "-m", "supervision.guard", str(os.getpid()), *command]
+    return [sys.executable, "-m", "supervision.guard", str(os.getpid()), f"{patience:g}", *command]
+
+
+def run_guarded(command: List[str], patience: float) -> int:
+    """Runs a command that takes ``patience`` seconds to end when it is asked to; returns its exit code.
+
+    This process only waits, so that it may be killed: see above. What asks it to end is for the command.
+    """
+    adopt_orphans()
+    ignore_ctrl_c()
+    guard = subprocess.Popen(guarded(command, patience))
+    for number in SIGNALS:
+        signal.signal(number, lambda _number, _frame: guard.terminate())
+    code = guard.wait()
+    end_descendants(patience)  # of a guard that was killed itself
+    return code
 
 
 def ignore_ctrl_c() -> None:
-    """For a guard between fork and exec."""
+    """For a guard, and for who waits for it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def main() -> NoReturn:
-    parent, *command = sys.argv[1:]
+    parent, patience, *command = sys.argv[1:]
     adopt_orphans()
     process = subprocess.Popen(command, stdin=subprocess.DEVNULL, preexec_fn=ending_with_parent())
-    signal.signal(signal.SIGTERM, lambda _number, _frame: _interrupt(process))
+    signal.signal(signal.SIGTERM, lambda _number, _frame: _interrupt(process, float(patience)))
     end_when_orphaned(int(parent), signal.SIGTERM)
     process.wait()
     end_descendants(SIGTERM_SECONDS)
     _end_as(process.returncode)
 
 
-def _interrupt(process: subprocess.Popen) -> None:
+def _interrupt(process: subprocess.Popen, patience: float) -> None:
     """As Ctrl-C does; kills it if it takes too long over that."""
     process.send_signal(signal.SIGINT)
-    impatience = Timer(SIGINT_SECONDS, process.kill)
+    impatience = Timer(patience, process.kill)
     impatience.daemon = True
     impatience.start()
 

@@ -1,4 +1,9 @@
-from planar_ros.node.entry import call
+import sys
+
+from supervision.guard import run_guarded
 from supervision.interruption import leave
 
-leave(call("run_project.cli:main"))
+# What a project has started is to end with the run, also if that is killed.
+SECONDS_TO_END = 15.0
+
+leave(run_guarded([sys.executable, "-m", "run_project.run", *sys.argv[1:]], SECONDS_TO_END))
