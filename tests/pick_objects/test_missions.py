@@ -8,19 +8,22 @@ import unittest
 from pathlib import Path
 
 import actionlib
+import rosnode
 import rospy
 import rostest
-from actionlib_msgs.msg import GoalStatus
+from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from gazebo_msgs.msg import ModelStates
 from home_service_msgs.msg import DeliverAction, DeliverGoal, Delivery, DeliveryState
 from home_service_msgs.srv import AddDelivery, CancelDelivery
+from listening import Heard
+from nav_msgs.msg import Odometry
 from visualization_msgs.msg import Marker
 
 from home_service.judging.verdict import ERRAND, OBJECTS, judge
 from home_service.ros.referee import Referee
 from pick_objects import parse_mission
 from planar import Pose2
-from planar_ros.calls.actions import goal_is_over, server_is_ready
+from planar_ros.calls.actions import KILLED_TEXT, goal_is_over, server_is_ready
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
 
 WALL_DEADLINE = 400.0  # of a machine that has other things to do
@@ -37,6 +40,9 @@ deliveries:
   - {name: third, object: cup, from: door, to: hall}
   - {name: last, object: letter, from: hall, to: door, after: third}
 """
+
+
+GIVEN_UP = {GoalStatus.PREEMPTED, GoalStatus.RECALLED}
 
 
 class BoxWatch:
@@ -126,6 +132,17 @@ class MissionsTest(unittest.TestCase):
         self.assertEqual(records["needless"].state, "cancelled")
         self._assert_body(letter)
 
+    def test_4_the_robot_stops_when_the_node_of_its_mission_ends(self):
+        goals, odometry = Heard("move_base/status", GoalStatusArray), Heard("odom", Odometry)
+        self.client.send_goal(DeliverGoal(deliveries=[Delivery("cut short", "parcel", "pickup", "dropoff")]))
+        self._wait("a robot that drives", lambda: _speed(odometry.next()) > 0.1)
+        rosnode.kill_nodes(["/pick_objects"])
+        self._wait("its goal to be given up", lambda: GIVEN_UP & _statuses(goals.messages))
+        self._wait("a stop", lambda: _speed(odometry.next()) < 0.01)
+        self._wait("the end of the mission", lambda: goal_is_over(self.client))
+        told = self.client.get_state(), self.client.get_goal_status_text()
+        self.assertEqual(told, (GoalStatus.ABORTED, KILLED_TEXT))
+
     def _assert_body(self, letter):
         """It stood in front of one place, rode on the robot, and stands in front of the other."""
         print(f"on the robot at most {max(letter.riding):.3f} m off its middle")
@@ -157,6 +174,14 @@ class MissionsTest(unittest.TestCase):
         while not is_there():
             self.assertLess(time.monotonic(), deadline, f"no {what}; state '{self.referee.state}'")
             time.sleep(0.02)
+
+
+def _statuses(messages):
+    return {goal.status for message in list(messages) for goal in message.status_list}
+
+
+def _speed(odometry):
+    return abs(odometry.twist.twist.linear.x)
 
 
 if __name__ == "__main__":

@@ -47,7 +47,7 @@ class Explore:
         self._move_base = MoveBase(self._settings.global_frame)
         listen("map", OccupancyGridArrays, self._keep_map, queue_size=1, tcp_nodelay=True)
         self._scans = listen("scan", LaserScanArrays, self._measure_view, queue_size=1)
-        self._move_base.cancel_all_at_end()
+        self._move_base.cancel_at_end()
         frames = f"{self._settings.global_frame} to {self._settings.robot_base_frame}"
         self._conditions = {
             f"a map on {rospy.resolve_name('map')}": lambda: self._map is not None,

@@ -24,6 +24,7 @@ class FollowMe:
         self._follower = Follower(self._settings)
         self._transforms = Transforms()
         self._move_base = MoveBase(self._settings.map_frame)
+        self._move_base.cancel_at_end()
         frames = (self._settings.leader_frame, self._settings.base_frame)
         Waiting(
             {

@@ -24,6 +24,7 @@ class Driver:
 
     def __init__(self, frame_id: str):
         self.move_base = MoveBase(frame_id)
+        self.move_base.cancel_at_end()
         self._order: Optional[GoTo] = None
         self._fit, self._fit_at = 0.0, rospy.Time(0)
         rospy.Subscriber(QUALITY_TOPIC, Float32, self._keep_fit, queue_size=1)

@@ -93,13 +93,13 @@ class MoveBase:
         self._is_driving = False
         self._client.cancel_all_goals()
 
-    def cancel_all_at_end(self) -> None:
-        """Has all goals given up when the node ends, and move_base hear of it."""
+    def cancel_at_end(self) -> None:
+        """Has the goal given up when the node ends, and move_base hear of it."""
 
         def cancel() -> None:
             inner = self._client.action_client
             wait_until_heard(inner.pub_goal)  # lest a goal comes after what cancels it
-            self.cancel_all()
+            self.cancel()
             wait_until_heard(inner.pub_cancel)
 
         rospy.on_shutdown(cancel)
