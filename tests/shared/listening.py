@@ -1,5 +1,7 @@
 """Hearing what the simulation says."""
 
+from typing import Any, List
+
 import rospy
 from waiting import wait_until
 
@@ -8,7 +10,7 @@ class Heard:
     """The messages of a topic since then."""
 
     def __init__(self, topic, kind):
-        self.messages = []
+        self.messages: List[Any] = []
         self._subscriber = rospy.Subscriber(topic, kind, self.messages.append, queue_size=1000)
 
     def next(self):
