@@ -33,7 +33,7 @@ The kinds of [faults](faults.md), from {start:g} s on, in the whole graph of nod
 A verdict is false if the robot says that it has delivered and has not, or the other way round; a run hangs if
 the script has not ended by itself {spare:g} s after that. *Left* are processes, sockets and files.
 
-| fault | succeeded | false verdicts | hung | left | simulated s | how the runs ended |
+| fault | succeeded | false verdicts | hung | left | simulated s | why not |
 | --- | --- | --- | --- | --- | --- | --- |
 {rows}
 """
@@ -87,7 +87,7 @@ class Row:
     def line(self) -> str:
         runs = self.runs
         seconds = ", ".join(f"{run.result.get('simulated_seconds', 0.0):.0f}" for run in runs)
-        endings = "; ".join(dict.fromkeys(str(run.result.get("reason", "no result")) for run in runs))
+        failures = (str(run.result.get("reason", "no result")) for run in runs if not run.is_success)
         cells = (
             f"`{self.kind}`",
             f"{sum(run.is_success for run in runs)} of {len(runs)}",
@@ -95,7 +95,7 @@ class Row:
             sum(run.hung for run in runs),
             sum(len(run.left) for run in runs),
             seconds,
-            endings,
+            "; ".join(dict.fromkeys(failures)),
         )
         return f"| {' | '.join(map(str, cells))} |"
 

@@ -32,6 +32,12 @@ def test_scans_that_come_late_are_seen_from_where_the_robot_was():
     assert run.verdict.success, run.verdict.reason
 
 
+def test_dead_odometry_is_not_trusted_again_only_because_the_robot_was_stopped_for_it():
+    run = rehearsed(5001, Fault("odometry_frozen", start=8.0))
+    assert "trustworthy sensor (odometry: it stands still" in run.verdict.reason
+    assert run.simulated_seconds < 60.0
+
+
 @pytest.mark.parametrize("start", [8.0, 8.9])
 def test_a_robot_that_is_carried_away_before_it_arrives_claims_nothing_that_is_not_so(start):
     run = rehearsed(1, Fault("kidnapped", start=start, strength=0.5))

@@ -27,12 +27,15 @@ class Senses:
         self._watch = SensorWatch()
         self._odometry: Deque[Tuple[float, Pose2]] = deque(maxlen=REMEMBERED)
         self._wrong_since: Optional[float] = None
+        self._told = Twist2()
 
     def feel(self, observation: Observation, command: Twist2) -> None:
-        """Takes in a step."""
+        """Takes in a step; a robot that is stopped for a sensor is still told to go on."""
+        if self._wrong_since is None:
+            self._told = command
         if Odometer.name in observation.readings or not self._odometry:
             self._odometry.append((observation.stamp, observation.odometry.base_in_odom))
-            self._watch.see_odometry(observation.stamp, observation.odometry.base_in_odom, command)
+            self._watch.see_odometry(observation.stamp, observation.odometry.base_in_odom, self._told)
         if observation.scan is not None:
             scan = observation.scan
             span = scan.angle_increment * (len(scan.ranges) - 1)

@@ -39,7 +39,8 @@ faults:
 ever), with that strength (0: the usual one). A kind is a class in a file of its own in
 `sim_bridge/faults/` and a line of `registry.py` there.
 
-What becomes of a mission whose nodes die: [killed nodes](killed_nodes.md).
+The same over the whole graph of nodes: [faults over ROS](faults_over_ros.md). What becomes of a mission whose
+nodes die: [killed nodes](killed_nodes.md).
 """
 
 

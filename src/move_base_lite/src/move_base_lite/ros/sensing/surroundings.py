@@ -29,6 +29,8 @@ from planar_ros.messages.conversion import (
 from planar_ros.messages.transforms import Transforms
 
 KEPT = 5
+# A sensor that has said nothing for so long, and stopped about when localization did, may be why.
+SILENT_SECONDS = 2.0
 MESSAGES = {"LaserScan": LaserScanArrays, "PointCloud": PointCloud, "PointCloud2": PointCloud2}
 
 
@@ -105,8 +107,18 @@ class Surroundings:
             if latest is None:
                 return f"the transform {parent} -> {child}"
             if parent != child and latest != rospy.Time(0) and (now - latest).to_sec() > tolerance:
-                return f"a transform {parent} -> {child} that is not {(now - latest).to_sec():.1f} s old"
+                age = (now - latest).to_sec()
+                silence = self._silence_since(latest, now) if parent == self._global_frame else ""
+                return f"a transform {parent} -> {child} that is not {age:.1f} s old{silence}"
         return None
+
+    def _silence_since(self, moment: rospy.Time, now: rospy.Time) -> str:
+        """Which sensor fell silent when localization did, if one did."""
+        for sensor in self._sensors:
+            silent, apart = (now - sensor.heard_at).to_sec(), abs((moment - sensor.heard_at).to_sec())
+            if sensor.has_spoken and silent > SILENT_SECONDS > apart:
+                return f"; nothing on {sensor.topic} for {silent:.1f} s"
+        return ""
 
     def forget(self) -> None:
         """Time has jumped back: what was heard is worthless."""
@@ -143,7 +155,7 @@ class _Sensor:
         self._messages: Deque = deque(maxlen=KEPT)
         self._lock = threading.Lock()
         self._mountings: Dict[str, np.ndarray] = {}
-        self.has_spoken = False
+        self.has_spoken, self.heard_at = False, rospy.Time(0)
         listen(source.topic, MESSAGES[source.data_type], self._on_message, queue_size=KEPT, tcp_nodelay=True)
 
     @property
@@ -179,7 +191,7 @@ class _Sensor:
 
     def _on_message(self, message):
         check_message(message)
-        self.has_spoken = True
+        self.has_spoken, self.heard_at = True, rospy.Time.now()
         if self._source.data_type == "LaserScan" and self._source.marking:
             self._watch(message)
         with self._lock:
