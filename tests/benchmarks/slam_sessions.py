@@ -20,6 +20,7 @@ from typing import Iterator, List, Sequence, Tuple
 
 import numpy as np
 from helpers.drives import Sighting, Tour, drive
+from scipy.ndimage import label
 
 from home_service.judging.map_truth import score_against_world
 from home_service.rehearsal import Rehearsal
@@ -39,6 +40,9 @@ ROOT = Path(__file__).resolve().parents[2]
 SLAM_CONFIG = ROOT / "src/slam_lite/config/turtlebot.yaml"
 # Furniture: how many pieces, how large, how likely each is moved, and how far off walls and places, metres.
 PIECES, SIZES, MOVES, TO_WALL, TO_PLACES, TO_OTHERS = 8, (0.3, 0.7), 0.5, 0.55, 1.0, 1.1
+# Room that a way needs to each side, metres; the least share of the home that can be gone to; how many places
+# are tried for a piece of furniture.
+WAY, OPEN_SHARE, TRIES = 0.35, 0.98, 200
 # The mapper has found itself where it is off by less than this, metres.
 FOUND = 0.3
 
@@ -60,17 +64,21 @@ class Session:
     cpu_seconds: float
 
 
+Piece = Tuple[Pose2, Tuple[float, float, float]]
+
+
 class Home:
-    """A world with pieces of furniture that move from session to session."""
+    """A world with pieces of furniture that move from session to session, and never shut a part of it."""
 
     def __init__(self, world: World, height: float, places: Sequence[Pose2], seed: int):
         self._world, self._rng = world, np.random.default_rng([seed, 18])
         self._grid = true_map(world, height)
         self._clearance = distance_field(self._grid.cells != FREE, self._grid.resolution)
         self._places = [(place.x, place.y) for place in places]
-        self._pieces: List[Tuple[Pose2, Tuple[float, float, float]]] = []
+        self._ways = self._reached(self._clearance > WAY)
+        self._pieces: List[Piece] = []
         for _ in range(PIECES):
-            self._pieces.append(self._placed([pose for pose, _ in self._pieces]))
+            self._pieces.append(self._placed([pose for pose, _ in self._pieces], self._pieces))
 
     def move(self) -> List[Pose2]:
         """Moves some pieces; returns where they stood."""
@@ -78,7 +86,8 @@ class Home:
         for i, (pose, _) in enumerate(self._pieces):
             if self._rng.random() < MOVES:
                 left.append(pose)
-                self._pieces[i] = self._placed([*left, *(other for other, _ in self._pieces)])
+                standing = [*self._pieces[:i], *self._pieces[i + 1 :]]
+                self._pieces[i] = self._placed([*left, *(other for other, _ in standing)], standing)
         return left
 
     def world(self) -> World:
@@ -90,9 +99,30 @@ class Home:
         """A free place to begin at."""
         return self._free_place([pose for pose, _ in self._pieces])
 
-    def _placed(self, others: Sequence[Pose2]) -> Tuple[Pose2, Tuple[float, float, float]]:
-        width, depth = self._rng.uniform(*SIZES, size=2)
-        return self._free_place(others), (float(width), float(depth), 0.6)
+    def _placed(self, others: Sequence[Pose2], standing: Sequence[Piece]) -> Piece:
+        """A new piece, off ``others``, that with those ``standing`` leaves the ways open."""
+        width, depth = (float(side) for side in self._rng.uniform(*SIZES, size=2))
+        for _ in range(TRIES):
+            piece = self._free_place(others), (width, depth, 0.6)
+            if self._is_open([*standing, piece]):
+                return piece
+        raise SystemExit(f"error: no place for a piece of furniture in {TRIES} tries")
+
+    def _is_open(self, pieces: Sequence[Piece]) -> bool:
+        """Whether a way leads to nearly all that is left free."""
+        free = self._ways.copy()
+        ways = np.argwhere(free)
+        points_xy = self._grid.points_of(ways)
+        for pose, (width, depth, _) in pieces:
+            is_shut = np.hypot(*(points_xy - (pose.x, pose.y)).T) < WAY + 0.5 * math.hypot(width, depth)
+            free[tuple(ways[is_shut].T)] = False
+        return np.count_nonzero(self._reached(free)) > OPEN_SHARE * np.count_nonzero(free)
+
+    def _reached(self, free: np.ndarray) -> np.ndarray:
+        """The cells, of those that are ``free``, to which a way leads from the home's origin."""
+        parts, _ = label(free)
+        row, col = self._grid.cells_of([(0.0, 0.0)])[0]
+        return (parts == parts[row, col]) & free
 
     def _free_place(self, others: Sequence[Pose2]) -> Pose2:
         spots = self._grid.points_of(np.argwhere(self._clearance > TO_WALL))
