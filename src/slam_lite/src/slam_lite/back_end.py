@@ -308,6 +308,8 @@ def _with(edges: Edges, more: Sequence[Edge]) -> Edges:
 
 def _widened(edge: Edge, sigma_xy: float, sigma_yaw: float) -> Edge:
     """The edge with independent errors of its own added to those of the match."""
-    covariance = np.linalg.inv(edge.information + 1e-3 * np.eye(3))
-    covariance += np.diag([sigma_xy**2, sigma_xy**2, sigma_yaw**2])
-    return Edge(edge.first, edge.second, edge.second_in_first, np.linalg.inv(covariance), edge.is_loop)
+    own = np.diag([sigma_xy**-2, sigma_xy**-2, sigma_yaw**-2])
+    # Woodbury's identity: what the match knows nothing of has no covariance to add to.
+    told = edge.information
+    told = told - told @ np.linalg.solve(own + told, told)
+    return Edge(edge.first, edge.second, edge.second_in_first, told, edge.is_loop)

@@ -160,7 +160,7 @@ class FrontEnd:
         self._scans.gather(predicted)
         local_map = self._scans.local_map
         if local_map.count == 0:
-            return Match(predicted, _NO_BELIEF, 1.0)
+            return Match(predicted, prior, 1.0)
         window = Window(
             float(np.clip(3.0 * math.sqrt(variance[0]), 0.1, 0.4)),
             float(np.clip(3.0 * math.sqrt(variance[2]), 0.1, 0.5)),

@@ -5,7 +5,7 @@ from typing import Dict, Tuple
 import numpy as np
 
 from planar import Pose2
-from slam_lite.graph.drift import drift_along, shortest_ways
+from slam_lite.graph.drift import drift_along, shortest_ways, variances_xy
 from slam_lite.graph.pose_graph import Edge, EdgeList, Edges
 
 # A loop's end may be moved so far to a node that is kept, metres.
@@ -33,8 +33,7 @@ def condensed(poses: np.ndarray, edges: Edges, kept: np.ndarray) -> Edges:
 
 
 def _tie(first: int, second: int, poses: np.ndarray, edges: Edges) -> Edge:
-    variances = 1.0 / np.minimum(edges.information[:, 0, 0], edges.information[:, 1, 1])
-    ways, before = shortest_ways(first, len(poses), edges, np.sqrt(variances))
+    ways, before = shortest_ways(first, len(poses), edges, np.sqrt(variances_xy(edges)))
     xy, yaw = (drift[second] for drift in drift_along(ways, before, poses, edges))
     xy, yaw = max(float(xy), _LEAST_XY), max(float(yaw), _LEAST_YAW)
     return Edge(first, second, _between(poses, first, second), np.diag([xy**-2, xy**-2, yaw**-2]))

@@ -9,6 +9,9 @@ from scipy.sparse.csgraph import dijkstra
 
 from slam_lite.graph.pose_graph import Edges
 
+# Nothing is known less surely than this, 1 / m^2.
+_LEAST_INFORMATION = 1e-6
+
 
 def shortest_ways(
     start: int, count: int, edges: Edges, lengths: np.ndarray, limit: float = np.inf
@@ -21,6 +24,13 @@ def shortest_ways(
     return dijkstra(graph, directed=False, indices=start, return_predecessors=True, limit=limit)
 
 
+def variances_xy(edges: Edges) -> np.ndarray:
+    """Variances (E,) of position in the direction, whichever it is, of which each edge knows least."""
+    along_x, along_y, mixed = (edges.information[:, i, j] for i, j in ((0, 0), (1, 1), (0, 1)))
+    least = 0.5 * (along_x + along_y) - np.hypot(0.5 * (along_x - along_y), mixed)
+    return 1.0 / np.maximum(least, _LEAST_INFORMATION)
+
+
 def drift_along(
     ways: np.ndarray, before: np.ndarray, poses: np.ndarray, edges: Edges
 ) -> Tuple[np.ndarray, np.ndarray]:
@@ -30,7 +40,7 @@ def drift_along(
     behind it: it counts as often as the straight way from there is long.
     """
     first, second = edges.nodes.T
-    xy = 1.0 / np.minimum(edges.information[:, 0, 0], edges.information[:, 1, 1])
+    xy = variances_xy(edges)
     yaw = 1.0 / edges.information[:, 2, 2]
     # The best edge between each node and the one before, if several tie them.
     best_xy, best_yaw = np.full(len(poses), np.inf), np.full(len(poses), np.inf)

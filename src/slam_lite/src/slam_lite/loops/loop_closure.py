@@ -15,13 +15,13 @@ import numpy as np
 
 from planar import Pose2, wrap
 from slam_lite.config import MapperSettings
-from slam_lite.graph.drift import shortest_ways
+from slam_lite.graph.drift import shortest_ways, variances_xy
 from slam_lite.graph.pose_graph import Edge, Edges
 from slam_lite.loops.place_recognition import Hypothesis
 from slam_lite.loops.sight import Placed, clash
-from slam_lite.matching.correlative import Window, scores, search_far
+from slam_lite.loops.sliding import PARALLEL, known_of, refined
+from slam_lite.matching.correlative import Window, search_far
 from slam_lite.matching.local_map import LocalMap, Match
-from slam_lite.matching.refinement import refine
 from slam_lite.surface import Surface, joined, thinned
 
 # Growth of the search window with the way along the graph: metres and radians per metre.
@@ -53,11 +53,6 @@ _MAX_WITNESS_WAY = 15.0
 # How long a place that was but recognised has to go on alike, metres: corridors' crossings are much the same.
 _LONG_WAY = 11.0
 _MAX_POINTS = 500
-# A match may slide by these ways, metres, if the score there is this share of its own.
-_SLIDES = np.concatenate((-np.arange(0.2, 1.05, 0.1), np.arange(0.2, 1.05, 0.1)))
-_SLIDE_SHARE = 0.9
-# Cosine of the angle up to which two slides are along the same corridor.
-_PARALLEL = 0.95
 _MAX_CANDIDATES = 3
 
 
@@ -162,20 +157,18 @@ def find_closure(
     )
     if peak is None or not peak.is_unique or (candidate.is_recognised and peak.slide.any()):
         return None
-    match = refine(recent_surface, local_map, peak.base_pose, peak.base_pose, np.zeros((3, 3)))
-    if match.response < settings.closure_min_response:
+
+    def fit(start: Pose2) -> Optional[Match]:
+        match = refined(recent_surface, local_map, start, settings.closure_min_response)
+        if match is None or not candidate.is_doubtful:
+            return match
+        return match if clash(there, here, match.base_pose) <= _MAX_CLASH else None
+
+    known = known_of(peak, candidate.guess, recent_surface, local_map, fit)
+    if known is None:
         return None
-    moved = peak.base_pose.inverse() @ match.base_pose
-    if math.hypot(moved.x, moved.y) > 0.3 or abs(moved.yaw) > 0.1:
-        return None
-    if candidate.is_doubtful and clash(there, here, match.base_pose) > _MAX_CLASH:
-        return None
-    if peak.slide.any():
-        information = _blurred(match.information, candidate.window.distance * peak.slide)
-    else:
-        information = _without_slides(match, recent_surface, local_map)
-    edge = Edge(place, recent, match.base_pose, information, is_loop=True)
-    return Closure(edge, candidate, peak.slide)
+    edge = Edge(place, recent, known.base_in_place, known.information, is_loop=True)
+    return Closure(edge, candidate, known.slide)
 
 
 def _around(
@@ -186,29 +179,6 @@ def _around(
     keys = range(max(0, place - reach), min(end, place + reach + 1))
     seen = [(surfaces[key], _between(poses[place], poses[key])) for key in keys]
     return [(surface, pose) for surface, pose in seen if math.hypot(pose.x, pose.y) < scale * _PLACE_RADIUS]
-
-
-def _without_slides(match: Match, surface: Surface, local_map: LocalMap) -> np.ndarray:
-    """The match's information, without what it pretends to know of a direction in which it could well slide.
-
-    Along a smooth wall, a few points of noise hold a match in place, and its information takes them for
-    features.
-    """
-    _, directions = np.linalg.eigh(match.information[:2, :2])
-    weakest = directions[:, 0]
-    pose = match.base_pose
-    slid = [Pose2(pose.x + way * weakest[0], pose.y + way * weakest[1], pose.yaw) for way in _SLIDES]
-    fits = scores(surface, local_map, [pose, *slid])
-    possible = np.abs(_SLIDES[fits[1:] >= _SLIDE_SHARE * fits[0]])
-    if len(possible) == 0:
-        return match.information
-    return _blurred(match.information, possible.max() * weakest)
-
-
-def _blurred(information: np.ndarray, sigma_xy: np.ndarray) -> np.ndarray:
-    """The information (3, 3) less what an error of ``sigma_xy`` (2,), metres, in that direction takes."""
-    sigma = np.append(sigma_xy, 0.0)
-    return np.linalg.inv(np.linalg.inv(information + 1e-3 * np.eye(3)) + np.outer(sigma, sigma))
 
 
 def is_out_of_reach(way: float, drift: np.ndarray) -> bool:
@@ -232,18 +202,18 @@ def agree(one: Closure, other: Closure, poses: np.ndarray) -> bool:
     """Whether two closures between the same two stretches of the way tell the same story.
 
     Around the cycle place - recent - other recent - other place - place the errors must cancel, up to what
-    the front end may have drifted between them, and across a corridor that both may slide along.
+    the front end may have drifted between them, and across a corridor that both may slide along. One that
+    slides is no witness for one that does not: it cannot tell how far along the robot is.
     """
     recent_way, place_way, error, turn = _disagreement(one, other, poses)
     if not _RECENT_WAY <= recent_way <= _MAX_WITNESS_WAY:
         return False
-    other_slide = _slide_of(other, one, poses)
-    if one.slide.any() and other_slide.any() and abs(one.slide @ other_slide) < _PARALLEL:
+    if one.slide.any() != other.slide.any():
         return False
-    for slide in (one.slide, other_slide):
-        error -= (error @ slide) * slide
+    if one.slide.any() and abs(one.slide @ _slide_of(other, one, poses)) < PARALLEL:
+        return False
     way = recent_way + place_way
-    return math.hypot(*error) < 0.15 + 0.02 * way and turn < 0.05 + 0.005 * way
+    return error < 0.15 + 0.02 * way and turn < 0.05 + 0.005 * way
 
 
 def is_confirmed(closure: Closure, witnesses: Sequence[Closure], poses: np.ndarray) -> bool:
@@ -260,18 +230,23 @@ def contradict(one: Closure, other: Closure, poses: np.ndarray) -> bool:
     if recent_way > _MAX_WITNESS_WAY:
         return False
     way = recent_way + place_way
-    return math.hypot(*error) > _ELSEWHERE + 0.1 * way or turn > 0.3
+    return error > _ELSEWHERE + 0.1 * way or turn > 0.3
 
 
-def _disagreement(one: Closure, other: Closure, poses: np.ndarray) -> Tuple[float, float, np.ndarray, float]:
-    """How far the recent keys and the places of two closures lie apart, and the error around their cycle."""
+def _disagreement(one: Closure, other: Closure, poses: np.ndarray) -> Tuple[float, float, float, float]:
+    """How far the recent keys and the places of two closures lie apart, and the error around their cycle.
+
+    Along a corridor in which one of them slides, there is none.
+    """
     a, b = one.edge, other.edge
     recent_step = _between(poses[a.second], poses[b.second])
     place_step = _between(poses[a.first], poses[b.first])
     told, retold = a.second_in_first @ recent_step, place_step @ b.second_in_first
     error = np.array([retold.x - told.x, retold.y - told.y])
-    ways = (math.hypot(step.x, step.y) for step in (recent_step, place_step))
-    return (*ways, error, abs(wrap(retold.yaw - told.yaw)))
+    for slide in (one.slide, _slide_of(other, one, poses)):
+        error -= (error @ slide) * slide
+    recent_way, place_way = (math.hypot(step.x, step.y) for step in (recent_step, place_step))
+    return recent_way, place_way, math.hypot(*error), abs(wrap(retold.yaw - told.yaw))
 
 
 def _slide_of(closure: Closure, seen_from: Closure, poses: np.ndarray) -> np.ndarray:
@@ -287,8 +262,7 @@ def lengths_of(edges: Edges) -> np.ndarray:
     """
     steps = edges.measured
     lengths = np.hypot(steps[:, 0], steps[:, 1]) + np.abs(steps[:, 2])
-    weakest = np.minimum(edges.information[:, 0, 0], edges.information[:, 1, 1])
-    doubts = 1.0 / np.sqrt(weakest) / _DRIFT_DISTANCE
+    doubts = np.sqrt(variances_xy(edges)) / _DRIFT_DISTANCE
     return np.where(edges.is_loop | (doubts > _GUESS_WAY), doubts, lengths)
 
 
