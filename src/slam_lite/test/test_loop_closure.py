@@ -11,7 +11,8 @@ from slam_lite.config import MapperSettings
 from slam_lite.graph.drift import variances_xy
 from slam_lite.graph.pose_graph import edges_of
 from slam_lite.loops.loop_closure import Candidate, agree, contradict, find_closure
-from slam_lite.matching.correlative import Window
+from slam_lite.loops.sliding import known_of, refined
+from slam_lite.matching.correlative import Peak, Window
 from slam_lite.matching.local_map import LocalMap
 from slam_lite.surface import Surface
 
@@ -113,6 +114,19 @@ def moved_on(closure, keys):
     edge = closure.edge
     edge = dataclasses.replace(edge, first=edge.first + keys, second=edge.second + keys)
     return dataclasses.replace(closure, edge=edge)
+
+
+def test_two_places_across_a_corridor_that_look_alike_are_no_slide():
+    seen, local_map = seen_from(Pose2(), SMOOTH), LocalMap()
+    local_map.clear(Pose2())
+    local_map.add(seen, Pose2())
+
+    def known_where_it_fits(slide):
+        peak = Peak(Pose2(), 1.0, True, np.array(slide))
+        return known_of(peak, Pose2(), seen, local_map, lambda start: refined(seen, local_map, start, 0.6))
+
+    assert known_where_it_fits([0.0, 1.0]) is None
+    assert abs(known_where_it_fits([1.0, 0.0]).slide[0]) == pytest.approx(1.0, abs=1e-3)
 
 
 def test_an_edge_is_as_uncertain_as_it_is_in_its_worst_direction():
