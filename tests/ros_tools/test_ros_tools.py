@@ -8,7 +8,10 @@ import unittest
 from pathlib import Path
 from unittest import mock
 
+import roslib.packages
 import rostest
+
+PUBLISHERS = ("robot_state_publisher", "state_publisher")
 
 
 def rosrun(*words, folder=None):
@@ -44,6 +47,20 @@ class RosToolsTest(unittest.TestCase):
 
     def test_the_other_tools_of_a_mended_package_are_found(self):
         self.assertIn("tf_echo", rosrun("tf", "tf_echo").stdout)
+
+    def test_robot_state_publisher_answers_to_its_former_name_too(self):
+        found = [roslib.packages.find_node("robot_state_publisher", name) for name in PUBLISHERS]
+        self.assertEqual([Path(nodes[0]).name for nodes in found if nodes], list(PUBLISHERS))
+        self.assertEqual(len({os.path.realpath(nodes[0]) for nodes in found}), 1)
+
+    def test_xacro_goes_on_where_the_order_of_former_times_is_asked_for(self):
+        with tempfile.TemporaryDirectory() as folder:
+            robot = Path(folder, "robot.xacro")
+            robot.write_text('<robot name="robot"/>')
+            for order in ("--oldorder", "--inorder"):
+                run = rosrun("xacro", "xacro", order, str(robot))
+                self.assertEqual(run.returncode, 0, run.stdout)
+                self.assertIn('<robot name="robot"/>', run.stdout)
 
 
 if __name__ == "__main__":

@@ -6,4 +6,6 @@ del sys.path[0]
 
 from xacro import main  # noqa: E402
 
+# Kinetic's default order, which later ones do not have.
+sys.argv = [word for word in sys.argv if word != "--oldorder"]
 main()

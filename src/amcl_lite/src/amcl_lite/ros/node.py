@@ -27,6 +27,7 @@ from planar.config.listing import yaml_of
 from planar_ros.messages.conversion import frame_name
 from planar_ros.messages.scan_queue import ScanQueue
 from planar_ros.messages.transforms import Transforms
+from planar_ros.node.command_line import understood
 from planar_ros.node.reconfigure import Reconfiguration, dynamic_values
 from planar_ros.node.shell import run
 from planar_ros.node.waiting import Waiting
@@ -136,11 +137,13 @@ def _warm_up(settings: NodeSettings) -> None:
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="amcl_lite", description="Localizes a robot in a known map.")
+    parser = argparse.ArgumentParser(
+        prog="amcl_lite", description="Localizes a robot in a known map.", allow_abbrev=False
+    )
     parser.add_argument("--explain-params", action="store_true", help="print all parameters, with meanings")
     parser.add_argument("--run-from-bag", metavar="BAG", help="work through topics tf and base_scan of a bag")
     parser.add_argument("--global-localization", action="store_true", help="of the bag the start is unknown")
-    arguments = parser.parse_args(rospy.myargv()[1:])
+    arguments = understood(parser, rospy.myargv()[1:])
     if arguments.explain_params:
         print(yaml_of(CONFIG_FILES["amcl_lite.yaml"]), end="")
         return

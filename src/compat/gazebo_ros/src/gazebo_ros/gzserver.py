@@ -6,8 +6,11 @@ from pathlib import Path
 from typing import List, Optional
 
 EMPTY_WORLD = Path(__file__).parent / "empty.world"
-# Options of gzserver that take a value.
-VALUED = ("-e", "-p", "-s", "-u", "--physics", "--play", "--server-plugin", "--seed", "--iters", "--profile")
+# Options of Gazebo 7 to 11, as server or with its window, that take a value; all others are flags.
+VALUED = (
+    "-e --physics -p --play -s --server-plugin -o --profile --seed --iters --initial_sim_time "
+    "--record_encoding --record_path --record_period --record_filter -g --gui-plugin --gui-client-plugin"
+).split()
 
 
 def world_of(arguments: List[str]) -> Optional[str]:

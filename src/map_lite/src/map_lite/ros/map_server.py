@@ -6,13 +6,12 @@
 A map that cannot be loaded ends it with exit code 2 (the official one: 255) and a line naming file and key.
 """
 
-import argparse
-
 import numpy as np
 import rospkg
 import rospy
 from nav_msgs.msg import MapMetaData
 
+from map_lite.command_line import parse
 from map_lite.config import ServerSettings
 from map_lite.map_url import path_of
 from planar import MapFileError, OccupancyGrid, Pose2, load_map
@@ -77,14 +76,5 @@ def _package_folder(package: str) -> str:
 
 
 def main():
-    arguments = _arguments(rospy.myargv()[1:])
+    arguments = parse(rospy.myargv()[1:])
     run("map_server", lambda: MapServerNode(arguments))
-
-
-def _arguments(words):
-    parser = argparse.ArgumentParser(prog="map_server", description="Serves a map file.")
-    parser.add_argument("map", help="YAML file of the map, or (deprecated) its image")
-    parser.add_argument(
-        "resolution", nargs="?", type=float, help="metres per pixel, with an image (deprecated)"
-    )
-    return parser.parse_args(words)

@@ -21,6 +21,8 @@ from gazebo_ros.ros.services import (
     spawn_sdf_model_client,
     spawn_urdf_model_client,
 )
+from gazebo_ros.spawn_options import parse
+from planar_ros.node.command_line import go_on_without
 from planar_ros.node.entry import INTERRUPTS, handling_interrupts
 
 PARAMETER_SECONDS = 30.0
@@ -28,31 +30,6 @@ PARAMETER_SECONDS = 30.0
 
 class SpawnError(Exception):
     """The model cannot be had; the text says why."""
-
-
-def parse(arguments: List[str]) -> Tuple[argparse.Namespace, List[str]]:
-    """The options of gazebo_ros' spawn_model, and the words that it does not know, as Kinetic's goes on."""
-    parser = argparse.ArgumentParser(prog="spawn_model", allow_abbrev=False)
-    kind = parser.add_mutually_exclusive_group(required=True)
-    kind.add_argument("-urdf", action="store_true", help="the model is URDF")
-    kind.add_argument("-sdf", action="store_true", help="the model is SDF")
-    source = parser.add_mutually_exclusive_group(required=True)
-    source.add_argument("-file", help="file with the model")
-    source.add_argument("-param", help="ROS parameter with the model")
-    source.add_argument("-database", help="model in a folder of GAZEBO_MODEL_PATH")
-    source.add_argument("-stdin", action="store_true", help="the model comes from standard input")
-    parser.add_argument("-model", required=True, help="name that it gets")
-    parser.add_argument("-reference_frame", default="", help="frame of the pose")
-    parser.add_argument("-gazebo_namespace", default="/gazebo", help="namespace of the simulator")
-    parser.add_argument("-robot_namespace", default=rospy.get_namespace(), help="namespace of its topics")
-    parser.add_argument("-unpause", action="store_true", help="let time pass once it is there")
-    parser.add_argument("-wait", metavar="MODEL", help="wait until that model is there")
-    for name, meaning in zip("xyzRPY", ("m", "m", "m", "roll, rad", "pitch, rad", "yaw, rad")):
-        parser.add_argument(f"-{name}", type=float, default=0.0, help=meaning)
-    parser.add_argument("-J", nargs=2, action="append", default=[], metavar=("JOINT", "RAD_OR_M"))
-    parser.add_argument("-package_to_model", action="store_true", help="accepted: package:// is understood")
-    parser.add_argument("-b", action="store_true", help="stay, and delete the model when interrupted")
-    return parser.parse_known_args(arguments)
 
 
 def quaternion(roll: float, pitch: float, yaw: float) -> Tuple[float, float, float, float]:
@@ -145,9 +122,8 @@ def _wait_for_model(name: str, namespace: str) -> None:
 
 def main() -> None:
     """Exit code 0 if the model is there, 1 if not, 130 if interrupted before that was known."""
-    options, unknown = parse(rospy.myargv()[1:])
-    if unknown:
-        print(f"[spawn_model] goes on without what it does not know: {' '.join(unknown)}", file=sys.stderr)
+    options, unknown = parse(rospy.myargv()[1:], rospy.get_namespace())
+    go_on_without("spawn_model", unknown)
     # rospy's own handler may wait for ever for a lock that is held by what it interrupts.
     rospy.init_node("spawn_model", anonymous=True, disable_signals=True)
     for number in INTERRUPTS:
