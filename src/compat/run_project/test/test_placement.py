@@ -53,6 +53,23 @@ def test_a_home_is_meant_whoever_lives_there():
     assert mounts == {"/home/me/catkin_ws": Path(), "/home/me/ws2": Path()}
 
 
+@pytest.mark.parametrize(
+    ("home", "line"),
+    [
+        ("/home/workspace", 'ws=/home/workspace\nxterm -e "cd ${ws} && source devel/setup.bash && go" &'),
+        ("/home/me/catkin_ws", 'xterm -e " cd ~/catkin_ws; source devel/setup.bash; roslaunch a b.launch" &'),
+        ("/home/me/catkin_ws", "cd $HOME/catkin_ws/src\nrosrun rviz rviz -d world/home.world"),
+    ],
+)
+def test_a_folder_that_a_script_goes_to_is_provided_by_what_it_expects_there(home, line):
+    assert placed(sources(*FILES), "scripts/home_service.sh", line).mounts == {home: Path()}
+
+
+def test_a_folder_that_a_script_goes_to_for_nothing_is_not_provided():
+    text = "cd /home/me/elsewhere && ls other/things.txt; cd /usr/share && cat doc/README.md"
+    assert placed(sources(*FILES), "scripts/home_service.sh", text).mounts == {}
+
+
 def test_the_workspace_below_a_repository_stays_below_it():
     checkout = workspace("catkin_ws", "catkin_ws/src/world/home.world", "catkin_ws/src/go.sh")
     placement = placed(checkout, "catkin_ws/src/go.sh", "cat /home/workspace/catkin_ws/src/world/home.world")

@@ -244,14 +244,17 @@ def _watch(run: ProjectRun, job: Job, options: Options, folder: Path, display: D
 def _parameters(options: Options, plan: Optional[Plan]) -> Dict[str, object]:
     """What the simulator is told; every other parameter is the project's own business.
 
-    A person who drives the robot has to keep up, so a lesson runs in real time if nothing else is wanted.
+    A person who drives the robot has to keep up, so a lesson runs in real time if nothing else is wanted;
+    nobody waits for the nodes of navigation where there is none.
     """
     speed = options.wanted_speed if plan is None or options.speed is not None else 1.0
+    navigates = plan is None or plan.lesson is Lesson.LOCALIZE
+    simulator = SIMULATOR if navigates else {**SIMULATOR, "wait_for": ""}
     return {
         "/use_sim_time": True,
         "/gazebo/speed": speed,
         "/gazebo/seed": options.seed,
-        **{f"/gazebo/{name}": value for name, value in SIMULATOR.items()},
+        **{f"/gazebo/{name}": value for name, value in simulator.items()},
     }
 
 

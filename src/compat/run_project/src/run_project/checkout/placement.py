@@ -22,9 +22,12 @@ READ_SUFFIXES = frozenset(
 
 # Stands for the folder in which the workspace is made, while paths are tried.
 ROOT = "/@"
+# Deeper in it than any script climbs.
+DEEP = ROOT + "/_" * 20
 
 _NAME = r"[\w@%+.-]+"
-_ABSOLUTE = re.compile(rf"(?<![\w}})~.:/-])((?:~|\$HOME|\$\{{HOME\}})?(?:/(?:{_NAME}|\$USER|\$\{{USER\}}))+)")
+_ABSOLUTE = re.compile(rf"(?<![\w}})~.:/-])((?:/{_NAME})+)")
+_HOME = re.compile(r"(?<![\w})~.:/-])(?:~|\$HOME|\$\{HOME\})(?=/)")
 _ASSIGNMENT = re.compile(r"^\s*(?:export\s+|readonly\s+)?(\w+)=(\"[^\"]*\"|'[^']*'|[^\s;&]*)")
 _SCRIPT_FOLDER = re.compile(r"[$`(]+\s*dirname\s+[\"']?\$\{?(?:0|BASH_SOURCE(?:\[0\])?)\}?[\"']?\s*[)`]")
 _CD_PWD = re.compile(
@@ -55,7 +58,7 @@ class Placement:
 
 def place(checkout: Checkout, script: str, texts: Mapping[str, str], home: str, user: str) -> Placement:
     """The best placement for running ``script``; ``texts`` are the contents of the files by relative path."""
-    named = sorted({path for text in texts.values() for path in absolute_paths(text, home, user)})
+    named = _named_outside(checkout, script, texts, home, user)
     files = _with_folders(checkout.files)
     prefixes = sorted({prefix for prefix in (_prefix(path, files) for path in named) if prefix is not None})
     best: Optional[Tuple[Tuple[int, int], Placement]] = None
@@ -64,8 +67,9 @@ def place(checkout: Checkout, script: str, texts: Mapping[str, str], home: str, 
         there = _there(checkout, at, workspace)
         packages = {name: _tried(at / folder) for name, folder in checkout.packages.items()}
         for start in _starts(at, workspace, Path(script).parent):
-            found = set(paths_named(texts[script], _tried(start), _tried(at / Path(script).parent), packages))
-            found |= {_tried(mounts_to(path, mounts)) for path in absolute_paths(texts[script], home, user)}
+            text = at_home(texts[script], home, user)
+            found = set(paths_named(text, _tried(start), _tried(at / Path(script).parent), packages))
+            found |= {_tried(mounts_to(path, mounts)) for path in {*found, *absolute_paths(text, home, user)}}
             score = len(found & there), sum(source == workspace for source in mounts.values())
             if best is None or score > best[0]:
                 best = score, Placement(at, workspace, start, mounts)
@@ -73,6 +77,17 @@ def place(checkout: Checkout, script: str, texts: Mapping[str, str], home: str, 
     placement = best[1]
     _find_strays(checkout, texts, placement, home, user)
     return placement
+
+
+def _named_outside(
+    checkout: Checkout, script: str, texts: Mapping[str, str], home: str, user: str
+) -> List[str]:
+    """Absolute paths that any file names, or the script by going to a folder and naming a file from there."""
+    packages = {name: _tried(folder) for name, folder in checkout.packages.items()}
+    text = at_home(texts[script], home, user)
+    gone_to = paths_named(text, DEEP, f"{DEEP}/{Path(script).parent}", packages)
+    named = {path for path in gone_to if not path.startswith(f"{ROOT}/") and _may_be_the_projects(path)}
+    return sorted(named.union(*(absolute_paths(text, home, user) for text in texts.values())))
 
 
 def _find_strays(
@@ -97,15 +112,21 @@ def _find_strays(
 
 def absolute_paths(text: str, home: str, user: str) -> Set[str]:
     """Absolute paths of files that may be the project's: not the system's, not the names of topics."""
-    found = set()
-    for match in _ABSOLUTE.finditer(text.replace("file://", "")):
-        path = re.sub(r"^(~|\$HOME|\$\{HOME\})", home, match.group(1)).replace("${USER}", user)
-        path = path.replace("$USER", user).rstrip(".")
-        parts = path.split("/")[1:]
-        is_file = "." in parts[-1] or "src" in parts or "devel" in parts
-        if len(parts) >= 3 and parts[0] not in SYSTEM and is_file and not path.startswith("/opt/ros"):
-            found.add(os.path.normpath(path))
-    return found
+    at = at_home(text.replace("file://", ""), home, user)
+    paths = (match.group(1).rstrip(".") for match in _ABSOLUTE.finditer(at))
+    return {os.path.normpath(path) for path in paths if _may_be_the_projects(path)}
+
+
+def at_home(text: str, home: str, user: str) -> str:
+    """The text with the home folder and the user's name put in where a shell would."""
+    text = _HOME.sub(lambda _: home, text)
+    return text.replace("${USER}", user).replace("$USER", user)
+
+
+def _may_be_the_projects(path: str) -> bool:
+    parts = path.split("/")[1:]
+    is_file = "." in parts[-1] or "src" in parts or "devel" in parts
+    return len(parts) >= 3 and parts[0] not in SYSTEM and is_file and not path.startswith("/opt/ros")
 
 
 def paths_named(text: str, start: str, script_folder: str, packages: Mapping[str, str]) -> Iterator[str]:
