@@ -152,14 +152,14 @@ class TestGazebo(unittest.TestCase):
 
     def test_what_cannot_be_spawned_is_refused_with_a_reason(self):
         bomb = "<!DOCTYPE x [<!ENTITY a 'b'>]><sdf version='1.6'><model name='&a;'/></sdf>"
-        flat = BOX.replace("0.4 0.4 0.4", "0.4 0 0.4")
+        shrunk = BOX.replace("0.4 0.4 0.4", "0.4 -1 0.4")
         unicorn = (
             "<sdf version='1.6'><world name='w'><include><uri>model://unicorn</uri></include></world></sdf>"
         )
         for xml, reason in (
             ("<sdf", "not well-formed XML (unclosed token: line 1, column 0)"),
             (bomb, "refused, defines entities"),
-            (flat, "box > size: must be positive, got '0.4 0 0.4'"),
+            (shrunk, "box > size: must be positive, got '0.4 -1 0.4'"),
             ("<robot name='r'/>", "its root is <robot>"),
             ("<sdf version='1.6'><model name='any'/></sdf>", "has no links"),
             (unicorn, "model://unicorn not found"),

@@ -167,6 +167,38 @@ def test_a_mesh_that_is_not_there_is_named_and_left_out():
     assert robot.warnings[0].endswith("package://nowhere/a.stl not found, left out")
 
 
+def test_what_gazebo_does_without_is_named_and_the_robot_drives():
+    sensor = '<sensor type="camera" name="eye"><plugin name="c" filename="libgazebo_ros_camera.so"/></sensor>'
+    imu = '<plugin name="imu" filename="libgazebo_ros_imu.so"><bodyName>tail</bodyName></plugin>'
+    parts = f'<gazebo reference="head">{sensor}</gazebo><gazebo>{imu}</gazebo>'
+    text = urdf(DRIVE.format(more="<odometrySource>gps</odometrySource>") + parts)
+    robot = read_urdf_robot(text, "mine.urdf")
+    assert (robot.odometry.source, robot.sensors) == ("world", ())
+    for named in ("<odometrySource> is none of encoder, world, gyro: 'gps'", "link 'head'", "link 'tail'"):
+        assert any(named in warning for warning in robot.warnings), named
+
+
+def test_numbers_may_stand_between_commas_as_kinetics_urdfdom_takes_them():
+    text = urdf(DRIVE.format(more="")).replace('"0.4 0.3 0.1"', '"0.4, 0.3, 0.1"')
+    assert read_urdf_robot(text, "mine.urdf").model.base.collisions[0].shape.size == (0.4, 0.3, 0.1)
+
+
+def test_a_lens_wider_than_a_flat_picture_sees_what_that_can_hold():
+    eye = LASER.format(roll=0).split("<gazebo")[0]
+    camera = """<gazebo reference="eye"><sensor type="camera" name="c">
+    <camera><horizontal_fov>3.183</horizontal_fov></camera>
+    <plugin name="c" filename="libgazebo_ros_camera.so"/></sensor></gazebo>"""
+    (found,) = read_urdf_robot(urdf(DRIVE.format(more=""), eye + camera), "mine.urdf").sensors
+    assert found.settings.horizontal_fov == 3.0
+
+
+def test_a_fixed_joint_needs_no_axis_and_a_shape_no_thickness():
+    text = urdf(DRIVE.format(more="")).replace('"0.4 0.3 0.1"', '"0.4 0 0.1"')
+    held = text.replace('name="swivel" type="continuous"', 'name="swivel" type="fixed"')
+    robot = read_urdf_robot(held.replace('xyz="0 0 1"', 'xyz="0 0 0"'), "mine.urdf")
+    assert robot.model.base.collisions[0].shape.size == pytest.approx((0.4, 1e-4, 0.1))
+
+
 @pytest.mark.parametrize(
     ("text", "named"),
     [
@@ -175,10 +207,9 @@ def test_a_mesh_that_is_not_there_is_named_and_left_out():
         ("<robot name='r'><link name='a'/><link name='b'/></robot>", "one root link, got a, b"),
         (urdf(DRIVE.format(more="")).replace('mass value="5"', 'mass value="0"'), "chassis: .* needs a mass"),
         (urdf(DRIVE.format(more="")).replace('mass value="5"', 'mass value="x"'), "mass: value: expected 1"),
-        (urdf(DRIVE.format(more="")).replace('"0.4 0.3 0.1"', '"0.4 0 0.1"'), "box: size must be positive"),
+        (urdf(DRIVE.format(more="")).replace('"0.4 0.3 0.1"', '"0.4 -1 0.1"'), "box: size must be positive"),
         (urdf(DRIVE.format(more="")).replace(">left_hinge", ">hinge"), "no joint 'hinge' .*left_hinge"),
         (urdf(DRIVE.format(more="").replace(">0.2<", ">-1<")), "wheelDiameter: must be positive"),
-        (urdf(DRIVE.format(more="<odometrySource>gps</odometrySource>")), "odometrySource.*'gps'"),
     ],
 )
 def test_a_description_that_is_no_robot_is_refused(text, named):

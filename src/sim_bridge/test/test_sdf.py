@@ -38,6 +38,7 @@ def geometry(shape):
     ("text", "shape"),
     [
         ("<box><size>1 2 3</size></box>", Box((1.0, 2.0, 3.0))),
+        ("<box><size>1 0 3</size></box>", Box((1.0, 1e-4, 3.0))),  # as thin as Gazebo makes it
         ("<cylinder><radius>0.5</radius><length>2</length></cylinder>", Cylinder(0.5, 2.0)),
         ("<sphere><radius>0.5</radius></sphere>", Sphere(0.5)),
         ("<plane><normal>0 1 0</normal><size>9 9</size></plane>", Plane((0.0, 1.0, 0.0))),
@@ -179,7 +180,7 @@ def test_what_is_left_out_is_named_and_the_rest_loads(load, content, named):
     ("content", "named"),
     [
         (
-            geometry("<box><size>1 0 1</size></box>"),
+            geometry("<box><size>1 -1 1</size></box>"),
             "collision 'c' > geometry > box > size: must be positive",
         ),
         (geometry("<box><size>1 1</size></box>"), "expected 3 finite numbers, got '1 1'"),

@@ -137,13 +137,13 @@ def _shape(geometry: Element, find_file: FindFile) -> Optional[Shape]:
     """None if it is a mesh that is not there, or nothing known."""
     sizes: Dict[str, Element] = {kind.tag: kind for kind in geometry.children()}
     if "box" in sizes:
-        x, y, z = sizes["box"].attribute_lengths("size", 3)
+        x, y, z = sizes["box"].attribute_sizes("size", 3)
         return Box((x, y, z))
     if "cylinder" in sizes:
-        (radius,), (length,) = (sizes["cylinder"].attribute_lengths(name, 1) for name in ("radius", "length"))
+        (radius,), (length,) = (sizes["cylinder"].attribute_sizes(name, 1) for name in ("radius", "length"))
         return Cylinder(radius, length)
     if "sphere" in sizes:
-        return Sphere(*sizes["sphere"].attribute_lengths("radius", 1))
+        return Sphere(*sizes["sphere"].attribute_sizes("radius", 1))
     if "mesh" in sizes:
         path = find_file(sizes["mesh"].attribute("filename"))
         scale = sizes["mesh"].attribute_numbers("scale", 3, (1.0, 1.0, 1.0))

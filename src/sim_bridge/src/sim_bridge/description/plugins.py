@@ -24,6 +24,7 @@ from sim_bridge.sensors.odometry import OdometryProfile
 from sim_bridge.sensors.registry import BODY_SENSORS, SENSORS
 
 ODOMETRY_SOURCES = ("encoder", "world", "gyro")
+DEFAULT_SOURCE = "world"
 # They tell Gazebo what is true here anyhow.
 NEEDLESS_PLUGINS = {"gazebo_ros_p3d"}
 # Variances of z, roll and pitch that odometry does not measure.
@@ -58,6 +59,9 @@ def read_equipment(structure: Structure, blocks: Blocks) -> Equipment:
         else:
             left_out.append(plugin)
     for link, sensor in blocks.sensors:
+        if link not in structure.links:
+            equipment.warnings.append(f"{sensor.place}: there is no link {link!r}, left out as Gazebo does")
+            continue
         for plugin in sensor.children("plugin"):
             read = SENSORS.get(plugin_name(plugin))
             if read is not None:
@@ -73,9 +77,6 @@ def read_equipment(structure: Structure, blocks: Blocks) -> Equipment:
 
 
 def _read_diff_drive(plugin: Element, structure: Structure, equipment: Equipment) -> None:
-    source = text(plugin, "odometrySource", "world")
-    if source not in ODOMETRY_SOURCES:
-        raise plugin.error(f"<odometrySource> must be one of {', '.join(ODOMETRY_SOURCES)}, got {source!r}")
     separation = length(plugin, "wheelSeparation", 0.34)
     acceleration = number(plugin, "wheelAcceleration", 0.0)
     joints = [text(plugin, "leftJoint", "left_joint"), text(plugin, "rightJoint", "right_joint")]
@@ -92,7 +93,7 @@ def _read_diff_drive(plugin: Element, structure: Structure, equipment: Equipment
         max_turn_acceleration=2.0 * acceleration / separation or math.inf,
     )
     equipment.odometry = OdometryProfile(
-        source,
+        _odometry_source(plugin, equipment),
         text(plugin, "odometryTopic", "odom"),
         text(plugin, "odometryFrame", "odom"),
         text(plugin, "robotBaseFrame", "base_footprint"),
@@ -102,6 +103,18 @@ def _read_diff_drive(plugin: Element, structure: Structure, equipment: Equipment
     )
     if flag(plugin, "publishWheelJointState", False):
         equipment.joint_states = JointStateProfile(equipment.drive.joints, equipment.odometry.rate)
+
+
+def _odometry_source(plugin: Element, equipment: Equipment) -> str:
+    """As Gazebo's plugin: what it does not know is the default."""
+    source = text(plugin, "odometrySource", DEFAULT_SOURCE)
+    if source in ODOMETRY_SOURCES:
+        return source
+    sources = ", ".join(ODOMETRY_SOURCES)
+    equipment.warnings.append(
+        f"{plugin.place}: <odometrySource> is none of {sources}: {source!r}, {DEFAULT_SOURCE} is taken"
+    )
+    return DEFAULT_SOURCE
 
 
 def _read_skid_steer(plugin: Element, structure: Structure, equipment: Equipment) -> None:
@@ -175,6 +188,9 @@ def _read_joint_states(plugin: Element, structure: Structure, equipment: Equipme
 def _read_body_sensor(plugin: Element, structure: Structure, equipment: Equipment) -> None:
     """A plugin below the model that names its link."""
     link = plugin.required("bodyName").text
+    if link not in structure.links:
+        equipment.warnings.append(f"{plugin.place}: <bodyName>: there is no link {link!r}, left out")
+        return
     found = Found(plugin, plugin, link, structure.pose_in_base(link), equipment.namespace)
     equipment.sensors.append(SENSORS[plugin_name(plugin)](found))
 

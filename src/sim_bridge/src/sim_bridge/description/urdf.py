@@ -78,12 +78,12 @@ class _Reader:
     def _shape(self, geometry: Element) -> Optional[Shape]:
         for kind in geometry.children():
             if kind.tag == "box":
-                x, y, z = kind.attribute_lengths("size", 3)
+                x, y, z = kind.attribute_sizes("size", 3)
                 return Box((x, y, z))
             if kind.tag == "cylinder":
-                return Cylinder(*kind.attribute_lengths("radius", 1), *kind.attribute_lengths("length", 1))
+                return Cylinder(*kind.attribute_sizes("radius", 1), *kind.attribute_sizes("length", 1))
             if kind.tag == "sphere":
-                return Sphere(*kind.attribute_lengths("radius", 1))
+                return Sphere(*kind.attribute_sizes("radius", 1))
             if kind.tag == "mesh":
                 return self._mesh(kind)
             raise kind.error("not a geometry of URDF")
@@ -100,18 +100,25 @@ class _Reader:
 
 
 def _joint(joint: Element) -> Joint:
-    axis = joint.child("axis")
-    direction = axis.attribute_numbers("xyz", 3, (1.0, 0.0, 0.0)) if axis is not None else (1.0, 0.0, 0.0)
-    length = float(np.linalg.norm(direction))
-    if length == 0.0:
-        raise joint.error("an axis needs a direction, got 0 0 0")
     return Joint(
         joint.name,
         joint.required("parent").attribute("link"),
         joint.required("child").attribute("link"),
         _origin(joint),
-        np.array(direction) / length,
+        _axis(joint),
     )
+
+
+def _axis(joint: Element) -> np.ndarray:
+    """(3,); what a fixed joint says of it means nothing."""
+    axis = joint.child("axis")
+    if axis is None or joint.attribute("type") == "fixed":
+        return np.array((1.0, 0.0, 0.0))
+    direction = axis.attribute_numbers("xyz", 3, (1.0, 0.0, 0.0))
+    length = float(np.linalg.norm(direction))
+    if length == 0.0:
+        raise joint.error("an axis needs a direction, got 0 0 0")
+    return np.array(direction) / length
 
 
 def _origin(element: Element) -> np.ndarray:

@@ -18,6 +18,8 @@ from sim_bridge.geometry.pose3 import pose3
 LARGEST = 1e30
 # Gazebo writes its largest number where there is no bound.
 UNLIMITED = 1e15
+# What Gazebo makes of a shape's length of 0, metres.
+THINNEST = 1e-4
 _VALUE_WITH_BRACKET = re.compile(r"""=(?:"[^"\n]*<[^"\n]*"|'[^'\n]*<[^'\n]*')""")
 _VERSION_NUMBER = re.compile(r"[0-9]{1,9}$")
 
@@ -75,36 +77,41 @@ class Element:
 
     def lengths(self, count: int) -> Tuple[float, ...]:
         """The text as ``count`` positive numbers."""
-        values = self.numbers(count)
-        if min(values) <= 0.0:
-            raise self.error(f"must be positive, got {self.text!r}")
-        if max(values) > FARTHEST:
-            raise self.error(f"must be at most {FARTHEST:g}, got {self.text!r}")
-        return tuple(values)
+        return self._positive(self.numbers(count), "", self.text)
+
+    def sizes(self, count: int) -> Tuple[float, ...]:
+        """The text as ``count`` lengths of a shape, which Gazebo lets be 0."""
+        return self._positive([value or THINNEST for value in self.numbers(count)], "", self.text)
 
     def attribute_numbers(
         self, name: str, count: int, default: Optional[Sequence[float]] = None
     ) -> Tuple[float, ...]:
-        """An attribute as exactly ``count`` finite numbers; without a ``default`` it must be there."""
+        """An attribute as exactly ``count`` finite numbers; without a ``default`` it must be there.
+
+        Commas between them are read over, as Kinetic's urdfdom does.
+        """
         text = self.xml.get(name)
         if text is None and default is not None:
             return tuple(default)
         try:
-            values = tuple(float(word) for word in (text or "").split())
+            values = tuple(float(word) for word in (text or "").replace(",", " ").split())
         except ValueError:
             values = ()
         if len(values) != count or not is_within(LARGEST, *values):
             raise self.error(f"{name}: expected {count} finite numbers, got {text!r}")
         return values
 
-    def attribute_lengths(self, name: str, count: int) -> Tuple[float, ...]:
-        """An attribute as ``count`` positive numbers."""
-        values = self.attribute_numbers(name, count)
+    def attribute_sizes(self, name: str, count: int) -> Tuple[float, ...]:
+        """An attribute as ``count`` lengths of a shape."""
+        values = [value or THINNEST for value in self.attribute_numbers(name, count)]
+        return self._positive(values, f"{name} ", self.attribute(name))
+
+    def _positive(self, values: Sequence[float], what: str, said: str) -> Tuple[float, ...]:
         if min(values) <= 0.0:
-            raise self.error(f"{name} must be positive, got {self.attribute(name)!r}")
+            raise self.error(f"{what}must be positive, got {said!r}")
         if max(values) > FARTHEST:
-            raise self.error(f"{name} must be at most {FARTHEST:g}, got {self.attribute(name)!r}")
-        return values
+            raise self.error(f"{what}must be at most {FARTHEST:g}, got {said!r}")
+        return tuple(values)
 
     def flag(self, tag: str) -> bool:
         """Whether the child ``tag`` says true; false if it is not there."""

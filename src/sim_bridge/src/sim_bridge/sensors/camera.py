@@ -24,6 +24,9 @@ OPTICAL_IN_CAMERA = np.array(
     [[0.0, 0.0, 1.0, 0.0], [-1.0, 0.0, 0.0, 0.0], [0.0, -1.0, 0.0, 0.0], [0, 0, 0, 1.0]]
 )
 
+# Radians that a flat picture can hold; fish eyes of descriptions see more.
+WIDEST = 3.0
+
 
 @dataclass(frozen=True)
 class CameraSettings:
@@ -201,7 +204,7 @@ def _values_of(found: Found) -> Tuple[Dict[str, Any], Dict[str, Any]]:
     values = {
         "width": camera.count("image", "width", most=MOST_PIXELS, default=640),
         "height": camera.count("image", "height", most=MOST_PIXELS, default=480),
-        "horizontal_fov": camera.number("horizontal_fov", default=math.radians(60.0)),
+        "horizontal_fov": min(camera.number("horizontal_fov", default=math.radians(60.0)), WIDEST),
         "near": camera.number("clip", "near", default=0.05),
         "far": camera.number("clip", "far", default=100.0),
     }

@@ -48,16 +48,16 @@ def read_shape(geometry: Element, folder: Path, model_folders: Sequence[Path]) -
 
 
 def _read_box(box: Element) -> Box:
-    x, y, z = box.required("size").lengths(3)
+    x, y, z = box.required("size").sizes(3)
     return Box((x, y, z))
 
 
 def _read_cylinder(cylinder: Element) -> Cylinder:
-    return Cylinder(cylinder.required("radius").lengths(1)[0], cylinder.required("length").lengths(1)[0])
+    return Cylinder(cylinder.required("radius").sizes(1)[0], cylinder.required("length").sizes(1)[0])
 
 
 def _read_sphere(sphere: Element) -> Sphere:
-    return Sphere(sphere.required("radius").lengths(1)[0])
+    return Sphere(sphere.required("radius").sizes(1)[0])
 
 
 def _read_plane(plane: Element) -> Plane:
