@@ -1,6 +1,7 @@
 import pytest
 
 from run_project.checkout.layout import Kind, choose_script, read_checkout
+from run_project.checkout.maps import maps_without_image
 from run_project.errors import ProjectError
 
 
@@ -82,6 +83,14 @@ def test_a_script_that_is_not_there_is_answered_with_those_that_are(tmp_path):
         match=r"no script home_service\.sh in it; name another of its scripts: src/scripts/pick\.sh",
     ):
         choose_script(project, None)
+
+
+def test_maps_whose_image_was_never_added_are_known(tmp_path):
+    checkout(tmp_path, "pick/package.xml", "maps/home.pgm", "old/office.pgm")
+    for name, image in (("home", "home.pgm"), ("office", "/home/me/office.pgm"), ("attic", "attic.pgm")):
+        (tmp_path / f"maps/{name}.yaml").write_text(f"image: {image}\nresolution: 0.05\norigin: [0, 0, 0]\n")
+    (tmp_path / "maps/rviz.yaml").write_text("image: logo.png\n")
+    assert maps_without_image(read_checkout(tmp_path)) == ["maps/attic.yaml (attic.pgm)"]
 
 
 def test_what_git_lfs_has_not_fetched_is_known(tmp_path):

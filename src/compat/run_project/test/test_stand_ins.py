@@ -17,6 +17,10 @@ def install_rviz(prefix):
     return program
 
 
+def test_a_script_starts_no_second_master():
+    assert (STAND_INS / "bin/roscore").resolve() == STAND_INS / "bin/harmless"
+
+
 def test_the_real_rviz_finds_itself_behind_its_stand_in(tmp_path):
     program = install_rviz(tmp_path)
     during_a_run = {

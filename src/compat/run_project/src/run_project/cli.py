@@ -12,6 +12,7 @@ from typing import Dict, List, Optional, Sequence
 from cockpit.process import FREE_PORT, CockpitProcess
 from planar import PlanarError
 from run_project.checkout.layout import Checkout, choose_script, is_errand, read_checkout
+from run_project.checkout.maps import maps_without_image
 from run_project.checkout.placement import READ_SUFFIXES, Placement, place
 from run_project.checkout.told import told_by
 from run_project.errors import BuildError, ProjectError
@@ -77,9 +78,7 @@ def run(options: Options) -> int:
         folder = create_run_folder(options.output.resolve(), "run_project")
         logs = folder / "log"
         display.say(f"{checkout.root}: {checkout.kind.value}, {len(checkout.packages)} packages in it")
-        pointers = checkout.lfs_pointers()
-        if pointers:
-            display.say(f"warning: not fetched, git lfs pull does that: {', '.join(pointers)}")
+        _warn(checkout, display)
         display.say(f"logs in {logs}")
         workspace = copy_checkout(checkout, placement, work.path)
         display.show("building ...")
@@ -93,6 +92,16 @@ def run(options: Options) -> int:
         display.say(f"runs {_name_of(script, plan)}; times are simulated:")
         about = {"project": str(checkout.root), "script": _name_of(script, plan)}
         return run_job(options, job, folder, workspace, display, about, plan)
+
+
+def _warn(checkout: Checkout, display: Display) -> None:
+    """Says what is lacking that nobody can make up for."""
+    for lacking, files in (
+        ("not fetched, git lfs pull does that", checkout.lfs_pointers()),
+        ("maps whose image is not in the checkout", maps_without_image(checkout)),
+    ):
+        if files:
+            display.say(f"warning: {lacking}: {', '.join(files)}")
 
 
 def _plan(checkout: Checkout, options: Options) -> Optional[Plan]:
