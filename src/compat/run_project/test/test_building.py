@@ -1,4 +1,9 @@
-from run_project.preparing.building import Workspace, broken_configurations, environment
+import os
+from pathlib import Path
+
+from run_project.checkout.layout import read_checkout
+from run_project.checkout.placement import Placement
+from run_project.preparing.building import Workspace, broken_configurations, copy_checkout, environment
 
 OUTPUT = """
 CMake Error at /usr/share/cmake-3.25/Modules/FindPackageHandleStandardArgs.cmake:230 (message):
@@ -16,6 +21,23 @@ CMake Error at worlds/CMakeLists.txt:7 (find_package):
 
 -- Configuring incomplete, errors occurred!
 """
+
+
+def test_programs_can_be_executed_even_if_git_does_not_know_that_they_can(tmp_path):
+    files = {
+        "pick/package.xml": "<package><name>pick</name></package>",
+        "pick/scripts/home.py": "#!/usr/bin/env python\n",
+        "pick/scripts/drive": "#!/bin/sh\n",
+        "pick/scripts/library.py": "import math\n",
+        "home_service.sh": "rosrun pick home.py\n",
+    }
+    for name, text in files.items():
+        (tmp_path / "repo" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "repo" / name).write_text(text)
+    checkout = read_checkout(tmp_path / "repo")
+    workspace = copy_checkout(checkout, Placement(Path("src"), Path(), Path("src"), {}), tmp_path / "work")
+    runs = [name for name in files if os.access(workspace.checkout / name, os.X_OK)]
+    assert runs == ["pick/scripts/home.py", "pick/scripts/drive", "home_service.sh"]
 
 
 def test_packages_that_cannot_be_configured_are_told_with_the_reason(tmp_path):

@@ -46,6 +46,11 @@ class Checkout:
         """All shell scripts."""
         return [Path(file) for file in self.files if file.endswith(SCRIPTS)]
 
+    def programs(self) -> List[Path]:
+        """All shell scripts, and what else names its interpreter."""
+        others = (file for file in self.files if Path(file).suffix in ("", ".py"))
+        return self.scripts() + [Path(file) for file in others if _begins(self.root / file, b"#!")]
+
     def lfs_pointers(self) -> List[str]:
         """Files that were not fetched: what Git LFS puts in their place says where they are."""
         return [file for file in self.files if _begins(self.root / file, LFS_POINTER)]

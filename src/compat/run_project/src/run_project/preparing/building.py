@@ -69,8 +69,8 @@ def copy_checkout(checkout: Checkout, placement: Placement, work: Path) -> Works
         ignore=lambda _, names: LEFTOVERS & set(names),
     )
     lend(checkout.lent, target)
-    for script in checkout.scripts():
-        (target / script).chmod(0o755)
+    for program in checkout.programs():  # git of some authors does not know that they can be executed
+        (target / program).chmod(0o755)
     for missing, found in placement.links.items():
         link = tree / missing
         link.parent.mkdir(parents=True, exist_ok=True)
