@@ -1,24 +1,28 @@
 #!/usr/bin/env python3
 """Measures the Gymnasium environments: steps a second beside PyBullet's own limit, resets, processes.
 
-The limit is what PyBullet alone takes for the steps of physics of a control period, the robot driving, in the
-same world; each is measured in turns, and of both the median of CPU time counts.
+The limit is what PyBullet alone takes for the same steps of physics: an episode is played, then begun again
+with nothing but what its motors were set to. Each is measured in turns; the median of CPU time counts.
 
 python3 tests/benchmarks/gymnasium_steps.py [--json FILE] [ENVIRONMENT ...]
 """
 
 import argparse
+import contextlib
 import json
 import statistics
 import sys
 import time
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
-from typing import Callable, List
+from typing import Any, Callable, Iterator, List, Tuple
 
 import gymnasium
 
 import home_service_gym
+from sim_bridge import Simulation
+from sim_bridge.simulation import ROBOT_NAME
 
 BLOCKS, PERIODS, RESETS, SECONDS = 15, 100, 30, 8.0
 # The world that is measured, of environments that have many.
@@ -70,33 +74,49 @@ def measure(name: str) -> Measurement:
     env.reset(seed=0, options=world)
     env.action_space.seed(0)
     simulation = env._playground._simulation  # type: ignore[attr-defined]
-    engine = simulation.scene._engine
-    physics = round(simulation.scene.settings.physics_rate * simulation.step_seconds)
-
-    def steps() -> None:
-        for _ in range(PERIODS):
-            if env.step(env.action_space.sample())[2]:
-                env.reset(options=world)
-
-    def limit() -> None:
-        for _ in range(PERIODS * physics):
-            engine.step()
-
-    steps()
     taken: List[float] = []
     least: List[float] = []
-    for _ in range(BLOCKS):
-        taken.append(cpu_seconds(steps) / PERIODS)
-        least.append(cpu_seconds(limit) / PERIODS)
+    for seed in range(BLOCKS + 1):
+        actions = [env.action_space.sample() for _ in range(PERIODS)]
+        env.reset(seed=seed, options=world)
+        with motors_of(simulation) as speeds:
+            count = play(env, actions)
+        env.reset(seed=seed, options=world)
+        taken.append(cpu_seconds(partial(play, env, actions)) / count)
+        env.reset(seed=seed, options=world)
+        least.append(cpu_seconds(partial(replay, simulation, speeds)) / count)
     for _ in range(RESETS):  # the ways of a home are looked for once
         env.reset(options=world)
     resets = [1e3 * cpu_seconds(lambda: env.reset(options=world)) for _ in range(RESETS)]
     scan = simulation.step().scan
     env.close()
-    step, bound = statistics.median(taken), statistics.median(least)
+    step, bound = statistics.median(taken[1:]), statistics.median(least[1:])
     return Measurement(
         name, len(scan.ranges), 1 / step, 1 / bound, bound / step, statistics.median(resets), max(resets)
     )
+
+
+def play(env: gymnasium.Env, actions: List[Any]) -> int:
+    """Steps until the actions or the episode are over; how many those were."""
+    return next((count for count, action in enumerate(actions, start=1) if env.step(action)[2]), len(actions))
+
+
+@contextlib.contextmanager
+def motors_of(simulation: Simulation) -> Iterator[List[Tuple[float, float]]]:
+    """Keeps what the motors are set to before each step of physics."""
+    vehicle, speeds = simulation.scene.robot(ROBOT_NAME).vehicle, []
+    drive = vehicle.drive
+    vehicle.drive = lambda left, right: (speeds.append((left, right)), drive(left, right))
+    yield speeds
+    vehicle.drive = drive
+
+
+def replay(simulation: Simulation, speeds: List[Tuple[float, float]]) -> None:
+    """The same steps of physics without all else."""
+    engine, vehicle = simulation.scene._engine, simulation.scene.robot(ROBOT_NAME).vehicle
+    for left, right in speeds:
+        vehicle.drive(left, right)
+        engine.step()
 
 
 def cpu_seconds(do: Callable[[], object]) -> float:

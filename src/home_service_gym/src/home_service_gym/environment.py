@@ -78,7 +78,7 @@ class TaskEnv(gymnasium.Env):
 
     def step(self, action: np.ndarray) -> Tuple[Dict[str, np.ndarray], float, bool, bool, Dict[str, Any]]:
         assert self._playground is not None, "reset comes before step"
-        v, omega = (np.clip(action, -1.0, 1.0) * self._most).tolist()
+        v, omega = (_within(-1.0, action, 1.0) * self._most).tolist()
         self._moment = self._playground.advance(Twist2(v, omega))
         judgement = self._task.judge(self._moment)
         reward, outcome = judgement.reward, judgement.outcome
@@ -128,7 +128,12 @@ class TaskEnv(gymnasium.Env):
         assert self._moment is not None
         scan, twist = self._moment.scan, self._moment.twist
         return {
-            "scan": np.clip(scan.ranges, np.float32(0.0), np.float32(scan.range_max)),
+            "scan": _within(np.float32(0.0), scan.ranges, np.float32(scan.range_max)),
             "velocity": np.array((twist.v, twist.omega), dtype=np.float32),
             **self._task.observe(self._moment),
         }
+
+
+def _within(low: Any, values: np.ndarray, high: Any) -> np.ndarray:
+    """As np.clip, which takes three times as long for so little."""
+    return np.minimum(np.maximum(values, low), high)

@@ -20,6 +20,7 @@ class Ground:
 
     def __init__(self, grid: OccupancyGrid, start: Pose2):
         self.grid = grid
+        self._map_in_grid = grid.origin.inverse()
         self._room = distance_field(grid.cells != FREE, grid.resolution)
         from_start = travel_distances(grid, self._room, start, ROOM_TO_PASS)
         self._to_stations: Dict[int, np.ndarray] = {}
@@ -63,14 +64,13 @@ class Ground:
 
     def distance_at(self, distances: np.ndarray, place: Pose2) -> float:
         """The least of ``distances`` in the cell of a place and around it."""
-        ((row, col),) = self.grid.cells_of([[place.x, place.y]])
+        row, col = self._cell_of(place)
         window = distances[max(row - 1, 0) : max(row + 2, 0), max(col - 1, 0) : max(col + 2, 0)]
         return float(window.min()) if window.size else math.inf
 
     def way(self, distances: np.ndarray, start: Pose2, most: int = 1_000_000) -> np.ndarray:
         """The points (N, 2) of a way to the goal that ``distances`` lead to, or the first ``most`` of it."""
-        ((row, col),) = self.grid.cells_of([[start.x, start.y]])
-        cells = [(int(row), int(col))]
+        cells = [self._cell_of(start)]
         while distances[cells[-1]] > 0.0 and len(cells) < most:
             row, col = cells[-1]
             around = distances[row - 1 : row + 2, col - 1 : col + 2]
@@ -81,3 +81,8 @@ class Ground:
                 break
             cells.append((int(row + down - 1), int(col + right - 1)))
         return self.grid.points_of(np.array(cells))
+
+    def _cell_of(self, place: Pose2) -> Tuple[int, int]:
+        """Row and column: each period asks for one, for which the grid's arrays would take too long."""
+        in_grid = self._map_in_grid @ place
+        return math.floor(in_grid.y / self.grid.resolution), math.floor(in_grid.x / self.grid.resolution)

@@ -101,7 +101,6 @@ class Lidar:
         ranges[ranges < profile.range_min] = profile.too_near
         ranges[ranges > profile.sight] = profile.no_return
         self._fail(ranges)
-        brightness = np.append(retros, 0.0)[nearest]
         return Scan(
             stamp=stamp,
             angle_min=profile.angle_min,
@@ -111,7 +110,7 @@ class Lidar:
             range_max=profile.range_max,
             laser_in_base=self._laser_in_base,
             upside_down=self._is_upside_down,
-            intensities=np.where(np.isfinite(ranges), brightness, 0.0).astype(np.float32),
+            intensities=_brightness(retros, nearest, ranges),
         )
 
     def _fail(self, ranges: np.ndarray) -> None:
@@ -121,6 +120,13 @@ class Lidar:
             chance = self._rng.random(len(ranges))
             ranges[chance < dropouts] = self._profile.no_return
             ranges[chance > 1.0 - max_readings] = self._profile.range_max
+
+
+def _brightness(retros: np.ndarray, nearest: np.ndarray, ranges: np.ndarray) -> np.ndarray:
+    """How much light comes back along each beam, float32 (N,); from most worlds none."""
+    if not retros.any():
+        return np.zeros(len(ranges), dtype=np.float32)
+    return np.where(np.isfinite(ranges), np.append(retros, 0.0)[nearest], 0.0).astype(np.float32)
 
 
 def read_laser(found: Found) -> LaserProfile:

@@ -11,6 +11,11 @@ def cast(segments, x, y, first, increment, count, sight):
     """Walks through the segments and gives each to the beams between the bearings of its two ends."""
     turn = 2.0 * math.pi
     ranges, nearest = np.full(count, np.inf), np.full(count, -1)
+    # Most beams pass several segments.
+    cosines, sines = np.empty(count), np.empty(count)
+    for beam in range(count):
+        angle = first + beam * increment
+        cosines[beam], sines[beam] = math.cos(angle), math.sin(angle)
     for i in range(segments.shape[0]):
         ax, ay = segments[i, 0] - x, segments[i, 1] - y
         bx, by = segments[i, 2] - x, segments[i, 3] - y
@@ -26,8 +31,7 @@ def cast(segments, x, y, first, increment, count, sight):
             low = max(math.ceil((start - shift) / increment - 1e-9), 0)
             high = min(math.floor((start + span - shift) / increment + 1e-9), count - 1)
             for beam in range(low, high + 1):
-                angle = first + beam * increment
-                across = math.cos(angle) * side_y - math.sin(angle) * side_x
+                across = cosines[beam] * side_y - sines[beam] * side_x
                 if across != 0.0:
                     distance = area / across
                     if 0.0 <= distance <= sight and distance < ranges[beam]:
