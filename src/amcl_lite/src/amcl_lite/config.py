@@ -26,11 +26,16 @@ AS_AMCL: Dict[str, Any] = {
 }
 
 
-def _check_plugin(name: str) -> None:
-    from amcl_lite.sensor.own_model import check_name  # late: its contract is made of these settings
+def _check_plugins(settings: "LocalizerSettings") -> None:
+    # Late: the contracts are made of these settings.
+    from amcl_lite.motion.own_model import CONTRACT as MOTION
+    from amcl_lite.own_model import check_name
+    from amcl_lite.sensor.own_model import CONTRACT as SENSOR
 
-    if name:
-        check_name(name)
+    if settings.motion_plugin:
+        check_name("motion_plugin", settings.motion_plugin, MOTION)
+    if settings.sensor_plugin:
+        check_name("sensor_plugin", settings.sensor_plugin, SENSOR)
 
 
 @dataclass(frozen=True)
@@ -59,6 +64,7 @@ class LocalizerSettings:
     motion_model: str = parameter(
         "diff", "how odometry errs", name="odom_model_type", choices=MOTION_MODELS, dynamic=True
     )
+    motion_plugin: str = parameter("", "your own model, package.module/Model, for odom_model_type")
     rotation_from_rotation: float = parameter(
         0.2, "rotation noise caused by rotation", bounds=Bounds(0.0), name="odom_alpha1", dynamic=10.0
     )
@@ -218,7 +224,7 @@ class LocalizerSettings:
         if self.strict_compat:
             for name, value in AS_AMCL.items():
                 object.__setattr__(self, name, value)
-        _check_plugin(self.sensor_plugin)
+        _check_plugins(self)
         check(
             self.min_particles <= self.max_particles,
             "min_particles",

@@ -10,6 +10,7 @@ from amcl_lite.errors import LocalizationError
 from amcl_lite.filter.particle_filter import ParticleFilter
 from amcl_lite.filter.particles import FreeSpace, ParticleSet, equally_weighted, gaussian_particles
 from amcl_lite.filter.statistics import best_cluster, mean_and_covariance
+from amcl_lite.motion.own_model import motion_model_of
 from amcl_lite.motion.update_policy import UpdatePolicy
 from amcl_lite.recovery.hypotheses import find_hypotheses
 from amcl_lite.recovery.quality import LostDetector, Quality, quality_of
@@ -126,8 +127,8 @@ class Localizer:
         self._base_in_odom = base_in_odom
         estimate = None
         if self._update_policy.is_due(base_in_odom, laser, scan.stamp, self._settings):
-            base_before = self._update_policy.take(base_in_odom, laser)
-            self._move(base_before, base_in_odom)
+            self._move(base_in_odom)  # first, as a motion that cannot be followed is not to be lost
+            self._update_policy.take(base_in_odom, laser)
             self._weigh(beams)
             is_resampled = self._resample_if_due(beams)
             if is_resampled or self._updates == 1:
@@ -138,6 +139,7 @@ class Localizer:
     def _configure(self, settings: LocalizerSettings) -> None:
         self._settings = settings
         self._likelihood = ScanLikelihood(self._grid, settings)
+        self._motion = motion_model_of(settings)
 
     def _start(self, particles: ParticleSet, is_lost: bool) -> None:
         self._filter = ParticleFilter(particles, self._rng)
@@ -145,9 +147,10 @@ class Localizer:
         self._update_policy = UpdatePolicy()
         self._updates = 0
 
-    def _move(self, base_before: Optional[Pose2], base_now: Pose2) -> None:
+    def _move(self, base_now: Pose2) -> None:
+        base_before = self._update_policy.updated_at
         if base_before is not None and base_now != base_before:
-            self._filter.move(base_before, base_now, self._settings)
+            self._filter.move(base_before, base_now, self._motion)
 
     def _weigh(self, beams: Beams) -> None:
         if self._settings.beams >= 2:

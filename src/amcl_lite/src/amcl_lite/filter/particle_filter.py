@@ -9,7 +9,7 @@ from amcl_lite.config import LocalizerSettings
 from amcl_lite.filter.particles import ParticleSet
 from amcl_lite.filter.resampling import DrawPoses, resampled
 from amcl_lite.filter.statistics import has_converged
-from amcl_lite.motion.motion_model import moved
+from amcl_lite.motion.own_model import MotionModel
 from planar import Pose2
 
 
@@ -22,9 +22,9 @@ class ParticleFilter:
         self._rng = rng
         self._likelihood = _LikelihoodTrend()
 
-    def move(self, base_before: Pose2, base_now: Pose2, settings: LocalizerSettings) -> None:
+    def move(self, base_before: Pose2, base_now: Pose2, motion: MotionModel) -> None:
         """Moves the particles on as the odometry moved."""
-        poses = moved(self.particles.poses, base_before, base_now, settings, self._rng)
+        poses = motion.moved(self.particles.poses, base_before, base_now, self._rng)
         self.particles = ParticleSet(poses, self.particles.weights)
 
     def weigh(self, log_likelihoods: np.ndarray, settings: LocalizerSettings) -> None:

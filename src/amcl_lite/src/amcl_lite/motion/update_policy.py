@@ -9,11 +9,12 @@ from planar import Pose2, wrap
 class UpdatePolicy:
     """The first scan counts; after a motion, a long stand or a request, each laser's next scan does, once.
 
-    ``updated_at``: where the odometry had the robot when it was last known where it is, if it was.
+    ``updated_at``: where the odometry had the robot when it was last known where it is, if it was; from then
+    on, where the last scan that was taken was made.
     """
 
     def __init__(self, updated_at: Optional[Pose2] = None) -> None:
-        self._updated_at = updated_at
+        self.updated_at = updated_at
         self._updated_stamp = 0.0
         self._lasers_done: Set[str] = set()
         self._is_requested = True
@@ -25,8 +26,8 @@ class UpdatePolicy:
     def is_due(self, base_in_odom: Pose2, laser: str, stamp: float, settings: LocalizerSettings) -> bool:
         """Whether a scan of ``laser``, made at ``base_in_odom`` and ``stamp`` (seconds), is to be taken."""
         if (
-            self._updated_at is None
-            or _has_moved(self._updated_at, base_in_odom, settings)
+            self.updated_at is None
+            or _has_moved(self.updated_at, base_in_odom, settings)
             or self._has_stood_long(stamp, settings)
             or self._is_requested
         ):
@@ -35,12 +36,10 @@ class UpdatePolicy:
             self._lasers_done.clear()
         return laser not in self._lasers_done
 
-    def take(self, base_in_odom: Pose2, laser: str) -> Optional[Pose2]:
-        """Notes that a scan is taken; returns where the one before was made, None if this is the first."""
-        base_before = self._updated_at
-        self._updated_at = base_in_odom
+    def take(self, base_in_odom: Pose2, laser: str) -> None:
+        """Notes that a scan is taken."""
+        self.updated_at = base_in_odom
         self._lasers_done.add(laser)
-        return base_before
 
     def _has_stood_long(self, stamp: float, settings: LocalizerSettings) -> bool:
         return abs(stamp - self._updated_stamp) * settings.update_when_still >= 1.0

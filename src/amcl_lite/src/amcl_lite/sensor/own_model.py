@@ -1,4 +1,4 @@
-"""The contract of a sensor model of somebody's own, and the guard that stands before it.
+"""The contract of a sensor model of somebody's own, and what stands before it.
 
 It is chosen by ``sensor_plugin: my_package.my_module/MyModel`` and takes the place of ``laser_model_type``.
 """
@@ -8,10 +8,10 @@ from typing import Protocol
 import numpy as np
 
 from amcl_lite.config import LocalizerSettings
-from amcl_lite.errors import LocalizationError
+from amcl_lite.own_model import OwnModel
 from amcl_lite.sensor.beams import Beams
-from planar import OccupancyGrid, SettingsError
-from planar.plugins import Contract, load
+from planar import OccupancyGrid
+from planar.plugins import Contract
 
 
 class SensorModel(Protocol):
@@ -30,30 +30,10 @@ CONTRACT = Contract("sensor model", SensorModel, LocalizerSettings, "amcl_lite.s
 class GuardedSensorModel:
     """One of other people: what it gives is checked, what goes wrong in it is its fault."""
 
-    def __init__(self, name: str, grid: OccupancyGrid, settings: LocalizerSettings):
-        """Raises SettingsError with what it lacks, LocalizationError if it cannot be made."""
-        self._name = name
-        make = load(name, CONTRACT)
-        try:
-            self._model: SensorModel = make(grid, settings)  # type: ignore[misc]
-        except Exception as error:
-            raise self._fault(f"raised {type(error).__name__}: {error}") from error
+    def __init__(self, grid: OccupancyGrid, settings: LocalizerSettings):
+        """Raises LocalizationError if it cannot be made."""
+        self._own = OwnModel(settings.sensor_plugin, CONTRACT, grid, settings)
 
     def log_likelihoods(self, poses: np.ndarray, beams: Beams) -> np.ndarray:
         """Raises LocalizationError."""
-        try:
-            told = np.asarray(self._model.log_likelihoods(poses.copy(), beams), dtype=float)
-        except Exception as error:
-            raise self._fault(f"raised {type(error).__name__}: {error}") from error
-        if told.shape != (len(poses),) or not np.isfinite(told).all():
-            raise self._fault(f"gave no {len(poses)} finite numbers")
-        return told
-
-    def _fault(self, text: str) -> LocalizationError:
-        return LocalizationError(f"{self._name} {text}")
-
-
-def check_name(name: str) -> None:
-    """Raises SettingsError if there is no such sensor model, or with what it lacks."""
-    if load(name, CONTRACT) is None:
-        raise SettingsError(f"sensor_plugin must be like my_package.my_module/MyModel, got {name!r}")
+        return self._own.ask("log_likelihoods", (len(poses),), poses.copy(), beams)

@@ -21,7 +21,7 @@ class ScanLikelihood:
         self._settings = settings
         self._own = None
         if settings.sensor_plugin:
-            self._own = GuardedSensorModel(settings.sensor_plugin, grid, settings)
+            self._own = GuardedSensorModel(grid, settings)
         self._opaque_grid = _opaque(grid) if settings.sensor_model == "beam" else None
 
     def logarithms(self, poses: np.ndarray, beams: Beams, has_converged: bool) -> np.ndarray:
