@@ -17,6 +17,7 @@ from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any, Callable, Iterator, List, Tuple
+from unittest.mock import patch
 
 import gymnasium
 
@@ -104,11 +105,16 @@ def play(env: gymnasium.Env, actions: List[Any]) -> int:
 @contextlib.contextmanager
 def motors_of(simulation: Simulation) -> Iterator[List[Tuple[float, float]]]:
     """Keeps what the motors are set to before each step of physics."""
-    vehicle, speeds = simulation.scene.robot(ROBOT_NAME).vehicle, []
+    vehicle = simulation.scene.robot(ROBOT_NAME).vehicle
+    speeds: List[Tuple[float, float]] = []
     drive = vehicle.drive
-    vehicle.drive = lambda left, right: (speeds.append((left, right)), drive(left, right))
-    yield speeds
-    vehicle.drive = drive
+
+    def kept(left: float, right: float) -> None:
+        speeds.append((left, right))
+        drive(left, right)
+
+    with patch.object(vehicle, "drive", kept):
+        yield speeds
 
 
 def replay(simulation: Simulation, speeds: List[Tuple[float, float]]) -> None:

@@ -1,13 +1,17 @@
 """Faults as data: every kind does what it says, while it lasts, and a file's mistakes are told by line."""
 
 import math
+import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from planar import SettingsError, Twist2
 from sim_bridge import Simulation, SimulationSettings
+from sim_bridge.errors import FaultError
 from sim_bridge.faults import KINDS, Fault, Faults, Stage, load_faults
+from sim_bridge.faults.kind import FaultKind
 from sim_bridge.geometry.shapes import Box, Plane
 from sim_bridge.noise import noise_named
 from sim_bridge.simulation import ROBOT_NAME
@@ -152,3 +156,108 @@ def test_a_fault_may_come_later():
         pass
     simulation.close()
     assert np.isnan(seen.scan.ranges).all()
+
+
+class Shouts(FaultKind):
+    """Everything is half as far."""
+
+    strength = (0.5, 0.1, 1.0)
+
+    def scan(self, scan):
+        return replace(scan, ranges=scan.ranges * np.float32(self._strength))
+
+
+class Raises(FaultKind):
+    """Fails."""
+
+    def scan(self, scan):
+        raise ZeroDivisionError("division by zero")
+
+
+class SpinsForEver(FaultKind):
+    """Gives wheels no speed."""
+
+    def wheel_speeds(self, left, right):
+        return math.inf, right
+
+
+class AnswersANumber(FaultKind):
+    """Gives no scan."""
+
+    def scan(self, scan):
+        return 3
+
+
+class WithoutMeasure(FaultKind):
+    """Has no range of strengths."""
+
+    strength = 3.0
+
+
+class HearsLess(FaultKind):
+    """Cannot be called."""
+
+    def scan(self):
+        return None
+
+
+class Stranger:
+    """Has all methods and is none."""
+
+    strength = (1.0, 0.0, 1.0)
+    scan = odometry = command = lambda self, told: told
+    begin = end = lambda self, stage: None
+    wheel_speeds = lambda self, left, right: (left, right)  # noqa: E731
+
+    def __init__(self, strength, rng):
+        pass
+
+
+@pytest.fixture
+def own(monkeypatch):
+    """This module under a dotted name; names its classes."""
+    monkeypatch.setitem(sys.modules, "own.faults", sys.modules[__name__])
+    return lambda kind: f"own.faults/{kind.__name__}"
+
+
+def test_a_fault_of_other_people_is_known_by_its_dotted_name(tmp_path, own, clean):
+    path = tmp_path / "faults.yaml"
+    path.write_text(f"faults:\n  - {{kind: {own(Shouts)}, start: {START}, end: {END}}}\n")
+    (fault,) = load_faults(path)
+    assert fault.strength == 0.5
+    seen = played(fault)
+    assert essence(seen, until=START) == essence(clean, until=START)
+    pairs = [
+        (one.scan, other.scan) for one, other in zip(seen, clean) if one.scan and START <= one.stamp < END
+    ]
+    assert pairs
+    for halved, whole in pairs:
+        assert np.array_equal(halved.ranges, whole.ranges * np.float32(0.5))
+
+
+@pytest.mark.parametrize(
+    ("kind", "said"),
+    [
+        (Raises, "raised ZeroDivisionError: division by zero"),
+        (SpinsForEver, "gave wheel speeds"),
+        (AnswersANumber, "gave a int for scan"),
+    ],
+)
+def test_what_goes_wrong_in_it_is_told_in_its_name(kind, said, own):
+    with pytest.raises(FaultError, match=f"^{own(kind)} {said}"):
+        played(Fault(own(kind), 0.0))
+
+
+@pytest.mark.parametrize(
+    ("kind", "lacks"),
+    [
+        (WithoutMeasure, "its strength is not the usual one, the least and the largest"),
+        (HearsLess, r"it cannot be called as scan\(scan\)"),
+        (Stranger, "it is not derived from sim_bridge.faults.kind.FaultKind"),
+    ],
+)
+def test_what_is_no_fault_is_refused_with_what_it_lacks(kind, lacks, own, tmp_path):
+    path = tmp_path / "faults.yaml"
+    path.write_text(f"faults:\n  - {{kind: {own(kind)}}}\n")
+    with pytest.raises(SettingsError, match=f"faults.yaml:2: .*kind cannot be used: {own(kind)} .*{lacks}"):
+        load_faults(path)

@@ -23,13 +23,14 @@ class Contract:
     """What a class of other people has to have.
 
     ``kind``: for people, as "local planner". ``protocol``: has the methods, with their parameters.
-    ``settings``: the dataclass that the class's own ``Settings`` derive from; they are these if it has none.
+    ``settings``: the dataclass that the class's own ``Settings`` derive from; they are these if it has none;
+    None: classes of this kind have no settings.
     ``group``: of entry points that offer such classes.
     """
 
     kind: str
     protocol: type
-    settings: type
+    settings: Optional[type]
     group: str
 
     def missing(self, found: Any) -> List[str]:
@@ -41,13 +42,15 @@ class Contract:
         said = [(name, member) for name, member in said if member.__module__ != "typing"]
         needed = [(name, member) for name, member in said if name == "__init__" or not name.startswith("_")]
         lacks = [text for name, member in needed for text in _lacking(found, name, member)]
-        own = getattr(found, "Settings", self.settings)
-        if not (inspect.isclass(own) and is_dataclass(own) and issubclass(own, self.settings)):
-            lacks.append(f"its Settings are no dataclass derived from {self.settings.__name__}")
+        if self.settings is not None:
+            own = getattr(found, "Settings", self.settings)
+            if not (inspect.isclass(own) and is_dataclass(own) and issubclass(own, self.settings)):
+                lacks.append(f"its Settings are no dataclass derived from {self.settings.__name__}")
         return lacks
 
     def settings_of(self, found: type) -> type:
         """A type of settings that is the class's alone."""
+        assert self.settings is not None, f"a {self.kind} has no settings"
         own = getattr(found, "Settings", None)
         return own or type(f"{found.__name__}Settings", (self.settings,), {"__doc__": self.settings.__doc__})
 

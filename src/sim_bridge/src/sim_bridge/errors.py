@@ -17,3 +17,7 @@ class RobotError(PlanarError):
 
 class NoDriveError(RobotError):
     """A description is of something that nothing drives."""
+
+
+class FaultError(PlanarError):
+    """A kind of fault of somebody's own has failed; the text names it."""

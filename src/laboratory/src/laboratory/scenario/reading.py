@@ -8,8 +8,10 @@ from laboratory.scenario.scenario import Scenario
 from laboratory.scenario.seeds import seeds_of
 from laboratory.tasks.reach import config_of
 from laboratory.tasks.registry import TASKS
+from laboratory.worlds.own import read_own_worlds
 from laboratory.worlds.people import People, read_people
 from laboratory.worlds.registry import SOURCES
+from laboratory.worlds.source import WorldSource
 from move_base_lite import settings_from_parameters
 from planar import Pose2, SettingsError
 from planar.config.hints import hint
@@ -35,7 +37,7 @@ def read_scenario(path: Path) -> Scenario:
         name=path.stem,
         file=path.resolve(),
         about=table.text("about") if "about" in table else "",
-        world=_chosen(table, "world", SOURCES, path.parent),
+        world=_world(table, path.parent),
         task=_chosen(table, "task", TASKS, path.parent),
         robot=robot,
         start=start,
@@ -57,6 +59,13 @@ def _part(table: Table, key: str, *known: str) -> Any:
     part = table.table(key)
     part.allow_only(*known)
     return part
+
+
+def _world(table: Table, folder: Path) -> WorldSource:
+    """One of ours, or the generator that a dotted name names."""
+    part = table.table("world")
+    own = next((key for key in part if "/" in key), None)
+    return _chosen(table, "world", SOURCES, folder) if own is None else read_own_worlds(part, own)
 
 
 def _chosen(table: Table, key: str, kinds: Mapping[str, Callable[[Table, Path], Kind]], folder: Path) -> Kind:

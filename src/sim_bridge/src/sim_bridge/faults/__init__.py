@@ -3,6 +3,15 @@
 from sim_bridge.faults.faulty import Faults
 from sim_bridge.faults.file import load_faults
 from sim_bridge.faults.kind import Fault, Stage
-from sim_bridge.faults.registry import KINDS, usual_strength, why_not_of_strength
+from sim_bridge.faults.registry import KINDS, kind_named, usual_strength, why_not_of_strength
 
-__all__ = ["KINDS", "Fault", "Faults", "Stage", "load_faults", "usual_strength", "why_not_of_strength"]
+__all__ = [
+    "KINDS",
+    "Fault",
+    "Faults",
+    "Stage",
+    "kind_named",
+    "load_faults",
+    "usual_strength",
+    "why_not_of_strength",
+]

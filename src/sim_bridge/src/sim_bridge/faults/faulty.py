@@ -7,7 +7,7 @@ import numpy as np
 from planar import Scan, Twist2
 from sim_bridge.driving.base import Drive
 from sim_bridge.faults.kind import Fault, FaultKind, Stage
-from sim_bridge.faults.registry import KINDS
+from sim_bridge.faults.registry import fault_named
 from sim_bridge.robot import Fitting
 from sim_bridge.sensors.base import Sensor, SensorWrapper, Surroundings
 from sim_bridge.sensors.odometry import Odometry
@@ -31,7 +31,7 @@ class Faults:
     def add(self, fault: Fault) -> None:
         """One more."""
         rng = np.random.default_rng([self._seed, _STREAM, fault.seed, len(self._pairs)])
-        self._pairs.append((fault, KINDS[fault.kind](fault.strength, rng)))
+        self._pairs.append((fault, fault_named(fault.kind, fault.strength, rng)))
 
     @property
     def fitting(self) -> Fitting:

@@ -3,9 +3,10 @@
 from pathlib import Path
 from typing import Tuple
 
+from planar import SettingsError
 from planar.config.yaml_table import Table, read_table
 from sim_bridge.faults.kind import Fault
-from sim_bridge.faults.registry import KINDS, usual_strength, why_not_of_strength
+from sim_bridge.faults.registry import KINDS, kind_named, usual_strength, why_not_of_strength
 
 KEYS = ("kind", "start", "end", "strength", "seed")
 
@@ -22,7 +23,7 @@ def faults_from(table: Table) -> Tuple[Fault, ...]:
 
 def _fault(entry: Table) -> Fault:
     entry.allow_only(*KEYS)
-    name = entry.choice("kind", KINDS)
+    name = _kind(entry)
     start, end = entry.number("start", 0.0), float("inf")
     entry.check(start >= 0.0, "start", "not negative")
     if "end" in entry:
@@ -35,3 +36,15 @@ def _fault(entry: Table) -> Fault:
     is_seed = isinstance(seed, int) and not isinstance(seed, bool) and seed >= 0
     entry.check(is_seed, "seed", "a whole number from 0")
     return Fault(name, start, end, strength, seed)
+
+
+def _kind(entry: Table) -> str:
+    """One of ours, or the dotted name of other people's."""
+    name = entry.text("kind")
+    if "/" not in name:
+        return entry.choice("kind", KINDS)
+    try:
+        kind_named(name)
+    except SettingsError as error:
+        raise entry.complaint("kind", f"cannot be used: {error}") from None
+    return name

@@ -2,12 +2,17 @@
 
 from typing import Dict, Optional, Type
 
+import numpy as np
+
+from planar import SettingsError
+from planar.config.hints import hint
 from sim_bridge.faults.kind import FaultKind
 from sim_bridge.faults.odometry.frozen import FrozenOdometry
 from sim_bridge.faults.odometry.gyro_biased import BiasedGyro
 from sim_bridge.faults.odometry.scaled import ScaledOdometry
 from sim_bridge.faults.odometry.slipping import SlippingOdometry
 from sim_bridge.faults.odometry.stopped import StoppedOdometry
+from sim_bridge.faults.own import GuardedFault, own_kind
 from sim_bridge.faults.rooms.kidnapped import Kidnapped
 from sim_bridge.faults.rooms.obstacle import ObjectInWay
 from sim_bridge.faults.rooms.turned_round import TurnedRound
@@ -64,12 +69,29 @@ KINDS: Dict[str, Type[FaultKind]] = {
 }
 
 
+def kind_named(name: str) -> Type[FaultKind]:
+    """One of these, or other people's by its dotted name, my_package.my_module/MyFault.
+
+    Raises SettingsError if there is none, or with what it lacks.
+    """
+    kind = KINDS.get(name) or own_kind(name)
+    if kind is None:
+        raise SettingsError(f"there is no fault {name!r}{hint(name, KINDS)}")
+    return kind
+
+
+def fault_named(name: str, strength: float, rng: np.random.Generator) -> FaultKind:
+    """One of a kind, made; other people's is watched."""
+    kind = kind_named(name)
+    return kind(strength, rng) if name in KINDS else GuardedFault(name, kind, strength, rng)
+
+
 def usual_strength(kind: str) -> float:
     """The strength of a fault that says nothing of it."""
-    return KINDS[kind].strength[0]
+    return kind_named(kind).strength[0]
 
 
 def why_not_of_strength(kind: str, strength: float) -> Optional[str]:
     """What a strength of the kind must be, if it is not: "from -5 to 5"; None if it is."""
-    _, least, largest = KINDS[kind].strength
+    _, least, largest = kind_named(kind).strength
     return None if least <= strength <= largest else f"from {least:g} to {largest:g}"

@@ -7,9 +7,8 @@ from typing import Mapping
 import rospy
 from sim_bridge_msgs.srv import AddFault, AddFaultResponse
 
-from planar.config.hints import hint
+from planar import PlanarError
 from sim_bridge.faults import (
-    KINDS,
     Fault,
     Faults,
     Stage,
@@ -40,8 +39,12 @@ class FaultControl:
             self._faults.disturb(self._now, Stage(scene, name, observation.base_in_world))
 
     def _on_fault(self, request):
-        if request.kind not in KINDS:
-            return AddFaultResponse(False, f"there is no fault {request.kind!r}{hint(request.kind, KINDS)}")
+        try:
+            return self._asked_for(request)
+        except PlanarError as error:  # there is no such kind, or other people's fails
+            return AddFaultResponse(False, str(error))
+
+    def _asked_for(self, request):
         strength = request.strength or usual_strength(request.kind)
         expected = why_not_of_strength(request.kind, strength)
         if expected is not None:

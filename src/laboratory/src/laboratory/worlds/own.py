@@ -1,0 +1,77 @@
+"""Worlds of other people: ``world: {my_package.my_module/MyWorlds: {rooms: 3}}`` in a scenario."""
+
+import sys
+from dataclasses import dataclass, fields, is_dataclass
+from pathlib import Path
+from typing import Any, Protocol, Tuple
+
+from laboratory.worlds.source import Arena
+from planar import PlanarError
+from planar.config.settings import settings_from
+from planar.config.yaml_table import Table
+from planar.plugins import Contract, PluginError, load
+from sim_bridge import WorldError
+
+
+class Generator(Protocol):
+    """A frozen dataclass. Its fields, of numbers, texts and flags, are what a scenario may say of it."""
+
+    def arena(self, seed: int) -> Arena:
+        """The same for the same seed; all chance comes from it."""
+        ...
+
+
+CONTRACT = Contract("generator of worlds", Generator, None, "laboratory.worlds")
+
+
+@dataclass(frozen=True)
+class OwnWorlds:
+    """The WorldSource that other people's generator is: what goes wrong in it is told in its name."""
+
+    name: str
+    generator: Generator
+
+    def arena(self, seed: int) -> Arena:
+        try:
+            arena = self.generator.arena(seed)
+        except PlanarError:
+            raise
+        except Exception as error:
+            raise WorldError(f"{self.name} raised {type(error).__name__}: {error}") from error
+        if not isinstance(arena, Arena):
+            raise WorldError(f"{self.name} gave a {type(arena).__name__}, not an Arena")
+        return arena
+
+    def files(self) -> Tuple[Path, ...]:
+        """Its source: results of another one are not of the same scenario."""
+        source = sys.modules[type(self.generator).__module__].__file__
+        return (Path(source),) if source else ()
+
+    def arena_number(self, seed: int) -> int:
+        return seed
+
+
+def read_own_worlds(table: Table, name: str) -> OwnWorlds:
+    """Those whose dotted name is a key of a scenario's table ``world``."""
+    table.allow_only(name)
+    values = table.table(name)
+    try:
+        kind: Any = _kind_named(name)
+        where = values.place_of
+        generator, unknown = settings_from(kind, {key: values.value(key) for key in values}, where=where)
+    except PluginError as error:
+        raise table.complaint(name, f"cannot be used: {error}") from None
+    except TypeError as error:  # a field without a default that the scenario does not give
+        raise table.complaint(name, f"cannot be used: {error}") from None
+    if unknown:
+        values.allow_only(*(field.name for field in fields(kind)))
+    return OwnWorlds(name, generator)
+
+
+def _kind_named(name: str) -> type:
+    found = load(name, CONTRACT)
+    if found is None:
+        raise PluginError("there is no such entry point of laboratory.worlds")
+    if not (is_dataclass(found) and found.__dataclass_params__.frozen):  # type: ignore[attr-defined]
+        raise PluginError(f"{name} is no generator of worlds: it is no frozen dataclass")
+    return found

@@ -1,0 +1,119 @@
+"""Generators of worlds of other people: known by name, told what a scenario says, blamed for what they do."""
+
+import sys
+from dataclasses import dataclass
+
+import pytest
+
+from laboratory.scenario import read_scenario
+from laboratory.worlds.solids import FLOOR, wall
+from laboratory.worlds.source import Arena
+from planar import SettingsError
+from sim_bridge import WorldError
+from sim_bridge.world import World
+
+SCENARIO = """\
+world:
+  own.worlds/NAME: VALUES
+task: {reach: {x: 3.0, y: 0.0, radius: 0.5}}
+"""
+
+
+@dataclass(frozen=True)
+class Corridor:
+    """Two walls, ``width`` m apart and as far along as the seed says."""
+
+    width: float = 2.0
+    walls: int = 2
+
+    def arena(self, seed: int) -> Arena:
+        sides = (0.5, -0.5, 1.5, -1.5)[: self.walls]
+        walls = [wall(f"w{side}", float(seed), side * self.width, 4.0, 0.1) for side in sides]
+        return Arena(World("corridor", (FLOOR, *walls)), None, f"corridor {seed}")
+
+
+@dataclass(frozen=True)
+class Needs(Corridor):
+    width: float
+    walls: int
+
+
+class Loose:
+    def arena(self, seed):
+        return None
+
+
+@dataclass(frozen=True)
+class Placeless:
+    def place(self, seed):
+        return None
+
+
+@dataclass(frozen=True)
+class Raises:
+    def arena(self, seed):
+        raise ZeroDivisionError("division by zero")
+
+
+@dataclass(frozen=True)
+class Empty:
+    def arena(self, seed):
+        return None
+
+
+@pytest.fixture
+def read(monkeypatch, tmp_path):
+    """Reads a scenario in the world of one of these, with values."""
+    monkeypatch.setitem(sys.modules, "own.worlds", sys.modules[__name__])
+
+    def reading(kind, values="{}"):
+        name = kind if isinstance(kind, str) else kind.__name__
+        path = tmp_path / "scenario.yaml"
+        path.write_text(SCENARIO.replace("NAME", name).replace("VALUES", values))
+        return read_scenario(path)
+
+    return reading
+
+
+def test_a_scenario_is_played_in_the_world_of_a_generator_by_name(read):
+    scenario = read(Corridor, "{width: 3.0}")
+    arena = scenario.arena(7)
+    assert arena.title == "corridor 7"
+    assert [body.pose_in_world[0, 3] for body in arena.world.bodies[1:]] == [7.0, 7.0]
+    assert abs(arena.world.bodies[1].pose_in_world[1, 3]) == 1.5
+    assert scenario.world.arena_number(7) == 7
+
+
+def test_what_a_scenario_says_of_it_and_its_source_tell_results_apart(read):
+    assert read(Corridor).digest() == read(Corridor, "{walls: 2}").digest()
+    assert read(Corridor).digest() != read(Corridor, "{width: 3.0}").digest()
+    assert [path.name for path in read(Corridor).world.files()] == ["test_own_worlds.py"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "values", "complaint"),
+    [
+        (Corridor, "{width: wide}", ":2: world.own.worlds/Corridor.width must be a number, got 'wide'"),
+        (Corridor, "{wdith: 3.0}", ":2: world.own.worlds/Corridor.wdith is not known; did you mean width?"),
+        (Loose, "{}", "is no generator of worlds: it is no frozen dataclass"),
+        (Placeless, "{}", "is no generator of worlds: it has no arena(seed)"),
+        (
+            "Nowhere",
+            "{}",
+            ":2: world.own.worlds/Nowhere cannot be used: own.worlds/Nowhere: there is no Nowhere",
+        ),
+    ],
+)
+def test_what_cannot_be_used_is_told_with_file_and_line(read, kind, values, complaint):
+    with pytest.raises(SettingsError) as refused:
+        read(kind, values)
+    assert "scenario.yaml:2" in str(refused.value) and complaint in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("kind", "said"),
+    [(Raises, "raised ZeroDivisionError: division by zero"), (Empty, "gave a NoneType, not an Arena")],
+)
+def test_what_goes_wrong_in_it_is_told_in_its_name(read, kind, said):
+    with pytest.raises(WorldError, match=f"^own.worlds/{kind.__name__} {said}"):
+        read(kind).arena(0)
