@@ -85,7 +85,7 @@ def test_a_script_that_is_not_there_is_answered_with_those_that_are(tmp_path):
         choose_script(project, None)
 
 
-def test_maps_whose_image_was_never_added_are_known(tmp_path):
+def test_maps_whose_image_is_not_there_are_known(tmp_path):
     checkout(tmp_path, "pick/package.xml", "maps/home.pgm", "old/office.pgm")
     for name, image in (("home", "home.pgm"), ("office", "/home/me/office.pgm"), ("attic", "attic.pgm")):
         (tmp_path / f"maps/{name}.yaml").write_text(f"image: {image}\nresolution: 0.05\norigin: [0, 0, 0]\n")
