@@ -1,15 +1,17 @@
 """Generators of worlds of other people: known by name, told what a scenario says, blamed for what they do."""
 
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import pytest
 
 from laboratory.scenario import read_scenario
+from laboratory.suites import FOLDER
 from laboratory.worlds.solids import FLOOR, wall
 from laboratory.worlds.source import Arena
 from planar import SettingsError
 from sim_bridge import WorldError
+from sim_bridge.faults import Fault
 from sim_bridge.world import World
 
 SCENARIO = """\
@@ -117,3 +119,26 @@ def test_what_cannot_be_used_is_told_with_file_and_line(read, kind, values, comp
 def test_what_goes_wrong_in_it_is_told_in_its_name(read, kind, said):
     with pytest.raises(WorldError, match=f"^own.worlds/{kind.__name__} {said}"):
         read(kind).arena(0)
+
+
+def test_results_of_a_planner_or_a_fault_that_has_changed_are_others(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(str(tmp_path))
+    (tmp_path / "changing").mkdir()
+    source = tmp_path / "changing/code.py"
+    scenario = read_scenario(FOLDER / "home_errand.yaml")
+    told = {}
+    for text in ("one = 1\n", "one = 2\n"):
+        source.write_text(text)
+        played = (
+            scenario.with_planner("changing.code/Mine"),
+            replace(scenario, faults=(Fault("changing.code/Mine"),)),
+            scenario,
+        )
+        told[text] = [each.digest() for each in played]
+    before, after = told.values()
+    assert [was == now for was, now in zip(before, after)] == [False, False, True]
+
+
+@pytest.mark.parametrize("planner", ["no_such.module/Mine", "../Mine", "no_such_either"])
+def test_a_planner_that_is_not_there_is_no_matter_of_the_digest(planner):
+    assert read_scenario(FOLDER / "home_errand.yaml").with_planner(planner).digest()

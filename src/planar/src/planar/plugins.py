@@ -6,10 +6,12 @@ that was installed by pip may offer its classes under names of its own.
 """
 
 import importlib
+import importlib.util
 import inspect
 from dataclasses import dataclass, is_dataclass
 from importlib import metadata
-from typing import Any, List, Optional, Tuple
+from pathlib import Path
+from typing import Any, Iterable, List, Optional, Tuple
 
 from planar.errors import SettingsError
 
@@ -80,6 +82,21 @@ def find(name: str) -> Any:
     if not (module and attribute):
         raise PluginError(f"{name}: must be like my_package.my_module/MyClass")
     return _from_module(name, module, attribute)
+
+
+def sources_of(names: Iterable[str]) -> Tuple[Path, ...]:
+    """The files of the modules that those of the names name that are dotted, in order; of those there are."""
+    modules = [name.rpartition("/")[0] for name in names]
+    files = [_file_of(module) for module in modules if "." in module]
+    return tuple(Path(file) for file in files if file)
+
+
+def _file_of(module: str) -> Optional[str]:
+    try:
+        spec = importlib.util.find_spec(module)
+    except (ImportError, ValueError):  # its package is not there; no name of a module
+        return None
+    return spec.origin if spec is not None else None
 
 
 def _from_module(name: str, module: str, class_name: str) -> Any:

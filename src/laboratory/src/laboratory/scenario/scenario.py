@@ -10,6 +10,7 @@ from laboratory.tasks.task import Task
 from laboratory.worlds.people import People, with_people
 from laboratory.worlds.source import Arena, WorldSource
 from planar import Pose2
+from planar.plugins import sources_of
 from sim_bridge import SimulationSettings
 from sim_bridge.faults import Fault
 
@@ -53,13 +54,15 @@ class Scenario:
         return f"{self.name} [{self.planner}]" if self.planner else self.name
 
     def digest(self) -> str:
-        """The same for two scenarios only if they are played alike: of all they say, and of their files.
+        """The same for two scenarios only if they are played alike: of all they say, of their files, and of
+        the sources of other people's planners, faults and worlds.
 
         Its name, what it is about and its seeds do not count. Raises PlanarError if a file is not there.
         """
         told = asdict(replace(self, name="", about="", seeds=(), file=Path()))
         kinds = [type(self.world).__name__, type(self.task).__name__]
-        files = [_content(path) for path in (*self.world.files(), *self.task.files())]
+        own = sources_of((self.planner, *(fault.kind for fault in self.faults)))
+        files = [_content(path) for path in (*self.world.files(), *self.task.files(), *own)]
         text = json.dumps([kinds, files, told], sort_keys=True, default=_nameless)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 

@@ -1,6 +1,5 @@
 """Worlds of other people: ``world: {my_package.my_module/MyWorlds: {rooms: 3}}`` in a scenario."""
 
-import sys
 from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
 from typing import Any, Protocol, Tuple
@@ -9,7 +8,7 @@ from laboratory.worlds.source import Arena
 from planar import PlanarError
 from planar.config.settings import settings_from
 from planar.config.yaml_table import Table
-from planar.plugins import Contract, PluginError, load
+from planar.plugins import Contract, PluginError, load, sources_of
 from sim_bridge import WorldError
 
 
@@ -44,8 +43,7 @@ class OwnWorlds:
 
     def files(self) -> Tuple[Path, ...]:
         """Its source: results of another one are not of the same scenario."""
-        source = sys.modules[type(self.generator).__module__].__file__
-        return (Path(source),) if source else ()
+        return sources_of((self.name,))
 
     def arena_number(self, seed: int) -> int:
         return seed
