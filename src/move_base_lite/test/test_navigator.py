@@ -117,6 +117,42 @@ def test_a_goal_that_nothing_leads_to_is_given_up_after_all_recoveries_with_a_re
     ]
 
 
+def two_doors():
+    """Two rooms with doors at both ends of the wall between them; and those with something in each door."""
+    grid = with_block(room(6.1, 7.0), 3.0, 0.0, 3.1, 7.0)
+    doors = ((3.0, 0.5, 3.1, 1.5), (3.0, 5.5, 3.1, 6.5))
+    for door in doors:
+        grid = with_block(grid, *door, value=0)
+    blocked = grid
+    for door in doors:
+        blocked = with_block(blocked, *door)
+    return grid, blocked
+
+
+def test_a_goal_behind_doors_that_are_all_blocked_is_given_up_although_clearing_forgets_them(settings):
+    grid, blocked = two_doors()
+    robot, navigator = Robot(blocked, Pose2(1.0, 3.5)), Navigator(settings, grid)
+    navigator.set_goal(Pose2(5.0, 3.5))
+    decisions = drive_to_end(robot, navigator, 120.0)
+    assert decisions[-1].status is Status.ABORTED
+    assert "[code=NO_PATH: no way leads from the robot at " in decisions[-1].text
+    assert "to the goal at (5.00, 3.50)]" in decisions[-1].text
+    names = [decision.recovery.name for decision in decisions if decision.recovery]
+    assert names == [recovery.name for recovery in settings.recoveries]
+
+
+def test_a_door_that_opens_while_the_robot_looks_for_a_way_is_taken(settings):
+    grid, blocked = two_doors()
+    goal = Pose2(5.0, 3.5)
+    robot, navigator = Robot(blocked, Pose2(1.0, 3.5)), Navigator(settings, grid)
+    navigator.set_goal(goal)
+    recoveries = 0
+    while recoveries < 2:
+        recoveries += robot.tick(navigator).recovery is not None
+    robot.grid = grid
+    assert_arrived(robot, drive_to_end(robot, navigator, 120.0), goal)
+
+
 @pytest.mark.parametrize(
     "goal, code",
     [(Pose2(3.05, 1.0), "GOAL_BLOCKED"), (Pose2(2.9, 1.0), "GOAL_BLOCKED"), (Pose2(9.0, 1.0), "OUT_OF_MAP")],

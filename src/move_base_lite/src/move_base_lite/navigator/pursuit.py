@@ -6,8 +6,9 @@ from typing import Optional, Tuple
 
 import numpy as np
 
-from move_base_lite.errors import ControlError, NavigationError
+from move_base_lite.errors import ControlError, NavigationError, PlanningError
 from move_base_lite.navigator.decision import Outcome, Progress, Status, Trigger
+from move_base_lite.navigator.hope import Hope
 from move_base_lite.recovery import RecoveryBehavior, SpeedLimit
 from planar import Pose2, Twist2, wrap
 
@@ -55,6 +56,7 @@ class Pursuit:
     told: float = 0.0
     moved: float = 0.0
     slow: Optional[Tuple[SpeedLimit, Pose2]] = None
+    hope: Hope = field(default_factory=Hope)
     path_xy: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
     planned_at: float = -math.inf
 
@@ -90,14 +92,29 @@ class Pursuit:
             self.slow = None
         return Twist2(allowed, math.inf)
 
+    def plan_has_failed(self, error: PlanningError, now: float) -> None:
+        """There is no plan; the last one is driven on if it is under way."""
+        if self.failed_plans == 0 and self.status is Status.CONTROLLING:
+            self.planning_since = now
+        self.failed_plans += 1
+        self.reason = self.hope.reason = error
+        self.path_xy = np.empty((0, 2))
+
+    def is_at_a_loss(self, now: float, patience: float) -> bool:
+        """Whether the plan under way leads nowhere, and none has been found that does for so many seconds."""
+        if self.hope.is_over(self.travelled):
+            return True
+        return self.failed_plans > 0 and now - max(self.planning_since, self.last_progress) > patience
+
     def drive(self) -> None:
         """There is a plan."""
         self.status = Status.CONTROLLING
         self.failed_plans = 0
         self.has_overcome(Trigger.PLANNING)
 
-    def control_has_succeeded(self) -> None:
-        """There is a velocity."""
+    def control_has_succeeded(self, distance_left: float) -> None:
+        """There is a velocity along a plan of which so many metres are left."""
+        self.hope.drive(self.travelled, distance_left)
         self.control_fails_since = None
         self.has_overcome(Trigger.CONTROLLING)
 
@@ -114,11 +131,14 @@ class Pursuit:
     def has_overcome(self, trigger: Trigger) -> None:
         """What recovery was begun for is no more: the next trouble starts with the first behaviour."""
         if self.trigger is trigger:
-            self.recovery_index = 0
+            self.recovery_index = self.hope.tried_in_vain
 
     def clear_up(self, trigger: Trigger) -> None:
         """Recovery is to begin."""
         self.status, self.trigger = Status.CLEARING, trigger
+        if trigger is Trigger.PLANNING:
+            self.hope.lose()
+            self.reason = self.hope.reason
 
     def plan_anew(self, now: float) -> None:
         """Another plan is to be made, with full patience."""
@@ -129,6 +149,8 @@ class Pursuit:
         """One behaviour has ended; the next trouble gets the next one."""
         self.recovery = None
         self.recovery_index += 1
+        if self.trigger is Trigger.PLANNING:
+            self.hope.try_behavior(self.recovery_index)
         self.control_fails_since = None
         self._count_from(now)
         self.plan_anew(now)

@@ -69,7 +69,7 @@ def _plan(pursuit: Pursuit, moment: Moment, crew: Crew, is_under_way: bool = Fal
     try:
         path_xy = crew.plan(moment.base_in_map, pursuit.goal)
     except PlanningError as error:
-        pursuit.reason, pursuit.path_xy = error, np.empty((0, 2))
+        pursuit.plan_has_failed(error, moment.now)
         return False
     if is_under_way and not _is_worth_changing(pursuit, path_xy, moment.base_in_map, crew):
         return True
@@ -92,7 +92,6 @@ def _is_worth_changing(pursuit: Pursuit, path_xy: np.ndarray, base_in_map: Pose2
 def _be_patient(pursuit: Pursuit, moment: Moment, crew: Crew) -> Decision:
     """There is no plan yet."""
     settings = crew.settings.move_base
-    pursuit.failed_plans += 1
     is_out_of_time = moment.now - pursuit.planning_since > settings.planner_patience
     is_out_of_retries = 0 <= settings.max_planning_retries < pursuit.failed_plans
     if is_out_of_time or is_out_of_retries:
@@ -107,6 +106,9 @@ def _drive(pursuit: Pursuit, moment: Moment, crew: Crew) -> Decision:
     if now >= pursuit.next_plan - TIME_TOLERANCE:
         _plan(pursuit, moment, crew, is_under_way=True)
     plan_xy = pursuit.path_xy if pursuit.planned_at == now else None
+    if pursuit.is_at_a_loss(now, settings.planner_patience):
+        pursuit.clear_up(Trigger.PLANNING)
+        return Decision(pursuit.status, Twist2(), str(pursuit.reason), plan_xy=plan_xy)
     if 0.0 < settings.oscillation_timeout < now - pursuit.last_progress:
         pursuit.clear_up(Trigger.OSCILLATION)
         pursuit.reason = _oscillation(pursuit, settings)
@@ -117,7 +119,7 @@ def _drive(pursuit: Pursuit, moment: Moment, crew: Crew) -> Decision:
     except ControlError as error:
         pursuit.control_has_failed(error, now, settings.controller_patience)
         return Decision(pursuit.status, Twist2(), str(error), plan_xy=plan_xy, exploration=error.exploration)
-    pursuit.control_has_succeeded()
+    pursuit.control_has_succeeded(controller.distance_left)
     return Decision(
         pursuit.status,
         control.command,
