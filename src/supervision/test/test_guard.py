@@ -116,6 +116,20 @@ def test_who_runs_a_guarded_command_waits_for_its_end(mark, number):
     assert not processes_of(mark)
 
 
+def test_a_guarded_command_that_is_asked_to_end_as_it_starts_has_a_code_of_its_own(mark):
+    moments = random.Random(2)
+    codes = set()
+    for _ in range(12):
+        starter = start(mark, "bash", "-c", "trap 'exit 3' INT; while true; do sleep 0.02; done", by=WAITER)
+        seconds_until(lambda: psutil.Process(starter.pid).children(), START_SECONDS)  # noqa: B023
+        time.sleep(moments.uniform(0.0, 0.15))
+        starter.terminate()
+        codes.add(starter.wait(LEFT_SECONDS))
+        assert not processes_of(mark)
+    # Its own end, or that of the guard or of the command before either could hear.
+    assert codes <= {3, 128 + signal.SIGTERM, 128 + signal.SIGINT, -signal.SIGTERM}, codes
+
+
 def test_nothing_outlives_a_guarded_command_or_who_runs_it(mark):
     for place in (0, 1, 2):
         starter = start(mark, "bash", "-c", f"echo ready; {DEAF_PARENT}", by=WAITER)

@@ -13,7 +13,7 @@ import subprocess
 import sys
 from contextlib import suppress
 from threading import Timer
-from typing import List, NoReturn
+from typing import Any, List, NoReturn, Optional
 
 from supervision.interruption import SIGNALS
 from supervision.processes import adopt_orphans, end_descendants, end_when_orphaned, ending_with_parent
@@ -29,6 +29,8 @@ def guarded(command: List[str], patience: float = SIGINT_SECONDS) -> List[str]:
 def run_guarded(command: List[str], patience: float) -> int:
     """Runs a command that takes ``patience`` seconds to end when it is asked to; returns its exit code.
 
+    One that a signal has ended has 128 and the signal's number, as in a shell.
+
     This process only waits, so that it may be killed: see above. What asks it to end is for the command.
     """
     adopt_orphans()
@@ -38,7 +40,7 @@ def run_guarded(command: List[str], patience: float) -> int:
         signal.signal(number, lambda _number, _frame: guard.terminate())
     code = guard.wait()
     end_descendants(patience)  # of a guard that was killed itself
-    return code
+    return code if code >= 0 else 128 - code
 
 
 def ignore_ctrl_c() -> None:
@@ -48,9 +50,20 @@ def ignore_ctrl_c() -> None:
 
 def main() -> NoReturn:
     parent, patience, *command = sys.argv[1:]
+    process: Optional[subprocess.Popen] = None
+    is_asked_to_end = False
+
+    def hear(_number: int, _frame: Any) -> None:
+        nonlocal is_asked_to_end
+        is_asked_to_end = True
+        if process is not None:
+            _interrupt(process, float(patience))
+
     adopt_orphans()
+    signal.signal(signal.SIGTERM, hear)
     process = subprocess.Popen(command, stdin=subprocess.DEVNULL, preexec_fn=ending_with_parent())
-    signal.signal(signal.SIGTERM, lambda _number, _frame: _interrupt(process, float(patience)))
+    if is_asked_to_end:
+        _interrupt(process, float(patience))
     end_when_orphaned(int(parent), signal.SIGTERM)
     process.wait()
     end_descendants(SIGTERM_SECONDS)
