@@ -83,7 +83,7 @@ class Robot:
         self.clearance = min(self.clearance, float(np.hypot(*gaps.T).min()) - BODY_RADIUS)
 
 
-def scan_with_people(grid, base, stamp, people_xy, rng):
+def scan_with_people(grid, base, stamp, people_xy, rng, radius=PERSON_RADIUS):
     """What a laser of 360 beams with 1 cm of noise sees of a room and of people, cylinders."""
     beams, reach = 360, 8.0
     angles = 2.0 * math.pi / beams * np.arange(beams)
@@ -92,7 +92,7 @@ def scan_with_people(grid, base, stamp, people_xy, rng):
     for person_xy in people_xy:
         offset = np.array(person_xy) - (base.x, base.y)
         along = directions @ offset
-        inside = PERSON_RADIUS**2 - (offset @ offset - along**2)
+        inside = radius**2 - (offset @ offset - along**2)
         hit = (inside > 0.0) & (along > 0.0)
         ranges[hit] = np.minimum(ranges[hit], along[hit] - np.sqrt(inside[hit]))
     ranges = np.where(ranges >= reach, np.inf, ranges + rng.normal(0.0, 0.01, beams))

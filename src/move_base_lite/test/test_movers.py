@@ -14,13 +14,13 @@ from planar.geometry.ray_casting import cast_rays
 PERIOD = 0.1
 
 
-def watch(grid, base_at, person_at, seconds, seed=0):
+def watch(grid, base_at, person_at, seconds, seed=0, radius=PERSON_RADIUS):
     """[(stamp, rows)]: what a robot at ``base_at(t)`` finds moving while a person is at ``person_at(t)``."""
     rng, movers, found = np.random.default_rng(seed), Movers(), []
     for step in range(round(seconds / PERIOD)):
         stamp = step * PERIOD
         base, person = base_at(stamp), person_at(stamp)
-        scan = scan_with_people(grid, base, stamp, [person] if person else [], rng)
+        scan = scan_with_people(grid, base, stamp, [person] if person else [], rng, radius)
         movers.look(base, sighting_of_scan("scan", scan))
         found.append((stamp, movers.at(stamp)))
     return found
@@ -42,6 +42,24 @@ def test_a_walking_person_is_tracked(robot_speed, velocity):
         assert math.dist((x, y), person_at(stamp)) < 0.15
         assert math.dist(estimate, velocity) < 0.2
         assert radius == pytest.approx(PERSON_RADIUS, abs=0.06)
+
+
+def test_a_thing_a_metre_wide_that_moves_is_tracked():
+    def cart_at(t):
+        return 3.0, 0.8 + 0.9 * t
+
+    found = watch(room(8.0, 5.0), lambda t: Pose2(1.0, 2.5), cart_at, 3.0, radius=0.5)
+    for stamp, rows in found[15:]:
+        ((x, y, *estimate, radius),) = rows
+        assert math.dist((x, y), cart_at(stamp)) < 0.25
+        assert math.dist(estimate, (0.0, 0.9)) < 0.25
+        assert radius == pytest.approx(0.5, abs=0.15)
+
+
+def test_who_comes_towards_a_robot_that_has_just_started_is_found_in_time():
+    found = watch(room(8.0, 4.0), lambda t: Pose2(1.0, 2.0), lambda t: (4.0 - 1.2 * t, 2.0), 1.0)
+    first = next(stamp for stamp, rows in found if len(rows))
+    assert first <= 0.7
 
 
 def test_nobody_moves_while_the_robot_drives_past_doors_and_boxes():

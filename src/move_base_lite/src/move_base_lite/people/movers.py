@@ -12,8 +12,8 @@ from move_base_lite.people.track import Track
 from move_base_lite.people.views import Thing, View, things_in
 from planar import Pose2
 
-# Seconds after which a place is looked at again.
-LOOK_BACK = 1.0
+# Seconds after which a place is looked at again, and, at the start, in which it cannot be told what moves.
+LOOK_BACK, BLIND = 1.0, 0.3
 # Share of a thing's beams that must end where it was free before.
 SHARE_FREE = 0.5
 # Seconds that a track may be hidden, and for which what has moved is not taken for an obstacle that stays.
@@ -66,7 +66,7 @@ class Movers:
         """The newest view that is old enough to tell what was free; None if there is none yet."""
         while len(self._past) > 1 and stamp - self._past[1].stamp >= LOOK_BACK:
             self._past.popleft()
-        is_there = self._past and stamp - self._past[0].stamp >= LOOK_BACK
+        is_there = self._past and stamp - self._past[0].stamp >= BLIND
         return self._past[0] if is_there else None
 
     def _track_of(self, thing: Thing) -> Optional[Track]:

@@ -9,8 +9,9 @@ import numpy as np
 from move_base_lite.costmap import Sighting
 from planar import Pose2
 
-# Metres from the sensor up to which movers are looked for, between beams of two things, and across one thing.
-REACH, GAP, WIDEST = 4.0, 0.25, 0.9
+# Metres from the sensor up to which movers are looked for, between beams of two things, and from corner to
+# corner of what a laser sees of one: a person, a cart, another robot.
+REACH, GAP, WIDEST = 4.0, 0.25, 1.5
 FEWEST_BEAMS = 3
 # Metres by which a beam must have gone beyond a place that was free.
 BEYOND = 0.12
