@@ -6,6 +6,7 @@ from pick_objects import (
     ErrandSettings,
     ErrandState,
     Finish,
+    Fit,
     GoalReached,
     GoalRefused,
     GoTo,
@@ -226,6 +227,14 @@ def test_the_time_left_shrinks_to_nothing():
     assert left == sorted(left, reverse=True)
     assert left[0] > 10.0
     assert left[-1] == 0.0
+
+
+def test_an_arrival_needs_two_scans_that_speak_for_it():
+    fit = Fit()
+    assert fit.least is None
+    for told, least in ((0.9, 0.9), (0.05, 0.05), (1.0, 0.05), (0.8, 0.8)):
+        fit.take(told)
+        assert fit.least == least
 
 
 @pytest.mark.parametrize("fit, is_believed", [(None, True), (0.9, True), (0.05, False)])

@@ -1,7 +1,7 @@
 """Missions of deliveries between named places; pure but for node.py and nodes."""
 
 from pick_objects.approach import GoTo
-from pick_objects.arrival import believed
+from pick_objects.arrival import Fit, believed
 from pick_objects.config import ErrandSettings
 from pick_objects.errand import Errand, MeasureWays, WaysMeasured
 from pick_objects.job import ErrandState, Job, Stage, Whereabouts
@@ -16,6 +16,7 @@ __all__ = [
     "ErrandSettings",
     "ErrandState",
     "Finish",
+    "Fit",
     "GoTo",
     "GoalReached",
     "GoalRefused",

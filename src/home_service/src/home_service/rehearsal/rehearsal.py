@@ -36,6 +36,7 @@ from move_base_lite import (
 from pick_objects import (
     Errand,
     Finish,
+    Fit,
     GoalReached,
     GoalRefused,
     GoTo,
@@ -160,7 +161,7 @@ class Rehearsal:
         self._bodies = RehearsedBodies(self._simulation, grid)
         self._parcel = parcel
         self._places = mission.places
-        self._ledger = Ledger()
+        self._ledger, self._fit = Ledger(), Fit()
         self._deliveries = DeliveryWatch(mission.places, self._ledger.deliveries, say=lambda line: None)
         self._trajectory: List[Tuple[float, float, float, float]] = []
         self._errors: List[float] = []
@@ -206,8 +207,7 @@ class Rehearsal:
         complaint = self._senses.complaint(self._now)
         self._command = decision.command if complaint is None else Twist2()
         order = self._advance_errand(base_in_map, observation.base_in_world)
-        quality = self._localizer.quality
-        self._event = believed(_event_of(decision), None if quality is None else quality.probability)
+        self._event = believed(_event_of(decision), self._fit.least)
         if complaint is not None and self._senses.is_out_of_patience(self._now):
             # As move_base does with a sensor that it cannot trust.
             self._navigator.forget_goal()
@@ -241,13 +241,18 @@ class Rehearsal:
             self._senses.feel(observation, self._command or Twist2())
             if observation.scan is not None:
                 scan = observation.scan
-                with suppress(LocalizationError):  # the node says so, and goes on too
-                    self._localizer.update(self._senses.base_at(scan.stamp), scan)
+                self._localize(scan)
             place = Stage(self._simulation.scene, ROBOT_NAME, observation.base_in_world)
             self._faults.disturb(observation.stamp, place)
         is_under_way = self._steps_of_latency == self._steps_per_tick
         self._command_under_way = self._command if is_under_way else None
         return observation, scan
+
+    def _localize(self, scan: Scan) -> None:
+        with suppress(LocalizationError):  # the node says so, and goes on too
+            self._localizer.update(self._senses.base_at(scan.stamp), scan)
+            if self._localizer.quality is not None:
+                self._fit.take(self._localizer.quality.probability)
 
     def _note(self, observation: Observation, base_in_map: Pose2) -> None:
         truth = observation.base_in_world

@@ -6,7 +6,7 @@ import rospy
 from std_msgs.msg import Float32
 
 from pick_objects.approach import GoTo
-from pick_objects.arrival import believed
+from pick_objects.arrival import Fit, believed
 from pick_objects.errand import MeasureWays, WaysMeasured
 from planar import Pose2
 from planar.driving import GoalReached, GoalRefused
@@ -26,7 +26,7 @@ class Driver:
         self.move_base = MoveBase(frame_id)
         self.move_base.cancel_at_end()
         self._order: Optional[GoTo] = None
-        self._fit, self._fit_at = 0.0, rospy.Time(0)
+        self._fit, self._fit_at = Fit(), rospy.Time(0)
         rospy.Subscriber(QUALITY_TOPIC, Float32, self._keep_fit, queue_size=1)
 
     @property
@@ -45,7 +45,7 @@ class Driver:
         outcome = self.move_base.outcome()
         if outcome is None or self._order is None:
             return None
-        event = believed(outcome.event, self._last_fit)
+        event = believed(outcome.event, self._least_fit)
         if isinstance(event, GoalRefused):
             rospy.logwarn("place %s: %s", self._order.place.name, event.reason)
         return event
@@ -60,10 +60,11 @@ class Driver:
             return WaysMeasured(tuple(lines))
 
     @property
-    def _last_fit(self) -> Optional[float]:
-        """How well the last scan fits the map; None if nobody has told lately."""
+    def _least_fit(self) -> Optional[float]:
+        """How well the last scans fit the map; None if nobody has told lately."""
         is_fresh = abs((rospy.Time.now() - self._fit_at).to_sec()) < STALE
-        return self._fit if is_fresh else None
+        return self._fit.least if is_fresh else None
 
     def _keep_fit(self, message: Float32) -> None:
-        self._fit, self._fit_at = message.data, rospy.Time.now()
+        self._fit.take(message.data)
+        self._fit_at = rospy.Time.now()
