@@ -13,7 +13,7 @@ import subprocess
 import sys
 from contextlib import suppress
 from threading import Timer
-from typing import Any, List, NoReturn, Optional
+from typing import Any, Callable, List, NoReturn, Optional, Sequence
 
 from supervision.interruption import SIGNALS
 from supervision.processes import adopt_orphans, end_descendants, end_when_orphaned, ending_with_parent
@@ -34,40 +34,57 @@ def run_guarded(command: List[str], patience: float) -> int:
     This process only waits, so that it may be killed: see above. What asks it to end is for the command.
     """
     adopt_orphans()
-    ignore_ctrl_c()
-    guard = subprocess.Popen(guarded(command, patience))
-    for number in SIGNALS:
-        signal.signal(number, lambda _number, _frame: guard.terminate())
+    guard = _started(
+        SIGNALS, subprocess.Popen.terminate, guarded(command, patience), preexec_fn=ignore_ctrl_c
+    )
     code = guard.wait()
     end_descendants(patience)  # of a guard that was killed itself
     return code if code >= 0 else 128 - code
 
 
 def ignore_ctrl_c() -> None:
-    """For a guard, and for who waits for it."""
+    """For a guard between fork and exec."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def main() -> NoReturn:
     parent, patience, *command = sys.argv[1:]
-    process: Optional[subprocess.Popen] = None
-    is_asked_to_end = False
-
-    def hear(_number: int, _frame: Any) -> None:
-        nonlocal is_asked_to_end
-        is_asked_to_end = True
-        if process is not None:
-            _interrupt(process, float(patience))
-
     adopt_orphans()
-    signal.signal(signal.SIGTERM, hear)
-    process = subprocess.Popen(command, stdin=subprocess.DEVNULL, preexec_fn=ending_with_parent())
-    if is_asked_to_end:
-        _interrupt(process, float(patience))
+    process = _started(
+        (signal.SIGTERM,),
+        lambda process: _interrupt(process, float(patience)),
+        command,
+        stdin=subprocess.DEVNULL,
+        preexec_fn=ending_with_parent(),
+    )
     end_when_orphaned(int(parent), signal.SIGTERM)
     process.wait()
     end_descendants(SIGTERM_SECONDS)
     _end_as(process.returncode)
+
+
+def _started(
+    signals: Sequence[signal.Signals],
+    ask_to_end: Callable[[subprocess.Popen], None],
+    command: List[str],
+    **options: Any,
+) -> subprocess.Popen:
+    """A process that is asked to end when this one is sent one of the signals, from the first moment on."""
+    process: Optional[subprocess.Popen] = None
+    is_asked = False
+
+    def hear(_number: int, _frame: Any) -> None:
+        nonlocal is_asked
+        is_asked = True
+        if process is not None:
+            ask_to_end(process)
+
+    for number in signals:
+        signal.signal(number, hear)
+    process = subprocess.Popen(command, **options)
+    if is_asked:
+        ask_to_end(process)
+    return process
 
 
 def _interrupt(process: subprocess.Popen, patience: float) -> None:
