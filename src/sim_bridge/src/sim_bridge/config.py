@@ -57,6 +57,9 @@ class BridgeSettings(RunTimeSettings):
     world: str = parameter("", "world that is simulated", required="the path of an SDF file")
     seed: int = parameter(0, "all noise follows from it", bounds=NOT_NEGATIVE)
     wait_for: str = parameter("", "names of nodes, by spaces, that the simulation stays in step with")
+    static_publishers: str = parameter(
+        "", "names of nodes, by spaces, whose static transforms those of wait_for have before time passes"
+    )
     latency: float = parameter(
         LATENCY,
         "from the moment at which a node in step looks at the world until what it then sends takes effect",
@@ -88,7 +91,7 @@ class RobotSettings:
 
 
 # What the arguments of the launch file set.
-ARGUMENTS = ("world", "seed", "speed", "wait_for")
+ARGUMENTS = ("world", "seed", "speed", "wait_for", "static_publishers")
 _NOISE_VALUES = {each.name for each in parameters_of(NoiseSettings)}
 
 CONFIG_FILES = {

@@ -7,7 +7,7 @@ from typing import Any, Collection, Dict, List, Set, Tuple
 import rosgraph
 import rospy
 
-from planar_ros.step.transport import ANSWER_TOPIC
+from planar_ros.step.transport import ANSWER_TOPIC, STATIC_TOPIC
 
 ANSWER_SECONDS = 1.0
 _SILENCE = (OSError, xmlrpc.client.Error)
@@ -28,8 +28,13 @@ class Closure:
         self._master = rosgraph.get_master_uri()
         self._uris: Dict[str, str] = {}
 
-    def gaps(self, members: Collection[str], audience: Collection[str]) -> List[str]:
-        """The connections that are still to come, for people: from a member to a member or an audience."""
+    def gaps(
+        self, members: Collection[str], audience: Collection[str], static_publishers: Collection[str]
+    ) -> List[str]:
+        """The connections that are still to come, for people.
+
+        From a member to a member or an audience; for static transforms from their publishers to members.
+        """
         try:
             published, subscribed, _ = self._state()
             wanted = {
@@ -39,7 +44,12 @@ class Closure:
                 for receiver in subscribed.get(topic, ())
                 if sender in members and (receiver in members or receiver in audience)
             }
-            there = set(chain(*(self._outgoing(name) for name in {sender for sender, _, _ in wanted})))
+            listeners = set(members).intersection(subscribed.get(STATIC_TOPIC, ()))
+            wanted.update(
+                (name, STATIC_TOPIC, receiver) for name in static_publishers for receiver in listeners
+            )
+            senders = {sender for sender, _, _ in wanted}.intersection(chain(*published.values()))
+            there = set(chain(*(self._outgoing(name) for name in senders)))
         except _SILENCE as error:
             return [f"an answer of the nodes ({error})"]
         return [f"{topic} from {sender} to {receiver}" for sender, topic, receiver in sorted(wanted - there)]

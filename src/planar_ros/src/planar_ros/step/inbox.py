@@ -10,12 +10,12 @@ import rospy
 from rospy.topics import _SubscriberImpl
 
 from planar_ros.node.progress import TOPIC as PROGRESS_TOPIC
-from planar_ros.step.transport import CLOCK_TOPIC, UNCOUNTED, Frame
+from planar_ros.step.transport import CLOCK_TOPIC, STATIC_TOPIC, UNCOUNTED, Frame
 
 # Wall seconds that a message may be under way.
 PATIENCE_SECONDS = 4.0
 # Transforms are there before what refers to them is dealt with.
-FIRST_TOPICS = ("/tf_static", "/tf")
+FIRST_TOPICS = (STATIC_TOPIC, "/tf")
 # What is heard on these from nodes that are not in step decides nothing.
 UNSUSPICIOUS = frozenset((*FIRST_TOPICS, *UNCOUNTED, PROGRESS_TOPIC))
 _receive = _SubscriberImpl.receive_callback

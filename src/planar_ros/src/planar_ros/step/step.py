@@ -15,7 +15,7 @@ from planar_ros.step import transport
 from planar_ros.step.calls import await_before_answering, headers_of
 from planar_ros.step.inbox import Inbox
 from planar_ros.step.ticker import Ticker
-from planar_ros.step.transport import ANSWER_TOPIC, MOMENT_TOPIC, CountedConnection
+from planar_ros.step.transport import ANSWER_TOPIC, MOMENT_TOPIC, STATIC_TOPIC, CountedConnection
 from planar_ros.step.turns import Turns
 
 Hook = Callable[[], None]
@@ -25,6 +25,8 @@ POLL_SECONDS = 0.02
 DEFAULT_PERIOD = 0.1
 # The nodes that the simulator waits for.
 WAIT_FOR_PARAMETER = "/simulation/wait_for"
+# Nodes that are not in step, whose static transforms are heard before the first moment is worked on.
+STATIC_PUBLISHERS_PARAMETER = "/simulation/static_publishers"
 # Wall seconds without a moment after which messages of strangers are handed on as they come.
 STALLED_SECONDS = 0.5
 # Wall seconds that a call from a node in step may have to wait for the moment it belongs to.
@@ -165,17 +167,15 @@ class Step:
 
     def _begin(self, message: Moment, members: FrozenSet[str]) -> None:
         """Takes in what belongs to the moment."""
+        first_words = {} if self.is_on else _first_words()
         if members != self._inbox.members:
             self._inbox.members = CountedConnection.members = members
             self._required.clear()
             self._told.clear()
-        for channel, count in zip(message.channels, message.counts):
-            sender, receiver, topic = channel.split(" ")
-            if receiver == self._name:
-                self._required[topic, sender] = count
+        self._required.update(_sent_to(self._name, message))
         self._number, self._latency = message.number, message.latency.to_sec()
         rospy.rostime._set_rostime(message.header.stamp)
-        for loss in self._inbox.release(self._required):
+        for loss in self._inbox.release({**first_words, **self._required}):
             rospy.logwarn("at %.2f s: %s", message.header.stamp.to_sec(), loss)
             self.remark(f"{self._name}: {loss}")
 
@@ -237,6 +237,21 @@ def is_heard_in_step(topic: rospy.Subscriber) -> bool:
     """Whether a node that is to be in step sends on the topic: what it sends takes simulated time."""
     expected = rospy.get_param(WAIT_FOR_PARAMETER, [])
     return any(connection.callerid_pub in expected for connection in topic.impl.connections)
+
+
+def _first_words() -> Dict[Tuple[str, str], int]:
+    """What a node hears before it works for the first time."""
+    return {(STATIC_TOPIC, name): 1 for name in rospy.get_param(STATIC_PUBLISHERS_PARAMETER, [])}
+
+
+def _sent_to(receiver: str, message: Moment) -> Dict[Tuple[str, str], int]:
+    """How many messages of those that a moment tells of, by topic and sender."""
+    channels = [channel.split(" ") for channel in message.channels]
+    return {
+        (topic, sender): count
+        for (sender, to, topic), count in zip(channels, message.counts)
+        if to == receiver
+    }
 
 
 def _call(hook: Hook) -> None:

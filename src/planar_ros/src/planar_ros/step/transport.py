@@ -10,6 +10,7 @@ from rospy.impl.tcpros_pubsub import TCPROSSub
 from planar_ros.node.prompt_sending import PromptConnection
 
 MOMENT_TOPIC, ANSWER_TOPIC, CLOCK_TOPIC = "/simulation/moment", "/simulation/answer", "/clock"
+STATIC_TOPIC = "/tf_static"
 # They go by themselves: the first two say how many of all others there are, the moment is the time.
 UNCOUNTED = frozenset((MOMENT_TOPIC, ANSWER_TOPIC, CLOCK_TOPIC))
 LENGTH_BYTES = 4

@@ -2,7 +2,7 @@
 
 import dataclasses
 import threading
-from typing import Any, Dict, Mapping
+from typing import Any, Dict, List, Mapping
 
 import rospy
 from rosgraph_msgs.msg import Clock
@@ -54,9 +54,9 @@ class Bridge:
         self._faults = FaultControl(settings.faults_file, settings.seed, self._orders)
         self._scene = Scene(world, simulation_settings, settings.seed, self._faults.fitting)
         self._steps = 0
-        wait_for = [name.lstrip("/") for name in settings.wait_for.split()]
+        wait_for, static_publishers = map(_names, (settings.wait_for, settings.static_publishers))
         pacer = Pacer(settings.speed, wait_for)
-        self._lock_step = LockStep(wait_for, settings.latency, self._orders)
+        self._lock_step = LockStep(wait_for, static_publishers, settings.latency, self._orders)
         self._clock = rospy.Publisher("/clock", Clock, queue_size=10, latch=True, tcp_nodelay=True)
         self._performance = Performance()
         self._time = TimeControl(self._scene, pacer, self._lock_step, self._orders)
@@ -130,6 +130,11 @@ def _robots_asked_for(robot: RobotSettings) -> Dict[str, RobotSettings]:
 def _steps_between(rate: int, step_rate: int, name: str) -> int:
     check(step_rate % rate == 0, f"~{name}", f"a divisor of odometry_rate ({step_rate})", rate)
     return step_rate // rate
+
+
+def _names(text: str) -> List[str]:
+    """Of nodes, without the slash."""
+    return [name.lstrip("/") for name in text.split()]
 
 
 def main():

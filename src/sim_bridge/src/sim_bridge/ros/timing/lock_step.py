@@ -11,7 +11,7 @@ from planar_ros.messages.conversion import time_of
 from planar_ros.step import transport
 from planar_ros.step.calls import await_before_answering
 from planar_ros.step.inbox import Inbox
-from planar_ros.step.step import WAIT_FOR_PARAMETER
+from planar_ros.step.step import STATIC_PUBLISHERS_PARAMETER, WAIT_FOR_PARAMETER
 from planar_ros.step.transport import ANSWER_TOPIC, MOMENT_TOPIC, CountedConnection
 from sim_bridge.conducting import Conductor
 from sim_bridge.ros.orders import Orders
@@ -24,20 +24,27 @@ PATIENCE_SECONDS = 5.0
 
 
 class LockStep:
-    """Brings ``wait_for``, nodes, into step; its methods are called in the thread that owns the scene."""
+    """Brings ``wait_for``, nodes, into step; its methods are called in the thread that owns the scene.
 
-    def __init__(self, wait_for: Sequence[str], latency: float, orders: Orders):
+    ``static_publishers``: nodes whose static transforms they have before time passes.
+    """
+
+    def __init__(
+        self, wait_for: Sequence[str], static_publishers: Sequence[str], latency: float, orders: Orders
+    ):
         self._orders = orders
         self._name = rospy.get_name()
         self._wait_for = frozenset(f"/{name}" for name in wait_for)
         rospy.set_param(WAIT_FOR_PARAMETER, sorted(self._wait_for))
+        static = sorted(f"/{name}" for name in static_publishers)
+        rospy.set_param(STATIC_PUBLISHERS_PARAMETER, static)
         self._conductor = Conductor(latency)
         self._inbox = Inbox(False, self._on_stranger)
         self._inbox.install()
         self._joining: Dict[str, float] = {}
         self._leaving: List[str] = []
         self._topologies: Dict[str, int] = {}
-        self._loop = LoopWatch(self._name, self._wait_for)
+        self._loop = LoopWatch(self._name, self._wait_for, static)
         self._is_applied = True
         self._told: Dict[str, int] = {}
         self._blocked_since: Optional[float] = None

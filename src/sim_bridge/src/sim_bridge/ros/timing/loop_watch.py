@@ -18,14 +18,16 @@ AUDIENCE_PARAMETER = "/simulation/audience"
 class LoopWatch:
     """The loop is closed when all ``expected`` nodes have joined and hear each other and the node ``me``.
 
+    They are connected to the ``static_publishers`` by then too.
     What does not come within its time is given up.
     """
 
-    def __init__(self, me: str, expected: Collection[str]):
+    def __init__(self, me: str, expected: Collection[str], static_publishers: Collection[str]):
         self.is_closed = not expected
         self._me = me
         self._joined: Set[str] = set()
         self._absent = set(expected)
+        self._static_publishers = static_publishers
         self._since: Dict[str, float] = {}
         self._given_up: Set[str] = set()
         self._untold: List[str] = []
@@ -84,7 +86,7 @@ class LoopWatch:
                 gaps[f"the node {name}"] = COMING_SECONDS
         audience = rospy.get_param(AUDIENCE_PARAMETER, [])
         if not absent:
-            for gap in self._closure.gaps(members, audience):
+            for gap in self._closure.gaps(members, audience, self._static_publishers):
                 gaps[f"the connection of {gap}"] = CONNECTING_SECONDS
         return [gap for gap, seconds in gaps.items() if not self._is_given_up(gap, seconds)]
 
