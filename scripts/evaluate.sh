@@ -13,6 +13,7 @@
 #   --scheduler ADDRESS  Dask's, instead of processes here: tcp://HOST:8786
 #   --require RULE...  exit code 1 unless this holds of each scenario: "success >= 0.99"
 #   --against VERSION  exit code 1 if a scenario is worse than with this version of the software, on the same seeds
+#   --over WHAT        what plays each: process, or ros, the graph of nodes, a few runs a minute (default: process)
 #   --output FOLDER    results are kept and told here (default: runs/laboratory)
 #   --help             this text
 

@@ -111,7 +111,7 @@ class LaunchPlan:
     """What a run starts.
 
     ``is_simulated``: whether a simulator is in it. ``bags``: the profile of what is recorded, if any.
-    ``comes_back``: the nodes that are started again if they die.
+    ``comes_back``: the nodes that are started again if they die. ``package``: that of the launch file.
     """
 
     file: str
@@ -119,6 +119,7 @@ class LaunchPlan:
     is_simulated: bool = True
     bags: Optional[str] = None
     comes_back: Tuple[str, ...] = ()
+    package: str = "home_service"
 
     def respawning(self, *nodes: str) -> "LaunchPlan":
         """The same, with these nodes started again if they die."""

@@ -2,6 +2,7 @@
 
 import time
 
+from laboratory.over_ros import play_over_ros
 from laboratory.results.result import Key, Result, error_of, result_of
 from laboratory.results.version import version
 from laboratory.scenario.scenario import Scenario
@@ -17,7 +18,8 @@ def play(scenario: Scenario, seed: int, digest: str = "") -> Result:
     began = time.perf_counter()
     try:
         arena = scenario.arena(seed)
-        played = scenario.task.play(scenario, arena, seed)
+        how = play_over_ros if scenario.is_over_ros else scenario.task.play
+        played = how(scenario, arena, seed)
     except PlanarError as error:
         return error_of(error, key)
     wall_seconds = time.perf_counter() - began

@@ -1,16 +1,21 @@
 """Suites: scenarios that are played together, as they are named on the command line."""
 
+from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import List, Sequence, Tuple
 
 from laboratory.scenario import Scenario, read_scenario
+from laboratory.staging import stage
 from planar import PlanarError, SettingsError
 
 ROOT = Path(__file__).resolve().parents[4]
 FOLDER = ROOT / "scenarios"
 
 
-def scenarios_of(suites: Sequence[str], planners: Sequence[str] = ()) -> Tuple[List[Scenario], List[str]]:
+def scenarios_of(
+    suites: Sequence[str], planners: Sequence[str] = (), is_over_ros: bool = False
+) -> Tuple[List[Scenario], List[str]]:
     """The scenarios of files, of folders of them, or by their names in ``scenarios/``; with each planner.
 
     Returns them, and what is wrong with those that cannot be played. Raises SettingsError for a suite that
@@ -19,7 +24,7 @@ def scenarios_of(suites: Sequence[str], planners: Sequence[str] = ()) -> Tuple[L
     scenarios, complaints = [], []
     for path in [file for suite in suites for file in _files(suite)]:
         try:
-            scenario = read_scenario(path)
+            scenario = replace(read_scenario(path), is_over_ros=is_over_ros)
             _check(scenario)
         except PlanarError as error:
             complaints.append(str(error))
@@ -65,6 +70,9 @@ def _check(scenario: Scenario) -> None:
         if obstruction:
             raise SettingsError(f"robot.start ({start.x:g}, {start.y:g}) {obstruction}")
         Simulation(arena.world, robot_named(scenario.robot), scenario.simulation, 0, start).close()
+        if scenario.is_over_ros:
+            with TemporaryDirectory() as folder:
+                stage(scenario, scenario.seeds[0], Path(folder))
     except PlanarError as error:
         text = str(error)
         raise SettingsError(

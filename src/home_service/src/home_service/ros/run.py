@@ -115,7 +115,8 @@ class Run:
         self.display.say(f"run folder {self.folder}")
         speed = {"speed": self._options.wanted_speed, "rviz": str(self._options.rviz).lower()}
         arguments = {**self._launch.arguments, **speed}
-        self._supervisor.start("home_service", self._launch.file, arguments, self._launch.comes_back)
+        launch = self._launch
+        self._supervisor.start(launch.package, launch.file, arguments, launch.comes_back)
         if self._options.is_on_the_web:
             where = self._options.web_port or FREE_PORT
             self._cockpit = CockpitProcess(

@@ -27,6 +27,9 @@ class Evaluate:
         "exit code 1 if a scenario is worse than with this version, on the same seeds",
         metavar="VERSION",
     )
+    over: str = option(
+        "process", "what plays each: one process, or ROS and its nodes", choices=("process", "ros")
+    )
     output: Path = option(Path("runs/laboratory"), "results are kept and told here", type=Path)
 
     def run(self) -> int:
@@ -42,7 +45,7 @@ class Evaluate:
 
         rules = [requirement_from(text) for text in self.require or ()]
         seeds = None if self.seeds is None else seeds_of(self.seeds)
-        scenarios, complaints = scenarios_of(self.suites, self.planner or ())
+        scenarios, complaints = scenarios_of(self.suites, self.planner or (), self.over == "ros")
         for complaint in complaints:
             complain(complaint)
         if not scenarios:

@@ -1,22 +1,33 @@
 from dataclasses import dataclass
+from typing import Any
 
-from home_service.options import seed
-from supervision.command_line import argument, option
+from home_service.options import RunOptions, seed
+from supervision.command_line import argument, option, words
 
 
 @dataclass(frozen=True)
-class Play:
-    """Plays one scenario with one seed, in one process, and says how it went."""
+class Play(RunOptions):
+    """Plays one scenario with one seed, in one process or by the nodes, and says how it went."""
 
-    scenario: str = argument("file of a scenario, or its name in scenarios/", metavar="SCENARIO")
+    scenario: str = argument("file of a scenario, or its name in scenarios/", default="", metavar="SCENARIO")
     seed: int = option(0, "of all chance", type=seed)
     planner: str = option("", "local planner (default: that of the scenario)", metavar="NAME")
+    over: str = option("process", "what plays it: one process, or the nodes", choices=("process", "ros"))
 
     def run(self) -> int:
-        from laboratory.playing import play
         from laboratory.suites import one_scenario
 
         scenario = one_scenario(self.scenario, self.planner)
+        if self.over == "ros":
+            from laboratory.ros.conducting import conduct
+
+            return conduct(self, scenario, self.seed)
+        self._refuse_what_is_of_runs()
+        return self._play(scenario)
+
+    def _play(self, scenario: Any) -> int:
+        from laboratory.playing import play
+
         result = play(scenario, self.seed)
         print(f"{scenario.label}, seed {self.seed}: {result.outcome.upper()}: {result.reason}")
         if result.seconds is not None:
@@ -24,3 +35,11 @@ class Play:
                 f"  {result.seconds:.1f} s simulated, {result.driven:.1f} m driven, trajectory {result.hash}"
             )
         return 0 if result.is_success else 1
+
+    def _refuse_what_is_of_runs(self) -> None:
+        from planar import SettingsError
+
+        usual = words(Play(scenario=self.scenario, seed=self.seed, planner=self.planner))
+        given = [word for word in words(self) if word not in usual and word.startswith("--")]
+        if given:
+            raise SettingsError(f"{given[0]} is for a run over ROS: add --over ros")

@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, Mapping, Tuple
 
+from laboratory.results.version import version_over_ros
 from laboratory.tasks.task import Task
 from laboratory.worlds.people import People, with_people
 from laboratory.worlds.source import Arena, WorldSource
@@ -20,7 +21,7 @@ class Scenario:
     """``file``: where it was read; ``start``: where the robot begins, of the world; ``boxes``: how many that
     its map does not show stand about, ``boxes_at``: or where; ``people``: who walks about; ``planner``: a
     local one other than the robot's; ``parameters``: of move_base, over those of the robot; ``seconds``:
-    simulated ones that a run may take.
+    simulated ones that a run may take; ``is_over_ros``: whether nodes play it, not one process.
     """
 
     name: str
@@ -39,6 +40,7 @@ class Scenario:
     parameters: Mapping[str, Any] = field(default_factory=dict)
     seconds: float = 600.0
     seeds: Tuple[int, ...] = tuple(range(100))
+    is_over_ros: bool = False
 
     def with_planner(self, planner: str) -> "Scenario":
         """The same with another local planner."""
@@ -50,8 +52,9 @@ class Scenario:
 
     @property
     def label(self) -> str:
-        """Its name, and who plans if that is not the robot's usual planner."""
-        return f"{self.name} [{self.planner}]" if self.planner else self.name
+        """Its name, who plans if that is not the robot's usual planner, and what plays it."""
+        name = f"{self.name} [{self.planner}]" if self.planner else self.name
+        return f"{name} over ROS" if self.is_over_ros else name
 
     def digest(self) -> str:
         """The same for two scenarios only if they are played alike: of all they say, of their files, and of
@@ -63,7 +66,8 @@ class Scenario:
         kinds = [type(self.world).__name__, type(self.task).__name__]
         own = sources_of((self.planner, *(fault.kind for fault in self.faults)))
         files = [_content(path) for path in (*self.world.files(), *self.task.files(), *own)]
-        text = json.dumps([kinds, files, told], sort_keys=True, default=_nameless)
+        software = [version_over_ros()] if self.is_over_ros else []
+        text = json.dumps([kinds, files, software, told], sort_keys=True, default=_nameless)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
     def arena(self, seed: int) -> Arena:

@@ -2,9 +2,10 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Dict, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
+import yaml
 
 from laboratory.tasks.deliveries import play_mission
 from laboratory.tasks.task import Play
@@ -12,6 +13,7 @@ from laboratory.worlds.source import Arena
 from pick_objects import Delivery, Mission
 from planar import Pose2, SettingsError
 from planar.config.yaml_table import Table
+from planar.maps.places import Place
 
 if TYPE_CHECKING:
     from laboratory.scenario.scenario import Scenario
@@ -26,6 +28,31 @@ class Chores:
     count: int = 4
 
     def play(self, scenario: "Scenario", arena: Arena, seed: int) -> Play:
+        return play_mission(scenario, arena, seed, self._mission(arena, seed))
+
+    def places(self, arena: Arena) -> Sequence[Pose2]:
+        return [place.pose for place in arena.places]
+
+    def way(self, scenario: "Scenario", arena: Arena) -> Optional[float]:
+        return None
+
+    def files(self) -> Tuple[Path, ...]:
+        return ()
+
+    def files_for_nodes(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Path]:
+        mission = self._mission(arena, seed)
+        places = {place.name: _place_as_table(place) for place in mission.places.values()}
+        deliveries = [
+            {"name": each.name, "object": each.thing, "from": each.source, "to": each.destination}
+            for each in mission.deliveries
+        ]
+        zones_file, mission_file = folder / "places.yaml", folder / "mission.yaml"
+        zones_file.write_text(yaml.safe_dump(places), encoding="utf-8")
+        told = {"name": mission.name, "deliveries": deliveries}
+        mission_file.write_text(yaml.safe_dump(told, sort_keys=False), encoding="utf-8")
+        return {"zones_file": zones_file, "mission_file": mission_file}
+
+    def _mission(self, arena: Arena, seed: int) -> Mission:
         if len(arena.places) < 2:
             raise SettingsError(f"{arena.title}: chores need a world with places")
         rng = np.random.default_rng([seed, _STREAM])
@@ -35,13 +62,13 @@ class Chores:
             source, destination = rng.choice(names, 2, replace=False).tolist()
             deliveries.append(Delivery(f"chore {number}", f"thing {number}", source, destination))
         places = {place.name: place for place in arena.places}
-        return play_mission(scenario, arena, seed, Mission("chores", places, tuple(deliveries)))
+        return Mission("chores", places, tuple(deliveries))
 
-    def places(self, arena: Arena) -> Sequence[Pose2]:
-        return [place.pose for place in arena.places]
 
-    def files(self) -> Tuple[Path, ...]:
-        return ()
+def _place_as_table(place: Place) -> Dict[str, Any]:
+    """As a file of places has it."""
+    pose = place.pose
+    return {"x": pose.x, "y": pose.y, "yaw": pose.yaw, "radius": place.radius}
 
 
 def read_chores(table: Table, folder: Path) -> Chores:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Mapping, Optional, Sequence, Tuple
 
 from add_markers import CarriedParcel
 from home_service.judging.verdict import collision
@@ -30,14 +30,26 @@ class Deliveries:
     def play(self, scenario: "Scenario", arena: Arena, seed: int) -> Play:
         mission = self._mission(arena)
         parcel = None if self.mission else parcel_of(mission)
-        return replace(play_mission(scenario, arena, seed, mission, parcel), way=self._way(scenario, arena))
+        return replace(play_mission(scenario, arena, seed, mission, parcel), way=self.way(scenario, arena))
 
     def places(self, arena: Arena) -> Sequence[Pose2]:
         places = self._mission(arena).places.values()
         return [pose for place in places for pose in place.poses]
 
+    def way(self, scenario: "Scenario", arena: Arena) -> Optional[float]:
+        """Of the errand; in which order a mission is best carried out is not known here."""
+        if self.mission is not None:
+            return None
+        radius = _conditions(scenario).navigation(NAVIGATION_CONFIG).global_costmap.robot_radius
+        ends = tuple(place.pose for place in places_of_errand(self.zones))
+        return shortest_way(_grid_of(arena), (scenario.start, *ends), radius)
+
     def files(self) -> Tuple[Path, ...]:
         return (self.zones,) if self.mission is None else (self.zones, self.mission)
+
+    def files_for_nodes(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Path]:
+        self._mission(arena)
+        return {"zones_file": self.zones, **({"mission_file": self.mission} if self.mission else {})}
 
     def _mission(self, arena: Arena) -> Mission:
         if self.mission is not None:
@@ -47,14 +59,6 @@ class Deliveries:
         for problem in problems:
             raise SettingsError(f"{self.zones}: {problem}")
         return errand_mission(*ends)
-
-    def _way(self, scenario: "Scenario", arena: Arena) -> Optional[float]:
-        """Of the errand; in which order a mission is best carried out is not known here."""
-        if self.mission is not None:
-            return None
-        radius = _conditions(scenario).navigation(NAVIGATION_CONFIG).global_costmap.robot_radius
-        ends = tuple(place.pose for place in places_of_errand(self.zones))
-        return shortest_way(_grid_of(arena), (scenario.start, *ends), radius)
 
 
 def play_mission(

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Optional, Sequence, Set, Tuple
+from typing import TYPE_CHECKING, Mapping, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, Play
 from laboratory.worlds.barn import score
 from laboratory.worlds.source import Arena
 from move_base_lite import Navigator, Status
-from planar import Pose2, Scan, Twist2
+from planar import Pose2, Scan, SettingsError, Twist2
 from planar.config.yaml_table import Table
 from planar.maps.places import pose_from
 from sim_bridge import Observation, Simulation, robot_named
@@ -55,8 +55,14 @@ class Reach:
     def places(self, arena: Arena) -> Sequence[Pose2]:
         return ()
 
+    def way(self, scenario: "Scenario", arena: Arena) -> Optional[float]:
+        return arena.way
+
     def files(self) -> Tuple[Path, ...]:
         return ()
+
+    def files_for_nodes(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Path]:
+        raise SettingsError("the task reach is played in one process only, not over ROS")
 
 
 class _Drive:

@@ -6,7 +6,7 @@ and one line of the registry.
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Optional, Protocol, Sequence, Tuple
+from typing import TYPE_CHECKING, Mapping, Optional, Protocol, Sequence, Tuple
 
 import numpy as np
 
@@ -55,5 +55,14 @@ class Task(Protocol):
     def places(self, arena: Arena) -> Sequence[Pose2]:
         """Where the robot must be able to stand."""
 
+    def way(self, scenario: "Scenario", arena: Arena) -> Optional[float]:
+        """Metres of the shortest way that does it, if that is known."""
+
     def files(self) -> Tuple[Path, ...]:
         """What the task is read from."""
+
+    def files_for_nodes(self, arena: Arena, seed: int, folder: Path) -> Mapping[str, Path]:
+        """The task as the launch files' ``zones_file`` and, if it is a mission, ``mission_file``.
+
+        What is not there yet is written into ``folder``. Raises PlanarError if nodes cannot play it.
+        """

@@ -2,7 +2,7 @@
 
 import dataclasses
 import threading
-from typing import Any, Dict, List, Mapping
+from typing import Any, Callable, Dict, List, Mapping
 
 import rospy
 from rosgraph_msgs.msg import Clock
@@ -34,12 +34,18 @@ from sim_bridge.scene import Scene
 from sim_bridge.sdf import load_world
 from sim_bridge.simulation import ROBOT_NAME, box_on_floor
 from sim_bridge.views.section import warm_up
+from sim_bridge.world import World
+
+
+def world_of_file(settings: BridgeSettings) -> World:
+    """Raises WorldError."""
+    return load_world(settings.world, model_folders(), settings.strict)
 
 
 class Bridge:
     """Steps a scene as fast as it may, in one thread; callbacks of other threads leave it their orders."""
 
-    def __init__(self):
+    def __init__(self, world_of: Callable[[BridgeSettings], World] = world_of_file):
         threading.Thread(target=warm_up, daemon=True).start()  # while the master is asked this and that
         settings, robot = (_read(kind) for kind in (BridgeSettings, RobotSettings))
         simulation_settings = _read(SimulationSettings, noise_named(settings.noise))
@@ -47,7 +53,7 @@ class Bridge:
         self._clock_steps = _steps_between(settings.clock_rate, rate, "clock_rate")
         joint_steps = _steps_between(settings.joint_state_rate, rate, "joint_state_rate")
         robots = _robots_asked_for(robot)
-        world = load_world(settings.world, model_folders(), settings.strict)
+        world = world_of(settings)
         for warning in world.warnings:
             rospy.logwarn("%s", warning)
         self._orders = Orders()

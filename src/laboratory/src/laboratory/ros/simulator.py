@@ -1,0 +1,20 @@
+"""The node ``sim_bridge`` with the world of a scenario."""
+
+from pathlib import Path
+
+from laboratory.scenario import read_scenario
+from planar_ros.node.shell import run
+from planar_ros.step import transport
+from sim_bridge.config import BridgeSettings
+from sim_bridge.ros.node import Bridge
+from sim_bridge.world import World
+
+
+def main():
+    transport.install()
+    run("sim_bridge", lambda: Bridge(_world_of).run())
+
+
+def _world_of(settings: BridgeSettings) -> World:
+    """``~world`` is the file of a scenario here. Raises PlanarError."""
+    return read_scenario(Path(settings.world)).arena(settings.seed).world

@@ -1,0 +1,84 @@
+"""What nodes are told of a scenario, and what is read from what they leave."""
+
+import json
+from dataclasses import replace
+
+import pytest
+import yaml
+
+from laboratory.over_ros import _play_of
+from laboratory.scenario import read_scenario
+from laboratory.staging import stage
+from laboratory.suites import FOLDER, scenarios_of
+from pick_objects import load_mission
+from planar import Pose2, SettingsError, load_map
+from planar.maps.places import load_places
+from sim_bridge.faults import Fault, load_faults
+
+ERRAND = FOLDER / "home_errand.yaml"
+
+
+def test_chores_of_a_generated_home_are_told_as_files(tmp_path):
+    homes = read_scenario(FOLDER / "homes.yaml")
+    arena = homes.arena(3)
+    arguments = stage(homes, 3, tmp_path)
+    assert load_map(arguments["map_file"]).cells.shape == arena.grid.cells.shape
+    mission = load_mission(
+        arguments["mission_file"], load_places(arguments["zones_file"]), grid=load_map(arguments["map_file"])
+    )
+    assert mission == homes.task._mission(arena, 3)
+    assert arguments["marker_mode"] == "mission"
+
+
+def test_faults_start_noise_and_parameters_are_told_as_files(tmp_path):
+    faults = (Fault("scan_noisy", 8.0, 12.0, 3.0), Fault("kidnapped", 4.0, strength=1.0, seed=3))
+    parameters = {"DWAPlannerROS": {"max_vel_x": 0.4}}
+    scenario = replace(
+        read_scenario(ERRAND), start=Pose2(0.5, 0.1, 0.2), faults=faults, parameters=parameters, planner="x/Y"
+    )
+    arguments = stage(scenario, 0, tmp_path)
+    assert load_faults(arguments["faults_file"]) == faults
+    told = yaml.safe_load(arguments["parameters_file"].read_text())
+    assert told["/amcl"] == {"initial_pose_x": 0.5, "initial_pose_y": 0.1, "initial_pose_a": 0.2}
+    assert told["/move_base"] == parameters
+    assert told["/sim_bridge"]["range_noise"] == scenario.simulation.range_noise
+    assert (arguments["planner"], arguments["marker_mode"]) == ("x/Y", "service")
+
+
+def test_what_nodes_cannot_play_is_said_before_anything_is_played():
+    scenarios, complaints = scenarios_of(["fields"], is_over_ros=True)
+    assert not scenarios
+    assert "fields.yaml: the task reach is played in one process only" in complaints[0]
+
+
+def test_results_over_ros_have_keys_of_their_own():
+    scenario = read_scenario(ERRAND)
+    over_ros = replace(scenario, is_over_ros=True)
+    assert over_ros.digest() != scenario.digest()
+    assert over_ros.label == "home_errand over ROS"
+
+
+@pytest.mark.parametrize(
+    ("result", "outcome"),
+    [
+        ({"success": True, "collisions": []}, "success"),
+        ({"success": False, "collisions": ["box_1::link"]}, "collision"),
+        ({"success": False, "simulated_seconds": 301.0}, "timeout"),
+        ({"success": False, "simulated_seconds": 20.0}, "failure"),
+    ],
+)
+def test_a_run_folder_is_read_as_a_result(tmp_path, result, outcome):
+    (tmp_path / "result.json").write_text(json.dumps({"reason": "said", **result}))
+    still = " 0 0 0 0 0.0 1.0\n"
+    (tmp_path / "trajectory_true.tum").write_text(f"0.0 0.0{still}2.0 1.0{still}")
+    (tmp_path / "trajectory_estimated.tum").write_text(f"1.0 0.75{still}")
+    play = _play_of(tmp_path, 300.0)
+    assert (play.outcome, play.reason) == (outcome, "said")
+    assert play.localization_error.tolist() == [0.25]
+    assert play.trajectory.tolist() == [[0.0, 0.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0]]
+
+
+def test_a_graph_that_never_ran_is_told_by_its_reason(tmp_path):
+    (tmp_path / "result.json").write_text(json.dumps({"success": False, "reason": "no ROS master"}))
+    with pytest.raises(SettingsError, match="no ROS master"):
+        _play_of(tmp_path, 300.0)

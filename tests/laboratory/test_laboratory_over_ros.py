@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+"""The graph of nodes plays scenarios of the laboratory."""
+
+import csv
+import os
+import signal
+import subprocess
+import tempfile
+import unittest
+import uuid
+from pathlib import Path
+
+import rostest
+from processes import processes_with
+from waiting import wait_until
+
+SCRIPT = Path(__file__).resolve().parents[2] / "scripts/evaluate.sh"
+MOVE_BASE = "__name:=move_base"
+RUN_SECONDS, START_SECONDS, END_SECONDS, LEFT_SECONDS = 200.0, 90.0, 60.0, 20.0
+
+
+class OverRosTest(unittest.TestCase):
+    def test_a_campaign_keeps_what_the_nodes_did(self):
+        with tempfile.TemporaryDirectory() as folder:
+            campaign = _campaign(folder, "home_boxes", "fields", "--seeds", "4")
+            said, _ = campaign.communicate(timeout=RUN_SECONDS)
+            self.assertEqual(campaign.returncode, 2, said)
+            self.assertIn("the task reach is played in one process only", said)
+            with (Path(folder) / "results.csv").open(encoding="utf-8") as table:
+                (row,) = csv.DictReader(table)
+        print(f"{row['outcome']}: at most {row['localization_max']} m off, {row['driven']} m driven")
+        self.assertEqual(row["outcome"], "success", said)
+        self.assertLess(float(row["localization_max"]), 0.2)
+        self.assertGreater(float(row["driven"]), 0.9 * float(row["way"]))
+
+    def test_a_campaign_that_is_interrupted_leaves_no_process(self):
+        mark = str(uuid.uuid4())
+        with tempfile.TemporaryDirectory() as folder:
+            campaign = _campaign(folder, "home_mission", "--seeds", "4", HOME_SERVICE_TEST=mark)
+            wait_until("move_base", lambda: _has_move_base(mark), START_SECONDS)
+            campaign.send_signal(signal.SIGINT)
+            said, _ = campaign.communicate(timeout=END_SECONDS)
+            self.assertEqual(campaign.returncode, 130, said)
+            wait_until("the end of all nodes", lambda: not processes_with(mark), LEFT_SECONDS)
+
+
+def _campaign(folder, *words, **environment):
+    return subprocess.Popen(
+        [str(SCRIPT), *words, "--over", "ros", "--output", folder],
+        env={**os.environ, **environment},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+
+
+def _has_move_base(mark):
+    return any(MOVE_BASE in command for command in processes_with(mark))
+
+
+if __name__ == "__main__":
+    rostest.rosrun("home_service_tests", "over_ros", OverRosTest)
