@@ -1,10 +1,11 @@
 """A run made again from what its folder tells of it."""
 
 import json
+import shlex
 from pathlib import Path
 from typing import Any, Dict
 
-from home_service import cli
+from home_service import cli, commands
 from home_service.judging.trace import first_difference, read_trace
 from planar import SettingsError
 from planar.files.reading import read_text
@@ -21,6 +22,9 @@ def reproduce(folder: Path) -> int:
             print(f"{name} is {version} now, was {before['versions'].get(name, 'unknown')}")
     for reason in before.get("not_repeatable_because", ()):
         print(f"that run may not be repeatable: {reason}")
+    if before["command"] not in commands.FOLDER.names():
+        again = shlex.join([f"./scripts/{before['command']}.sh", *before["arguments"]])
+        raise SettingsError(f"{folder}: only its own command runs this again: {again}")
     parent = folder / "again"
     known = set(parent.glob("*/result.json"))
     cli.main([before["command"], *before["arguments"], "--output", str(parent)])
