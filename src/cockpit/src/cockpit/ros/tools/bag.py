@@ -1,8 +1,6 @@
 """Bag: what is said recorded in a file, a file played, paused and ended (rqt_bag, rosbag)."""
 
 import os
-import signal
-import subprocess
 from pathlib import Path
 from typing import List, Optional
 
@@ -11,13 +9,14 @@ from std_srvs.srv import SetBool
 from cockpit.errors import CockpitError
 from cockpit.models.bag_files import bags_below, new_bag
 from cockpit.models.text import amount
+from cockpit.program import Program
 from cockpit.ros.aside import Aside
 from cockpit.ros.calls import call
 from cockpit.ros.tool import Desk
 from planar_ros.bags.recording import Recording
 
 NONE, PAUSE = "(none)", "/pause_playback"
-END_SECONDS = 5.0
+ROSBAG = ("rosrun", "rosbag")
 
 
 class Bag:
@@ -89,7 +88,7 @@ class Bag:
         if bad:
             raise CockpitError(f"'{bad[0]}' is no topic: its name begins with /")
         self._file = path
-        self._recorder = Program(["record", "-O", str(path), *(topics or ["--all"])])
+        self._recorder = Program([*ROSBAG, "record", "-O", str(path), *(topics or ["--all"])])
 
     def _end_recorder(self) -> None:
         if self._recorder is not None:
@@ -108,7 +107,7 @@ class Bag:
             words = ["play", "--rate", f"{rate:g}", *(["--clock"] if clock else []), *map(str, bags)]
 
             def start() -> None:
-                self._player = Program(words)
+                self._player = Program([*ROSBAG, *words])
 
             return start
 
@@ -130,40 +129,6 @@ class Bag:
     def _end_player(self) -> None:
         if self._player is not None:
             self._player.end()
-
-
-class Program:
-    """A program of the package rosbag, which is ended as by Ctrl-C."""
-
-    def __init__(self, words: List[str]):
-        self._process = subprocess.Popen(
-            ["rosrun", "rosbag", *words],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            start_new_session=True,
-        )
-
-    @property
-    def is_running(self) -> bool:
-        return self._process.poll() is None
-
-    def complaints(self) -> List[str]:
-        """What it said at its end, if that was a bad one."""
-        if self.is_running or self._process.returncode in (0, -signal.SIGINT):
-            return []
-        assert self._process.stderr is not None
-        lines = self._process.stderr.read().decode(errors="replace").split("\n")
-        return [line.strip()[:200] for line in lines if line.strip()][-1:]
-
-    def end(self) -> None:
-        if self.is_running:
-            os.killpg(self._process.pid, signal.SIGINT)
-            try:
-                self._process.wait(END_SECONDS)
-            except subprocess.TimeoutExpired:
-                os.killpg(self._process.pid, signal.SIGKILL)
-                self._process.wait()
 
 
 TOOL = Bag
