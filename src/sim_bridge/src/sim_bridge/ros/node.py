@@ -21,7 +21,7 @@ from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.noise import noise_named
 from sim_bridge.pacing import Pacer
 from sim_bridge.robots import robot_named
-from sim_bridge.ros.cli import find_file, model_folders
+from sim_bridge.ros.describing import find_file, model_folders
 from sim_bridge.ros.fault_control import FaultControl
 from sim_bridge.ros.fleet import Fleet
 from sim_bridge.ros.gazebo import GazeboInterface

@@ -54,7 +54,7 @@ def main() -> None:
 def _read(kind: str, name: str, text: str) -> Union[bytes, str]:
     from cockpit.scene.reading import model_look, robot_look, world_look
     from planar import PlanarError
-    from sim_bridge.ros.cli import find_file, model_folders
+    from sim_bridge.ros.describing import find_file, model_folders
 
     try:
         if kind == WORLD:

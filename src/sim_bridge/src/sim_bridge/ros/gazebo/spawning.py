@@ -12,7 +12,7 @@ from sim_bridge.description import RobotProfile, read_prop, read_sdf_robot, read
 from sim_bridge.errors import NoDriveError, UnknownEntityError, WorldError
 from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.physics.motion import Motion
-from sim_bridge.ros.cli import find_file
+from sim_bridge.ros.describing import find_file
 from sim_bridge.ros.fleet import Fleet
 from sim_bridge.ros.gazebo.server import SCOPE_HINT, Server, frame_named
 from sim_bridge.ros.gazebo.spawned import Spawned

@@ -1,42 +1,18 @@
-"""Command lines that need no ROS master."""
+"""What a world looks like from above: its true map, and a picture."""
 
 import argparse
 import io
-import os
 import sys
 from pathlib import Path
-from typing import List, Optional
-from urllib.parse import unquote, urlparse
 
 import numpy as np
 from PIL import Image
-from rospkg import ResourceNotFound, RosPack
 
 from planar import PlanarError, save_map, write_atomically
-from sim_bridge.description.frames import with_frames_of
-from sim_bridge.robots import ROBOTS, robot_named
+from sim_bridge.ros.describing import model_folders
 from sim_bridge.sdf import load_world
-from sim_bridge.sdf.includes import resolve
 from sim_bridge.views.picture import picture_from_above
 from sim_bridge.views.true_map import true_map
-
-
-def model_folders() -> List[Path]:
-    """Where Gazebo looks for models: the folders of GAZEBO_MODEL_PATH, then the user's own."""
-    listed = [Path(folder) for folder in os.environ.get("GAZEBO_MODEL_PATH", "").split(":") if folder]
-    return [*listed, Path("~/.gazebo/models").expanduser()]
-
-
-def find_file(uri: str) -> Optional[Path]:
-    """The file that a robot's description names: ``package://``, ``model://``, ``file://`` or a path."""
-    parts = urlparse(uri)
-    if parts.scheme != "package":
-        return resolve(uri, Path.cwd(), model_folders())
-    try:
-        path = Path(RosPack().get_path(parts.netloc)) / unquote(parts.path).lstrip("/")
-    except ResourceNotFound:
-        return None
-    return path if path.exists() else None
 
 
 def render_map() -> None:
@@ -86,18 +62,3 @@ def _save_picture(picture: np.ndarray, path: Path) -> None:
     content = io.BytesIO()
     Image.fromarray(picture).save(content, "PNG")
     write_atomically(path, content.getvalue())
-
-
-def robot_description() -> None:
-    """Prints the URDF of a robot."""
-    parser = argparse.ArgumentParser(
-        prog="robot_description", description="Prints the URDF of a robot that sim_bridge simulates."
-    )
-    parser.add_argument("robot", metavar="ROBOT", help=", ".join(ROBOTS) + "; or a .urdf or .xacro file")
-    parser.add_argument("--frames", metavar="NAME", help="puts NAME/ before the names of its frames")
-    arguments = parser.parse_args()
-    try:
-        urdf = robot_named(arguments.robot, find_file).description()
-    except PlanarError as error:
-        parser.exit(2, f"robot_description: error: {error}\n")
-    print(with_frames_of(arguments.frames, urdf) if arguments.frames else urdf)
