@@ -15,6 +15,7 @@ from rosgraph import get_master_uri
 from threadpoolctl import threadpool_limits
 
 from planar import PlanarError
+from planar_ros.node.backlog import let_many_wait
 from planar_ros.node.entry import INTERRUPTS
 
 # Longer than any node needs to end in order.
@@ -34,6 +35,7 @@ def run(node_name: str, start: Callable[[], object]) -> None:
     sys.stdout, sys.stderr = _Forgiving(sys.stdout), _Forgiving(sys.stderr)
     # A node's matrices are small: more threads of BLAS would only wait for work, in busy loops.
     threadpool_limits(1, user_api="blas")
+    let_many_wait()
     try:
         rospy.init_node(node_name, disable_signals=True)
     except OSError as error:
