@@ -14,6 +14,7 @@ from planar import Pose2
 from planar.config.listing import Section
 from planar.config.parameters import Bounds, check_parameters, parameter
 from planar.config.settings import check
+from planar.plugins import check_name
 
 MOTION_MODELS = ("diff", "omni", "diff-corrected", "omni-corrected")
 SENSOR_MODELS = ("likelihood_field", "likelihood_field_prob", "beam")
@@ -29,7 +30,6 @@ AS_AMCL: Dict[str, Any] = {
 def _check_plugins(settings: "LocalizerSettings") -> None:
     # Late: the contracts are made of these settings.
     from amcl_lite.motion.own_model import CONTRACT as MOTION
-    from amcl_lite.own_model import check_name
     from amcl_lite.sensor.own_model import CONTRACT as SENSOR
 
     if settings.motion_plugin:

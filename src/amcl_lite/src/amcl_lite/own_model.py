@@ -6,8 +6,7 @@ from typing import Any, Tuple
 import numpy as np
 
 from amcl_lite.errors import LocalizationError
-from planar import SettingsError
-from planar.plugins import Contract, load
+from planar.plugins import Contract, blamed, load
 
 
 class OwnModel:
@@ -17,27 +16,15 @@ class OwnModel:
         """Raises SettingsError with what it lacks, LocalizationError if it cannot be made."""
         self._name = name
         make: Any = load(name, contract)
-        try:
+        with blamed(name, LocalizationError):
             self._model = make(*given)
-        except Exception as error:
-            raise self._fault(f"raised {type(error).__name__}: {error}") from error
 
     def ask(self, method: str, shape: Tuple[int, ...], *given: Any, most: float = math.inf) -> np.ndarray:
         """Its answer, finite numbers of that shape, none larger than ``most``. Raises LocalizationError."""
-        try:
+        with blamed(self._name, LocalizationError):
             told = np.array(getattr(self._model, method)(*given), dtype=float)
-        except Exception as error:
-            raise self._fault(f"raised {type(error).__name__}: {error}") from error
         if told.shape != shape or not (np.isfinite(told) & (np.abs(told) <= most)).all():
             up_to = f" up to {most:g}" if most < math.inf else ""
-            raise self._fault(f"gave no {' by '.join(map(str, shape))} finite numbers{up_to}")
+            numbers = " by ".join(map(str, shape))
+            raise LocalizationError(f"{self._name} gave no {numbers} finite numbers{up_to}")
         return told
-
-    def _fault(self, text: str) -> LocalizationError:
-        return LocalizationError(f"{self._name} {text}")
-
-
-def check_name(parameter: str, name: str, contract: Contract) -> None:
-    """Raises SettingsError if there is no such class, or with what it lacks."""
-    if load(name, contract) is None:
-        raise SettingsError(f"{parameter} must be like my_package.my_module/MyModel, got {name!r}")

@@ -8,10 +8,11 @@ that was installed by pip may offer its classes under names of its own.
 import importlib
 import importlib.util
 import inspect
+from contextlib import contextmanager
 from dataclasses import dataclass, is_dataclass
 from importlib import metadata
 from pathlib import Path
-from typing import Any, Iterable, List, Optional, Tuple
+from typing import Any, Iterable, Iterator, List, Optional, Tuple, Type
 
 from planar.errors import SettingsError
 
@@ -74,6 +75,22 @@ def load(name: str, contract: Contract) -> Optional[type]:
     if lacks:
         raise PluginError(f"{name} is no {contract.kind}: {', '.join(lacks)}")
     return found
+
+
+def check_name(parameter: str, name: str, contract: Contract) -> None:
+    """Raises PluginError if there is no such class, or with what it lacks."""
+    if load(name, contract) is None:
+        example = f"my_package.my_module/My{contract.kind.rpartition(' ')[2].title()}"
+        raise PluginError(f"{parameter} must be like {example}, got {name!r}")
+
+
+@contextmanager
+def blamed(name: str, failure: Type[Exception]) -> Iterator[None]:
+    """Around code of other people: whatever that raises is a ``failure`` in its name."""
+    try:
+        yield
+    except Exception as error:
+        raise failure(f"{name} raised {type(error).__name__}: {error}") from error
 
 
 def find(name: str) -> Any:

@@ -9,6 +9,7 @@ from typing import Tuple
 from planar.config.listing import Section
 from planar.config.parameters import Bounds, check_parameters, parameter
 from planar.config.settings import check
+from planar.plugins import check_name
 
 # Parameters of gmapping that steer its particle filter and have no counterpart in a pose graph.
 WITHOUT_EFFECT = (
@@ -80,6 +81,7 @@ class MapperSettings:
     min_response: float = parameter(
         0.2, "share of a scan that must fit; otherwise odometry is believed", bounds=Bounds(0.0, 1.0)
     )
+    matcher_plugin: str = parameter("", "your own matcher of scans, package.module/Matcher")
     close_loops: bool = parameter(True, "recognise places seen before and mend the map")
     closure_interval: int = parameter(
         3, "kept scans from one search for closures to the next", bounds=Bounds(1)
@@ -96,6 +98,10 @@ class MapperSettings:
         if self.max_range > 0.0:
             within = f"at most maxRange ({self.max_range:g})"
             check(self.usable_range <= self.max_range, "usable_range", within, self.usable_range)
+        if self.matcher_plugin:
+            from slam_lite.matching.scan_matcher import CONTRACT  # late: it is made of these settings
+
+            check_name("matcher_plugin", self.matcher_plugin, CONTRACT)
 
 
 @dataclass(frozen=True)

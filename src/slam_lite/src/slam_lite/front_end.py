@@ -9,9 +9,10 @@ import numpy as np
 
 from planar import Pose2
 from slam_lite.config import MapperSettings
-from slam_lite.matching.correlative import Window, search_far, search_near
+from slam_lite.matching.correlative import Window, search_far
 from slam_lite.matching.local_map import LocalMap, Match
 from slam_lite.matching.refinement import refine
+from slam_lite.matching.scan_matcher import Prediction, scan_matcher_of
 from slam_lite.surface import Surface
 from slam_lite.view import View
 
@@ -114,8 +115,12 @@ class FrontEnd:
     """
 
     def __init__(self, settings: MapperSettings, scans, base_in_track: Optional[Pose2] = None):
-        """``scans``: RecentScans or KnownScans. ``base_in_track``: at the start; default: as in odometry."""
+        """``scans``: RecentScans or KnownScans. ``base_in_track``: at the start; default: as in odometry.
+
+        Raises MatchingError if a matcher of somebody's own cannot be made.
+        """
         self._settings = settings
+        self._matcher = scan_matcher_of(settings)
         self._scans = scans
         self._last_in_odom: Optional[Pose2] = None
         self._last_in_track = base_in_track
@@ -124,7 +129,10 @@ class FrontEnd:
         self.odometry_is_stuck = False
 
     def track(self, base_in_odom: Pose2, surface: Surface) -> Tracked:
-        """Follows one scan, taken where odometry believed ``base_in_odom``."""
+        """Follows one scan, taken where odometry believed ``base_in_odom``.
+
+        Raises MatchingError, and is as it was then, for what goes wrong in a matcher of somebody's own.
+        """
         last_in_track = base_in_odom if self._last_in_track is None else self._last_in_track
         motion = Pose2() if self._last_in_odom is None else self._last_in_odom.inverse() @ base_in_odom
         variance = self._motion_variance(motion)
@@ -155,24 +163,19 @@ class FrontEnd:
         return True
 
     def _match(self, surface: Surface, last_in_track: Pose2, motion: Pose2, variance: np.ndarray) -> Match:
-        prior = np.diag(1.0 / variance)
         predicted = last_in_track @ motion
         self._scans.gather(predicted)
         local_map = self._scans.local_map
-        if local_map.count == 0:
-            return Match(predicted, prior, 1.0)
-        window = Window(
-            float(np.clip(3.0 * math.sqrt(variance[0]), 0.1, 0.4)),
-            float(np.clip(3.0 * math.sqrt(variance[2]), 0.1, 0.5)),
-        )
         doubt = variance if moves(motion) else _STEADY_MOTION_VARIANCE
         new_share = self._scans.new_share(surface, predicted)
-        start = search_near(surface, local_map, predicted, window, doubt, new_share)
-        match = refine(surface, local_map, start, predicted, prior)
+        prediction = Prediction(predicted, variance, doubt, new_share)
+        if local_map.count == 0:
+            return Match(predicted, prediction.information, 1.0)
+        match = self._matcher.match(surface, local_map, prediction)
         if match.response < _POOR_RESPONSE:
             match = self._search_wide(surface, (predicted, last_in_track), match)
         if match.response < self._settings.min_response:
-            return Match(predicted, prior, match.response)
+            return Match(predicted, prediction.information, match.response)
         return match
 
     def _search_wide(self, surface: Surface, centers: Tuple[Pose2, ...], match: Match) -> Match:

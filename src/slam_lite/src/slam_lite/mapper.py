@@ -77,7 +77,8 @@ class Mapper:
     def insert(self, base_in_odom: Pose2, scan: Scan) -> Optional[MapUpdate]:
         """Takes one scan in; None if it says nothing new because the robot stands still.
 
-        Raises OutOfRangeError for odometry at which no robot can be.
+        Raises OutOfRangeError for odometry at which no robot can be, MatchingError if a matcher of somebody's
+        own fails; the next scan is taken as if this one had not been made then.
         """
         check_place(base_in_odom, "odometry")
         if self._pause.lasts(base_in_odom, scan.stamp) and not self._front_end.odometry_is_stuck:
@@ -241,7 +242,7 @@ class Follower:
         self._is_to_be_found = False
 
     def insert(self, base_in_odom: Pose2, scan: Scan) -> Optional[PoseUpdate]:
-        """Follows one scan; None if the robot stands still. Raises OutOfRangeError, as ``Mapper.insert``."""
+        """Follows one scan; None if the robot stands still. Raises what ``Mapper.insert`` raises."""
         check_place(base_in_odom, "odometry")
         if self._pause.lasts(base_in_odom, scan.stamp) and not self._front_end.odometry_is_stuck:
             return None

@@ -6,7 +6,7 @@ from typing import Any, Callable, Optional, Tuple, Type
 import numpy as np
 
 from planar import Scan, Twist2
-from planar.plugins import Contract, PluginError, load
+from planar.plugins import Contract, PluginError, blamed, load
 from sim_bridge.errors import FaultError
 from sim_bridge.faults.kind import FaultKind, Stage
 from sim_bridge.sensors.odometry import Odometry
@@ -64,10 +64,8 @@ class GuardedFault(FaultKind):
         self._watched(self._kind.end, stage)
 
     def _watched(self, do: Callable[..., Any], *given: Any) -> Any:
-        try:
+        with blamed(self._name, FaultError):
             return do(*given)
-        except Exception as error:
-            raise FaultError(f"{self._name} raised {type(error).__name__}: {error}") from error
 
     def _checked(self, method: str, expected: type, told: Any) -> Any:
         if told is not None and not isinstance(told, expected):

@@ -23,6 +23,8 @@ class LocalMap:
     """Surface points around a centre; each grid cell knows the nearest one and how likely a hit there is.
 
     The grid is square, ``2 * reach`` metres wide, in the frame in which the poses given to ``add`` are.
+    ``nearest``: indices, -1 for none near, into ``points_xy`` and ``normals_xy``, float32 (N, 2), metres from
+    the grid's corner, of which the first ``count`` count. ``likelihood``: 0 to 255.
     """
 
     def __init__(self, resolution: float = 0.05, reach: float = 25.0):

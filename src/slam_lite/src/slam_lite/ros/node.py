@@ -40,7 +40,7 @@ class SlamNode:
         self._scan_count = 0
         if settings.state:
             self._mapping.load(settings.state)
-        warm_up()
+        warm_up(settings.matcher_plugin)
         self._connect()
 
     def _connect(self):

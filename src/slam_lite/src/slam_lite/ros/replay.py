@@ -17,6 +17,7 @@ from planar_ros.bags.replaying import (
 from planar_ros.bags.scan_log import LoggedScan, ScanLog
 from slam_lite.config import NodeSettings
 from slam_lite.mapper import Mapper
+from slam_lite.matching.scan_matcher import MatchingError
 from slam_lite.trajectory import Trajectory
 
 
@@ -48,7 +49,11 @@ def _replay(options: argparse.Namespace) -> int:
     log = ScanLog(options.bag, options.scan_topic, options.base_frame, options.odom_frame, warn)
 
     def insert(logged: LoggedScan) -> None:
-        update = mapper.insert(logged.base_in_odom, logged.scan)
+        update = None
+        try:
+            update = mapper.insert(logged.base_in_odom, logged.scan)
+        except MatchingError as error:
+            warn(f"{options.bag}: scan ignored: {error}")
         trajectory.add(logged.base_in_odom, logged.scan, update)
 
     exit_code = work_through(log, insert, "mapping", options.progress)

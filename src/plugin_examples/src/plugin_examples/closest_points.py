@@ -1,0 +1,60 @@
+"""A matcher of scans: each point is drawn to the nearest one of the map (Besl and McKay, 1992: ICP).
+
+Pairs that are far apart count less the farther apart they are, and odometry is believed as far as it is sure.
+"""
+
+from typing import Tuple
+
+import numpy as np
+
+from planar import Pose2
+from slam_lite.config import MapperSettings
+from slam_lite.matching.local_map import LocalMap, Match
+from slam_lite.matching.scan_matcher import Prediction
+from slam_lite.surface import Surface
+
+STEPS, ENOUGH = 30, 1e-4
+# Metres: how far apart a pair counts a quarter, how far it lies on the map, how far apart it is by chance.
+OUTLIER, PAIRED, SIGMA = 0.1, 0.1, 0.05
+
+
+class ClosestPoints:
+    def __init__(self, settings: MapperSettings):
+        pass
+
+    def match(self, surface: Surface, local_map: LocalMap, prediction: Prediction) -> Match:
+        believed = local_map.to_grid(prediction.base_pose)
+        pose = believed.copy()
+        for _ in range(STEPS):
+            information, gradient, _ = _pull(surface, local_map, pose)
+            to_belief = prediction.information @ (believed - pose)
+            step = np.linalg.solve(information + prediction.information, gradient + to_belief)
+            pose += step
+            if np.abs(step).max() < ENOUGH:
+                break
+        information, _, response = _pull(surface, local_map, pose)
+        return Match(local_map.from_grid(pose), information + prediction.information, response)
+
+
+def _pull(surface: Surface, local_map: LocalMap, pose: np.ndarray) -> Tuple[np.ndarray, np.ndarray, float]:
+    """Information (3, 3) and gradient (3,) of all pairs, and the share of the points that are paired."""
+    arms = Pose2(0.0, 0.0, pose[2]).transform_points(surface.points_xy.astype(float))
+    points_xy = arms + pose[:2]
+    cells = np.floor(points_xy / local_map.resolution).astype(int)
+    inside = ((cells >= 0) & (cells < len(local_map.nearest))).all(axis=1)
+    nearest = local_map.nearest[cells[inside, 1], cells[inside, 0]]
+    arms, nearest, points_xy = (
+        arms[inside][nearest >= 0],
+        nearest[nearest >= 0],
+        points_xy[inside][nearest >= 0],
+    )
+    apart = local_map.points_xy[nearest] - points_xy
+    squared = (apart**2).sum(axis=1)
+    weights = (1.0 + squared / OUTLIER**2) ** -2 / SIGMA**2
+    # How a point moves with x, y and yaw of the base.
+    moves = np.zeros((len(arms), 2, 3))
+    moves[:, 0, 0] = moves[:, 1, 1] = 1.0
+    moves[:, 0, 2], moves[:, 1, 2] = -arms[:, 1], arms[:, 0]
+    information = np.einsum("n,nij,nik->jk", weights, moves, moves)
+    gradient = np.einsum("n,nij,ni->j", weights, moves, apart)
+    return information, gradient, float((squared < PAIRED**2).sum() / max(len(surface), 1))
