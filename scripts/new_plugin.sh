@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Usage: ./scripts/new_plugin.sh NAME KIND [options]
 #
-# Lays out a catkin package in src/ with a class of your own that move_base_lite finds by its name, and its test.
-# KIND: local_planner, global_planner, recovery_behavior or costmap_layer (docs/plugins.md).
+# Lays out a catkin package in src/ with a class of your own that is found by its name, and its test.
+# KIND: local_planner, global_planner, recovery_behavior, costmap_layer, sensor_model, motion_model, scan_matcher, fault
+# or world_generator (docs/plugins.md).
 # Sets everything up first if need be. Exit code: 0 success, 2 bad input, 130 interrupted.
 #
 #   --source FOLDER  where packages are (default: src)

@@ -1,12 +1,12 @@
 """A package laid out for somebody's own plugin is one that works as it is."""
 
 import importlib
+import runpy
 import sys
 
 import pytest
 
-from home_service.commands.new_plugin import KINDS, NewPlugin
-from move_base_lite.check import KITS
+from home_service.commands.new_plugin import KINDS, TEMPLATES, NewPlugin
 from planar import SettingsError
 
 
@@ -14,12 +14,17 @@ from planar import SettingsError
 def test_what_is_laid_out_is_found_by_its_name_and_keeps_its_contract(kind, tmp_path, monkeypatch, capsys):
     assert NewPlugin(f"my_{kind}", kind, tmp_path).run() == 0
     monkeypatch.syspath_prepend(str(tmp_path / f"my_{kind}/src"))
-    name = f"my_{kind}.{kind}/My{kind.title().replace('_', '')}"
-    assert name in capsys.readouterr().out
-    for check in KITS[kind].checks:
-        check(KITS[kind].registry.find(name))
+    assert f"my_{kind}.{kind}/My{kind.title().replace('_', '')}" in capsys.readouterr().out
+    test = runpy.run_path(str(tmp_path / f"my_{kind}/test/test_my_{kind}.py"))
+    assert test["KIT"].checks
+    for check in test["KIT"].checks:
+        test["test_it_keeps_its_contract"](check)
     del sys.modules[f"my_{kind}"]
     importlib.invalidate_caches()
+
+
+def test_every_kind_has_something_to_begin_with():
+    assert sorted(KINDS) == sorted(path.stem for path in TEMPLATES.glob("*.py"))
 
 
 @pytest.mark.parametrize("name", ["My Planner", "2fast", "planner-1"])

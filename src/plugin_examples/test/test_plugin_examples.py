@@ -2,14 +2,19 @@
 
 import pytest
 
-from move_base_lite.check import KITS
+from amcl_lite.check import KITS as LOCALIZATION
+from move_base_lite.check import KITS as NAVIGATION
+from slam_lite.check import KITS as MAPPING
 
+KITS = {**NAVIGATION, **LOCALIZATION, **MAPPING}
 EXAMPLES = [
     ("local_planner", "plugin_examples.pure_pursuit/PurePursuit"),
     ("local_planner", "plugin_examples.potential_field/PotentialField"),
     ("local_planner", "plugin_examples.learned/Learned"),
     ("global_planner", "plugin_examples.rrt_star/RrtStar"),
     ("costmap_layer", "plugin_examples.social_distance/SocialDistance"),
+    ("sensor_model", "plugin_examples.short_readings/ShortReadings"),
+    ("scan_matcher", "plugin_examples.closest_points/ClosestPoints"),
 ]
 CASES = {
     f"{name.rpartition('/')[2]}-{check.__name__}": (KITS[kind], name, check)
@@ -21,4 +26,4 @@ CASES = {
 @pytest.mark.parametrize("case", CASES)
 def test_an_example_keeps_its_contract(case):
     kit, name, check = CASES[case]
-    check(kit.registry.find(name))
+    check(kit.find(name))

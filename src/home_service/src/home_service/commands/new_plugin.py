@@ -7,27 +7,41 @@ from home_service.options import ROOT
 from supervision.command_line import argument, option
 
 TEMPLATES = ROOT / "src/home_service/templates"
-KINDS = tuple(sorted(path.stem for path in TEMPLATES.glob("*.py")))
 PACKAGE_NAME = re.compile(r"[a-z][a-z0-9_]*")
-# How each kind is chosen, for people.
-CHOSEN = {
-    "local_planner": "--planner {plugin}, or base_local_planner: {plugin}",
-    "global_planner": "base_global_planner: {plugin}",
-    "recovery_behavior": "recovery_behaviors: [{{name: mine, type: {plugin}}}]",
-    "costmap_layer": "local_costmap/plugins: [..., {{name: mine, type: {plugin}}}]",
+
+
+@dataclass(frozen=True)
+class Kind:
+    """``user``: the package that it is for; ``chosen``: how it is chosen there, for people."""
+
+    user: str
+    chosen: str
+
+
+KINDS = {
+    "local_planner": Kind("move_base_lite", "--planner {plugin}, or base_local_planner: {plugin}"),
+    "global_planner": Kind("move_base_lite", "base_global_planner: {plugin}"),
+    "recovery_behavior": Kind("move_base_lite", "recovery_behaviors: [{{name: mine, type: {plugin}}}]"),
+    "costmap_layer": Kind("move_base_lite", "local_costmap/plugins: [..., {{name: mine, type: {plugin}}}]"),
+    "sensor_model": Kind("amcl_lite", "sensor_plugin: {plugin}"),
+    "motion_model": Kind("amcl_lite", "motion_plugin: {plugin}"),
+    "scan_matcher": Kind("slam_lite", "matcher_plugin: {plugin}"),
+    "fault": Kind("sim_bridge", "faults: [{{kind: {plugin}, start: 8.0}}] in a mission or a scenario"),
+    "world_generator": Kind("laboratory", "world: {{{plugin}: {{}}}} in a scenario"),
 }
+# By every plugin, beside the package that it is for.
+USED = ("planar",)
 PACKAGE_XML = """<?xml version="1.0"?>
 <package format="3">
   <name>{package}</name>
   <version>0.1.0</version>
-  <description>{title}: a plugin for move_base_lite.</description>
+  <description>{title}: a plugin for {user}.</description>
   <maintainer email="you@example.com">you</maintainer>
   <license>BSD-3-Clause</license>
 
   <buildtool_depend>catkin</buildtool_depend>
   <buildtool_depend>python3-setuptools</buildtool_depend>
-  <exec_depend>move_base_lite</exec_depend>
-  <exec_depend>planar</exec_depend>
+  {depends}
 </package>
 """
 CMAKE_LISTS = """cmake_minimum_required(VERSION 3.0.2)
@@ -46,23 +60,23 @@ TEST = '''"""{title} keeps its contract."""
 
 import pytest
 
-from move_base_lite.check import KITS
+from {user}.check import KITS
 
 KIT = KITS["{kind}"]
 
 
 @pytest.mark.parametrize("check", KIT.checks, ids=lambda check: check.__name__)
 def test_it_keeps_its_contract(check):
-    check(KIT.registry.find("{plugin}"))
+    check(KIT.find("{plugin}"))
 '''
 
 
 @dataclass(frozen=True)
 class NewPlugin:
-    """Lays out a catkin package with a planner, a recovery behaviour or a costmap layer of your own."""
+    """Lays out a catkin package with a planner, a model, a fault or another plugin of your own."""
 
     name: str = argument("of the package, as my_planner", metavar="NAME")
-    kind: str = argument("what it is to be", choices=KINDS, metavar="KIND")
+    kind: str = argument("what it is to be", choices=tuple(KINDS), metavar="KIND")
     source: Path = option(ROOT / "src", "where packages are", type=Path)
 
     def run(self) -> int:
@@ -80,7 +94,7 @@ class NewPlugin:
             write_atomically(folder / path, text.encode())
         print(f"{folder}/src/{self.name}/{self.kind}.py is yours to write; then")
         print(f"  ./scripts/test.sh unit {self.name}")
-        print(f"  {CHOSEN[self.kind].format(plugin=self._plugin)}")
+        print(f"  {KINDS[self.kind].chosen.format(plugin=self._plugin)}")
         return 0
 
     @property
@@ -94,7 +108,15 @@ class NewPlugin:
     def _texts(self) -> Dict[str, str]:
         """All files of the package."""
         title = self.name.replace("_", " ").capitalize()
-        words = {"package": self.name, "title": title, "kind": self.kind, "plugin": self._plugin}
+        user = KINDS[self.kind].user
+        words = {
+            "package": self.name,
+            "title": title,
+            "kind": self.kind,
+            "plugin": self._plugin,
+            "user": user,
+            "depends": "\n  ".join(f"<exec_depend>{each}</exec_depend>" for each in sorted({user, *USED})),
+        }
         code = (TEMPLATES / f"{self.kind}.py").read_text(encoding="utf-8")
         return {
             "package.xml": PACKAGE_XML.format(**words),

@@ -54,7 +54,7 @@ def read_own_worlds(table: Table, name: str) -> OwnWorlds:
     table.allow_only(name)
     values = table.table(name)
     try:
-        kind: Any = _kind_named(name)
+        kind: Any = kind_named(name)
         where = values.place_of
         generator, unknown = settings_from(kind, {key: values.value(key) for key in values}, where=where)
     except PluginError as error:
@@ -66,7 +66,8 @@ def read_own_worlds(table: Table, name: str) -> OwnWorlds:
     return OwnWorlds(name, generator)
 
 
-def _kind_named(name: str) -> type:
+def kind_named(name: str) -> type:
+    """Other people's generator of that dotted name. Raises PluginError with what it lacks."""
     found = load(name, CONTRACT)
     if found is None:
         raise PluginError("there is no such entry point of laboratory.worlds")

@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from move_base_lite.check.expectation import expect, expect_refusal
 from move_base_lite.check.rooms import PICTURES, Room, room_of
 from move_base_lite.costmap import INSCRIBED
 from move_base_lite.errors import GoalBlocked, NoPath, OutOfMap
 from move_base_lite.plugin import Plugin
+from planar.contract_check import expect, expect_refusal
 
 # Cells of a path's longest step.
 LONGEST_STEP = 3.0

@@ -1,29 +1,24 @@
 """The checks of each seam."""
 
-from dataclasses import dataclass
-from typing import Any, Callable, Tuple
+from functools import partial
+from typing import Any
 
 from move_base_lite.check import global_planners, layers, local_planners, recoveries
 from move_base_lite.control import LOCAL_PLANNERS
 from move_base_lite.costmap import LAYERS
 from move_base_lite.planning import GLOBAL_PLANNERS
-from move_base_lite.plugin import Plugin, Registry
+from move_base_lite.plugin import Registry
 from move_base_lite.recovery import RECOVERIES
+from planar.contract_check import Check, Kit
 
-Check = Callable[[Plugin[Any]], None]
 
-
-@dataclass(frozen=True)
-class Kit:
-    """A seam and what its members have to do."""
-
-    registry: Registry[Any]
-    checks: Tuple[Check, ...]
+def _kit(registry: Registry[Any], *checks: Check) -> Kit:
+    return Kit(partial(registry.find, is_package_needed=False), checks)
 
 
 KITS = {
-    "local_planner": Kit(LOCAL_PLANNERS, local_planners.CHECKS),
-    "global_planner": Kit(GLOBAL_PLANNERS, global_planners.CHECKS),
-    "recovery_behavior": Kit(RECOVERIES, recoveries.CHECKS),
-    "costmap_layer": Kit(LAYERS, layers.CHECKS),
+    "local_planner": _kit(LOCAL_PLANNERS, *local_planners.CHECKS),
+    "global_planner": _kit(GLOBAL_PLANNERS, *global_planners.CHECKS),
+    "recovery_behavior": _kit(RECOVERIES, *recoveries.CHECKS),
+    "costmap_layer": _kit(LAYERS, *layers.CHECKS),
 }

@@ -4,7 +4,6 @@ from typing import Any, Optional, Tuple
 
 import numpy as np
 
-from move_base_lite.check.expectation import expect
 from move_base_lite.costmap import (
     LETHAL,
     Footprint,
@@ -19,6 +18,7 @@ from move_base_lite.costmap.layers.obstacles import SourceSettings
 from move_base_lite.costmap.window import Bounds
 from move_base_lite.plugin import Plugin
 from planar import Pose2, grid_from_picture
+from planar.contract_check import expect
 
 GRID = grid_from_picture("#....\n.....\n..#..", 0.2)
 WINDOW = Window(GRID.rows, GRID.cols, GRID.resolution)

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from move_base_lite.check.expectation import expect, expect_refusal
 from move_base_lite.check.rooms import PERIOD, PICTURES, drive, plan_in, room_of, situation_of
 from move_base_lite.control import Plan
 from move_base_lite.errors import ControlError, ControlPluginFailed
 from move_base_lite.plugin import Plugin
 from planar import Pose2, Twist2
+from planar.contract_check import expect, expect_refusal
 
 SPEEDS = Twist2(0.5, 1.0)
 

@@ -3,11 +3,11 @@
 import math
 from typing import Any, List
 
-from move_base_lite.check.expectation import CheckFailed, expect
 from move_base_lite.check.rooms import PERIOD, PICTURES, Room, room_of
 from move_base_lite.plugin import Plugin
 from move_base_lite.recovery import RecoveryContext
 from planar import Pose2, Twist2
+from planar.contract_check import CheckFailed, expect
 
 LONGEST = 60.0
 

@@ -6,7 +6,6 @@ from typing import Any, List, Tuple
 
 import numpy as np
 
-from move_base_lite.check.expectation import CheckFailed
 from move_base_lite.control import Controller, Situation
 from move_base_lite.costmap import CostmapSettings, LayeredCostmap
 from move_base_lite.costmap.layers.inflation import InflationSettings
@@ -15,6 +14,7 @@ from move_base_lite.people import NO_MOVERS
 from move_base_lite.planning import Navfn, NavfnSettings
 from move_base_lite.plugin import Plugin
 from planar import Pose2, Twist2, grid_from_picture
+from planar.contract_check import CheckFailed
 
 PERIOD = 0.1
 RADIUS = 0.2

@@ -1,0 +1,85 @@
+"""The project's own models pass the checks that other people's have to; what errs does not."""
+
+import sys
+from itertools import product
+
+import numpy as np
+import pytest
+
+from amcl_lite import LocalizerSettings
+from amcl_lite.check import KITS, MOTION_CHECKS, SENSOR_CHECKS
+from amcl_lite.config import MOTION_MODELS, SENSOR_MODELS
+from planar.contract_check import run
+
+
+class Indifferent:
+    def __init__(self, grid, settings):
+        pass
+
+    def log_likelihoods(self, poses, beams):
+        return np.zeros(len(poses))
+
+
+class NotOutside(Indifferent):
+    def log_likelihoods(self, poses, beams):
+        return np.where(np.abs(poses[:, 0]) < 10.0, 0.0, np.nan)
+
+
+class ByChance(Indifferent):
+    def log_likelihoods(self, poses, beams):
+        return np.random.default_rng().random(len(poses))
+
+
+class Scribbles(Indifferent):
+    def log_likelihoods(self, poses, beams):
+        beams.ranges[:] = 0.0
+        return np.zeros(len(poses))
+
+
+class Stays:
+    def __init__(self, settings):
+        pass
+
+    def moved(self, poses, base_before, base_now, rng):
+        return poses
+
+
+class OwnChance(Stays):
+    def moved(self, poses, base_before, base_now, rng):
+        return poses + np.random.default_rng().random(poses.shape)
+
+
+@pytest.fixture(autouse=True)
+def module(monkeypatch):
+    monkeypatch.setitem(sys.modules, "own.erring", sys.modules[__name__])
+
+
+@pytest.mark.parametrize(("model", "check"), product(SENSOR_MODELS, SENSOR_CHECKS))
+def test_a_sensor_model_of_amcl_passes(model, check):
+    check(LocalizerSettings(sensor_model=model))
+
+
+@pytest.mark.parametrize(("model", "check"), product(MOTION_MODELS, MOTION_CHECKS))
+def test_a_motion_model_of_amcl_passes(model, check):
+    check(LocalizerSettings(motion_model=model))
+
+
+@pytest.mark.parametrize(
+    ("model", "said"),
+    [
+        ("Indifferent", "FAIL  A scan is likelier where it was made"),
+        ("NotOutside", "FAIL  It says how likely a scan is at each pose"),
+        ("ByChance", "FAIL  The same calls give the same answers."),
+        ("Scribbles", "FAIL  What it is given stays as it was."),
+        ("Stays", "FAIL  On average particles go where odometry went"),
+        ("OwnChance", "FAIL  All chance comes from rng"),
+    ],
+)
+def test_what_a_model_does_not_do_is_said(model, said, capsys):
+    assert run("amcl_lite", KITS, [f"own.erring/{model}"]) == 1
+    assert said in capsys.readouterr().out
+
+
+def test_what_is_neither_model_is_refused_with_what_it_lacks(capsys):
+    assert run("amcl_lite", KITS, ["own.erring/Indefinite"]) == 2
+    assert "there is no Indefinite in" in capsys.readouterr().err

@@ -1,0 +1,19 @@
+"""TITLE: a matcher of scans for slam_lite."""
+
+from slam_lite.config import MapperSettings
+from slam_lite.matching.local_map import LocalMap, Match
+from slam_lite.matching.refinement import refine
+from slam_lite.matching.scan_matcher import Prediction
+from slam_lite.surface import Surface
+
+
+class CLASS:
+    """Moves a scan from where odometry has it onto the lines of the map, without a search."""
+
+    def __init__(self, settings: MapperSettings):
+        pass
+
+    def match(self, surface: Surface, local_map: LocalMap, prediction: Prediction) -> Match:
+        """See slam_lite.matching.scan_matcher.ScanMatcher: what is given can only be read."""
+        predicted = prediction.base_pose
+        return refine(surface, local_map, predicted, predicted, prediction.information)

@@ -1,0 +1,76 @@
+"""What a generator of worlds of somebody's own has to do: ``python3 -m laboratory.check NAME``.
+
+Each check is given a source of worlds.
+"""
+
+import sys
+from typing import Any, Tuple
+
+import numpy as np
+
+from laboratory.worlds.own import CONTRACT, OwnWorlds, kind_named
+from laboratory.worlds.source import Arena, WorldSource
+from planar import FREE
+from planar.contract_check import Kit, expect, of_own, run
+from planar.plugins import PluginError
+from sim_bridge import Simulation
+
+SEEDS = range(5)
+
+
+def gives_a_world_for_each_seed(source: WorldSource) -> None:
+    """It gives a world for each seed, in which a robot can be."""
+    for seed in SEEDS:
+        arena = source.arena(seed)
+        expect(bool(arena.world.bodies), f"seed {seed}: a world without a floor")
+        _seen(arena)
+
+
+def repeats_itself(source: WorldSource) -> None:
+    """All chance comes from the seed: the same one gives the same world."""
+    for seed in SEEDS:
+        first, _, second = source.arena(seed), source.arena(seed + 1), source.arena(seed)
+        expect(_told(first) == _told(second), f"seed {seed}: another world the second time")
+
+
+def shows_its_places(source: WorldSource) -> None:
+    """Its places are on free floor of the map that the robot is given."""
+    for seed in SEEDS:
+        arena = source.arena(seed)
+        if arena.grid is not None:
+            for place in arena.places:
+                is_free = arena.grid.value_at(place.pose.x, place.pose.y) == FREE
+                expect(is_free, f"seed {seed}: {place.name} is not on free floor")
+
+
+def _told(arena: Arena) -> Tuple[Any, ...]:
+    """What two arenas that are the same have in common."""
+    cells = b"" if arena.grid is None else arena.grid.cells.tobytes()
+    bodies = [(body.name, np.asarray(body.pose_in_world).tobytes()) for body in arena.world.bodies]
+    return bodies, cells, arena.title, arena.way, arena.places, _seen(arena)
+
+
+def _seen(arena: Arena) -> bytes:
+    """What a robot that stands at its origin sees in a fifth of a second."""
+    simulation = Simulation(arena.world)
+    try:
+        scans = [scan for _ in range(40) for scan in simulation.step().scans]
+        return b"".join(scan.ranges.tobytes() for scan in scans)
+    finally:
+        simulation.close()
+
+
+def _source(name: str) -> OwnWorlds:
+    """With the values that its fields have by themselves. Raises PluginError if one has none."""
+    try:
+        return OwnWorlds(name, kind_named(name)())
+    except TypeError as error:
+        raise PluginError(f"{name} cannot be tried: {error}") from None
+
+
+CHECKS = (gives_a_world_for_each_seed, repeats_itself, shows_its_places)
+KITS = {"world_generator": Kit(of_own(CONTRACT, _source), CHECKS)}
+
+
+if __name__ == "__main__":
+    sys.exit(run("laboratory", KITS))
