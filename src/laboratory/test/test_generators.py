@@ -1,59 +1,123 @@
+import math
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.ndimage import label
 
-from laboratory.generators.homes import APART, ROOM_TO_PASS, ROOM_TO_STAND, Homes
+from laboratory.generators.buildings import APART, _arena
+from laboratory.generators.furniture import ROOM_TO_PASS, ROOM_TO_STAND
+from laboratory.generators.halls import Halls
+from laboratory.generators.homes import Homes
+from laboratory.generators.offices import Offices
 from laboratory.generators.raster import Raster
 from laboratory.generators.rooms import SMALLEST_SIDE, Room, floor_plan
+from laboratory.playing import play
 from laboratory.scenario import read_scenario
 from laboratory.suites import FOLDER
 from planar import FREE, SettingsError
 from planar.geometry.distance_field import distance_field
 
 SEEDS = range(6)
+SMALL = {"homes": Homes(30.0, 80.0), "offices": Offices(60.0, 160.0), "halls": Halls(80.0, 200.0)}
 
 
-@pytest.fixture(scope="module")
-def homes():
-    return [Homes(30.0, 80.0).arena(seed) for seed in SEEDS]
+@pytest.fixture(scope="module", params=SMALL)
+def buildings(request):
+    """Some of a kind, and their arenas."""
+    source = SMALL[request.param]
+    return source, [source.arena(seed) for seed in SEEDS]
+
+
+def clearance_of(arena):
+    return distance_field(arena.grid.cells != FREE, arena.grid.resolution)
+
+
+def cell_at(arena, x, y):
+    ((row, col),) = arena.grid.cells_of([[x, y]])
+    return row, col
 
 
 @pytest.mark.parametrize("seed", [8, 41])
 def test_no_furniture_stands_where_the_robot_starts(seed):
     """Homes whose map had the robot shut in by what the coarser raster took for far enough."""
     arena = Homes().arena(seed)
-    distances = distance_field(arena.grid.cells != FREE, arena.grid.resolution)
-    ((row, col),) = arena.grid.cells_of([[0.0, 0.0]])
-    assert distances[row, col] > ROOM_TO_STAND
+    assert clearance_of(arena)[cell_at(arena, 0.0, 0.0)] > ROOM_TO_STAND
     assert len(arena.places) >= 2
 
 
-def test_the_same_seed_makes_the_same_home_and_another_another(homes):
-    for seed, home in zip(SEEDS, homes):
-        again = Homes(30.0, 80.0).arena(seed)
-        np.testing.assert_array_equal(home.grid.cells, again.grid.cells)
-    assert len({home.title for home in homes}) > 1
+def test_the_same_seed_makes_the_same_building_and_another_another(buildings):
+    source, arenas = buildings
+    for seed, arena in zip(SEEDS, arenas):
+        again = _arena.__wrapped__(source, seed)
+        np.testing.assert_array_equal(arena.grid.cells, again.grid.cells)
+        assert arena.places == again.places
+    assert len({arena.title for arena in arenas}) > 1
 
 
-def test_every_place_can_be_reached_from_where_the_robot_starts(homes):
-    for home in homes:
-        regions, _ = label(distance_field(home.grid.cells != FREE, home.grid.resolution) > ROOM_TO_PASS)
-        places = [(0.0, 0.0)] + [(place.pose.x, place.pose.y) for place in home.places]
-        of_places = {int(regions[tuple(cell)]) for cell in home.grid.cells_of(places)}
+def test_a_building_is_as_large_as_asked_for(buildings):
+    source, arenas = buildings
+    for arena in arenas:
+        xy = np.array([body.pose_in_world[:2, 3] for body in arena.world.bodies if "wall_" in body.name])
+        width, depth = np.ptp(xy, axis=0)
+        assert source.least <= width * depth <= source.largest
+        assert f"{source.kind} of {width * depth:.0f} m2" == arena.title
+
+
+def test_every_place_can_be_reached_from_where_the_robot_starts(buildings):
+    for arena in buildings[1]:
+        regions, _ = label(clearance_of(arena) > ROOM_TO_PASS)
+        places = [(0.0, 0.0)] + [(place.pose.x, place.pose.y) for place in arena.places]
+        of_places = {int(regions[cell_at(arena, *place)]) for place in places}
         assert len(of_places) == 1 and of_places != {0}
 
 
-def test_places_are_apart_and_enough_for_chores(homes):
-    for home in homes:
-        assert len(home.places) >= 2
-        for number, place in enumerate(home.places):
-            assert all(place.pose.distance_to(other.pose) > APART for other in home.places[:number])
+def test_places_are_apart_and_enough_for_chores(buildings):
+    for arena in buildings[1]:
+        assert len(arena.places) >= 2
+        for number, place in enumerate(arena.places):
+            assert all(place.pose.distance_to(other.pose) > APART for other in arena.places[:number])
+
+
+def test_an_office_has_a_door_from_its_corridor_to_each_room_and_some_between_rooms():
+    plans = [Offices().draw(200.0, np.random.default_rng(seed)) for seed in range(12)]
+    for plan in plans:
+        _, y = plan.start
+        beside_corridor = [door for door in plan.doorways if door.y1 == door.y2 and abs(door.y1 - y) < 1.3]
+        assert len(beside_corridor) >= 6
+        assert {door.y1 < y for door in beside_corridor} == {True, False}
+    between_rooms = [sum(door.x1 == door.x2 for door in plan.doorways) for plan in plans]
+    assert sum(between_rooms) > 12
+
+
+def test_halls_have_shelves_or_pillars_with_room_between_them():
+    kinds = set()
+    for seed in range(12):
+        plan = Halls().draw(300.0, np.random.default_rng(seed))
+        first = plan.furniture[0]
+        standing = [piece for piece in plan.furniture if piece.area == pytest.approx(first.area)]
+        kinds.add(math.isclose(first.width, first.depth))
+        assert len(standing) >= 4
+        for number, piece in enumerate(standing):
+            for other in standing[:number]:
+                gap_x = abs(piece.x - other.x) - piece.width
+                gap_y = abs(piece.y - other.y) - piece.depth
+                assert max(gap_x, gap_y) > 1.3
+    assert kinds == {True, False}
+
+
+@pytest.mark.parametrize("suite", ["offices", "halls"])
+def test_a_generated_building_can_be_played_in(suite):
+    scenario = replace(read_scenario(FOLDER / f"{suite}.yaml"), world=SMALL[suite])
+    result = play(scenario, 1)
+    assert result.is_success, result.reason
 
 
 @pytest.mark.parametrize("seed", range(20))
 def test_rooms_fill_the_outline_and_every_one_is_connected_by_doors(seed):
     outline = Room(0.0, 0.0, 16.0, 12.0)
-    rooms, walls = floor_plan(outline, np.random.default_rng(seed))
+    rooms, walls, doorways = floor_plan(outline, np.random.default_rng(seed))
+    assert len(doorways) == len(rooms) - 1
     assert len(rooms) > 1
     assert sum(room.area for room in rooms) == pytest.approx(outline.area)
     assert min(min(room.width, room.depth) for room in rooms) >= SMALLEST_SIDE - 1e-9
@@ -65,9 +129,15 @@ def test_rooms_fill_the_outline_and_every_one_is_connected_by_doors(seed):
     assert all(raster.reach(*room.middle, ROOM_TO_PASS) == pytest.approx(reach) for room in rooms)
 
 
-def test_an_area_that_no_home_has_is_refused(tmp_path):
-    path = tmp_path / "homes.yaml"
-    text = (FOLDER / "homes.yaml").read_text()
-    path.write_text(text.replace("[30, 300]", "[10, 20]"))
-    with pytest.raises(SettingsError, match=r"homes.yaml:2: world.homes.area must be within 30 to 300 m2"):
+@pytest.mark.parametrize(
+    ("kind", "areas"), [("homes", "30, 300"), ("offices", "60, 400"), ("halls", "80, 800")]
+)
+def test_an_area_that_none_has_is_refused(kind, areas, tmp_path):
+    path = tmp_path / "scenario.yaml"
+    text = (FOLDER / f"{kind}.yaml").read_text()
+    path.write_text(text.replace(f"[{areas}]", "[10, 20]"))
+    within = areas.replace(",", " to")
+    with pytest.raises(
+        SettingsError, match=rf"scenario.yaml:2: world.{kind}.area must be within {within} m2"
+    ):
         read_scenario(path)

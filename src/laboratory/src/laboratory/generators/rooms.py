@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import List, Tuple
+from typing import List, NamedTuple, Tuple
 
 import numpy as np
 
@@ -59,23 +59,44 @@ class Wall:
         )
 
 
-def floor_plan(outline: Room, rng: np.random.Generator) -> Tuple[List[Room], List[Wall]]:
-    """Rooms and walls, those outside among them."""
-    x, y, right, top = outline.x, outline.y, outline.x + outline.width, outline.y + outline.depth
-    walls = [Wall(x, y, right, y), Wall(x, top, right, top), Wall(x, y, x, top), Wall(right, y, right, top)]
-    doors: List[Wall] = []
-    waiting, rooms = [outline], []
+class FloorPlan(NamedTuple):
+    """``walls``: those outside among them; ``doorways``: what walls leave open."""
+
+    rooms: List[Room]
+    walls: List[Wall]
+    doorways: List[Wall]
+
+    @property
+    def solids(self) -> List[Room]:
+        """What its walls take up."""
+        return [wall.solid for wall in self.walls]
+
+    def add_with_door(self, wall: Wall, rng: np.random.Generator) -> None:
+        """A wall with a door somewhere in it."""
+        doorway, *pieces = _with_door(wall, rng)
+        self.doorways.append(doorway)
+        self.walls.extend(pieces)
+
+
+def walls_round(room: Room) -> List[Wall]:
+    """Its four sides."""
+    x, y, right, top = room.corners
+    return [Wall(x, y, right, y), Wall(x, top, right, top), Wall(x, y, x, top), Wall(right, y, right, top)]
+
+
+def floor_plan(outline: Room, rng: np.random.Generator) -> FloorPlan:
+    """A rectangle cut again and again."""
+    floor = FloorPlan([], walls_round(outline), [])
+    waiting = [outline]
     while waiting:
         room = waiting.pop()
         cut = _cut(room, rng) if _is_cut(room, rng) else None
-        if cut is None or any(_ends_in(cut[2], door) for door in doors):
-            rooms.append(room)
+        if cut is None or any(_ends_in(cut[2], door) for door in floor.doorways):
+            floor.rooms.append(room)
             continue
         waiting += cut[:2]
-        door, *pieces = _with_door(cut[2], rng)
-        doors.append(door)
-        walls += pieces
-    return rooms, walls
+        floor.add_with_door(cut[2], rng)
+    return floor
 
 
 def _ends_in(wall: Wall, door: Wall) -> bool:

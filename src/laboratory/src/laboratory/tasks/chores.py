@@ -1,4 +1,4 @@
-"""Deliveries between the places of a generated home."""
+"""Deliveries between the places of a generated building."""
 
 from dataclasses import dataclass
 from pathlib import Path
