@@ -6,7 +6,7 @@ import pytest
 from scipy.ndimage import label
 
 from laboratory.generators.buildings import APART, _arena
-from laboratory.generators.furniture import ROOM_TO_PASS, ROOM_TO_STAND
+from laboratory.generators.furniture import ROOM_TO_PASS, ROOM_TO_STAND, WAY
 from laboratory.generators.halls import Halls
 from laboratory.generators.homes import Homes
 from laboratory.generators.offices import Offices
@@ -31,6 +31,12 @@ def buildings(request):
 
 def clearance_of(arena):
     return distance_field(arena.grid.cells != FREE, arena.grid.resolution)
+
+
+def share_within_reach(arena):
+    """Of where the robot has room, that it can come to from where it starts."""
+    regions, _ = label(clearance_of(arena) > ROOM_TO_PASS)
+    return (regions == regions[cell_at(arena, 0.0, 0.0)]).sum() / (regions > 0).sum()
 
 
 def cell_at(arena, x, y):
@@ -70,6 +76,17 @@ def test_every_place_can_be_reached_from_where_the_robot_starts(buildings):
         places = [(0.0, 0.0)] + [(place.pose.x, place.pose.y) for place in arena.places]
         of_places = {int(regions[cell_at(arena, *place)]) for place in places}
         assert len(of_places) == 1 and of_places != {0}
+
+
+@pytest.mark.parametrize("seed", [31, 36, 40])
+def test_no_furniture_cuts_off_rooms(seed):
+    """Homes whose furniture had left the robot a half of what there is, or less."""
+    assert share_within_reach(Homes().arena(seed)) > 0.98
+
+
+def test_nearly_all_of_a_building_can_be_reached(buildings):
+    for arena in buildings[1]:
+        assert share_within_reach(arena) > 0.98, arena.world.name
 
 
 def test_places_are_apart_and_enough_for_chores(buildings):
@@ -124,9 +141,9 @@ def test_rooms_fill_the_outline_and_every_one_is_connected_by_doors(seed):
     raster = Raster(outline.width, outline.depth)
     for wall in walls:
         raster.fill(*wall.solid.corners)
-    reach = raster.reach(*rooms[0].middle, ROOM_TO_PASS)
-    assert reach > 0.0
-    assert all(raster.reach(*room.middle, ROOM_TO_PASS) == pytest.approx(reach) for room in rooms)
+    reach = raster.within_reach(*rooms[0].middle, WAY)
+    assert reach.any()
+    assert all((raster.within_reach(*room.middle, WAY) == reach).all() for room in rooms)
 
 
 @pytest.mark.parametrize(

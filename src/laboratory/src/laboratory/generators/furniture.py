@@ -10,6 +10,8 @@ from laboratory.generators.rooms import THICKNESS, Room
 
 # Metres from a robot's middle to what is solid: where it stands, and on all its ways.
 ROOM_TO_STAND, ROOM_TO_PASS = 0.55, 0.35
+# Half of what the raster takes for wide enough to pass: it tells distances up to a cell too large.
+WAY = ROOM_TO_PASS + RESOLUTION
 # How often a place is looked for, for each piece.
 TRIES = 4
 
@@ -23,18 +25,19 @@ class Furniture:
         self._raster = Raster(outline.width, outline.depth)
         for solid in solids:
             self._raster.fill(*solid.corners)
-        self._reach = self._raster.reach(*start, ROOM_TO_PASS)
+        self._reach = self._raster.within_reach(*start, WAY)
 
     def put(self, piece: Room) -> bool:
         """Puts it there, and tells whether; not where the robot starts, nor where it cuts anything off."""
-        if piece.distance_to(*self._start) < ROOM_TO_STAND + RESOLUTION:
+        if piece.distance_to(*self._start) < ROOM_TO_STAND + 2.0 * RESOLUTION:
             return False
-        tried = self._raster.copy()
-        tried.fill(*piece.corners)
-        left = tried.reach(*self._start, ROOM_TO_PASS)
+        tried, around = self._raster.copy(), self._raster.copy()
+        x1, y1, x2, y2 = piece.corners
+        tried.fill(x1, y1, x2, y2)
+        around.fill(x1 - WAY, y1 - WAY, x2 + WAY, y2 + WAY)
+        left = tried.within_reach(*self._start, WAY)
         # Its own place and what is too near to it are lost; more would be a corner that is cut off.
-        lost = (piece.width + 2.0 * ROOM_TO_PASS) * (piece.depth + 2.0 * ROOM_TO_PASS)
-        if left == 0.0 or self._reach - left > lost:
+        if not left.any() or (self._reach & ~left & ~around.solid).any():
             return False
         self.pieces.append(piece)
         self._raster, self._reach = tried, left

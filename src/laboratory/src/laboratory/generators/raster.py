@@ -7,7 +7,7 @@ from scipy.ndimage import label
 
 from planar.geometry.distance_field import distance_field
 
-RESOLUTION = 0.1
+RESOLUTION = 0.05
 
 
 class Raster:
@@ -28,11 +28,16 @@ class Raster:
         other._solid = self._solid.copy()
         return other
 
-    def reach(self, x: float, y: float, radius: float) -> float:
-        """Square metres that the middle of a robot of that radius can come to from a place."""
+    @property
+    def solid(self) -> np.ndarray:
+        """Which cells are, bool (rows, cols)."""
+        return self._solid
+
+    def within_reach(self, x: float, y: float, radius: float) -> np.ndarray:
+        """The cells that the middle of a robot of that radius can come to from a place, bool (rows, cols)."""
         regions, _ = label(distance_field(self._solid, RESOLUTION) > radius)
         here = regions[_cell(x, y)]
-        return float((regions == here).sum()) * RESOLUTION**2 if here else 0.0
+        return regions == here if here else np.zeros_like(self._solid)
 
 
 def _cell(x: float, y: float) -> Tuple[int, int]:
