@@ -10,6 +10,7 @@ from planar.config.hints import hint
 from sim_bridge.config import SimulationSettings
 from sim_bridge.courses import Courses
 from sim_bridge.description import RobotProfile
+from sim_bridge.doors import Doors
 from sim_bridge.errors import UnknownEntityError, WorldError
 from sim_bridge.geometry.pose3 import from_pose2
 from sim_bridge.people.crowd import Crowd
@@ -45,13 +46,12 @@ class Scene:
         seed: int = 0,
         fitting: Fitting = Fitting(),
     ):
-        self.settings = settings
         self.lights = {light.name: light for light in world.lights}
-        self._seed, self._fitting = seed, fitting
-        self.courses = Courses(world.courses)
+        self.settings, self._seed, self._fitting = settings, seed, fitting
+        self.courses, self.doors = Courses(world.courses), Doors(world.doors)
         self.crowd = Crowd(world.walkers, world)
         self._begin(world.gravity)
-        self.add([*world.bodies, *self.crowd.bodies], world.joints)
+        self.add([*world.bodies, *self.crowd.bodies, *self.doors.bodies], world.joints)
 
     @property
     def stamp(self) -> float:
@@ -80,6 +80,7 @@ class Scene:
             moment = (self._physics_steps, self.settings.physics_rate, self.stamp)
             self.courses.follow(self._engine, *moment)
             self.crowd.follow(self._engine, *moment, robots)
+            self.doors.follow(self._engine, *moment, robots, self.crowd.rows)
             for robot in robots:
                 robot.begin_step()
             self.forces.apply(self.stamp)

@@ -6,6 +6,7 @@ from typing import Any, Optional, Tuple
 import numpy as np
 
 from sim_bridge.courses import Course
+from sim_bridge.doorway import Door
 from sim_bridge.geometry.pose3 import IDENTITY
 from sim_bridge.geometry.shapes import Look, Shape
 from sim_bridge.people.walker import Walker
@@ -136,8 +137,8 @@ class Light:
 
 @dataclass(frozen=True)
 class World:
-    """Bodies, joints between them, robots, courses, people, and in words what its file holds that was left
-    out. ``bodies`` are without those of people.
+    """Bodies, joints between them, robots, courses, people, doors, and in words what its file holds that was
+    left out. ``bodies`` are without those of people and doors.
     """
 
     name: str
@@ -149,3 +150,4 @@ class World:
     lights: Tuple[Light, ...] = ()
     courses: Tuple[Course, ...] = ()
     walkers: Tuple[Walker, ...] = ()
+    doors: Tuple[Door, ...] = ()

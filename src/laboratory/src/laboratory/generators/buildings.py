@@ -7,16 +7,17 @@ from pathlib import Path
 from typing import Callable, ClassVar, Sequence, Tuple, Type
 
 import numpy as np
-from scipy.ndimage import label
 
 from laboratory.generators.furniture import ROOM_TO_PASS, ROOM_TO_STAND
 from laboratory.generators.rooms import Room, Wall
+from laboratory.tasks.ways import regions
 from laboratory.worlds.solids import FLOOR, wall
 from laboratory.worlds.source import Arena
 from planar import FREE, OccupancyGrid, Pose2, SettingsError
 from planar.config.yaml_table import Table
 from planar.geometry.distance_field import distance_field
 from planar.maps.places import Place
+from sim_bridge.doorway import Door
 from sim_bridge.views.true_map import true_map
 from sim_bridge.world import Body, World
 
@@ -73,7 +74,8 @@ def _arena(source: Buildings, seed: int) -> Arena:
     places = _places(grid, rng)
     if len(places) < 2:
         raise SettingsError(f"the generated {source.kind} has no two places to stand")
-    return Arena(world, grid, f"{source.kind} of {area:.0f} m2", places=places)
+    doorways = [_door(f"door_{number}", gap, plan.start) for number, gap in enumerate(plan.doorways)]
+    return Arena(world, grid, f"{source.kind} of {area:.0f} m2", None, places, tuple(doorways))
 
 
 def _body(name: str, solid: Room, origin: Tuple[float, float]) -> Body:
@@ -81,13 +83,19 @@ def _body(name: str, solid: Room, origin: Tuple[float, float]) -> Body:
     return wall(name, x - origin[0], y - origin[1], solid.width, solid.depth)
 
 
+def _door(name: str, gap: Wall, origin: Tuple[float, float]) -> Door:
+    """What would fill a doorway."""
+    x, y = (gap.x1 + gap.x2) / 2.0 - origin[0], (gap.y1 + gap.y2) / 2.0 - origin[1]
+    yaw = 0.0 if gap.x1 == gap.x2 else math.pi / 2.0
+    return Door(name, Pose2(x, y, yaw), gap.length)
+
+
 def _places(grid: OccupancyGrid, rng: np.random.Generator) -> Tuple[Place, ...]:
     """Where things are fetched and brought, apart from each other, all within reach of the origin."""
-    clearance = distance_field(grid.cells != FREE, grid.resolution)
-    regions, _ = label(clearance > ROOM_TO_PASS)
+    reach = regions(grid, ROOM_TO_PASS)
     ((row, col),) = grid.cells_of([[0.0, 0.0]])
-    is_here = regions == regions[row, col]
-    spots_xy = grid.points_of(np.argwhere(is_here & (clearance > ROOM_TO_STAND)))
+    roomy = distance_field(grid.cells != FREE, grid.resolution) > ROOM_TO_STAND
+    spots_xy = grid.points_of(np.argwhere((reach == reach[row, col]) & roomy))
     places: Tuple[Place, ...] = ()
     while len(places) < PLACES and len(spots_xy):
         x, y = spots_xy[rng.integers(len(spots_xy))].tolist()

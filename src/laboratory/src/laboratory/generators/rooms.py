@@ -51,6 +51,10 @@ class Wall:
     y2: float
 
     @property
+    def length(self) -> float:
+        return abs(self.x2 - self.x1) + abs(self.y2 - self.y1)
+
+    @property
     def solid(self) -> Room:
         """What it takes up."""
         half = THICKNESS / 2.0
@@ -136,8 +140,7 @@ def _cut(room: Room, rng: np.random.Generator) -> Tuple[Room, Room, Wall]:
 
 def _with_door(wall: Wall, rng: np.random.Generator) -> List[Wall]:
     """A door, and the two pieces beside it."""
-    length = abs(wall.x2 - wall.x1) + abs(wall.y2 - wall.y1)
-    start = rng.uniform(BESIDE_DOOR, length - BESIDE_DOOR - DOOR)
-    along = np.array([wall.x2 - wall.x1, wall.y2 - wall.y1]) / length
+    start = rng.uniform(BESIDE_DOOR, wall.length - BESIDE_DOOR - DOOR)
+    along = np.array([wall.x2 - wall.x1, wall.y2 - wall.y1]) / wall.length
     (x1, y1), (x2, y2) = ((wall.x1, wall.y1) + along * at for at in (start, start + DOOR))
     return [Wall(x1, y1, x2, y2), Wall(wall.x1, wall.y1, x1, y1), Wall(x2, y2, wall.x2, wall.y2)]

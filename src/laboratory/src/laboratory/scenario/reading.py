@@ -8,6 +8,7 @@ from laboratory.scenario.scenario import Scenario
 from laboratory.scenario.seeds import seeds_of
 from laboratory.tasks.reach import config_of
 from laboratory.tasks.registry import TASKS
+from laboratory.worlds.doors import read_doors
 from laboratory.worlds.own import read_own_worlds
 from laboratory.worlds.people import People, read_people
 from laboratory.worlds.registry import SOURCES
@@ -31,7 +32,7 @@ def read_scenario(path: Path) -> Scenario:
     table = read_table(path)
     table.allow_only(*KEYS)
     robot, start = _robot(_part(table, "robot", "profile", "start"))
-    happens = _part(table, "happens", "boxes", "people", "faults")
+    happens = _part(table, "happens", "boxes", "doors", "people", "faults")
     planner = _part(table, "planner", "name", "parameters")
     return Scenario(
         name=path.stem,
@@ -43,6 +44,7 @@ def read_scenario(path: Path) -> Scenario:
         start=start,
         simulation=_simulation(table),
         **_boxes(happens),
+        doors=read_doors(happens) if happens else 0,
         people=read_people(happens) if happens else People(),
         faults=faults_from(happens) if happens else (),
         planner=planner.text("name") if planner and "name" in planner else "",

@@ -4,7 +4,7 @@ import hashlib
 import json
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any, Mapping, Tuple
+from typing import Any, Mapping, Tuple, Union
 
 from laboratory.results.version import version_over_ros
 from laboratory.tasks.task import Task
@@ -13,13 +13,15 @@ from laboratory.worlds.source import Arena, WorldSource
 from planar import Pose2
 from planar.plugins import sources_of
 from sim_bridge import SimulationSettings
+from sim_bridge.doorway import Door
 from sim_bridge.faults import Fault
 
 
 @dataclass(frozen=True)
 class Scenario:
     """``file``: where it was read; ``start``: where the robot begins, of the world; ``boxes``: how many that
-    its map does not show stand about, ``boxes_at``: or where; ``people``: who walks about; ``planner``: a
+    its map does not show stand about, ``boxes_at``: or where; ``doors``: how many are shut meanwhile, or
+    which and when; ``people``: who walks about; ``planner``: a
     local one other than the robot's; ``parameters``: of move_base, over those of the robot; ``seconds``:
     simulated ones that a run may take; ``is_over_ros``: whether nodes play it, not one process.
     """
@@ -34,6 +36,7 @@ class Scenario:
     simulation: SimulationSettings = SimulationSettings()
     boxes: int = 0
     boxes_at: Tuple[Pose2, ...] = ()
+    doors: Union[int, Tuple[Door, ...]] = 0
     people: People = People()
     faults: Tuple[Fault, ...] = ()
     planner: str = ""
@@ -73,8 +76,13 @@ class Scenario:
     def arena(self, seed: int) -> Arena:
         """The world of a seed, with what stands about in it. Raises PlanarError."""
         from laboratory.worlds.boxes import with_boxes, with_boxes_at
+        from laboratory.worlds.doors import with_doors, with_doors_at
 
         arena = self.world.arena(seed)
+        if isinstance(self.doors, tuple):
+            arena = with_doors_at(arena, self.doors)
+        elif self.doors:
+            arena = with_doors(arena, self.doors, seed, (self.start, *self.task.places(arena)))
         if self.boxes:
             arena = with_boxes(arena, self.boxes, seed, (self.start, *self.task.places(arena)))
         if self.boxes_at:

@@ -54,6 +54,7 @@ class Case:
             base,
             boxes=0,
             boxes_at=self.of(Pose2),
+            doors=0,
             people=People(walks=self.of(Walk)),
             faults=self.of(Fault),
             simulation=simulation,

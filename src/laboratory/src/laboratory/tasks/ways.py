@@ -5,6 +5,7 @@ from functools import lru_cache
 from typing import Optional, Sequence, Tuple
 
 import numpy as np
+from scipy.ndimage import label
 from scipy.sparse.csgraph import dijkstra
 
 from planar import FREE, OccupancyGrid, Pose2
@@ -38,6 +39,11 @@ class Ways:
         nearest = int(np.argmin(distances))
         row, col = cells[nearest]
         return int(row * self._grid.cols + col), float(distances[nearest])
+
+
+def regions(grid: OccupancyGrid, radius: float) -> np.ndarray:
+    """Numbers of connected cells where the middle of a robot of that radius can be, (rows, cols); 0: none."""
+    return label(distance_field(grid.cells != FREE, grid.resolution) > radius)[0]
 
 
 @lru_cache(maxsize=8)

@@ -10,6 +10,7 @@ from typing import Optional, Protocol, Tuple
 
 from planar import OccupancyGrid
 from planar.maps.places import Place
+from sim_bridge.doorway import Door
 from sim_bridge.world import World
 
 
@@ -19,6 +20,7 @@ class Arena:
 
     ``grid``: the map that the robot is given; None: it has none. ``title``: which of several worlds it is.
     ``way``: metres of the way that a benchmark compares with. ``places``: within reach in it.
+    ``doorways``: doors that may be shut, if it is known where they are.
     """
 
     world: World
@@ -26,6 +28,7 @@ class Arena:
     title: str = ""
     way: Optional[float] = None
     places: Tuple[Place, ...] = ()
+    doorways: Tuple[Door, ...] = ()
 
 
 class WorldSource(Protocol):

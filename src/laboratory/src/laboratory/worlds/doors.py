@@ -1,0 +1,80 @@
+"""Doors that are shut while the robot is about; its map shows all of them open."""
+
+import math
+from dataclasses import replace
+from typing import List, Sequence, Tuple, Union
+
+import numpy as np
+
+from laboratory.tasks.ways import regions
+from laboratory.worlds.source import Arena
+from planar import OCCUPIED, OccupancyGrid, Pose2, SettingsError
+from planar.config.yaml_table import Table
+from planar.maps.places import pose_from
+from sim_bridge.doorway import Door
+
+# Simulated seconds within which each is shut; metres to what is solid that a way round has to leave.
+SHUT, ROOM_TO_PASS = (5.0, 60.0), 0.35
+_STREAM = 49
+
+
+def with_doors(arena: Arena, most: int, seed: int, places: Sequence[Pose2]) -> Arena:
+    """The arena with so many of its doorways shut at some time, for good; fewer, if the others would part
+    some of the ``places`` from each other.
+
+    Raises SettingsError if no doorways are known of it.
+    """
+    if arena.grid is None or not arena.doorways:
+        raise SettingsError(f"{arena.title}: doors need a generated building, or places of their own")
+    rng = np.random.default_rng([seed, _STREAM])
+    grid = arena.grid
+    doors: List[Door] = []
+    for number in rng.permutation(len(arena.doorways)):
+        if len(doors) == most:
+            break
+        door, start = arena.doorways[number], round(float(rng.uniform(*SHUT)), 1)
+        shut = _with_shut(grid, door)
+        if _are_connected(shut, places):
+            grid = shut
+            doors.append(replace(door, start=start))
+    return with_doors_at(arena, doors)
+
+
+def with_doors_at(arena: Arena, doors: Sequence[Door]) -> Arena:
+    """The arena with these."""
+    return replace(arena, world=replace(arena.world, doors=(*arena.world.doors, *doors)))
+
+
+def _with_shut(grid: OccupancyGrid, door: Door) -> OccupancyGrid:
+    along = np.arange(-door.width / 2.0, door.width / 2.0, grid.resolution / 2.0)
+    across = np.array((-math.sin(door.pose.yaw), math.cos(door.pose.yaw)))
+    rows, cols = grid.cells_of((door.pose.x, door.pose.y) + along[:, None] * across).T
+    cells = grid.cells.copy()
+    cells[rows, cols] = OCCUPIED
+    return replace(grid, cells=cells)
+
+
+def _are_connected(grid: OccupancyGrid, places: Sequence[Pose2]) -> bool:
+    """Whether a robot gets from each to each."""
+    rows, cols = grid.cells_of([(place.x, place.y) for place in places]).T
+    found = set(regions(grid, ROOM_TO_PASS)[rows, cols].tolist())
+    return len(found) == 1 and found != {0}
+
+
+def read_doors(happens: Table) -> Union[int, Tuple[Door, ...]]:
+    """``doors``: how many, or where each is and when it is shut. Raises the table's error."""
+    if "doors" not in happens:
+        return 0
+    if not isinstance(happens.value("doors"), list):
+        return happens.count("doors")
+    return tuple(_door(f"door_{number}", table) for number, table in enumerate(happens.tables("doors")))
+
+
+def _door(name: str, table: Table) -> Door:
+    table.allow_only("x", "y", "yaw", "width", "start", "end")
+    width, start = table.number("width"), table.number("start", Door.start)
+    table.check(0.0 < width <= 10.0, "width", "positive and at most 10 m")
+    table.check(start >= 0.0, "start", "not negative")
+    end = table.number("end") if "end" in table else Door.end
+    table.check(end > start, "end", f"after start ({start:g})")
+    return Door(name, pose_from(table), width, start, end)

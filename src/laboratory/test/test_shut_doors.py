@@ -1,0 +1,97 @@
+"""Doors in scenarios: which are shut, that another way is left, and that the robot takes it."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from laboratory.generators.offices import Offices
+from laboratory.playing import play
+from laboratory.scenario import read_scenario
+from laboratory.suites import FOLDER
+from laboratory.tasks.ways import Ways
+from laboratory.worlds.doors import ROOM_TO_PASS
+from planar import Pose2, SettingsError
+from sim_bridge.simulation import box_on_floor
+from sim_bridge.views.true_map import true_map
+
+SCENARIO = FOLDER / "home_doors.yaml"
+OFFICES = FOLDER / "office_doors.yaml"
+
+
+def written(tmp_path, doors):
+    path = tmp_path / "scenario.yaml"
+    text = SCENARIO.read_text().replace("../map", str(FOLDER.parent / "map"))
+    begin = text.index("  doors:")
+    path.write_text(text[:begin] + f"  doors: {doors}\n")
+    return path
+
+
+def shut_for_good(arena):
+    """The map of a world whose doors are walls."""
+    doors = arena.world.doors
+    walls = [box_on_floor(f"wall_for_{door.name}", (0.06, door.width, 1.0), door.pose) for door in doors]
+    return true_map(replace(arena.world, bodies=(*arena.world.bodies, *walls)))
+
+
+def test_the_robot_whose_door_is_shut_goes_the_other_way():
+    scenario = read_scenario(SCENARIO)
+    shut, usual = play(scenario, 3), play(replace(scenario, doors=0), 3)
+    assert shut.is_success, shut.reason
+    assert shut.driven > 1.8 * usual.driven
+    assert replace(play(scenario, 3), wall_seconds=0.0) == replace(shut, wall_seconds=0.0)
+
+
+def test_the_door_of_the_suite_shuts_the_nearest_way_and_another_is_open():
+    arena = read_scenario(SCENARIO).arena(0)
+    way = (Pose2(), Pose2(2.0, 3.0))
+    nearest, other = (Ways(grid, ROOM_TO_PASS).length(way) for grid in (arena.grid, shut_for_good(arena)))
+    assert nearest is not None and other is not None and other > 2.0 * nearest
+
+
+def test_doors_of_a_generated_office_leave_a_way_to_every_place():
+    scenario = read_scenario(OFFICES)
+    shut = 0
+    for seed in range(6):
+        arena = scenario.arena(seed)
+        doors, places = arena.world.doors, [Pose2(), *scenario.task.places(arena)]
+        shut += len(doors)
+        assert len(doors) <= 4 and len({door.name for door in doors}) == len(doors)
+        assert Ways(shut_for_good(arena), 0.3).length(places) is not None
+        again = replace(scenario, name="again").arena(seed)
+        assert again.world.doors == doors
+    assert shut > 12
+
+
+def test_doorways_are_where_walls_leave_them():
+    arena = Offices(120.0, 160.0).arena(2)
+    for door in arena.doorways:
+        side = np.array((-math.sin(door.pose.yaw), math.cos(door.pose.yaw))) * (door.width / 2.0 + 0.1)
+        middle = np.array((door.pose.x, door.pose.y))
+        values = [arena.grid.cells[tuple(cell)] for cell in arena.grid.cells_of([middle, middle + side])]
+        assert values[0] == 0 and values[1] == 100
+
+
+def test_doors_of_a_world_of_which_none_are_known_are_an_error(tmp_path):
+    result = play(read_scenario(written(tmp_path, "2")), 0)
+    assert result.outcome == "error"
+    assert result.reason == "home: doors need a generated building, or places of their own"
+
+
+@pytest.mark.parametrize(
+    ("doors", "complaint"),
+    [
+        ("-1", ":5: happens.doors must be"),
+        ("many", ":5: happens.doors must be"),
+        ("[{x: 1, y: 2}]", ":5: happens.doors[1].width is missing"),
+        ("[{x: 1, y: 2, width: 0}]", ":5: happens.doors[1].width must be positive"),
+        ("[{x: 1, y: 2, width: 1, shut: 3}]", ":5: happens.doors[1].shut is not known; known are"),
+        ("[{x: 1, y: 2, width: 1, start: 5, end: 4}]", ":5: happens.doors[1].end must be after start (5)"),
+        ("[{x: 1, y: 2, width: 1, start: -5}]", ":5: happens.doors[1].start must be not negative"),
+    ],
+)
+def test_a_mistake_is_told_with_line_and_key(tmp_path, doors, complaint):
+    with pytest.raises(SettingsError) as caught:
+        read_scenario(written(tmp_path, doors))
+    assert complaint in str(caught.value)
