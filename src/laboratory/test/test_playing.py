@@ -14,6 +14,7 @@ from laboratory.worlds.boxes import SIZE, TO_OTHERS
 from laboratory.worlds.files import WorldFile
 from planar import Pose2, grid_from_picture
 from sim_bridge import SimulationSettings
+from sim_bridge.faults import Fault
 
 ERRAND = FOLDER / "home_errand.yaml"
 
@@ -50,6 +51,17 @@ def test_a_goal_is_reached_without_a_map():
     result = play(ahead, 5)
     assert result.is_success, result.reason
     assert result.localization_mean is None and result.way is None
+
+
+def test_what_happens_to_the_robot_does_so_without_a_map_too():
+    home = read_scenario(ERRAND)
+    source = WorldFile(home.world.files()[0])
+    rates = SimulationSettings(odometry_rate=100, scan_rate=20)
+    task = Reach(Pose2(1.0, 0.0), 0.1)
+    carried = Fault("kidnapped", 0.5, strength=0.4)
+    ahead = replace(home, world=source, robot="jackal", simulation=rates, task=task, faults=(carried,))
+    run = ahead.task.play(ahead, ahead.arena(5), 5)
+    assert np.hypot(*np.diff(run.trajectory[:, 1:3], axis=0).T).max() > 0.3
 
 
 def test_boxes_stand_apart_and_leave_room_at_the_places():

@@ -17,7 +17,8 @@ from planar import Pose2, Scan, SettingsError, Twist2
 from planar.config.yaml_table import Table
 from planar.maps.places import pose_from
 from sim_bridge import Observation, Simulation, robot_named
-from sim_bridge.faults import Faults
+from sim_bridge.faults import Faults, Stage
+from sim_bridge.simulation import ROBOT_NAME
 
 if TYPE_CHECKING:
     from laboratory.scenario.scenario import Scenario
@@ -126,6 +127,8 @@ class _Drive:
             observation = self._simulation.step(command)
             command, scan = None, observation.scan or scan
             self.touched.update(self.company.contacts(observation))
+            place = Stage(self._simulation.scene, ROBOT_NAME, observation.base_in_world)
+            self._faults.disturb(observation.stamp, place)
         return observation, scan
 
     def _note(self, observation: Observation, began: float) -> None:
