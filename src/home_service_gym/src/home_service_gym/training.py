@@ -10,9 +10,8 @@ from home_service_gym.environments import PointGoal
 from planar import Scan
 from plugin_examples.learned import LOOKAHEAD, SECTORS, SIGHT, Policy, Seen
 
-# Seeds of the homes that are trained in (8 has no two places), control periods of an episode, spread and step
-# of the weights.
-HOMES = (0, 1, 2, 3, 4, 5, 6, 7, 9, 10, 11, 12)
+# Seeds of the homes that are trained in, control periods of an episode, spread and step of the weights.
+HOMES = tuple(range(12))
 PERIODS, SPREAD, STEP = 300, 0.05, 0.05
 # Shares of what the robot could do that a planner lets it, 0.6 m/s and 1.8 rad/s of a TurtleBot.
 LIMITS = np.array((0.6 / 0.7, 1.8 / math.pi))
