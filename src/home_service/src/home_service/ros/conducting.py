@@ -1,5 +1,6 @@
 """How runs go: until what is expected has come about, or until a person ends them."""
 
+import math
 import os
 from typing import Mapping, Set
 
@@ -14,13 +15,19 @@ from supervision.interruption import RunInterruptedError
 
 
 def carry_out(
-    options: RunOptions, launch: LaunchPlan, places: Mapping[str, Place], expected: Set[str]
+    options: RunOptions,
+    launch: LaunchPlan,
+    places: Mapping[str, Place],
+    expected: Set[str],
+    seconds: float = math.inf,
 ) -> int:
-    """Runs a graph that does its work by itself; returns the exit code."""
+    """Runs a graph that does its work by itself, in so many simulated ``seconds``; returns the exit code."""
     display = Display()
     referee = Referee(places, display.say)
     with Run(options, launch, referee, RunRecorder(places), display) as run:
-        failure = run.watch(lambda: referee.has_seen(expected))
+        failure = run.watch(lambda: referee.has_seen(expected) or referee.simulated_seconds > seconds)
+        if failure is None and not referee.has_seen(expected):
+            failure = f"not done within {seconds:g} simulated seconds"
         return run.conclude(referee.verdict(expected, failure))
 
 

@@ -2,18 +2,14 @@
 
 import tempfile
 from pathlib import Path
-from typing import Optional
 
 from home_service.judging.verdict import ERRAND, MARKERS, OBJECTS
 from home_service.options import LaunchPlan, RunOptions
-from home_service.ros.referee import Referee
-from home_service.ros.run import Run
-from home_service.ros.run_recorder import RunRecorder
+from home_service.ros.conducting import carry_out
 from laboratory.scenario import Scenario
 from laboratory.staging import stage
 from pick_objects import load_mission
 from planar.maps.places import load_places
-from supervision.display import Display
 
 
 def conduct(options: RunOptions, scenario: Scenario, seed: int) -> int:
@@ -26,15 +22,4 @@ def conduct(options: RunOptions, scenario: Scenario, seed: int) -> int:
             places.update(load_mission(mission_file, places).places)
         expected = {ERRAND, OBJECTS if mission_file else MARKERS}
         launch = LaunchPlan("scenario.launch", arguments, package="laboratory")
-        display = Display()
-        referee = Referee(places, display.say)
-        with Run(options, launch, referee, RunRecorder(places), display) as run:
-
-            def too_long() -> Optional[str]:
-                is_over = referee.simulated_seconds > scenario.seconds
-                return f"not done within {scenario.seconds:g} simulated seconds" if is_over else None
-
-            failure = run.watch(lambda: referee.has_seen(expected) or too_long() is not None)
-            if not referee.has_seen(expected):
-                failure = failure or too_long()
-            return run.conclude(referee.verdict(expected, failure))
+        return carry_out(options, launch, places, expected, scenario.seconds)
