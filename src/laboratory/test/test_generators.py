@@ -6,7 +6,7 @@ import pytest
 from scipy.ndimage import label
 
 from laboratory.generators.buildings import APART, _arena
-from laboratory.generators.furniture import ROOM_TO_PASS, ROOM_TO_STAND, WAY
+from laboratory.generators.furniture import ROOM_TO_STAND, WAY
 from laboratory.generators.halls import Halls
 from laboratory.generators.homes import Homes
 from laboratory.generators.offices import Offices
@@ -15,6 +15,7 @@ from laboratory.generators.rooms import SMALLEST_SIDE, Room, floor_plan
 from laboratory.playing import play
 from laboratory.scenario import read_scenario
 from laboratory.suites import FOLDER
+from laboratory.tasks.ways import ROOM_TO_PASS
 from planar import FREE, SettingsError
 from planar.geometry.distance_field import distance_field
 

@@ -10,8 +10,7 @@ from laboratory.generators.offices import Offices
 from laboratory.playing import play
 from laboratory.scenario import read_scenario
 from laboratory.suites import FOLDER
-from laboratory.tasks.ways import Ways
-from laboratory.worlds.doors import ROOM_TO_PASS
+from laboratory.tasks.ways import ROOM_TO_PASS, Ways
 from planar import Pose2, SettingsError
 from sim_bridge.simulation import box_on_floor
 from sim_bridge.views.true_map import true_map

@@ -8,9 +8,9 @@ from typing import Callable, ClassVar, Sequence, Tuple, Type
 
 import numpy as np
 
-from laboratory.generators.furniture import ROOM_TO_PASS, ROOM_TO_STAND
+from laboratory.generators.furniture import ROOM_TO_STAND
 from laboratory.generators.rooms import Room, Wall
-from laboratory.tasks.ways import regions
+from laboratory.tasks.ways import ROOM_TO_PASS, regions
 from laboratory.worlds.solids import FLOOR, wall
 from laboratory.worlds.source import Arena
 from planar import FREE, OccupancyGrid, Pose2, SettingsError

@@ -7,9 +7,10 @@ import numpy as np
 
 from laboratory.generators.raster import RESOLUTION, Raster
 from laboratory.generators.rooms import THICKNESS, Room
+from laboratory.tasks.ways import ROOM_TO_PASS
 
-# Metres from a robot's middle to what is solid: where it stands, and on all its ways.
-ROOM_TO_STAND, ROOM_TO_PASS = 0.55, 0.35
+# Metres from a robot's middle to what is solid where it stands.
+ROOM_TO_STAND = 0.55
 # Half of what the raster takes for wide enough to pass: it tells distances up to a cell too large.
 WAY = ROOM_TO_PASS + RESOLUTION
 # How often a place is looked for, for each piece.

@@ -12,6 +12,9 @@ from planar import FREE, OccupancyGrid, Pose2
 from planar.geometry.distance_field import distance_field
 from planar.geometry.ways import graph_of
 
+# Metres from a robot's middle to what is solid, on all ways of generated buildings.
+ROOM_TO_PASS = 0.35
+
 
 class Ways:
     """Ways along cells whose middle is at least ``radius``, metres, from everything that is not free."""

@@ -6,15 +6,15 @@ from typing import List, Sequence, Tuple, Union
 
 import numpy as np
 
-from laboratory.tasks.ways import regions
+from laboratory.tasks.ways import ROOM_TO_PASS, regions
 from laboratory.worlds.source import Arena
 from planar import OCCUPIED, OccupancyGrid, Pose2, SettingsError
 from planar.config.yaml_table import Table
 from planar.maps.places import pose_from
 from sim_bridge.doorway import Door
 
-# Simulated seconds within which each is shut; metres to what is solid that a way round has to leave.
-SHUT, ROOM_TO_PASS = (5.0, 60.0), 0.35
+# Simulated seconds within which each is shut.
+SHUT = (5.0, 60.0)
 _STREAM = 49
 
 
