@@ -11,8 +11,9 @@ ROOT = structure.ROOT
 # From the ground up; a package may import those on storeys below it. turtle_world is built out of two others.
 STOREYS = (
     {"planar"},
-    {"planar_ros", "run_report"},
-    {"supervision", "sim_bridge", "map_lite", "amcl_lite", "slam_lite", "move_base_lite", "explorer_lite"}
+    {"supervision", "run_report"},
+    {"planar_ros"},
+    {"sim_bridge", "map_lite", "amcl_lite", "slam_lite", "move_base_lite", "explorer_lite"}
     | {"pick_objects", "add_markers", "follow_me", "teleop_lite"},
     {"cockpit"},
     {"home_service", "plugin_examples", "turtle_world", "gazebo_ros", "ros_tools", "ament_index_python"}

@@ -11,10 +11,10 @@ import os
 import signal
 import subprocess
 import sys
-from contextlib import suppress
 from threading import Timer
 from typing import Any, Callable, List, NoReturn, Optional, Sequence
 
+from supervision.forked import end_as
 from supervision.interruption import SIGNALS
 from supervision.processes import adopt_orphans, end_descendants, end_when_orphaned, ending_with_parent
 
@@ -60,7 +60,7 @@ def main() -> NoReturn:
     end_when_orphaned(int(parent), signal.SIGTERM)
     process.wait()
     end_descendants(SIGTERM_SECONDS)
-    _end_as(process.returncode)
+    end_as(process.returncode)
 
 
 def _started(
@@ -93,15 +93,6 @@ def _interrupt(process: subprocess.Popen, patience: float) -> None:
     impatience = Timer(patience, process.kill)
     impatience.daemon = True
     impatience.start()
-
-
-def _end_as(code: int) -> NoReturn:
-    """A negative ``code`` is the number of the signal that has ended the command."""
-    if code < 0:
-        with suppress(OSError):  # nobody may tell what SIGKILL is to do
-            signal.signal(-code, signal.SIG_DFL)
-        os.kill(os.getpid(), -code)
-    sys.exit(code)
 
 
 if __name__ == "__main__":

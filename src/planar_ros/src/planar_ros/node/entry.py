@@ -3,12 +3,28 @@
 import importlib
 import os
 import signal
+import sys
 from contextlib import contextmanager
 from typing import Any, Callable, Iterator
+
+from supervision.forked import live_forked
 
 # A terminal that closes asks for an end too, but not those that were started to outlive it.
 IS_DEAF = signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
 INTERRUPTS = (signal.SIGINT, signal.SIGTERM) if IS_DEAF else (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+def start_node(function: str) -> None:
+    """Calls the function of a node, as ``call``; in a child of a fork server, if there is one."""
+    live_forked(f"{__name__}:start_forked", function)
+    call(function)
+
+
+def start_forked(function: str) -> None:
+    """In a child of the fork server: rospy has read the names of another process' command line there."""
+    if "rospy.names" in sys.modules:
+        importlib.reload(sys.modules["rospy.names"])
+    call(function)
 
 
 def call(function: str, *arguments: object) -> Any:

@@ -8,12 +8,14 @@ import subprocess
 import threading
 import time
 from pathlib import Path
-from typing import IO, Collection, Mapping, Optional
+from typing import IO, Collection, Mapping, Optional, Sequence
 
 import psutil
 
 from supervision.deaths import Deaths, end_in_words
 from supervision.errors import LaunchError
+from supervision.fork_server import start_fork_server
+from supervision.forked import FORK_SERVER
 from supervision.guard import guarded, ignore_ctrl_c
 from supervision.ports import free_port
 from supervision.processes import adopt_orphans, end_descendants
@@ -29,7 +31,8 @@ class RosGraph:
     """Runs ``roslaunch`` under a master of its own; leaves no process behind when it is closed, or killed.
 
     What roslaunch prints, and each node on stderr, goes to ``log_folder``/roslaunch.log. ``deaths``: of
-    nodes; those in ``comes_back`` the launch file has started again.
+    nodes; those in ``comes_back`` the launch file has started again. ``modules``: what its nodes import,
+    imported once for all of them.
     """
 
     def __init__(
@@ -39,6 +42,7 @@ class RosGraph:
         arguments: Mapping[str, object],
         log_folder: Path,
         comes_back: Collection[str] = (),
+        modules: Sequence[str] = (),
     ):
         self.deaths = Deaths(log_folder, comes_back)
         self.log_gap: Optional[str] = None
@@ -51,8 +55,10 @@ class RosGraph:
         command += [f"{name}:={value}" for name, value in arguments.items() if value is not None]
         if shutil.which("roslaunch") is None:
             raise LaunchError("roslaunch is not on the PATH: run scripts/setup.sh")
+        self._fork_server, name = start_fork_server(modules)
         self._roslaunch = subprocess.Popen(
             guarded(command),
+            env={**os.environ, FORK_SERVER: name},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -80,6 +86,7 @@ class RosGraph:
         if self.is_running:
             os.killpg(self._roslaunch.pid, signal.SIGINT)
         self._wait_for_roslaunch()
+        self._fork_server.terminate()
         end_descendants(SIGTERM_SECONDS)
         self._pump.join(1.0)
 

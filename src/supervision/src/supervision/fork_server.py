@@ -1,0 +1,169 @@
+"""Imports modules once for many programs, which are forked of it (``supervision.forked``).
+
+python3 -m supervision.fork_server NAME MODULE...
+
+Most of the time in which a node starts goes into imports: here they are made once, and while the graph that
+needs them is still being read. It listens at the abstract Unix socket NAME from the first moment on, to
+processes of its own user alone; who comes while it imports, waits. It ends with who has started it.
+"""
+
+import array
+import ctypes
+import fcntl
+import gc
+import importlib
+import json
+import os
+import random
+import secrets
+import select
+import signal
+import socket
+import subprocess
+import sys
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, Dict, List, Optional, Sequence, Tuple
+
+from supervision.forked import LARGEST_MESSAGE, STREAMS, user_of_peer
+from supervision.processes import ending_with_parent
+
+WAITING_CLIENTS = 64
+ORDER_SECONDS = 1.0
+# Of Linux; the module fcntl does not name it.
+F_SETSIG = 10
+
+
+def start_fork_server(modules: Sequence[str]) -> Tuple["subprocess.Popen[bytes]", str]:
+    """A server that imports the modules, and its name; started by the main thread, with which it ends."""
+    name = f"home_service_{os.getpid()}_{secrets.token_hex(8)}"
+    command = [sys.executable, "-m", "supervision.fork_server", name, *modules]
+    options: Dict[str, Any] = {"stdin": subprocess.DEVNULL, "start_new_session": True}
+    return subprocess.Popen(command, preexec_fn=ending_with_parent(signal.SIGTERM), **options), name
+
+
+def main() -> None:
+    name, *modules = sys.argv[1:]
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as listener:
+        listener.bind(f"\0{name}")
+        listener.listen(WAITING_CLIENTS)
+        for module in modules:
+            with suppress(Exception):  # the node that needs it fails of it and says so
+                importlib.import_module(module)
+        gc.collect()
+        gc.freeze()  # so that children share what they do not change
+        order, connection = _ForkServer(listener).serve()
+    _become(order, connection)
+    module, _, function = order["call"][0].partition(":")
+    getattr(importlib.import_module(module), function)(*order["call"][1:])
+
+
+class _ForkServer:
+    """Forks a child for each client, and tells the client its number and then how it has ended."""
+
+    def __init__(self, listener: socket.socket):
+        self._listener = listener
+        self._clients: Dict[int, socket.socket] = {}
+        self._awake, self._awakened = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
+        signal.signal(signal.SIGCHLD, lambda _number, _frame: None)
+        signal.set_wakeup_fd(self._awakened, warn_on_full_buffer=False)
+
+    def serve(self) -> Tuple[Dict[str, Any], socket.socket]:
+        """For ever; returns what is to be done, and for whom, in each child."""
+        while True:
+            ready, _, _ = select.select([self._listener, self._awake], [], [])
+            if self._awake in ready:
+                with suppress(BlockingIOError):
+                    os.read(self._awake, LARGEST_MESSAGE)
+                self._tell_ends()
+            if self._listener in ready:
+                connection, _ = self._listener.accept()
+                order = _received(connection)
+                if order is None:
+                    connection.close()
+                elif self._is_child(connection, order.pop("streams")):
+                    return order, connection
+
+    def _is_child(self, connection: socket.socket, streams: List[int]) -> bool:
+        child = os.fork()
+        if child:
+            self._clients[child] = connection
+            for stream in streams:
+                os.close(stream)
+            with suppress(OSError):
+                connection.send(str(child).encode())
+            return False
+        for ours, theirs in zip(STREAMS, streams):
+            os.dup2(theirs, ours)
+            os.close(theirs)
+        signal.set_wakeup_fd(-1)
+        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+        for descriptor in (self._awake, self._awakened):
+            os.close(descriptor)
+        for client in self._clients.values():
+            client.close()
+        return True
+
+    def _tell_ends(self) -> None:
+        with suppress(ChildProcessError):
+            while True:
+                child, status = os.waitpid(-1, os.WNOHANG)
+                if not child:
+                    return
+                code = -os.WTERMSIG(status) if os.WIFSIGNALED(status) else os.WEXITSTATUS(status)
+                with self._clients.pop(child) as client, suppress(OSError):
+                    client.send(str(code).encode())
+
+
+def _received(connection: socket.socket) -> Optional[Dict[str, Any]]:
+    """What a client of the same user asks for, with its ``streams``; None of anybody or anything else."""
+    if user_of_peer(connection) != os.getuid():
+        return None
+    connection.settimeout(ORDER_SECONDS)
+    streams = array.array("i")
+    with suppress(OSError, ValueError, TypeError):
+        size = socket.CMSG_LEN(len(STREAMS) * streams.itemsize)
+        text, rights, _, _ = connection.recvmsg(LARGEST_MESSAGE, size)
+        for _level, _kind, data in rights:
+            streams.frombytes(data)
+        return {**json.loads(text), "streams": list(streams)}
+    return None
+
+
+def _become(order: Dict[str, Any], connection: socket.socket) -> None:
+    """Makes this child the process that has asked for it, in all that a program can tell."""
+    _end_with_client(connection)
+    os.setsid()
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    sys.stdout.reconfigure(line_buffering=os.isatty(1))  # type: ignore[union-attr]
+    os.environ.clear()
+    os.environ.update(order["environment"])
+    os.chdir(order["folder"])
+    sys.argv, sys.path[:] = order["argv"], order["path"]
+    random.seed()
+    _name_process([sys.executable, *sys.argv])
+
+
+def _end_with_client(connection: socket.socket) -> None:
+    """The kernel kills this process when the other end of the connection, which sends no more, is closed."""
+    connection.setblocking(False)
+    fcntl.fcntl(connection, fcntl.F_SETOWN, os.getpid())
+    fcntl.fcntl(connection, F_SETSIG, signal.SIGKILL)
+    fcntl.fcntl(connection, fcntl.F_SETFL, fcntl.fcntl(connection, fcntl.F_GETFL) | os.O_ASYNC)
+    with suppress(BlockingIOError):
+        if not connection.recv(1, socket.MSG_PEEK):
+            os.kill(os.getpid(), signal.SIGKILL)
+
+
+def _name_process(words: List[str]) -> None:
+    """As ps shows it: over the words of this process' own command line, as far as these reach."""
+    fields = Path("/proc/self/stat").read_text().rpartition(")")[2].split()
+    start, end = int(fields[45]), int(fields[46])
+    room = end - start
+    text = "\0".join(words).encode()[: room - 1].ljust(room, b"\0")
+    ctypes.memmove(start, text, room)
+
+
+if __name__ == "__main__":
+    main()

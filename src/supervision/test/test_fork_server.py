@@ -1,0 +1,158 @@
+"""A program that lives in a child of a fork server cannot tell, nor can who has started it."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+import psutil
+import pytest
+
+from supervision.fork_server import start_fork_server
+from supervision.forked import FORK_SERVER
+
+SECONDS = 10.0
+PROGRAM = """
+import os, random, signal, sys, time
+IMPORTED_BY = os.getpid()
+def tell(text):
+    where = "here" if IMPORTED_BY == os.getpid() else "forked"
+    print(where, text, os.environ["WORD"], os.getcwd(), *sys.argv[1:], sys.stdin.read(), flush=True)
+    print("to stderr", file=sys.stderr)
+    sys.exit(7)
+def wait():
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(3))
+    print(os.getpid(), os.getppid(), flush=True)
+    time.sleep(60)
+def draw():
+    print(random.random())
+"""
+START = "from supervision.forked import live_forked; live_forked(*{!r}); print('alone')"
+STARTER = """
+from supervision.fork_server import start_fork_server
+print(start_fork_server([])[0].pid, flush=True)
+input()
+"""
+
+
+@pytest.fixture
+def modules(tmp_path, monkeypatch):
+    (tmp_path / "program.py").write_text(PROGRAM)
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(tmp_path), *sys.path]))
+
+
+@pytest.fixture
+def server(modules):
+    process, name = start_fork_server(["no_such_module", "program"])
+    wait_until(lambda: is_there(name))
+    yield process, name
+    process.kill()
+    process.wait()
+
+
+def is_there(name):
+    with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as probe:
+        return probe.connect_ex(f"\0{name}") == 0
+
+
+def wait_until(is_so):
+    deadline = time.monotonic() + SECONDS
+    while not is_so():
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+
+
+def start(name, *call, words=(), **options):
+    streams = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
+    environment = {**os.environ, "WORD": "word", FORK_SERVER: name}
+    command = [sys.executable, "-c", START.format(call), *words]
+    return subprocess.Popen(command, env=environment, text=True, **{**streams, **options})
+
+
+def test_command_line_environment_folder_streams_and_exit_code_are_its_own(server, tmp_path):
+    process = start(server[1], "program:tell", "told", words=["text"], cwd=tmp_path)
+    out, error = process.communicate("typed", timeout=SECONDS)
+    assert out == f"forked told word {tmp_path} text typed\n"
+    assert error == "to stderr\n"
+    assert process.returncode == 7
+
+
+@pytest.mark.parametrize("name", ["", "no_such_server"])
+def test_without_a_server_it_goes_on_alone(modules, name):
+    assert start(name, "program:draw").communicate(timeout=SECONDS)[0] == "alone\n"
+
+
+def test_a_server_that_dies_meanwhile_is_none(modules):
+    with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as listener:
+        listener.bind("\0dying_server")
+        listener.listen()
+        process = start("dying_server", "program:draw")
+        listener.accept()[0].close()
+        assert process.communicate(timeout=SECONDS)[0] == "alone\n"
+
+
+def test_a_signal_that_asks_for_an_end_is_handed_on(server):
+    process = start(server[1], "program:wait")
+    process.stdout.readline()
+    process.terminate()
+    assert process.wait(SECONDS) == 3
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
+def test_it_dies_of_what_its_child_dies_of(server, number):
+    process = start(server[1], "program:wait")
+    child = int(process.stdout.readline().split()[0])
+    os.kill(child, number)
+    assert process.wait(SECONDS) == (-number if number == signal.SIGKILL else 3)
+
+
+def test_its_child_dies_with_it(server):
+    process = start(server[1], "program:wait")
+    child = psutil.Process(int(process.stdout.readline().split()[0]))
+    process.kill()
+    child.wait(SECONDS)
+
+
+def test_a_child_outlives_the_server_and_is_still_asked_to_end(server):
+    process = start(server[1], "program:wait")
+    child = psutil.Process(int(process.stdout.readline().split()[0]))
+    server[0].kill()
+    server[0].wait()
+    time.sleep(0.1)
+    assert child.is_running() and process.poll() is None
+    process.terminate()
+    child.wait(SECONDS)
+    assert process.wait(SECONDS) == -signal.SIGKILL  # how, only the server knew
+
+
+def test_ps_shows_it_under_its_own_command_line(server):
+    process = start(server[1], "program:wait", words=["__name:=amcl"])
+    child = psutil.Process(int(process.stdout.readline().split()[0]))
+    assert "__name:=amcl" in child.cmdline()
+    process.kill()
+
+
+def test_each_draws_other_random_numbers(server):
+    drawn = {start(server[1], "program:draw").communicate(timeout=SECONDS)[0] for _ in range(3)}
+    assert len(drawn) == 3
+
+
+def test_nonsense_and_silence_are_no_reason_to_end(server):
+    for said in (b"nonsense", b"[1]", None):
+        with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as client:
+            client.connect(f"\0{server[1]}")
+            if said is not None:
+                client.send(said)
+                client.settimeout(SECONDS)
+                assert client.recv(100) == b""
+    assert start(server[1], "program:draw").communicate(timeout=SECONDS)[0] != "alone\n"
+
+
+def test_the_server_ends_with_who_has_started_it(modules):
+    streams = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    process = subprocess.Popen([sys.executable, "-c", STARTER], text=True, **streams)
+    server = psutil.Process(int(process.stdout.readline()))
+    process.kill()
+    server.wait(SECONDS)
