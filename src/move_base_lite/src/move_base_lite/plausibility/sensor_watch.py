@@ -6,6 +6,7 @@ from typing import Optional
 
 import numpy as np
 
+from move_base_lite.plausibility.wheel_watch import WheelWatch
 from planar import Pose2, Twist2
 
 # Of the beams of a scan: so many of a kind are no chance.
@@ -42,8 +43,8 @@ class SensorWatch:
     """Told what scans, odometry and commands say, it says which sensor cannot be trusted now.
 
     Scans are held against themselves, against the scans before, and against odometry; odometry against
-    commands and scans. What is not known to be wrong is trusted: a scan without a single return may be that
-    of an empty hall, unless the robot has just seen walls all around.
+    commands and scans; the wheels against both. What is not known to be wrong is trusted: a scan without a
+    single return may be that of an empty hall, unless the robot has just seen walls all around.
     """
 
     def __init__(self) -> None:
@@ -56,6 +57,7 @@ class SensorWatch:
         self._view: Optional[_View] = None
         self._farthest = 0.0
         self._blindness = self._sameness = ""
+        self._wheels = WheelWatch()
 
     def forget(self) -> None:
         """Time has jumped: what was heard is worthless."""
@@ -75,6 +77,7 @@ class SensorWatch:
         elif self._still_since is None:
             self._still_since, self._scan_when_still = now, self._ranges
         self._base, self._odometry_at = base_in_odom, now
+        self._wheels.see_odometry(now, base_in_odom, command)
 
     def complaint(self, now: float) -> Optional[str]:
         """What cannot be trusted, and why, for people: "scan: all of its beams are NaN"; None if all can."""
@@ -85,7 +88,7 @@ class SensorWatch:
                 return f"scan: {reason}"
         if self._odometry_is_stuck(now):
             return "odometry: it stands still while the robot is told to move and its scans change"
-        return None
+        return self._wheels.complaint()
 
     def _why_blind(self, ranges: np.ndarray, range_min: float, range_max: float, span: float) -> str:
         if not len(ranges):
