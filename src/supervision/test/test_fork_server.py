@@ -32,7 +32,7 @@ def draw():
 START = "from supervision.forked import live_forked; live_forked(*{!r}); print('alone')"
 STARTER = """
 from supervision.fork_server import start_fork_server
-print(start_fork_server([])[0].pid, flush=True)
+print(start_fork_server([]).pid, flush=True)
 input()
 """
 
@@ -44,8 +44,10 @@ def modules(tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def server(modules):
-    process, name = start_fork_server(["no_such_module", "program"])
+def server(modules, monkeypatch):
+    monkeypatch.setenv(FORK_SERVER, "")  # and taken back afterwards
+    process = start_fork_server(["no_such_module", "program", "program:no_such_function"])
+    name = os.environ[FORK_SERVER]
     wait_until(lambda: is_there(name))
     yield process, name
     process.kill()

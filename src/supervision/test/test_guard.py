@@ -42,7 +42,12 @@ def mark():
 def start(mark, *command, by=STARTER):
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), MARK: mark}
     starter = [sys.executable, "-c", by, *command]
-    return subprocess.Popen(starter, env=environment, stdout=subprocess.PIPE)
+    return subprocess.Popen(starter, env=environment, stdout=subprocess.PIPE, preexec_fn=hear_hang_up)
+
+
+def hear_hang_up():
+    """Also where the tests themselves run under nohup."""
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 def processes_of(mark):

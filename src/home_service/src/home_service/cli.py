@@ -6,6 +6,8 @@ from typing import List, Optional
 
 from home_service import commands
 from home_service.command import Command, CommandFolder
+from home_service.nursery import prepare_nodes
+from home_service.options import GraphOptions
 from planar import PlanarError
 from supervision import command_line
 from supervision.display import complain
@@ -19,7 +21,10 @@ def main(arguments: Optional[List[str]] = None, folder: CommandFolder = commands
     """Runs one of a folder; returns its exit code: 0 success, 1 failure, 2 bad input, 130 interrupted."""
     leave_when_interrupted()
     try:
-        return parse(sys.argv[1:] if arguments is None else arguments, folder).run()
+        command = parse(sys.argv[1:] if arguments is None else arguments, folder)
+        if isinstance(command, GraphOptions):
+            prepare_nodes()
+        return command.run()
     except RunInterruptedError as error:
         complain(str(error))
         return INTERRUPTED

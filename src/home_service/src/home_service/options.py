@@ -106,23 +106,12 @@ class MissionOptions(ErrandOptions, DrivingOptions):
         return {**super().files(), **mission}
 
 
-NODES = (
-    "sim_bridge.ros.node",
-    "map_lite.ros.map_server",
-    "amcl_lite.ros.node",
-    "move_base_lite.ros.node",
-    "pick_objects.ros.node",
-    "add_markers.ros.node",
-)
-
-
 @dataclass(frozen=True)
 class LaunchPlan:
     """What a run starts.
 
     ``is_simulated``: whether a simulator is in it. ``bags``: the profile of what is recorded, if any.
     ``comes_back``: the nodes that are started again if they die. ``package``: that of the launch file.
-    ``modules``: what is imported once for all nodes.
     """
 
     file: str
@@ -131,7 +120,6 @@ class LaunchPlan:
     bags: Optional[str] = None
     comes_back: Tuple[str, ...] = ()
     package: str = "home_service"
-    modules: Tuple[str, ...] = NODES
 
     def respawning(self, *nodes: str) -> "LaunchPlan":
         """The same, with these nodes started again if they die."""

@@ -1,6 +1,6 @@
 """Imports modules once for many programs, which are forked of it (``supervision.forked``).
 
-python3 -m supervision.fork_server NAME MODULE...
+python3 -m supervision.fork_server NAME (MODULE | MODULE:FUNCTION)...
 
 Most of the time in which a node starts goes into imports: here they are made once, and while the graph that
 needs them is still being read. It listens at the abstract Unix socket NAME from the first moment on, to
@@ -25,7 +25,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
-from supervision.forked import LARGEST_MESSAGE, STREAMS, user_of_peer
+from supervision.forked import FORK_SERVER, LARGEST_MESSAGE, STREAMS, user_of_peer
 from supervision.processes import ending_with_parent
 
 WAITING_CLIENTS = 64
@@ -34,29 +34,47 @@ ORDER_SECONDS = 1.0
 F_SETSIG = 10
 
 
-def start_fork_server(modules: Sequence[str]) -> Tuple["subprocess.Popen[bytes]", str]:
-    """A server that imports the modules, and its name; started by the main thread, with which it ends."""
+def start_fork_server(preparations: Sequence[str]) -> "subprocess.Popen[bytes]":
+    """One that makes the preparations, named in the environment from now on.
+
+    Started by the main thread, with which it ends.
+    """
     name = f"home_service_{os.getpid()}_{secrets.token_hex(8)}"
-    command = [sys.executable, "-m", "supervision.fork_server", name, *modules]
-    options: Dict[str, Any] = {"stdin": subprocess.DEVNULL, "start_new_session": True}
-    return subprocess.Popen(command, preexec_fn=ending_with_parent(signal.SIGTERM), **options), name
+    command = [sys.executable, "-m", "supervision.fork_server", name, *preparations]
+    # Children have no use for threads of BLAS, which are not forked either.
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+    os.environ[FORK_SERVER] = name
+    return subprocess.Popen(
+        command,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        start_new_session=True,
+        preexec_fn=ending_with_parent(signal.SIGTERM),
+    )
 
 
 def main() -> None:
-    name, *modules = sys.argv[1:]
+    name, *preparations = sys.argv[1:]
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as listener:
         listener.bind(f"\0{name}")
         listener.listen(WAITING_CLIENTS)
-        for module in modules:
+        for preparation in preparations:
             with suppress(Exception):  # the node that needs it fails of it and says so
-                importlib.import_module(module)
+                _call(preparation)
         gc.collect()
         gc.freeze()  # so that children share what they do not change
         order, connection = _ForkServer(listener).serve()
     _become(order, connection)
-    module, _, function = order["call"][0].partition(":")
-    getattr(importlib.import_module(module), function)(*order["call"][1:])
+    _call(*order["call"])
+
+
+def _call(what: str, *arguments: str) -> None:
+    """Imports a module, and calls its function if ``what`` is ``package.module:function``."""
+    name, _, function = what.partition(":")
+    module = importlib.import_module(name)
+    if function:
+        getattr(module, function)(*arguments)
 
 
 class _ForkServer:

@@ -116,7 +116,7 @@ class Run:
         speed = {"speed": self._options.wanted_speed, "rviz": str(self._options.rviz).lower()}
         arguments = {**self._launch.arguments, **speed}
         launch = self._launch
-        self._supervisor.start(launch.package, launch.file, arguments, launch.comes_back, launch.modules)
+        self._supervisor.start(launch.package, launch.file, arguments, launch.comes_back)
         if self._options.is_on_the_web:
             where = self._options.web_port or FREE_PORT
             self._cockpit = CockpitProcess(

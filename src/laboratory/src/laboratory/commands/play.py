@@ -15,8 +15,11 @@ class Play(RunOptions):
     over: str = option("process", "what plays it: one process, or the nodes", choices=("process", "ros"))
 
     def run(self) -> int:
+        from home_service.nursery import prepare_nodes
         from laboratory.suites import one_scenario
 
+        if self.over == "ros":
+            prepare_nodes()
         scenario = one_scenario(self.scenario, self.planner)
         if self.over == "ros":
             from laboratory.ros.conducting import conduct

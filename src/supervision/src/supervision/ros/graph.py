@@ -8,14 +8,12 @@ import subprocess
 import threading
 import time
 from pathlib import Path
-from typing import IO, Collection, Mapping, Optional, Sequence
+from typing import IO, Collection, List, Mapping, Optional
 
 import psutil
 
 from supervision.deaths import Deaths, end_in_words
 from supervision.errors import LaunchError
-from supervision.fork_server import start_fork_server
-from supervision.forked import FORK_SERVER
 from supervision.guard import guarded, ignore_ctrl_c
 from supervision.ports import free_port
 from supervision.processes import adopt_orphans, end_descendants
@@ -23,6 +21,8 @@ from supervision.processes import adopt_orphans, end_descendants
 SIGINT_SECONDS = 8.0
 HEARING_SECONDS = 2.0
 SIGTERM_SECONDS = 2.0
+CORE = ("roslaunch", "rosmaster", "rosout")
+CORE_SECONDS = 0.1
 POLL_SECONDS = 0.02
 ENDING = "killing on exit"
 
@@ -31,8 +31,7 @@ class RosGraph:
     """Runs ``roslaunch`` under a master of its own; leaves no process behind when it is closed, or killed.
 
     What roslaunch prints, and each node on stderr, goes to ``log_folder``/roslaunch.log. ``deaths``: of
-    nodes; those in ``comes_back`` the launch file has started again. ``modules``: what its nodes import,
-    imported once for all of them.
+    nodes; those in ``comes_back`` the launch file has started again.
     """
 
     def __init__(
@@ -42,7 +41,6 @@ class RosGraph:
         arguments: Mapping[str, object],
         log_folder: Path,
         comes_back: Collection[str] = (),
-        modules: Sequence[str] = (),
     ):
         self.deaths = Deaths(log_folder, comes_back)
         self.log_gap: Optional[str] = None
@@ -55,10 +53,8 @@ class RosGraph:
         command += [f"{name}:={value}" for name, value in arguments.items() if value is not None]
         if shutil.which("roslaunch") is None:
             raise LaunchError("roslaunch is not on the PATH: run scripts/setup.sh")
-        self._fork_server, name = start_fork_server(modules)
         self._roslaunch = subprocess.Popen(
             guarded(command),
-            env={**os.environ, FORK_SERVER: name},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -86,19 +82,29 @@ class RosGraph:
         if self.is_running:
             os.killpg(self._roslaunch.pid, signal.SIGINT)
         self._wait_for_roslaunch()
-        self._fork_server.terminate()
-        end_descendants(SIGTERM_SECONDS)
+        end_descendants(SIGTERM_SECONDS if self._nodes() else CORE_SECONDS)
         self._pump.join(1.0)
 
     def _wait_for_roslaunch(self) -> None:
-        """Patiently while it ends nodes: it may not hear before it has any, and stay on after the last."""
+        """Patiently while it ends nodes; it may not hear before it has any."""
         started = time.monotonic()
         while self.is_running:
-            below_guard = psutil.Process(self._roslaunch.pid).children(recursive=True)
-            ends_nodes = self._is_ending.is_set() and len(below_guard) > 1  # roslaunch itself is one
-            if time.monotonic() - started > (SIGINT_SECONDS if ends_nodes else HEARING_SECONDS):
+            ends_nodes = self._is_ending.is_set() and bool(self._nodes())
+            is_done = self._is_ending.is_set() and not ends_nodes
+            if is_done or time.monotonic() - started > (SIGINT_SECONDS if ends_nodes else HEARING_SECONDS):
                 return
             time.sleep(POLL_SECONDS)
+
+    def _nodes(self) -> List[psutil.Process]:
+        """What roslaunch has started, but for its master and rosout, which have nothing to finish."""
+        nodes = []
+        with contextlib.suppress(psutil.NoSuchProcess):
+            for process in psutil.Process(self._roslaunch.pid).children(recursive=True):
+                with contextlib.suppress(psutil.NoSuchProcess):
+                    words = process.cmdline()
+                    if words and not any(Path(word).name in CORE for word in words[:2]):
+                        nodes.append(process)
+        return nodes
 
     def _read_output(self) -> None:
         """Reads on whatever happens to the log, since roslaunch stands still when nobody reads."""

@@ -2,7 +2,7 @@
 
 import time
 from pathlib import Path
-from typing import Callable, Collection, List, Mapping, Optional, Sequence
+from typing import Callable, Collection, List, Mapping, Optional
 
 from supervision.deaths import Restart
 from supervision.display import Display
@@ -30,13 +30,9 @@ class Supervisor:
         launch_file: str,
         arguments: Mapping[str, object],
         comes_back: Collection[str] = (),
-        modules: Sequence[str] = (),
     ) -> None:
-        """Launches the graph; nodes in ``comes_back`` may die, and are started again. Raises LaunchError.
-
-        ``modules``: what its nodes import, imported once for all of them.
-        """
-        self._graph = RosGraph(package, launch_file, arguments, self._log_folder, comes_back, modules)
+        """Launches the graph; nodes in ``comes_back`` may die, and are started again. Raises LaunchError."""
+        self._graph = RosGraph(package, launch_file, arguments, self._log_folder, comes_back)
 
     def wait_for(self, what: str, is_there: Callable[[], bool]) -> None:
         """Waits for a part of the graph. Raises LaunchError if it does not come."""
