@@ -195,7 +195,7 @@ def test_what_walks_in_stage_four_goes_as_far_as_its_keyframes():
     ("make", "complaint"),
     [
         (lambda: TurtleBot3Stage(5), "stage must be 1, 2, 3 or 4, got 5"),
-        (lambda: PointGoal(render_mode="human"), "render_mode must be rgb_array or None, got 'human'"),
+        (lambda: PointGoal(render_mode="ansi"), "render_mode must be rgb_array, human or None, got 'ansi'"),
         (lambda: PointGoal("nowhere"), "nowhere.yaml"),
         (lambda: HomeService("fields"), "task must be an errand"),
         (lambda: Barn("home_errand"), "task must be reach"),

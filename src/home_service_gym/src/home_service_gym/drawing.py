@@ -22,7 +22,7 @@ class Picture:
     """Of one playground; what keeps still is drawn once."""
 
     def __init__(self, playground: Playground):
-        self._playground = playground
+        self.playground = playground
         world = playground.arena.world
         still = [body for body in world.bodies if body.keeps_still]
         outlines = outlines_of(replace(world, bodies=tuple(still)), HEIGHT, HEIGHT)
@@ -74,7 +74,7 @@ class Picture:
 
     def _hide_unknown(self, image: Image.Image, known: np.ndarray) -> None:
         """Greys what has not been seen."""
-        grid = self._playground.ground.grid
+        grid = self.playground.ground.grid
         side = grid.resolution * self._scale
         size = (round(known.shape[1] * side), round(known.shape[0] * side))
         mask = Image.fromarray(np.where(known[::-1], 0, 255).astype(np.uint8)).resize(size)

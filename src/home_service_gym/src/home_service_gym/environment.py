@@ -9,9 +9,9 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from home_service_gym.drawing import Picture
 from home_service_gym.playground import Moment, Playground, lidar_of
 from home_service_gym.task import COLLISION, PERIOD, Task
+from home_service_gym.viewing import MODES, Viewer
 from laboratory.scenario import Scenario, read_scenario
 from laboratory.suites import FOLDER
 from planar import SettingsError, Twist2
@@ -40,18 +40,16 @@ class TaskEnv(gymnasium.Env):
     ``reset(options={"seed": N})`` takes the world of that seed of the scenario; otherwise one is drawn.
     """
 
-    metadata = {"render_modes": ["rgb_array"], "render_fps": RATE}
+    metadata = {"render_modes": MODES, "render_fps": RATE}
 
     def __init__(self, scenario: Scenario, task: Task, render_mode: Optional[str] = None):
-        if render_mode not in (None, *self.metadata["render_modes"]):
-            raise SettingsError(f"render_mode must be rgb_array or None, got {render_mode!r}")
         self.render_mode = render_mode
         self._scenario, self._task = scenario, task
         self._robot = robot_named(scenario.robot)
+        self._viewer = Viewer(render_mode, self._robot, RATE)
         self._playgrounds: OrderedDict[int, Playground] = OrderedDict()
         self._playground: Optional[Playground] = None
         self._moment: Optional[Moment] = None
-        self._picture: Optional[Picture] = None
         lidar, drive = lidar_of(self._robot), self._robot.drive
         self._most = np.array((drive.max_speed, drive.max_turn_rate))
         fastest = 2.0 * self._most.astype(np.float32)
@@ -72,8 +70,8 @@ class TaskEnv(gymnasium.Env):
         self._playground = self._playground_of(number)
         beginning = self._task.begin(self._playground, self.np_random)
         noise = int(self.np_random.integers(2**31))
-        self._picture = None
         self._moment = self._playground.restart(noise, beginning.start, beginning.courses)
+        self._show_people()
         return self._observation(), {"world": self._playground.arena.title}
 
     def step(self, action: np.ndarray) -> Tuple[Dict[str, np.ndarray], float, bool, bool, Dict[str, Any]]:
@@ -81,6 +79,7 @@ class TaskEnv(gymnasium.Env):
         v, omega = (_within(-1.0, action, 1.0) * self._most).tolist()
         self._moment = self._playground.advance(Twist2(v, omega))
         judgement = self._task.judge(self._moment)
+        self._show_people()
         reward, outcome = judgement.reward, judgement.outcome
         if self._moment.touched:
             reward, outcome = PERIOD + COLLISION, "collision"
@@ -98,17 +97,20 @@ class TaskEnv(gymnasium.Env):
         return self._moment
 
     def render(self) -> Optional[np.ndarray]:  # type: ignore[override]
-        if self.render_mode is None or self._playground is None or self._moment is None:
+        if self._playground is None or self._moment is None:
             return None
-        if self._picture is None:
-            self._picture = Picture(self._playground)
-        return self._picture.draw(self._moment, self._task.marks())
+        return self._viewer.show(self._playground, self._moment, self._task.marks())
 
     def close(self) -> None:
         for playground in self._playgrounds.values():
             playground.close()
         self._playgrounds.clear()
-        self._playground = self._moment = self._picture = None
+        self._viewer.close()
+        self._playground = self._moment = None
+
+    def _show_people(self) -> None:
+        if self._viewer.is_live:
+            self.render()
 
     def _playground_of(self, seed: int) -> Playground:
         """That of the world of a seed, built if it is not among the last that were used."""

@@ -9,9 +9,9 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from home_service_gym.drawing import Picture
 from home_service_gym.playground import Moment, Playground
 from home_service_gym.task import Marks
+from home_service_gym.viewing import MODES, Viewer
 from laboratory.suites import ROOT
 from laboratory.worlds.source import Arena
 from planar import Pose2, SettingsError, Twist2, wrap
@@ -67,19 +67,17 @@ class TurtleBot3Stage(gymnasium.Env):
     drives. A goal that is reached is followed by another; the episode ends with a collision.
     """
 
-    metadata = {"render_modes": ["rgb_array"], "render_fps": RATE}
+    metadata = {"render_modes": MODES, "render_fps": RATE}
 
     def __init__(self, stage: int = 1, render_mode: Optional[str] = None):
         if stage not in STARTS:
             raise SettingsError(f"stage must be 1, 2, 3 or 4, got {stage!r}")
-        if render_mode not in (None, *self.metadata["render_modes"]):
-            raise SettingsError(f"render_mode must be rgb_array or None, got {render_mode!r}")
         self.render_mode, self._stage = render_mode, stage
         self._worth = EASY if stage == 1 else HARD
         robot, start = robot_named("turtlebot3_burger"), STARTS[stage]
+        self._viewer = Viewer(render_mode, robot, RATE)
         self._playground = Playground(arena_of(stage), robot, SimulationSettings(), start, RATE)
         self._moment: Optional[Moment] = None
-        self._picture: Optional[Picture] = None
         farthest = [3.5] * BEAMS + [math.pi, 10.0] + ([3.5, BEAMS - 1.0] if stage > 1 else [])
         high = np.array(farthest, dtype=np.float32)
         low = np.where(np.arange(len(high)) == BEAMS, -high, np.float32(0.0))
@@ -92,11 +90,13 @@ class TurtleBot3Stage(gymnasium.Env):
         super().reset(seed=seed)
         self._moment = self._playground.restart(int(self.np_random.integers(2**31)), STARTS[self._stage])
         self._set_goal(Pose2(*GOALS_XY[0]))
+        self._show_people()
         return self._observation(), {"goal": (self._goal.x, self._goal.y)}
 
     def step(self, action: Any) -> Tuple[np.ndarray, float, bool, bool, Dict[str, Any]]:
         omega = (2 - int(action)) * TURN * 0.5
         self._moment = moment = self._playground.advance(Twist2(SPEED, omega))
+        self._show_people()
         seen = self._observation()
         if moment.touched or seen[:BEAMS].min() < TOUCH:
             return seen, self._worth.collision, True, False, {"outcome": "collision", "is_success": False}
@@ -106,15 +106,18 @@ class TurtleBot3Stage(gymnasium.Env):
         return seen, self._reward(seen, int(action)), False, False, {}
 
     def render(self) -> Optional[np.ndarray]:  # type: ignore[override]
-        if self.render_mode is None or self._moment is None:
+        if self._moment is None:
             return None
-        if self._picture is None:
-            self._picture = Picture(self._playground)
         courses = self._playground.arena.world.courses
-        return self._picture.draw(self._moment, Marks((self._goal, ARRIVED), courses))
+        return self._viewer.show(self._playground, self._moment, Marks((self._goal, ARRIVED), courses))
 
     def close(self) -> None:
+        self._viewer.close()
         self._playground.close()
+
+    def _show_people(self) -> None:
+        if self._viewer.is_live:
+            self.render()
 
     def _reward(self, seen: np.ndarray, action: int) -> float:
         """The more the action turns to the goal, and the farther that still is, the better."""

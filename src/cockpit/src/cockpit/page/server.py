@@ -71,6 +71,14 @@ class Page:
         """What is changed within is seen at once."""
         return self._server.atomic()
 
+    def look_over(self, low_xy: np.ndarray, high_xy: np.ndarray) -> None:
+        """Those who come from now on see all between two corners, m, from above and aside."""
+        middle = np.append(0.5 * (low_xy + high_xy), 0.0)
+        away = 0.5 * float(np.linalg.norm(high_xy - low_xy)) / np.tan(0.5 * FIELD_OF_VIEW)
+        direction = (CAMERA - LOOK_AT) / np.linalg.norm(CAMERA - LOOK_AT)
+        self._server.initial_camera.position = middle + away * direction
+        self._server.initial_camera.look_at = middle
+
     def close(self) -> None:
         with contextlib.redirect_stdout(io.StringIO()):
             self._server.stop()

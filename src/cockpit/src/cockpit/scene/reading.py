@@ -32,17 +32,18 @@ FREELY, BEYOND = {"revolute": math.pi / 2.0, "prismatic": 0.5}, 1000.0
 
 def world_look(path: Path, folders: Sequence[Path]) -> Look:
     """The bodies of an SDF file. Raises PlanarError."""
-    return _look_of(load_world(path, folders))
+    return look_of(load_world(path, folders))
 
 
 def model_look(text: str, name: str, folders: Sequence[Path], find_file: FindFile) -> Look:
     """The bodies of the SDF or URDF of one model, called ``name``, at the origin. Raises PlanarError."""
     if parse_text(text, name, ("sdf", "gazebo", "robot")).tag == "robot":
-        return _look_of(read_prop(text, name, IDENTITY, find_file))
-    return _look_of(read_model(text, name, IDENTITY, folders))
+        return look_of(read_prop(text, name, IDENTITY, find_file))
+    return look_of(read_model(text, name, IDENTITY, folders))
 
 
-def _look_of(world: World) -> Look:
+def look_of(world: World) -> Look:
+    """The bodies of a world as it is in memory."""
     collector = _Collector()
     for body in world.bodies:
         model, _, link = body.name.partition("::")
@@ -69,6 +70,18 @@ def robot_look(text: str, find_file: FindFile) -> Look:
             own = None if material is None else _rgb(material) or named.get(material.name)
             collector.add(("", link.name, IDENTITY, True), shape, _origin(visual), own)
     return Look(tuple(collector.pieces), tuple(collector.warnings))
+
+
+def robot_joints(text: str) -> Dict[str, Tuple[str, np.ndarray]]:
+    """The links of a robot's URDF that have a parent: its name, and the pose (4, 4) there, joints at zero."""
+    robot = parse_text(text, "robot_description", ("robot",))
+    return {
+        joint.required("child").attribute("link"): (
+            joint.required("parent").attribute("link"),
+            _origin(joint),
+        )
+        for joint in robot.children("joint")
+    }
 
 
 def _hinge(joint: Joint) -> Hinge:

@@ -1,0 +1,100 @@
+"""A page of the cockpit that shows an environment: its world, the robot, what it sees, its goal."""
+
+import math
+import time
+from functools import partial
+from html import escape
+from pathlib import Path
+from typing import Optional
+
+import numpy as np
+
+from cockpit.drawing import Drawing, Part, Points, Surface
+from cockpit.frames import FrameTree, Transform
+from cockpit.page.drawer import Drawer
+from cockpit.page.server import Page
+from cockpit.page.world_view import RobotView, WorldView
+from cockpit.scene.reading import look_of, robot_joints, robot_look
+from home_service_gym.playground import Moment, Playground, lidar_of
+from home_service_gym.task import Marks
+from planar import Pose2
+from sim_bridge import RobotProfile
+from sim_bridge.geometry.pose3 import pose3
+from sim_bridge.sdf.includes import resolve
+
+WORLD = "world"
+SCAN, GOAL = (230, 57, 70), (60, 170, 80)
+# Corners of a goal's disc, and its height above the floor, m.
+CORNERS, ABOVE = 32, 0.01
+
+
+class Window:
+    """Serves the page from now on, and prints its URL; ``rate``: moments a second."""
+
+    def __init__(self, robot: RobotProfile, rate: int):
+        self._page = Page("127.0.0.1", 0)
+        self._title = self._page.gui.add_html("")
+        print(f"environment: {self._page.url}", flush=True)
+        self._frames, self._drawer = FrameTree(), Drawer(self._page.scene)
+        self._world = WorldView(self._page.scene)
+        urdf, find_file = robot.description(), partial(resolve, beside=Path.cwd(), model_folders=())
+        self._robot = RobotView(self._page.scene, "robot", robot_look(urdf, find_file), "")
+        for child, (parent, pose) in robot_joints(urdf).items():
+            self._frames.put(child, Transform(parent, pose, 0.0, is_static=True))
+        (self._base,) = self._frames.roots()
+        self._playground: Optional[Playground] = None
+        self._scan_height = float(lidar_of(robot).pose_in_base[2, 3])
+        self._period, self._due = 1.0 / rate, 0.0
+
+    def show(self, playground: Playground, moment: Moment, marks: Marks) -> None:
+        """A control period later, if somebody looks on: as fast as it would be in the world."""
+        with self._page.atomic():
+            if playground is not self._playground:
+                self._build(playground)
+            self._move(playground, moment, marks)
+        if self._page.is_watched:
+            time.sleep(max(self._due - time.monotonic(), 0.0))
+        self._due = time.monotonic() + self._period
+
+    def close(self) -> None:
+        self._page.close()
+
+    def _build(self, playground: Playground) -> None:
+        for model in self._world.models:
+            self._world.remove(model)
+        look = look_of(playground.arena.world)
+        corners = np.vstack([piece.pose[:3, 3] for piece in look.pieces])[:, :2]
+        self._world.show(look)
+        self._page.look_over(corners.min(axis=0), corners.max(axis=0))
+        self._title.content = f"<b>{escape(playground.arena.title)}</b>"
+        self._playground = playground
+
+    def _move(self, playground: Playground, moment: Moment, marks: Marks) -> None:
+        base = moment.base_in_world
+        self._frames.put(self._base, Transform(WORLD, _lifted(base), moment.stamp, is_static=False))
+        poses = {body.name: body.pose_in_world for body in playground.arena.world.bodies}
+        for course in marks.courses:
+            height = poses[course.link][2, 3]
+            self._world.place(course.link, pose3(*course.at(moment.stamp), height, 0.0, 0.0, 0.0))
+        self._world.update(np.eye(4))
+        self._robot.update(self._frames, WORLD, is_shown=True)
+        hits = base.transform_points(moment.scan.hit_points_in_base())
+        seen = np.column_stack([hits, np.full(len(hits), self._scan_height)])
+        parts = [Part("scan", WORLD, Points(seen, SCAN, 0.05))]
+        if marks.goal is not None:
+            parts.append(Part("goal", WORLD, _disc(*marks.goal)))
+        self._drawer.show("episode", Drawing(tuple(parts)))
+        self._drawer.place(self._frames, WORLD, time.monotonic())
+
+
+def _lifted(pose: Pose2) -> np.ndarray:
+    return pose3(pose.x, pose.y, 0.0, 0.0, 0.0, pose.yaw)
+
+
+def _disc(at: Pose2, radius: float) -> Surface:
+    angles = np.linspace(0.0, 2.0 * math.pi, CORNERS, endpoint=False)
+    rim_xy = (at.x, at.y) + radius * np.column_stack([np.cos(angles), np.sin(angles)])
+    vertices = np.column_stack([np.vstack([rim_xy, [(at.x, at.y)]]), np.full(CORNERS + 1, ABOVE)])
+    corners = np.arange(CORNERS)
+    triangles = np.column_stack([np.full(CORNERS, CORNERS), corners, (corners + 1) % CORNERS])
+    return Surface(vertices, triangles, GOAL, 0.6)

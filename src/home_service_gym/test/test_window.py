@@ -1,0 +1,59 @@
+"""render_mode "human": a page in the browser shows what an environment goes through."""
+
+import re
+import sys
+import time
+from pathlib import Path
+
+import gymnasium
+import pytest
+
+from planar import SettingsError
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "tests/shared"))
+from page_client import PageClient  # noqa: E402
+
+STEPS = 10
+
+
+def opened(env, capsys):
+    """The page of an environment that has just been reset."""
+    return PageClient(re.search(r"environment: (\S+)", capsys.readouterr().out).group(1))
+
+
+@pytest.mark.parametrize("name", ["PointGoal-v0", "TurtleBot3Stage-v0"])
+def test_who_looks_on_sees_the_episode_go_on_in_its_own_time(name, capsys):
+    env = gymnasium.make(f"home_service_gym:{name}", render_mode="human")
+    env.reset(seed=0)
+    with opened(env, capsys) as page:
+        page.wait_for_pictures(1)
+        before, began = page.pictures, time.monotonic()
+        for _ in range(STEPS):
+            env.step(env.action_space.sample())
+        assert time.monotonic() - began > 0.8 * (STEPS - 1) / env.metadata["render_fps"]
+        page.wait_for_pictures(max(STEPS // 2 - (page.pictures - before), 0))
+        kinds = {thing.strip("/").partition("/")[0] for thing in page.things}
+        assert {"world", "robots", "layers"} <= kinds
+        env.close()
+        page.wait_until_closed()
+
+
+def test_another_world_takes_the_place_of_the_one_before(capsys):
+    env = gymnasium.make("home_service_gym:PointGoal-v0", scenario="homes", render_mode="human")
+    env.reset(seed=0, options={"seed": 1})
+    with opened(env, capsys) as page:
+        page.wait_for_text("home of 264 m2")
+        before = set(page.things)
+        env.reset(options={"seed": 2})
+        page.wait_for_text("home of 46 m2")
+        assert set(page.things) != before
+    env.close()
+
+
+def test_without_the_cockpit_a_sentence_says_what_is_missing(monkeypatch):
+    monkeypatch.delitem(sys.modules, "home_service_gym.window", raising=False)
+    monkeypatch.setitem(sys.modules, "cockpit.page.server", None)
+    env = gymnasium.make("home_service_gym:PointGoal-v0", render_mode="human")
+    with pytest.raises(SettingsError, match="needs the cockpit: ./scripts/setup.sh --web"):
+        env.reset(seed=0)
+    env.close()
