@@ -120,3 +120,57 @@ def test_a_run_for_which_too_few_open_files_are_allowed_is_refused_and_leaves_no
         "error: no more than 64 open files are allowed (ulimit -n), and the nodes need 256\n"
     )
     assert not list(tmp_path.iterdir())
+
+
+OWN = """
+from dataclasses import dataclass
+from supervision.command_line import option
+
+@dataclass(frozen=True)
+class Greet:
+    \"\"\"Greets somebody.\"\"\"
+
+    name: str = option("you", "whom")
+
+    def run(self):
+        print(f"hello {self.name}")
+        return 3
+
+class Plain:
+    def run(self):
+        return 0
+
+@dataclass
+class Idle:
+    pass
+"""
+
+
+@pytest.fixture
+def own(tmp_path, monkeypatch):
+    (tmp_path / "own_commands").mkdir()
+    (tmp_path / "own_commands" / "greeting.py").write_text(OWN)
+    monkeypatch.syspath_prepend(str(tmp_path))
+
+
+def test_a_command_of_other_people_is_called_by_its_dotted_name(own, capsys):
+    assert main(["own_commands.greeting/Greet", "--name", "robot"]) == 3
+    assert capsys.readouterr().out == "hello robot\n"
+    with pytest.raises(SystemExit):
+        main(["own_commands.greeting/Greet", "--help"])
+    assert "Greets somebody." in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "name, why",
+    [
+        ("own_commands.greeting/Plain", "it is no dataclass"),
+        ("own_commands.greeting/Idle", "is no command"),
+        ("own_commands.greeting/Absent", "Absent"),
+        ("no_such_package.module/Greet", "no_such_package"),
+        ("greeting/Greet", "my_package.my_module/MyCommand"),
+    ],
+)
+def test_what_is_no_command_of_other_people_is_refused(own, name, why, capsys):
+    assert main([name]) == 2
+    assert why in capsys.readouterr().err

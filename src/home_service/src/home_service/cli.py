@@ -40,11 +40,13 @@ def parse(words: List[str], folder: CommandFolder = commands.FOLDER) -> Command:
     """The command that the first word names, with the options that the others give.
 
     Ends the process on --help and on nonsense, in the name of the script that belongs to the command.
+    Raises PluginError if the word is a dotted name and names no command.
     """
-    names = folder.names()
-    if not words or words[0] not in names:
+    is_of_other_people = bool(words) and "/" in words[0]
+    if not is_of_other_people and (not words or words[0] not in folder.names()):
         _parser_of_names(folder).parse_args(words[:1])
-    return command_line.parse(folder.find(words[0]), words[1:], f"{words[0]}.sh")
+    script = words[0] if is_of_other_people else f"{words[0]}.sh"
+    return command_line.parse(folder.find(words[0]), words[1:], script)
 
 
 def _parser_of_names(folder: CommandFolder) -> argparse.ArgumentParser:

@@ -2,11 +2,16 @@
 
 import importlib
 import pkgutil
+from dataclasses import is_dataclass
 from typing import Iterable, List, Protocol, Type
+
+from planar.plugins import Contract, PluginError, load
 
 
 class Command(Protocol):
     """What a script does. A command is a module of the folder ``commands``; nothing else has to know of it.
+
+    One of other people is a class anywhere on Python's path, called by its dotted name.
 
     ``commands/count_walls.py`` holds the frozen dataclass ``CountWalls``: its fields are the options (see
     supervision.command_line), the first line of its docstring is the summary, ``run`` does it. It belongs to
@@ -26,6 +31,9 @@ class Command(Protocol):
         """
 
 
+CONTRACT = Contract("command", Command, None, "home_service.commands")
+
+
 class CommandFolder:
     """The commands of a package's folder ``commands``: its ``name`` as a module, and its ``path``."""
 
@@ -37,6 +45,21 @@ class CommandFolder:
         return [module.name for module in pkgutil.iter_modules(self._path)]
 
     def find(self, name: str) -> Type[Command]:
-        """The command of that name; no other is imported."""
+        """The command of that name, or of a dotted name as ``my_package.my_module/MyCommand``.
+
+        No other is imported. Raises PluginError if there is none of that dotted name, or it lacks something.
+        """
+        if "/" in name:
+            return _of_other_people(name)
         module = importlib.import_module(f"{self._name}.{name}")
         return getattr(module, name.title().replace("_", ""))
+
+
+def _of_other_people(name: str) -> Type[Command]:
+    found = load(name, CONTRACT)
+    if found is None:
+        raise PluginError(f"{name} is the dotted name of no command: my_package.my_module/MyCommand is one")
+    has_options = is_dataclass(found)
+    if not has_options:
+        raise PluginError(f"{name} is no command: it is no dataclass, whose fields are the options")
+    return found
