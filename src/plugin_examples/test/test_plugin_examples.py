@@ -10,6 +10,7 @@ KITS = {**NAVIGATION, **LOCALIZATION, **MAPPING}
 EXAMPLES = [
     ("local_planner", "plugin_examples.pure_pursuit/PurePursuit"),
     ("local_planner", "plugin_examples.potential_field/PotentialField"),
+    ("local_planner", "plugin_examples.critics/Critics"),
     ("local_planner", "plugin_examples.learned/Learned"),
     ("global_planner", "plugin_examples.rrt_star/RrtStar"),
     ("costmap_layer", "plugin_examples.social_distance/SocialDistance"),

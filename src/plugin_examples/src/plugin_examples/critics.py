@@ -1,0 +1,127 @@
+"""Critics: each scores all that can be driven, and the best of all together is.
+
+The dynamic window (Fox, Burgard, Thrun, 1997), cut as dwb_local_planner is. To add an opinion: a function
+like those below in ``CRITICS``, and its weight, a parameter of its name.
+"""
+
+from dataclasses import dataclass
+from itertools import product
+from typing import Callable, Tuple
+
+import numpy as np
+
+from move_base_lite import ControlError, ControllerSettings, Plan, Situation, Trajectory
+from move_base_lite.costmap import INSCRIBED
+from planar import Pose2, Twist2
+from planar.config.parameters import POSITIVE, at_least, parameter
+
+# Samples of both velocities, and poses of an arc.
+SPEEDS, TURNS, STEPS = 5, 15, 8
+# Slower, m/s, the robot does not get on.
+SLOWEST = 0.05
+# Metres ahead of the robot to what is to lie on the plan, and along the plan to what it is to come near to.
+NOSE, LOOKAHEAD = 0.3, 0.8
+
+
+@dataclass(frozen=True)
+class CriticsSettings(ControllerSettings):
+    sim_time: float = parameter(1.2, "how long arcs are looked ahead", "s", POSITIVE, dynamic=5.0)
+    obstacles: float = parameter(0.4, "weight of an arc's highest cost", "", at_least(0.0), dynamic=5.0)
+    path_distance: float = parameter(
+        1.0, "weight of its end's way to the plan", "", at_least(0.0), dynamic=5.0
+    )
+    path_align: float = parameter(1.0, "weight of its nose's way to the plan", "", at_least(0.0), dynamic=5.0)
+    goal_distance: float = parameter(
+        1.0, "weight of its end's way to what is ahead", "", at_least(0.0), dynamic=5.0
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Arcs:
+    """What can be driven: ``commands`` (N, 2), m/s and rad/s, and where they lead, ``poses`` (N, T, 3)."""
+
+    commands: np.ndarray
+    poses: np.ndarray
+
+
+Critic = Callable[[Arcs, Situation, Plan], np.ndarray]
+
+
+def obstacles(arcs: Arcs, situation: Situation, _plan: Plan) -> np.ndarray:
+    """The highest cost under each arc, as a share; infinite where the robot would touch something."""
+    window = situation.costmap.window
+    cells = np.floor((arcs.poses[..., :2] - (window.origin_x, window.origin_y)) / window.resolution).astype(
+        int
+    )
+    cols, rows = np.clip(cells[..., 0], 0, window.cols - 1), np.clip(cells[..., 1], 0, window.rows - 1)
+    highest = situation.costmap.costs[rows, cols].max(axis=1).astype(float)
+    return np.where(highest < INSCRIBED, highest / INSCRIBED, np.inf)
+
+
+def path_distance(arcs: Arcs, _situation: Situation, plan: Plan) -> np.ndarray:
+    """Metres from each end to the plan."""
+    return _way(arcs.poses[:, -1, :2], plan.path_xy).min(axis=1)
+
+
+def path_align(arcs: Arcs, _situation: Situation, plan: Plan) -> np.ndarray:
+    """Metres from a nose ahead of each end to the plan, so that the robot looks along it."""
+    return _way(_nose(arcs), plan.path_xy).min(axis=1)
+
+
+def goal_distance(arcs: Arcs, _situation: Situation, plan: Plan) -> np.ndarray:
+    """Metres from each end to a point of the plan a little ahead."""
+    steps = np.hypot(*np.diff(plan.path_xy, axis=0, prepend=plan.path_xy[:1]).T)
+    ahead = plan.path_xy[min(int(np.searchsorted(np.cumsum(steps), LOOKAHEAD)), len(steps) - 1)]
+    return _way(arcs.poses[:, -1, :2], ahead[None, :])[:, 0]
+
+
+CRITICS: Tuple[Critic, ...] = (obstacles, path_distance, path_align, goal_distance)
+
+
+class Critics:
+    Settings = CriticsSettings
+
+    def __init__(self, settings: CriticsSettings, period: float):
+        self._settings, self._period = settings, period
+
+    def follow(self, situation: Situation, plan: Plan, limits: Twist2) -> Trajectory:
+        arcs = self._arcs(situation, limits)
+        scores = np.zeros(len(arcs.commands))
+        for critic in CRITICS:
+            scores += getattr(self._settings, critic.__name__) * critic(arcs, situation, plan)
+        for best in np.argsort(scores, kind="stable"):
+            if not np.isfinite(scores[best]):
+                break
+            poses = arcs.poses[best]
+            if not any(situation.costmap.collides(Pose2(*pose)) for pose in poses[1:].tolist()):
+                return Trajectory(Twist2(*arcs.commands[best].tolist()), poses, float(scores[best]))
+        raise ControlError("every arc leads into an obstacle")
+
+    def _arcs(self, situation: Situation, limits: Twist2) -> Arcs:
+        """Of the velocities within reach, those that lead on; as circles, not as chords of them."""
+        reach = [
+            self._settings.reachable(
+                situation.twist, Twist2(sign * 100.0, sign * 100.0), limits, self._period
+            )
+            for sign in (-1.0, 1.0)
+        ]
+        slowest = min(max(reach[0].v, SLOWEST), reach[1].v)
+        speeds = np.linspace(slowest, reach[1].v, SPEEDS)
+        turns = np.linspace(reach[0].omega, reach[1].omega, TURNS)
+        commands = np.array(list(product(speeds, turns)))
+        base = situation.base_in_local
+        turned = np.outer(commands[:, 1], np.linspace(0.0, self._settings.sim_time, STEPS + 1))
+        driven = np.outer(commands[:, 0], np.linspace(0.0, self._settings.sim_time, STEPS + 1))
+        chord, heading = driven * np.sinc(turned / (2.0 * np.pi)), base.yaw + 0.5 * turned
+        x, y = base.x + chord * np.cos(heading), base.y + chord * np.sin(heading)
+        return Arcs(commands, np.stack([x, y, base.yaw + turned], axis=-1))
+
+
+def _nose(arcs: Arcs) -> np.ndarray:
+    ends = arcs.poses[:, -1]
+    return ends[:, :2] + NOSE * np.column_stack([np.cos(ends[:, 2]), np.sin(ends[:, 2])])
+
+
+def _way(points_xy: np.ndarray, path_xy: np.ndarray) -> np.ndarray:
+    """Metres (N, M) from each of the points to each of the path's."""
+    return np.hypot(*(points_xy[:, None, :] - path_xy[None, :, :]).transpose(2, 0, 1))
