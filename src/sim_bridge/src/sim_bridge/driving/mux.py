@@ -1,5 +1,6 @@
 """Which of several sources of velocity drives a robot (yocs_cmd_vel_mux), and how fast it may change."""
 
+import math
 from dataclasses import dataclass
 from typing import Dict, Mapping, Optional, Sequence, Tuple
 
@@ -7,6 +8,8 @@ from planar import SettingsError, Twist2
 from planar.config.yaml_table import Table, parse_table, read_table
 
 IDLE = "idle"
+# Seconds without a command after which the smoother brakes.
+SILENCE = 0.5
 
 
 @dataclass(frozen=True)
@@ -86,21 +89,38 @@ class SmootherLimits:
 
 
 class Smoother:
-    """Keeps a stream of commands within limits (yocs_velocity_smoother)."""
+    """Leads to the commands that it hears within limits, and to rest after the last (yocs_velocity_smoother).
+
+    Asked at every step of time, so that also after a pause between two commands no velocity jumps.
+    """
 
     def __init__(self, limits: SmootherLimits = SmootherLimits()):
         self._limits = limits
         self._last = Twist2()
+        self._target: Optional[Twist2] = None
+        self._heard_at = self._now = math.inf
 
-    def smooth(self, command: Twist2, seconds: float) -> Twist2:
-        """What may be commanded now; ``seconds`` since the last call."""
-        limits = self._limits
-        if not command.is_finite():
-            return command
+    def hear(self, command: Twist2, now: float) -> None:
+        self._target, self._heard_at = command, now
+
+    def command(self, now: float) -> Optional[Twist2]:
+        """What is commanded now; None once nothing is. One that is not finite is passed on."""
+        seconds, self._now = now - self._now, now
+        if self._target is None:
+            return None
+        if not self._target.is_finite():
+            told, self._target, self._last = self._target, None, Twist2()
+            return told
+        if seconds < 0.0:  # time has begun anew
+            self._last, self._heard_at, seconds = Twist2(), now, 0.0
+        is_silent = now - self._heard_at > SILENCE
+        target, limits = Twist2() if is_silent else self._target, self._limits
         self._last = Twist2(
-            self._approach(self._last.v, command.v, limits.speed_lim_v, limits.accel_lim_v * seconds),
-            self._approach(self._last.omega, command.omega, limits.speed_lim_w, limits.accel_lim_w * seconds),
+            self._approach(self._last.v, target.v, limits.speed_lim_v, limits.accel_lim_v * seconds),
+            self._approach(self._last.omega, target.omega, limits.speed_lim_w, limits.accel_lim_w * seconds),
         )
+        if is_silent and self._last == Twist2():
+            self._target = None
         return self._last
 
     def _approach(self, last: float, target: float, limit: float, step: float) -> float:

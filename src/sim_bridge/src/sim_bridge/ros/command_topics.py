@@ -16,9 +16,6 @@ MUX_FILE, MUX_TEXT = "yaml_cfg_file", "yaml_cfg_data"
 RAW_TOPIC = "navigation_velocity_smoother/raw_cmd_vel"
 # What smoothed commands count as.
 SMOOTHED_INPUT = "input/navi"
-# Seconds of silence after which raw commands begin anew, and for which the first may accelerate.
-LONGEST_PERIOD = 0.6
-FIRST_PERIOD = 0.05
 
 
 class CommandTopics:
@@ -71,7 +68,6 @@ class MuxTopics(CommandTopics):
         self._smoother = Smoother()
         self._arrived: Dict[str, Twist2] = {}
         self._raw: Optional[Twist2] = None
-        self._raw_stamp = 0.0
         self._told = ""
         self._active = rospy.Publisher(f"{where}/active", String, queue_size=1, latch=True)
         self._inputs: List[rospy.Subscriber] = []
@@ -89,20 +85,17 @@ class MuxTopics(CommandTopics):
     def take(self, now: float) -> Optional[Twist2]:
         arrived, self._arrived = self._arrived, {}
         raw, self._raw = self._raw, None
-        if raw is not None and self._smoothed_name:
-            arrived[self._smoothed_name] = self._smoothed(raw, now)
+        if raw is not None:
+            self._smoother.hear(raw, now)
+        smoothed = self._smoother.command(now)
+        if smoothed is not None and self._smoothed_name:
+            arrived[self._smoothed_name] = smoothed
         chosen = self._mux.choose(now, arrived)
         active = self._mux.active(now)
         if active != self._told:
             self._told = active
             self._active.publish(active)
         return chosen or super().take(now)
-
-    def _smoothed(self, raw: Twist2, now: float) -> Twist2:
-        seconds, self._raw_stamp = now - self._raw_stamp, now
-        if not 0.0 <= seconds < LONGEST_PERIOD:  # the robot has come to rest since
-            self._smoother, seconds = Smoother(), FIRST_PERIOD
-        return self._smoother.smooth(raw, seconds)
 
     def _tuned(self, values: Dict[str, str]) -> Optional[Tuning]:
         tunables = (
