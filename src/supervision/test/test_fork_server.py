@@ -59,6 +59,14 @@ def is_there(name):
         return probe.connect_ex(f"\0{name}") == 0
 
 
+def has_ended(process):
+    """Also if nobody has asked yet how it did."""
+    try:
+        return process.status() == psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:
+        return True
+
+
 def wait_until(is_so):
     deadline = time.monotonic() + SECONDS
     while not is_so():
@@ -114,7 +122,7 @@ def test_its_child_dies_with_it(server):
     process = start(server[1], "program:wait")
     child = psutil.Process(int(process.stdout.readline().split()[0]))
     process.kill()
-    child.wait(SECONDS)
+    wait_until(lambda: has_ended(child))
 
 
 def test_a_child_outlives_the_server_and_is_still_asked_to_end(server):
@@ -125,7 +133,7 @@ def test_a_child_outlives_the_server_and_is_still_asked_to_end(server):
     time.sleep(0.1)
     assert child.is_running() and process.poll() is None
     process.terminate()
-    child.wait(SECONDS)
+    wait_until(lambda: has_ended(child))
     assert process.wait(SECONDS) == -signal.SIGKILL  # how, only the server knew
 
 
@@ -157,4 +165,4 @@ def test_the_server_ends_with_who_has_started_it(modules):
     process = subprocess.Popen([sys.executable, "-c", STARTER], text=True, **streams)
     server = psutil.Process(int(process.stdout.readline()))
     process.kill()
-    server.wait(SECONDS)
+    wait_until(lambda: has_ended(server))
