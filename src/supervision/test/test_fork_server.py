@@ -1,6 +1,9 @@
 """A program that lives in a child of a fork server cannot tell, nor can who has started it."""
 
+import array
+import json
 import os
+import select
 import signal
 import socket
 import subprocess
@@ -101,6 +104,29 @@ def test_a_server_that_dies_meanwhile_is_none(modules):
         process = start("dying_server", "program:draw")
         listener.accept()[0].close()
         assert process.communicate(timeout=SECONDS)[0] == "alone\n"
+
+
+def test_a_child_begins_when_signals_are_handed_on_and_not_before(server, tmp_path):
+    order = {
+        "call": ["program:draw"],
+        "argv": [""],
+        "path": sys.path,
+        "environment": {},
+        "folder": str(tmp_path),
+    }
+    reading, writing = os.pipe()
+    with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as client, os.fdopen(reading) as told:
+        client.settimeout(SECONDS)
+        client.connect(f"\0{server[1]}")
+        streams = array.array("i", [0, writing, 2])
+        client.sendmsg([json.dumps(order).encode()], [(socket.SOL_SOCKET, socket.SCM_RIGHTS, streams)])
+        os.close(writing)
+        child = psutil.Process(int(client.recv(100)))
+        time.sleep(0.2)
+        assert child.is_running() and not select.select([told], [], [], 0.0)[0]
+        client.close()
+        assert told.read() == ""
+        wait_until(lambda: has_ended(child))
 
 
 def test_a_signal_that_asks_for_an_end_is_handed_on(server):

@@ -25,7 +25,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
-from supervision.forked import FORK_SERVER, LARGEST_MESSAGE, STREAMS, user_of_peer
+from supervision.forked import ANSWER_SECONDS, FORK_SERVER, LARGEST_MESSAGE, STREAMS, user_of_peer
 from supervision.processes import ending_with_parent
 
 WAITING_CLIENTS = 64
@@ -151,6 +151,7 @@ def _received(connection: socket.socket) -> Optional[Dict[str, Any]]:
 
 def _become(order: Dict[str, Any], connection: socket.socket) -> None:
     """Makes this child the process that has asked for it, in all that a program can tell."""
+    _wait_for_client(connection)
     _end_with_client(connection)
     os.setsid()
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -161,6 +162,15 @@ def _become(order: Dict[str, Any], connection: socket.socket) -> None:
     sys.argv, sys.path[:] = order["argv"], order["path"]
     random.seed()
     _name_process([sys.executable, *sys.argv])
+
+
+def _wait_for_client(connection: socket.socket) -> None:
+    """Until it hands signals on; ends with it."""
+    connection.settimeout(ANSWER_SECONDS)
+    with suppress(OSError):
+        if connection.recv(LARGEST_MESSAGE):
+            return
+    os._exit(1)
 
 
 def _end_with_client(connection: socket.socket) -> None:

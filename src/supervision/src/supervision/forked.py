@@ -10,9 +10,9 @@ import signal
 import socket
 import struct
 import sys
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, Iterator, NoReturn
 
 from supervision.interruption import SIGNALS
 
@@ -20,6 +20,8 @@ FORK_SERVER = "HOME_SERVICE_FORK_SERVER"
 STREAMS = (0, 1, 2)
 LARGEST_MESSAGE = 2**17
 ANSWER_SECONDS = 20.0
+# What the child waits for before it begins: from now on signals are handed on.
+BEGIN = b"begin"
 CREDENTIALS = struct.Struct("3i")
 
 
@@ -39,7 +41,7 @@ def live_forked(function: str, *arguments: str) -> None:
         "environment": dict(os.environ),
         "folder": str(Path.cwd()),
     }
-    with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as connection:
+    with _leaving_on_signals(), socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as connection:
         connection.settimeout(ANSWER_SECONDS)
         try:
             connection.connect(f"\0{address}")
@@ -53,6 +55,19 @@ def live_forked(function: str, *arguments: str) -> None:
             return
         if child:
             _live_as(int(child), connection)
+
+
+@contextmanager
+def _leaving_on_signals() -> Iterator[None]:
+    """Nothing has begun that were to be taken down."""
+    before = {
+        number: signal.signal(number, lambda number, _frame: os._exit(128 + number)) for number in SIGNALS
+    }
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def user_of_peer(connection: socket.socket) -> int:
@@ -78,5 +93,7 @@ def _live_as(child: int, connection: socket.socket) -> NoReturn:
     for number in SIGNALS:
         signal.signal(number, hand_on)
     connection.settimeout(None)
+    with suppress(OSError):
+        connection.send(BEGIN)
     code = connection.recv(LARGEST_MESSAGE)
     end_as(int(code) if code else -signal.SIGKILL)
