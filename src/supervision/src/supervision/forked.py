@@ -10,11 +10,11 @@ import signal
 import socket
 import struct
 import sys
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
-from typing import Any, Iterator, NoReturn
+from typing import Any, NoReturn
 
-from supervision.interruption import SIGNALS
+from supervision.interruption import SIGNALS, leaving_on_signals
 
 FORK_SERVER = "HOME_SERVICE_FORK_SERVER"
 STREAMS = (0, 1, 2)
@@ -41,7 +41,7 @@ def live_forked(function: str, *arguments: str) -> None:
         "environment": dict(os.environ),
         "folder": str(Path.cwd()),
     }
-    with _leaving_on_signals(), socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as connection:
+    with leaving_on_signals(), socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as connection:
         connection.settimeout(ANSWER_SECONDS)
         try:
             connection.connect(f"\0{address}")
@@ -55,19 +55,6 @@ def live_forked(function: str, *arguments: str) -> None:
             return
         if child:
             _live_as(int(child), connection)
-
-
-@contextmanager
-def _leaving_on_signals() -> Iterator[None]:
-    """Nothing has begun that were to be taken down."""
-    before = {
-        number: signal.signal(number, lambda number, _frame: os._exit(128 + number)) for number in SIGNALS
-    }
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 def user_of_peer(connection: socket.socket) -> int:

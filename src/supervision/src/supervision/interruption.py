@@ -3,7 +3,8 @@
 import os
 import signal
 import sys
-from typing import NoReturn, Tuple
+from contextlib import contextmanager
+from typing import Any, Callable, Iterator, NoReturn, Tuple
 
 INTERRUPTED = 130
 
@@ -34,6 +35,24 @@ def leave_when_interrupted() -> None:
     """
     for number in SIGNALS:
         signal.signal(number, _leave)
+
+
+@contextmanager
+def leaving_on_signals() -> Iterator[None]:
+    """Any of ``SIGNALS`` ends the process at once and in silence, where nothing has to be taken down yet."""
+    with handling_signals(lambda number, _frame: os._exit(128 + number)):
+        yield
+
+
+@contextmanager
+def handling_signals(handle: Callable[[int, Any], object]) -> Iterator[None]:
+    """``SIGNALS`` are handled by ``handle``, afterwards as they were before."""
+    before = {number: signal.signal(number, handle) for number in SIGNALS}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def raise_when_interrupted() -> None:

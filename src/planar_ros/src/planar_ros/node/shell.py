@@ -16,7 +16,7 @@ from threadpoolctl import threadpool_limits
 
 from planar import PlanarError
 from planar_ros.node.backlog import let_many_wait
-from planar_ros.node.entry import INTERRUPTS
+from supervision.interruption import SIGNALS
 
 # Longer than any node needs to end in order.
 SHUTDOWN_SECONDS = 5.0
@@ -141,5 +141,5 @@ def _shut_down_on_signals() -> None:
         rospy.signal_shutdown(f"signal {number}")
 
     threading.Thread(target=shut_down, daemon=True).start()
-    for number in INTERRUPTS:
+    for number in SIGNALS:
         signal.signal(number, lambda number, _frame: received.put(number))

@@ -23,7 +23,7 @@ from gazebo_ros.ros.services import (
 )
 from gazebo_ros.spawn_options import parse
 from planar_ros.node.command_line import go_on_without
-from planar_ros.node.entry import INTERRUPTS, handling_interrupts
+from supervision.interruption import SIGNALS, handling_signals
 
 PARAMETER_SECONDS = 30.0
 
@@ -73,7 +73,7 @@ def spawn(options: argparse.Namespace) -> None:
 def _deferring_interrupts() -> Iterator[None]:
     """What interrupts is heard only at the end: nobody else knows what has been spawned meanwhile."""
     heard: List[int] = []
-    with handling_interrupts(lambda number, _frame: heard.append(number)):
+    with handling_signals(lambda number, _frame: heard.append(number)):
         yield
     if heard:
         raise KeyboardInterrupt
@@ -126,7 +126,7 @@ def main() -> None:
     go_on_without("spawn_model", unknown)
     # rospy's own handler may wait for ever for a lock that is held by what it interrupts.
     rospy.init_node("spawn_model", anonymous=True, disable_signals=True)
-    for number in INTERRUPTS:
+    for number in SIGNALS:
         signal.signal(number, signal.default_int_handler)
     try:
         spawn(options)
