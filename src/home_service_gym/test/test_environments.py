@@ -17,6 +17,7 @@ VARIANTS = [
     *((name, {}) for name in home_service_gym.NAMES),
     *(("TurtleBot3Stage-v0", {"stage": stage}) for stage in (2, 3, 4)),
     ("PointGoal-v0", {"scenario": "home_boxes", "lookahead": 0.6}),
+    ("PointGoal-v0", {"scenario": "home_people", "people": 3, "has_map": True}),
 ]
 each_variant = pytest.mark.parametrize(("name", "given"), VARIANTS, ids=lambda value: str(value))
 

@@ -54,6 +54,8 @@ class Picture:
             self._disc(pen, (goal.x, goal.y), radius, GOAL)
         for course in marks.courses:
             self._disc(pen, course.at(moment.stamp), self._sizes.get(course.link, ROBOT), MOVING)
+        for x, y, _, _, radius in moment.people.tolist():
+            self._disc(pen, (x, y), radius, MOVING)
         for point in base.transform_points(moment.scan.hit_points_in_base()):
             self._disc(pen, (point[0], point[1]), DOT, BEAMS)
         self._disc(pen, (base.x, base.y), ROBOT, BODY)

@@ -10,6 +10,7 @@ import numpy as np
 from gymnasium import spaces
 
 from home_service_gym.playground import Moment, Playground, lidar_of
+from home_service_gym.surroundings import Surroundings
 from home_service_gym.task import COLLISION, PERIOD, Task
 from home_service_gym.viewing import MODES, Viewer
 from laboratory.scenario import Scenario, read_scenario
@@ -37,14 +38,23 @@ class TaskEnv(gymnasium.Env):
     reach), ``velocity`` (m/s and rad/s, of odometry) and what the task tells. An action is the share, -1 to
     1, of the robot's greatest speed and turn rate. An episode ends with the task, or at the first touch.
 
+    ``people``: so many, the nearest, are told of; ``has_map``: the map around the robot is told, too.
     ``reset(options={"seed": N})`` takes the world of that seed of the scenario; otherwise one is drawn.
     """
 
     metadata = {"render_modes": MODES, "render_fps": RATE}
 
-    def __init__(self, scenario: Scenario, task: Task, render_mode: Optional[str] = None):
+    def __init__(
+        self,
+        scenario: Scenario,
+        task: Task,
+        render_mode: Optional[str] = None,
+        people: int = 0,
+        has_map: bool = False,
+    ):
         self.render_mode = render_mode
-        self._scenario, self._task = scenario, task
+        self._scenario = scenario
+        self._task: Task = Surroundings(task, people, has_map) if people or has_map else task
         self._robot = robot_named(scenario.robot)
         self._viewer = Viewer(render_mode, self._robot, RATE)
         self._playgrounds: OrderedDict[int, Playground] = OrderedDict()
@@ -58,7 +68,7 @@ class TaskEnv(gymnasium.Env):
             {
                 "scan": spaces.Box(0.0, np.float32(lidar.range_max), (lidar.beams,), np.float32),
                 "velocity": spaces.Box(-fastest, fastest, dtype=np.float32),
-                **task.spaces(),
+                **self._task.spaces(),
             }
         )
 
@@ -114,7 +124,9 @@ class TaskEnv(gymnasium.Env):
 
     def _playground_of(self, seed: int) -> Playground:
         """That of the world of a seed, built if it is not among the last that were used."""
-        key = self._scenario.world.arena_number(seed) if not self._scenario.boxes else seed
+        played = self._scenario
+        differs = bool(played.boxes or played.doors or played.people.count)
+        key = seed if differs else played.world.arena_number(seed)
         playground = self._playgrounds.pop(key, None)
         if playground is None:
             arena = self._scenario.arena(seed)

@@ -19,7 +19,8 @@ from sim_bridge.views.true_map import true_map
 class Moment:
     """The end of a control period; ``touched``: names of what the robot bumped into during it.
 
-    ``base_in_world`` is the truth, ``base_in_odom`` and ``twist`` are what odometry tells.
+    ``base_in_world`` and ``people`` are the truth, ``base_in_odom`` and ``twist`` are what odometry tells.
+    ``people`` (N, 5): x, y, velocity by x and y, m/s, radius of each.
     """
 
     stamp: float
@@ -28,6 +29,7 @@ class Moment:
     twist: Twist2
     scan: Scan
     touched: Tuple[str, ...]
+    people: np.ndarray
 
 
 class Playground:
@@ -56,7 +58,8 @@ class Playground:
 
     def advance(self, command: Twist2) -> Moment:
         """Drives for a control period."""
-        return _moment_of(self._simulation.step(command))
+        seen = self._simulation.step(command)
+        return _moment_of(seen, self._simulation.scene.crowd.rows)
 
     def places_of(self, courses: Sequence[Course], stamp: float) -> np.ndarray:
         """Where what goes its own way then is, (N, 2)."""
@@ -66,10 +69,11 @@ class Playground:
         self._simulation.close()
 
 
-def _moment_of(seen: Observation) -> Moment:
+def _moment_of(seen: Observation, people: np.ndarray) -> Moment:
     assert seen.scan is not None, "a lidar tells once a period"
     told = seen.odometry
-    return Moment(seen.stamp, seen.base_in_world, told.base_in_odom, told.twist, seen.scan, seen.contacts)
+    pose, odom = seen.base_in_world, told.base_in_odom
+    return Moment(seen.stamp, pose, odom, told.twist, seen.scan, seen.contacts, people)
 
 
 def with_lidar_only(robot: RobotProfile) -> RobotProfile:

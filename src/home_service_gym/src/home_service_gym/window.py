@@ -2,6 +2,7 @@
 
 import math
 import time
+from dataclasses import replace
 from functools import partial
 from html import escape
 from pathlib import Path
@@ -20,6 +21,7 @@ from home_service_gym.task import Marks
 from planar import Pose2
 from sim_bridge import RobotProfile
 from sim_bridge.geometry.pose3 import pose3
+from sim_bridge.people.crowd import body_of
 from sim_bridge.sdf.includes import resolve
 
 WORLD = "world"
@@ -62,7 +64,8 @@ class Window:
     def _build(self, playground: Playground) -> None:
         for model in self._world.models:
             self._world.remove(model)
-        look = look_of(playground.arena.world)
+        world = playground.arena.world
+        look = look_of(replace(world, bodies=(*world.bodies, *map(body_of, world.walkers))))
         corners = np.vstack([piece.pose[:3, 3] for piece in look.pieces])[:, :2]
         self._world.show(look)
         self._page.look_over(corners.min(axis=0), corners.max(axis=0))
@@ -76,6 +79,8 @@ class Window:
         for course in marks.courses:
             height = poses[course.link][2, 3]
             self._world.place(course.link, pose3(*course.at(moment.stamp), height, 0.0, 0.0, 0.0))
+        for walker, (x, y, *_) in zip(playground.arena.world.walkers, moment.people.tolist()):
+            self._world.place(walker.link, pose3(x, y, walker.height / 2.0, 0.0, 0.0, 0.0))
         self._world.update(np.eye(4))
         self._robot.update(self._frames, WORLD, is_shown=True)
         hits = base.transform_points(moment.scan.hit_points_in_base())

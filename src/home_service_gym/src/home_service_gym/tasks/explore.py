@@ -7,14 +7,12 @@ import numba
 import numpy as np
 from gymnasium import spaces
 
+from home_service_gym.around import map_around, map_space
 from home_service_gym.playground import Moment, Playground
 from home_service_gym.task import PERIOD, SUCCESS, Beginning, Judgement, Marks
-from planar import FREE, OCCUPIED, Pose2
+from planar import FREE, OCCUPIED
 from sim_bridge.world import Body
 
-# The picture of what is known around the robot: cells along a side, and metres of a cell.
-SIDE, CELL = 64, 0.15
-NOTHING, OPEN, SOLID = 0, 128, 255
 # The share of all free floor that is enough; what a square metre that was not known is worth.
 ENOUGH, AREA = 0.95, 1.0
 
@@ -26,7 +24,7 @@ class Explore:
         return ()
 
     def spaces(self) -> Dict[str, spaces.Space[Any]]:
-        return {"map": spaces.Box(0, 255, (SIDE, SIDE), np.uint8)}
+        return {"map": map_space()}
 
     def begin(self, playground: Playground, rng: np.random.Generator) -> Beginning:
         self._grid = playground.ground.grid
@@ -38,7 +36,7 @@ class Explore:
     def observe(self, moment: Moment) -> Dict[str, np.ndarray]:
         if not self._seen:
             self._see(moment)
-        return {"map": self._map_around(moment.base_in_world)}
+        return {"map": map_around(self._grid, moment.base_in_world, self._known)}
 
     def judge(self, moment: Moment) -> Judgement:
         before = self._seen
@@ -57,19 +55,6 @@ class Explore:
         reached = np.clip(scan.ranges, 0.0, scan.range_max) / grid.resolution
         place = laser.x / grid.resolution, laser.y / grid.resolution
         self._seen += _mark(grid.cells, self._known, *place, laser.yaw + scan.angles, reached)
-
-    def _map_around(self, base: Pose2) -> np.ndarray:
-        """What is known, seen from above with the robot in the middle, looking to the right."""
-        ticks = (np.arange(SIDE) - (SIDE - 1) / 2.0) * CELL
-        x, y = np.meshgrid(ticks, ticks[::-1])
-        points_xy = base.transform_points(np.column_stack((x.ravel(), y.ravel())))
-        cells = self._grid.cells_of(points_xy)
-        inside = self._grid.contains(cells)
-        picture = np.full(SIDE * SIDE, NOTHING, dtype=np.uint8)
-        rows, cols = cells[inside].T
-        values = np.where(self._grid.cells[rows, cols] == OCCUPIED, SOLID, OPEN)
-        picture[inside] = np.where(self._known[rows, cols], values, NOTHING)
-        return picture.reshape(SIDE, SIDE)
 
 
 @numba.njit(cache=True)

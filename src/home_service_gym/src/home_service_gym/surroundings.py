@@ -1,0 +1,77 @@
+"""A task whose robot is told of its surroundings, too: who is near, and what the map is like there."""
+
+from typing import Any, Dict, Sequence
+
+import numpy as np
+from gymnasium import spaces
+
+from home_service_gym.around import map_around, map_space
+from home_service_gym.playground import Moment, Playground
+from home_service_gym.task import FARTHEST_GOAL, Beginning, Judgement, Marks, Task
+from planar import Pose2, SettingsError
+from sim_bridge.world import Body
+
+# Of nobody: far ahead, and at rest. m/s, which nobody exceeds.
+NOBODY = (FARTHEST_GOAL, 0.0, 0.0, 0.0)
+FASTEST = 5.0
+
+
+class Surroundings:
+    """``task`` with the nearest ``people``, so many of them, and with a picture of the map if it ``has_map``.
+
+    Both are the truth, whether the robot sees them or not. Raises SettingsError.
+    """
+
+    def __init__(self, task: Task, people: int, has_map: bool):
+        if people < 0:
+            raise SettingsError(f"people must not be negative, got {people}")
+        if has_map and "map" in task.spaces():
+            raise SettingsError("has_map: this task tells of a map of its own")
+        self._task, self._people, self._has_map = task, people, has_map
+
+    def bodies(self) -> Sequence[Body]:
+        return self._task.bodies()
+
+    def spaces(self) -> Dict[str, spaces.Space[Any]]:
+        told = dict(self._task.spaces())
+        if self._people:
+            most = np.array((FARTHEST_GOAL, FARTHEST_GOAL, FASTEST, FASTEST), np.float32)
+            most = np.tile(most, (self._people, 1))
+            told["people"] = spaces.Box(-most, most, dtype=np.float32)
+        if self._has_map:
+            told["map"] = map_space()
+        return told
+
+    def begin(self, playground: Playground, rng: np.random.Generator) -> Beginning:
+        if self._has_map:
+            self._grid = playground.ground.grid
+        return self._task.begin(playground, rng)
+
+    def observe(self, moment: Moment) -> Dict[str, np.ndarray]:
+        told = dict(self._task.observe(moment))
+        if self._people:
+            told["people"] = nearest_people(moment.people, moment.base_in_world, self._people)
+        if self._has_map:
+            told["map"] = map_around(self._grid, moment.base_in_world)
+        return told
+
+    def judge(self, moment: Moment) -> Judgement:
+        return self._task.judge(moment)
+
+    def marks(self) -> Marks:
+        return self._task.marks()
+
+
+def nearest_people(people: np.ndarray, base: Pose2, count: int) -> np.ndarray:
+    """Of ``people`` (N, 5) the nearest, as the robot's frame has them: (count, 4), float32.
+
+    Place, m, and velocity over the floor, m/s, ahead and to the left of each.
+    """
+    seen = np.tile(np.array(NOBODY, np.float32), (count, 1))
+    inverse = base.inverse()
+    places_xy = inverse.transform_points(people[:, :2])
+    order = np.argsort(np.hypot(*places_xy.T), kind="stable")[:count]
+    velocities = Pose2(0.0, 0.0, inverse.yaw).transform_points(people[order, 2:4])
+    seen[: len(order), :2] = np.clip(places_xy[order], -FARTHEST_GOAL, FARTHEST_GOAL)
+    seen[: len(order), 2:] = np.clip(velocities, -FASTEST, FASTEST)
+    return seen

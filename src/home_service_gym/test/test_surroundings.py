@@ -1,0 +1,55 @@
+"""What a robot is told of who and what is around it."""
+
+import math
+
+import gymnasium
+import numpy as np
+import pytest
+
+from home_service_gym.around import NOTHING, OPEN, SIDE, SOLID, map_around
+from home_service_gym.surroundings import NOBODY, nearest_people
+from planar import Pose2, SettingsError, grid_from_picture
+
+
+def test_the_nearest_people_come_first_and_are_seen_from_the_robot():
+    people = np.array([[1.0, 5.0, 0.0, 0.0, 0.2], [1.0, 3.0, 0.5, 0.0, 0.2]])
+    seen = nearest_people(people, Pose2(1.0, 1.0, math.pi / 2.0), 3)
+    assert seen == pytest.approx(np.array([[2.0, 0.0, 0.0, -0.5], [4.0, 0.0, 0.0, 0.0], NOBODY]), abs=1e-6)
+
+
+def test_of_a_crowd_only_so_many_are_told():
+    crowd = np.column_stack([np.arange(9.0), np.zeros((9, 4))])
+    assert nearest_people(crowd, Pose2(8.0, 0.0, math.pi), 2)[:, 0] == pytest.approx([0.0, 1.0])
+
+
+def test_the_map_around_is_turned_with_the_robot():
+    grid = grid_from_picture("#....\n.....\n.....")
+    corner = grid.points_of(np.array([[2, 0]]))[0]
+    for yaw in (0.0, math.pi / 2.0):
+        ahead = Pose2(*corner.tolist(), yaw) @ Pose2(-1.0, 0.0, 0.0)
+        picture = map_around(grid, ahead)
+        row, col = np.argwhere(picture == SOLID).mean(axis=0)
+        assert row == pytest.approx(SIDE / 2, abs=1.0) and col > SIDE / 2
+    assert {NOTHING, OPEN, SOLID} == set(np.unique(picture).tolist())
+
+
+def test_people_are_told_as_they_walk_and_others_for_each_seed():
+    env = gymnasium.make("home_service_gym:PointGoal-v0", scenario="home_people", people=4)
+    first, _ = env.reset(seed=1, options={"seed": 1})
+    other, _ = env.reset(seed=1, options={"seed": 2})
+    again, _ = env.reset(seed=1, options={"seed": 1})
+    assert (first["people"] == again["people"]).all() and (first["people"] != other["people"]).any()
+    for _ in range(50):
+        later, _, is_over, *_ = env.step(np.zeros(2, np.float32))
+        if is_over:
+            break
+    assert np.hypot(*later["people"][:, 2:].T).max() > 0.3
+    assert (later["people"][:, :2] != again["people"][:, :2]).any()
+    env.close()
+
+
+def test_what_cannot_be_told_is_refused():
+    with pytest.raises(SettingsError, match="people must not be negative"):
+        gymnasium.make("home_service_gym:PointGoal-v0", people=-1)
+    with pytest.raises(SettingsError, match="has_map: this task tells of a map of its own"):
+        gymnasium.make("home_service_gym:Explore-v0", has_map=True)
