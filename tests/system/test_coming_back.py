@@ -8,6 +8,7 @@ import tempfile
 import threading
 import time
 import unittest
+from contextlib import suppress
 from pathlib import Path
 
 import psutil
@@ -80,7 +81,8 @@ class Run:
         """Ends the node with SIGKILL once it is there, and gives the others a moment to notice."""
         wait_until(f"{node} to be there", lambda: self._processes(node), BACK_SECONDS)
         for process in self._processes(node):
-            process.kill()
+            with suppress(psutil.NoSuchProcess):  # ended with the one before
+                process.kill()
         time.sleep(APART_SECONDS)
 
     def _processes(self, node):
