@@ -117,9 +117,10 @@ class Robot:
     def begin(self, mounting: Mounting) -> None:
         """It stands where it starts: nothing has been commanded, driven or measured yet."""
         self._settings = mounting.settings
+        self.vehicle.forget_speeds()
         drive, odometry = self.profile.drive, self.profile.odometry
         self._drive = self._fitting.drive(RampedDrive(drive))
-        self._around.end_step(0.0)
+        self._around.look_anew(0.0)
         self._around.end_period()
         truth, wheels, contacts = GroundTruth(), JointEncoders(), ContactList()
         self._odometer = Odometer(odometry, odometry.reckoning(drive, mounting))
@@ -156,6 +157,7 @@ class Robot:
     def retime(self, settings: SimulationSettings) -> None:
         """The rates have changed."""
         self._settings = settings
+        self.vehicle.forget_speeds()
         self._next_step = 0
         for mount in self._mounts.values():
             mount.retime(settings)
@@ -170,9 +172,10 @@ class Robot:
 
     def end_step(self, step: int, stamp: float) -> None:
         """After the step of physics number ``step``, at the time ``stamp``: what is due measures."""
-        self._around.end_step(stamp)
+        self._around.feel()
         if step < self._next_step:
             return
+        self._around.look_anew(stamp)
         for mount in self._mounts.values():
             mount.end_step(step, self._around)
         self._next_step = min(mount.next_step(step) for mount in self._mounts.values())

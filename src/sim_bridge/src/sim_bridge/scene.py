@@ -70,25 +70,25 @@ class Scene:
 
     def step(self, commands: Mapping[str, Twist2] = {}) -> Dict[str, Observation]:
         """Moves on by one period of the odometry; a robot's last command holds until its time-out.
-
-        Returns what each robot has observed.
-        """
+        Returns what each robot has observed."""
         for name, command in commands.items():
             self.robot(name).command(command)
-        robots = self._robots.values()
+        robots, stamp = self._robots.values(), self.stamp
         for _ in range(self.settings.physics_rate // self.settings.odometry_rate):
-            moment = (self._physics_steps, self.settings.physics_rate, self.stamp)
-            self.courses.follow(self._engine, *moment)
-            self.crowd.follow(self._engine, *moment, robots)
-            self.doors.follow(self._engine, *moment, robots, self.crowd.rows)
+            if self.courses.each or self.crowd.links or self.doors.bodies:
+                moment = (self._physics_steps, self.settings.physics_rate, stamp)
+                self.courses.follow(self._engine, *moment)
+                self.crowd.follow(self._engine, *moment, robots)
+                self.doors.follow(self._engine, *moment, robots, self.crowd.rows)
             for robot in robots:
                 robot.begin_step()
-            self.forces.apply(self.stamp)
+            self.forces.apply(stamp)
             self._engine.step()
             self._physics_steps += 1
+            stamp = self.stamp
             for robot in robots:
-                robot.end_step(self._physics_steps, self.stamp)
-        return {robot.name: robot.observe(self.stamp) for robot in robots}
+                robot.end_step(self._physics_steps, stamp)
+        return {robot.name: robot.observe(stamp) for robot in robots}
 
     def close(self) -> None:
         """Frees the physics engine."""
@@ -116,8 +116,7 @@ class Scene:
             if overlap is None:
                 return left.links
             self.remove_model(name)
-            left = overlap
-            start = Pose2(start.x + overlap.x, start.y + overlap.y, start.yaw)
+            left, start = overlap, Pose2(start.x + overlap.x, start.y + overlap.y, start.yaw)
             if start.distance_to(base_in_world) > MENDABLE_DEPTH:
                 break
         raise WorldError(f"the robot would start at {where}, inside {', '.join(left.links)}")
@@ -228,6 +227,5 @@ class Scene:
     def _add_robot(self, name: str, profile: RobotProfile, base_in_space: np.ndarray) -> None:
         mounting = Mounting(base_in_space, self.settings, self._seed, robot=len(self._robots))
         robot = Robot(self._engine, self.sight, name, profile, mounting, self._fitting)
-        self._robots[name] = robot
+        self._robots[name], self._starts[name] = robot, (profile, base_in_space)
         self.models.add_vehicle(robot.vehicle)
-        self._starts[name] = (profile, base_in_space)

@@ -56,6 +56,6 @@ class Attachments:
 
     def _let_collide(self, one: Link, other: Link, may_collide: bool) -> None:
         """All parts of the one with all parts of the other."""
-        parts = [self._register.parts_of(link) for link in (one, other)]
+        parts = [self._register.parts_of(link.number) for link in (one, other)]
         for first, second in itertools.product(*parts):
             self._bullet.setCollisionFilterPair(one.number, other.number, first, second, int(may_collide))

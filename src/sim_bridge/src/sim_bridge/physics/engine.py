@@ -45,7 +45,6 @@ class Engine:
         self._bullet.setPhysicsEngineParameter(
             numSolverIterations=SOLVER_ITERATIONS, deterministicOverlappingPairs=1
         )
-        self.set_rate(rate)
         self.set_gravity(gravity)
         self._register = Register()
         # Links that are not drawn down, and their masses.
@@ -53,6 +52,7 @@ class Engine:
         self.joints = Joints(self._bullet, self._register)
         self.attachments = Attachments(self._bullet, self._register)
         self.touch = Touch(self._bullet, self._register)
+        self.set_rate(rate)
 
     def close(self) -> None:
         self._bullet.disconnect()
@@ -73,6 +73,7 @@ class Engine:
     def set_rate(self, rate: int) -> None:
         """``rate``: steps per second."""
         self._bullet.setPhysicsEngineParameter(fixedTimeStep=1.0 / rate)
+        self.touch.seclusion.step_seconds = 1.0 / rate
 
     def set_gravity(self, gravity: float) -> None:
         """``gravity``: downwards, m/s^2."""
@@ -144,6 +145,7 @@ class Engine:
         link = self._register.links[name]
         (_, _, z), turn = self._bullet.getBasePositionAndOrientation(link.number)
         self._bullet.resetBasePositionAndOrientation(link.number, (x, y, z), turn)
+        self.touch.seclusion.end()
 
     def push(self, name: str, force: Sequence[float], torque: Sequence[float]) -> None:
         """Force, N, at the centre of a link's mass, and torque, N m, in the world; for the next step only."""

@@ -1,7 +1,7 @@
 """What has which number in Bullet."""
 
 from dataclasses import dataclass, field
-from typing import Dict, List, Tuple
+from typing import Dict, List, Set, Tuple
 
 import numpy as np
 
@@ -35,11 +35,16 @@ class MovingJoint:
 
 
 class Register:
-    """Links and moving joints by their names, and whose each of Bullet's parts is."""
+    """Links and moving joints by their names, and whose each of Bullet's parts is.
+
+    ``movers``: numbers of what physics moves; ``level_planes``: of what is nothing but a floor without end.
+    """
 
     def __init__(self):
         self.links: Dict[str, Link] = {}
         self.joints: Dict[str, MovingJoint] = {}
+        self.movers: Set[int] = set()
+        self.level_planes: Set[int] = set()
         self._owners: Dict[Tuple[int, int], str] = {}
 
     def own(self, number: int, index: int, link: str) -> None:
@@ -50,12 +55,14 @@ class Register:
         """The name of the link that a part of Bullet's belongs to."""
         return self._owners[number, index]
 
-    def parts_of(self, link: Link) -> List[int]:
-        """The indices of all that hangs together with a link."""
-        return [index for number, index in self._owners if number == link.number]
+    def parts_of(self, number: int) -> List[int]:
+        """The indices of all that hangs together under a number."""
+        return [index for owned, index in self._owners if owned == number]
 
     def forget(self, number: int) -> None:
         """All that hangs together under a number is gone."""
         self.links = {name: link for name, link in self.links.items() if link.number != number}
         self.joints = {name: joint for name, joint in self.joints.items() if joint.number != number}
         self._owners = {part: link for part, link in self._owners.items() if part[0] != number}
+        self.movers.discard(number)
+        self.level_planes.discard(number)

@@ -7,6 +7,7 @@ import numpy as np
 from planar import Twist2
 from sim_bridge.physics.engine import Engine
 from sim_bridge.physics.motion import Motion
+from sim_bridge.physics.seclusion import extent_of
 from sim_bridge.physics.touch import Contact
 from sim_bridge.world import Body, Joint
 
@@ -47,17 +48,25 @@ class Vehicle:
         self.name = name
         self.links = tuple(body.name for body in bodies)
         self.base = self.links[0]
-        engine.touch.make_robot(self.base)
+        self._number = engine.touch.make_robot(self.base, extent_of(bodies))
+        self._seclusion = engine.touch.seclusion
         self._collisions = bodies[0].collisions
         self._left_count, self._right_count = left_count, len(joints) - left_count
         self._efforts = [torque] * len(joints)
         self._motors = engine.joints.motors([joint.name for joint in joints])
         self._engine = engine
+        self._speeds: Optional[Tuple[float, float]] = None
 
     def drive(self, left_speed: float, right_speed: float) -> None:
-        """The motors aim at these speeds of the wheels on the left and the right, rad/s."""
-        speeds = [left_speed] * self._left_count + [right_speed] * self._right_count
-        self._motors.drive(speeds, self._efforts)
+        """The motors aim at these speeds of the wheels on the left and the right, rad/s, until told anew."""
+        if self._speeds != (left_speed, right_speed):
+            self._speeds = (left_speed, right_speed)
+            speeds = [left_speed] * self._left_count + [right_speed] * self._right_count
+            self._motors.drive(speeds, self._efforts)
+
+    def forget_speeds(self) -> None:
+        """The motors may have been set otherwise, or have to be as physics goes at another rate."""
+        self._speeds = None
 
     def motion(self) -> Motion:
         """Of the base frame."""
@@ -70,6 +79,14 @@ class Vehicle:
     def body(self) -> Body:
         """The robot as others see it: its base, where it is now."""
         return Body(self.base, self.motion().pose, self._collisions, mass=1.0)
+
+    def is_secluded(self) -> bool:
+        """Whether it cannot have touched anything in the last step of physics. To be asked after each."""
+        return self._seclusion.is_given(self._number)
+
+    def end_seclusion(self) -> None:
+        """The robot or something else may be put elsewhere before the next step."""
+        self._seclusion.end()
 
     def bumps(self) -> List[Contact]:
         """Where the robot touches things; what it stands on is not among them."""

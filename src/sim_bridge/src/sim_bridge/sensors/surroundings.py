@@ -14,7 +14,7 @@ Wheels = Tuple[Tuple[float, ...], Tuple[float, ...]]
 
 
 class RobotSurroundings:
-    """Surroundings of a vehicle; what several sensors ask for is asked of physics once a step."""
+    """Surroundings of a vehicle; what several sensors ask for is asked of physics once a moment."""
 
     def __init__(self, vehicle: Vehicle, sight: Sight):
         self.stamp = 0.0
@@ -25,16 +25,20 @@ class RobotSurroundings:
         self._wheels: Optional[Wheels] = None
         self._bumps: Dict[str, Contact] = {}
 
-    def end_step(self, stamp: float) -> None:
-        """A step of physics is over: it is now ``stamp``, s."""
+    def feel(self) -> None:
+        """A step of physics is over: notes what has been touched."""
+        if not self._vehicle.is_secluded():
+            self._bumps.update((bump.link, bump) for bump in self._vehicle.bumps())
+
+    def look_anew(self, stamp: float) -> None:
+        """It is now ``stamp``, s, at the end of a step of physics in which something is due."""
         self.stamp = stamp
         self._base = self._twist = self._wheels = None
-        for bump in self._vehicle.bumps():
-            self._bumps[bump.link] = bump
 
     def end_period(self) -> None:
         """What has been touched so far has been told."""
         self._bumps.clear()
+        self._vehicle.end_seclusion()
 
     @property
     def gravity(self) -> float:
