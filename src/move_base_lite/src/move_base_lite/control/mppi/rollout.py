@@ -104,16 +104,16 @@ def drive(wanted, start, scene, limits, weights, poses, speeds):
     """
     steps, dt = wanted.shape[0], limits.period
     x, y, yaw, v, omega = start
-    c, s = math.cos(yaw), math.sin(yaw)
-    poses[0] = x, y, yaw
-    enough = _exact_below(scene, limits, weights)
+    c, s, poses[0] = math.cos(yaw), math.sin(yaw), (x, y, yaw)
+    cell = 1.0 / scene.cells_per_metre
+    enough, aside = _exact_below(scene, limits, weights), max(weights.safe_distance, cell)
     still_room = room_at(scene, x, y, c, s, enough)
-    least_room = min(1.0 / scene.cells_per_metre, still_room, room_beside_movers(scene, x, y, 0.0))
-    seconds_to_stop = abs(v) / limits.acceleration
-    cost, moved, turned = 0.0, 0.0, 0.0
+    least_room = min(cell, still_room, room_beside_movers(scene, x, y, 0.0, aside))
+    allowed_v = _highest_speed_in(still_room, limits)
+    cost, moved, turned, seconds_to_stop = 0.0, 0.0, 0.0, abs(v) / limits.acceleration
     to_go = value_at(scene.to_go, scene, x, y)
     for step in range(steps):
-        v, omega = _reached(v, omega, wanted[step], still_room, limits)
+        v, omega = _reached(v, omega, wanted[step], allowed_v, limits)
         ahead_c, ahead_s = _turned(c, s, 0.5 * omega * dt)
         x_next, y_next, yaw_next = x + v * dt * ahead_c, y + v * dt * ahead_s, yaw + omega * dt
         c, s = _turned(ahead_c, ahead_s, 0.5 * omega * dt)
@@ -121,7 +121,8 @@ def drive(wanted, start, scene, limits, weights, poses, speeds):
         if moved > CHECKED_DISTANCE or turned > CHECKED_ANGLE or step == steps - 1:
             moved, turned = 0.0, 0.0
             still_room = room_at(scene, x_next, y_next, c, s, enough)
-        passing_room = room_beside_movers(scene, x_next, y_next, (step + 1) * dt)
+            allowed_v = _highest_speed_in(still_room, limits)
+        passing_room = room_beside_movers(scene, x_next, y_next, (step + 1) * dt, aside)
         if min(still_room, passing_room) < least_room:
             if still_room < least_room and (step - 1) * dt < seconds_to_stop:
                 return np.inf
@@ -144,10 +145,10 @@ def _exact_below(scene, limits, weights):
 
 
 @numba.njit(cache=True)
-def _reached(v, omega, wanted, room, limits):
-    """The speeds that a robot with so much room has after a period in which it is asked for others."""
+def _reached(v, omega, wanted, allowed_v, limits):
+    """The speeds that a robot has after a period in which it is asked for others."""
     v = _towards(v, wanted[0], limits.acceleration * limits.period)
-    v = _speed_in(v, room, limits)
+    v = min(max(v, limits.lowest_v, -allowed_v), allowed_v)
     omega = _towards(omega, wanted[1], limits.turn_acceleration * limits.period)
     return v, min(max(omega, -limits.highest_omega), limits.highest_omega)
 
@@ -168,11 +169,13 @@ def _turned(c, s, angle):
 def _with_step(cost, v, omega, still_room, passing_room, to_go, limits, weights):
     """The cost with that of one period: nearness to what stays and to what moves, delay, turning, backing."""
     dt = limits.period
-    nearness = _nearness(still_room, weights)
-    cost += weights.obstacle * nearness * nearness * (abs(v) + CREEPING) * dt
-    # Standing still makes nobody pass at a greater distance.
-    nearness = _nearness(passing_room, weights)
-    cost += weights.obstacle * nearness * nearness * limits.highest_v * dt
+    if still_room < weights.safe_distance:
+        nearness = _nearness(still_room, weights)
+        cost += weights.obstacle * nearness * nearness * (abs(v) + CREEPING) * dt
+    if passing_room < weights.safe_distance:
+        # Standing still makes nobody pass at a greater distance.
+        nearness = _nearness(passing_room, weights)
+        cost += weights.obstacle * nearness * nearness * limits.highest_v * dt
     return cost + dt * (weights.delay * to_go + weights.turn * omega * omega - weights.backward * min(v, 0.0))
 
 
@@ -185,8 +188,8 @@ def _slope(scene, x, y, yaw, to_go):
 
 @numba.njit(cache=True)
 def _nearness(room, weights):
-    """1 in touch, 0 from the safe distance on."""
-    return 1.0 - max(room, 0.0) / weights.safe_distance if room < weights.safe_distance else 0.0
+    """1 in touch, 0 at the safe distance."""
+    return 1.0 - max(room, 0.0) / weights.safe_distance
 
 
 @numba.njit(cache=True)
@@ -195,9 +198,8 @@ def _towards(value, wanted, change):
 
 
 @numba.njit(cache=True)
-def _speed_in(v, room, limits):
-    """The speed cut to the limits and to what ``room`` metres of clearance allow."""
-    highest = limits.highest_v
+def _highest_speed_in(room, limits):
+    """That the limits and ``room`` metres of clearance allow."""
     if limits.approach_time > 0.0:
-        highest = min(highest, max(limits.creep_v, room / limits.approach_time))
-    return min(max(v, limits.lowest_v, -highest), highest)
+        return min(limits.highest_v, max(limits.creep_v, room / limits.approach_time))
+    return limits.highest_v

@@ -15,6 +15,8 @@ from planar.geometry.distance_field import distance_field
 # Metres around what moves within which obstacles are taken for it.
 AROUND_MOVER = 0.1
 FAR = 1e3
+# Of a distance, by which a square that stands for it may be wrong, and far more.
+ROUNDING = 1.0 + 1e-6
 
 
 class Scene(NamedTuple):
@@ -98,6 +100,11 @@ def room_at(scene, x, y, c, s, enough):
         if around < scene.inscribed_radius:
             touching = 1
     c, s = c * cells, s * cells
+    margin = scene.circumscribed_radius * cells + 1.0
+    if margin <= base_row < rows - margin and margin <= base_col < cols - margin and touching == 0:
+        room = _least_clearance(scene, base_row, base_col, c, s)
+        if room > 0.0:
+            return float(room)
     for i in range(scene.outline_xy.shape[0]):
         along, across = scene.outline_xy[i, 0], scene.outline_xy[i, 1]
         row = base_row + s * along + c * across
@@ -114,13 +121,30 @@ def room_at(scene, x, y, c, s, enough):
 
 
 @numba.njit(cache=True)
-def room_beside_movers(scene, x, y, seconds):
-    """Metres from the robot's circle to the nearest of what moves, so many seconds from now."""
-    nearest = FAR
+def _least_clearance(scene, base_row, base_col, c, s):
+    """Of all points of an outline that lies within the window: without a branch, as most touch nothing."""
+    least = np.float32(FAR)
+    for i in range(scene.outline_xy.shape[0]):
+        along, across = scene.outline_xy[i, 0], scene.outline_xy[i, 1]
+        row = base_row + s * along + c * across
+        col = base_col + c * along - s * across
+        least = min(least, scene.clearance[np.uint32(row), np.uint32(col)])
+    return least
+
+
+@numba.njit(cache=True)
+def room_beside_movers(scene, x, y, seconds, enough):
+    """Metres from the robot's circle to the nearest of what moves, so many seconds from now.
+
+    ``enough``: metres from which on it need not be told how many more those are.
+    """
+    nearest = enough
     for i in range(scene.movers.shape[0]):
         mover_x, mover_y, v_x, v_y, radius = scene.movers[i]
-        apart = math.hypot(mover_x + seconds * v_x - x, mover_y + seconds * v_y - y)
-        nearest = min(nearest, apart - radius - scene.circumscribed_radius)
+        off_x, off_y = mover_x + seconds * v_x - x, mover_y + seconds * v_y - y
+        reach = (nearest + radius + scene.circumscribed_radius) * ROUNDING
+        if off_x * off_x + off_y * off_y < reach * reach:
+            nearest = min(nearest, math.hypot(off_x, off_y) - radius - scene.circumscribed_radius)
     return nearest
 
 
