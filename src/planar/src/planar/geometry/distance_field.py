@@ -4,6 +4,8 @@ Exact, in two passes (Meijster, Roerdink and Hesselink, "A general algorithm for
 in linear time", 2000).
 """
 
+import math
+
 import numba
 import numpy as np
 
@@ -16,8 +18,8 @@ def distance_field(obstacles: np.ndarray, resolution: float, max_distance: float
     """
     if not obstacles.any():
         return np.full(obstacles.shape, max_distance, dtype=np.float32)
-    squares = squares_along_rows(_cells_along_columns(obstacles))
-    return np.minimum(np.sqrt(squares) * resolution, max_distance).astype(np.float32)
+    squares = _squares_along_rows(_cells_along_columns(obstacles))
+    return _metres(squares, float(resolution), float(max_distance))
 
 
 @numba.njit(cache=True)
@@ -37,7 +39,7 @@ def _cells_along_columns(obstacles):
 
 
 @numba.njit(cache=True)
-def squares_along_rows(near):
+def _squares_along_rows(near):
     """Squares, int64 (rows, cols), of the cells to an obstacle; ``near``: cells to one of the same column."""
     rows, cols = near.shape
     squares = np.empty((rows, cols), dtype=np.int64)
@@ -69,3 +71,13 @@ def squares_along_rows(near):
 @numba.njit(cache=True)
 def _square(own, col, source):
     return (col - source) ** 2 + own[source]
+
+
+@numba.njit(cache=True)
+def _metres(squares, resolution, max_distance):
+    """Distances, float32 (rows, cols), at most ``max_distance``, of the squares of as many cells."""
+    metres = np.empty(squares.shape, dtype=np.float32)
+    for row in range(squares.shape[0]):
+        for col in range(squares.shape[1]):
+            metres[row, col] = min(math.sqrt(squares[row, col]) * resolution, max_distance)
+    return metres

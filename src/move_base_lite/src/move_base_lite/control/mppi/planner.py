@@ -28,7 +28,7 @@ class PathIntegral:
         self._period = period
         steps = max(KNOTS, round(settings.horizon / period))
         self._noise = smooth_noise(np.random.default_rng(settings.seed), settings, steps)
-        self._samples = np.concatenate((self._noise, fan(settings, steps)))
+        self._fan = fan(settings, steps)
         self._mean = np.zeros((steps, 2))
         self._weights = Weights(
             safe_distance=settings.safe_distance,
@@ -44,8 +44,8 @@ class PathIntegral:
         twist = situation.twist
         start = np.array([*situation.base_in_local.as_array(), twist.v, twist.omega])
         problem = arguments_of(scene_of(situation, plan), self._limits(limits), self._weights)
-        np.add(self._noise, self._mean, out=self._samples[: len(self._noise)])
-        mean, cost, poses, speeds = best_way(self._samples, start, self._settings.temperature, *problem)
+        ways = (self._noise, self._mean, self._fan)
+        mean, cost, poses, speeds = best_way(*ways, start, self._settings.temperature, *problem)
         if not math.isfinite(cost):
             self._mean[:] = 0.0
             raise ControlError("every way tried leads into an obstacle")

@@ -46,32 +46,36 @@ class Weights(NamedTuple):
 
 
 @numba.njit(cache=True)
-def best_way(samples, start, temperature, clearance, to_go, outline_xy, movers, numbers):
-    """The mean of ``samples`` (M, N, 2), weighted by what each costs, or the best of them if that is better.
+def best_way(noise, mean, others, start, temperature, clearance, to_go, outline_xy, movers, numbers):
+    """The mean of the ways tried, weighted by what each costs, or the best of them if that is better.
+
+    Tried are ``mean`` (N, 2) with ``noise`` (M, N, 2) and ``others`` (L, N, 2), in this order.
 
     Returns the speeds asked for (N, 2), cost, poses and speeds (see drive); the cost is inf if all hit
     something. Takes arrays of a scene one by one, and all numbers in one: names take numba long to look at.
     """
     scene, limits, weights = _named(clearance, to_go, outline_xy, movers, numbers)
-    count, steps = samples.shape[:2]
+    count, steps = len(noise) + len(others), len(mean)
     poses, speeds, costs = np.empty((steps + 1, 3)), np.empty((steps, 2)), np.empty(count)
+    way, average, total = np.empty((steps, 2)), np.zeros((steps, 2)), 0.0
     for i in range(count):
-        costs[i] = drive(samples[i], start, scene, limits, weights, poses, speeds)
+        _take(i, noise, mean, others, way)
+        costs[i] = drive(way, start, scene, limits, weights, poses, speeds)
     best = np.argmin(costs)
     lowest = costs[best]
-    mean, total = np.zeros((steps, 2)), 0.0
     if lowest < np.inf:
         for i in range(count):
             weight = math.exp((lowest - costs[i]) / temperature)
             total += weight
             if weight > 0.0:
-                _add(mean, weight, samples[i])
-        mean /= total
-        lowest = drive(mean, start, scene, limits, weights, poses, speeds)
+                _take(i, noise, mean, others, way)
+                _add(average, weight, way)
+        average /= total
+        lowest = drive(average, start, scene, limits, weights, poses, speeds)
         if not lowest <= costs[best] + temperature:
-            mean = samples[best].copy()
-            lowest = drive(mean, start, scene, limits, weights, poses, speeds)
-    return mean, lowest, poses, speeds
+            _take(best, noise, mean, others, average)
+            lowest = drive(average, start, scene, limits, weights, poses, speeds)
+    return average, lowest, poses, speeds
 
 
 def arguments_of(scene: Scene, limits: Limits, weights: Weights) -> Tuple[Any, ...]:
@@ -88,10 +92,21 @@ def _named(clearance, to_go, outline_xy, movers, n):
 
 
 @numba.njit(cache=True)
-def _add(mean, weight, sample):
+def _take(i, noise, mean, others, way):
+    """Fills in the way (N, 2) number ``i`` of those that are tried."""
     for step in range(mean.shape[0]):
-        mean[step, 0] += weight * sample[step, 0]
-        mean[step, 1] += weight * sample[step, 1]
+        for axis in range(2):
+            if i < len(noise):
+                way[step, axis] = noise[i, step, axis] + mean[step, axis]
+            else:
+                way[step, axis] = others[i - len(noise), step, axis]
+
+
+@numba.njit(cache=True)
+def _add(average, weight, way):
+    for step in range(average.shape[0]):
+        average[step, 0] += weight * way[step, 0]
+        average[step, 1] += weight * way[step, 1]
 
 
 @numba.njit(cache=True)

@@ -11,7 +11,6 @@ from move_base_lite.costmap.layer import Layer, LayerSettings, Site
 from move_base_lite.costmap.window import Bounds, Window
 from move_base_lite.plugin import Plugin
 from planar.config.parameters import at_least, check_parameters, parameter
-from planar.geometry.distance_field import squares_along_rows
 
 
 @dataclass(frozen=True)
@@ -58,47 +57,72 @@ class InflationLayer(Layer):
         """Inflates the cells of ``bounds``; obstacles in reach outside of it count too."""
         if self.reach_cells:
             seen = window.grown(bounds, self.reach_cells)
-            near = _cells_to_obstacle_along_columns(costs, bounds, seen, self.reach_cells + 1)
-            _inflate(costs, bounds, seen, near, self._cost_by_square, self._inflate_unknown)
+            far = np.float32(self.reach_cells + 1)
+            near = _cells_to_obstacle_along_columns(costs, bounds, seen, far)
+            _inflate(costs, bounds, seen, near, self.reach_cells, self._cost_by_square, self._inflate_unknown)
 
 
 @numba.njit(cache=True)
 def _cells_to_obstacle_along_columns(costs, bounds, seen, far):
-    """Cells, int32, from each of the rows of ``bounds`` and columns of ``seen`` to an obstacle of its column,
-    at most ``far``."""
+    """Cells, float32, from each of the rows of ``bounds`` and columns of ``seen`` to an obstacle of its
+    column, at most ``far``."""
     row_min, row_max, _, _ = bounds
-    seen_row_min, seen_row_max, seen_col_min, seen_col_max = seen
-    near = np.full((row_max - row_min, seen_col_max - seen_col_min), far, dtype=np.int32)
-    for col in range(seen_col_min, seen_col_max):
-        distance = far
-        for row in range(seen_row_min, row_max):
-            distance = 0 if costs[row, col] == LETHAL else min(distance + 1, far)
-            if row >= row_min:
-                near[row - row_min, col - seen_col_min] = distance
-        distance = far
-        for row in range(seen_row_max - 1, row_min - 1, -1):
-            distance = 0 if costs[row, col] == LETHAL else min(distance + 1, far)
-            if row < row_max and distance < near[row - row_min, col - seen_col_min]:
-                near[row - row_min, col - seen_col_min] = distance
+    seen_row_min, seen_row_max, col_min, col_max = seen
+    near = np.empty((row_max - row_min, col_max - col_min), dtype=np.float32)
+    distances = np.full(col_max - col_min, far)
+    for row in range(seen_row_min, row_max):
+        _pass(costs[row, col_min:col_max], distances, far)
+        if row >= row_min:
+            near[row - row_min] = distances
+    distances[:] = far
+    for row in range(seen_row_max - 1, row_min - 1, -1):
+        _pass(costs[row, col_min:col_max], distances, far)
+        if row < row_max:
+            near[row - row_min] = np.minimum(near[row - row_min], distances)
     return near
 
 
 @numba.njit(cache=True)
-def _inflate(costs, bounds, seen, near, cost_by_square, inflate_unknown):
-    """Raises the costs in ``bounds`` by the squares of the distances to obstacles."""
+def _pass(costs, distances, far):
+    """Brings the cells to an obstacle behind from one row of costs to the next, at most ``far``."""
+    for col in range(costs.size):
+        ahead = min(distances[col] + np.float32(1.0), far)
+        distances[col] = np.float32(0.0) if costs[col] == LETHAL else ahead
+
+
+@numba.njit(cache=True)
+def _inflate(costs, bounds, seen, near, reach, cost_by_square, inflate_unknown):
+    """Raises the costs in ``bounds`` by the squares of the distances to obstacles within ``reach`` cells.
+
+    A row is shifted over itself: that takes more steps than the way of planar's distance field, but eight
+    cells at once, and whole numbers are exact in float32 up to 16 million.
+    """
     row_min, row_max, col_min, col_max = bounds
-    squares = squares_along_rows(near)
+    cols, first, far = col_max - col_min, reach - col_min + seen[2], np.float32(cost_by_square.size)
+    own, squares = np.full(cols + 2 * reach, far), np.empty(cols, dtype=np.float32)
     for row in range(row_min, row_max):
-        for col in range(col_min, col_max):
-            square = squares[row - row_min, col - seen[2]]
-            if square >= cost_by_square.size or square == 0:
-                continue
-            cost = cost_by_square[square]
-            if costs[row, col] == UNKNOWN:
-                if cost >= INSCRIBED or (inflate_unknown and cost > FREE):
-                    costs[row, col] = cost
-            elif cost > costs[row, col]:
-                costs[row, col] = cost
+        own[first : first + near.shape[1]] = near[row - row_min] * near[row - row_min]
+        squares[:] = far
+        for shift in range(2 * reach + 1):
+            aside, shifted = np.float32((shift - reach) ** 2), own[shift : shift + cols]
+            for col in range(cols):
+                squares[col] = min(squares[col], shifted[col] + aside)
+        _raise(costs[row, col_min:col_max], squares, cost_by_square, inflate_unknown)
+
+
+@numba.njit(cache=True)
+def _raise(costs, squares, cost_by_square, inflate_unknown):
+    """Raises the costs of a row by the squares of the distances to obstacles."""
+    for col in range(costs.size):
+        square = np.int64(squares[col])
+        if square >= cost_by_square.size or square == 0:
+            continue
+        cost = cost_by_square[square]
+        if costs[col] == UNKNOWN:
+            if cost >= INSCRIBED or (inflate_unknown and cost > FREE):
+                costs[col] = cost
+        elif cost > costs[col]:
+            costs[col] = cost
 
 
 INFLATION: Plugin[Layer] = Plugin("costmap_2d::InflationLayer", InflationSettings, InflationLayer)
