@@ -1,7 +1,7 @@
 """Rigid bodies in PyBullet: what stands and moves in a world."""
 
 from dataclasses import dataclass
-from typing import Dict, Sequence
+from typing import Dict, Sequence, Tuple
 
 import numpy as np
 
@@ -49,6 +49,8 @@ class Engine:
         self._register = Register()
         # Links that are not drawn down, and their masses.
         self._weightless: Dict[str, float] = {}
+        # How high what is shifted is, and how it is turned, as long as nobody puts it elsewhere.
+        self._upright: Dict[int, Tuple[float, Tuple[float, ...]]] = {}
         self.joints = Joints(self._bullet, self._register)
         self.attachments = Attachments(self._bullet, self._register)
         self.touch = Touch(self._bullet, self._register)
@@ -69,6 +71,7 @@ class Engine:
     def go_back(self, mark: int) -> None:
         """Everything is again as when it was kept; no body may have come or gone since."""
         self._bullet.restoreState(mark)
+        self._upright.clear()
 
     def set_rate(self, rate: int) -> None:
         """``rate``: steps per second."""
@@ -105,6 +108,7 @@ class Engine:
         """Takes away a link and all that hangs together with it."""
         number = self._register.links[name].number
         self.attachments.detach_from(number)
+        self._upright.pop(number, None)
         self._bullet.removeBody(number)
         self._register.forget(number)
         self._weightless = {key: mass for key, mass in self._weightless.items() if self.has_link(key)}
@@ -116,14 +120,15 @@ class Engine:
         link = self._register.links[name]
         if link.index < 0:
             centre = root_of(self._bullet, link)
-            linear, angular = map(np.array, self._bullet.getBaseVelocity(link.number))
+            linear, angular = self._bullet.getBaseVelocity(link.number)
         else:
             state = self._bullet.getLinkState(
                 link.number, link.index, computeLinkVelocity=1, computeForwardKinematics=1
             )
-            centre, (linear, angular) = matrix_of(*state[:2]), map(np.array, state[6:8])
+            centre, (linear, angular) = matrix_of(*state[:2]), state[6:8]
         pose = centre @ link.from_centre
-        return Motion(pose, linear - cross(angular, centre[:3, 3] - pose[:3, 3]), angular)
+        arm = (centre[:3, 3] - pose[:3, 3]).tolist()
+        return Motion(pose, np.array(linear) - cross(angular, arm), np.array(angular))
 
     def pose_of(self, name: str) -> np.ndarray:
         """Where a link is, (4, 4) in the world."""
@@ -133,6 +138,7 @@ class Engine:
     def set_motion(self, name: str, motion: Motion) -> None:
         """Puts a link to another place, with all that hangs together with it, and sets its velocity."""
         link = self._register.links[name]
+        self._upright.pop(link.number, None)
         centre = motion.pose @ link.centre
         if link.index >= 0:
             centre = centre @ inverse(centre_of(self._bullet, link)) @ root_of(self._bullet, link)
@@ -142,10 +148,17 @@ class Engine:
 
     def shift(self, name: str, x: float, y: float) -> None:
         """Puts a body that stands alone to another place, as high and turned as it is."""
-        link = self._register.links[name]
-        (_, _, z), turn = self._bullet.getBasePositionAndOrientation(link.number)
-        self._bullet.resetBasePositionAndOrientation(link.number, (x, y, z), turn)
+        number = self._register.links[name].number
+        z, turn = self._upright.get(number) or self._height_and_turn(number)
+        self._bullet.resetBasePositionAndOrientation(number, (x, y, z), turn)
+        is_known = number in self._upright or number in self._register.movers
+        if not is_known and self._height_and_turn(number) == (z, turn):  # rounding has come to an end
+            self._upright[number] = z, turn
         self.touch.seclusion.end()
+
+    def _height_and_turn(self, number: int) -> Tuple[float, Tuple[float, ...]]:
+        (_, _, z), turn = self._bullet.getBasePositionAndOrientation(number)
+        return z, turn
 
     def push(self, name: str, force: Sequence[float], torque: Sequence[float]) -> None:
         """Force, N, at the centre of a link's mass, and torque, N m, in the world; for the next step only."""

@@ -64,9 +64,11 @@ class Section:
             return self._still_segments
         for name, outline in self._moving.items():
             pose = pose_of(name)
-            if np.abs(pose - outline.drawn_at).max() > STILL:
+            if _differ(pose, outline.drawn_at):
                 self._place(outline.body, pose)
-        return np.vstack([self._still_segments, *(outline.segments for outline in self._moving.values())])
+        return np.concatenate(
+            [self._still_segments, *(outline.segments for outline in self._moving.values())]
+        )
 
     def retros(self) -> np.ndarray:
         """How brightly each of the sides last told by ``segments`` reflects a laser, (N,)."""
@@ -90,8 +92,8 @@ class Section:
         if begun is None or begun.body is not body:
             begun = _Outline(body, body.pose_in_world, *self._cut(body, body.pose_in_world))
             self._begun[body.name] = begun
-        way = np.tile(pose[:2, 3] - begun.drawn_at[:2, 3], 2)
-        return _Outline(body, pose, begun.segments + way, begun.retros)
+        way = pose[:2, 3] - begun.drawn_at[:2, 3]
+        return _Outline(body, pose, begun.segments + np.concatenate((way, way)), begun.retros)
 
     def _cut(self, body: Body, pose: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
         """Sides (N, 4) of a body's outlines, and how brightly each reflects, (N,)."""
@@ -103,6 +105,13 @@ class Section:
         sides = [np.hstack((outline, np.roll(outline, -1, axis=0))) for outline, _ in cuts]
         retros = [np.full(len(outline), retro) for outline, retro in cuts]
         return np.vstack([np.empty((0, 4)), *sides]), np.concatenate([np.empty(0), *retros])
+
+
+def _differ(pose: np.ndarray, before: np.ndarray) -> bool:
+    """Whether a pose (4, 4) is another than before; first the place, as most that moves goes somewhere."""
+    place, place_before = pose[:2, 3].tolist(), before[:2, 3].tolist()
+    has_gone = any(abs(here - there) > STILL for here, there in zip(place, place_before))
+    return has_gone or bool(np.abs(pose - before).max() > STILL)
 
 
 def cast_beams(
