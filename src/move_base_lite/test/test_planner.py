@@ -8,7 +8,7 @@ from move_base_lite import GoalBlocked, NoPath, OutOfMap, StartBlocked
 from move_base_lite.check import KITS
 from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, Window
 from move_base_lite.planning import GLOBAL_PLANNERS, Navfn, NavfnSettings, path_cost
-from move_base_lite.planning.wavefront import descend, spread, traversal_costs
+from move_base_lite.planning.wavefront import FACTOR, IMPASSABLE, NEUTRAL, descend, spread, traversal_costs
 
 PICTURES = {
     "empty": """
@@ -117,7 +117,7 @@ def test_a_plan_is_neither_longer_nor_dearer_than_the_bare_gradient():
     rng = np.random.default_rng(5)
     costs = rng.choice([0, 0, 30, 90, 200], (60, 60)).astype(np.uint8)
     window, start, goal = Window(60, 60, 1.0), (5, 4), (50, 56)
-    potential = spread(traversal_costs(costs, True), *start, *goal, False)
+    potential = spread(traversal_costs(costs, True, NEUTRAL, FACTOR, IMPASSABLE - 1), *start, *goal, False)
     bare = descend(potential, *start, *goal, 0.5)
     plan = Navfn(NavfnSettings()).plan(costs, window, centre(window, start), centre(window, goal))
     lengths = [np.linalg.norm(np.diff(path, axis=0), axis=1).sum() for path in (plan, bare)]

@@ -19,30 +19,28 @@ EXPECTED = 0.9 * NEUTRAL
 
 
 @numba.njit(cache=True)
-def traversal_costs(costs, allow_unknown, neutral=NEUTRAL, factor=FACTOR, lethal=LETHAL):
+def traversal_costs(costs, allow_unknown, neutral, factor, lethal):
     """Cost of entering each cell, uint8, as navfn has it: 50 + 0.8 cost, at most 253; 254 cannot be entered.
 
     The rim of the map cannot be entered either, so that no neighbour ever lies outside.
     """
     rows, cols = costs.shape
-    traversal = np.empty((rows, cols), dtype=np.uint8)
-    for row in range(rows):
-        for col in range(cols):
-            cost = costs[row, col]
-            on_rim = row == 0 or col == 0 or row == rows - 1 or col == cols - 1
-            if cost == 255:
-                traversal[row, col] = 253 if allow_unknown and not on_rim else IMPASSABLE
-            elif cost >= lethal or on_rim:
-                traversal[row, col] = IMPASSABLE
-            else:
-                traversal[row, col] = min(int(neutral + factor * cost), lethal)
+    by_cost = np.full(256, IMPASSABLE, dtype=np.uint8)
+    for cost in range(lethal):
+        by_cost[cost] = min(int(neutral + factor * cost), lethal)
+    if allow_unknown:
+        by_cost[255] = 253
+    traversal = np.full((rows, cols), IMPASSABLE, dtype=np.uint8)
+    for row in range(1, rows - 1):
+        for col in range(1, cols - 1):
+            traversal[row, col] = by_cost[costs[row, col]]
     return traversal
 
 
 def cost_to_go(costs: np.ndarray, targets: np.ndarray) -> Optional[np.ndarray]:
     """Potential, float32 (rows, cols), of each cell from the last of ``targets`` (N, 2), as (row, col), that
     can be entered; inf where nothing leads there. None if no target can be entered."""
-    traversal = traversal_costs(costs, True)
+    traversal = traversal_costs(costs, True, NEUTRAL, FACTOR, LETHAL)  # numba is slow at defaults
     inside = ((targets >= 0) & (targets < costs.shape)).all(axis=1)
     targets = targets[inside]
     free = np.flatnonzero(traversal[targets[:, 0], targets[:, 1]] < IMPASSABLE)
