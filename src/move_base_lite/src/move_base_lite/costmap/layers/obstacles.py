@@ -138,8 +138,9 @@ class ObstacleLayer(Layer):
     def _integrate(self, window, source, observation, mark_range: float, clear_range: float) -> None:
         sighting, sensor = observation.sighting, observation.sensor_in_frame
         highest = min(source.max_obstacle_height, self._settings.max_obstacle_height)
-        heights = np.broadcast_to(sighting.heights, sighting.ranges.shape)
-        at_height = (heights >= source.min_obstacle_height) & (heights <= highest)
+        at_height = (source.min_obstacle_height <= sighting.heights) & (sighting.heights <= highest)
+        if np.ndim(at_height) == 0:  # all of the beams, or none
+            at_height = slice(None) if at_height else slice(0)
         _integrate(
             self._costs,
             (sensor.x - window.origin_x) / window.resolution,
