@@ -7,21 +7,24 @@ import pytest
 from robot_in_picture import PERSON_RADIUS, room, scan_with_people, two_rooms, with_block
 
 from move_base_lite.costmap import sighting_of_scan
-from move_base_lite.people import Movers
+from move_base_lite.people import Lookout, Movers
 from planar import Pose2
 from planar.geometry.ray_casting import cast_rays
 
 PERIOD = 0.1
 
 
-def watch(grid, base_at, person_at, seconds, seed=0, radius=PERSON_RADIUS):
-    """[(stamp, rows)]: what a robot at ``base_at(t)`` finds moving while a person is at ``person_at(t)``."""
+def watch(grid, base_at, person_at, seconds, seed=0, radius=PERSON_RADIUS, lookout=Lookout()):
+    """[(stamp, rows)]: what a robot at ``base_at(t)`` finds moving while a person is at ``person_at(t)``,
+    or several are.
+    """
     rng, movers, found = np.random.default_rng(seed), Movers(), []
     for step in range(round(seconds / PERIOD)):
         stamp = step * PERIOD
         base, person = base_at(stamp), person_at(stamp)
-        scan = scan_with_people(grid, base, stamp, [person] if person else [], rng, radius)
-        movers.look(base, sighting_of_scan("scan", scan))
+        people = person if isinstance(person, list) else [person] if person else []
+        scan = scan_with_people(grid, base, stamp, people, rng, radius)
+        movers.look(base, sighting_of_scan("scan", scan), lookout)
         found.append((stamp, movers.at(stamp)))
     return found
 
@@ -60,6 +63,71 @@ def test_who_comes_towards_a_robot_that_has_just_started_is_found_in_time():
     found = watch(room(8.0, 4.0), lambda t: Pose2(1.0, 2.0), lambda t: (4.0 - 1.2 * t, 2.0), 1.0)
     first = next(stamp for stamp, rows in found if len(rows))
     assert first <= 0.7
+
+
+def nearest_to(rows, place):
+    """How far, m, the nearest of what was found is from a place."""
+    return min((math.dist(row[:2], place) for row in rows), default=math.inf)
+
+
+def test_who_comes_out_from_behind_somebody_is_seen_to_move_if_all_is_watched():
+    def hidden_at(t):  # behind the one who stands, until the robot looks past
+        return 4.2, 2.0 + 1.5 * max(t - 1.0, 0.0)
+
+    def found_after(lookout):
+        found = watch(
+            room(8.0, 8.0),
+            lambda t: Pose2(1.0, 2.0),
+            lambda t: [(2.6, 2.0), hidden_at(t)],
+            3.0,
+            0,
+            0.4,
+            lookout,
+        )
+        return next((t for t, rows in found if nearest_to(rows, hidden_at(t)) < 0.3), math.inf)
+
+    assert found_after(Lookout(9.0, watches_all=True)) <= min(found_after(Lookout(9.0)), 2.0)
+
+
+def test_who_is_far_off_is_found_within_the_reach_that_is_asked_for():
+    def person_at(t):
+        return 7.0, 1.0 + 0.8 * t
+
+    for lookout, is_found in ((Lookout(), False), (Lookout(9.0), True)):
+        found = watch(room(9.0, 5.0), lambda t: Pose2(1.0, 2.0), person_at, 2.5, 0, 0.4, lookout)
+        assert any(len(rows) for _, rows in found) == is_found
+
+
+def test_two_who_walk_shoulder_to_shoulder_are_two():
+    def pair_at(t):
+        return [(3.5 - 0.6 * t, 1.55), (3.5 - 0.6 * t, 2.45)]
+
+    found = watch(room(9.0, 4.0), lambda t: Pose2(1.0, 2.0), pair_at, 2.0, 0, 0.45)
+    stamp, rows = found[-1]
+    assert [nearest_to(rows, place) < 0.2 for place in pair_at(stamp)] == [True, True]
+
+
+def test_who_turns_round_is_expected_on_the_way_back_half_a_second_later():
+    def person_at(t):
+        return 3.0, 1.0 + 1.2 * min(t, 2.0) - 1.2 * max(t - 2.0, 0.0)
+
+    found = watch(room(8.0, 5.0), lambda t: Pose2(1.0, 2.0), person_at, 3.0, 0, 0.3)
+    for stamp, rows in found:
+        if stamp > 2.55:
+            assert rows[0][3] == pytest.approx(-1.2, abs=0.4)
+
+
+def test_who_walks_behind_something_is_still_expected_there():
+    grid = with_block(room(8.0, 5.0), 2.6, 1.8, 2.8, 3.2)
+
+    def person_at(t):
+        return 3.6, 0.4 + 0.8 * t
+
+    found = watch(grid, lambda t: Pose2(1.0, 2.5), person_at, 3.2)
+    hidden = [(stamp, rows) for stamp, rows in found if 1.7 < person_at(stamp)[1] < 2.6]
+    assert hidden
+    for stamp, rows in hidden:
+        assert nearest_to(rows, person_at(stamp)) < 0.3
 
 
 def test_nobody_moves_while_the_robot_drives_past_doors_and_boxes():

@@ -1,7 +1,9 @@
 """What every local planner needs to know; names, defaults and meaning of DWAPlannerROS (Noetic)."""
 
 from dataclasses import dataclass
+from typing import Optional
 
+from move_base_lite.people import Lookout
 from planar import Twist2
 from planar.config.parameters import POSITIVE, check_parameters, parameter
 from planar.config.settings import check
@@ -49,9 +51,9 @@ class ControllerSettings:
     )
 
     @property
-    def looks_for_movers(self) -> bool:
-        """Whether it matters what moves."""
-        return False
+    def lookout(self) -> Optional[Lookout]:
+        """How it is looked for what moves; None: it does not matter what does."""
+        return None
 
     def reachable(self, now: Twist2, wanted: Twist2, limits: Twist2, period: float) -> Twist2:
         """The nearest to what is wanted that the robot can do after ``period`` s, within the limits."""

@@ -60,9 +60,10 @@ class Crew:
 
     def _lasting(self, base_in_odom: Pose2, sighting: Sighting) -> Sighting:
         """What is seen without what moves."""
-        if not self.settings.controller.looks_for_movers or sighting.topic != self.settings.scan_topic:
+        lookout = self.settings.controller.lookout
+        if lookout is None or sighting.topic != self.settings.scan_topic:
             return sighting
-        return self._movers.look(base_in_odom, sighting)
+        return self._movers.look(base_in_odom, sighting, lookout)
 
     def plan(self, start_in_map: Pose2, goal_in_map: Pose2, tolerance: float = 0.0) -> np.ndarray:
         """Path (N, 2) in the map between any two places. Raises PlanningError."""

@@ -1,14 +1,15 @@
 """What moves near the robot: beams that end together where it was free, tracked at constant velocity."""
 
+import math
 from collections import deque
 from dataclasses import replace
-from typing import Deque, List, Optional
+from typing import Deque, List, NamedTuple, Optional
 
 import numpy as np
 from numpy.typing import NDArray
 
 from move_base_lite.costmap import Sighting
-from move_base_lite.people.track import Track
+from move_base_lite.people.track import FAST, Track
 from move_base_lite.people.views import Thing, View, things_in
 from planar import Pose2
 
@@ -16,9 +17,23 @@ from planar import Pose2
 LOOK_BACK, BLIND = 1.0, 0.3
 # Share of a thing's beams that must end where it was free before.
 SHARE_FREE = 0.5
-# Seconds that a track may be hidden, and for which what has moved is not taken for an obstacle that stays.
-HIDDEN, MOVED_LATELY = 0.6, 4.0
+# Seconds that a track may not be seen where the laser looks, and where it does not: behind something, or
+# behind the robot.
+GONE, HIDDEN = 0.6, 2.5
+# Seconds after which a track that is hidden is no thing that has been there all the time.
+OVERLOOKED = 0.3
+# Seconds for which what has moved is not taken for an obstacle that stays.
+MOVED_LATELY = 4.0
+# A thing that is not where it was seen so many seconds ago is watched; see Track.
+GLANCE = 0.15
 NO_MOVERS = np.empty((0, 5))
+
+
+class Lookout(NamedTuple):
+    """How far, m, it is looked for what moves, and whether all is watched that has just appeared."""
+
+    reach: float = 4.0
+    watches_all: bool = False
 
 
 class Movers:
@@ -28,24 +43,28 @@ class Movers:
         self._past: Deque[View] = deque()
         self._tracks: List[Track] = []
 
-    def look(self, base_in_odom: Pose2, sighting: Sighting) -> Sighting:
+    def look(self, base_in_odom: Pose2, sighting: Sighting, lookout: Lookout = Lookout()) -> Sighting:
         """Takes in the newest scan, made from there; returns it without what has moved lately."""
         if self._past and sighting.stamp < self._past[-1].stamp:
             self._past.clear()
             self._tracks.clear()
-        view = View(base_in_odom @ sighting.sensor_in_base, sighting)
+        view = View(base_in_odom @ sighting.sensor_in_base, sighting, lookout.reach)
         things = things_in(view)
-        before = self._view_before(view.stamp)
+        before, lately = self._view_before(view.stamp), self._view_at(view.stamp - GLANCE)
         for track in self._tracks:
             track.predict(view.stamp)
         for thing in things:
             has_come = before is not None and before.share_seen_through(thing.points_xy) >= SHARE_FREE
-            own = self._track_of(thing)
+            is_new = has_come or _is_news(thing, view.stamp, lately)
+            own = self._track_of(thing, -math.inf if is_new else view.stamp - OVERLOOKED)
             if own is not None:
                 own.correct(thing, has_come)
-            elif has_come:
+            elif has_come or (is_new and lookout.watches_all):
                 self._tracks.append(Track(thing, view.stamp))
-        self._tracks = [track for track in self._tracks if view.stamp - track.seen_at <= HIDDEN]
+        view.things = things
+        self._tracks = [
+            track for track in self._tracks if track.may_still_be(view, GONE, HIDDEN) and not track.stands
+        ]
         self._past.append(view)
         return replace(sighting, ranges=self._lasting(view, sighting.ranges))
 
@@ -69,7 +88,19 @@ class Movers:
         is_there = self._past and stamp - self._past[0].stamp >= BLIND
         return self._past[0] if is_there else None
 
-    def _track_of(self, thing: Thing) -> Optional[Track]:
+    def _view_at(self, stamp: float) -> Optional[View]:
+        """The newest view that is as old as that."""
+        return next((view for view in reversed(self._past) if view.stamp <= stamp), None)
+
+    def _track_of(self, thing: Thing, seen_since: float) -> Optional[Track]:
         """The nearest track that the thing may belong to and that nothing else belongs to."""
-        candidates = [track for track in self._tracks if track.may_be(thing)]
+        candidates = [track for track in self._tracks if track.may_be(thing, seen_since)]
         return min(candidates, key=lambda track: track.distance_to(thing)) if candidates else None
+
+
+def _is_news(thing: Thing, stamp: float, before: Optional[View]) -> bool:
+    """Whether the thing was elsewhere before, or hidden: what stands does not seem to go so far."""
+    if before is None:
+        return False
+    distance = FAST * (stamp - before.stamp)
+    return all(math.dist(thing.middle_xy, other.middle_xy) > distance for other in before.things)

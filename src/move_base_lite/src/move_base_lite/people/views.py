@@ -9,22 +9,26 @@ import numpy as np
 from move_base_lite.costmap import Sighting
 from planar import Pose2
 
-# Metres from the sensor up to which movers are looked for, between beams of two things, and from corner to
-# corner of what a laser sees of one: a person, a cart, another robot.
-REACH, GAP, WIDEST = 4.0, 0.25, 1.5
+# Metres between beams of two things, and from corner to corner of what a laser sees of one: a person, a cart,
+# another robot.
+GAP, WIDEST = 0.25, 1.5
 FEWEST_BEAMS = 3
+FITTING_STEPS = 3
+# Metres behind the hull of neighbouring beams from which on two things meet there.
+HOLLOW = 0.15
 # Metres by which a beam must have gone beyond a place that was free.
 BEYOND = 0.12
 DIRECTIONS = 180
 
 
 class View:
-    """A sighting from where it was made: its near ends by angle, and how far it was free."""
+    """A sighting from where it was made: its ends within ``reach``, m, by angle, and how far it was free."""
 
-    def __init__(self, sensor_in_odom: Pose2, sighting: Sighting):
+    def __init__(self, sensor_in_odom: Pose2, sighting: Sighting, reach: float):
         self.sensor_in_odom, self.stamp = sensor_in_odom, sighting.stamp
         angles, ranges = sighting.angles, np.asarray(sighting.ranges, dtype=float)
-        near, self._free = _near_and_free(angles, ranges, sighting.range_min, sighting.range_max)
+        self.things: List[Thing] = []
+        near, self._free = _near_and_free(angles, ranges, sighting.range_min, sighting.range_max, reach)
         self.beams = near[np.argsort(angles[near])]
         angles = angles[self.beams]
         ends = np.column_stack((np.cos(angles), np.sin(angles))) * ranges[self.beams, None]
@@ -45,6 +49,15 @@ class Thing(NamedTuple):
     radius: float
 
 
+def middle_of(points_xy: np.ndarray, expected_xy: np.ndarray, radius: float, prior: float) -> np.ndarray:
+    """The middle (2,) of a thing of which points (N, 2) are seen, perhaps of one side of it alone.
+
+    The circle of that radius that fits them best, by least squares; ``prior``: what a metre off where it is
+    ``expected_xy`` weighs beside one of a point.
+    """
+    return _fitted(points_xy, expected_xy, radius, prior)
+
+
 def things_in(view: View) -> List[Thing]:
     """What is narrow enough to be somebody, of a view; the first and the last beam may be of the same."""
     if len(view.points_xy) < FEWEST_BEAMS:
@@ -58,20 +71,40 @@ def things_in(view: View) -> List[Thing]:
 
 
 @numba.njit(cache=True)
-def _near_and_free(angles, ranges, range_min, range_max):
+def _fitted(points_xy, expected_xy, radius, prior):
+    """Gauss-Newton, from where it is expected."""
+    x, y = expected_xy
+    for _ in range(FITTING_STEPS):
+        xx = yy = prior
+        xy = 0.0
+        pull_x, pull_y = prior * (expected_xy[0] - x), prior * (expected_xy[1] - y)
+        for i in range(points_xy.shape[0]):
+            off_x, off_y = points_xy[i, 0] - x, points_xy[i, 1] - y
+            apart = max(math.hypot(off_x, off_y), 1e-6)
+            c, s = off_x / apart, off_y / apart
+            xx, xy, yy = xx + c * c, xy + c * s, yy + s * s
+            pull_x, pull_y = pull_x + c * (apart - radius), pull_y + s * (apart - radius)
+        determinant = xx * yy - xy * xy
+        x += (yy * pull_x - xy * pull_y) / determinant
+        y += (xx * pull_y - xy * pull_x) / determinant
+    return np.array((x, y))
+
+
+@numba.njit(cache=True)
+def _near_and_free(angles, ranges, range_min, range_max, reach):
     """The beams that end within reach, and how far it was free, (DIRECTIONS,)."""
     near, count = np.empty(ranges.size, dtype=np.int64), 0
     free = np.full(DIRECTIONS, np.inf)
     for i in range(ranges.size):
-        reach = ranges[i]
-        is_hit = np.isfinite(reach) and range_min <= reach < range_max
-        if is_hit and reach < REACH:
+        far = ranges[i]
+        is_hit = np.isfinite(far) and range_min <= far < range_max
+        if is_hit and far < reach:
             near[count] = i
             count += 1
         if not is_hit:
-            reach = range_max if reach == np.inf else 0.0
+            far = range_max if far == np.inf else 0.0
         direction = _direction_of(angles[i])
-        free[direction] = min(free[direction], reach)
+        free[direction] = min(free[direction], far)
     for direction in range(DIRECTIONS):
         if free[direction] == np.inf:
             free[direction] = 0.0
@@ -107,13 +140,54 @@ def _groups(points_xy, x, y):
     for end in range(1, size + 1 if first < size else 0):
         if end < size and _apart(points_xy, (first + end) % size) <= GAP:
             continue
-        if end - start >= FEWEST_BEAMS:
-            middles[count] = _middle(points_xy, first + start, first + end, x, y)
-            if 2.0 * middles[count, 2] <= WIDEST:
-                groups[count] = start, end
-                count += 1
+        cuts, pieces = _cuts(points_xy, first + start, first + end)
+        for piece in range(pieces):
+            from_, to = cuts[piece], cuts[piece + 1]
+            if to - from_ >= FEWEST_BEAMS:
+                middles[count] = _middle(points_xy, from_, to, x, y)
+                if 2.0 * middles[count, 2] <= WIDEST:
+                    groups[count] = from_ - first, to - first
+                    count += 1
         start = end
     return first, groups[:count], middles[:count]
+
+
+@numba.njit(cache=True)
+def _cuts(points_xy, start, end):
+    """Where neighbouring points are to be parted, since two things meet there: (M + 1,), from ``start`` to
+    ``end``, and M.
+
+    Things bulge towards who sees them, so that what lies far behind the hull is where one ends.
+    """
+    hull, size = np.empty(end - start, dtype=np.int64), 0
+    for i in range(start, end):
+        while size > 1 and _ahead(points_xy, hull[size - 2], i, hull[size - 1]) <= 0.0:
+            size -= 1
+        hull[size] = i
+        size += 1
+    cuts, count = np.empty(size + 1, dtype=np.int64), 1
+    cuts[0] = start
+    for edge in range(size - 1):
+        deepest, depth = 0, HOLLOW
+        for i in range(hull[edge] + 1, hull[edge + 1]):
+            behind = -_ahead(points_xy, hull[edge], hull[edge + 1], i)
+            if behind > depth:
+                deepest, depth = i, behind
+        if deepest:
+            cuts[count] = deepest
+            count += 1
+    cuts[count] = end
+    return cuts, count
+
+
+@numba.njit(cache=True)
+def _ahead(points_xy, a, b, i):
+    """How far, metres, a point lies before the line through two others, as seen from where all were seen."""
+    size = points_xy.shape[0]
+    a_x, a_y = points_xy[a % size]
+    along_x, along_y = points_xy[b % size, 0] - a_x, points_xy[b % size, 1] - a_y
+    off_x, off_y = points_xy[i % size, 0] - a_x, points_xy[i % size, 1] - a_y
+    return (along_x * off_y - along_y * off_x) / max(math.hypot(along_x, along_y), 1e-9)
 
 
 @numba.njit(cache=True)

@@ -37,6 +37,7 @@ class PathIntegral:
             backward=settings.backward_weight,
             heading=settings.heading_weight,
             delay=settings.delay_weight,
+            mover=settings.mover_weight,
         )
 
     def follow(self, situation: Situation, plan: Plan, limits: Twist2) -> Trajectory:

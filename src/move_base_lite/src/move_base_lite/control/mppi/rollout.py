@@ -43,6 +43,7 @@ class Weights(NamedTuple):
     backward: float
     heading: float
     delay: float
+    mover: float
 
 
 @numba.njit(cache=True)
@@ -88,7 +89,7 @@ def arguments_of(scene: Scene, limits: Limits, weights: Weights) -> Tuple[Any, .
 def _named(clearance, to_go, outline_xy, movers, n):
     scene = Scene(clearance, to_go, outline_xy, movers, n[0], n[1], n[2], n[3], n[4])
     limits = Limits(n[5], n[6], n[7], n[8], n[9], n[10], n[11], n[12])
-    return scene, limits, Weights(n[13], n[14], n[15], n[16], n[17], n[18])
+    return scene, limits, Weights(n[13], n[14], n[15], n[16], n[17], n[18], n[19])
 
 
 @numba.njit(cache=True)
@@ -141,7 +142,10 @@ def drive(wanted, start, scene, limits, weights, poses, speeds):
         if min(still_room, passing_room) < least_room:
             if still_room < least_room and (step - 1) * dt < seconds_to_stop:
                 return np.inf
-            cost += (1.0 - step / steps) * (1.0 + weights.delay * steps * dt * to_go)
+            left = 1.0 - step / steps
+            cost += left * (1.0 + weights.delay * steps * dt * to_go)
+            if passing_room < least_room:
+                cost += left * weights.mover
             poses[step + 1 :], speeds[step:] = poses[step], 0.0
             break
         x, y, yaw = x_next, y_next, yaw_next

@@ -1,8 +1,10 @@
 """Parameters of MppiPlannerROS."""
 
 from dataclasses import dataclass
+from typing import Optional
 
 from move_base_lite.control.settings import ControllerSettings
+from move_base_lite.people import Lookout
 from planar.config.parameters import POSITIVE, at_least, parameter
 
 
@@ -48,6 +50,18 @@ class MppiSettings(ControllerSettings):
     delay_weight: float = parameter(
         0.5, "of the way left while it is left", "1/s", at_least(0.0), dynamic=True
     )
+    mover_weight: float = parameter(
+        10.0, "of a way that ends at what moves, less the later it does", "m", at_least(0.0), dynamic=True
+    )
+    mover_range: float = parameter(
+        4.0, "up to which it is looked for what moves", "m", POSITIVE, dynamic=True
+    )
+    watch_what_appears: bool = parameter(
+        False,
+        "whether what comes out from behind something is watched for a motion of its own: on open ground; in "
+        "a home some furniture seems to move",
+        dynamic=True,
+    )
     predict_movers: bool = parameter(
         True,
         "whether people and all that moves are expected where they will be instead of where they are seen",
@@ -56,5 +70,5 @@ class MppiSettings(ControllerSettings):
     seed: int = parameter(0, "of the ways tried", dynamic=True)
 
     @property
-    def looks_for_movers(self) -> bool:
-        return self.predict_movers
+    def lookout(self) -> Optional[Lookout]:
+        return Lookout(self.mover_range, self.watch_what_appears) if self.predict_movers else None
