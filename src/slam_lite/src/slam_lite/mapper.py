@@ -14,6 +14,7 @@ from slam_lite.continuity import Continuity, Pause
 from slam_lite.front_end import FrontEnd, KnownScans, RecentScans, Tracked
 from slam_lite.loops.relocation import KnownMap
 from slam_lite.matching.local_map import LocalMap
+from slam_lite.no_return import NoReturn
 from slam_lite.rendering import Beams, Evidence, SessionRenderer, beams_of
 from slam_lite.sessions import renewed
 from slam_lite.state import MapState
@@ -68,6 +69,7 @@ class Mapper:
         self._key_in_track: Optional[Pose2] = None
         self._pause, self._continuity = Pause(settings.still_interval), Continuity()
         self._last_in_key = Pose2()
+        self._no_return = NoReturn()
         self._session = 0
         self._sessions: List[int] = []
         # Whether the robot has to be found in the map, and where it is believed to be in a finished one.
@@ -83,7 +85,7 @@ class Mapper:
         check_place(base_in_odom, "odometry")
         if self._pause.lasts(base_in_odom, scan.stamp) and not self._front_end.odometry_is_stuck:
             return None
-        max_range, usable_range = ranges_of(scan, self._settings)
+        max_range, usable_range = ranges_of(scan, self._settings, self._no_return)
         surface = surface_of(scan, usable_range, self._settings.point_spacing)
         if self._continuity.breaks(base_in_odom, scan.stamp):
             self._is_to_be_found = not self._front_end.finds_again(surface)
@@ -92,6 +94,7 @@ class Mapper:
         tracked = self._front_end.track(base_in_odom, surface)
         is_key = self._is_key(tracked.base_in_track)
         if is_key:
+            self._no_return.add(scan.ranges)
             self._add_key(tracked, surface, beams_of(scan, max_range, usable_range))
         assert self._key_in_track is not None
         base_in_key = self._key_in_track.inverse() @ tracked.base_in_track
@@ -232,6 +235,7 @@ class Follower:
         self._settings = settings
         self._state = state
         self._pause = Pause(settings.still_interval)
+        self._no_return = NoReturn()
         self.place(base_in_map or state.base_in_map)
         self._is_to_be_found = base_in_map is None
 
@@ -246,7 +250,8 @@ class Follower:
         check_place(base_in_odom, "odometry")
         if self._pause.lasts(base_in_odom, scan.stamp) and not self._front_end.odometry_is_stuck:
             return None
-        _, usable_range = ranges_of(scan, self._settings)
+        self._no_return.add(scan.ranges)
+        _, usable_range = ranges_of(scan, self._settings, self._no_return)
         surface = surface_of(scan, usable_range, self._settings.point_spacing)
         if self._is_to_be_found:
             known = KnownMap(self._state.surfaces, self._state.poses, LocalMap())
@@ -258,9 +263,9 @@ class Follower:
         return PoseUpdate(base_in_map, odom_in_map, tracked.information, tracked.response, tracked.surprise)
 
 
-def ranges_of(scan: Scan, settings: MapperSettings) -> Tuple[float, float]:
+def ranges_of(scan: Scan, settings: MapperSettings, no_return: NoReturn) -> Tuple[float, float]:
     """maxRange and maxUrange for a scan, metres."""
-    max_range = settings.max_range or scan.range_max - 0.01
+    max_range = settings.max_range or min(scan.range_max - 0.01, no_return.distance)
     return max_range, settings.usable_range or max_range
 
 
