@@ -35,7 +35,7 @@ from slam_lite.loops.place_recognition import (
     ways_along,
 )
 from slam_lite.loops.relocation import KnownMap
-from slam_lite.matching.local_map import LocalMap
+from slam_lite.matching.local_map import LocalMap, wide_map
 from slam_lite.surface import Surface
 
 # Errors that a match's own information knows nothing of: between consecutive keys, and across a closure.
@@ -187,7 +187,7 @@ class BackEnd:
 
     def __init__(self, settings: MapperSettings):
         self._settings = settings
-        self._local_map = LocalMap()
+        self._local_map = wide_map()
         self.surfaces: List[Surface] = []
         self._edges = EdgeList()
         self._poses = np.empty((64, 3))

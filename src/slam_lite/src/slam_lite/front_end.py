@@ -10,7 +10,7 @@ import numpy as np
 from planar import Pose2
 from slam_lite.config import MapperSettings
 from slam_lite.matching.correlative import Window, search_far
-from slam_lite.matching.local_map import LocalMap, Match
+from slam_lite.matching.local_map import Match, wide_map
 from slam_lite.matching.refinement import refine
 from slam_lite.matching.scan_matcher import Prediction, scan_matcher_of
 from slam_lite.surface import Surface
@@ -29,6 +29,8 @@ _NO_BELIEF = np.zeros((3, 3))
 _STILL, _STUCK = 1e-3, 0.03
 # How far odometry goes, metres and radians, until it errs in another way, and its error at rest.
 _LEG_WAY, _LEG_TURN, _ODOM_FLOOR = 0.3, 0.3, 0.005
+# Odometry that was off by so much, in units of its variance, may be off by as much again.
+_SURPRISING = 25.0
 # Variance of a robot's motion from one scan to the next, if it moves on as it did: (3,), m^2, m^2, rad^2.
 _STEADY_MOTION_VARIANCE = np.array([0.1**2, 0.1**2, 0.15**2])
 
@@ -57,7 +59,7 @@ class RecentScans:
     """The local map of the last key scans: grows to ``window_keys``, then leaves out the older half."""
 
     def __init__(self, window_keys: int):
-        self.local_map = LocalMap()
+        self.local_map = wide_map()
         self._window_keys = window_keys
         self._window: Deque[Tuple[Surface, Pose2]] = deque()
         self._last_view: Optional[View] = None
@@ -88,7 +90,7 @@ class KnownScans:
     """The local map of a finished map's scans around the robot; the track frame is the map frame."""
 
     def __init__(self, surfaces: Sequence[Surface], poses: np.ndarray):
-        self.local_map = LocalMap()
+        self.local_map = wide_map()
         self._surfaces, self._poses = surfaces, poses
         self._center: Optional[Pose2] = None
 
@@ -125,6 +127,7 @@ class FrontEnd:
         self._last_in_odom: Optional[Pose2] = None
         self._last_in_track = base_in_track
         self._matched_motion = Pose2()
+        self._last_error: np.ndarray = np.zeros(3)
         self._found_again: Optional[Pose2] = None
         self.odometry_is_stuck = False
 
@@ -136,16 +139,18 @@ class FrontEnd:
         last_in_track = base_in_odom if self._last_in_track is None else self._last_in_track
         motion = Pose2() if self._last_in_odom is None else self._last_in_odom.inverse() @ base_in_odom
         variance = self._motion_variance(motion)
+        believed = variance + self._last_error
         if self._found_again is not None:
             match = self._match(surface, self._found_again, Pose2(), _STEADY_MOTION_VARIANCE)
             self._found_again = None
         elif self.odometry_is_stuck and not moves(motion):
             match = self._match(surface, last_in_track, self._matched_motion, _STEADY_MOTION_VARIANCE)
         else:
-            match = self._match(surface, last_in_track, motion, variance)
+            match = self._match(surface, last_in_track, motion, believed)
         self._matched_motion = last_in_track.inverse() @ match.base_pose
         deviation = (motion.inverse() @ self._matched_motion).as_array()
         surprise = float(np.sum(deviation**2 / variance))
+        self._last_error = deviation**2 if surprise > _SURPRISING else np.zeros(3)
         self.odometry_is_stuck = not moves(motion) and moves(self._matched_motion, _STUCK)
         self._last_in_odom, self._last_in_track = base_in_odom, match.base_pose
         return Tracked(match.base_pose, match.information, match.response, surprise)
@@ -153,7 +158,7 @@ class FrontEnd:
     def finds_again(self, surface: Surface) -> bool:
         """Whether a scan shows that the robot is still where it was; it is tracked from there then."""
         last_in_track = self._last_in_track
-        if last_in_track is None or self._scans.local_map.count == 0:
+        if last_in_track is None or self._scans.local_map.is_empty:
             return False
         unknown = Match(last_in_track, _NO_BELIEF, 0.0)
         match = self._search_wide(surface, (last_in_track,), unknown)
@@ -169,7 +174,7 @@ class FrontEnd:
         doubt = variance if moves(motion) else _STEADY_MOTION_VARIANCE
         new_share = self._scans.new_share(surface, predicted)
         prediction = Prediction(predicted, variance, doubt, new_share)
-        if local_map.count == 0:
+        if local_map.is_empty:
             return Match(predicted, prediction.information, 1.0)
         match = self._matcher.match(surface, local_map, prediction)
         if match.response < _POOR_RESPONSE:

@@ -9,6 +9,10 @@ import numpy as np
 
 from planar import Pose2, Scan
 
+# Points as far apart as this, metres, may be of one straight wall if they leave each other's lines by no more
+# than this, metres, and the lines have this cosine.
+_LONGEST_CHORD, _ON_LINE, _PARALLEL = 12.0, 0.1, 0.98
+
 
 @dataclass(frozen=True, eq=False)
 class Surface:
@@ -58,6 +62,41 @@ def thinned(surface: Surface, count: int) -> Surface:
     return Surface(
         np.ascontiguousarray(surface.points_xy[::step]), np.ascontiguousarray(surface.normals_xy[::step])
     )
+
+
+def filled(surface: Surface, spacing: float) -> Surface:
+    """The surface with points, ``spacing`` metres apart, between neighbours on the same line.
+
+    Far off, a wall is a row of points whose gaps move along with the robot; it has none itself.
+    """
+    points_xy, normals_xy = _filled(surface.points_xy, surface.normals_xy, spacing)
+    return Surface(points_xy, normals_xy)
+
+
+@numba.njit(cache=True, nogil=True)
+def _filled(points, normals, spacing):
+    counts = np.zeros(len(points), dtype=np.int64)
+    for i in range(len(points) - 1):
+        step = points[i + 1] - points[i]
+        length = math.hypot(step[0], step[1])
+        off = max(abs(_dot(step, normals[i])), abs(_dot(step, normals[i + 1])))
+        if _dot(normals[i], normals[i + 1]) > _PARALLEL and length < _LONGEST_CHORD and off < _ON_LINE:
+            counts[i] = int(length / spacing)
+    dense = np.empty((len(points) + counts.sum(), 2), dtype=np.float32)
+    dense_normals = np.empty_like(dense)
+    at = 0
+    for i in range(len(points)):
+        for k in range(counts[i] + 1):
+            dense[at], dense_normals[at] = points[i], normals[i]
+            if k > 0:
+                dense[at] += k / (counts[i] + 1) * (points[i + 1] - points[i])
+            at += 1
+    return dense, dense_normals
+
+
+@numba.njit(cache=True, nogil=True)
+def _dot(one, other):
+    return one[0] * other[0] + one[1] * other[1]
 
 
 @numba.njit(cache=True, nogil=True)

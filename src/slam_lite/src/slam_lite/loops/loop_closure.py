@@ -152,9 +152,8 @@ def find_closure(
     if len(recent_surface) < 50:
         return None
     min_score = 0.7 * settings.closure_min_response
-    peak = search_far(
-        thinned(recent_surface, 200), local_map, candidate.guess, candidate.window, min_score, apart=0.6
-    )
+    sample, searched = thinned(recent_surface, 200), local_map.fit_for(recent_surface)
+    peak = search_far(sample, searched, candidate.guess, candidate.window, min_score, apart=0.6)
     if peak is None or not peak.is_unique or (candidate.is_recognised and peak.slide.any()):
         return None
 

@@ -14,7 +14,7 @@ import numba
 import numpy as np
 
 from planar import Pose2, wrap
-from slam_lite.matching.local_map import LocalMap
+from slam_lite.matching.local_map import LocalMap, are_far, cell_of
 from slam_lite.surface import Surface
 
 
@@ -55,8 +55,7 @@ def search_near(
     that nothing in the map can fit and that is likely to fit something else when it is elsewhere.
     """
     best = _search_near(
-        local_map.likelihood,
-        local_map.resolution,
+        local_map.layers,
         surface.points_xy,
         local_map.to_grid(guess),
         max(1, round(window.distance / (2.0 * local_map.resolution))),
@@ -76,44 +75,66 @@ _OVERRULING_SHARE, _HALF_CHI_SQUARE = 0.15, 9.0
 def scores(surface: Surface, local_map: LocalMap, poses: Sequence[Pose2]) -> np.ndarray:
     """Mean likelihood (N,), 0 to 1, of the surface's points at each pose of the base."""
     in_grid = np.array([local_map.to_grid(pose) for pose in poses])
-    return _scores(local_map.likelihood, local_map.resolution, surface.points_xy, in_grid)
+    return _scores(local_map.layers, surface.points_xy, in_grid)
 
 
 @numba.njit(cache=True, nogil=True)
-def _scores(likelihood, resolution, points, poses):
-    cols, rows = np.empty(len(points), dtype=np.int64), np.empty(len(points), dtype=np.int64)
+def _scores(layers, points, poses):
     found = np.empty(len(poses))
     for i in range(len(poses)):
-        _project(points, poses[i, 0], poses[i, 1], poses[i, 2], resolution, cols, rows)
-        found[i] = _score(likelihood, cols, rows, 0, 0)
+        total, c, s = 0, math.cos(poses[i, 2]), math.sin(poses[i, 2])
+        for p in range(len(points)):
+            x, y = (
+                poses[i, 0] + c * points[p, 0] - s * points[p, 1],
+                poses[i, 1] + s * points[p, 0] + c * points[p, 1],
+            )
+            number, row, col = cell_of(layers, x, y)
+            if number >= 0:
+                total += layers[number][1][row, col]
+        found[i] = total / (255.0 * len(points))
     return found
 
 
 @numba.njit(cache=True, nogil=True)
-def _search_near(likelihood, resolution, points, guess, steps, angle_steps, step_chi, angle_chi, share):
+def _search_near(layers, points, guess, steps, angle_steps, step_chi, angle_chi, share):
+    (_, likelihood, _, _, resolution, _), (_, beyond, _, _, coarse, shift) = layers
     rows, cols = likelihood.shape
-    n = len(points)
+    is_far = are_far(layers, points, guess)
+    near, far = points[~is_far], points[is_far]
+    n = len(near)
     best_score, best = -np.inf, guess.copy()
     col, row = np.empty(n, dtype=np.int64), np.empty(n, dtype=np.int64)
     for k in range(-angle_steps, angle_steps + 1):
         yaw = guess[2] + k * _NEAR_ANGLE_STEP
-        _project(points, guess[0], guess[1], yaw, resolution, col, row)
+        _project(near, guess[0], guess[1], yaw, resolution, col, row)
         for j in range(-steps, steps + 1):
             for i in range(-steps, steps + 1):
-                total = 0
+                x, y = guess[0] + 2 * i * resolution, guess[1] + 2 * j * resolution
+                total = _sum_at(beyond, far, x + shift[0], y + shift[1], yaw, coarse)
                 for p in range(n):
                     q, r = col[p] + 2 * i, row[p] + 2 * j
                     if 0 <= q < cols and 0 <= r < rows:
                         total += likelihood[r, q]
                 chi = step_chi * (i * i + j * j) + angle_chi * k * k
                 penalty = share * chi / (chi + _HALF_CHI_SQUARE)
-                score = total / (255.0 * max(n, 1)) - penalty
+                score = total / (255.0 * max(len(points), 1)) - penalty
                 if score > best_score:
                     best_score = score
-                    best[0] = guess[0] + 2 * i * resolution
-                    best[1] = guess[1] + 2 * j * resolution
-                    best[2] = yaw
+                    best[0], best[1], best[2] = x, y, yaw
     return best
+
+
+@numba.njit(cache=True, nogil=True)
+def _sum_at(grid, points, x, y, yaw, resolution):
+    """Sum of a grid's cells that the points lie in, seen from a pose, metres from its corner."""
+    total = 0
+    c, s = math.cos(yaw), math.sin(yaw)
+    for p in range(len(points)):
+        q = int(math.floor((x + c * points[p, 0] - s * points[p, 1]) / resolution))
+        r = int(math.floor((y + s * points[p, 0] + c * points[p, 1]) / resolution))
+        if 0 <= q < grid.shape[1] and 0 <= r < grid.shape[0]:
+            total += grid[r, q]
+    return total
 
 
 def search_far(

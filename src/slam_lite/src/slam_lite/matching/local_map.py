@@ -1,13 +1,18 @@
-"""A local map: the surface points of some scans, indexed by a grid of nearest points."""
+"""A local map: the surface points of some scans, indexed by a grid of nearest points, and a coarser one.
+
+Two grids as in W. Hess et al., "Real-time loop closure in 2D LIDAR SLAM", ICRA 2016, and its successor in
+space: a fine one around the robot, and one that reaches as far as lasers do outdoors.
+"""
 
 import math
 from dataclasses import dataclass
+from typing import Optional, Tuple
 
 import numba
 import numpy as np
 
 from planar import Pose2
-from slam_lite.surface import Surface
+from slam_lite.surface import Surface, filled
 
 # How far from a surface a point may lie and still be drawn to it, cells.
 _REACH_CELLS = 6
@@ -17,19 +22,28 @@ _SIGMA_CELLS = 2.0
 _SAME = 0.5
 # Cells along the border that stay empty, so that a search may look past it without missing anything.
 BORDER_CELLS = 16
+# What lies farther off than this, metres, is soon out of the fine grid; which share of it is too much.
+_NEAR, _FAR_SHARE = 15.0, 0.2
+# The coarser grid of maps that reach far: size of a cell and reach, metres.
+_WIDE_RESOLUTION, _WIDE_REACH = 0.2, 85.0
+
+# A local map's four arrays, its resolution, and how far its corner lies below the finest one's, (2,).
+Layer = Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float, np.ndarray]
 
 
 class LocalMap:
     """Surface points around a centre; each grid cell knows the nearest one and how likely a hit there is.
 
     The grid is square, ``2 * reach`` metres wide, in the frame in which the poses given to ``add`` are.
+    ``beyond``: a coarser one of the same points, and of those that lie farther off.
     ``nearest``: indices, -1 for none near, into ``points_xy`` and ``normals_xy``, float32 (N, 2), metres from
     the grid's corner, of which the first ``count`` count. ``likelihood``: 0 to 255.
     """
 
-    def __init__(self, resolution: float = 0.05, reach: float = 25.0):
+    def __init__(self, resolution: float = 0.05, reach: float = 25.0, beyond: "Optional[LocalMap]" = None):
         cells = math.ceil(2.0 * reach / resolution) + 2 * BORDER_CELLS
         self.resolution = resolution
+        self.beyond = beyond
         self.corner = np.zeros(2)
         self.nearest = np.full((cells, cells), -1, dtype=np.int32)
         self.likelihood = np.zeros((cells, cells), dtype=np.uint8)
@@ -44,6 +58,8 @@ class LocalMap:
         self.nearest.fill(-1)
         self.likelihood.fill(0)
         self.count = 0
+        if self.beyond is not None:
+            self.beyond.clear(center)
 
     def add(self, surface: Surface, base_pose: Pose2) -> None:
         """Adds the surface seen from ``base_pose``; points beyond the grid are left out."""
@@ -65,6 +81,23 @@ class LocalMap:
             self.resolution,
             _LIKELIHOOD,
         )
+        if self.beyond is not None:
+            self.beyond.add(filled(surface, 1.5 * self.beyond.resolution), base_pose)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether it has no points, near or far."""
+        return self.count == 0 and (self.beyond is None or self.beyond.is_empty)
+
+    def fit_for(self, surface: Surface) -> "LocalMap":
+        """The one to search a surface in: itself, or the one beyond if too much of it lies there."""
+        far = np.hypot(surface.points_xy[:, 0], surface.points_xy[:, 1]) > _NEAR
+        return self.beyond if self.beyond is not None and np.mean(far) > _FAR_SHARE else self
+
+    @property
+    def layers(self) -> Tuple[Layer, Layer]:
+        """The grid itself and the one beyond, if there is one, for kernels."""
+        return _layer(self, self), _layer(self.beyond or _NOTHING, self)
 
     def to_grid(self, pose: Pose2) -> np.ndarray:
         """A pose as ``[x, y, yaw]``, metres from the grid's corner."""
@@ -73,6 +106,22 @@ class LocalMap:
     def from_grid(self, pose: np.ndarray) -> Pose2:
         """The inverse of ``to_grid``."""
         return Pose2(float(pose[0] + self.corner[0]), float(pose[1] + self.corner[1]), float(pose[2]))
+
+
+_NOTHING = LocalMap(1.0, 0.0)
+
+
+def _layer(grid: LocalMap, seen_from: LocalMap) -> Layer:
+    arrays = (grid.nearest, grid.likelihood, grid.points_xy, grid.normals_xy)
+    nearest, likelihood, points_xy, normals_xy = (_read_only(array) for array in arrays)
+    return nearest, likelihood, points_xy, normals_xy, grid.resolution, seen_from.corner - grid.corner
+
+
+def _read_only(array: np.ndarray) -> np.ndarray:
+    """The same, so that maps that may be written and others are one type for kernels."""
+    view = array.view()
+    view.flags.writeable = False
+    return view
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,6 +135,37 @@ class Match:
     base_pose: Pose2
     information: np.ndarray
     response: float
+
+
+def wide_map() -> LocalMap:
+    """An empty local map that reaches as far as lasers do outdoors."""
+    return LocalMap(beyond=LocalMap(_WIDE_RESOLUTION, _WIDE_REACH))
+
+
+@numba.njit(cache=True, nogil=True)
+def cell_of(layers, x, y):
+    """The number of the layer that knows of a point at (x, y) metres, and the point's row and column there.
+
+    The layer is -1 for a point that lies beyond both.
+    """
+    for number in range(2):
+        nearest, _, _, _, resolution, shift = layers[number]
+        col, row = int(math.floor((x + shift[0]) / resolution)), int(math.floor((y + shift[1]) / resolution))
+        border, side = (BORDER_CELLS + _REACH_CELLS), len(nearest)
+        if border <= col < side - border and border <= row < side - border:
+            return number, row, col
+    return -1, 0, 0
+
+
+@numba.njit(cache=True, nogil=True)
+def are_far(layers, points, pose):
+    """Which points (N,) only the coarser layer may know of."""
+    is_far = np.empty(len(points), dtype=np.bool_)
+    c, s = math.cos(pose[2]), math.sin(pose[2])
+    for p in range(len(points)):
+        x, y = pose[0] + c * points[p, 0] - s * points[p, 1], pose[1] + s * points[p, 0] + c * points[p, 1]
+        is_far[p] = cell_of(layers, x, y)[0] != 0
+    return is_far
 
 
 def _likelihood_kernel() -> np.ndarray:

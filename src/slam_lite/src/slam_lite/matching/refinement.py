@@ -11,12 +11,14 @@ import numba
 import numpy as np
 
 from planar import Pose2
-from slam_lite.matching.local_map import LocalMap, Match
+from slam_lite.matching.local_map import LocalMap, Match, are_far, cell_of
 from slam_lite.surface import Surface
 
 _MAX_STEPS = 20
 # Scale of the robust cost, metres: a residual of this size has a quarter of its weight left.
 _OUTLIER_SCALE = 0.07
+# The same of points far off, at first: there a small turn is a long way. It is halved from step to step.
+_FAR_SCALE = 0.56
 # A point is on a surface if it is not farther from it than this, metres.
 _ON_SURFACE = 0.1
 # Standard deviation, metres, of one residual; larger than the laser's noise because neighbours err together.
@@ -38,10 +40,7 @@ def refine(
     all.
     """
     pose, information, response = _refine(
-        local_map.nearest,
-        local_map.points_xy,
-        local_map.normals_xy,
-        local_map.resolution,
+        local_map.layers,
         surface.points_xy,
         surface.normals_xy,
         local_map.to_grid(start),
@@ -52,13 +51,12 @@ def refine(
 
 
 @numba.njit(cache=True, nogil=True)
-def _refine(nearest, map_points, map_normals, resolution, points, normals, start, believed, prior):
+def _refine(layers, points, normals, start, believed, prior):
     pose = start.copy()
     weighted_prior = prior.copy()
+    far_scale = _FAR_SCALE if are_far(layers, points, start).any() else _OUTLIER_SCALE
     for _ in range(_MAX_STEPS):
-        information, gradient, _ = _linearize(
-            nearest, map_points, map_normals, resolution, points, normals, pose
-        )
+        information, gradient, _ = _linearize(layers, points, normals, pose, far_scale)
         deviation = pose - believed
         deviation[2] = (deviation[2] + math.pi) % (2.0 * math.pi) - math.pi
         # Cauchy's weight: wheels that slipped must not pull the pose off what is seen.
@@ -68,43 +66,44 @@ def _refine(nearest, map_points, map_normals, resolution, points, normals, start
         # A hair of damping keeps the system solvable where nothing is seen.
         step = np.linalg.solve(information + 1e-6 * np.eye(3), gradient)
         pose += step
-        if abs(step[0]) < 1e-4 and abs(step[1]) < 1e-4 and abs(step[2]) < 1e-5:
+        is_small = abs(step[0]) < 1e-4 and abs(step[1]) < 1e-4 and abs(step[2]) < 1e-5
+        if is_small and far_scale == _OUTLIER_SCALE:
             break
-    information, _, on_surface = _linearize(
-        nearest, map_points, map_normals, resolution, points, normals, pose
-    )
+        far_scale = max(_OUTLIER_SCALE, 0.5 * far_scale)
+    information, _, on_surface = _linearize(layers, points, normals, pose, _OUTLIER_SCALE)
     return pose, information + weighted_prior, on_surface / max(len(points), 1)
 
 
 @numba.njit(cache=True, nogil=True)
-def _linearize(nearest, map_points, map_normals, resolution, points, normals, pose):
+def _linearize(layers, points, normals, pose, far_scale):
     h00, h01, h02, h11, h12, h22 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     g0, g1, g2 = 0.0, 0.0, 0.0
     c, s = math.cos(pose[2]), math.sin(pose[2])
-    rows, cols = nearest.shape
     on_surface = 0
     for p in range(len(points)):
         rx, ry = c * points[p, 0] - s * points[p, 1], s * points[p, 0] + c * points[p, 1]
         x, y = rx + pose[0], ry + pose[1]
-        col, row = int(math.floor(x / resolution)), int(math.floor(y / resolution))
-        if not (0 <= col < cols and 0 <= row < rows) or nearest[row, col] < 0:
+        number, row, col = cell_of(layers, x, y)
+        if number < 0 or layers[number][0][row, col] < 0:
             continue
+        nearest, _, map_points, map_normals, _, shift = layers[number]
         i = nearest[row, col]
-        ex, ey = x - map_points[i, 0], y - map_points[i, 1]
+        ex, ey = x + shift[0] - map_points[i, 0], y + shift[1] - map_points[i, 1]
         nx, ny = map_normals[i, 0], map_normals[i, 1]
         cosine = c * (normals[p, 0] * nx + normals[p, 1] * ny) + s * (normals[p, 0] * ny - normals[p, 1] * nx)
         if cosine < _OPPOSED:
             continue
+        scale = _OUTLIER_SCALE if number == 0 else far_scale
         if nx != 0.0 or ny != 0.0:
             error = ex * nx + ey * ny
-            w = 1.0 / (1.0 + (error / _OUTLIER_SCALE) ** 2) ** 2
+            w = 1.0 / (1.0 + (error / scale) ** 2) ** 2
             jt = ny * rx - nx * ry
             g0, g1, g2 = g0 - w * nx * error, g1 - w * ny * error, g2 - w * jt * error
             h00, h01, h02 = h00 + w * nx * nx, h01 + w * nx * ny, h02 + w * nx * jt
             h11, h12, h22 = h11 + w * ny * ny, h12 + w * ny * jt, h22 + w * jt * jt
         else:
             error = math.hypot(ex, ey)
-            w = _CORNER_WEIGHT / (1.0 + (error / _OUTLIER_SCALE) ** 2) ** 2
+            w = _CORNER_WEIGHT / (1.0 + (error / scale) ** 2) ** 2
             g0, g1, g2 = g0 - w * ex, g1 - w * ey, g2 - w * (rx * ey - ry * ex)
             h00, h02 = h00 + w, h02 - w * ry
             h11, h12, h22 = h11 + w, h12 + w * rx, h22 + w * (rx * rx + ry * ry)

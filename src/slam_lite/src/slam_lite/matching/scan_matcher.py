@@ -113,6 +113,8 @@ def _to_read(lent: Any) -> Any:
             view = value.view()
             view.flags.writeable = False
             object.__setattr__(shown, name, view)
+        elif isinstance(value, LocalMap):
+            object.__setattr__(shown, name, _to_read(value))
     return shown
 
 
