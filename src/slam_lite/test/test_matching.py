@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from planar import Pose2, wrap
+from slam_lite.config import MapperSettings
+from slam_lite.front_end import FrontEnd, RecentScans
 from slam_lite.matching.correlative import (
     Window,
     _bounds_of_few,
@@ -180,3 +182,27 @@ def test_many_coarse_shifts_are_bounded_as_few_are_also_off_the_map(office, at):
     few, many = _bounds_of_few, _bounds_of_many
     cols, rows = (np.ascontiguousarray(cells[:, :, axis]) for axis in (0, 1))
     assert np.array_equal(few(coarse, cols, rows, 100), many(_phases(coarse), cols, rows, 100))
+
+
+@pytest.mark.parametrize("points, follows", [(10, False), (100, True)], ids=["few", "many"])
+def test_a_few_points_that_move_along_do_not_overrule_odometry(points, follows):
+    """A person is all that is to be seen in an empty yard, and walks beside the robot."""
+    around = np.linspace(0.0, 2.0, points)
+    seen = np.column_stack((2.0 + 0.2 * np.sin(7.0 * around), around - 1.0)).astype(np.float32)
+    person = Surface(seen, np.zeros_like(seen))
+    local_map = LocalMap()
+    local_map.clear(Pose2())
+    local_map.add(person, Pose2())
+    found = search_near(person, local_map, Pose2(0.35, 0.0, 0.0), Window(0.4, 0.1), np.full(3, 0.03**2))
+    assert (found.distance_to(Pose2()) < 0.1) == follows
+
+
+def test_what_is_seen_of_a_person_is_no_place_to_be_found_at():
+    """A scan of a few points is not looked for in a wide window, whatever they fit."""
+    seen = np.column_stack((np.full(10, 2.0), np.linspace(-0.3, 0.3, 10))).astype(np.float32)
+    person = Surface(seen, np.zeros_like(seen))
+    front_end = FrontEnd(MapperSettings(), RecentScans(50))
+    front_end.track(Pose2(), person)
+    front_end._scans.add(person, Pose2())
+    tracked = front_end.track(Pose2(0.7, 0.0, 0.0), person)
+    assert tracked.base_in_track.distance_to(Pose2(0.7, 0.0, 0.0)) < 0.05

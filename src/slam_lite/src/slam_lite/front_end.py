@@ -13,6 +13,7 @@ from slam_lite.matching.correlative import Window, search_far
 from slam_lite.matching.local_map import Match, wide_map
 from slam_lite.matching.refinement import refine
 from slam_lite.matching.scan_matcher import Prediction, scan_matcher_of
+from slam_lite.odometry import Odometry
 from slam_lite.surface import Surface
 from slam_lite.view import View
 
@@ -27,10 +28,10 @@ _NO_BELIEF = np.zeros((3, 3))
 
 # Odometry of less than this, metres or radians, counts as standing still; scans err by less than that.
 _STILL, _STUCK = 1e-3, 0.03
-# How far odometry goes, metres and radians, until it errs in another way, and its error at rest.
-_LEG_WAY, _LEG_TURN, _ODOM_FLOOR = 0.3, 0.3, 0.005
 # Odometry that was off by so much, in units of its variance, may be off by as much again.
 _SURPRISING = 25.0
+# A match of so many points says more than odometry, and, with this information, of each direction, 1 / m^2.
+_SURE_POINTS, _SURE_INFORMATION = 60, 4e3
 # Variance of a robot's motion from one scan to the next, if it moves on as it did: (3,), m^2, m^2, rad^2.
 _STEADY_MOTION_VARIANCE = np.array([0.1**2, 0.1**2, 0.15**2])
 
@@ -124,6 +125,7 @@ class FrontEnd:
         self._settings = settings
         self._matcher = scan_matcher_of(settings)
         self._scans = scans
+        self._odometry = Odometry(settings)
         self._last_in_odom: Optional[Pose2] = None
         self._last_in_track = base_in_track
         self._matched_motion = Pose2()
@@ -138,22 +140,27 @@ class FrontEnd:
         """
         last_in_track = base_in_odom if self._last_in_track is None else self._last_in_track
         motion = Pose2() if self._last_in_odom is None else self._last_in_odom.inverse() @ base_in_odom
-        variance = self._motion_variance(motion)
-        believed = variance + self._last_error
+        mended, variance = self._odometry.mended(motion), self._odometry.variance(motion) + self._last_error
         if self._found_again is not None:
             match = self._match(surface, self._found_again, Pose2(), _STEADY_MOTION_VARIANCE)
             self._found_again = None
         elif self.odometry_is_stuck and not moves(motion):
             match = self._match(surface, last_in_track, self._matched_motion, _STEADY_MOTION_VARIANCE)
         else:
-            match = self._match(surface, last_in_track, motion, believed)
+            match = self._match(surface, last_in_track, mended, variance)
         self._matched_motion = last_in_track.inverse() @ match.base_pose
         deviation = (motion.inverse() @ self._matched_motion).as_array()
-        surprise = float(np.sum(deviation**2 / variance))
-        self._last_error = deviation**2 if surprise > _SURPRISING else np.zeros(3)
+        believed = self._odometry.believed_variance(motion)
+        surprise = float(np.sum(deviation**2 / believed))
+        is_sure, information = match.response * len(surface) > _SURE_POINTS, match.information
+        self._last_error = deviation**2 if is_sure and surprise > _SURPRISING else np.zeros(3)
+        if not is_sure:  # the wheels may have slipped unseen
+            information = np.diag(1.0 / believed)
+        elif moves(motion) and np.diag(information).min() > _SURE_INFORMATION:
+            self._odometry.learn(motion, self._matched_motion)
         self.odometry_is_stuck = not moves(motion) and moves(self._matched_motion, _STUCK)
         self._last_in_odom, self._last_in_track = base_in_odom, match.base_pose
-        return Tracked(match.base_pose, match.information, match.response, surprise)
+        return Tracked(match.base_pose, information, match.response, surprise)
 
     def finds_again(self, surface: Surface) -> bool:
         """Whether a scan shows that the robot is still where it was; it is tracked from there then."""
@@ -177,7 +184,7 @@ class FrontEnd:
         if local_map.is_empty:
             return Match(predicted, prediction.information, 1.0)
         match = self._matcher.match(surface, local_map, prediction)
-        if match.response < _POOR_RESPONSE:
+        if match.response < _POOR_RESPONSE and len(surface) > _SURE_POINTS:
             match = self._search_wide(surface, (predicted, last_in_track), match)
         if match.response < self._settings.min_response:
             return Match(predicted, prediction.information, match.response)
@@ -196,12 +203,3 @@ class FrontEnd:
                 if wide.response > _SURE_RESPONSE:
                     return wide
         return match
-
-    def _motion_variance(self, motion: Pose2) -> np.ndarray:
-        """Variances (3,) of odometry over a motion: in proportion on one leg, at random between them."""
-        settings = self._settings
-        distance, turn = math.hypot(motion.x, motion.y), abs(motion.yaw)
-        way, turning = distance * max(distance, _LEG_WAY), turn * max(turn, _LEG_TURN)
-        xy = settings.odom_xy_per_distance**2 * way + settings.odom_xy_per_turn**2 * turning
-        yaw = settings.odom_yaw_per_distance**2 * way + settings.odom_yaw_per_turn**2 * turning
-        return np.array([xy, xy, yaw]) + _ODOM_FLOOR**2

@@ -62,14 +62,15 @@ def search_near(
         max(1, round(window.angle / _NEAR_ANGLE_STEP)),
         (2.0 * local_map.resolution) ** 2 / variance[0],
         _NEAR_ANGLE_STEP**2 / variance[2],
-        _OVERRULING_SHARE + new_share,
+        max(_OVERRULING_SHARE, _OVERRULING_POINTS / max(len(surface), 1)) + new_share,
     )
     return local_map.from_grid(best)
 
 
 _NEAR_ANGLE_STEP = 0.02
-# The share of a scan that overrules the guess, and the chi-square at which half of it is needed.
-_OVERRULING_SHARE, _HALF_CHI_SQUARE = 0.15, 9.0
+# The share of a scan that overrules the guess, how many points at least (who walks beside the robot may be
+# all that it sees), and the chi-square at which half of that is needed.
+_OVERRULING_SHARE, _OVERRULING_POINTS, _HALF_CHI_SQUARE = 0.15, 12.0, 9.0
 
 
 def scores(surface: Surface, local_map: LocalMap, poses: Sequence[Pose2]) -> np.ndarray:
