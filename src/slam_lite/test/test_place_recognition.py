@@ -6,6 +6,7 @@ import pytest
 from planar import Pose2, wrap
 from slam_lite.graph.drift import drift_along, shortest_ways
 from slam_lite.graph.pose_graph import Edge, edges_of
+from slam_lite.loops.lasting import lasting
 from slam_lite.loops.place_recognition import Hypothesis, appearance_of, hypotheses, say_the_same
 from slam_lite.loops.sight import share_seen_through
 from slam_lite.mapper import Mapper
@@ -114,3 +115,21 @@ def test_a_wall_is_seen_through_only_where_it_is_not():
 
 def points(points_xy) -> Surface:
     return Surface(points_xy.astype(np.float32), np.zeros((len(points_xy), 2), dtype=np.float32))
+
+
+def test_of_a_sparse_stretch_only_what_lasts_is_kept():
+    """A car stands beside the way, somebody walks along with the robot."""
+    car = points(np.array([[4.0, 2.0], [4.0, 2.3], [4.0, 2.6]]))
+    person = points(np.array([[1.5, 0.0], [1.5, 0.2], [1.5, 0.4]]))
+    scans = []
+    for step in range(12):
+        pose = Pose2(0.5 * step, 0.0, 0.1)
+        seen = points(pose.inverse().transform_points(car.points_xy))
+        scans.append((joined([(seen, Pose2()), (person, Pose2())]), pose))
+    kept = lasting(scans)
+    assert len(kept) == 12 * len(car)
+    assert np.abs(kept.points_xy[:, 0] - 4.0).max() < 1e-3
+
+
+def test_a_stretch_on_which_nothing_is_seen_has_nothing_that_lasts():
+    assert len(lasting([(points(np.empty((0, 2))), Pose2())] * 10)) == 0

@@ -17,12 +17,13 @@ from planar import Pose2, wrap
 from slam_lite.config import MapperSettings
 from slam_lite.graph.drift import shortest_ways, variances_xy
 from slam_lite.graph.pose_graph import Edge, Edges
+from slam_lite.loops.lasting import lasting
 from slam_lite.loops.place_recognition import Hypothesis
 from slam_lite.loops.sight import Placed, clash
 from slam_lite.loops.sliding import PARALLEL, known_of, refined
 from slam_lite.matching.correlative import Window, search_far
 from slam_lite.matching.local_map import LocalMap, Match
-from slam_lite.surface import Surface, joined, thinned
+from slam_lite.surface import Surface, thinned
 
 # Growth of the search window with the way along the graph: metres and radians per metre.
 _DRIFT_DISTANCE, _DRIFT_ANGLE = 0.04, 0.008
@@ -148,7 +149,7 @@ def find_closure(
     for placed in there:
         local_map.add(*placed)
     here = [(surfaces[key], _between(poses[recent], poses[key])) for key in range(first_recent, recent + 1)]
-    recent_surface = thinned(joined(here), _MAX_POINTS)
+    recent_surface = thinned(lasting(here), _MAX_POINTS)
     if len(recent_surface) < 50:
         return None
     min_score = 0.7 * settings.closure_min_response
