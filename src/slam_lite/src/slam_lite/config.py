@@ -47,7 +47,7 @@ class MapperSettings:
     )
     max_range: float = parameter(
         0.0,
-        "readings above this are dropped; 0: the scan's range_max - 0.01",
+        "readings above this are dropped; 0: range_max - 0.01, or what is read where nothing is seen",
         "m",
         Bounds(0.0),
         name="maxRange",
