@@ -142,10 +142,7 @@ def drive(wanted, start, scene, limits, weights, poses, speeds):
         if min(still_room, passing_room) < least_room:
             if still_room < least_room and (step - 1) * dt < seconds_to_stop:
                 return np.inf
-            left = 1.0 - step / steps
-            cost += left * (1.0 + weights.delay * steps * dt * to_go)
-            if passing_room < least_room:
-                cost += left * weights.mover
+            cost += (1.0 - step / steps) * _cut_short(steps * dt * to_go, passing_room < least_room, weights)
             poses[step + 1 :], speeds[step:] = poses[step], 0.0
             break
         x, y, yaw = x_next, y_next, yaw_next
@@ -196,6 +193,12 @@ def _with_step(cost, v, omega, still_room, passing_room, to_go, limits, weights)
         nearness = _nearness(passing_room, weights)
         cost += weights.obstacle * nearness * nearness * limits.highest_v * dt
     return cost + dt * (weights.delay * to_go + weights.turn * omega * omega - weights.backward * min(v, 0.0))
+
+
+@numba.njit(cache=True)
+def _cut_short(delay, is_moving, weights):
+    """What it costs to get no farther, for good: in front of what stays, or of what moves."""
+    return 1.0 + weights.delay * delay + (weights.mover if is_moving else 0.0)
 
 
 @numba.njit(cache=True)
