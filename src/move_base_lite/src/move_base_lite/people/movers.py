@@ -55,7 +55,8 @@ class Movers:
             track.predict(view.stamp)
         for thing in things:
             has_come = before is not None and before.share_seen_through(thing.points_xy) >= SHARE_FREE
-            is_new = has_come or _is_news(thing, view.stamp, lately)
+            is_watched = lookout.watches_all or bool(self._tracks)
+            is_new = has_come or (is_watched and _is_news(thing, view.stamp, lately))
             own = self._track_of(thing, -math.inf if is_new else view.stamp - OVERLOOKED)
             if own is not None:
                 own.correct(thing, has_come)
