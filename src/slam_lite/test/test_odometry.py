@@ -49,3 +49,10 @@ def test_what_is_random_is_believed_as_it_is_and_never_less_than_the_settings_sa
 def test_before_anything_is_known_odometry_is_taken_as_it_is():
     motion = Pose2(0.3, 0.01, -0.1)
     assert Odometry(MapperSettings()).mended(motion) == motion
+
+
+def test_a_turn_by_half_a_circle_is_no_error_of_a_whole_one():
+    odometry = Odometry(MapperSettings())
+    for _ in range(20):
+        odometry.learn(Pose2(0.3, 0.0, np.pi - 0.01), Pose2(0.3, 0.0, -np.pi + 0.01))
+    assert odometry.mended(Pose2(0.3, 0.0, 0.5)).yaw == pytest.approx(0.5, abs=0.02)

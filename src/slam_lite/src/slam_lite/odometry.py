@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from planar import Pose2
+from planar import Pose2, wrap
 from slam_lite.config import MapperSettings
 
 # How far odometry goes, metres and radians, until it errs in another way, and its error at rest.
@@ -64,7 +64,7 @@ class Odometry:
             return
         by = np.array([motion.x, motion.yaw])
         self._yaw_information += np.outer(by, by) / variance[2]
-        self._yaw_sum += by * (matched.yaw - motion.yaw) / variance[2]
+        self._yaw_sum += by * wrap(matched.yaw - motion.yaw) / variance[2]
         self._way_information += motion.x**2 / variance[0]
         self._way_sum += motion.x * (matched.x - motion.x) / variance[0]
         self._squares += rest[[0, 2]] ** 2 / believed[[0, 2]]
