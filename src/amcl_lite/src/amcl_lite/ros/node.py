@@ -57,7 +57,7 @@ class AmclNode:
         )
         rospy.Service("global_localization", Empty, self._on_global_localization)
         rospy.Service("request_nomotion_update", Empty, self._on_request_update)
-        poses = InitialPoses(self._shared, tf_bridge)
+        poses = InitialPoses(self._shared, tf_bridge, self._step)
         self._map_source = MapSource(self._shared, views.show_field, poses.take)
         self._alarm.start()
         rospy.on_shutdown(self._publisher.keep_pose)

@@ -1,5 +1,7 @@
 """What amcl tells tf, and asks of it."""
 
+from typing import Optional
+
 import rospy
 
 from amcl_lite.ros.shared_localizer import SharedLocalizer
@@ -7,16 +9,13 @@ from planar import Pose2
 from planar_ros.messages.conversion import frame_name
 from planar_ros.messages.transforms import Transforms
 
-# How long a pose from the past may wait for the odometry that moves it to the present.
-POSE_WAIT_SECONDS = 0.5
-
 
 class TfBridge:
     """Sends where odometry lies in the map, and says how far the robot has come by odometry."""
 
     def __init__(self, transforms: Transforms, shared: SharedLocalizer):
         self._transforms, self._shared = transforms, shared
-        self._has_sent = False
+        self.has_sent = False
 
     def send(self, odom_in_map: Pose2, stamp: rospy.Time) -> None:
         """Valid for ``transform_tolerance`` beyond ``stamp``; nothing if ``tf_broadcast`` is off."""
@@ -25,17 +24,14 @@ class TfBridge:
             expiry = stamp + rospy.Duration(settings.transform_tolerance)
             frames = frame_name(settings.map_frame), frame_name(settings.odom_frame)
             self._transforms.send(odom_in_map, *frames, expiry)
-            self._has_sent = True
+            self.has_sent = True
 
-    def motion_since(self, stamp: rospy.Time) -> Pose2:
-        """How far the robot has come, by odometry, since ``stamp``; nowhere if that is not known."""
+    def motion_since(self, stamp: rospy.Time) -> Optional[Pose2]:
+        """How far the robot has come, by odometry, since ``stamp``; nowhere since 0; None if not known."""
         frames = self._shared.settings.odom_frame, self._shared.settings.base_frame
         if stamp == rospy.Time(0):
             return Pose2()
-        base_then = self._transforms.lookup(*frames, stamp, POSE_WAIT_SECONDS)
-        base_now = self._transforms.lookup(*frames)
+        base_then, base_now = self._transforms.lookup(*frames, stamp), self._transforms.lookup(*frames)
         if base_now is None or base_then is None:
-            if self._has_sent:
-                rospy.logwarn("Failed to transform initial pose in time (no odometry at its stamp)")
-            return Pose2()
+            return None
         return base_then.inverse() @ base_now

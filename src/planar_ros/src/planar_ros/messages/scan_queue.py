@@ -9,11 +9,8 @@ from tf2_msgs.msg import TFMessage
 
 from planar import PlanarError, Pose2, Scan
 from planar_ros.messages.conversion import LaserScanArrays, frame_name, scan_from_msg
-from planar_ros.messages.transforms import Transforms
+from planar_ros.messages.transforms import JUMP_BACK_SECONDS, Transforms
 from planar_ros.step import Step
-
-# A stamp this much older than the one before it means that time has jumped back: a bag's loop, a reset.
-JUMP_BACK_SECONDS = 1.0
 
 
 class ScanQueue:

@@ -1,7 +1,8 @@
 """Transforms between frames, as plane poses."""
 
 import math
-from typing import Iterable, List, Optional, Tuple
+import threading
+from typing import Dict, Iterable, Optional, Tuple
 
 import numpy as np
 import rospy
@@ -12,22 +13,67 @@ from planar import Pose2
 from planar_ros.messages.border import WARN_SECONDS, MessageError, is_stamp
 from planar_ros.messages.conversion import frame_name, pose2_of, transform_msg
 
+# A stamp this much older than the one before it means that time has jumped back: a bag's loop, a reset.
+JUMP_BACK_SECONDS = 1.0
 
-def _usable(transforms: Iterable[TransformStamped]) -> List[TransformStamped]:
-    """Those with stamps that tf2 can work with."""
-    return [transform for transform in transforms if is_stamp(transform.header.stamp)]
+
+class Intake:
+    """Hands on to a buffer of tf2 only what leaves it alive, and empties it when time has jumped back.
+
+    tf2 looks at the clock alone, which comes by a connection of its own: what was said of the time before a
+    jump may come after the clock has jumped, and then all that is older by more than the buffer's length is
+    refused, perhaps for long. So each publisher's own stamps are looked at too.
+    """
+
+    def __init__(self, buffer: tf2_ros.BufferCore):
+        self._buffer = buffer
+        self._newest: Dict[Tuple[str, str], float] = {}
+        self._lock = threading.Lock()
+
+    def take(self, transforms: Iterable[TransformStamped], publisher: str, is_static: bool = False) -> None:
+        """Takes in what one publisher said; stamps that no clock shows are left out."""
+        usable = [transform for transform in transforms if is_stamp(transform.header.stamp)]
+        if is_static:
+            for transform in usable:
+                self._buffer.set_transform_static(transform, publisher)
+            return
+        with self._lock:
+            for transform in usable:
+                self._notice_jump(publisher, transform)
+                self._buffer.set_transform(transform, publisher)
+
+    def clear(self) -> None:
+        """Forgets all but what never moves."""
+        with self._lock:
+            self._clear()
+
+    def _notice_jump(self, publisher, transform):
+        said_by, stamp = (publisher, transform.child_frame_id), transform.header.stamp.to_sec()
+        if stamp < self._newest.get(said_by, stamp) - JUMP_BACK_SECONDS:
+            self._clear()
+        self._newest[said_by] = max(stamp, self._newest.get(said_by, stamp))
+
+    def _clear(self):
+        self._newest.clear()
+        self._buffer.clear()
 
 
 class _Listener(tf2_ros.TransformListener):
-    """Hands on only what leaves tf2 alive."""
+    """tf2's listener, which clears the buffer when the clock jumps, with an intake of ours."""
+
+    def __init__(self, buffer, intake, **connection):
+        self._intake = intake
+        super().__init__(buffer, **connection)
 
     def callback(self, data):
-        data.transforms = _usable(data.transforms)
-        super().callback(data)
+        self._take(data, False)
 
     def static_callback(self, data):
-        data.transforms = _usable(data.transforms)
-        super().static_callback(data)
+        self._take(data, True)
+
+    def _take(self, data, is_static):
+        self.check_for_reset()
+        self._intake.take(data.transforms, data._connection_header.get("callerid", ""), is_static)
 
 
 class Transforms:
@@ -35,17 +81,16 @@ class Transforms:
 
     def __init__(self, cache_seconds: float = 10.0):
         self.buffer = tf2_ros.Buffer(rospy.Duration(cache_seconds), debug=False)
-        self._listener = _Listener(self.buffer, queue_size=100, tcp_nodelay=True)
+        self._intake = Intake(self.buffer)
+        self._listener = _Listener(self.buffer, self._intake, queue_size=100, tcp_nodelay=True)
         self._broadcaster = tf2_ros.TransformBroadcaster()
 
-    def lookup(
-        self, target: str, source: str, stamp: Optional[rospy.Time] = None, timeout: float = 0.0
-    ) -> Optional[Pose2]:
+    def lookup(self, target: str, source: str, stamp: Optional[rospy.Time] = None) -> Optional[Pose2]:
         """Where ``source`` lies in ``target`` at ``stamp`` (default: the latest known); None if not known.
 
         A transform to where nothing can be is not known either.
         """
-        transform = self._lookup(target, source, stamp, timeout)
+        transform = self._lookup(target, source, stamp)
         if transform is None:
             return None
         try:
@@ -58,7 +103,7 @@ class Transforms:
         """How a sensor is mounted on its base: its pose in the plane, and whether it hangs upside down."""
         pose, transform = (
             self.lookup(base_frame, sensor_frame),
-            self._lookup(base_frame, sensor_frame, None, 0.0),
+            self._lookup(base_frame, sensor_frame, None),
         )
         if pose is None or transform is None:
             return None
@@ -67,7 +112,7 @@ class Transforms:
 
     def matrix(self, target: str, source: str) -> Optional[np.ndarray]:
         """Where ``source`` lies in ``target`` in space, (4, 4), by the latest transform; None: not known."""
-        transform = self._lookup(target, source, None, 0.0)
+        transform = self._lookup(target, source, None)
         if transform is None:
             return None
         q, at = transform.rotation, transform.translation
@@ -88,22 +133,18 @@ class Transforms:
 
     def take(self, message, is_static: bool = False) -> None:
         """Takes in a tf2_msgs/TFMessage that did not come by topic, as from a bag."""
-        for transform in _usable(message.transforms):
-            if is_static:
-                self.buffer.set_transform_static(transform, "take")
-            else:
-                self.buffer.set_transform(transform, "take")
+        self._intake.take(message.transforms, "", is_static)
 
     def clear(self) -> None:
         """Forgets everything, as after time has jumped back."""
-        self.buffer.clear()
+        self._intake.clear()
 
-    def _lookup(self, target, source, stamp, timeout):
+    def _lookup(self, target, source, stamp):
         if stamp is not None and not is_stamp(stamp):
             return None
         try:
             return self.buffer.lookup_transform(
-                frame_name(target), frame_name(source), stamp or rospy.Time(0), rospy.Duration(timeout)
+                frame_name(target), frame_name(source), stamp or rospy.Time(0)
             ).transform
         except tf2_ros.TransformException:
             return None

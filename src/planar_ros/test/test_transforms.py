@@ -1,0 +1,76 @@
+"""Unit tests of what tf's listener hands on when time jumps back."""
+
+from types import SimpleNamespace
+
+import pytest
+
+rospy = pytest.importorskip("rospy")
+
+import tf2_ros  # noqa: E402
+
+from planar import Pose2  # noqa: E402
+from planar_ros.messages.conversion import transform_msg  # noqa: E402
+from planar_ros.messages.transforms import Intake  # noqa: E402
+
+
+@pytest.fixture
+def buffer():
+    return tf2_ros.Buffer(rospy.Duration(10.0), debug=False)
+
+
+@pytest.fixture
+def intake(buffer):
+    return Intake(buffer)
+
+
+def tell(intake, parent, child, second, x=0.0, by="simulator"):
+    intake.take([transform_msg(Pose2(x, 0.0, 0.0), parent, child, rospy.Time.from_sec(second))], by)
+
+
+def x_at(buffer, parent, child, second):
+    stamp = rospy.Time.from_sec(second)
+    return buffer.lookup_transform(parent, child, stamp).transform.translation.x
+
+
+def test_a_word_from_before_a_jump_that_comes_after_it_is_forgotten(intake, buffer):
+    tell(intake, "odom", "base_link", 14.0, x=7.0)
+    buffer.clear()  # somebody else saw the jump before tf did
+    tell(intake, "odom", "base_link", 14.1, x=7.0)
+    for second in (0.1, 0.2, 0.3):
+        tell(intake, "odom", "base_link", second, x=second)
+    assert x_at(buffer, "odom", "base_link", 0.2) == pytest.approx(0.2)
+    latest = buffer.get_latest_common_time("odom", "base_link")
+    assert latest.to_sec() == pytest.approx(0.3)
+
+
+def test_all_publishers_jump_each_in_its_own_time(intake, buffer):
+    for second in (14.0, 0.1):
+        tell(intake, "odom", "base_link", second, x=second)
+    tell(intake, "map", "odom", 14.2, by="amcl")
+    for second in (0.2, 0.3):
+        tell(intake, "map", "odom", second, by="amcl")
+        tell(intake, "odom", "base_link", second, x=second)
+    assert x_at(buffer, "map", "base_link", 0.3) == pytest.approx(0.3)
+    assert buffer.get_latest_common_time("map", "base_link").to_sec() == pytest.approx(0.3)
+
+
+def test_one_who_is_behind_another_has_not_jumped(intake, buffer):
+    tell(intake, "map", "odom", 14.0, by="amcl")
+    tell(intake, "odom", "base_link", 12.0)
+    tell(intake, "map", "odom", 13.5, by="amcl")
+    assert buffer.get_latest_common_time("map", "base_link").to_sec() == pytest.approx(12.0)
+
+
+def test_stamps_that_mean_nothing_are_left_out(intake, buffer):
+    tell(intake, "odom", "base_link", 1.0)
+    bad = transform_msg(Pose2(), "odom", "base_link", SimpleNamespace(secs=-1, nsecs=0))
+    intake.take([bad], "simulator")
+    assert buffer.get_latest_common_time("odom", "base_link").to_sec() == pytest.approx(1.0)
+
+
+def test_what_never_moves_outlives_a_jump(intake, buffer):
+    static = transform_msg(Pose2(0.1, 0.0, 0.0), "base_link", "laser", rospy.Time.from_sec(14.0))
+    intake.take([static], "simulator", is_static=True)
+    for second in (14.0, 0.1, 0.2):
+        tell(intake, "odom", "base_link", second)
+    assert x_at(buffer, "odom", "laser", 0.2) == pytest.approx(0.1)
