@@ -8,6 +8,7 @@ from sim_bridge import ROBOTS, Simulation
 from sim_bridge.courses import Course
 from sim_bridge.geometry.pose3 import pose3
 from sim_bridge.geometry.shapes import Box, Cylinder, Plane
+from sim_bridge.physics.motion import at_rest
 from sim_bridge.physics.seclusion import extent_of
 from sim_bridge.physics.vehicle import Vehicle
 from sim_bridge.simulation import ROBOT_NAME
@@ -18,6 +19,7 @@ def body(name, shape, pose, **more):
     return Body(name, pose, (Collision(shape, np.eye(4)),), **more)
 
 
+SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1))
 FLOOR = body("floor::link", Plane(), np.eye(4))
 POSTS = [
     body(f"post_{i}::link", Cylinder(0.1, 1.0), pose3(0.7 * np.cos(angle), 0.7 * np.sin(angle), 0.5))
@@ -86,3 +88,21 @@ def test_an_extent_holds_all_of_a_robot():
     radius, height = extent_of([base, wheel])
     assert radius == pytest.approx(0.3 + np.hypot(0.05, 0.01) + 0.01)
     assert height == pytest.approx(np.hypot(0.05, 0.01) + 0.01)
+
+
+def test_a_robot_in_the_midst_of_a_frame_is_secluded_from_it(monkeypatch):
+    sides = [(pose3(2.0 * x, 2.0 * y, 0.5), (0.1 + 4.0 * abs(y), 0.1 + 4.0 * abs(x), 1.0)) for x, y in SIDES]
+    frame = Body("frame::link", np.eye(4), tuple(Collision(Box(size), pose) for pose, size in sides))
+    robot = ROBOTS["turtlebot_lidar"]
+    (secluded, touching), wrong = shares_of(monkeypatch, World("frame", (FLOOR, frame)), robot)
+    assert wrong == []
+    assert secluded > 0.3
+    assert touching > 0.0
+
+
+def test_what_is_put_against_a_robot_is_felt_at_once():
+    far = body("far::link", Box((0.2, 0.2, 0.2)), pose3(9.0, 0.0, 0.1))
+    simulation = Simulation(World("far", (FLOOR, far)))
+    simulation.step()
+    simulation.scene.models.set_link_motion("far::link", at_rest(pose3(0.2, 0.0, 0.1)))
+    assert simulation.step().contacts == ("far::link",)

@@ -42,11 +42,11 @@ class Engine:
 
     def __init__(self, rate: int, gravity: float):
         self._bullet = BulletClient()
+        self._register = Register()
         self._bullet.setPhysicsEngineParameter(
             numSolverIterations=SOLVER_ITERATIONS, deterministicOverlappingPairs=1
         )
         self.set_gravity(gravity)
-        self._register = Register()
         # Links that are not drawn down, and their masses.
         self._weightless: Dict[str, float] = {}
         # How high what is shifted is, and how it is turned, as long as nobody puts it elsewhere.
@@ -72,16 +72,19 @@ class Engine:
         """Everything is again as when it was kept; no body may have come or gone since."""
         self._bullet.restoreState(mark)
         self._upright.clear()
+        self._register.interventions += 1
 
     def set_rate(self, rate: int) -> None:
         """``rate``: steps per second."""
         self._bullet.setPhysicsEngineParameter(fixedTimeStep=1.0 / rate)
         self.touch.seclusion.step_seconds = 1.0 / rate
+        self._register.interventions += 1
 
     def set_gravity(self, gravity: float) -> None:
         """``gravity``: downwards, m/s^2."""
         self._gravity = gravity
         self._bullet.setGravity(0.0, 0.0, -gravity)
+        self._register.interventions += 1
 
     @property
     def gravity(self) -> float:
@@ -103,6 +106,7 @@ class Engine:
             for body in tree.bodies:
                 if not body.has_weight and body.mass is not None:
                     self._weightless[body.name] = body.mass
+        self._register.interventions += 1
 
     def remove(self, name: str) -> None:
         """Takes away a link and all that hangs together with it."""
@@ -138,6 +142,7 @@ class Engine:
     def set_motion(self, name: str, motion: Motion) -> None:
         """Puts a link to another place, with all that hangs together with it, and sets its velocity."""
         link = self._register.links[name]
+        self._register.interventions += 1
         self._upright.pop(link.number, None)
         centre = motion.pose @ link.centre
         if link.index >= 0:
@@ -154,7 +159,7 @@ class Engine:
         is_known = number in self._upright or number in self._register.movers
         if not is_known and self._height_and_turn(number) == (z, turn):  # rounding has come to an end
             self._upright[number] = z, turn
-        self.touch.seclusion.end()
+        self._register.interventions += 1
 
     def _height_and_turn(self, number: int) -> Tuple[float, Tuple[float, ...]]:
         (_, _, z), turn = self._bullet.getBasePositionAndOrientation(number)
@@ -163,6 +168,7 @@ class Engine:
     def push(self, name: str, force: Sequence[float], torque: Sequence[float]) -> None:
         """Force, N, at the centre of a link's mass, and torque, N m, in the world; for the next step only."""
         link = self._register.links[name]
+        self._register.interventions += 1
         pose, *_ = self._bullet.getBasePositionAndOrientation(link.number)
         if link.index >= 0:
             pose, *_ = self._bullet.getLinkState(link.number, link.index)

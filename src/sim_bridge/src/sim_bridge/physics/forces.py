@@ -71,7 +71,6 @@ class Forces:
         """Before the step of physics that begins at ``stamp``."""
         if not self._pushes and not self._joint_pushes:
             return
-        self._engine.touch.seclusion.end()  # what is pushed may fly anywhere
         for push in self._pushes:
             if push.start <= stamp < push.end:
                 self._engine.push(push.link, push.force.tolist(), push.torque.tolist())

@@ -38,6 +38,7 @@ class Register:
     """Links and moving joints by their names, and whose each of Bullet's parts is.
 
     ``movers``: numbers of what physics moves; ``level_planes``: of what is nothing but a floor without end.
+    ``interventions``: how often something has been moved or driven otherwise than by physics and its motors.
     """
 
     def __init__(self):
@@ -45,6 +46,7 @@ class Register:
         self.joints: Dict[str, MovingJoint] = {}
         self.movers: Set[int] = set()
         self.level_planes: Set[int] = set()
+        self.interventions = 0
         self._owners: Dict[Tuple[int, int], str] = {}
 
     def own(self, number: int, index: int, link: str) -> None:

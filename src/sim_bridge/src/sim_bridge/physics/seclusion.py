@@ -1,7 +1,7 @@
 """Whether a robot is so far from everything that it need not be asked what it touches."""
 
 import math
-from typing import Dict, NamedTuple, Sequence
+from typing import Dict, Iterable, NamedTuple, Sequence
 
 import numpy as np
 
@@ -11,9 +11,9 @@ from sim_bridge.physics.bullet import BulletClient
 from sim_bridge.physics.register import Register
 from sim_bridge.world import Body
 
-# Steps of physics that one look around is good for; and if it was in vain, as beside a wall, after which the
-# next is worth its time.
-STEPS, PAUSE = 5, 20
+# Steps of physics that one look around is good for at most; that it must be good for to be worth its time;
+# and if it was in vain, as beside a wall, after which the next one is.
+MOST_STEPS, LEAST_STEPS, PAUSE = 20, 3, 10
 # m/s^2 by which motors and gravity may change how any point of a robot moves: they are far weaker.
 STRONGEST = 50.0
 # Metres by which Bullet's shapes may be thicker than they are told.
@@ -30,7 +30,7 @@ class Extent(NamedTuple):
 
 
 class Seclusion:
-    """Of a robot that is the only thing that moves, but for what is shifted; ``end`` it then.
+    """Of a robot that is the only thing that moves, but for interventions.
 
     Level planes are floors, which robots stand on: they do not count.
     """
@@ -42,38 +42,48 @@ class Seclusion:
         # By what number a robot has in Bullet.
         self.extents: Dict[int, Extent] = {}
         self._steps_left, self._is_given = 0, False
-
-    def end(self) -> None:
-        """Something is elsewhere, or may be: the next to ask has to look around."""
-        if self._is_given:
-            self._steps_left = 0
+        self._interventions = 0
 
     def is_given(self, number: int) -> bool:
         """Whether the robot of that number cannot have touched anything in the step of physics that is over.
 
         To be asked after each step.
         """
-        if self._steps_left == 0:
-            self._is_given = self._look_around(number)
-            self._steps_left = STEPS if self._is_given else PAUSE
+        if self._steps_left == 0 or (self._is_given and self._interventions != self._register.interventions):
+            self._interventions = self._register.interventions
+            steps = self._look_around(number)
+            self._is_given = steps >= LEAST_STEPS
+            self._steps_left = steps if self._is_given else PAUSE
         self._steps_left -= 1
         return self._is_given
 
-    def _look_around(self, number: int) -> bool:
-        """Whether nothing is where the robot can have been a step ago, or can be until the next look."""
+    def _look_around(self, number: int) -> int:
+        """For how many steps, the one that is over among them, the robot cannot meet what is near."""
         if self._register.movers != {number}:
-            return False
+            return 0
         (x, y, z), (qx, qy, qz, qw) = self._bullet.getBasePositionAndOrientation(number)
         linear, (roll_rate, pitch_rate, _) = self._bullet.getBaseVelocity(number)
         radius, height = self.extents[number]
-        size, seconds = radius + height, STEPS * self.step_seconds
+        size, seconds = radius + height, MOST_STEPS * self.step_seconds
         lean = height * 2.0 * math.hypot(qx * qz + qy * qw, qy * qz - qx * qw)
         fastest = math.hypot(*linear) + size * math.hypot(roll_rate, pitch_rate)
         way = lean + seconds * (fastest + 0.5 * STRONGEST * seconds)
         aside, up = radius + way, size + way
         low, high = (x - aside, y - aside, z - up), (x + aside, y + aside, z + up)
-        near = self._bullet.getOverlappingObjects(low, high)
-        return {other for other, _ in near or ()} - {number} <= self._register.level_planes
+        near = {other for other, _ in self._bullet.getOverlappingObjects(low, high) or ()}
+        gap = self._gap(number, near - {number} - self._register.level_planes, way) - lean
+        if gap <= 0.0:
+            return 0
+        free = (math.sqrt(fastest * fastest + 2.0 * STRONGEST * gap) - fastest) / STRONGEST
+        return min(int(free / self.step_seconds), MOST_STEPS)
+
+    def _gap(self, number: int, others: Iterable[int], most: float) -> float:
+        """Metres to the nearest of others, as far as it is nearer than ``most``."""
+        gap = most
+        for other in others:
+            for point in self._bullet.getClosestPoints(number, other, gap + SKIN):
+                gap = min(gap, point[8] - SKIN)
+        return gap
 
 
 def extent_of(bodies: Sequence[Body]) -> Extent:

@@ -84,10 +84,6 @@ class Vehicle:
         """Whether it cannot have touched anything in the last step of physics. To be asked after each."""
         return self._seclusion.is_given(self._number)
 
-    def end_seclusion(self) -> None:
-        """The robot or something else may be put elsewhere before the next step."""
-        self._seclusion.end()
-
     def bumps(self) -> List[Contact]:
         """Where the robot touches things; what it stands on is not among them."""
         contacts = self._engine.touch.contacts(self.base, steepest=SUPPORTING_NORMAL_Z)

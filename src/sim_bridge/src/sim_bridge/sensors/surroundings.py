@@ -38,7 +38,6 @@ class RobotSurroundings:
     def end_period(self) -> None:
         """What has been touched so far has been told."""
         self._bumps.clear()
-        self._vehicle.end_seclusion()
 
     @property
     def gravity(self) -> float:
