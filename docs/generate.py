@@ -1,8 +1,12 @@
 #!/usr/bin/env python3
-"""Writes src/*/config/*.yaml from the settings of packages; with --check only says which are stale."""
+"""Writes src/*/config/*.yaml from the settings of packages, and listings of code into docs/examples/*.md.
+
+With --check only says which are stale.
+"""
 
 import argparse
 import importlib
+import re
 import sys
 from pathlib import Path
 from typing import Dict
@@ -13,10 +17,12 @@ sys.path[:0] = [str(path) for path in ROOT.glob("src/*/src")]
 from planar.config.listing import Section, yaml_of  # noqa: E402
 
 MADE_BY = "Made by docs/generate.py; do not edit."
+# A comment that names a module, on a line of its own, and the listing behind it, once there is one.
+LISTING = re.compile(r"^<!-- (\S+\.py) -->\n(?:\n```python\n.*?^```\n)?", re.MULTILINE | re.DOTALL)
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument(
         "--check", action="store_true", help="exit with 1 if a file is not as it would be written"
     )
@@ -37,8 +43,19 @@ def is_written(path: Path, text: str) -> bool:
 
 
 def files() -> Dict[Path, str]:
-    """Every file that is made, and its text."""
-    return {path: f"# {MADE_BY}\n{yaml_of(section)}" for path, section in declared_files().items()}
+    """Every file that is made, in whole or in part, and its text."""
+    configs = {path: f"# {MADE_BY}\n{yaml_of(section)}" for path, section in declared_files().items()}
+    pages = {path: with_listings(path.read_text("utf-8")) for path in ROOT.glob("docs/examples/*.md")}
+    return {**configs, **pages}
+
+
+def with_listings(page: str) -> str:
+    """A page, with the code as it is now behind each comment that names a module."""
+    return LISTING.sub(lambda found: f"<!-- {found[1]} -->\n\n```python\n{code_of(found[1])}```\n", page)
+
+
+def code_of(name: str) -> str:
+    return (ROOT / name).read_text("utf-8")
 
 
 def declared_files() -> Dict[Path, Section]:
