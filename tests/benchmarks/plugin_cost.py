@@ -1,0 +1,134 @@
+#!/usr/bin/env python3
+"""Measures what it costs that a planner is somebody else's: guarded, and found by its name.
+
+A robot drives to the pick-up zone of the home, in one process. What the guard takes is what a call through it
+takes beyond the call of the planner in it.
+
+python3 tests/benchmarks/plugin_cost.py [--json FILE] [PLANNER ...]
+"""
+
+import argparse
+import json
+import sys
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Callable, Dict, List
+from unittest.mock import patch
+
+import numpy as np
+
+from amcl_lite import Localizer, LocalizerSettings
+from move_base_lite import Navigator, load_settings
+from move_base_lite.control.guarded import GuardedLocalPlanner
+from move_base_lite.warming import warm_up
+from planar import Pose2, load_map
+from planar.plugins import find
+from sim_bridge import Simulation, load_world
+
+ROOT = Path(__file__).resolve().parents[2]
+CONFIG = ROOT / "src" / "move_base_lite" / "config" / "turtlebot.yaml"
+GOAL, SEED, STEPS, MOST_TICKS = Pose2(2.0, 3.0, 0.0), 3, 5, 1000
+PLANNERS = ("plugin_examples.pure_pursuit/PurePursuit", "plugin_examples.critics/Critics")
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """Milliseconds, medians over the ticks; ``guard_share``: of a tick. ``load_ms``: once, at the start."""
+
+    planner: str
+    ticks: int
+    tick_ms: float
+    planner_ms: float
+    guard_ms: float
+    guard_share: float
+    load_ms: float
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("planners", nargs="*", metavar="PLANNER", default=PLANNERS)
+    parser.add_argument("--json", type=Path, metavar="FILE", help="writes the figures there too")
+    options = parser.parse_args()
+    print("planner                                     ticks  tick ms  planner ms  guard ms  share  load ms")
+    measured = [measure(name) for name in options.planners]
+    for one in measured:
+        print(
+            f"{one.planner:43} {one.ticks:5} {one.tick_ms:8.3f} {one.planner_ms:11.3f} {one.guard_ms:9.3f} "
+            f"{one.guard_share:6.3f} {one.load_ms:8.1f}"
+        )
+    if options.json:
+        options.json.write_text(json.dumps([asdict(one) for one in measured], indent=2) + "\n")
+    return 0
+
+
+def measure(name: str) -> Measurement:
+    begun = time.perf_counter()
+    settings = load_settings(CONFIG, base_local_planner=name)
+    load_ms = 1e3 * (time.perf_counter() - begun)
+    begun = time.perf_counter()
+    load_settings(CONFIG)
+    load_ms -= 1e3 * (time.perf_counter() - begun)
+    warm_up(settings)
+    kind, spent = find(name), Spent()
+    with patch.object(kind, "follow", spent.timed("planner", kind.follow)), patch.object(
+        GuardedLocalPlanner, "follow", spent.timed("guarded", GuardedLocalPlanner.follow)
+    ), patch.object(Navigator, "tick", spent.timed("tick", Navigator.tick)):
+        drive(Navigator(settings, load_map(ROOT / "map" / "home.yaml")))
+    guarded, planner = (np.array(spent.ms[what]) for what in ("guarded", "planner"))
+    tick_ms, guard_ms = float(np.median(spent.ms["tick"])), float(np.median(guarded - planner))
+    return Measurement(
+        name,
+        len(spent.ms["tick"]),
+        tick_ms,
+        float(np.median(planner)),
+        guard_ms,
+        guard_ms / tick_ms,
+        load_ms,
+    )
+
+
+class Spent:
+    """``ms``: what each call took, by what is timed."""
+
+    def __init__(self) -> None:
+        self.ms: Dict[str, List[float]] = {}
+
+    def timed(self, what: str, call: Callable) -> Callable:
+        told = self.ms.setdefault(what, [])
+
+        def timed_call(*arguments, **named):
+            begun = time.perf_counter()
+            try:
+                return call(*arguments, **named)
+            finally:
+                told.append(1e3 * (time.perf_counter() - begun))
+
+        return timed_call
+
+
+def drive(navigator: Navigator) -> None:
+    simulation = Simulation(load_world(ROOT / "map" / "home.world"), seed=SEED)
+    localizer = Localizer(
+        load_map(ROOT / "map" / "home.yaml"), LocalizerSettings(), np.random.default_rng(SEED)
+    )
+    navigator.set_goal(GOAL)
+    command = None
+    for _ in range(MOST_TICKS):
+        scan = None
+        for _ in range(STEPS):
+            observation = simulation.step(command)
+            command, scan = None, observation.scan or scan
+        odometry = observation.odometry
+        if scan is not None:
+            localizer.update(odometry.base_in_odom, scan)
+        base_in_map = localizer.odom_in_map @ odometry.base_in_odom
+        decision = navigator.tick(observation.stamp, base_in_map, odometry.base_in_odom, odometry.twist, scan)
+        if decision.status.is_final:
+            break
+        command = decision.command
+    simulation.close()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
