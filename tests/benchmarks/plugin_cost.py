@@ -122,6 +122,7 @@ def drive(navigator: Navigator) -> None:
         odometry = observation.odometry
         if scan is not None:
             localizer.update(odometry.base_in_odom, scan)
+        assert localizer.odom_in_map is not None
         base_in_map = localizer.odom_in_map @ odometry.base_in_odom
         decision = navigator.tick(observation.stamp, base_in_map, odometry.base_in_odom, odometry.twist, scan)
         if decision.status.is_final:
