@@ -6,7 +6,7 @@ import unittest
 
 import rospy
 import rostest
-from rosgraph_msgs.msg import Clock
+from simulated import time_now
 from waiting import wait_until
 
 from home_service import Commander, CommanderError, Result
@@ -91,7 +91,7 @@ class CommanderTest(unittest.TestCase):
     def _assert_result(self, result):
         outcome = self.robot.wait(WALL_DEADLINE)
         self.assertIs(outcome.result, result, outcome.reason)
-        now = rospy.wait_for_message("/clock", Clock, WALL_DEADLINE).clock.to_sec()
+        now = time_now()
         wait_until("the truth of now", lambda: self.referee.simulated_time >= now, WALL_DEADLINE)
         return outcome
 
