@@ -9,6 +9,7 @@ import rostest
 from actionlib_msgs.msg import GoalStatus
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import Odometry
+from simulated import time_now
 from std_msgs.msg import String
 from waiting import wait_until
 
@@ -48,7 +49,7 @@ class Witness:
             self.distance += self.truth.distance_to(truth)
         if self.distance > 0.3 and message.twist.twist.linear.x > 0.1:
             self.driving.append(message.header.stamp)
-        self.truth = truth
+        self.truth, self.stamp = truth, message.header.stamp.to_sec()
 
     def _on_odometry(self, message):
         self.frames.update((message.header.frame_id, message.child_frame_id))
@@ -71,6 +72,8 @@ class TwoRobotsTest(unittest.TestCase):
         for name, one in robots.items():
             one.send(GOALS[name])
         wait_until("both results", lambda: not any(one.is_active() for one in robots.values()), WALL_DEADLINE)
+        now = time_now()
+        wait_until("the truth", lambda: all(one.stamp >= now for one in robots.values()), WALL_DEADLINE)
         first, last = (
             pick(one.driving[end] for one in robots.values()) for pick, end in ((max, 0), (min, -1))
         )
