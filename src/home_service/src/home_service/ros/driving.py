@@ -3,7 +3,7 @@
 from typing import List, Optional, Sequence
 
 import rospy
-from rosgraph_msgs.msg import Clock
+from move_base_msgs.msg import MoveBaseActionResult
 
 from home_service.judging.verdict import ARRIVAL_TOLERANCE, Verdict
 from home_service.options import LaunchPlan, RunOptions
@@ -28,12 +28,19 @@ def drive_through(options: RunOptions, launch: LaunchPlan, goals: Sequence[Pose2
 
 def _drive_to_all(run: Run, referee: Referee, goals: Sequence[Pose2]) -> Optional[str]:
     """Why it could not come to the last goal, or None."""
+    # Heard before the client hears it: when a goal has ended, the last of these is when it did.
+    ends: List[float] = [0.0]
+    rospy.Subscriber(
+        "move_base/result", MoveBaseActionResult, lambda result: ends.append(result.header.stamp.to_sec())
+    )
     move_base = MoveBase()
     failure = run.watch(move_base.is_ready)
     for number, pose in enumerate(goals, 1):
         if failure is None:
             name = f"goal {number} ({pose.x:g}, {pose.y:g}, {pose.yaw:g})"
             failure = _drive_to(run, referee, move_base, pose, name)
+            failure = failure or run.watch(lambda: referee.simulated_time >= ends[-1])
+            failure = failure or _judged(run, referee, pose, name)
     return failure
 
 
@@ -49,18 +56,11 @@ def _drive_to(run: Run, referee: Referee, move_base: MoveBase, pose: Pose2, name
     failure = run.watch(is_over)
     if outcome is not None and outcome.result is not DriveResult.REACHED:
         failure = f"{name}: {outcome.text}"
-    failure = failure or _watch_truth(run, referee)
-    if failure is not None:
-        return failure
+    return failure
+
+
+def _judged(run: Run, referee: Referee, pose: Pose2, name: str) -> Optional[str]:
+    """Where the robot truly is now that it has arrived."""
     error = referee.distance_from(pose)
     run.display.say(f"{name}: reached, truly {error:.3f} m from it")
     return f"{name}: the robot truly stood {error:.2f} m off" if error > ARRIVAL_TOLERANCE else None
-
-
-def _watch_truth(run: Run, referee: Referee) -> Optional[str]:
-    """Shows progress until the ground truth of this moment has come; returns as Run.watch."""
-    moments: List[float] = []
-    clock = rospy.Subscriber("/clock", Clock, lambda message: moments.append(message.clock.to_sec()))
-    failure = run.watch(lambda: bool(moments) and referee.simulated_time >= moments[0])
-    clock.unregister()
-    return failure
