@@ -6,7 +6,7 @@ import unittest
 
 import rospy
 import rostest
-from simulated import time_now
+from simulated import wait_for_truth
 from waiting import wait_until
 
 from home_service import Commander, CommanderError, Result
@@ -91,8 +91,7 @@ class CommanderTest(unittest.TestCase):
     def _assert_result(self, result):
         outcome = self.robot.wait(WALL_DEADLINE)
         self.assertIs(outcome.result, result, outcome.reason)
-        now = time_now()
-        wait_until("the truth of now", lambda: self.referee.simulated_time >= now, WALL_DEADLINE)
+        wait_for_truth(lambda: self.referee.simulated_time, WALL_DEADLINE)
         return outcome
 
 

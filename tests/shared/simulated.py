@@ -2,12 +2,14 @@
 
 import rospy
 from gazebo_msgs.srv import GetWorldProperties
+from waiting import wait_until
 
 ANSWER_SECONDS = 20.0
 
 
-def time_now():
-    """Simulated seconds."""
+def wait_for_truth(heard, seconds):
+    """Until the truth of now has been heard; ``heard()``: up to which stamp it has, simulated seconds."""
     name = "/gazebo/get_world_properties"
     rospy.wait_for_service(name, ANSWER_SECONDS)
-    return rospy.ServiceProxy(name, GetWorldProperties)().sim_time
+    now = rospy.ServiceProxy(name, GetWorldProperties)().sim_time
+    wait_until("the truth of now", lambda: heard() >= now, seconds)
