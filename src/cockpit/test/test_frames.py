@@ -1,8 +1,9 @@
 """Where frames are."""
 
 import numpy as np
+import pytest
 
-from cockpit.frames import FrameTree, Transform, inverse, pose_matrix
+from cockpit.frames import FrameTree, Transform, inverse, pose_matrix, wxyz_of
 
 
 def tree(**parents):
@@ -44,3 +45,12 @@ def test_what_was_seen_a_moment_ago_is_where_its_frame_was_then():
     assert [frames.pose("laser", "map", at)[0, 3] for at in (0.0, 1.11, 9.0, None)] == [1.0, 1.1, 1.2, 1.2]
     frames.put("laser", Transform("map", pose_matrix((0.1, 0, 0), (0, 0, 0, 1)), 0.1, False))
     assert frames.pose("laser", "map", 1.2)[0, 3] == 0.1
+
+
+def test_a_rotation_and_its_quaternion_are_each_other():
+    rng = np.random.default_rng(7)
+    for w, x, y, z in [*np.eye(4), *-np.eye(4), *rng.normal(size=(100, 4))]:
+        pose = pose_matrix((1.0, 2.0, 3.0), (x, y, z, w))
+        found = np.array(wxyz_of(pose))
+        assert np.linalg.norm(found) == pytest.approx(1.0)
+        assert abs(found @ (w, x, y, z)) == pytest.approx(np.linalg.norm((w, x, y, z)))

@@ -1,11 +1,12 @@
 """Looks are read by a process of their own: one answer for each, whatever becomes of the others."""
 
 from pathlib import Path
+from queue import Queue
 
 import pytest
 
 from cockpit.ros.world import looks
-from cockpit.ros.world.looks import MODEL, ROBOT, WORLD, read_looks
+from cockpit.ros.world.looks import MODEL, ROBOT, WORLD, Reader, read_looks
 from cockpit.scene.look import Look
 
 HOME = Path(__file__).resolve().parents[3] / "map/home.world"
@@ -35,16 +36,39 @@ def test_each_is_answered_by_a_look_or_by_why_there_is_none():
 
 def test_one_that_ends_the_process_leaves_the_others(monkeypatch):
     answered = []
-    true_run = looks.subprocess.run
 
-    def run(command, **options):
-        answered.append(options["input"])
-        return true_run(["false"] if b"deadly" in options["input"] else command, **options)
+    class Deadly(looks.Popen):
+        def communicate(self, asked, *rest):
+            answered.append(asked)
+            if b"deadly" in asked:
+                self.kill()
+            return super().communicate(asked, *rest)
 
-    monkeypatch.setattr(looks.subprocess, "run", run)
+    monkeypatch.setattr(looks, "Popen", Deadly)
     deadly, robot = read_looks([(ROBOT, "", "deadly"), (ROBOT, "", ROBOT_TEXT)])
     assert (deadly, type(robot)) == ("could not be read", Look)
     assert len(answered) == 3
+
+
+def test_what_is_prepared_reads_what_comes_next_only():
+    reader, answers = Reader(), Queue()
+    reader.prepare()
+    for _ in range(2):
+        reader.read_aside([(ROBOT, "", ROBOT_TEXT)], answers.put)
+        (answer,) = answers.get(timeout=20.0)
+        assert isinstance(answer, Look)
+
+
+def test_what_is_prepared_in_vain_ends(monkeypatch):
+    started = []
+    start = looks._start
+    monkeypatch.setattr(looks, "_start", lambda: started.append(start()) or started[-1])
+    reader = Reader()
+    reader.prepare()
+    reader.rest()
+    reader.rest()
+    (process,) = started
+    assert process.poll() is not None
 
 
 def test_one_that_takes_too_long_is_told(monkeypatch):

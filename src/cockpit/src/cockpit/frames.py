@@ -1,5 +1,6 @@
 """Where frames are and were a moment ago, and ways between any two."""
 
+import math
 from collections import deque
 from dataclasses import dataclass
 from typing import Any, Deque, Dict, List, Optional, Sequence, Tuple
@@ -16,17 +17,33 @@ def pose_matrix(position: Sequence[float], quaternion: Sequence[float]) -> Optio
     """A pose as (4, 4) of metres and a quaternion (x, y, z, w) of any length but zero; None if it is none."""
     x, y, z, w = quaternion
     length = x * x + y * y + z * z + w * w
-    matrix = np.eye(4)
-    matrix[:3, 3] = position
-    if not (np.isfinite(matrix[:3, 3]).all() and 1e-6 < length < 1e6):
+    if not (all(map(math.isfinite, position)) and 1e-6 < length < 1e6):
         return None
     s = 2.0 / length
-    matrix[:3, :3] = [
-        [1.0 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w)],
-        [s * (x * y + z * w), 1.0 - s * (x * x + z * z), s * (y * z - x * w)],
-        [s * (x * z - y * w), s * (y * z + x * w), 1.0 - s * (x * x + y * y)],
-    ]
-    return matrix
+    return np.array(
+        [
+            [1.0 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w), position[0]],
+            [s * (x * y + z * w), 1.0 - s * (x * x + z * z), s * (y * z - x * w), position[1]],
+            [s * (x * z - y * w), s * (y * z + x * w), 1.0 - s * (x * x + y * y), position[2]],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+    )
+
+
+def wxyz_of(pose: np.ndarray) -> Tuple[float, float, float, float]:
+    """The rotation of a pose (4, 4) as viser takes it: w, x, y, z (Shepperd 1978: of the largest part)."""
+    (xx, xy, xz, _), (yx, yy, yz, _), (zx, zy, zz, _), _ = pose.tolist()
+    most = max(xx + yy + zz, xx, yy, zz)
+    if most == xx + yy + zz:
+        q = 1.0 + most, zy - yz, xz - zx, yx - xy
+    elif most == xx:
+        q = zy - yz, 1.0 + xx - yy - zz, yx + xy, xz + zx
+    elif most == yy:
+        q = xz - zx, yx + xy, 1.0 + yy - zz - xx, zy + yz
+    else:
+        q = yx - xy, xz + zx, zy + yz, 1.0 + zz - xx - yy
+    length = math.hypot(*q)
+    return q[0] / length, q[1] / length, q[2] / length, q[3] / length
 
 
 def told_pose(position: Any, orientation: Any) -> Optional[np.ndarray]:

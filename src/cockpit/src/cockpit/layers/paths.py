@@ -18,4 +18,4 @@ def draw(message) -> Drawing:
     return Drawing((Part("path", frame, Lines(segments, COLOUR, 4.0)),))
 
 
-LAYER = Layer("Paths", ("nav_msgs/Path",), lambda: draw, shown=("plan", "path"))
+LAYER = Layer("Paths", ("nav_msgs/Path",), lambda: draw, shown=("plan", "path"), seconds=0.2)

@@ -8,7 +8,7 @@ import numpy as np
 import viser.transforms
 
 from cockpit.drawing import Axes, Drawing, Floor, Label, Lines, Part, Points, Surface
-from cockpit.frames import FrameTree
+from cockpit.frames import FrameTree, wxyz_of
 
 STILL = 1e-6
 EVERYTHING = "*"
@@ -92,7 +92,7 @@ def _move(shown: _Shown, pose: np.ndarray) -> None:
     if shown.pose is not None and np.abs(pose - shown.pose).max() < STILL:
         return
     if shown.pose is None or np.abs(pose[:3, :3] - shown.pose[:3, :3]).max() >= STILL:
-        shown.node.wxyz = viser.transforms.SO3.from_matrix(pose[:3, :3]).wxyz
+        shown.node.wxyz = wxyz_of(pose)
     if shown.pose is None or np.abs(pose[:3, 3] - shown.pose[:3, 3]).max() >= STILL:
         shown.node.position = pose[:3, 3]
     shown.pose = pose
@@ -157,7 +157,7 @@ def _floor(scene, path: str, thing: Floor, _old):
         format="png",
         cast_shadow=False,
         receive_shadow=0.2,
-        wxyz=viser.transforms.SO3.from_matrix(pose[:3, :3]).wxyz,
+        wxyz=wxyz_of(pose),
         position=pose[:3, 3],
     )
 

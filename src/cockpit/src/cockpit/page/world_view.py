@@ -4,9 +4,8 @@ from itertools import groupby
 from typing import Any, Dict, List, Optional, Tuple
 
 import numpy as np
-import viser.transforms
 
-from cockpit.frames import FrameTree
+from cockpit.frames import FrameTree, wxyz_of
 from cockpit.scene.look import Hinge, Look, Piece, cut_at, merged
 
 STILL = 1e-5
@@ -46,7 +45,7 @@ class Thing:
         if pose is None or (self._pose is not None and np.abs(pose - self._pose).max() < STILL):
             return
         if self._pose is None or np.abs(pose[:3, :3] - self._pose[:3, :3]).max() >= STILL:
-            self.node.wxyz = viser.transforms.SO3.from_matrix(pose[:3, :3]).wxyz
+            self.node.wxyz = wxyz_of(pose)
         self.node.position = pose[:3, 3]
         self._pose = pose
 

@@ -23,6 +23,7 @@ from cockpit.ros.showing import Layers
 from cockpit.ros.tool import said
 from cockpit.ros.toolbox import Toolbox
 from cockpit.ros.transforms import TransformListener
+from cockpit.ros.world.looks import Reader
 from cockpit.ros.world.world import World
 
 PERIOD = 0.1
@@ -38,14 +39,14 @@ JITTER_SECONDS = 0.1
 class Cockpit:
     """Everything of the page but the page itself."""
 
-    def __init__(self, page: Page):
+    def __init__(self, page: Page, reader: Reader):
         self._page = page
         self._graph = Graph()
         self._fixed: str = FIXED_FRAMES[0]
         self._frames = FrameTree()
         self._transforms = TransformListener(self._frames)
         self._drawer = Drawer(page.scene)
-        self._world = World(self._graph, page.scene, self._warn)
+        self._world = World(self._graph, page.scene, reader, self._warn)
         pointer = Pointer(page.floor, self._drawer)
         self._driving = Driving(
             self._graph, self._frames, pointer, self._world, page.tell, lambda: self._fixed

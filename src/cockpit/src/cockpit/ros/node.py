@@ -16,9 +16,11 @@ import rospy
 from rosgraph import get_master_uri
 
 from cockpit.errors import CockpitError, PortError
+from cockpit.layers import all_layers
 from cockpit.page.server import Page
 from cockpit.ros.cockpit import Cockpit
-from cockpit.ros.tools import names
+from cockpit.ros.tools import all_tools, names
+from cockpit.ros.world.looks import Reader
 from planar import PlanarError
 from supervision.command_line import option, parse
 from supervision.interruption import SIGNALS, leave
@@ -58,6 +60,7 @@ def serve(where: str, tool: Optional[str], words: Tuple[str, ...] = ()) -> int:
     page = Page(*address_of(where))
     print(f"cockpit: {page.url}", flush=True)
     os.nice(NICENESS)
+    reader = _get_ready()
     if not is_master_online():
         print(f"cockpit: waiting for a ROS master at {get_master_uri()}", flush=True)
     while not is_master_online():
@@ -65,12 +68,21 @@ def serve(where: str, tool: Optional[str], words: Tuple[str, ...] = ()) -> int:
     _wait_for_nodes()
     is_asked_to_end = _hear_signals()
     rospy.init_node("cockpit", anonymous=True, log_level=rospy.WARN, disable_signals=True)
-    cockpit = Cockpit(page)
+    cockpit = Cockpit(page, reader)
     if tool is not None:
         cockpit.toolbox.open(tool, words)
     cockpit.run(lambda: is_asked_to_end() or rospy.is_shutdown())
     rospy.signal_shutdown("the cockpit ends")
     return 0
+
+
+def _get_ready() -> Reader:
+    """What can be done before there is a graph, which would have to wait for it later."""
+    reader = Reader()
+    reader.prepare()
+    all_layers()
+    all_tools()
+    return reader
 
 
 def _hear_signals() -> Callable[[], bool]:

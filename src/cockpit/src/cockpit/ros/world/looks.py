@@ -1,10 +1,10 @@
 """Looks of worlds and robots, read by a process of their own that ends when it has."""
 
-import subprocess
 import sys
 import threading
 from pathlib import Path
-from typing import Callable, List, Sequence, Tuple, Union
+from subprocess import PIPE, Popen, TimeoutExpired
+from typing import Callable, List, Optional, Sequence, Tuple, Union
 
 import msgspec.msgpack
 
@@ -20,52 +20,78 @@ Request = Tuple[str, str, str]
 Answer = Union[Look, str]
 
 
-def read_looks(requests: Sequence[Request]) -> List[Answer]:
-    """By one process for all of them: what it needs to read is most of the work."""
+class Reader:
+    """Starts the processes that read, each for all that is asked at once."""
+
+    def __init__(self):
+        self._ready: Optional[Popen] = None
+
+    def prepare(self) -> None:
+        """Starts that of the next reading: what it imports is most of its work, and can be done in time."""
+        self._ready = _start()
+
+    def rest(self) -> None:
+        """Nothing is to be read soon."""
+        if self._ready is not None:
+            self._ready.kill()
+            self._ready.communicate()
+            self._ready = None
+
+    def read_aside(self, requests: Sequence[Request], take: Callable[[List[Answer]], None]) -> None:
+        """Reads in a thread, which gives ``take`` the answers."""
+        process, self._ready = self._ready, None
+        threading.Thread(target=lambda: take(read_looks(requests, process)), daemon=True).start()
+
+
+def read_looks(requests: Sequence[Request], process: Optional[Popen] = None) -> List[Answer]:
+    """By one process for all of them: that which is given, or a new one."""
+    process = process or _start()
     try:
-        done = subprocess.run(
-            ["nice", "-n", NICENESS, sys.executable, "-m", __name__],
-            input=msgspec.msgpack.encode(requests),
-            capture_output=True,
-            timeout=READING_SECONDS,
-        )
-    except subprocess.TimeoutExpired:
+        told, complaint = process.communicate(msgspec.msgpack.encode(requests), READING_SECONDS)
+    except TimeoutExpired:
+        process.kill()
+        process.communicate()
         return [f"was not read within {READING_SECONDS:g} s"] * len(requests)
-    if done.returncode == 0:
-        answers = msgspec.msgpack.decode(done.stdout)
+    if process.returncode == 0:
+        answers = msgspec.msgpack.decode(told)
         return [Look.from_bytes(answer) if isinstance(answer, bytes) else answer for answer in answers]
     if len(requests) > 1:  # one of them has ended it
         return [answer for request in requests for answer in read_looks([request])]
-    lines = done.stderr.decode(errors="replace").strip().splitlines()
+    lines = complaint.decode(errors="replace").strip().splitlines()
     return [lines[-1] if lines else "could not be read"]
 
 
-def read_aside(requests: Sequence[Request], take: Callable[[List[Answer]], None]) -> None:
-    """Reads in a thread, which gives ``take`` the answers."""
-    threading.Thread(target=lambda: take(read_looks(requests)), daemon=True).start()
+def _start() -> Popen:
+    command = ["nice", "-n", NICENESS, sys.executable, "-m", __name__]
+    return Popen(command, stdin=PIPE, stdout=PIPE, stderr=PIPE)
 
 
 def main() -> None:
+    read = _reading()
     requests = msgspec.msgpack.decode(sys.stdin.buffer.read(), type=List[Request])
-    answers = [_read(*request) for request in requests]
+    answers = [read(*request) for request in requests]
     sys.stdout.buffer.write(msgspec.msgpack.encode(answers))
 
 
-def _read(kind: str, name: str, text: str) -> Union[bytes, str]:
+def _reading() -> Callable[[str, str, str], Union[bytes, str]]:
+    """What reads a request; only the process that reads imports what that takes."""
     from cockpit.scene.reading import model_look, robot_look, world_look
     from planar import PlanarError
     from sim_bridge.ros.describing import find_file, model_folders
 
-    try:
-        if kind == WORLD:
-            look = world_look(Path(name), model_folders())
-        elif kind == ROBOT:
-            look = robot_look(text, find_file)
-        else:
-            look = model_look(text, name, model_folders(), find_file)
-    except PlanarError as error:
-        return str(error)
-    return look.to_bytes()
+    def read(kind: str, name: str, text: str) -> Union[bytes, str]:
+        try:
+            if kind == WORLD:
+                look = world_look(Path(name), model_folders())
+            elif kind == ROBOT:
+                look = robot_look(text, find_file)
+            else:
+                look = model_look(text, name, model_folders(), find_file)
+        except PlanarError as error:
+            return str(error)
+        return look.to_bytes()
+
+    return read
 
 
 if __name__ == "__main__":

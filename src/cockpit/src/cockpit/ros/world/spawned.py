@@ -6,7 +6,7 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 from cockpit.frames import told_pose
 from cockpit.page.world_view import WorldView
 from cockpit.ros.graph import Feed, Graph
-from cockpit.ros.world.looks import MODEL, Answer, Request, read_aside
+from cockpit.ros.world.looks import MODEL, Answer, Reader, Request
 from cockpit.scene.look import Look
 
 TYPE = "sim_bridge_msgs/SpawnedModels"
@@ -15,8 +15,8 @@ TYPE = "sim_bridge_msgs/SpawnedModels"
 class Spawned:
     """Shows them in the ``view``, where they were put."""
 
-    def __init__(self, graph: Graph, view: WorldView, tell: Callable[[str], None]):
-        self._graph, self._view, self._tell = graph, view, tell
+    def __init__(self, graph: Graph, view: WorldView, reader: Reader, tell: Callable[[str], None]):
+        self._graph, self._view, self._reader, self._tell = graph, view, reader, tell
         self._feed: Optional[Feed] = None
         self._models: Dict[str, Any] = {}
         self._arrived: List[Tuple[List[Any], List[Answer]]] = []
@@ -52,7 +52,7 @@ class Spawned:
         self._models = models
         if new:
             requests: List[Request] = [(MODEL, model.name, model.xml) for model in new]
-            read_aside(requests, lambda answers: self._arrived.append((new, answers)))
+            self._reader.read_aside(requests, lambda answers: self._arrived.append((new, answers)))
 
     def _show(self, model: Any, answer: Answer) -> None:
         pose = told_pose(model.pose.position, model.pose.orientation)

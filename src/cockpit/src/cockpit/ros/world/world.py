@@ -10,7 +10,7 @@ from cockpit.errors import CockpitError
 from cockpit.frames import FrameTree, told_pose
 from cockpit.page.world_view import RobotView, WorldView
 from cockpit.ros.graph import Feed, Graph
-from cockpit.ros.world.looks import ROBOT, WORLD, Answer, Request, read_aside
+from cockpit.ros.world.looks import ROBOT, WORLD, Answer, Reader, Request
 from cockpit.ros.world.spawned import Spawned
 from cockpit.scene.look import Look
 
@@ -25,14 +25,14 @@ LINK_STATES = "/gazebo/link_states"
 class World:
     """Looks for worlds and robots, and draws them once they have been read."""
 
-    def __init__(self, graph: Graph, scene, tell: Callable[[str], None]):
-        self._graph, self._scene, self._tell = graph, scene, tell
+    def __init__(self, graph: Graph, scene, reader: Reader, tell: Callable[[str], None]):
+        self._graph, self._scene, self._reader, self._tell = graph, scene, reader, tell
         self.view = WorldView(scene)
         self.robots: Dict[str, RobotView] = {}
         self._asked: Set[str] = set()
         self._arrived: List[Callable[[], None]] = []
         self._states: Optional[Feed] = None
-        self._spawned = Spawned(graph, self.view, tell)
+        self._spawned = Spawned(graph, self.view, reader, tell)
 
     def look_for(self) -> None:
         """Reads, in the background, what has come since the last call. Raises CockpitError."""
@@ -44,6 +44,7 @@ class World:
             if name.rpartition("/")[2] == DESCRIPTION
         ]
         self._read([*worlds, *robots])
+        self._reader.rest()
         self._spawned.look_for()
 
     def update(self, frames: FrameTree, fixed: str, shows_world: bool, shows_robots: bool) -> None:
@@ -100,7 +101,7 @@ class World:
                 else:
                     self._tell(f"{name}: {answer}")
 
-        read_aside(requests, take)
+        self._reader.read_aside(requests, take)
 
     def _show_world(self, look: Look) -> None:
         self.view.show(look)
