@@ -1,17 +1,17 @@
 """What the guards of all seams share: other people's code gets the blame for what goes wrong in it."""
 
 import math
-import time
 from contextlib import contextmanager
 from typing import Callable, Generic, Iterator, Optional, Type, TypeVar
 
 import numpy as np
 
 from move_base_lite.errors import NavigationError, PluginFailed
+from move_base_lite.own_time import Stopwatch
 from planar import Twist2
 
 T = TypeVar("T")
-# Seconds that an answer may take; the first one may take longer, as kernels are compiled in it.
+# Seconds of its own that an answer may take; the first may take longer, as kernels are compiled in it.
 LONGEST = 1.0
 
 
@@ -32,7 +32,7 @@ class Guard(Generic[T]):
     def watch(self, *lent: np.ndarray) -> Iterator[T]:
         """Around a call of the object; what is ``lent`` to it is given back as it was."""
         before = [array.tobytes() for array in lent]
-        begun = time.perf_counter()
+        watch = Stopwatch()
         try:
             if self._made is None:
                 self._made = self._make()
@@ -47,7 +47,7 @@ class Guard(Generic[T]):
                 if array.tobytes() != content:
                     array[...] = np.frombuffer(content, array.dtype).reshape(array.shape)
                     is_changed = True
-        took, self._has_answered, is_first = time.perf_counter() - begun, True, not self._has_answered
+        took, self._has_answered, is_first = watch.seconds(), True, not self._has_answered
         if is_changed:
             raise self.fail("changed what it was given to read")
         if took > LONGEST and not is_first:

@@ -1,0 +1,79 @@
+"""A plugin is not blamed for a machine that is busy with other things."""
+
+import os
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from move_base_lite import own_time
+from move_base_lite.errors import PluginFailed
+from move_base_lite.guarding import LONGEST, Guard
+from move_base_lite.own_time import FRESH, Stopwatch
+
+SPINNING = "while True: pass"
+
+
+@pytest.fixture
+def crowded():
+    """One processor alone, with five others that never let go of it."""
+    before = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {min(before)})
+    others = [subprocess.Popen([sys.executable, "-c", SPINNING]) for _ in range(5)]
+    yield
+    for other in others:
+        other.kill()
+        other.wait()
+    os.sched_setaffinity(0, before)
+
+
+def work(seconds):
+    """Of a processor's time."""
+    end = time.thread_time() + seconds
+    while time.thread_time() < end:
+        pass
+
+
+def test_a_plugin_that_has_to_wait_for_a_processor_is_not_blamed(crowded):
+    guard = Guard("busy/Planner", lambda: work, PluginFailed)
+    began = time.perf_counter()
+    for seconds in (0.0, 0.5):
+        with guard.watch() as plugin:
+            plugin(seconds)
+    assert time.perf_counter() - began > LONGEST, "it was kept waiting"
+
+
+def test_one_that_sleeps_is():
+    guard = Guard("idle/Planner", lambda: time.sleep, PluginFailed)
+    with guard.watch() as plugin:
+        plugin(0.0)
+    told = r"idle/Planner took 1\.\d s for an answer"
+    with pytest.raises(PluginFailed, match=told), guard.watch() as plugin:
+        plugin(LONGEST + 0.1)
+
+
+def test_each_thread_has_its_own_time(crowded):
+    waited = []
+
+    def measure():
+        began, watch = time.perf_counter(), Stopwatch()
+        work(0.1)
+        waited.append((time.perf_counter() - began) - watch.seconds())
+
+    threads = [threading.Thread(target=measure) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert min(waited) > 0.05
+
+
+def test_where_the_system_tells_nothing_of_it_time_passes_all_the_same(monkeypatch):
+    monkeypatch.setattr(own_time, "STATISTICS", Path("/nowhere/schedstat"))
+    monkeypatch.setattr(own_time, "_thread", own_time._Thread())
+    watch = Stopwatch()
+    time.sleep(2.0 * FRESH)
+    assert watch.seconds() >= 2.0 * FRESH
