@@ -1,7 +1,9 @@
 """What the map is like around the robot, as a picture."""
 
+import math
 from typing import Any, Optional
 
+import numba
 import numpy as np
 from gymnasium import spaces
 
@@ -22,14 +24,34 @@ def map_around(grid: OccupancyGrid, base: Pose2, known: Optional[np.ndarray] = N
 
     ``known``: which of its cells, bool (rows, cols), are shown; None: all.
     """
-    ticks = (np.arange(SIDE) - (SIDE - 1) / 2.0) * CELL
-    x, y = np.meshgrid(ticks, ticks[::-1])
-    points_xy = base.transform_points(np.column_stack((x.ravel(), y.ravel())))
-    cells = grid.cells_of(points_xy)
-    inside = grid.contains(cells)
-    rows, cols = cells[inside].T
-    found = grid.cells[rows, cols]
-    values = np.select((found == OCCUPIED, found == FREE), (SOLID, OPEN), NOTHING)
-    picture = np.full(SIDE * SIDE, NOTHING, dtype=np.uint8)
-    picture[inside] = values if known is None else np.where(known[rows, cols], values, NOTHING)
-    return picture.reshape(SIDE, SIDE)
+    place = grid.origin.inverse() @ base
+    shown = np.empty((0, 0), dtype=np.bool_) if known is None else known
+    return _draw(
+        grid.cells,
+        shown,
+        place.x / grid.resolution,
+        place.y / grid.resolution,
+        place.yaw,
+        CELL / grid.resolution,
+    )
+
+
+@numba.njit(cache=True)
+def _draw(cells, known, x, y, yaw, step):
+    """``x``, ``y``: of the robot, and ``step``, between the picture's cells, all in cells of the grid."""
+    rows, cols = cells.shape
+    picture = np.full((SIDE, SIDE), NOTHING, dtype=np.uint8)
+    ahead_x, ahead_y = math.cos(yaw) * step, math.sin(yaw) * step
+    middle = (SIDE - 1) / 2.0
+    for down in range(SIDE):
+        left = middle - down
+        for right in range(SIDE):
+            ahead = right - middle
+            row = math.floor(y + ahead * ahead_y + left * ahead_x)
+            col = math.floor(x + ahead * ahead_x - left * ahead_y)
+            if 0 <= row < rows and 0 <= col < cols and (known.size == 0 or known[row, col]):
+                if cells[row, col] == OCCUPIED:
+                    picture[down, right] = SOLID
+                elif cells[row, col] == FREE:
+                    picture[down, right] = OPEN
+    return picture
