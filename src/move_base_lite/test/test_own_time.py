@@ -71,6 +71,21 @@ def test_each_thread_has_its_own_time(crowded):
     assert min(waited) > 0.05
 
 
+def test_a_forked_process_has_its_own_time(crowded):
+    """It begins to wait at nothing, however long its parent has waited just before."""
+    work(0.3)
+    Stopwatch()
+    reader, writer = os.pipe()
+    child = os.fork()
+    if child == 0:
+        began, watch = time.perf_counter(), Stopwatch()
+        work(0.1)
+        os.write(writer, repr(watch.seconds() / (time.perf_counter() - began)).encode())
+        os._exit(0)
+    os.waitpid(child, 0)
+    assert float(os.read(reader, 99)) < 0.9, "what it waited itself does not count"
+
+
 def test_where_the_system_tells_nothing_of_it_time_passes_all_the_same(monkeypatch):
     monkeypatch.setattr(own_time, "STATISTICS", Path("/nowhere/schedstat"))
     monkeypatch.setattr(own_time, "_thread", own_time._Thread())

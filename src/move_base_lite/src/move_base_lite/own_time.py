@@ -13,16 +13,25 @@ FRESH = 0.1
 
 
 class _Thread(threading.local):
-    """What Linux tells of this thread; a forked process has threads of its own."""
+    """What Linux tells of this thread."""
 
-    process: int = -1
     statistics: Optional[BinaryIO] = None
+    is_opened: bool = False
     # When it was last asked, and what it told: seconds that the thread was kept waiting by then.
     asked_at: float = -FRESH
     waited: float = 0.0
 
 
 _thread = _Thread()
+
+
+def _forget() -> None:
+    """A forked process has threads of its own, which have waited for nothing yet."""
+    global _thread
+    _thread = _Thread()
+
+
+os.register_at_fork(after_in_child=_forget)
 
 
 class Stopwatch:
@@ -43,8 +52,8 @@ class Stopwatch:
 
 
 def _seconds_kept_waiting() -> float:
-    if _thread.process != os.getpid():
-        _thread.process, _thread.statistics = os.getpid(), _opened()
+    if not _thread.is_opened:
+        _thread.statistics, _thread.is_opened = _opened(), True
     if _thread.statistics is None:
         return 0.0
     return int(os.pread(_thread.statistics.fileno(), 80, 0).split()[1]) * 1e-9
