@@ -22,6 +22,8 @@ START_SECONDS, EXIT_SECONDS = 60.0, 20.0
 # what is left then, nothing is after so many.
 STARTS, STARTING_SECONDS, LEFT_SECONDS = 12, (0.0, 2.5), 5.0
 ROSLAUNCH, MOVE_BASE = "/roslaunch --port", "__name:=move_base"
+# Interrupted so many seconds after the process has been started which looks after roslaunch.
+GUARD, GUARDING_SECONDS = "-m supervision.guard", (0.0, 0.03)
 
 
 class InterruptTest(unittest.TestCase):
@@ -33,6 +35,13 @@ class InterruptTest(unittest.TestCase):
             print(f"interrupted after {moment} s: exit code {code}, {len(left)} processes left")
             self.assertNotEqual(code, 0)
             self.assertEqual(left, [], f"interrupted after {moment} s")
+
+    def test_a_run_that_is_interrupted_as_it_starts_its_nodes_leaves_nothing(self):
+        moments = random.Random(21)
+        for _ in range(STARTS):
+            mark, moment = f"HOME_SERVICE_TEST={uuid.uuid4()}", moments.uniform(*GUARDING_SECONDS)
+            self.assertEqual(self._interrupted_run(moment, mark, signal.SIGINT, GUARD), 130)
+            self.assertEqual(processes_with(mark), [], f"interrupted {moment:.3f} s after the guard of nodes")
 
     def test_what_a_person_is_meant_to_end_ends_well(self):
         mark = f"HOME_SERVICE_TEST={uuid.uuid4()}"

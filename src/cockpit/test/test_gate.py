@@ -271,13 +271,22 @@ def test_so_many_connections_that_files_are_left_for_ros():
         stack.callback(server.wait)
         stack.callback(server.kill)
         port = int(server.stdout.readline())
+        held = psutil.Process(server.pid)
+        most, deadline = 0, time.monotonic() + DEADLINE
+        while most <= FEW_FILES // 2:  # who says nothing is shown out, on a busy machine before all are in
+            assert time.monotonic() < deadline
+            most = max(most, _most_files(held, port))
+        assert most < 0.75 * FEW_FILES
+
+
+def _most_files(held, port):
+    """So many are open at the server's while ever more connect to it."""
+    most = 0
+    with contextlib.ExitStack() as stack:
         for _ in range(FEW_FILES):
             stack.enter_context(socket.create_connection(("127.0.0.1", port), DEADLINE))
-        held = psutil.Process(server.pid)
-        wait_until(lambda: held.num_fds() > FEW_FILES // 2)
-        for _ in range(20):
-            assert held.num_fds() < 0.75 * FEW_FILES
-            time.sleep(0.05)
+            most = max(most, held.num_fds())
+    return most
 
 
 def test_it_listens_on_the_loopback_alone(port):

@@ -1,3 +1,5 @@
+import subprocess
+import sys
 from types import SimpleNamespace
 
 import pytest
@@ -6,6 +8,32 @@ from supervision.deaths import NodeFailure
 from supervision.errors import LaunchError
 from supervision.ros import supervisor
 from supervision.ros.supervisor import Supervisor
+
+# Ctrl-C is heard in the midst of the start: there is a process, but nobody has been told of it.
+INTERRUPTED = """
+import subprocess, sys
+from pathlib import Path
+from types import SimpleNamespace
+import psutil
+from supervision.interruption import RunInterruptedError
+from supervision.ros import graph
+from supervision.ros.supervisor import Supervisor
+
+def interrupted(_command, popen=subprocess.Popen, **_options):
+    popen([sys.executable, "-c", "import time; time.sleep(60.0)"])
+    raise RunInterruptedError
+
+graph.shutil.which = lambda name: name
+graph.subprocess.Popen = interrupted
+supervisor = Supervisor(SimpleNamespace(), Path(sys.argv[1]), 60.0)
+try:
+    supervisor.start("home_service", "world.launch", {})
+except RunInterruptedError:
+    print("interrupted with", len(psutil.Process().children()))
+supervisor.end()
+ended = psutil.STATUS_ZOMBIE
+print("ended with", sum(child.status() != ended for child in psutil.Process().children()))
+"""
 
 
 @pytest.fixture
@@ -16,9 +44,13 @@ def graph(monkeypatch):
     return graph
 
 
-def supervised(tmp_path, time_limit=60.0):
+def a_supervisor(tmp_path, time_limit=60.0):
     display = SimpleNamespace(show=lambda status: None, say=lambda text: None)
-    watcher = Supervisor(display, tmp_path, time_limit)
+    return Supervisor(display, tmp_path, time_limit)
+
+
+def supervised(tmp_path, time_limit=60.0):
+    watcher = a_supervisor(tmp_path, time_limit)
     watcher.start("home_service", "world.launch", {})
     return watcher
 
@@ -57,3 +89,9 @@ def test_how_roslaunch_was_killed_is_told(graph, tmp_path):
     graph.is_running, graph.how_it_ended = False, "was ended by SIGKILL"
     reason = supervised(tmp_path).watch(lambda: False, str)
     assert reason == f"roslaunch was ended by SIGKILL, see {tmp_path}"
+
+
+def test_a_graph_whose_start_is_interrupted_ends_too(tmp_path):
+    command = [sys.executable, "-c", INTERRUPTED, str(tmp_path)]
+    told = subprocess.run(command, stdout=subprocess.PIPE, text=True)
+    assert told.stdout.splitlines() == ["interrupted with 1", "ended with 0"]

@@ -74,12 +74,13 @@ def server_is_ready(client: actionlib.SimpleActionClient) -> bool:
     Unlike wait_for_server it answers at once, also while simulated time stands still.
     """
     inner = client.action_client
-    return (
-        inner.last_status_msg is not None
-        and inner.pub_goal.get_num_connections() > 0
-        and inner.pub_cancel.get_num_connections() > 0
-        and inner.result_sub.get_num_connections() > 0
-    )
+    if inner.last_status_msg is None:
+        return False
+    # Others may listen to goals, too, as a recorder of bags does.
+    server = inner.last_status_msg._connection_header["callerid"]
+    publishers = (inner.pub_goal, inner.pub_cancel)
+    hears = all(publisher.impl.has_connection(server) for publisher in publishers)
+    return hears and inner.result_sub.get_num_connections() > 0
 
 
 def goal_is_over(client: actionlib.SimpleActionClient) -> bool:

@@ -4,17 +4,15 @@ import socket
 import time
 from contextlib import suppress
 from typing import List
-from urllib.parse import urlsplit
 
 import genpy
-import rosgraph
 import rospy
 
+from planar_ros.node.listeners import listeners_of
 from planar_ros.step import transport
 
 PATIENCE_SECONDS = 3.0
 POLL_SECONDS = 0.01
-CONNECT_SECONDS = 0.5
 
 
 def wait_until_heard(*publishers: rospy.Publisher, patience: float = PATIENCE_SECONDS) -> None:
@@ -27,7 +25,7 @@ def wait_until_heard(*publishers: rospy.Publisher, patience: float = PATIENCE_SE
     deadline = time.monotonic() + patience
     transport.flush()  # what a node in step keeps until the moment's answer
     for publisher in publishers:
-        expected = _listeners(publisher.resolved_name)
+        expected = listeners_of(publisher.resolved_name)
         while publisher.get_num_connections() < expected and time.monotonic() < deadline:
             time.sleep(POLL_SECONDS)
     sockets = [each for publisher in publishers for each in _flushed(publisher, deadline)]
@@ -46,24 +44,6 @@ def say_at_end(publisher: rospy.Publisher, message: genpy.Message) -> None:
         wait_until_heard(publisher)
 
     rospy.on_shutdown(say)
-
-
-def _listeners(topic: str) -> int:
-    """How many nodes listen to a topic."""
-    master = rosgraph.Master(rospy.get_name())
-    with suppress(OSError, rosgraph.MasterException):
-        subscribers = dict(master.getSystemState()[1]).get(topic, ())
-        return sum(_is_there(master, name) for name in set(subscribers) - {rospy.get_name()})
-    return 0
-
-
-def _is_there(master: rosgraph.Master, node: str) -> bool:
-    """The master also knows nodes that were killed."""
-    with suppress(OSError, rosgraph.MasterException):
-        address = urlsplit(master.lookupNode(node))
-        with socket.create_connection((address.hostname, address.port), CONNECT_SECONDS):
-            return True
-    return False
 
 
 def _flushed(publisher: rospy.Publisher, deadline: float) -> List[socket.socket]:

@@ -8,10 +8,13 @@ from supervision.deaths import Restart
 from supervision.display import Display
 from supervision.errors import LaunchError
 from supervision.interruption import raise_if_interrupted
+from supervision.processes import end_descendants
 from supervision.ros.graph import RosGraph
 
 POLL_SECONDS = 0.05
 BRING_UP_SECONDS = 60.0
+# Within which what has hardly been started ends when it is asked to.
+START_SECONDS = 2.0
 
 
 class Supervisor:
@@ -59,9 +62,11 @@ class Supervisor:
         return None
 
     def end(self) -> None:
-        """Ends every process of the graph."""
+        """Ends every process of the graph, also of one whose start was interrupted."""
         if self._graph is not None:
             self._graph.close()
+        else:
+            end_descendants(START_SECONDS)
 
     @property
     def log_gap(self) -> Optional[str]:

@@ -30,6 +30,7 @@ from planar_ros.calls.move_base import MoveBase
 from planar_ros.calls.services import call_service
 from planar_ros.messages.conversion import pose2_to_msg
 from planar_ros.messages.transforms import Transforms
+from planar_ros.node.listeners import is_heard
 
 POLL_SECONDS = 0.05
 # Variances of a pose given by hand: m^2, m^2, rad^2 (as rviz gives them).
@@ -161,9 +162,7 @@ class Commander:
         message.pose.covariance = covariance
         deadline = time.monotonic() + timeout
         topic = rospy.resolve_name("initialpose")
-        self._wait_until(
-            lambda: self._initial_pose.get_num_connections() > 0, deadline, f"nobody hears {topic}"
-        )
+        self._wait_until(lambda: is_heard(self._initial_pose), deadline, f"nobody hears {topic}")
         self._initial_pose.publish(message)
         told = f"the localization does not take up the pose told on {topic}"
         self._wait_until(lambda: self._believes(Pose2(x, y, yaw)), deadline, told)

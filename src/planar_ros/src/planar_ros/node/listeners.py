@@ -1,0 +1,34 @@
+"""Who listens to a topic."""
+
+import socket
+from contextlib import suppress
+from urllib.parse import urlsplit
+
+import rosgraph
+import rospy
+
+CONNECT_SECONDS = 0.5
+
+
+def is_heard(publisher: rospy.Publisher) -> bool:
+    """Whether somebody hears what is published now, and nobody who listens would miss it."""
+    connections = publisher.get_num_connections()
+    return connections > 0 and connections >= listeners_of(publisher.resolved_name)
+
+
+def listeners_of(topic: str) -> int:
+    """How many nodes listen to a topic."""
+    master = rosgraph.Master(rospy.get_name())
+    with suppress(OSError, rosgraph.MasterException):
+        subscribers = dict(master.getSystemState()[1]).get(topic, ())
+        return sum(_is_there(master, name) for name in set(subscribers) - {rospy.get_name()})
+    return 0
+
+
+def _is_there(master: rosgraph.Master, node: str) -> bool:
+    """The master also knows nodes that were killed."""
+    with suppress(OSError, rosgraph.MasterException):
+        address = urlsplit(master.lookupNode(node))
+        with socket.create_connection((address.hostname, address.port), CONNECT_SECONDS):
+            return True
+    return False
