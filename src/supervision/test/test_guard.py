@@ -82,11 +82,10 @@ def test_nothing_outlives_who_is_killed_at_any_moment(mark):
 
 
 def test_a_guard_that_is_asked_to_end_interrupts_its_command_first(mark, tmp_path):
-    told = tmp_path / "told"
-    hearing = f"trap 'echo INT > {told}; exit 3' INT; while true; do sleep 0.05; done"
+    told, ready = tmp_path / "told", tmp_path / "ready"
+    hearing = f"trap 'echo INT > {told}; exit 3' INT; touch {ready}; while true; do sleep 0.05; done"
     starter = start(mark, "bash", "-c", hearing)
-    seconds_until(lambda: len(processes_of(mark)) >= 3, START_SECONDS)
-    time.sleep(0.2)
+    seconds_until(ready.exists, START_SECONDS)
     guard = psutil.Process(starter.pid).children()[0]
     guard.terminate()
     assert starter.wait(LEFT_SECONDS) == 3
