@@ -44,13 +44,9 @@ def graph(monkeypatch):
     return graph
 
 
-def a_supervisor(tmp_path, time_limit=60.0):
-    display = SimpleNamespace(show=lambda status: None, say=lambda text: None)
-    return Supervisor(display, tmp_path, time_limit)
-
-
 def supervised(tmp_path, time_limit=60.0):
-    watcher = a_supervisor(tmp_path, time_limit)
+    display = SimpleNamespace(show=lambda status: None, say=lambda text: None)
+    watcher = Supervisor(display, tmp_path, time_limit)
     watcher.start("home_service", "world.launch", {})
     return watcher
 

@@ -18,7 +18,7 @@ from supervision.forked import end_as
 from supervision.interruption import SIGNALS
 from supervision.processes import adopt_orphans, end_descendants, end_when_orphaned, ending_with_parent
 
-SIGINT_SECONDS, SIGTERM_SECONDS = 2.0, 2.0
+SIGINT_SECONDS = 2.0
 
 
 def guarded(command: List[str], patience: float = SIGINT_SECONDS) -> List[str]:
@@ -59,7 +59,7 @@ def main() -> NoReturn:
     )
     end_when_orphaned(int(parent), signal.SIGTERM)
     process.wait()
-    end_descendants(SIGTERM_SECONDS)
+    end_descendants()
     end_as(process.returncode)
 
 

@@ -10,6 +10,8 @@ from typing import Callable, List
 import psutil
 
 PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
+# Within which a process ends when it is asked to.
+SIGTERM_SECONDS = 2.0
 
 
 def start_of_this_process() -> float:
@@ -44,7 +46,7 @@ def end_when_orphaned(parent: int, number: int) -> None:
         os.kill(os.getpid(), number)
 
 
-def end_descendants(patience: float) -> None:
+def end_descendants(patience: float = SIGTERM_SECONDS) -> None:
     """Terminates and, after ``patience`` seconds, kills every descendant of this process, however deep."""
     deadline = time.monotonic() + patience
     descendants = _living_descendants()

@@ -16,11 +16,10 @@ from supervision.deaths import Deaths, end_in_words
 from supervision.errors import LaunchError
 from supervision.guard import guarded, ignore_ctrl_c
 from supervision.ports import free_port
-from supervision.processes import adopt_orphans, end_descendants
+from supervision.processes import SIGTERM_SECONDS, adopt_orphans, end_descendants
 
 SIGINT_SECONDS = 8.0
 HEARING_SECONDS = 2.0
-SIGTERM_SECONDS = 2.0
 CORE = ("roslaunch", "rosmaster", "rosout")
 CORE_SECONDS = 0.1
 POLL_SECONDS = 0.02

@@ -13,8 +13,6 @@ from supervision.ros.graph import RosGraph
 
 POLL_SECONDS = 0.05
 BRING_UP_SECONDS = 60.0
-# Within which what has hardly been started ends when it is asked to.
-START_SECONDS = 2.0
 
 
 class Supervisor:
@@ -66,7 +64,7 @@ class Supervisor:
         if self._graph is not None:
             self._graph.close()
         else:
-            end_descendants(START_SECONDS)
+            end_descendants()
 
     @property
     def log_gap(self) -> Optional[str]:
