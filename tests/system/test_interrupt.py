@@ -3,6 +3,7 @@
 
 import os
 import random
+import shutil
 import signal
 import subprocess
 import tempfile
@@ -90,18 +91,19 @@ class InterruptTest(unittest.TestCase):
     def _interrupted_run(self, moment, mark, number=signal.SIGINT, after=SCRIPT.name):
         """The exit code; ``moment``: wall seconds after there is a process with ``after`` in its command."""
         name, value = mark.split("=")
-        with tempfile.TemporaryDirectory() as folder:
-            run = subprocess.Popen(
-                [str(SCRIPT), "--speed", "1", "--output", folder],
-                env={**os.environ, name: value},
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
-            )
-            wait_until(after, lambda: _is_there(after, mark), START_SECONDS)
-            time.sleep(moment)
-            run.send_signal(number)
-            return run.wait(EXIT_SECONDS)
+        folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, folder, ignore_errors=True)  # later: who ends may still write there
+        run = subprocess.Popen(
+            [str(SCRIPT), "--speed", "1", "--output", folder],
+            env={**os.environ, name: value},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        wait_until(after, lambda: _is_there(after, mark), START_SECONDS)
+        time.sleep(moment)
+        run.send_signal(number)
+        return run.wait(EXIT_SECONDS)
 
 
 def _is_there(part, mark):
