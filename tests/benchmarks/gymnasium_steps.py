@@ -23,6 +23,7 @@ import gymnasium
 
 import home_service_gym
 from sim_bridge import Simulation
+from sim_bridge.driving.base import BASE_RATE
 from sim_bridge.simulation import ROBOT_NAME
 
 BLOCKS, PERIODS, RESETS, SECONDS = 15, 100, 30, 8.0
@@ -104,7 +105,7 @@ def play(env: gymnasium.Env, actions: List[Any]) -> int:
 
 @contextlib.contextmanager
 def motors_of(simulation: Simulation) -> Iterator[List[Tuple[float, float]]]:
-    """Keeps what the motors are set to before each step of physics."""
+    """Keeps what the motors are set to each time."""
     vehicle = simulation.scene.robot(ROBOT_NAME).vehicle
     speeds: List[Tuple[float, float]] = []
     drive = vehicle.drive
@@ -118,11 +119,13 @@ def motors_of(simulation: Simulation) -> Iterator[List[Tuple[float, float]]]:
 
 
 def replay(simulation: Simulation, speeds: List[Tuple[float, float]]) -> None:
-    """The same steps of physics without all else."""
+    """The same steps of physics, one by one, without all else."""
     engine, vehicle = simulation.scene._engine, simulation.scene.robot(ROBOT_NAME).vehicle
+    count = simulation.scene.settings.physics_rate // BASE_RATE
     for left, right in speeds:
         vehicle.drive(left, right)
-        engine.step()
+        for _ in range(count):
+            engine.step()
 
 
 def cpu_seconds(do: Callable[[], object]) -> float:

@@ -1,7 +1,9 @@
 """Every environment keeps Gymnasium's contract and repeats itself; each task ends as it should."""
 
 import functools
+import math
 import warnings
+from dataclasses import replace
 
 import gymnasium
 import numpy as np
@@ -10,8 +12,9 @@ from gymnasium.utils.env_checker import check_env, data_equivalence
 
 import home_service_gym
 from home_service_gym.environments import Barn, Dynabarn, Explore, Follow, HomeService, PointGoal
+from home_service_gym.maps.discovery import Discovery
 from home_service_gym.turtlebot3_stage import WALKS, TurtleBot3Stage
-from planar import Pose2, SettingsError
+from planar import FREE, OCCUPIED, Pose2, Scan, SettingsError, grid_from_picture
 
 VARIANTS = [
     *((name, {}) for name in home_service_gym.NAMES),
@@ -107,6 +110,31 @@ def test_a_goal_in_the_same_room_is_reached_and_worth_its_way():
     reached = [total for total, outcome in outcomes if outcome == "success"]
     assert reached and min(reached) > 9.0
     assert any(outcome == "collision" and total < 0.0 for total, outcome in outcomes)
+
+
+def test_what_a_beam_has_reached_is_known_and_what_lies_behind_is_not():
+    grid = grid_from_picture("..........\n....#.....\n..........\n..........", 0.1)
+    angles, ranges = (-0.25, 0.0, 0.25, 1.5), np.array([0.62, 0.62, np.inf, 0.1], dtype=np.float32)
+    discovery, base = Discovery(grid), Pose2(0.05, 0.15)
+    scan = Scan(0.0, angles[0], 0.25, ranges[:3], 0.0, 3.0)
+    news = discovery.see(base, scan) + discovery.see(
+        base, replace(scan, angle_min=angles[3], ranges=ranges[3:])
+    )
+    known = discovery.known
+    for angle, reach in zip(angles, (7.2, 7.2, 30.0, 2.0)):
+        for along in np.arange(0.0, reach, 0.01):
+            row, col = math.floor(1.5 + along * math.sin(angle)), math.floor(0.5 + along * math.cos(angle))
+            if not (0 <= row < known.shape[0] and 0 <= col < known.shape[1]):
+                break
+            assert known[row, col]
+            if grid.cells[row, col] == OCCUPIED:
+                break
+    assert known[2, 4] and not known[2, 5], "a wall, and behind it"
+    assert known[1, 7] and not known[1, 9], "a cell beyond where the beam ends"
+    count = np.count_nonzero(known & (grid.cells == FREE))
+    assert news == pytest.approx(0.01 * count)
+    assert discovery.share == count / np.count_nonzero(grid.cells == FREE)
+    assert discovery.see(base, scan) == 0.0, "nothing is new"
 
 
 def along_the_way(env, goal):

@@ -6,7 +6,7 @@ import gymnasium
 import numpy as np
 import pytest
 
-from home_service_gym.around import NOTHING, OPEN, SIDE, SOLID, map_around
+from home_service_gym.maps.around import NOTHING, OPEN, SIDE, SOLID, MapAround
 from home_service_gym.surroundings import NOBODY, nearest_people
 from planar import Pose2, SettingsError, grid_from_picture
 
@@ -27,7 +27,7 @@ def test_the_map_around_is_turned_with_the_robot():
     corner = grid.points_of(np.array([[2, 0]]))[0]
     for yaw in (0.0, math.pi / 2.0):
         ahead = Pose2(*corner.tolist(), yaw) @ Pose2(-1.0, 0.0, 0.0)
-        picture = map_around(grid, ahead)
+        picture = MapAround(grid).seen_from(ahead)
         row, col = np.argwhere(picture == SOLID).mean(axis=0)
         assert row == pytest.approx(SIDE / 2, abs=1.0) and col > SIDE / 2
     assert {NOTHING, OPEN, SOLID} == set(np.unique(picture).tolist())

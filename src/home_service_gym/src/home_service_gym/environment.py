@@ -61,8 +61,9 @@ class TaskEnv(gymnasium.Env):
         self._playground: Optional[Playground] = None
         self._moment: Optional[Moment] = None
         lidar, drive = lidar_of(self._robot), self._robot.drive
-        self._most = np.array((drive.max_speed, drive.max_turn_rate))
-        fastest = 2.0 * self._most.astype(np.float32)
+        self._farthest = lidar.range_max
+        self._most_v, self._most_omega = drive.max_speed, drive.max_turn_rate
+        fastest = np.array((2.0 * drive.max_speed, 2.0 * drive.max_turn_rate), np.float32)
         self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
         self.observation_space = spaces.Dict(
             {
@@ -86,8 +87,8 @@ class TaskEnv(gymnasium.Env):
 
     def step(self, action: np.ndarray) -> Tuple[Dict[str, np.ndarray], float, bool, bool, Dict[str, Any]]:
         assert self._playground is not None, "reset comes before step"
-        v, omega = (_within(-1.0, action, 1.0) * self._most).tolist()
-        self._moment = self._playground.advance(Twist2(v, omega))
+        v, omega = (min(max(share, -1.0), 1.0) for share in np.asarray(action).tolist())  # NaN stays NaN
+        self._moment = self._playground.advance(Twist2(v * self._most_v, omega * self._most_omega))
         judgement = self._task.judge(self._moment)
         self._show_people()
         reward, outcome = judgement.reward, judgement.outcome
@@ -140,14 +141,9 @@ class TaskEnv(gymnasium.Env):
 
     def _observation(self) -> Dict[str, np.ndarray]:
         assert self._moment is not None
-        scan, twist = self._moment.scan, self._moment.twist
+        twist = self._moment.twist
         return {
-            "scan": _within(np.float32(0.0), scan.ranges, np.float32(scan.range_max)),
+            "scan": self._moment.ranges(self._farthest),
             "velocity": np.array((twist.v, twist.omega), dtype=np.float32),
             **self._task.observe(self._moment),
         }
-
-
-def _within(low: Any, values: np.ndarray, high: Any) -> np.ndarray:
-    """As np.clip, which takes three times as long for so little."""
-    return np.minimum(np.maximum(values, low), high)

@@ -31,6 +31,11 @@ class Moment:
     touched: Tuple[str, ...]
     people: np.ndarray
 
+    def ranges(self, most: float, each: int = 1) -> np.ndarray:
+        """What one beam of ``each`` tells, float32, from 0 to ``most`` m; np.clip takes thrice as long."""
+        told = np.maximum(self.scan.ranges[::each], np.float32(0.0))
+        return np.minimum(told, np.float32(most), out=told)
+
 
 class Playground:
     """``rate``: control periods a second, in each of which the lidar and odometry tell once."""

@@ -5,7 +5,7 @@ from typing import Any, Dict, Sequence
 import numpy as np
 from gymnasium import spaces
 
-from home_service_gym.around import map_around, map_space
+from home_service_gym.maps.around import MapAround, map_space
 from home_service_gym.playground import Moment, Playground
 from home_service_gym.task import FARTHEST_GOAL, Beginning, Judgement, Marks, Task
 from planar import Pose2, SettingsError
@@ -44,7 +44,7 @@ class Surroundings:
 
     def begin(self, playground: Playground, rng: np.random.Generator) -> Beginning:
         if self._has_map:
-            self._grid = playground.ground.grid
+            self._map = MapAround(playground.ground.grid)
         return self._task.begin(playground, rng)
 
     def observe(self, moment: Moment) -> Dict[str, np.ndarray]:
@@ -52,7 +52,7 @@ class Surroundings:
         if self._people:
             told["people"] = nearest_people(moment.people, moment.base_in_world, self._people)
         if self._has_map:
-            told["map"] = map_around(self._grid, moment.base_in_world)
+            told["map"] = self._map.seen_from(moment.base_in_world)
         return told
 
     def judge(self, moment: Moment) -> Judgement:

@@ -149,7 +149,7 @@ class TurtleBot3Stage(gymnasium.Env):
     def _observation(self) -> np.ndarray:
         assert self._moment is not None
         base, scan = self._moment.base_in_world, self._moment.scan
-        beams = np.clip(scan.ranges[:: len(scan.ranges) // BEAMS], np.float32(0.0), np.float32(3.5))
+        beams = self._moment.ranges(3.5, each=len(scan.ranges) // BEAMS)
         x, y = self._goal.x - base.x, self._goal.y - base.y
         told = [wrap(math.atan2(y, x) - base.yaw), min(math.hypot(x, y), 10.0)]
         if self._stage > 1:
