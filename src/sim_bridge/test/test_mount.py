@@ -42,3 +42,14 @@ def test_nothing_happens_before_the_next_step(schedule):
             next_step = seldom.next_step(step)
         assert next_step > step
         assert always.take() == seldom.take()
+
+
+@pytest.mark.parametrize(
+    "schedule, at_once",
+    [(Schedule(4), 4), (Schedule(20, 8), 4), (Schedule(20, 8, 6), 2), (Schedule(5, 2, 7), 1)],
+)
+def test_a_mount_needs_to_be_asked_only_after_a_multiple_of_some_steps(schedule, at_once):
+    mount = Mount(Counter(schedule), SimulationSettings())
+    assert mount.steps_at_once == at_once
+    steps = [step for step in range(60) if mount.next_step(step) % at_once]
+    assert steps == []

@@ -15,8 +15,8 @@ from sim_bridge.world import Body, Collision
 SQUARE = np.array([[1, -1, 1, 1], [1, 1, -1, 1], [-1, 1, -1, -1], [-1, -1, 1, -1]], dtype=float)
 
 
-def body(shape, pose, mass=None, name="m::l"):
-    return Body(name, pose, (Collision(shape, np.eye(4)),), mass)
+def body(shape, pose, mass=None, name="m::l", retro=0.0, **more):
+    return Body(name, pose, (Collision(shape, np.eye(4), retro=retro),), mass, **more)
 
 
 def ranges_at(section, count=4, sight=10.0, pose_of=None):
@@ -71,3 +71,25 @@ def test_a_thing_that_moves_is_seen_where_it_is():
     section.add(body(Box((1, 1, 1)), pose3(2.0, 0.0, 0.5), mass=1.0))
     assert ranges_at(section, pose_of=lambda name: pose3(2.0, 0.0, 0.5))[0] == pytest.approx(1.5)
     assert ranges_at(section, pose_of=lambda name: pose3(3.0, 0.0, 0.5))[0] == pytest.approx(2.5)
+
+
+def test_things_on_a_course_are_seen_where_they_are_and_as_bright_as_they_are():
+    section, places = Section(height=0.3), {"b::l": pose3(0.0, 4.0, 0.5), "c::l": pose3(-3.0, 0.0, 0.5)}
+    section.add(body(Box((1, 1, 1)), pose3(2.0, 0.0, 0.5), name="a::l", retro=1.0))
+    section.add(body(Box((1, 1, 1)), pose3(9.0, 9.0, 0.5), name="b::l", retro=2.0, is_on_course=True))
+    section.add(body(Box((1, 1, 1)), pose3(9.0, 0.0, 0.5), name="c::l", retro=3.0, is_on_course=True))
+    section.add(body(Box((1, 1, 1)), pose3(0.0, -5.0, 0.5), name="d::l", retro=4.0, mass=1.0))
+    places["d::l"] = pose3(0.0, -5.0, 0.5)
+    ranges, nearest = cast_beams(section.segments(places.get), 0.0, 0.0, 0.0, math.pi / 2.0, 4, 10.0)
+    assert ranges == pytest.approx([1.5, 3.5, 2.5, 4.5])
+    assert section.retros()[nearest].tolist() == [1.0, 2.0, 3.0, 4.0]
+    section.remove("b::l")
+    assert np.isinf(ranges_at(section, pose_of=places.get)).tolist() == [False, True, False, False]
+
+
+def test_the_bearing_of_the_first_beam_may_be_any_number_of_turns():
+    ranges, *turned = (
+        cast_beams(SQUARE, 0.25, 0.0, 0.3 + turns * math.tau, 0.1, 50, 10.0)[0] for turns in (0, -3, 2)
+    )
+    for each in turned:
+        assert each == pytest.approx(ranges)

@@ -10,9 +10,11 @@ import pytest
 from planar import Pose2, Twist2, wrap
 from sim_bridge import ROBOTS, Simulation, SimulationSettings, WorldError, load_world
 from sim_bridge.geometry.pose3 import pose3
-from sim_bridge.geometry.shapes import Box, Plane
+from sim_bridge.geometry.shapes import Box, Cylinder, Plane
+from sim_bridge.physics.motion import at_rest
 from sim_bridge.sensors.bumper import CENTRE
 from sim_bridge.sensors.kobuki import KobukiReading
+from sim_bridge.simulation import ROBOT_NAME
 from sim_bridge.views.section import Section, cast_beams
 from sim_bridge.world import Body, Collision, World
 
@@ -117,6 +119,19 @@ def test_a_wall_is_touched_named_and_not_climbed():
 def test_nothing_is_touched_on_a_free_floor():
     simulation = Simulation(FLOOR)
     assert all(simulation.step(Twist2(0.5, 1.0)).contacts == () for _ in range(100))
+
+
+def test_what_is_put_beside_something_feels_it_at_once():
+    post = body("post::link", Cylinder(0.1, 1.0), pose3(3.0, 0.0, 0.5))
+    simulation = Simulation(World("post", (*FLOOR.bodies, post)))
+    models = simulation.scene.models
+    assert simulation.step().contacts == ()
+    models.set_link_motion(simulation.base, models.motion(ROBOT_NAME).at(pose3(2.8, 0.0, 0.0)))
+    assert simulation.step().contacts == ("post::link",)
+    models.set_link_motion(simulation.base, models.motion(ROBOT_NAME).at(pose3()))
+    assert simulation.step().contacts == ()
+    models.set_link_motion("post::link", at_rest(pose3(0.2, 0.0, 0.5)))
+    assert simulation.step().contacts == ("post::link",)
 
 
 def test_odometry_without_errors_is_the_truth():

@@ -81,11 +81,13 @@ def told(seen):
     return [(one.stamp, one.readings[SCAN].stamp) for one in seen if SCAN in one.readings]
 
 
-def test_a_delayed_scan_comes_later_and_carries_the_stamp_of_its_measurement(observations):
-    delayed = told(observations(1.0, only(SCAN, lambda sensor: Delayed(sensor, steps=12))))
+@pytest.mark.parametrize("steps, later", [(12, 12), (3, 4), (5, 8)])
+def test_a_delayed_scan_comes_later_and_carries_the_stamp_of_its_measurement(observations, steps, later):
+    """It is told with the odometry, after each fourth step."""
+    delayed = told(observations(1.0, only(SCAN, lambda sensor: Delayed(sensor, steps))))
     prompt = told(observations(1.0))
     assert [measured for _, measured in delayed] == [measured for _, measured in prompt][: len(delayed)]
-    assert all(came - measured == pytest.approx(12 / EXACT.physics_rate) for came, measured in delayed)
+    assert all(came - measured == pytest.approx(later / EXACT.physics_rate) for came, measured in delayed)
     assert all(came == pytest.approx(measured) for came, measured in prompt)
 
 
@@ -116,3 +118,24 @@ class _Always:
     @staticmethod
     def random():
         return 0.0
+
+
+def test_motors_are_set_fifty_times_a_second_and_commands_are_ramped_as_before():
+    asked = []
+
+    class Counting(Weak):
+        def wheel_speeds(self, seconds):
+            asked.append(seconds)
+            return super().wheel_speeds(seconds)
+
+    floor = World("floor", (Body("floor::link", np.eye(4), (Collision(Plane(), np.eye(4)),)),))
+    for rate in (200, 1000):
+        settings = SimulationSettings(**{**noise_named("ideal"), "physics_rate": rate})
+        fitting = Fitting(drive=lambda drive: Counting(drive, 1.0))
+        simulation = Simulation(floor, settings=settings, fitting=fitting)
+        asked.clear()
+        for _ in range(round(1.0 / simulation.step_seconds)):
+            seen = simulation.step(Twist2(0.3, 0.0))
+        assert asked == pytest.approx([0.02] * 50)
+        assert seen.twist.v == pytest.approx(0.3, abs=0.01)
+        simulation.close()

@@ -7,6 +7,8 @@ from typing import Any, Deque, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
+from sim_bridge.geometry.pose3 import quaternion
+
 # Longer chains are a loop.
 DEEPEST = 64
 # Two seconds of what comes fifty times a second: for scans that come later than their transforms.
@@ -31,19 +33,9 @@ def pose_matrix(position: Sequence[float], quaternion: Sequence[float]) -> Optio
 
 
 def wxyz_of(pose: np.ndarray) -> Tuple[float, float, float, float]:
-    """The rotation of a pose (4, 4) as viser takes it: w, x, y, z (Shepperd 1978: of the largest part)."""
-    (xx, xy, xz, _), (yx, yy, yz, _), (zx, zy, zz, _), _ = pose.tolist()
-    most = max(xx + yy + zz, xx, yy, zz)
-    if most == xx + yy + zz:
-        q = 1.0 + most, zy - yz, xz - zx, yx - xy
-    elif most == xx:
-        q = zy - yz, 1.0 + xx - yy - zz, yx + xy, xz + zx
-    elif most == yy:
-        q = xz - zx, yx + xy, 1.0 + yy - zz - xx, zy + yz
-    else:
-        q = yx - xy, xz + zx, zy + yz, 1.0 + zz - xx - yy
-    length = math.hypot(*q)
-    return q[0] / length, q[1] / length, q[2] / length, q[3] / length
+    """The rotation of a pose (4, 4) as viser takes it: w, x, y, z."""
+    x, y, z, w = quaternion(pose)
+    return w, x, y, z
 
 
 def told_pose(position: Any, orientation: Any) -> Optional[np.ndarray]:

@@ -3,7 +3,7 @@
 from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property
-from typing import List, Protocol, Tuple
+from typing import Iterable, List, Protocol, Tuple
 
 import numpy as np
 
@@ -31,24 +31,28 @@ class Course:
 
     def at(self, stamp: float) -> Tuple[float, float]:
         """Where the body is, x and y in the world."""
-        time = stamp % float(self.times[-1])
-        times, points = self._keyframes
-        after = bisect_right(times, time)
-        (x1, y1), (x2, y2) = points[after - 1 : after + 1]
-        share = (time - times[after - 1]) / (times[after] - times[after - 1])
-        return x1 + share * (x2 - x1), y1 + share * (y2 - y1)
+        time = stamp % self._end
+        starts, legs = self._legs
+        start, x, y, v_x, v_y = legs[bisect_right(starts, time) - 1]
+        return x + v_x * (time - start), y + v_y * (time - start)
 
     @cached_property
-    def _keyframes(self) -> Tuple[List[float], List[List[float]]]:
-        """As plain numbers, which are quicker to ask one by one."""
-        return self.times.tolist(), self.points_xy.tolist()
+    def _end(self) -> float:
+        return float(self.times[-1])
+
+    @cached_property
+    def _legs(self) -> Tuple[List[float], List[List[float]]]:
+        """When each begins, and that, where and how fast, as plain numbers, quicker to ask one by one."""
+        starts = self.times[:-1, None]
+        speeds = np.diff(self.points_xy, axis=0) / np.diff(self.times)[:, None]
+        return starts[:, 0].tolist(), np.hstack((starts, self.points_xy[:-1], speeds)).tolist()
 
 
 class Movable(Protocol):
     """What holds the bodies: the engine."""
 
-    def shift(self, name: str, x: float, y: float) -> None:
-        """Puts a body to another place."""
+    def shift(self, places: Iterable[Tuple[str, float, float]]) -> None:
+        """Puts bodies, each told by name, x and y, to other places."""
 
 
 class Courses:
@@ -60,5 +64,4 @@ class Courses:
     def follow(self, engine: Movable, step: int, rate: int, stamp: float) -> None:
         """Before the step of physics number ``step``, of ``rate`` a second, which begins at ``stamp``."""
         if self.each and step % max(rate // COURSE_RATE, 1) == 0:
-            for course in self.each:
-                engine.shift(course.link, *course.at(stamp))
+            engine.shift((course.link, *course.at(stamp)) for course in self.each)

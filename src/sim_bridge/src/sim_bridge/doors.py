@@ -51,7 +51,7 @@ class Doors:
             is_shut = door.is_due(stamp) and may_shut and not _is_near(door, people[:, :2])
             self._are_shut[number] = is_shut
             if engine.has_link(door.link):  # nobody has taken it away
-                engine.shift(door.link, *_place(door, is_shut))
+                engine.shift([(door.link, *_place(door, is_shut))])
 
 
 def _is_near(door: Door, others_xy: np.ndarray) -> bool:

@@ -1,7 +1,9 @@
 """A robot in its scene: it is commanded, it moves, it measures."""
 
+import math
 from collections import Counter
 from dataclasses import dataclass, replace
+from functools import reduce
 from typing import Any, Callable, Dict, Iterator, Mapping, Optional, Sequence, Tuple
 from typing import Counter as CounterOf
 
@@ -9,7 +11,7 @@ from planar import Pose2, Scan, Twist2
 from sim_bridge.config import SimulationSettings
 from sim_bridge.description import RobotProfile
 from sim_bridge.description.bodies import bodies_of
-from sim_bridge.driving.base import Drive
+from sim_bridge.driving.base import BASE_RATE, Drive
 from sim_bridge.driving.drive import RampedDrive
 from sim_bridge.physics.engine import Engine
 from sim_bridge.physics.vehicle import Vehicle
@@ -116,8 +118,7 @@ class Robot:
 
     def begin(self, mounting: Mounting) -> None:
         """It stands where it starts: nothing has been commanded, driven or measured yet."""
-        self._settings = mounting.settings
-        self.vehicle.forget_speeds()
+        self._time(mounting.settings)
         drive, odometry = self.profile.drive, self.profile.odometry
         self._drive = self._fitting.drive(RampedDrive(drive))
         self._around.look_anew(0.0)
@@ -139,6 +140,7 @@ class Robot:
             self._mount(self._fitting.sensor(sensor)): spec
             for spec, sensor in _built(self.profile.sensors, mounting)
         }
+        self._count_steps()
 
     def command(self, twist: Twist2) -> None:
         """A new command; it holds until its time-out."""
@@ -156,23 +158,37 @@ class Robot:
 
     def retime(self, settings: SimulationSettings) -> None:
         """The rates have changed."""
-        self._settings = settings
-        self.vehicle.forget_speeds()
+        self._time(settings)
         self._next_step = 0
         for mount in self._mounts.values():
             mount.retime(settings)
+        self._count_steps()
+
+    def _time(self, settings: SimulationSettings) -> None:
+        """Motors are set, and bumps are felt, at each interval of so many steps of physics."""
+        self._settings = settings
+        self._interval = max(settings.physics_rate // BASE_RATE, 1)
+        self.vehicle.forget_speeds()
+
+    def _count_steps(self) -> None:
+        # There is nothing to do here but after a multiple of so many steps of physics.
+        each = (mount.steps_at_once for mount in self._mounts.values())
+        self.steps_at_once = reduce(math.gcd, each, self._interval)
 
     def want(self, name: str, is_wanted: bool = True) -> None:
         """A sensor that measures only on demand is to do so from now on, or no longer."""
         self._mounts[name].want(is_wanted)
 
-    def begin_step(self) -> None:
-        """Before a step of physics: sets the motors."""
-        self.vehicle.drive(*self._drive.wheel_speeds(1.0 / self._settings.physics_rate))
+    def begin_steps(self, step: int) -> None:
+        """Before the step of physics number ``step``: sets the motors if it is time to."""
+        if step % self._interval == 0:
+            seconds = self._interval / self._settings.physics_rate
+            self.vehicle.drive(*self._drive.wheel_speeds(seconds))
 
-    def end_step(self, step: int, stamp: float) -> None:
-        """After the step of physics number ``step``, at the time ``stamp``: what is due measures."""
-        self._around.feel()
+    def end_steps(self, step: int, stamp: float) -> None:
+        """At the time ``stamp``, when ``step`` steps of physics are over: what is due measures."""
+        if step % self._interval == 0:
+            self._around.feel()
         if step < self._next_step:
             return
         self._around.look_anew(stamp)

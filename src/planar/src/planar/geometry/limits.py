@@ -24,5 +24,5 @@ def is_within(limit: float, *values: float) -> bool:
 def check_within(limit: float, what: str, **values: float) -> None:
     """Raises OutOfRangeError that ``what``, e.g. "a scan", has a value beyond ``limit``."""
     for name, value in values.items():
-        if not is_within(limit, value):
+        if not -limit <= value <= limit:  # nor is NaN
             raise OutOfRangeError(f"{what} with {name} {value:g} means nothing")

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from planar.geometry.limits import FARTHEST, MOST_RADIANS, OutOfRangeError, is_within
+from planar.geometry.limits import FARTHEST, MOST_RADIANS, OutOfRangeError
 
 
 def wrap(angle):
@@ -64,7 +64,8 @@ class Pose2:
 
     def is_in_range(self) -> bool:
         """Whether a robot can be there: finite, and no farther than ``FARTHEST`` from the origin."""
-        return is_within(FARTHEST, self.x, self.y) and is_within(MOST_RADIANS, self.yaw)
+        is_near = -FARTHEST <= self.x <= FARTHEST and -FARTHEST <= self.y <= FARTHEST
+        return is_near and -MOST_RADIANS <= self.yaw <= MOST_RADIANS
 
 
 def check_place(pose: Pose2, what: str) -> None:

@@ -4,9 +4,12 @@ from typing import Protocol, Tuple
 
 from planar import Twist2
 
+# Times a second that a base sets its motors; Kobuki's tells its odometry as often.
+BASE_RATE = 50
+
 
 class Drive(Protocol):
-    """A drive, or what stands before one: commanded now and then, asked before each step of physics."""
+    """A drive, or what stands before one: commanded now and then, asked each time that the motors are set."""
 
     def command(self, twist: Twist2) -> None:
         """Takes a new command; one that is not finite stops the robot."""

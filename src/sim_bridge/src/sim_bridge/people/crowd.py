@@ -1,6 +1,6 @@
 """All people of a scene, moved on together."""
 
-from typing import Iterable, Protocol, Sequence
+from typing import Iterable, Protocol, Sequence, Tuple
 
 import numpy as np
 
@@ -29,8 +29,8 @@ class Movable(Protocol):
     def has_link(self, name: str) -> bool:
         """Whether it is there."""
 
-    def shift(self, name: str, x: float, y: float) -> None:
-        """Puts a body to another place."""
+    def shift(self, places: Iterable[Tuple[str, float, float]]) -> None:
+        """Puts bodies, each told by name, x and y, to other places."""
 
 
 class Crowd:
@@ -90,9 +90,8 @@ class Crowd:
             every / rate,
         )
         self.rows = seen + corner
-        for link, row in zip(self.links, self.rows.tolist()):
-            if engine.has_link(link):  # nobody has taken it away
-                engine.shift(link, row[0], row[1])
+        places = [(link, x, y) for link, (x, y, *_) in zip(self.links, self.rows.tolist())]
+        engine.shift(place for place in places if engine.has_link(place[0]))  # nobody has taken it away
 
     def _choose(self, stamp: float) -> None:
         """Who has come to a goal rests and then goes to the next; so does who cannot get on."""

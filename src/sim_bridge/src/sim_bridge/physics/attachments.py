@@ -21,7 +21,6 @@ class Attachments:
         """Holds two links together as they are now until they are detached; meanwhile they never collide."""
         if (first, second) in self._constraints:
             self.detach(first, second)
-        self._register.interventions += 1
         one, other = self._register.links[first], self._register.links[second]
         other_in_one = inverse(centre_of(self._bullet, one)) @ centre_of(self._bullet, other)
         self._constraints[first, second] = self._bullet.createConstraint(
@@ -42,7 +41,6 @@ class Attachments:
 
     def detach(self, first: str, second: str) -> None:
         """Lets go what was attached in this order."""
-        self._register.interventions += 1
         self._bullet.removeConstraint(self._constraints.pop((first, second)))
         self._let_collide(self._register.links[first], self._register.links[second], True)
 

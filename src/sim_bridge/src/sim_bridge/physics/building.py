@@ -5,7 +5,6 @@ from typing import Any, Dict, List, Optional, Tuple
 import numpy as np
 
 from sim_bridge.geometry.pose3 import IDENTITY, inverse, position, quaternion
-from sim_bridge.geometry.shapes import Plane
 from sim_bridge.physics.bullet import BulletClient, pybullet
 from sim_bridge.physics.colliders import make_colliders
 from sim_bridge.physics.joints import limit_joint
@@ -13,8 +12,6 @@ from sim_bridge.physics.multibody import Tree
 from sim_bridge.physics.register import Link, MovingJoint, Register
 from sim_bridge.world import Body, Joint
 
-# Cosine of the slope from which on a plane is no floor.
-_LEVEL = 0.9
 _KINDS = {"revolute": pybullet.JOINT_REVOLUTE, "prismatic": pybullet.JOINT_PRISMATIC}
 
 
@@ -38,8 +35,6 @@ def build(bullet: BulletClient, register: Register, tree: Tree, placement: np.nd
     )
     if any(body.mass is not None for body in tree.bodies):
         register.movers.add(number)
-    elif all(_is_level_plane(body, placement) for body in tree.bodies):
-        register.level_planes.add(number)
     for index, body in _owners(tree, indices, links).items():
         register.own(number, index, body.name)
         _finish_part(bullet, number, index, body)
@@ -51,14 +46,6 @@ def build(bullet: BulletClient, register: Register, tree: Tree, placement: np.nd
             register.joints[joint.name] = MovingJoint(number, index, joint)
             _loosen(bullet, number, index, joint)
     return number
-
-
-def _is_level_plane(body: Body, placement: np.ndarray) -> bool:
-    turns = [(placement @ body.pose_in_world @ part.pose_in_body)[2, :3] for part in body.collisions]
-    shapes = [part.shape for part in body.collisions]
-    return all(
-        isinstance(shape, Plane) and float(turn @ shape.normal) > _LEVEL for shape, turn in zip(shapes, turns)
-    )
 
 
 def _hanging_links(bullet: BulletClient, tree: Tree) -> Tuple[List[Dict[str, Any]], List[int]]:

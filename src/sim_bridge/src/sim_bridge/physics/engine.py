@@ -1,7 +1,7 @@
 """Rigid bodies in PyBullet: what stands and moves in a world."""
 
 from dataclasses import dataclass
-from typing import Dict, Sequence, Tuple
+from typing import Dict, Iterable, Sequence, Tuple
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from sim_bridge.geometry.pose3 import IDENTITY, cross, inverse, position, quater
 from sim_bridge.physics.attachments import Attachments
 from sim_bridge.physics.building import build
 from sim_bridge.physics.bullet import BulletClient, pybullet
-from sim_bridge.physics.frames import centre_of, matrix_of, root_of
+from sim_bridge.physics.frames import centre_of, link_at, root_of
 from sim_bridge.physics.joints import Joints
 from sim_bridge.physics.motion import Motion
 from sim_bridge.physics.multibody import grow
@@ -34,6 +34,20 @@ class MassProperties:
     has_weight: bool
 
 
+@dataclass(eq=False)
+class _Upright:
+    """Body ``number``, which is only ever shifted: ``x``, ``y``, ``z`` of its centre, how it is turned, as a
+    quaternion, and its link's pose (4, 4) with the centre above the origin.
+    """
+
+    number: int
+    x: float
+    y: float
+    z: float
+    turn: Tuple[float, ...]
+    link_above_origin: np.ndarray
+
+
 class Engine:
     """A physics engine of its own; nothing is shared between two of them. ``rate``: steps per second.
 
@@ -49,8 +63,8 @@ class Engine:
         self.set_gravity(gravity)
         # Links that are not drawn down, and their masses.
         self._weightless: Dict[str, float] = {}
-        # How high what is shifted is, and how it is turned, as long as nobody puts it elsewhere.
-        self._upright: Dict[int, Tuple[float, Tuple[float, ...]]] = {}
+        # What is shifted, as long as nobody puts it elsewhere.
+        self._upright: Dict[str, _Upright] = {}
         self.joints = Joints(self._bullet, self._register)
         self.attachments = Attachments(self._bullet, self._register)
         self.touch = Touch(self._bullet, self._register)
@@ -59,7 +73,10 @@ class Engine:
     def close(self) -> None:
         self._bullet.disconnect()
 
-    def step(self) -> None:
+    def step(self, count: int = 1) -> None:
+        """``count``: so many steps at once, in all of which the motors aim at the same; a power of two."""
+        if count != self._count:
+            self._time_steps(count)
         for name, mass in self._weightless.items():
             self.push(name, (0.0, 0.0, mass * self._gravity), (0.0, 0.0, 0.0))
         self._bullet.stepSimulation()
@@ -72,19 +89,22 @@ class Engine:
         """Everything is again as when it was kept; no body may have come or gone since."""
         self._bullet.restoreState(mark)
         self._upright.clear()
-        self._register.interventions += 1
 
     def set_rate(self, rate: int) -> None:
         """``rate``: steps per second."""
-        self._bullet.setPhysicsEngineParameter(fixedTimeStep=1.0 / rate)
-        self.touch.seclusion.step_seconds = 1.0 / rate
-        self._register.interventions += 1
+        self._rate = rate
+        self._time_steps(1)
+
+    def _time_steps(self, count: int) -> None:
+        """Bullet is to make so many steps at a time."""
+        self._count = count
+        substeps = count if count > 1 else 0
+        self._bullet.setPhysicsEngineParameter(fixedTimeStep=count / self._rate, numSubSteps=substeps)
 
     def set_gravity(self, gravity: float) -> None:
         """``gravity``: downwards, m/s^2."""
         self._gravity = gravity
         self._bullet.setGravity(0.0, 0.0, -gravity)
-        self._register.interventions += 1
 
     @property
     def gravity(self) -> float:
@@ -106,13 +126,12 @@ class Engine:
             for body in tree.bodies:
                 if not body.has_weight and body.mass is not None:
                     self._weightless[body.name] = body.mass
-        self._register.interventions += 1
 
     def remove(self, name: str) -> None:
         """Takes away a link and all that hangs together with it."""
         number = self._register.links[name].number
         self.attachments.detach_from(number)
-        self._upright.pop(number, None)
+        self._upright.pop(name, None)
         self._bullet.removeBody(number)
         self._register.forget(number)
         self._weightless = {key: mass for key, mass in self._weightless.items() if self.has_link(key)}
@@ -123,27 +142,32 @@ class Engine:
     def motion_of(self, name: str) -> Motion:
         link = self._register.links[name]
         if link.index < 0:
-            centre = root_of(self._bullet, link)
+            point, turn = self._bullet.getBasePositionAndOrientation(link.number)
             linear, angular = self._bullet.getBaseVelocity(link.number)
         else:
             state = self._bullet.getLinkState(
                 link.number, link.index, computeLinkVelocity=1, computeForwardKinematics=1
             )
-            centre, (linear, angular) = matrix_of(*state[:2]), state[6:8]
-        pose = centre @ link.from_centre
-        arm = (centre[:3, 3] - pose[:3, 3]).tolist()
-        return Motion(pose, np.array(linear) - cross(angular, arm), np.array(angular))
+            (point, turn), (linear, angular) = state[:2], state[6:8]
+        pose = link_at(link, point, turn)
+        arm = [there - here for there, here in zip(position(pose), point)]
+        return Motion(pose, np.array(linear) + cross(angular, arm), np.array(angular))
 
     def pose_of(self, name: str) -> np.ndarray:
         """Where a link is, (4, 4) in the world."""
-        link = self._register.links[name]
-        return centre_of(self._bullet, link) @ link.from_centre
+        upright = self._upright.get(name)
+        if upright is None:
+            link = self._register.links[name]
+            return centre_of(self._bullet, link) @ link.from_centre
+        pose = upright.link_above_origin.copy()
+        pose[0, 3] += upright.x
+        pose[1, 3] += upright.y
+        return pose
 
     def set_motion(self, name: str, motion: Motion) -> None:
         """Puts a link to another place, with all that hangs together with it, and sets its velocity."""
         link = self._register.links[name]
-        self._register.interventions += 1
-        self._upright.pop(link.number, None)
+        self._upright.pop(name, None)
         centre = motion.pose @ link.centre
         if link.index >= 0:
             centre = centre @ inverse(centre_of(self._bullet, link)) @ root_of(self._bullet, link)
@@ -151,24 +175,31 @@ class Engine:
         linear = motion.linear + cross(motion.angular, centre[:3, 3] - motion.pose[:3, 3])
         self._bullet.resetBaseVelocity(link.number, linear.tolist(), motion.angular.tolist())
 
-    def shift(self, name: str, x: float, y: float) -> None:
-        """Puts a body that stands alone to another place, as high and turned as it is."""
-        number = self._register.links[name].number
-        z, turn = self._upright.get(number) or self._height_and_turn(number)
-        self._bullet.resetBasePositionAndOrientation(number, (x, y, z), turn)
-        is_known = number in self._upright or number in self._register.movers
-        if not is_known and self._height_and_turn(number) == (z, turn):  # rounding has come to an end
-            self._upright[number] = z, turn
-        self._register.interventions += 1
+    def shift(self, places: Iterable[Tuple[str, float, float]]) -> None:
+        """Puts bodies that stand alone, by name, x and y, elsewhere, as high and turned as they are."""
+        put = self._bullet.resetBasePositionAndOrientation
+        for name, x, y in places:
+            body = self._upright.get(name)
+            if body is None:
+                self._shift_first(name, x, y)
+            else:
+                put(body.number, (x, y, body.z), body.turn)
+                body.x, body.y = x, y
 
-    def _height_and_turn(self, number: int) -> Tuple[float, Tuple[float, ...]]:
+    def _shift_first(self, name: str, x: float, y: float) -> None:
+        number = self._register.links[name].number
         (_, _, z), turn = self._bullet.getBasePositionAndOrientation(number)
-        return z, turn
+        self._bullet.resetBasePositionAndOrientation(number, (x, y, z), turn)
+        (x, y, z_now), turn_now = self._bullet.getBasePositionAndOrientation(number)
+        is_rounded = (z_now, turn_now) != (z, turn)
+        if not is_rounded and number not in self._register.movers:
+            link_above_origin = self.pose_of(name)
+            link_above_origin[:2, 3] -= x, y
+            self._upright[name] = _Upright(number, x, y, z, turn, link_above_origin)
 
     def push(self, name: str, force: Sequence[float], torque: Sequence[float]) -> None:
         """Force, N, at the centre of a link's mass, and torque, N m, in the world; for the next step only."""
         link = self._register.links[name]
-        self._register.interventions += 1
         pose, *_ = self._bullet.getBasePositionAndOrientation(link.number)
         if link.index >= 0:
             pose, *_ = self._bullet.getLinkState(link.number, link.index)

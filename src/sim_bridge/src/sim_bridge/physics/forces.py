@@ -67,9 +67,14 @@ class Forces:
         self._pushes.clear()
         self._joint_pushes.clear()
 
+    @property
+    def are_due(self) -> bool:
+        """Whether anything pushes, or will."""
+        return bool(self._pushes or self._joint_pushes)
+
     def apply(self, stamp: float) -> None:
         """Before the step of physics that begins at ``stamp``."""
-        if not self._pushes and not self._joint_pushes:
+        if not self.are_due:
             return
         for push in self._pushes:
             if push.start <= stamp < push.end:

@@ -32,13 +32,11 @@ class Joints:
     def set_state(self, name: str, state: JointState) -> None:
         """Puts a joint to a position, with all that hangs on it."""
         joint = self._register.joints[name]
-        self._register.interventions += 1
         self._bullet.resetJointState(joint.number, joint.index, state.position, state.speed)
 
     def push(self, name: str, effort: float) -> None:
         """``effort``: N m or N, at most what the joint bears; for the next step only."""
         joint = self._register.joints[name]
-        self._register.interventions += 1
         limit = joint.joint.effort
         self._bullet.setJointMotorControl2(
             joint.number, joint.index, pybullet.TORQUE_CONTROL, force=max(-limit, min(effort, limit))
@@ -47,7 +45,6 @@ class Joints:
     def set_limits(self, name: str, lower: float, upper: float, damping: float) -> None:
         """Limits in rad or m, ``damping`` in N m s/rad or N s/m."""
         joint = self._register.joints[name]
-        self._register.interventions += 1
         limit_joint(self._bullet, joint.number, joint.index, lower, upper)
         self._bullet.changeDynamics(joint.number, joint.index, jointDamping=damping)
 

@@ -1,10 +1,12 @@
 """Where things are and how they move."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from sim_bridge.geometry.pose3 import cross
+from planar import Pose2
+from sim_bridge.geometry.pose3 import cross, to_pose2
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,6 +19,11 @@ class Motion:
     pose: np.ndarray
     linear: np.ndarray
     angular: np.ndarray
+
+    @cached_property
+    def from_above(self) -> Pose2:
+        """Where the frame is, seen from above."""
+        return to_pose2(self.pose)
 
     def of_frame(self, frame_in_this: np.ndarray) -> "Motion":
         """The motion of a frame that is fixed at ``frame_in_this`` (4, 4)."""

@@ -1,7 +1,7 @@
 """What has which number in Bullet."""
 
 from dataclasses import dataclass, field
-from typing import Dict, List, Set, Tuple
+from typing import Dict, List, Optional, Set, Tuple
 
 import numpy as np
 
@@ -13,16 +13,21 @@ from sim_bridge.world import Joint
 class Link:
     """A link in Bullet's numbers; ``centre`` (4, 4): of its mass and principal axes in its own frame.
 
-    ``index`` is -1 for the root of what hangs together.
+    ``index`` is -1 for the root of what hangs together; ``offset``: from the centre to the link's origin if
+    both are turned alike, else None.
     """
 
     number: int
     index: int
     centre: np.ndarray
     from_centre: np.ndarray = field(init=False)
+    offset: Optional[Tuple[float, ...]] = field(init=False)
 
     def __post_init__(self):
         object.__setattr__(self, "from_centre", inverse(self.centre))
+        is_turned = bool((self.centre[:3, :3] != np.eye(3)).any())
+        offset = None if is_turned else tuple(self.from_centre[:3, 3].tolist())
+        object.__setattr__(self, "offset", offset)
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,16 +42,13 @@ class MovingJoint:
 class Register:
     """Links and moving joints by their names, and whose each of Bullet's parts is.
 
-    ``movers``: numbers of what physics moves; ``level_planes``: of what is nothing but a floor without end.
-    ``interventions``: how often something has been moved or driven otherwise than by physics and its motors.
+    ``movers``: numbers of what physics moves.
     """
 
     def __init__(self):
         self.links: Dict[str, Link] = {}
         self.joints: Dict[str, MovingJoint] = {}
         self.movers: Set[int] = set()
-        self.level_planes: Set[int] = set()
-        self.interventions = 0
         self._owners: Dict[Tuple[int, int], str] = {}
 
     def own(self, number: int, index: int, link: str) -> None:
@@ -67,4 +69,3 @@ class Register:
         self.joints = {name: joint for name, joint in self.joints.items() if joint.number != number}
         self._owners = {part: link for part, link in self._owners.items() if part[0] != number}
         self.movers.discard(number)
-        self.level_planes.discard(number)

@@ -5,7 +5,6 @@ from typing import List, NamedTuple, Optional, Sequence, Tuple
 
 from sim_bridge.physics.bullet import BulletClient
 from sim_bridge.physics.register import Register
-from sim_bridge.physics.seclusion import Extent, Seclusion
 
 # Bits of Bullet's collision groups: it puts what moves into 1 and what does not into 2.
 WORLD_GROUPS = 1 | 2
@@ -24,12 +23,11 @@ class Contact(NamedTuple):
 
 
 class Touch:
-    """Contacts, and rays cast downwards. ``seclusion``: of a robot from all that it could touch."""
+    """Contacts, and rays cast downwards."""
 
     def __init__(self, bullet: BulletClient, register: Register):
         self._bullet = bullet
         self._register = register
-        self.seclusion = Seclusion(bullet, register)
 
     def contacts(self, base: str, steepest: float = math.inf) -> List[Contact]:
         """What a robot touches, or nearly does (negative depth); abs(normal[2]) is below ``steepest``."""
@@ -54,13 +52,8 @@ class Touch:
         hits = self._bullet.rayTestBatch(points, ends, collisionFilterMask=WORLD_GROUPS)
         return [point[2] if number >= 0 else -math.inf for number, _, _, point, _ in hits]
 
-    def make_robot(self, base: str, extent: Extent) -> int:
-        """Of what hangs together with a link: it feels the world and other robots, but is no floor.
-
-        Returns the number by which its seclusion is asked for.
-        """
+    def make_robot(self, base: str) -> None:
+        """Of what hangs together with a link: it feels the world and other robots, but is no floor."""
         number = self._register.links[base].number
         for index in self._register.parts_of(number):
             self._bullet.setCollisionFilterGroupMask(number, index, ROBOT_GROUP, WORLD_GROUPS | ROBOT_GROUP)
-        self.seclusion.extents[number] = extent
-        return number

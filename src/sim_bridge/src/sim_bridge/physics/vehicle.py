@@ -7,7 +7,6 @@ import numpy as np
 from planar import Twist2
 from sim_bridge.physics.engine import Engine
 from sim_bridge.physics.motion import Motion
-from sim_bridge.physics.seclusion import extent_of
 from sim_bridge.physics.touch import Contact
 from sim_bridge.world import Body, Joint
 
@@ -48,8 +47,7 @@ class Vehicle:
         self.name = name
         self.links = tuple(body.name for body in bodies)
         self.base = self.links[0]
-        self._number = engine.touch.make_robot(self.base, extent_of(bodies))
-        self._seclusion = engine.touch.seclusion
+        engine.touch.make_robot(self.base)
         self._collisions = bodies[0].collisions
         self._left_count, self._right_count = left_count, len(joints) - left_count
         self._efforts = [torque] * len(joints)
@@ -79,10 +77,6 @@ class Vehicle:
     def body(self) -> Body:
         """The robot as others see it: its base, where it is now."""
         return Body(self.base, self.motion().pose, self._collisions, mass=1.0)
-
-    def is_secluded(self) -> bool:
-        """Whether it cannot have touched anything in the last step of physics. To be asked after each."""
-        return self._seclusion.is_given(self._number)
 
     def bumps(self) -> List[Contact]:
         """Where the robot touches things; what it stands on is not among them."""
@@ -114,4 +108,6 @@ class Vehicle:
 
 def twist_in_base(motion: Motion) -> Twist2:
     """Velocity of the base frame's origin along its own x axis, and turn rate."""
-    return Twist2(float(motion.linear[:2] @ motion.pose[:2, 0]), float(motion.angular[2]))
+    linear, pose = motion.linear, motion.pose
+    ahead = linear.item(0) * pose.item(0, 0) + linear.item(1) * pose.item(1, 0)
+    return Twist2(ahead, motion.angular.item(2))

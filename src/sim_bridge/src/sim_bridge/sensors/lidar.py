@@ -68,13 +68,14 @@ class Lidar:
         self._is_upside_down = profile.pose_in_base[2, 2] < 0.0
         self._noise = noise
         self._rng = rng
+        self._retros, self._shines = np.empty(0), False
 
     def schedule(self, settings: SimulationSettings) -> Schedule:
         rate = self._profile.rate or settings.scan_rate
         return Schedule(max(round(settings.physics_rate / rate), 1))
 
     def measure(self, around: Surroundings) -> Scan:
-        return self.sweep(around.stamp, *around.section(self._height), to_pose2(around.base.pose))
+        return self.sweep(around.stamp, *around.section(self._height), around.base.from_above)
 
     def sweep(self, stamp: float, segments: np.ndarray, retros: np.ndarray, base_in_world: Pose2) -> Scan:
         """All beams at one moment.
@@ -97,36 +98,44 @@ class Lidar:
         )
         if self._is_upside_down:
             true_ranges, nearest = true_ranges[::-1], nearest[::-1]
-        ranges = true_ranges + self._rng.normal(0.0, self._noise.range_noise, profile.beams)
-        ranges[ranges < profile.range_min] = profile.too_near
-        ranges[ranges > profile.sight] = profile.no_return
-        self._fail(ranges)
+        ranges = self._told(true_ranges)
         return Scan(
             stamp=stamp,
             angle_min=profile.angle_min,
             angle_increment=profile.angle_increment,
-            ranges=ranges.astype(np.float32),
+            ranges=ranges,
             range_min=profile.range_min,
             range_max=profile.range_max,
             laser_in_base=self._laser_in_base,
             upside_down=self._is_upside_down,
-            intensities=_brightness(retros, nearest, ranges),
+            intensities=self._brightness(retros, nearest, ranges),
         )
 
-    def _fail(self, ranges: np.ndarray) -> None:
-        """Lets some beams measure nothing, and some the greatest range."""
-        dropouts, max_readings = self._noise.range_dropouts, self._noise.range_max_readings
-        if dropouts + max_readings > 0.0:
-            chance = self._rng.random(len(ranges))
-            ranges[chance < dropouts] = self._profile.no_return
-            ranges[chance > 1.0 - max_readings] = self._profile.range_max
+    def _told(self, true_ranges: np.ndarray) -> np.ndarray:
+        """What it tells of true ranges, float32 (N,): with noise, and some beams fail."""
+        from sim_bridge.views.kernels import tell  # late: it brings numba
 
+        profile, noise, count = self._profile, self._noise, len(true_ranges)
+        fail = (noise.range_dropouts, noise.range_max_readings)
+        return tell(
+            true_ranges,
+            self._rng.normal(0.0, noise.range_noise, count),
+            self._rng.random(count) if sum(fail) > 0.0 else np.empty(0),
+            *fail,
+            profile.too_near,
+            profile.no_return,
+            profile.range_min,
+            profile.sight,
+            profile.range_max,
+        )
 
-def _brightness(retros: np.ndarray, nearest: np.ndarray, ranges: np.ndarray) -> np.ndarray:
-    """How much light comes back along each beam, float32 (N,); from most worlds none."""
-    if not retros.any():
-        return np.zeros(len(ranges), dtype=np.float32)
-    return np.where(np.isfinite(ranges), np.append(retros, 0.0)[nearest], 0.0).astype(np.float32)
+    def _brightness(self, retros: np.ndarray, nearest: np.ndarray, ranges: np.ndarray) -> np.ndarray:
+        """How much light comes back along each beam, float32 (N,); from most worlds none."""
+        if retros is not self._retros:  # else the world is as it was
+            self._retros, self._shines = retros, bool(retros.any())
+        if not self._shines:
+            return np.zeros(len(ranges), dtype=np.float32)
+        return np.where(np.isfinite(ranges), np.append(retros, 0.0)[nearest], 0.0).astype(np.float32)
 
 
 def read_laser(found: Found) -> LaserProfile:

@@ -1,5 +1,6 @@
 """A sensor on its robot: asked when it is due, heard when its delay is over."""
 
+import math
 from collections import deque
 from typing import Any, Deque, Optional, Tuple
 
@@ -27,6 +28,11 @@ class Mount:
         """Whether a sensor that measures on demand is to do so from now on; others always do."""
         self._is_wanted = is_wanted or not self._sensor.on_demand
 
+    @property
+    def steps_at_once(self) -> int:
+        """There is nothing to do here but after a multiple of so many steps of physics."""
+        return math.gcd(math.gcd(self._schedule.interval, self._schedule.offset), self._schedule.delay)
+
     def next_step(self, step: int) -> int:
         """The first step of physics after number ``step`` at which there is something to do here."""
         interval, offset, _ = self._schedule
@@ -38,7 +44,9 @@ class Mount:
         interval, offset, delay = self._schedule
         if self._is_wanted and step % interval == offset:
             value = self._sensor.measure(around)
-            if value is not None:
+            if value is not None and not delay:
+                self._fresh = Reading(around.stamp, value)
+            elif value is not None:
                 self._on_their_way.append((step + delay, Reading(around.stamp, value)))
         while self._on_their_way and self._on_their_way[0][0] <= step:
             _, self._fresh = self._on_their_way.popleft()

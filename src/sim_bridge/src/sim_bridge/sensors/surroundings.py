@@ -26,9 +26,9 @@ class RobotSurroundings:
         self._bumps: Dict[str, Contact] = {}
 
     def feel(self) -> None:
-        """A step of physics is over: notes what has been touched."""
-        if not self._vehicle.is_secluded():
-            self._bumps.update((bump.link, bump) for bump in self._vehicle.bumps())
+        """Notes what is touched after a step of physics."""
+        for bump in self._vehicle.bumps():
+            self._bumps[bump.link] = bump
 
     def look_anew(self, stamp: float) -> None:
         """It is now ``stamp``, s, at the end of a step of physics in which something is due."""

@@ -6,7 +6,6 @@ from typing import Tuple
 
 from planar import Pose2, Twist2
 from sim_bridge.config import SimulationSettings
-from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.sensors.base import Schedule, Surroundings, every
 
 
@@ -37,7 +36,7 @@ class GroundTruth:
 
     def measure(self, around: Surroundings) -> Truth:
         base = around.base
-        return Truth(to_pose2(base.pose), around.twist, math.acos(min(float(base.pose[2, 2]), 1.0)))
+        return Truth(base.from_above, around.twist, math.acos(min(base.pose.item(2, 2), 1.0)))
 
 
 class JointEncoders:

@@ -10,12 +10,17 @@ import numpy as np
 def cast(segments, x, y, first, increment, count, sight):
     """Walks through the segments and gives each to the beams between the bearings of its two ends."""
     turn = 2.0 * math.pi
+    first = (first + math.pi) % turn - math.pi
     ranges, nearest = np.full(count, np.inf), np.full(count, -1)
     # Most beams pass several segments.
     cosines, sines = np.empty(count), np.empty(count)
+    c, s, c_next, s_next = math.cos(first), math.sin(first), math.cos(increment), math.sin(increment)
     for beam in range(count):
-        angle = first + beam * increment
-        cosines[beam], sines[beam] = math.cos(angle), math.sin(angle)
+        cosines[beam], sines[beam] = c, s
+        c, s = c * c_next - s * s_next, s * c_next + c * s_next
+    beams_a_radian = 1.0 / increment
+    # Most segments begin where the one before ends.
+    end_x, end_y, end_bearing = math.inf, math.inf, 0.0
     for i in range(segments.shape[0]):
         ax, ay = segments[i, 0] - x, segments[i, 1] - y
         bx, by = segments[i, 2] - x, segments[i, 3] - y
@@ -23,13 +28,16 @@ def cast(segments, x, y, first, increment, count, sight):
             continue
         side_x, side_y = bx - ax, by - ay
         area = ax * side_y - ay * side_x
+        begin_bearing = end_bearing if ax == end_x and ay == end_y else math.atan2(ay, ax)
+        end_x, end_y, end_bearing = bx, by, math.atan2(by, bx)
         # Seen from here the segment runs counter-clockwise from its right end to its left end.
-        right = math.atan2(ay, ax) if area > 0.0 else math.atan2(by, bx)
-        span = math.atan2(abs(area), ax * bx + ay * by)
-        start = (right - first) % turn
+        right = begin_bearing if area > 0.0 else end_bearing
+        span = abs(end_bearing - begin_bearing)
+        span = min(span, turn - span)
+        start = right - first if right >= first else right - first + turn
         for shift in (0.0, turn):
-            low = max(math.ceil((start - shift) / increment - 1e-9), 0)
-            high = min(math.floor((start + span - shift) / increment + 1e-9), count - 1)
+            low = max(math.ceil((start - shift) * beams_a_radian - 1e-9), 0)
+            high = min(math.floor((start + span - shift) * beams_a_radian + 1e-9), count - 1)
             for beam in range(low, high + 1):
                 across = cosines[beam] * side_y - sines[beam] * side_x
                 if across != 0.0:
@@ -37,6 +45,24 @@ def cast(segments, x, y, first, increment, count, sight):
                     if 0.0 <= distance <= sight and distance < ranges[beam]:
                         ranges[beam], nearest[beam] = distance, i
     return ranges, nearest
+
+
+@numba.njit(cache=True)
+def tell(true_ranges, noise, chance, dropouts, max_readings, too_near, no_return, nearest, sight, farthest):
+    """What a range finder tells of each true range, float32; by chance some beams fail."""
+    told = np.empty(true_ranges.size, dtype=np.float32)
+    for beam in range(true_ranges.size):
+        value = true_ranges[beam] + noise[beam]
+        if value < nearest:
+            value = too_near
+        if value > sight:
+            value = no_return
+        if chance.size > 0 and chance[beam] < dropouts:
+            value = no_return
+        if chance.size > 0 and chance[beam] > 1.0 - max_readings:
+            value = farthest
+        told[beam] = value
+    return told
 
 
 @numba.njit(cache=True)

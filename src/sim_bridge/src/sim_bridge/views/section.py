@@ -1,7 +1,7 @@
 """The outlines of a world's bodies at one height, and beams cast at them."""
 
 from dataclasses import dataclass
-from typing import Callable, Dict, Optional, Tuple
+from typing import Callable, Dict, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -30,10 +30,9 @@ class Section:
         self._height = height
         self._still: Dict[str, _Outline] = {}
         self._moving: Dict[str, _Outline] = {}
-        # Of what is on a course, where it began: it is shifted and not turned, so it need not be cut again.
-        self._begun: Dict[str, _Outline] = {}
-        self._still_segments: Optional[np.ndarray] = None
-        self._still_retros = np.empty(0)
+        # What is on a course, where it was at first: it is shifted and not turned, so it is cut but once.
+        self._shifted: Dict[str, _Outline] = {}
+        self._stacked: Optional[_Stacked] = None
 
     def add(self, body: Body) -> None:
         self._place(body, body.pose_in_world)
@@ -44,9 +43,9 @@ class Section:
             self._place(self._still[name].body, pose)
 
     def remove(self, name: str) -> None:
-        self._moving.pop(name, None)
-        if self._still.pop(name, None) is not None:
-            self._still_segments = None
+        for outlines in (self._still, self._moving, self._shifted):
+            outlines.pop(name, None)
+        self._stacked = None
 
     def redraw(self, pose_of: Callable[[str], np.ndarray]) -> None:
         """Draws what moves where it now is, to the last bit."""
@@ -55,45 +54,35 @@ class Section:
 
     def segments(self, pose_of: Callable[[str], np.ndarray]) -> np.ndarray:
         """Sides (N, 4) of all outlines as x, y, x, y; ``pose_of`` says where a body is now, (4, 4)."""
-        if self._still_segments is None:
-            sides = [outline.segments for outline in self._still.values()]
-            self._still_segments = np.vstack([np.empty((0, 4)), *sides])
-            retros = [outline.retros for outline in self._still.values()]
-            self._still_retros = np.concatenate([np.empty(0), *retros])
-        if not self._moving:
-            return self._still_segments
+        stacked = self._stack()
+        if not self._moving and not self._shifted:
+            return stacked.still
         for name, outline in self._moving.items():
             pose = pose_of(name)
             if _differ(pose, outline.drawn_at):
                 self._place(outline.body, pose)
-        return np.concatenate(
-            [self._still_segments, *(outline.segments for outline in self._moving.values())]
-        )
+        moving = [outline.segments for outline in self._moving.values()]
+        return np.concatenate([stacked.still, stacked.shifted(pose_of), *moving])
 
     def retros(self) -> np.ndarray:
         """How brightly each of the sides last told by ``segments`` reflects a laser, (N,)."""
+        stacked = self._stack()
         if not self._moving:
-            return self._still_retros
-        return np.concatenate([self._still_retros, *(outline.retros for outline in self._moving.values())])
+            return stacked.retros
+        return np.concatenate([stacked.retros, *(outline.retros for outline in self._moving.values())])
+
+    def _stack(self) -> "_Stacked":
+        if self._stacked is None:
+            self._stacked = _Stacked(list(self._still.values()), list(self._shifted.values()))
+        return self._stacked
 
     def _place(self, body: Body, pose: np.ndarray) -> None:
-        if body.is_on_course:
-            outline = self._shifted(body, pose)
-        else:
-            outline = _Outline(body, pose, *self._cut(body, pose))
-        if body.keeps_still:
-            self._still[body.name] = outline
-            self._still_segments = None
-        else:
+        outline = _Outline(body, pose, *self._cut(body, pose))
+        if body.mass is not None:
             self._moving[body.name] = outline
-
-    def _shifted(self, body: Body, pose: np.ndarray) -> _Outline:
-        begun = self._begun.get(body.name)
-        if begun is None or begun.body is not body:
-            begun = _Outline(body, body.pose_in_world, *self._cut(body, body.pose_in_world))
-            self._begun[body.name] = begun
-        way = pose[:2, 3] - begun.drawn_at[:2, 3]
-        return _Outline(body, pose, begun.segments + np.concatenate((way, way)), begun.retros)
+            return
+        (self._shifted if body.is_on_course else self._still)[body.name] = outline
+        self._stacked = None
 
     def _cut(self, body: Body, pose: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
         """Sides (N, 4) of a body's outlines, and how brightly each reflects, (N,)."""
@@ -105,6 +94,33 @@ class Section:
         sides = [np.hstack((outline, np.roll(outline, -1, axis=0))) for outline, _ in cuts]
         retros = [np.full(len(outline), retro) for outline, retro in cuts]
         return np.vstack([np.empty((0, 4)), *sides]), np.concatenate([np.empty(0), *retros])
+
+
+class _Stacked:
+    """The sides (N, 4) of what keeps ``still``, and of what is shifted; ``retros`` (N + M,) of both."""
+
+    def __init__(self, still: Sequence[_Outline], shifted: Sequence[_Outline]):
+        self.still = np.vstack([np.empty((0, 4)), *(outline.segments for outline in still)])
+        self.retros = np.concatenate([np.empty(0), *(outline.retros for outline in (*still, *shifted))])
+        self._names = [outline.body.name for outline in shifted]
+        self._drawn = np.vstack([np.empty((0, 4)), *(outline.segments for outline in shifted)])
+        self._drawn_at = np.array([_ends(outline.drawn_at) for outline in shifted]).reshape(-1, 4)
+        counts = np.array([len(outline.segments) for outline in shifted], dtype=np.intp)
+        # Whose each side is.
+        self._whose = np.repeat(np.arange(len(shifted)), counts)
+
+    def shifted(self, pose_of: Callable[[str], np.ndarray]) -> np.ndarray:
+        """Sides (M, 4) of what is shifted, where it is now."""
+        if not self._names:
+            return self._drawn
+        ways = np.array([_ends(pose_of(name)) for name in self._names]) - self._drawn_at
+        return self._drawn + ways.take(self._whose, axis=0)
+
+
+def _ends(pose: np.ndarray) -> Tuple[float, float, float, float]:
+    """The place of a pose (4, 4), for both ends of a side."""
+    x, y = pose.item(0, 3), pose.item(1, 3)
+    return x, y, x, y
 
 
 def _differ(pose: np.ndarray, before: np.ndarray) -> bool:
