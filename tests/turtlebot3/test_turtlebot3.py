@@ -7,15 +7,17 @@ import actionlib
 import rospy
 import rostest
 from gazebo_msgs.msg import ModelStates
-from geometry_msgs.msg import PoseWithCovarianceStamped
+from geometry_msgs.msg import PoseWithCovarianceStamped, Twist
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from sensor_msgs.msg import Imu, JointState, LaserScan
 from turtlebot3_msgs.msg import SensorState, Sound, VersionInfo
+from visualization_msgs.msg import InteractiveMarkerFeedback, InteractiveMarkerInit
 from waiting import PATIENCE_SECONDS, wait_until
 
 from planar import Pose2
 from planar_ros.calls.actions import server_is_ready
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
+from planar_ros.node.listeners import is_heard
 
 BRING_UP_SECONDS = 90.0
 START, GOAL = Pose2(-2.0, -0.5), Pose2(0.55, -1.8)
@@ -60,6 +62,31 @@ class TurtleBot3Test(unittest.TestCase):
         error = self._truth().distance_to(GOAL)
         print(f"the robot truly stands {error:.3f} m from its goal")
         self.assertLess(error, 0.25)
+
+    def test_4_who_draws_at_its_marker_draws_it_along(self):
+        full = "/turtlebot3_marker_server/update_full"
+        (marker,) = rospy.wait_for_message(full, InteractiveMarkerInit, PATIENCE_SECONDS).markers
+        self.assertEqual({one.name for one in marker.controls}, {"move_x", "rotate_z"})
+        feedback = rospy.Publisher(
+            "/turtlebot3_marker_server/feedback", InteractiveMarkerFeedback, queue_size=1
+        )
+        drawn = InteractiveMarkerFeedback(client_id="test", marker_name=marker.name)
+        drawn.event_type, drawn.pose = (
+            InteractiveMarkerFeedback.POSE_UPDATE,
+            pose2_to_msg(Pose2(0.1, 0.0, 0.2)),
+        )
+        drawn.header.frame_id = marker.header.frame_id
+        told = []
+        rospy.Subscriber("cmd_vel", Twist, lambda twist: told.append((twist.linear.x, twist.angular.z)))
+        wait_until("somebody to hear of it", lambda: is_heard(feedback), PATIENCE_SECONDS)
+        before = self._truth()
+
+        def has_gone():
+            feedback.publish(drawn)
+            return self._truth().distance_to(before) > 0.1
+
+        wait_until("the robot to come along", has_gone, PATIENCE_SECONDS)
+        self.assertIn((0.1, 0.44), [(round(v, 6), round(omega, 6)) for v, omega in told])
 
     def _truth(self):
         states = rospy.wait_for_message("/gazebo/model_states", ModelStates, PATIENCE_SECONDS)

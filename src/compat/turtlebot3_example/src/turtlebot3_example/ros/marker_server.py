@@ -1,0 +1,68 @@
+"""The node ``turtlebot3_marker_server``: an arrow and a ring in rviz, by which the robot is drawn along."""
+
+from typing import Any
+
+import rospy
+from geometry_msgs.msg import Pose, Twist
+from visualization_msgs.msg import InteractiveMarker, InteractiveMarkerControl, InteractiveMarkerFeedback
+
+from planar import PlanarError
+from planar_ros.messages.conversion import pose2_from_msg
+from planar_ros.node.last_words import say_at_end
+from planar_ros.node.shell import run
+
+NAME, MARKER = "turtlebot3_marker_server", "turtlebot3_marker"
+# The official topic, which the launch file renames to ``cmd_vel``.
+COMMANDS = "interactive_marker_velocity_smoother/raw_cmd_vel"
+
+
+class MarkerServer:
+    """As far as the marker is drawn away from the robot, so fast it goes after it; then it snaps back."""
+
+    def __init__(self) -> None:
+        self._v_a_metre = rospy.get_param("~linear_scale", 1.0)
+        self._omega_a_radian = rospy.get_param("~angular_scale", 2.2)
+        self._publisher = rospy.Publisher(COMMANDS, Twist, queue_size=1)
+        say_at_end(self._publisher, Twist())
+        self._server = _server()
+        self._server.insert(_marker(rospy.get_param("~link_name", "base_link")), self._follow)
+        self._server.applyChanges()
+
+    def _follow(self, feedback: InteractiveMarkerFeedback) -> None:
+        drawn, message = pose2_from_msg(feedback.pose), Twist()
+        message.linear.x = self._v_a_metre * drawn.x
+        message.angular.z = self._omega_a_radian * drawn.yaw
+        self._publisher.publish(message)
+        at_robot = Pose()
+        at_robot.orientation.w = 1.0
+        self._server.setPose(MARKER, at_robot)
+        self._server.applyChanges()
+
+
+def _server() -> Any:
+    try:
+        from interactive_markers.interactive_marker_server import InteractiveMarkerServer
+    except ImportError as error:  # it comes with rviz, without which it is of no use
+        raise PlanarError(
+            "python3-interactive-markers is not installed: ./scripts/setup.sh --rviz"
+        ) from error
+    return InteractiveMarkerServer(NAME)
+
+
+def _marker(frame: str) -> InteractiveMarker:
+    marker = InteractiveMarker(name=MARKER, scale=1.0)
+    marker.header.frame_id = frame.lstrip("/")
+    marker.pose.orientation.w = 1.0
+    modes = {"move_x": InteractiveMarkerControl.MOVE_AXIS, "rotate_z": InteractiveMarkerControl.MOVE_ROTATE}
+    for (name, mode), axis in zip(modes.items(), "xy"):
+        control = InteractiveMarkerControl(name=name, interaction_mode=mode)
+        control.orientation_mode, control.always_visible = InteractiveMarkerControl.FIXED, True
+        # The axis of a control is the x axis of its frame: it lies ahead, or upwards.
+        control.orientation.w = 0.5**0.5
+        setattr(control.orientation, axis, 0.5**0.5)
+        marker.controls.append(control)
+    return marker
+
+
+def main() -> None:
+    run(NAME, MarkerServer)
