@@ -1,6 +1,7 @@
 """Where a robot can stand and drive in an arena, and how far it is from there to a goal."""
 
 import math
+from collections import OrderedDict
 from functools import cached_property
 from typing import Dict, Optional, Tuple
 
@@ -13,6 +14,7 @@ from planar.geometry.distance_field import distance_field
 # Metres from a robot's middle to what is solid: where it is put, and on its ways.
 ROOM_TO_STAND, ROOM_TO_PASS = 0.4, 0.35
 STATIONS = 16
+KEPT_GOALS = 4
 
 
 class Ground:
@@ -23,6 +25,7 @@ class Ground:
         self._map_in_grid = grid.origin.inverse()
         self._room = distance_field(grid.cells != FREE, grid.resolution)
         from_start = travel_distances(grid, self._room, start, ROOM_TO_PASS)
+        self._to_goals: OrderedDict[Pose2, np.ndarray] = OrderedDict()
         self._to_stations: Dict[int, np.ndarray] = {}
         self._ways: Dict[Tuple[int, int], np.ndarray] = {}
         self._standing = np.argwhere((self._room > ROOM_TO_STAND) & np.isfinite(from_start))
@@ -59,8 +62,18 @@ class Ground:
         return self._ways[start, goal]
 
     def distances_to(self, goal: Pose2) -> np.ndarray:
-        """Metres of way to a goal from each cell, float32 (rows, cols), inf where there is none."""
-        return travel_distances(self.grid, self._room, goal, ROOM_TO_PASS)
+        """Metres of way to a goal from each cell, float32 (rows, cols), inf where there is none; read only.
+
+        Those to the last goals are kept: many episodes have the same.
+        """
+        distances = self._to_goals.pop(goal, None)
+        if distances is None:
+            distances = travel_distances(self.grid, self._room, goal, ROOM_TO_PASS)
+            distances.flags.writeable = False
+        self._to_goals[goal] = distances
+        if len(self._to_goals) > KEPT_GOALS:
+            self._to_goals.popitem(last=False)
+        return distances
 
     def distance_at(self, distances: np.ndarray, place: Pose2) -> float:
         """The least of ``distances`` in the cell of a place and around it."""

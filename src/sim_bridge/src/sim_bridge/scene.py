@@ -71,22 +71,22 @@ class Scene:
         return self._engine.gravity
 
     def step(self, commands: Mapping[str, Twist2] = {}) -> Dict[str, Observation]:
-        """Moves on by one period of the odometry; a robot's last command holds until its time-out.
-        Returns what each robot has observed."""
+        """What each robot has observed a period of the odometry later; a command holds until its time-out."""
         for name, command in commands.items():
             self.robot(name).command(command)
-        robots, stamp, steps = self._robots.values(), self.stamp, 1
-        if not self.forces.are_due:
-            steps = _steps_at_once(self.settings, robots)
-        for _ in range(self.settings.physics_rate // self.settings.odometry_rate // steps):
-            if self.courses.each or self.crowd.links or self.doors.bodies:
-                moment = (self._physics_steps, self.settings.physics_rate, stamp)
+        robots, stamp, is_pushed = self._robots.values(), self.stamp, self.forces.are_due
+        rate, steps = self.settings.physics_rate, 1 if is_pushed else _steps_at_once(self.settings, robots)
+        for _ in range(rate // self.settings.odometry_rate // steps):
+            moment = (self._physics_steps, rate, stamp)
+            if self.courses.each:
                 self.courses.follow(self._engine, *moment)
+            if self.crowd.links or self.doors.bodies:
                 self.crowd.follow(self._engine, *moment, robots)
                 self.doors.follow(self._engine, *moment, robots, self.crowd.rows)
             for robot in robots:
                 robot.begin_steps(self._physics_steps)
-            self.forces.apply(stamp)
+            if is_pushed:
+                self.forces.apply(stamp)
             self._engine.step(steps)
             self._physics_steps += steps
             stamp = self.stamp

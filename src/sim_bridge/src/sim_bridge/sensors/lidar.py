@@ -119,7 +119,8 @@ class Lidar:
         fail = (noise.range_dropouts, noise.range_max_readings)
         return tell(
             true_ranges,
-            self._rng.normal(0.0, noise.range_noise, count),
+            noise.range_noise,
+            self._rng.standard_normal(count),
             self._rng.random(count) if sum(fail) > 0.0 else np.empty(0),
             *fail,
             profile.too_near,

@@ -48,11 +48,13 @@ def cast(segments, x, y, first, increment, count, sight):
 
 
 @numba.njit(cache=True)
-def tell(true_ranges, noise, chance, dropouts, max_readings, too_near, no_return, nearest, sight, farthest):
+def tell(
+    true_ranges, sigma, draws, chance, dropouts, max_readings, too_near, no_return, nearest, sight, farthest
+):
     """What a range finder tells of each true range, float32; by chance some beams fail."""
     told = np.empty(true_ranges.size, dtype=np.float32)
     for beam in range(true_ranges.size):
-        value = true_ranges[beam] + noise[beam]
+        value = true_ranges[beam] + sigma * draws[beam]
         if value < nearest:
             value = too_near
         if value > sight:
