@@ -66,6 +66,16 @@ def test_a_missing_file_is_named_and_nothing_is_started(option, tmp_path, capsys
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("command", ["home_service", "rehearse", "test_navigation"])
+def test_a_planner_that_is_not_there_is_named_and_nothing_is_started(command, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    goals = ["--goals", "1 0 0"] if command == "test_navigation" else []
+    assert main([command, *goals, "--planner", "MppiPlannerROS"]) == 2
+    told = capsys.readouterr().err
+    assert "no local planner 'MppiPlannerROS'; did you mean move_base_lite/MppiPlannerROS?" in told
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize("command", commands.FOLDER.names())
 def test_nonsense_is_answered_in_the_name_of_the_script_that_was_called(command, capsys):
     needed = {

@@ -86,6 +86,12 @@ def test_a_suite_that_is_not_there_is_refused():
         scenarios_of(["nonsense"])
 
 
+@pytest.mark.parametrize("planner", ["Nonsense", "no_such.module/Nonsense"])
+def test_a_planner_that_is_not_there_is_refused_before_anything_is_played(planner):
+    with pytest.raises(SettingsError, match=planner):
+        scenarios_of(["home_errand"], ["move_base_lite/MppiPlannerROS", planner])
+
+
 def test_a_digest_tells_scenarios_apart_by_what_they_say_and_not_by_their_names(tmp_path):
     scenario = read_scenario(written(tmp_path, WHOLE))
     assert replace(scenario, name="other", about="", seeds=(7,)).digest() == scenario.digest()

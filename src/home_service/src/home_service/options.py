@@ -81,8 +81,13 @@ class DrivingOptions(HomeOptions):
     )
 
     def files(self) -> Dict[str, Any]:
-        """The files as launch files name them, and who plans."""
-        return {**super().files(), **({"planner": self.planner} if self.planner else {})}
+        """The files as launch files name them, and who plans. Raises SettingsError."""
+        if not self.planner:
+            return super().files()
+        from move_base_lite.control import check_local_planner  # late: it takes its time
+
+        check_local_planner(self.planner)
+        return {**super().files(), "planner": self.planner}
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from typing import List, Sequence, Tuple
 
 from laboratory.scenario import Scenario, read_scenario
 from laboratory.staging import stage
+from move_base_lite.control import check_local_planner
 from planar import PlanarError, SettingsError
 
 ROOT = Path(__file__).resolve().parents[4]
@@ -18,9 +19,11 @@ def scenarios_of(
 ) -> Tuple[List[Scenario], List[str]]:
     """The scenarios of files, of folders of them, or by their names in ``scenarios/``; with each planner.
 
-    Returns them, and what is wrong with those that cannot be played. Raises SettingsError for a suite that
-    is not there.
+    Returns them, and what is wrong with those that cannot be played. Raises SettingsError for a suite or a
+    planner that is not there.
     """
+    for name in planners:
+        check_local_planner(name)
     scenarios, complaints = [], []
     for path in [file for suite in suites for file in _files(suite)]:
         try:

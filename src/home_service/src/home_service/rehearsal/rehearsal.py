@@ -33,6 +33,7 @@ from move_base_lite import (
     Status,
     load_settings,
 )
+from move_base_lite.control import check_local_planner
 from pick_objects import (
     Errand,
     Finish,
@@ -81,6 +82,8 @@ class Conditions:
 
     def navigation(self, config: Path) -> NavigatorSettings:
         """The parameters of a robot's file, with these over them. Raises SettingsError."""
+        if self.planner:
+            check_local_planner(self.planner)
         planner = {"base_local_planner": self.planner} if self.planner else {}
         return _navigation(config, json.dumps({**self.parameters, **planner}))
 

@@ -8,7 +8,7 @@ from move_base_lite.control.controller import Control, Controller
 from move_base_lite.control.dwa import DwaSettings, TrajectorySettings
 from move_base_lite.control.local_planner import Exploration, LocalPlanner, Plan, Situation, Trajectory
 from move_base_lite.control.mppi import MppiSettings
-from move_base_lite.control.registry import LOCAL_PLANNERS
+from move_base_lite.control.registry import LOCAL_PLANNERS, check_local_planner
 from move_base_lite.control.settings import ControllerSettings
 
 __all__ = [
@@ -24,4 +24,5 @@ __all__ = [
     "Situation",
     "Trajectory",
     "TrajectorySettings",
+    "check_local_planner",
 ]

@@ -6,6 +6,8 @@ from move_base_lite.control.local_planner import LocalPlanner
 from move_base_lite.control.mppi import MPPI
 from move_base_lite.control.settings import ControllerSettings
 from move_base_lite.plugin import Registry
+from planar import SettingsError
+from planar.config.hints import hint_or_all
 from planar.plugins import Contract
 
 LOCAL_PLANNERS: Registry[LocalPlanner] = Registry(
@@ -15,3 +17,12 @@ LOCAL_PLANNERS: Registry[LocalPlanner] = Registry(
     contract=Contract("local planner", LocalPlanner, ControllerSettings, "move_base_lite.local_planners"),
     guarded=GuardedLocalPlanner,
 )
+
+
+def check_local_planner(name: str) -> None:
+    """Raises SettingsError if there is no local planner of a name that a person gives.
+
+    (move_base itself is asked for planners of all the world, and drives with the nearest that there is.)
+    """
+    if LOCAL_PLANNERS.find(name) is None:
+        raise SettingsError(f"there is no local planner {name!r}{hint_or_all(name, LOCAL_PLANNERS.names)}")
