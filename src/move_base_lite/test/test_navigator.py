@@ -21,7 +21,7 @@ from robot_in_picture import (
 from move_base_lite import Navigator, Status, settings_from_parameters
 from move_base_lite.costmap import INSCRIBED
 from move_base_lite.recovery import NamedRecovery, SlowSettings
-from planar import Pose2, Twist2
+from planar import Pose2, Twist2, wrap
 
 LOCAL_PLANNERS = ("dwa_local_planner/DWAPlannerROS", "move_base_lite/MppiPlannerROS")
 
@@ -213,6 +213,44 @@ def test_a_robot_that_is_carried_away_while_it_turns_at_its_goal_drives_back(set
         robot.tick(navigator)
     robot.pose = robot.pose @ Pose2(0.0, -0.5)
     assert_arrived(robot, drive_to_end(robot, navigator), goal)
+
+
+def believing(robot, jump):
+    """A robot whose estimate is off by ``jump(robot)`` metres sideways; its odometry is right."""
+    true_tick = Navigator.tick
+
+    def tick(navigator):
+        decision = true_tick(
+            navigator,
+            robot.now,
+            robot.pose @ Pose2(0.0, jump(robot)),
+            robot.ODOM_IN_MAP.inverse() @ robot.pose,
+            robot.twist,
+            robot.scan(),
+        )
+        robot.drive(decision.command or Twist2())
+        return decision
+
+    robot.tick = tick
+    return robot
+
+
+@pytest.mark.parametrize("offset", [0.25, 0.3, 0.4])
+def test_a_robot_that_believes_itself_elsewhere_whenever_it_turns_arrives_all_the_same(settings, offset):
+    grid, goal = room(4.0, 4.0), Pose2(2.0, 2.0, 3.0)
+    robot, navigator = Robot(grid, Pose2(1.0, 2.0)), Navigator(settings, grid)
+    believing(robot, lambda robot: offset if abs(wrap(robot.pose.yaw - goal.yaw)) < 1.0 else 0.0)
+    navigator.set_goal(goal)
+    assert drive_to_end(robot, navigator)[-1].text == "Goal reached."
+
+
+def test_an_estimate_that_jumps_to_and_fro_is_no_progress_of_a_robot_that_stands(settings):
+    grid = room(6.0, 4.0)
+    robot, navigator = Robot(grid, Pose2(1.0, 2.0)), Navigator(settings, grid)
+    robot.drive = lambda command: setattr(robot, "now", robot.now + PERIOD)
+    believing(robot, lambda robot: 0.7 if robot.now % 10.0 < 5.0 else 0.0)
+    navigator.set_goal(Pose2(5.0, 2.0))
+    assert drive_to_end(robot, navigator)[-1].outcome.reason == "OSCILLATION"
 
 
 def test_an_ended_goal_says_so_once_and_leaves_the_robot_alone(settings):

@@ -198,3 +198,10 @@ def test_the_velocity_smoother_passes_velocities_on():
 def test_complaints_are_errors_told_once_with_the_windows_name(tmp_path):
     (tmp_path / "rosrun-pick.log").write_text("fine\n\x1b[31m[ERROR] [1]: lost\n[ERROR] [1]: lost\n")
     assert complaints_in(tmp_path) == ["rosrun-pick: [ERROR] [1]: lost"]
+
+
+def test_who_bumps_against_the_same_thing_again_is_counted_but_not_told_again():
+    ledger = Ledger()
+    told = [ledger.see_collision(name) for name in ("sofa::link", "sofa::link", "wall::link", "sofa::link")]
+    assert told == ["collision with sofa::link", None, "collision with wall::link", None]
+    assert len(ledger.collisions) == 4

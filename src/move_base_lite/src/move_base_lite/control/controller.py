@@ -23,6 +23,8 @@ GENTLE = 0.3
 # Metres that a robot which has been near its goal can be beyond the tolerance and have come there by itself,
 # rolling on and turning; farther off it has been carried away, or was never there.
 ROLLED = 0.1
+# Arrivals after which it stays: an estimate that moves as the robot turns would have it come and go for ever.
+MOST_ARRIVALS = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +53,7 @@ class Controller:
         self._tracking: Optional[Tracking] = None
         self._goal_in_map = Pose2()
         self._arrived = False
+        self._arrivals = 0
         self._is_turning = False
         self._omega_told: Optional[float] = None
 
@@ -64,6 +67,7 @@ class Controller:
         if goal_in_map != self._goal_in_map:
             self._goal_in_map = goal_in_map
             self._arrived = self._is_turning = False
+            self._arrivals = 0
 
     def is_goal_reached(self, base_in_map: Pose2, twist: Twist2) -> bool:
         """Within both tolerances of the goal, and at a standstill."""
@@ -152,7 +156,9 @@ class Controller:
 
     def _is_near(self, base_in_map: Pose2) -> bool:
         beyond = base_in_map.distance_to(self._goal_in_map) - self._settings.xy_goal_tolerance
-        is_latched = self._settings.latch_xy_goal_tolerance and self._arrived and beyond <= ROLLED
+        stays = beyond <= ROLLED or self._arrivals > MOST_ARRIVALS
+        is_latched = self._settings.latch_xy_goal_tolerance and self._arrived and stays
+        self._arrivals += beyond <= 0.0 and not self._arrived
         self._arrived = beyond <= 0.0 or is_latched
         return self._arrived
 

@@ -27,10 +27,16 @@ class Moment:
     base_in_odom: Pose2
     twist: Twist2
 
+    def metres_to(self, other: "Moment") -> float:
+        """What localization and odometry agree on: no jump of an estimate, no wheels that spin."""
+        return min(
+            self.base_in_map.distance_to(other.base_in_map), self.base_in_odom.distance_to(other.base_in_odom)
+        )
+
 
 @dataclass
 class Pursuit:
-    """What the Navigator remembers while it has a goal; ``pose`` is where the robot was seen last.
+    """What the Navigator remembers while it has a goal: when and where the robot was last, and last got on.
 
     ``path_xy``: (N, 2) in the map, the plan in use, made at ``planned_at``; empty if the last one failed.
     ``told``, ``moved``: since the last progress, metres and radians together that it was told to move, and
@@ -39,8 +45,8 @@ class Pursuit:
 
     goal: Pose2
     started: float
-    pose: Pose2
-    progress_pose: Pose2
+    last: Moment
+    got_on: Moment
     last_progress: float
     planning_since: float
     next_plan: float
@@ -63,8 +69,13 @@ class Pursuit:
     @classmethod
     def of(cls, goal: Pose2, moment: Moment) -> "Pursuit":
         """A pursuit that begins now and here."""
-        now, here = moment.now, moment.base_in_map
-        return cls(goal, now, here, here, now, now, now)
+        now = moment.now
+        return cls(goal, now, moment, moment, now, now, now)
+
+    @property
+    def pose(self) -> Pose2:
+        """Where the robot was last, in the map."""
+        return self.last.base_in_map
 
     def advance(self, moment: Moment, oscillation_distance: float, told: Twist2, period: float) -> None:
         """The robot has moved on; so many metres from where it was before are progress.
@@ -73,10 +84,10 @@ class Pursuit:
         """
         self.told += (abs(told.v) + abs(told.omega)) * period
         self.moved += (abs(moment.twist.v) + abs(moment.twist.omega)) * period
-        self.travelled += self.pose.distance_to(moment.base_in_map)
-        self.pose = moment.base_in_map
-        if self.pose.distance_to(self.progress_pose) >= oscillation_distance:
-            self.progress_pose = self.pose
+        self.travelled += moment.metres_to(self.last)
+        self.last = moment
+        if moment.metres_to(self.got_on) >= oscillation_distance:
+            self.got_on = moment
             self._count_from(moment.now)
             self.has_overcome(Trigger.OSCILLATION)
 

@@ -74,8 +74,6 @@ class Forces:
 
     def apply(self, stamp: float) -> None:
         """Before the step of physics that begins at ``stamp``."""
-        if not self.are_due:
-            return
         for push in self._pushes:
             if push.start <= stamp < push.end:
                 self._engine.push(push.link, push.force.tolist(), push.torque.tolist())

@@ -131,9 +131,10 @@ class Ledger:
         self._position = position
 
     def see_collision(self, name: str) -> Optional[str]:
-        """The robot touches something."""
+        """The robot touches something; that it does so again is no news."""
+        is_news = name not in self.collisions
         self.collisions.append(name)
-        return f"collision with {name}"
+        return f"collision with {name}" if is_news else None
 
     @property
     def is_quiet(self) -> bool:

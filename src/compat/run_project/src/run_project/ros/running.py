@@ -139,7 +139,8 @@ class ProjectRun:
             if now > deadline:
                 return f"not done within {timeout:g} s of wall time"
             if now - moved_wall > STALLED_SECONDS:
-                return f"no simulated time has passed for {STALLED_SECONDS:g} s"
+                what = "no simulated time has passed for" if moved_time else "no simulation has begun within"
+                return f"{what} {STALLED_SECONDS:g} s"
             if not is_master_online():
                 return "the ROS master has ended"
             time.sleep(POLL_SECONDS)

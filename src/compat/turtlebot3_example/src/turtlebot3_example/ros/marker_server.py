@@ -3,11 +3,11 @@
 from typing import Any
 
 import rospy
-from geometry_msgs.msg import Pose, Twist
+from geometry_msgs.msg import Quaternion, Twist
 from visualization_msgs.msg import InteractiveMarker, InteractiveMarkerControl, InteractiveMarkerFeedback
 
-from planar import PlanarError
-from planar_ros.messages.conversion import pose2_from_msg
+from planar import PlanarError, Pose2
+from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
 from planar_ros.node.last_words import say_at_end
 from planar_ros.node.shell import run
 
@@ -33,9 +33,7 @@ class MarkerServer:
         message.linear.x = self._v_a_metre * drawn.x
         message.angular.z = self._omega_a_radian * drawn.yaw
         self._publisher.publish(message)
-        at_robot = Pose()
-        at_robot.orientation.w = 1.0
-        self._server.setPose(MARKER, at_robot)
+        self._server.setPose(MARKER, pose2_to_msg(Pose2()))
         self._server.applyChanges()
 
 
@@ -50,18 +48,24 @@ def _server() -> Any:
 
 
 def _marker(frame: str) -> InteractiveMarker:
-    marker = InteractiveMarker(name=MARKER, scale=1.0)
+    marker = InteractiveMarker(name=MARKER, scale=1.0, pose=pose2_to_msg(Pose2()))
     marker.header.frame_id = frame.lstrip("/")
-    marker.pose.orientation.w = 1.0
-    modes = {"move_x": InteractiveMarkerControl.MOVE_AXIS, "rotate_z": InteractiveMarkerControl.MOVE_ROTATE}
-    for (name, mode), axis in zip(modes.items(), "xy"):
-        control = InteractiveMarkerControl(name=name, interaction_mode=mode)
-        control.orientation_mode, control.always_visible = InteractiveMarkerControl.FIXED, True
-        # The axis of a control is the x axis of its frame: it lies ahead, or upwards.
-        control.orientation.w = 0.5**0.5
-        setattr(control.orientation, axis, 0.5**0.5)
-        marker.controls.append(control)
+    half = 0.5**0.5  # the x axis of a control's frame is its axis: it lies ahead, or upwards
+    marker.controls = [
+        _control("move_x", InteractiveMarkerControl.MOVE_AXIS, Quaternion(half, 0.0, 0.0, half)),
+        _control("rotate_z", InteractiveMarkerControl.MOVE_ROTATE, Quaternion(0.0, half, 0.0, half)),
+    ]
     return marker
+
+
+def _control(name: str, mode: int, orientation: Quaternion) -> InteractiveMarkerControl:
+    return InteractiveMarkerControl(
+        name=name,
+        orientation=orientation,
+        orientation_mode=InteractiveMarkerControl.FIXED,
+        interaction_mode=mode,
+        always_visible=True,
+    )
 
 
 def main() -> None:
