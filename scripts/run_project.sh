@@ -11,6 +11,8 @@
 #   --seed N         seed of every noise (default: 0)
 #   --timeout N      the run fails after N seconds of wall time (default: 600)
 #   --expect LIST    how its goals are to end, if not all are to be reached, as aborted,succeeded
+#   --type WINDOW=TEXT...
+#                    what to type into windows whose programs ask for something, as add_markers=0
 #   --rviz           show it in the real rviz, with the project's configuration
 #   --web            show it in the browser: prints the URL of the page (docs/cockpit.md)
 #   --web-port [ADDRESS:]PORT

@@ -53,6 +53,30 @@ class RosToolsTest(unittest.TestCase):
         self.assertEqual([Path(nodes[0]).name for nodes in found if nodes], list(PUBLISHERS))
         self.assertEqual(len({os.path.realpath(nodes[0]) for nodes in found}), 1)
 
+    def test_a_robot_of_ones_own_can_stand_on_the_turtlebot_s_macros(self):
+        parts = "".join(
+            f'<xacro:include filename="$(find {package})/urdf/{name}.urdf.xacro"/>'
+            for package, name in (
+                ("turtlebot_description", "turtlebot_common_library"),
+                ("kobuki_description", "kobuki"),
+                ("turtlebot_description", "stacks/hexagons"),
+                ("turtlebot_description", "sensors/kinect"),
+            )
+        )
+        robot = (
+            f'<robot name="mine" xmlns:xacro="http://ros.org/wiki/xacro">{parts}<kobuki/>'
+            '<stack_hexagons parent="base_link"/><sensor_kinect parent="base_link"/><link name="laser"/>'
+            '<joint name="laser_joint" type="fixed"><parent link="plate_top_link"/><child link="laser"/>'
+            "</joint></robot>"
+        )
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "mine.urdf.xacro")
+            path.write_text(robot)
+            run = rosrun("xacro", "xacro", str(path))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        for link in ("base_footprint", "wheel_left_link", "plate_top_link", "camera_depth_optical_frame"):
+            self.assertIn(f'<link name="{link}"', run.stdout)
+
     def test_xacro_goes_on_where_the_order_of_former_times_is_asked_for(self):
         with tempfile.TemporaryDirectory() as folder:
             robot = Path(folder, "robot.xacro")

@@ -91,6 +91,24 @@ class CourseTest(unittest.TestCase):
         ):
             wait_until("the company info", lambda: "company info: Home Service" in printed())
 
+    def test_the_first_tutorial_is_there_under_both_its_names(self):
+        for package, suffix, heard in (
+            ("rospy_tutorials", ".py", "I heard hello world"),
+            ("roscpp_tutorials", "", "I heard: [hello world"),
+        ):
+            with running(package, f"listener{suffix}") as printed, running(package, f"talker{suffix}"):
+                wait_until(heard, lambda: heard in printed())  # noqa: B023
+
+    def test_a_launch_file_can_be_started_later(self):
+        code, output = run(
+            "timed_roslaunch", "timed_roslaunch.sh", "0.5", "learning_launch", "1_nodes.launch", "--nodes"
+        )
+        self.assertEqual(code, 0, output)
+        self.assertIn("/turtlesim", output)
+        code, output = run("timed_roslaunch", "timed_roslaunch.sh", "1")
+        self.assertEqual(code, 2, output)
+        self.assertIn("usage:", output)
+
     def test_a_turtle_is_spawned_once(self):
         code, output = run("learning_server", "a_new_turtle.py")
         self.assertEqual(code, 0, output)

@@ -224,3 +224,12 @@ def test_what_differs_for_another_robot_is_known_and_changes_something(name):
         settings_from_parameters({**parameters, "base_local_planner": "move_base_lite/MppiPlannerROS"})[1]
         == []
     )
+
+
+def test_a_value_of_a_wrong_type_can_count_as_not_set():
+    own = {"max_vel_x": "fast", "max_vel_theta": 0.7}
+    parameters = {"base_local_planner": "dwa_local_planner/DWAPlannerROS", "DWAPlannerROS": own}
+    settings, warnings = settings_from_parameters(parameters, "/move_base/", is_lenient=True)
+    assert settings.controller.max_vel_theta == 0.7
+    complaint = "/move_base/DWAPlannerROS/max_vel_x must be a number, got 'fast': it counts as not set"
+    assert complaint in warnings

@@ -44,3 +44,14 @@ def test_names_that_nobody_knows_are_handed_back():
 def test_a_wrong_value_is_refused_under_its_official_name(values, complaint):
     with pytest.raises(SettingsError, match=complaint):
         settings_from(Engine, values, NAMES, where="/car/")
+
+
+def test_a_value_of_a_wrong_type_can_count_as_not_set():
+    complaints = []
+    values = {"turbo": "map", "cylinders": 6, "engine_power": "much"}
+    engine, unknown = settings_from(Engine, values, NAMES, "/car/", complaints.append)
+    assert (engine, unknown) == (Engine(cylinders=6), [])
+    assert complaints == [
+        "/car/turbo must be true or false, got 'map'",
+        "/car/engine_power must be a number, got 'much'",
+    ]

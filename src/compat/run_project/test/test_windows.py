@@ -1,5 +1,11 @@
+import sys
+import time
+
+import psutil
 import pytest
 
+from run_project.ros.processes import waits_for_keys
+from run_project.stand_ins.terminal import TYPED, open_window
 from run_project.stand_ins.windows import commands_of, returns_at_once, title_of
 
 
@@ -47,3 +53,25 @@ def test_a_window_is_named_after_what_runs_in_it(command, title):
 def test_only_a_server_of_windows_returns_at_once():
     assert returns_at_once("gnome-terminal")
     assert not returns_at_once("xterm")
+
+
+def test_a_window_that_asks_gets_what_is_typed_and_waits_for_more(tmp_path, monkeypatch):
+    script = tmp_path / "ask"
+    script.write_text(f"#!{sys.executable}\nprint('yes or no?', input(), flush=True)\ninput()\n")
+    script.chmod(0o755)
+    monkeypatch.setenv(TYPED, "another=no\nask=yes, please")
+    window = open_window([str(script)], tmp_path)
+    try:
+        assert _soon(lambda: "yes or no? yes, please" in (tmp_path / "ask.log").read_text())
+        assert _soon(lambda: waits_for_keys(psutil.Process(window.pid)))
+        assert window.poll() is None
+    finally:
+        window.kill()
+        window.wait()
+
+
+def _soon(condition, seconds=20.0):
+    deadline = time.monotonic() + seconds
+    while not condition() and time.monotonic() < deadline:
+        time.sleep(0.02)
+    return condition()

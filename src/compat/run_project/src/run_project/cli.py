@@ -26,7 +26,7 @@ from run_project.ros.headless_rviz import SHOWN
 from run_project.ros.people import DEEDS
 from run_project.ros.running import Job, ProjectRun
 from run_project.stand_ins.folders import PACKAGE_FOLDER
-from run_project.stand_ins.terminal import LOGS
+from run_project.stand_ins.terminal import LOGS, TYPED
 from supervision.display import Display, complain
 from supervision.errors import LaunchError
 from supervision.interruption import INTERRUPTED, RunInterruptedError, raise_when_interrupted
@@ -174,7 +174,12 @@ def _job(
     file = workspace.checkout / script
     shell = [] if file.read_bytes()[:2] == b"#!" else ["bash"]
     command = [*shell, str(file), *options.script_arguments]
-    variables = {**environment(workspace), LOGS: str(logs), **({SHOWN: "1"} if options.rviz else {})}
+    variables = {
+        **environment(workspace),
+        LOGS: str(logs),
+        TYPED: "\n".join(options.type),
+        **({SHOWN: "1"} if options.rviz else {}),
+    }
     return Job(command, tree / placement.start, variables, work, prefix(mounts, root))
 
 

@@ -33,6 +33,12 @@ def _endings(text: str) -> Tuple[str, ...]:
     return endings
 
 
+def _typed(text: str) -> str:
+    if not text.partition("=")[0] or "=" not in text or "\n" in text:
+        raise argparse.ArgumentTypeError(f"must be WINDOW=TEXT, got {text!r}")
+    return text
+
+
 @dataclass(frozen=True)
 class Options:
     """Runs somebody's home-service project, unmodified and headless.
@@ -54,6 +60,13 @@ class Options:
     timeout: float = option(600.0, "seconds of wall time", type=_seconds)
     expect: Optional[Tuple[str, ...]] = option(
         None, "how its goals are to end, one after the other: aborted,succeeded", type=_endings
+    )
+    type: Tuple[str, ...] = option(
+        (),
+        "what to type into windows that ask, as add_markers=0",
+        type=_typed,
+        nargs="+",
+        metavar="WINDOW=TEXT",
     )
     rviz: bool = option(False, "show it in rviz")
     web: bool = option(False, "show it in the browser: prints the page's URL")

@@ -39,13 +39,14 @@ def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> Dict[str, Any
 
 
 def settings_from_parameters(
-    parameters: Mapping[str, Any], where: str = ""
+    parameters: Mapping[str, Any], where: str = "", is_lenient: bool = False
 ) -> Tuple[NavigatorSettings, List[str]]:
     """Settings from move_base's parameters as a nested dictionary, and warnings for people.
 
-    Raises SettingsError with the full name of the parameter, ``where`` put before it.
+    Raises SettingsError with the full name of the parameter, ``where`` put before it; if ``is_lenient``, a
+    value of a wrong type counts as not set, as in roscpp, and is warned of.
     """
-    reader = Reader(where)
+    reader = Reader(where, is_lenient)
     move_base = reader.read(MoveBaseSettings, parameters, "", _MOVE_BASE_IGNORED)
     costmaps = {
         name: costmap_settings(reader, below(parameters, name), name, parameters)

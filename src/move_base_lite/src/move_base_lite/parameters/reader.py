@@ -17,9 +17,10 @@ LEFT_BY_RECONFIGURE = "restore_defaults"
 class Reader:
     """Reads dataclasses out of nested dictionaries and collects what is odd."""
 
-    def __init__(self, where: str):
+    def __init__(self, where: str, is_lenient: bool = False):
         self.where = where
         self.warnings: List[str] = []
+        self._complain = self._pass_over if is_lenient else None
 
     def read(self, kind: Type[T], values: Tree, prefix: str, ignore: Iterable[str] = ()) -> T:
         """The settings ``kind`` from the values that are not dictionaries themselves."""
@@ -30,7 +31,7 @@ class Reader:
         }
         said = parameters_of(kind)
         names = {**{each.field: each.field for each in said}, **{each.name: each.field for each in said}}
-        settings, unknown = settings_from(kind, flat, names, where=self.where + prefix)
+        settings, unknown = settings_from(kind, flat, names, self.where + prefix, self._complain)
         self.report_unknown(unknown, prefix, [*names_of(kind), *ignore])
         return settings
 
@@ -52,6 +53,9 @@ class Reader:
             return registry.find(name, is_package_needed)
         except PluginError as error:
             raise PluginError(f"{self.where}{key}: {error}") from None
+
+    def _pass_over(self, complaint: str) -> None:
+        self.warnings.append(f"{complaint}: it counts as not set")
 
     def report_unknown(self, names: Iterable[str], prefix: str, known: Iterable[str]) -> None:
         known = list(known)

@@ -238,9 +238,10 @@ class MoveBaseNode:
 
 
 def _checked_settings(parameters) -> NavigatorSettings:
-    settings, warnings = settings_from_parameters(parameters, rospy.get_name() + "/")
+    is_strict = parameters.get("strict_params", False)
+    settings, warnings = settings_from_parameters(parameters, rospy.get_name() + "/", not is_strict)
     for warning in warnings:
-        if warning.startswith("unknown parameter") and parameters.get("strict_params", False):
+        if warning.startswith("unknown parameter") and is_strict:
             raise SettingsError(warning)
         rospy.logwarn(warning)
     return settings

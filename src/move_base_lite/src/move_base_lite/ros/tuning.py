@@ -49,7 +49,7 @@ class ParameterTree:
                         known = ", ".join(registry.names)
                         raise SettingsError(f"{where}{key} must be one of {known}, got {asked[key]}")
                 parameters = changed(self._parameters, namespace, asked)
-                settings, _ = settings_from_parameters(parameters, where)
+                settings, _ = settings_from_parameters(parameters, where, is_lenient=True)
             except SettingsError as error:
                 rospy.logerr("%s; nothing is changed", error)
                 return {tunable.name: value for tunable, value in servers(self._parameters)[namespace]}

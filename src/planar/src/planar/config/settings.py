@@ -3,7 +3,7 @@
 import dataclasses
 import math
 import typing
-from typing import Any, Callable, Dict, List, Mapping, Tuple, Type, TypeVar, Union
+from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple, Type, TypeVar, Union
 
 from planar.errors import SettingsError
 
@@ -15,13 +15,15 @@ def settings_from(
     values: Mapping[str, Any],
     names: Mapping[str, str] = {},
     where: Union[str, Callable[[str], str]] = "",
+    complain: Optional[Callable[[str], None]] = None,
 ) -> Tuple[T, List[str]]:
     """The dataclass ``kind`` filled from ``values``; what ``values`` leaves out keeps its default.
 
     ``names`` maps a name in ``values`` to a field of ``kind`` (a field's own name needs no entry).
     ``where`` is put before each name in error texts, e.g. ``/amcl/``; it may depend on the name.
     Returns the settings and the names that ``kind`` does not know. Raises SettingsError for a value of a
-    wrong type; ``kind.__post_init__`` may raise it for a senseless one.
+    wrong type, or tells it to ``complain``, if that is given, and goes on as if the value were not there;
+    ``kind.__post_init__`` may raise it for a senseless one.
     """
     place_of = where if callable(where) else lambda _name: where
     types = typing.get_type_hints(kind)
@@ -31,10 +33,15 @@ def settings_from(
     known: Dict[str, Any] = {}
     unknown = []
     for name, value in values.items():
-        if name in table:
-            known[table[name]] = _converted(types[table[name]], value, place_of(name) + name)
-        else:
+        if name not in table:
             unknown.append(name)
+            continue
+        try:
+            known[table[name]] = _converted(types[table[name]], value, place_of(name) + name)
+        except SettingsError as error:
+            if complain is None:
+                raise
+            complain(str(error))
     try:
         return kind(**known), unknown
     except SettingsError as error:

@@ -25,17 +25,18 @@ def read_settings(
     """The dataclass ``kind`` filled from the parameters below ``namespace`` (see planar.config.settings).
 
     ``defaults`` hold for the parameters that are not set, before those of ``kind``.
-    Names that neither ``kind`` nor ``ignore`` knows are warned of, with the nearest known one; with
-    ``~strict_params`` they are an error. Nested namespaces are other components' matter and left alone.
+    Names that neither ``kind`` nor ``ignore`` knows are warned of, with the nearest known one, and so are values
+    of a wrong type, which count as not set, as in roscpp; with ``~strict_params`` both are errors. Nested
+    namespaces are other components' matter and left alone.
     Raises SettingsError with the full name of the parameter.
     """
     where = rospy.resolve_name(namespace).rstrip("/") + "/"
     values = {name: value for name, value in parameters_below(where).items() if not isinstance(value, dict)}
-    settings, unknown = settings_from(kind, {**defaults, **values}, names, where)
+    settings, unknown = settings_from(kind, {**defaults, **values}, names, where, _report_wrong_type)
     known = {*names, *kind.__dataclass_fields__, *ignore, "strict_params", RESTORE}  # type: ignore[attr-defined]
     for name in unknown:
         if name not in known:
-            _report_unknown(f"unknown parameter {where}{name}{hint(name, known)}")
+            _report(f"unknown parameter {where}{name}{hint(name, known)}")
     return settings
 
 
@@ -58,7 +59,12 @@ class ParameterWriter:
         calls()
 
 
-def _report_unknown(text: str) -> None:
+def _report_wrong_type(complaint: str) -> None:
+    """Of a value that counts as not set."""
+    _report(f"{complaint}: it counts as not set")
+
+
+def _report(text: str) -> None:
     if rospy.get_param("~strict_params", False):
         raise SettingsError(text)
     rospy.logwarn("%s", text)

@@ -7,13 +7,14 @@ import subprocess
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Mapping, Optional, Sequence
+from typing import Dict, List, Mapping, Optional, Sequence, Set
 
 import psutil
 import rospy
 
 from run_project.ros.observer import Observer
 from run_project.ros.people import Person
+from run_project.ros.processes import program_of, put_spinners_last, waits_for_keys
 from run_project.stand_ins.terminal import WindowLogs
 from supervision.display import Display
 from supervision.errors import LaunchError
@@ -34,9 +35,6 @@ UNATTENDED_SECONDS, UNATTENDED_SIMULATED = 8.0, 10.0
 IDLE_SECONDS, IDLE_SIMULATED = 90.0, 60.0
 # Seconds of wall time in which some simulated time has to pass.
 STALLED_SECONDS = 90.0
-# A process that has taken so much of a core for so many seconds spins; how nice it has to be then.
-SPINNING_SHARE, SPINNING_SECONDS, SPINNING_NICENESS = 0.3, 5.0, 15
-SHELLS = ("", "bash", "sh", "dash", "zsh")
 # Runs in a project's workspace whenever that is sourced.
 SETUP_TOOL = "_setup_util.py"
 
@@ -66,6 +64,7 @@ class ProjectRun:
         self.observer = Observer(self._tell)
         self.person = None if deed is None else Person(deed, logs.parent, self._tell)
         self._helpers: List[subprocess.Popen] = []
+        self._asking: Set[int] = set()
         self._windows = WindowLogs(logs)
         self._news_wall = time.monotonic()
 
@@ -130,7 +129,8 @@ class ProjectRun:
                 latest_enter = now
                 _press_enter(script)
             own = self._project_processes()
-            _put_spinners_last(own)
+            put_spinners_last(own)
+            self._tell_who_asks(own)
             is_working = bool(own)
             has_worked = has_worked or is_working
             nodes_are_gone = has_worked and not is_working
@@ -161,6 +161,14 @@ class ProjectRun:
             return ledger.is_quiet and quiet_wall > enough_wall and quiet_simulated > enough_simulated
         # A goal may still come: bringing up localization and navigation takes a while on a busy machine.
         return quiet_wall > IDLE_SECONDS and quiet_simulated > IDLE_SIMULATED
+
+    def _tell_who_asks(self, own: List[psutil.Process]) -> None:
+        for process in own:
+            with contextlib.suppress(psutil.Error, OSError):
+                if process.pid not in self._asking and waits_for_keys(process):
+                    self._asking.add(process.pid)
+                    name = Path(program_of(process.cmdline())).stem
+                    self._tell(f"  {name} waits for something to be typed: --type {name}=TEXT")
 
     def _tell(self, news: str) -> None:
         self._news_wall = time.monotonic()
@@ -202,7 +210,7 @@ class ProjectRun:
         found = []
         for process in psutil.Process().children(recursive=True):
             with contextlib.suppress(psutil.NoSuchProcess):
-                program = _program(process.cmdline())
+                program = program_of(process.cmdline())
                 if str(self._job.work) in program and not program.endswith(SETUP_TOOL):
                     found.append(process)
         return found
@@ -214,31 +222,6 @@ def _press_enter(script: "subprocess.Popen[bytes]") -> None:
         with contextlib.suppress(OSError):
             script.stdin.write(b"\n")
             script.stdin.flush()
-
-
-def _put_spinners_last(processes: List[psutil.Process]) -> None:
-    """Some nodes never sleep: the core that they take must not be missing where the robot is simulated."""
-    for process in processes:
-        with contextlib.suppress(psutil.Error):
-            times, age = process.cpu_times(), time.time() - process.create_time()
-            is_spinning = age > SPINNING_SECONDS and times.user + times.system > SPINNING_SHARE * age
-            if is_spinning and process.nice() < SPINNING_NICENESS:
-                process.nice(SPINNING_NICENESS)
-                _put_session_last(process)
-
-
-def _put_session_last(process: psutil.Process) -> None:
-    """Linux may share out the cores by sessions, one a node; niceness counts only within a session."""
-    with contextlib.suppress(OSError):
-        Path(f"/proc/{process.pid}/autogroup").write_text(f"{SPINNING_NICENESS}\n")
-
-
-def _program(command: List[str]) -> str:
-    """The file that a process runs; empty for a shell."""
-    name = Path(command[0]).name if command else ""
-    if name in SHELLS:
-        return ""
-    return command[1] if name.startswith("python") and len(command) > 1 else "".join(command[:1])
 
 
 def _others(helpers: List[subprocess.Popen]) -> List[psutil.Process]:

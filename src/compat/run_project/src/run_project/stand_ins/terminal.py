@@ -4,11 +4,13 @@ import contextlib
 import os
 import subprocess
 from pathlib import Path
-from typing import List
+from typing import Iterator, List
 
 from run_project.stand_ins.windows import commands_of, returns_at_once, title_of
 
 LOGS = "RUN_PROJECT_LOGS"
+# What is typed into windows: lines of WINDOW=TEXT.
+TYPED = "RUN_PROJECT_TYPED"
 # Logs that lie beside those of the windows.
 NOT_WINDOWS = ("build", "master", "record", "script")
 
@@ -25,12 +27,30 @@ def main(terminal: str, arguments: List[str]) -> None:
 
 def open_window(command: List[str], folder: Path) -> subprocess.Popen:
     """Starts a command that outlives whoever asked for it. Its output goes to a file named after it."""
-    with _new_file(folder, title_of(command)) as log:
+    title = title_of(command)
+    with _new_file(folder, title) as log, _keyboard(title) as keys:
         log.write((" ".join(command) + "\n").encode("utf-8", "surrogateescape"))
         log.flush()
         return subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT, start_new_session=True
+            command, stdin=keys, stdout=log, stderr=subprocess.STDOUT, start_new_session=True
         )
+
+
+@contextlib.contextmanager
+def _keyboard(title: str) -> Iterator[int]:
+    """What is typed into a window; then nothing more comes, but it does not end, as no keyboard does."""
+    reading, writing = os.pipe()
+    both = os.open(f"/proc/self/fd/{reading}", os.O_RDWR)  # who reads from this holds it open for writing
+    os.close(reading)
+    os.close(writing)
+    for line in os.environ.get(TYPED, "").splitlines():
+        window, _, text = line.partition("=")
+        if window in (title, title.partition("-")[2]):
+            os.write(both, text.encode() + b"\n")
+    try:
+        yield both
+    finally:
+        os.close(both)
 
 
 class WindowLogs:
