@@ -25,9 +25,9 @@ def read_settings(
     """The dataclass ``kind`` filled from the parameters below ``namespace`` (see planar.config.settings).
 
     ``defaults`` hold for the parameters that are not set, before those of ``kind``.
-    Names that neither ``kind`` nor ``ignore`` knows are warned of, with the nearest known one, and so are values
-    of a wrong type, which count as not set, as in roscpp; with ``~strict_params`` both are errors. Nested
-    namespaces are other components' matter and left alone.
+    Names that neither ``kind`` nor ``ignore`` knows are warned of, with the nearest known one, and so are
+    values of a wrong type, which count as not set, as in roscpp; with ``~strict_params`` both are errors.
+    Nested namespaces are other components' matter and left alone.
     Raises SettingsError with the full name of the parameter.
     """
     where = rospy.resolve_name(namespace).rstrip("/") + "/"

@@ -71,10 +71,10 @@ class Fleet:
 
 
 def _tf_prefix(namespace: str) -> str:
-    """The parameter tf_prefix of a namespace, or of the nearest around it, as in Gazebo."""
+    """The parameter tf_prefix of a namespace or of the nearest around it, else itself, as in Gazebo."""
     where = namespace.strip("/").split("/")
     for depth in range(len(where), -1, -1):
         name = "/".join(["", *where[:depth], "tf_prefix"])
         if rospy.has_param(name):
             return str(rospy.get_param(name)).strip("/")
-    return ""
+    return namespace.strip("/")

@@ -66,6 +66,7 @@ class Style:
     banner: str
     keys: Collection[str]
     driver: Callable[[], Driver]
+    speeds: str = "currently:\tspeed {v:.4g}\tturn {omega:.4g}"
 
 
 TURTLEBOT = Style(
@@ -161,7 +162,8 @@ class KeyboardTeleop:
                 print(self._style.banner)
 
     def _tell_speeds(self):
-        print(f"currently:\tspeed {self._teleop.full.v:.4g}\tturn {self._teleop.full.omega:.4g}", flush=True)
+        full = self._teleop.full
+        print(self._style.speeds.format(v=full.v, omega=full.omega), flush=True)
 
     def _publish(self, velocity: Twist2):
         message = Twist()

@@ -28,6 +28,7 @@ TURTLEBOT3 = Style(
     banner=BANNER,
     keys=KEYS,
     driver=lambda: SteppedTeleop(rospy.get_param("model", "burger")),
+    speeds="currently:\tlinear vel {v:.4g}\t angular vel {omega:.4g} ",
 )
 
 

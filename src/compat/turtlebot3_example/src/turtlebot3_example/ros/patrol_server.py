@@ -1,5 +1,7 @@
 """The node ``turtlebot3``: an action that patrols along a square, a triangle or a circle."""
 
+from contextlib import suppress
+
 import actionlib
 import rospy
 
@@ -19,6 +21,10 @@ class Patrol:
         rospy.loginfo("Server On")
 
     def _execute(self, request) -> None:
+        with suppress(rospy.ROSInterruptException):  # by Ctrl-C on the way
+            self._patrol(request)
+
+    def _patrol(self, request) -> None:
         mode, size, count = int(request.goal.x), request.goal.y, int(request.goal.z)
         try:
             corners = figure(self._robot.base(), mode, size) * max(count, 1)

@@ -2,6 +2,7 @@
 
 import math
 import sys
+from contextlib import suppress
 
 import rospy
 
@@ -24,7 +25,11 @@ If you want to close, insert 's'
 def main() -> None:
     """Exit code 0, or 2 if what is typed is no place."""
     rospy.init_node("turtlebot3_pointop_key")
-    robot = Robot()
+    with suppress(rospy.ROSInterruptException):
+        _go_where_is_typed(Robot())
+
+
+def _go_where_is_typed(robot: Robot) -> None:
     print(MESSAGE, flush=True)
     for line in sys.stdin:
         if line.strip() in ("", "s"):
