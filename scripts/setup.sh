@@ -32,7 +32,7 @@ packages_only=
 failure=
 retry= # also what has failed before, of the same sources
 
-set_up() { # EXTRA...: brings the workspace up to date; extras are dev, projects, rviz, cockpit, laboratory and gymnasium
+set_up() { # EXTRA...: brings the workspace up to date; extras are dev, projects, opencv, rviz, cockpit, laboratory and gymnasium
     look_for_missing "$@"
     if [[ -n $packages$requirements$build$kernels ]]; then
         check_place

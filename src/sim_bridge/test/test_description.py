@@ -199,6 +199,14 @@ def test_a_fixed_joint_needs_no_axis_and_a_shape_no_thickness():
     assert robot.model.base.collisions[0].shape.size == pytest.approx((0.4, 1e-4, 0.1))
 
 
+def test_of_two_drives_the_one_whose_wheels_are_not_there_is_left_out():
+    broken = DRIVE.format(more="").replace(">left_hinge", ">hinge")
+    for drives in (DRIVE.format(more="") + broken, broken + DRIVE.format(more="")):
+        robot = read_urdf_robot(urdf(drives), "mine.urdf")
+        assert "left_hinge" in robot.drive.joints
+        assert any("no joint 'hinge'" in warning and "left out" in warning for warning in robot.warnings)
+
+
 @pytest.mark.parametrize(
     ("text", "named"),
     [

@@ -5,7 +5,14 @@ file(MAKE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/include")
 
 # Messages of the other packages, declared or not: where they had been built before, a missing dependency went
 # unnoticed.
-include_directories(AFTER "${CATKIN_DEVEL_PREFIX}/include")
+include_directories(AFTER "${CATKIN_DEVEL_PREFIX}/include" ${STAND_IN_HEADERS})
+
+# Generated messages of packages that are not there, which others were to be built after.
+foreach(_target IN LISTS ABSENT_TARGETS)
+  if(NOT TARGET ${_target})
+    add_custom_target(${_target})
+  endif()
+endforeach()
 
 # Where every package of the author's machine had been found before, a missing dependency went unnoticed.
 file(READ "${CMAKE_CURRENT_SOURCE_DIR}/CMakeLists.txt" _text)

@@ -3,7 +3,14 @@ from pathlib import Path
 
 from run_project.checkout.layout import read_checkout
 from run_project.checkout.placement import Placement
-from run_project.preparing.building import Workspace, broken_configurations, copy_checkout, environment
+from run_project.preparing import building
+from run_project.preparing.building import (
+    Workspace,
+    broken_configurations,
+    build,
+    copy_checkout,
+    environment,
+)
 
 OUTPUT = """
 CMake Error at /usr/share/cmake-3.25/Modules/FindPackageHandleStandardArgs.cmake:230 (message):
@@ -49,6 +56,25 @@ def test_packages_that_cannot_be_configured_are_told_with_the_reason(tmp_path):
         "maps": "Could NOT find Protobuf (missing: Protobuf_LIBRARIES)",
         "worlds": "needs gazebo, which is not there",
     }
+
+
+ABSENT = """CMake Error at ball_chaser/CMakeLists.txt:215 (add_dependencies):
+  The dependency target "simple_arm_generate_messages_cpp" of target
+  "drive_bot" does not exist.
+-- Generating done
+CMake Generate step failed.  Build files cannot be regenerated correctly.
+"""
+
+
+def test_what_is_to_be_built_after_messages_that_nobody_generates_is_built(tmp_path, monkeypatch):
+    (tmp_path / "devel").mkdir()
+    (tmp_path / "devel/setup.bash").touch()
+    workspace = Workspace(tmp_path, tmp_path / "src", {}, tmp_path / "pretended")
+    outputs = [ABSENT, "[100%] Built target drive_bot"]
+    monkeypatch.setattr(building, "_catkin_make", lambda workspace, log: outputs.pop(0))
+    build(workspace, tmp_path / "build.log", print)
+    assert workspace.absent_targets == {"simple_arm_generate_messages_cpp"}
+    assert (outputs, workspace.unbuilt) == ([], set())
 
 
 def test_the_model_of_a_turtlebot3_is_assumed_where_nobody_says_it(tmp_path, monkeypatch):

@@ -10,6 +10,7 @@ from sim_bridge.description.blocks import Blocks
 from sim_bridge.description.profile import JointStateProfile
 from sim_bridge.description.structure import Structure
 from sim_bridge.driving.profile import DriveProfile
+from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import IDENTITY
 from sim_bridge.sdf.element import Element
 from sim_bridge.sdf.plugins import plugin_name
@@ -51,13 +52,21 @@ def read_equipment(structure: Structure, blocks: Blocks) -> Equipment:
     Raises WorldError naming the element.
     """
     equipment = Equipment()
-    left_out = []
+    left_out, not_driving = [], []
     for plugin in blocks.plugins:
         reader = _PLUGINS.get(plugin_name(plugin))
-        if reader is not None:
-            reader(plugin, structure, equipment)
-        else:
+        if reader is None:
             left_out.append(plugin)
+        elif reader in _DRIVES:
+            try:
+                reader(plugin, structure, equipment)
+            except WorldError as error:
+                not_driving.append(error)
+        else:
+            reader(plugin, structure, equipment)
+    if not_driving and equipment.drive is None:
+        raise not_driving[0]
+    equipment.warnings += [f"{error}; left out as Gazebo does" for error in not_driving]
     for link, sensor in blocks.sensors:
         if link not in structure.links:
             equipment.warnings.append(f"{sensor.place}: there is no link {link!r}, left out as Gazebo does")
@@ -201,6 +210,8 @@ def _found(plugin: Element, sensor: Element, link: str, structure: Structure, eq
     return Found(plugin, sensor, link, in_base, equipment.namespace)
 
 
+# One that fails does not matter where another drives the robot.
+_DRIVES = (_read_diff_drive, _read_skid_steer, _read_kobuki)
 _PLUGINS: Dict[str, Callable[[Element, Structure, Equipment], None]] = {
     "gazebo_ros_diff_drive": _read_diff_drive,
     "gazebo_ros_skid_steer_drive": _read_skid_steer,

@@ -7,7 +7,7 @@ import signal
 import subprocess
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Callable, Dict, Set, Tuple
+from typing import Callable, Dict, List, Set, Tuple
 
 from run_project.checkout.layout import LEFTOVERS, Checkout
 from run_project.checkout.lent import lend
@@ -29,6 +29,7 @@ UNCONFIGURED = "Configuring incomplete"
 _CMAKE_ERROR = re.compile(r"^CMake Error at ", re.MULTILINE)
 _CMAKE_REASON = re.compile(r"\n\s*([^\n]+)")
 _CMAKE_PLACE = re.compile(r"(\S+?)/CMakeLists\.txt:\d+")
+_ABSENT_TARGET = re.compile(r'The dependency target "(\w+)" of target')
 _MISSING_CONFIG = re.compile(r'provided by\s+"(\S+?)"')
 _BROKEN_SOURCE = re.compile(r"^(/\S+?):\d+(?::\d+)?: (?:fatal )?error: (.*)", re.MULTILINE)
 _BROKEN_LINK = re.compile(r"CMakeFiles/(\S+?)\.dir/\S+: (?:in function .*?: )?(undefined reference .*)")
@@ -40,7 +41,7 @@ class Workspace:
 
     ``pretended``: a folder for packages that are not there. ``model_folders``: where Gazebo's models lie.
     ``unbuilt``: packages whose files alone are used. ``missing``: packages that are not as their author meant
-    them, with the reason.
+    them, with the reason. ``absent_targets``: what they ask CMake to be built after, and nobody builds.
     """
 
     folder: Path
@@ -50,6 +51,7 @@ class Workspace:
     model_folders: Tuple[Path, ...] = ()
     unbuilt: Set[str] = field(default_factory=set)
     missing: Dict[str, str] = field(default_factory=dict)
+    absent_targets: Set[str] = field(default_factory=set)
 
 
 def copy_checkout(checkout: Checkout, placement: Placement, work: Path) -> Workspace:
@@ -101,8 +103,10 @@ def build(workspace: Workspace, log: Path, say: Callable[[str], None]) -> None:
     _modernize(workspace, say)
     for _ in range(CONFIGURATIONS):
         output = _catkin_make(workspace, log)
-        broken = broken_configurations(workspace, output)
-        if not broken:
+        absent = set(_ABSENT_TARGET.findall(output)) - workspace.absent_targets
+        workspace.absent_targets |= absent
+        broken = {} if absent else broken_configurations(workspace, output)
+        if not (absent or broken):
             break
         _leave_out(workspace, broken, say)
     if UNCONFIGURED in output or not (workspace.folder / "devel" / "setup.bash").exists():
@@ -134,6 +138,14 @@ def _is_there(package: str) -> bool:
     prefixes = [*os.environ.get("CMAKE_PREFIX_PATH", "").split(":"), "/usr"]
     folders = (f"share/{package}/cmake", f"lib/cmake/{package}", f"lib/*/cmake/{package}")
     return any(any(Path(prefix).glob(folder)) for prefix in prefixes if prefix for folder in folders)
+
+
+def _header_folders() -> List[str]:
+    """Of this workspace's own messages, which lay with all others below /opt/ros."""
+    prefixes = os.environ.get("CMAKE_PREFIX_PATH", "").split(":")
+    return [
+        str(Path(prefix, "include")) for prefix in prefixes if prefix and Path(prefix, "include").is_dir()
+    ]
 
 
 def _leave_out(workspace: Workspace, reasons: Dict[str, str], say: Callable[[str], None]) -> None:
@@ -174,14 +186,15 @@ def _catkin_make(workspace: Workspace, log: Path) -> str:
     command = [
         "catkin_make",
         f"-DCMAKE_PROJECT_INCLUDE={FRESH_CLONE}",
+        f"-DSTAND_IN_HEADERS={';'.join(_header_folders())}",
+        f"-DABSENT_TARGETS={';'.join(sorted(workspace.absent_targets))}",
         "-DCATKIN_ENABLE_TESTING=OFF",
         f"-DCATKIN_BLACKLIST_PACKAGES={';'.join(sorted(workspace.unbuilt))}",
         "-Wno-dev",
     ]
     # The second name is the one that catkin of Debian 13 knows.
     command += [f"-D{name}_EXECUTABLE={shutil.which('python3')}" for name in ("PYTHON", "Python")]
-    command += ["--force-cmake"]
-    command += ["--make-args", "-k"]
+    command += ["--force-cmake", "--make-args", "-k"]
     variables = {
         "CMAKE_PREFIX_PATH": f"{STAND_INS}:{os.environ['CMAKE_PREFIX_PATH']}:{workspace.pretended}",
         "LC_ALL": "C",
