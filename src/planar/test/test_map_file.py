@@ -97,3 +97,17 @@ def test_a_disk_that_is_full_after_the_image_leaves_the_old_pair_alone(tmp_path)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
     assert [path.read_bytes() for path in sorted(tmp_path.iterdir())] == old
+
+
+@pytest.mark.parametrize(
+    ("data", "why"),
+    [
+        (b"version https://git-lfs.github.com/spec/v1\noid sha256:1e\nsize 30\n", "git lfs pull"),
+        (b"<html>", "of no known format"),
+    ],
+)
+def test_what_came_instead_of_an_image_is_told(tmp_path, data, why):
+    path = write(tmp_path)
+    (tmp_path / "a.pgm").write_bytes(data)
+    with pytest.raises(MapFileError, match=why):
+        load_map(path)

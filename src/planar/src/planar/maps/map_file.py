@@ -4,7 +4,7 @@ import io
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
+from PIL import Image, UnidentifiedImageError
 
 from planar.config.yaml_table import read_table
 from planar.errors import PlanarError
@@ -16,6 +16,8 @@ from planar.geometry.pose import Pose2
 
 MODES = ("trinary", "scale", "raw")
 MOST_PIXELS = 100_000_000
+# How a file begins that Git LFS keeps elsewhere.
+LFS_POINTER = b"version https://git-lfs"
 
 
 class MapFileError(PlanarError):
@@ -62,12 +64,17 @@ def cells_from_image(
 ) -> np.ndarray:
     """Cells int8 (rows, cols), row 0 lowest, of an image read as map_server reads it."""
     try:
-        with Image.open(io.BytesIO(read_bytes(image_path))) as image:
+        data = read_bytes(image_path)
+        if data.startswith(LFS_POINTER):
+            raise ValueError("a pointer of Git LFS, which git lfs pull replaces by the image")
+        with Image.open(io.BytesIO(data)) as image:
             if image.width * image.height > MOST_PIXELS:
                 raise ValueError(f"{image.width} x {image.height} pixels are too many")
             pixels = np.asarray(image.convert("RGBA" if "A" in image.getbands() else "RGB"))
     except FileNotFoundError:
         raise MapImageError(f"{image_path}: no such map image") from None
+    except UnidentifiedImageError:
+        raise MapImageError(f"{image_path}: not a readable image (of no known format)") from None
     except Exception as error:  # what Pillow's many readers raise for a broken file has no common class
         raise MapImageError(f"{image_path}: not a readable image ({error})") from None
     channels = pixels if mode == "trinary" else pixels[:, :, :3]
