@@ -64,3 +64,9 @@ def test_what_stands_behind_two_dashes_is_for_the_script():
     assert options.script_arguments == ("--seed", "4")
     assert options.seed == 0
     assert options.wanted_speed == 1.0
+
+
+@pytest.mark.parametrize(("more", "is_drawn_nowhere"), [([], True), (["--rviz"], False)])
+def test_windows_of_opencv_need_no_screen_unless_people_look_on(tmp_path, more, is_drawn_nowhere):
+    told = cli.told_to_windows(parse([str(tmp_path), *more]), tmp_path / "log")
+    assert (told.get("QT_QPA_PLATFORM") == "offscreen") == is_drawn_nowhere

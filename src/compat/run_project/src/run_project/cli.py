@@ -36,6 +36,8 @@ from supervision.versions import versions
 
 FAILURE, BAD_INPUT = 1, 2
 WORK = PACKAGE_FOLDER.parents[2] / "build" / "projects"
+# Windows that programs open by themselves, as those of OpenCV, are drawn nowhere.
+WITHOUT_SCREEN = {"QT_QPA_PLATFORM": "offscreen"}
 LARGEST_TEXT = 3_000_000
 ROS_FOLDER = re.compile(r"/opt/ros/[a-z]+")
 # Of the simulator: what it does not leave behind at speed 0, and what projects count on as Gazebo does so:
@@ -174,13 +176,14 @@ def _job(
     file = workspace.checkout / script
     shell = [] if file.read_bytes()[:2] == b"#!" else ["bash"]
     command = [*shell, str(file), *options.script_arguments]
-    variables = {
-        **environment(workspace),
-        LOGS: str(logs),
-        TYPED: "\n".join(options.type),
-        **({SHOWN: "1"} if options.rviz else {}),
-    }
+    variables = {**environment(workspace), **told_to_windows(options, logs)}
     return Job(command, tree / placement.start, variables, work, prefix(mounts, root))
+
+
+def told_to_windows(options: Options, logs: Path) -> Dict[str, str]:
+    """The environment of what runs in windows, and of what stands in for these."""
+    screen = {SHOWN: "1"} if options.rviz else WITHOUT_SCREEN
+    return {LOGS: str(logs), TYPED: "\n".join(options.type), **screen}
 
 
 def _stand_in_for_ros(folder: Path, workspace: Workspace) -> Path:
