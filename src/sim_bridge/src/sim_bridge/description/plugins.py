@@ -57,13 +57,13 @@ def read_equipment(structure: Structure, blocks: Blocks) -> Equipment:
         reader = _PLUGINS.get(plugin_name(plugin))
         if reader is None:
             left_out.append(plugin)
-        elif reader in _DRIVES:
-            try:
-                reader(plugin, structure, equipment)
-            except WorldError as error:
-                not_driving.append(error)
-        else:
+            continue
+        try:
             reader(plugin, structure, equipment)
+        except WorldError as error:
+            if reader not in _DRIVES.values():
+                raise
+            not_driving.append(error)
     if not_driving and equipment.drive is None:
         raise not_driving[0]
     equipment.warnings += [f"{error}; left out as Gazebo does" for error in not_driving]
@@ -211,11 +211,13 @@ def _found(plugin: Element, sensor: Element, link: str, structure: Structure, eq
 
 
 # One that fails does not matter where another drives the robot.
-_DRIVES = (_read_diff_drive, _read_skid_steer, _read_kobuki)
-_PLUGINS: Dict[str, Callable[[Element, Structure, Equipment], None]] = {
+_DRIVES: Dict[str, Callable[[Element, Structure, Equipment], None]] = {
     "gazebo_ros_diff_drive": _read_diff_drive,
     "gazebo_ros_skid_steer_drive": _read_skid_steer,
     "gazebo_ros_kobuki": _read_kobuki,
+}
+_PLUGINS: Dict[str, Callable[[Element, Structure, Equipment], None]] = {
+    **_DRIVES,
     "gazebo_ros_joint_state_publisher": _read_joint_states,
     **{name: _read_body_sensor for name in BODY_SENSORS},
     **{name: lambda *_: None for name in NEEDLESS_PLUGINS},

@@ -135,17 +135,18 @@ def environment(workspace: Workspace) -> Dict[str, str]:
 
 
 def _is_there(package: str) -> bool:
-    prefixes = [*os.environ.get("CMAKE_PREFIX_PATH", "").split(":"), "/usr"]
     folders = (f"share/{package}/cmake", f"lib/cmake/{package}", f"lib/*/cmake/{package}")
-    return any(any(Path(prefix).glob(folder)) for prefix in prefixes if prefix for folder in folders)
+    return any(any(prefix.glob(folder)) for prefix in [*_prefixes(), Path("/usr")] for folder in folders)
 
 
 def _header_folders() -> List[str]:
     """Of this workspace's own messages, which lay with all others below /opt/ros."""
-    prefixes = os.environ.get("CMAKE_PREFIX_PATH", "").split(":")
-    return [
-        str(Path(prefix, "include")) for prefix in prefixes if prefix and Path(prefix, "include").is_dir()
-    ]
+    return [str(prefix / "include") for prefix in _prefixes() if (prefix / "include").is_dir()]
+
+
+def _prefixes() -> List[Path]:
+    """Of the workspaces in use."""
+    return [Path(prefix) for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(":") if prefix]
 
 
 def _leave_out(workspace: Workspace, reasons: Dict[str, str], say: Callable[[str], None]) -> None:
