@@ -2,6 +2,7 @@
 """The nodes of the course do what their lessons say."""
 
 import contextlib
+import os
 import subprocess
 import tempfile
 import unittest
@@ -49,6 +50,15 @@ def run(package, node, *arguments):
         check=False,
     )
     return done.returncode, done.stdout.decode()
+
+
+def nodes_launched_by(package):
+    """Each launch file of a package with each node that it starts."""
+    for path in sorted(Path(rospkg.RosPack().get_path(package), "launch").glob("*.launch")):
+        config = load_config_default([str(path)], None, verbose=False)
+        assert not config.config_errors, path
+        for node in config.nodes:
+            yield path, node
 
 
 class CourseTest(unittest.TestCase):
@@ -148,13 +158,20 @@ class CourseTest(unittest.TestCase):
         self.assertAlmostEqual(pose.y, 5.544, delta=0.01)
 
     def test_the_launch_files_name_nodes_that_exist(self):
-        packages = rospkg.RosPack()
-        for path in sorted(Path(packages.get_path("learning_launch"), "launch").glob("*.launch")):
-            config = load_config_default([str(path)], None, verbose=False)
-            self.assertFalse(config.config_errors, path)
-            for node in config.nodes:
-                found = Path(packages.get_path(node.package), "nodes", node.type)
+        for package in ("learning_launch", "turtle_tf", "turtle_tf2"):
+            for path, node in nodes_launched_by(package):
+                found = Path(rospkg.RosPack().get_path(node.package), "nodes", node.type)
                 self.assertTrue(found.is_file(), f"{path}: {node.package} {node.type}")
+
+    def test_the_demos_of_tf_need_no_package_that_a_pupil_writes_anew(self):
+        for package in ("turtle_tf", "turtle_tf2"):
+            used = {node.package for _, node in nodes_launched_by(package)}
+            self.assertEqual(used, {package, "turtlesim"})
+
+    def test_headers_of_the_turtles_are_found_without_being_asked_for(self):
+        folders = os.environ.get("CPLUS_INCLUDE_PATH", "").split(":")
+        folders += ["/usr/include", "/opt/ros/noetic/include"]
+        self.assertTrue(any(Path(folder, "turtlesim/Spawn.h").is_file() for folder in folders), folders)
 
 
 if __name__ == "__main__":

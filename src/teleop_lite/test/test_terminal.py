@@ -1,11 +1,21 @@
 import os
 import pty
+import subprocess
+import sys
 import termios
 from pathlib import Path
 
 import pytest
 
 from teleop_lite.terminal import CTRL_C, NoKeysError, Pipe, Terminal
+
+HOLDS_TERMINAL = """
+import os
+from teleop_lite.terminal import Terminal
+with Terminal(0) as terminal:
+    os.write(1, b"ready")
+    terminal.read(20.0)
+"""
 
 
 @pytest.fixture
@@ -22,9 +32,38 @@ def terminal_pair():
 def test_keys_arrive_one_by_one_without_a_newline_and_unseen(terminal_pair):
     ours, theirs = terminal_pair
     with Terminal(theirs) as terminal:
-        os.write(ours, b"i\x03")
-        assert terminal.read(1.0) == "i" + CTRL_C
+        os.write(ours, b"i\r")
+        assert terminal.read(1.0) == "i\r"
         assert terminal.read(0.0) == ""
+
+
+def test_ctrl_c_is_a_key_of_the_own_terminal():
+    child, keyboard = pty.fork()
+    if child == 0:
+        with Terminal(0) as terminal:
+            os.write(1, b"ready")
+            os._exit(7 if terminal.read(10.0) == CTRL_C else 1)
+    assert os.read(keyboard, 10) == b"ready"
+    os.write(keyboard, CTRL_C.encode())
+    assert os.WEXITSTATUS(os.waitpid(child, 0)[1]) == 7
+    os.close(keyboard)
+
+
+def test_ctrl_c_reaches_whoever_started_the_node_on_another_session_s_terminal():
+    child, keyboard = pty.fork()  # as roslaunch, whose nodes lead sessions of their own
+    if child == 0:
+        node = [sys.executable, "-c", HOLDS_TERMINAL]
+        with subprocess.Popen(node, start_new_session=True) as running:
+            try:
+                running.wait(10.0)
+            except KeyboardInterrupt:
+                running.kill()
+                os._exit(7)
+        os._exit(1)
+    assert os.read(keyboard, 10) == b"ready"
+    os.write(keyboard, CTRL_C.encode())
+    assert os.WEXITSTATUS(os.waitpid(child, 0)[1]) == 7
+    os.close(keyboard)
 
 
 def test_the_terminal_is_restored_whatever_happens(terminal_pair):

@@ -3,9 +3,9 @@
 # git keeps no empty folders.
 file(MAKE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/include")
 
-# Messages of the other packages, declared or not: where they had been built before, a missing dependency went
-# unnoticed.
-include_directories(AFTER "${CATKIN_DEVEL_PREFIX}/include" ${STAND_IN_HEADERS})
+# Messages of the project's other packages, declared or not: where they had been built before, a missing dependency
+# went unnoticed.
+include_directories(AFTER "${CATKIN_DEVEL_PREFIX}/include")
 
 # Generated messages of packages that are not there, which others were to be built after.
 foreach(_target IN LISTS ABSENT_TARGETS)

@@ -17,13 +17,17 @@ class NoKeysError(PlanarError):
 
 
 class Terminal:
-    """Context in which the keys of a terminal arrive one by one and unseen; leaving it restores all."""
+    """Context in which the keys of a terminal arrive one by one and unseen; leaving it restores all.
+
+    Ctrl-C is a key as well, except on another session's terminal, as under roslaunch: it is meant for that.
+    """
 
     def __init__(self, descriptor: int):
         self._descriptor = descriptor
         if not os.isatty(descriptor):
             raise NoKeysError("there is no keyboard here: standard input is no terminal")
-        if _is_in_background(descriptor):
+        self._is_ours = _is_of_this_session(descriptor)
+        if self._is_ours and os.tcgetpgrp(descriptor) != os.getpgrp():
             raise NoKeysError("the terminal belongs to another process: start this in the foreground")
 
     def __enter__(self) -> "Terminal":
@@ -31,6 +35,8 @@ class Terminal:
         tty.setraw(self._descriptor, termios.TCSANOW)
         raw = termios.tcgetattr(self._descriptor)
         raw[1] |= termios.OPOST  # keep "\n" a new line for whatever this process prints
+        if not self._is_ours:
+            raw[3] |= termios.ISIG
         termios.tcsetattr(self._descriptor, termios.TCSANOW, raw)
         return self
 
@@ -73,8 +79,9 @@ def _read(descriptor: int, timeout: float, at_end: str) -> str:
     return chunk.decode("utf-8", errors="replace") or at_end
 
 
-def _is_in_background(descriptor: int) -> bool:
+def _is_of_this_session(descriptor: int) -> bool:
     try:
-        return os.tcgetpgrp(descriptor) != os.getpgrp()
-    except OSError:  # not this session's terminal, as under roslaunch: reading it is allowed
+        os.tcgetpgrp(descriptor)
+    except OSError:
         return False
+    return True

@@ -139,11 +139,6 @@ def _is_there(package: str) -> bool:
     return any(any(prefix.glob(folder)) for prefix in [*_prefixes(), Path("/usr")] for folder in folders)
 
 
-def _header_folders() -> List[str]:
-    """Of this workspace's own messages, which lay with all others below /opt/ros."""
-    return [str(prefix / "include") for prefix in _prefixes() if (prefix / "include").is_dir()]
-
-
 def _prefixes() -> List[Path]:
     """Of the workspaces in use."""
     return [Path(prefix) for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(":") if prefix]
@@ -187,7 +182,6 @@ def _catkin_make(workspace: Workspace, log: Path) -> str:
     command = [
         "catkin_make",
         f"-DCMAKE_PROJECT_INCLUDE={FRESH_CLONE}",
-        f"-DSTAND_IN_HEADERS={';'.join(_header_folders())}",
         f"-DABSENT_TARGETS={';'.join(sorted(workspace.absent_targets))}",
         "-DCATKIN_ENABLE_TESTING=OFF",
         f"-DCATKIN_BLACKLIST_PACKAGES={';'.join(sorted(workspace.unbuilt))}",
