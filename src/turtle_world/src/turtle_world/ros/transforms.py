@@ -1,4 +1,4 @@
-"""The nodes of turtle_tf and turtle_tf2: tf is told where a turtle is, and by it a second one follows the first."""
+"""The nodes of turtle_tf and turtle_tf2: where a turtle is, and one that follows another by tf."""
 
 import math
 
