@@ -37,6 +37,14 @@ class TurtleBot3Test(unittest.TestCase):
         scan = rospy.wait_for_message("scan", LaserScan, BRING_UP_SECONDS)
         self.assertEqual((len(scan.ranges), scan.header.frame_id), (360, "base_scan"))
         self.assertAlmostEqual(scan.range_max, 3.5, places=5)
+        stamps = []
+        subscriber = rospy.Subscriber(
+            "scan", LaserScan, lambda scan: stamps.append(scan.header.stamp.to_sec())
+        )
+        wait_until("six scans", lambda: len(stamps) > 5, PATIENCE_SECONDS)
+        subscriber.unregister()
+        gaps = [later - earlier for earlier, later in zip(stamps, stamps[1:])]
+        self.assertAlmostEqual(min(gaps), 0.2, places=5)
         joints = rospy.wait_for_message("joint_states", JointState, PATIENCE_SECONDS)
         self.assertEqual(set(joints.name), {"wheel_left_joint", "wheel_right_joint"})
         self.assertEqual(rospy.wait_for_message("imu", Imu, PATIENCE_SECONDS).header.frame_id, "imu_link")
