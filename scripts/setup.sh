@@ -32,7 +32,7 @@ packages_only=
 failure=
 retry= # also what has failed before, of the same sources
 
-set_up() { # EXTRA...: brings the workspace up to date; extras are dev, projects, opencv, rviz, cockpit, laboratory and gymnasium
+set_up() { # EXTRA...: brings the workspace up to date; extras: dev, projects, opencv, rviz, cockpit, laboratory, gymnasium, fuzzing
     look_for_missing "$@"
     if [[ -n $packages$requirements$build$kernels ]]; then
         check_place
@@ -136,7 +136,7 @@ main() {
     retry=yes
     for option; do
         case $option in
-            --dev) extras+=(dev cockpit laboratory gymnasium) ;;
+            --dev) extras+=(dev cockpit laboratory gymnasium fuzzing) ;;
             --projects) extras+=(projects) ;;
             --rviz) extras+=(rviz) ;;
             --web) extras+=(cockpit) ;;

@@ -3,29 +3,32 @@
 
 import argparse
 import hashlib
-import multiprocessing
+import json
 import os
-import random
+import select
 import signal
+import subprocess
 import sys
 import tempfile
 import time
 from dataclasses import dataclass, field
+from importlib.util import find_spec
 from pathlib import Path
-from typing import Dict
+from typing import Dict, List
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(Path(__file__).parent), *(str(path) for path in sorted(ROOT.glob("src/**/src")))]
+FOLDER = Path(__file__).resolve().parent
+sys.path[:0] = [str(FOLDER), *(str(path) for path in sorted(ROOT.glob("src/**/src")))]
 
-from mutation import mutated  # noqa: E402
 from readers import READERS, Reader, prepare  # noqa: E402
-from trial import SECONDS, limit_memory, tried  # noqa: E402
+from trial import SECONDS  # noqa: E402
 
 # A reader that does not even hear the alarm is ended.
 DEAF_SECONDS = 12.0 * SECONDS
-# Files that went a way of their own, to be changed further.
-MOST_IN_POOL = 400
+# To import it all, and to read what was found before.
+START_SECONDS = 300.0
 TELL_SECONDS = 15.0
+MANY = 1_000_000_000
 
 
 @dataclass
@@ -39,50 +42,87 @@ class Hunt:
 class Hunter:
     """Watches over a process that reads one broken file after the other; if it dies, another follows."""
 
-    def __init__(self, reader: Reader, folder: Path, findings: Path, seed: int, ending: float):
+    def __init__(self, reader: Reader, folder: Path, output: Path, options: argparse.Namespace):
         self._reader, self._case = reader, folder / reader.file_name
-        self._findings = findings / reader.name
-        self._seed, self._ending = seed, ending
-        self._cases = multiprocessing.Value("q", 0)
-        self._news, self._tell = multiprocessing.Pipe(duplex=False)
+        self._findings, self._corpus = output / reader.name, output / "corpus" / reader.name
+        self._seed, self._cases = options.seed, options.cases or MANY
+        self._ending = time.monotonic() + 60.0 * options.minutes / len(options.reader)
         self._found = Hunt()
+        self._news = b""
 
     def hunt(self) -> Hunt:
-        """Until the time is over."""
+        """Until the time is over, or all cases were read."""
+        self._corpus.mkdir(parents=True, exist_ok=True)
+        for data in self._reader.seeds:
+            (self._corpus / hashlib.sha256(data).hexdigest()[:12]).write_bytes(data)
         attempt = 0
-        while time.monotonic() < self._ending:
+        while time.monotonic() < self._ending and self._found.cases < self._cases:
+            before = self._found.cases
+            fault = self._read_on(self._seed + attempt)
             attempt += 1
-            process = multiprocessing.Process(target=self._read_on, args=(attempt,), daemon=True)
-            process.start()
-            fault = self._watch(process)
             if fault:
                 self._keep(fault, self._case.read_bytes())
-        self._found.cases = self._cases.value
+            elif self._found.cases == before:
+                raise RuntimeError(f"no file was read: {FOLDER / 'reading.py'} {self._reader.name}")
         return self._found
 
-    def _watch(self, process: multiprocessing.Process) -> str:
-        """Until it ends; says of what, if it should not have."""
-        cases, since, told = -1, time.monotonic(), time.monotonic()
-        while process.is_alive():
-            process.join(0.1)
-            self._hear()
+    def _read_on(self, seed: int) -> str:
+        """Until the process ends; says of what, if it should not have."""
+        news, tell = os.pipe()
+        arguments: Dict[str, object] = {
+            "case": self._case,
+            "corpus": self._corpus,
+            "seconds": max(1, round(self._ending - time.monotonic())),
+            "cases": self._cases - self._found.cases,
+            "seed": seed,
+            "news": tell,
+        }
+        words = [f"--{name}={value}" for name, value in arguments.items()]
+        process = subprocess.Popen(
+            [sys.executable, str(FOLDER / "reading.py"), self._reader.name, *words],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            pass_fds=[tell],
+        )
+        os.close(tell)
+        try:
+            return self._watch(process, news)
+        finally:
+            process.kill()
+            process.wait()
+            os.close(news)
+
+    def _watch(self, process: "subprocess.Popen[bytes]", news: int) -> str:
+        before, patience = self._found.cases, START_SECONDS
+        heard = told = time.monotonic()
+        while True:
+            if select.select([news], [], [], 0.5)[0]:
+                events = self._events(news)
+                if not events:
+                    break
+                heard, patience = time.monotonic(), DEAF_SECONDS
+                for event in events:
+                    self._found.cases = before + event["cases"]
+                    if "fault" in event:
+                        self._keep(event["fault"], bytes.fromhex(event["data"]))
             now = time.monotonic()
-            if self._cases.value != cases:
-                cases, since = self._cases.value, now
             if now - told > TELL_SECONDS:
                 told = now
-                print(f"  {self._reader.name}: {cases} files, {len(self._found.faults)} faults", flush=True)
-            if now - since > DEAF_SECONDS:
-                process.kill()
-                process.join()
-                return f"deaf for {DEAF_SECONDS:g} s"
-        self._hear()
-        code = process.exitcode or 0
+                self._say(f"{self._found.cases} files, {len(self._found.faults)} faults")
+            if now - heard > patience:
+                return f"deaf for {patience:g} s"
+        code = process.wait()
         return f"ended by {signal.Signals(-code).name}" if code < 0 else ""
 
-    def _hear(self) -> None:
-        while self._news.poll():
-            self._keep(*self._news.recv())
+    def _events(self, news: int) -> List[Dict[str, object]]:
+        """What has been told since; nothing if the process has ended."""
+        while True:
+            data = os.read(news, 1 << 20)
+            self._news += data
+            *lines, self._news = self._news.split(b"\n")
+            if lines or not data:
+                return [json.loads(line) for line in lines]
 
     def _keep(self, fault: str, data: bytes) -> None:
         if fault in self._found.faults:
@@ -91,51 +131,31 @@ class Hunter:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(data)
         self._found.faults[fault] = path
-        print(f"  {self._reader.name}: {fault}\n    {path}", flush=True)
+        self._say(f"{fault}\n    {path}")
 
-    def _read_on(self, attempt: int) -> None:
-        """Of the other process: the work."""
-        _be_silent()
-        limit_memory()
-        rng = random.Random(f"{self._reader.name} {self._seed} {attempt}")
-        seeds = self._reader.seeds
-        pool, ways = list(seeds), set()
-        while time.monotonic() < self._ending:
-            data = mutated(rng.choice(pool), seeds, rng)
-            self._case.write_bytes(data)
-            outcome = tried(self._reader, self._case)
-            self._cases.value += 1
-            if outcome.way in ways:
-                continue
-            ways.add(outcome.way)
-            if outcome.fault:
-                self._tell.send((outcome.fault, data))
-            elif len(pool) < MOST_IN_POOL:
-                pool.append(data)
-
-
-def _be_silent() -> None:
-    """What libraries say of broken files is of no interest."""
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 1)
-    os.dup2(nowhere, 2)
+    def _say(self, text: str) -> None:
+        print(f"  {self._reader.name}: {text}", flush=True)
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="fuzz.sh", description=__doc__)
     parser.add_argument("--minutes", type=float, default=5.0, help="for all readers together (default: 5)")
+    parser.add_argument("--cases", type=int, help="for each reader, if there is the time (default: no end)")
     parser.add_argument("--reader", nargs="+", choices=READERS, default=list(READERS), metavar="NAME")
     parser.add_argument("--seed", type=int, default=0, help="of all chance (default: 0)")
     parser.add_argument("--output", type=Path, default=ROOT / "build/fuzz", help="findings are kept here")
     options = parser.parse_args()
     if not options.minutes > 0.0:
         parser.error("--minutes must be positive")
+    if options.cases is not None and options.cases < 1:
+        parser.error("--cases must be positive")
+    if not find_spec("atheris"):
+        parser.error("Atheris is there for x86_64 only")
     faults = cases = 0
     for name in options.reader:
-        ending = time.monotonic() + 60.0 * options.minutes / len(options.reader)
         with tempfile.TemporaryDirectory() as folder:
             prepare(Path(folder))
-            found = Hunter(READERS[name], Path(folder), options.output, options.seed, ending).hunt()
+            found = Hunter(READERS[name], Path(folder), options.output, options).hunt()
         print(f"{name}: {found.cases} files, {len(found.faults)} faults", flush=True)
         faults, cases = faults + len(found.faults), cases + found.cases
     print(f"{cases} files, {faults} faults")

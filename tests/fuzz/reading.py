@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+"""One reader under Atheris: reads broken files until time or cases are over, and tells of its faults.
+
+Atheris watches which ways through the reader files go, and changes further what goes a new one.
+"""
+
+import argparse
+import json
+import os
+import random
+import re
+import sys
+import time
+from pathlib import Path
+from typing import List
+
+ROOT = Path(__file__).resolve().parents[2]
+SOURCES = sorted(ROOT.glob("src/**/src"))
+sys.path[:0] = [str(Path(__file__).parent), *map(str, SOURCES)]
+
+import atheris  # noqa: E402
+from mutation import LONGEST, mutated  # noqa: E402
+from readers import READERS, Reader  # noqa: E402
+from trial import limit_memory, tried  # noqa: E402
+
+# Besides our own: libraries in Python that read for us.
+LIBRARIES = ["yaml", "PIL", "trimesh", "collada", "rosbag", "genpy"]
+# Of the changes; the rest are Atheris' own, which know nothing of numbers and words.
+SHARE_OF_OURS = 0.7
+TELL_SECONDS = 1.0
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("reader", choices=READERS)
+    parser.add_argument("--case", type=Path, required=True, help="the file to write and to read")
+    parser.add_argument(
+        "--corpus", type=Path, required=True, help="folder of files to begin with and to add to"
+    )
+    parser.add_argument("--seconds", type=int, required=True)
+    parser.add_argument("--cases", type=int, required=True)
+    parser.add_argument("--seed", type=int, required=True)
+    parser.add_argument(
+        "--news", type=int, required=True, help="descriptor for a line of JSON for each event"
+    )
+    options = parser.parse_args()
+    reader = READERS[options.reader]
+    with atheris.instrument_imports(include=[*_packages(), *LIBRARIES], exclude=_compiled()):
+        for example in reader.examples():
+            options.case.write_bytes(example)
+            tried(reader, options.case)
+    limit_memory()
+    _fuzz(reader, options)
+
+
+def _fuzz(reader: Reader, options: argparse.Namespace) -> None:
+    seeds, faults, count, told = reader.seeds, set(), 0, 0.0
+
+    def read(data: bytes) -> None:
+        nonlocal count, told
+        options.case.write_bytes(data)
+        outcome = tried(reader, options.case)
+        count += 1
+        if time.monotonic() - told > TELL_SECONDS or count == options.cases:
+            told = time.monotonic()
+            _tell(options.news, cases=count)
+        if outcome.fault and outcome.way not in faults:
+            faults.add(outcome.way)
+            _tell(options.news, cases=count, fault=outcome.fault, data=data.hex())
+
+    def change(data: bytes, longest: int, seed: int) -> bytes:
+        rng = random.Random(seed)
+        if rng.random() < SHARE_OF_OURS:
+            return mutated(data, seeds, rng)[:longest]
+        return atheris.Mutate(data, len(data))
+
+    flags = {
+        "seed": options.seed + 1,  # 0 would be a seed by the clock
+        "runs": options.cases,
+        "max_total_time": options.seconds,
+        "max_len": LONGEST,
+        "len_control": 0,
+        "timeout": 0,  # time and memory are limited by the trial
+        "rss_limit_mb": 0,
+        "verbosity": 0,
+    }
+    words = [sys.argv[0], *(f"-{name}={value}" for name, value in flags.items()), str(options.corpus)]
+    atheris.Setup(words, read, custom_mutator=change)
+    atheris.Fuzz()
+
+
+def _tell(descriptor: int, **event: object) -> None:
+    os.write(descriptor, json.dumps(event).encode() + b"\n")
+
+
+def _packages() -> List[str]:
+    return sorted({path.parent.name for source in SOURCES for path in source.glob("*/__init__.py")})
+
+
+def _compiled() -> List[str]:
+    """Modules that numba compiles: it would not know what Atheris puts into them."""
+    found = []
+    for source in SOURCES:
+        for path in source.rglob("*.py"):
+            if re.search(r"\bnjit\b|\bnumba\b", path.read_text(encoding="utf-8")):
+                found.append(".".join(path.relative_to(source).with_suffix("").parts))
+    return sorted(found)
+
+
+if __name__ == "__main__":
+    main()
