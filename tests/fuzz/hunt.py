@@ -113,7 +113,9 @@ class Hunter:
             if now - heard > patience:
                 return f"deaf for {patience:g} s"
         code = process.wait()
-        return f"ended by {signal.Signals(-code).name}" if code < 0 else ""
+        if code < 0:
+            return f"ended by {signal.Signals(-code).name}"
+        return f"ended with exit code {code}" if code else ""
 
     def _events(self, news: int) -> List[Dict[str, object]]:
         """What has been told since; nothing if the process has ended."""

@@ -83,6 +83,7 @@ def _fuzz(reader: Reader, options: argparse.Namespace) -> None:
         "timeout": 0,  # time and memory are limited by the trial
         "rss_limit_mb": 0,
         "verbosity": 0,
+        **{f"handle_{name}": 0 for name in ("abrt", "bus", "fpe", "ill", "segv")},  # the hunt sees who died
     }
     words = [sys.argv[0], *(f"-{name}={value}" for name, value in flags.items()), str(options.corpus)]
     atheris.Setup(words, read, custom_mutator=change)
