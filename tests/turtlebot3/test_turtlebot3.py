@@ -1,6 +1,10 @@
 #!/usr/bin/env python3
 """ROBOTIS' simulation chapter: the robot in its hall, localized and sent about by the official names."""
 
+import os
+import pty
+import signal
+import subprocess
 import unittest
 
 import actionlib
@@ -19,7 +23,7 @@ from planar_ros.calls.actions import server_is_ready
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
 from planar_ros.node.listeners import is_heard
 
-BRING_UP_SECONDS = 90.0
+BRING_UP_SECONDS, EXIT_SECONDS = 90.0, 10.0
 START, GOAL = Pose2(-2.0, -0.5), Pose2(0.55, -1.8)
 MD5 = {
     SensorState: "7250c1dc0b61c4190e78f528f599285f",
@@ -95,6 +99,22 @@ class TurtleBot3Test(unittest.TestCase):
 
         wait_until("the robot to come along", has_gone, PATIENCE_SECONDS)
         self.assertIn((0.1, 0.44), [(round(v, 6), round(omega, 6)) for v, omega in told])
+
+    def test_5_who_waits_for_what_is_typed_ends_when_asked_to(self):
+        for command in ("turtlebot3_client", "turtlebot3_pointop_key"):
+            keyboard, terminal = pty.openpty()
+            waiting = subprocess.Popen(
+                ["rosrun", "turtlebot3_example", command],
+                stdin=terminal,
+                stdout=subprocess.PIPE,
+                start_new_session=True,
+            )
+            asks = iter(lambda: waiting.stdout.readline(), b"")
+            self.assertTrue(any(b"close" in line for line in asks))
+            waiting.send_signal(signal.SIGINT)
+            self.assertEqual(waiting.wait(EXIT_SECONDS), 0, command)
+            for end in (keyboard, terminal):
+                os.close(end)
 
     def _truth(self):
         states = rospy.wait_for_message("/gazebo/model_states", ModelStates, PATIENCE_SECONDS)

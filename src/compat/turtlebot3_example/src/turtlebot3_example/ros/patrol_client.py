@@ -6,6 +6,7 @@ import actionlib
 import rospy
 
 from turtlebot3_example.msg import Turtlebot3Action, Turtlebot3Goal
+from turtlebot3_example.ros.typed import typed_lines
 
 MESSAGE = """
 patrol your TurtleBot3!
@@ -32,7 +33,7 @@ def main() -> None:
     client = actionlib.SimpleActionClient("turtlebot3", Turtlebot3Action)
     is_done = True
     print(MESSAGE, flush=True)
-    for line in sys.stdin:
+    for line in typed_lines():
         if line.strip() in ("", "x"):
             break
         try:

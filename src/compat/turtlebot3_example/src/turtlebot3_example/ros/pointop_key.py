@@ -8,6 +8,7 @@ import rospy
 
 from planar import Pose2
 from turtlebot3_example.ros.robot import Robot
+from turtlebot3_example.ros.typed import typed_lines
 
 MESSAGE = """
 control your Turtlebot3!
@@ -31,7 +32,7 @@ def main() -> None:
 
 def _go_where_is_typed(robot: Robot) -> None:
     print(MESSAGE, flush=True)
-    for line in sys.stdin:
+    for line in typed_lines():
         if line.strip() in ("", "s"):
             break
         try:
