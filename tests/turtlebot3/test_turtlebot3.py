@@ -109,8 +109,7 @@ class TurtleBot3Test(unittest.TestCase):
                 stdout=subprocess.PIPE,
                 start_new_session=True,
             )
-            asks = iter(lambda: waiting.stdout.readline(), b"")
-            self.assertTrue(any(b"close" in line for line in asks))
+            self.assertTrue(any(b"close" in line for line in waiting.stdout))
             waiting.send_signal(signal.SIGINT)
             self.assertEqual(waiting.wait(EXIT_SECONDS), 0, command)
             for end in (keyboard, terminal):
