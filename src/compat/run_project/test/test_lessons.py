@@ -45,6 +45,21 @@ def test_a_launch_file_that_brings_the_world_along_needs_no_other():
     assert planned(files).launches == ("my_robot amcl.launch",)
 
 
+def test_arguments_that_a_launch_file_lacks_are_those_that_its_author_gives():
+    told = {
+        "my_robot/launch/world.launch": WORLD + '<arg name="gui" default="true"/> $(arg gui) $(arg map)',
+        "a.sh": "roslaunch my_robot world.launch gui:=false\n",
+        "start.sh": 'xterm -e "roslaunch my_robot world.launch map:=kitchen gui:=false" &\n',
+    }
+    assert planned(told).launches[0] == "my_robot world.launch map:=kitchen gui:=false"
+    told["my_robot/launch/world.launch"] = WORLD + '<arg name="map" default="office"/> $(arg map)'
+    assert planned(told).launches[0] == "my_robot world.launch"
+    told["my_robot/launch/world.launch"] = WORLD + '<arg name="map" doc="which"/>'
+    assert planned(told).launches[0] == "my_robot world.launch map:=kitchen gui:=false"
+    del told["start.sh"]
+    assert planned(told).launches[0] == "my_robot world.launch"
+
+
 def test_what_stands_in_comments_starts_nothing():
     assert plan_of(PACKAGES, {"my_robot/launch/a.launch": f"<!-- {AMCL} -->"}, None) is None
 

@@ -4,9 +4,12 @@ import enum
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, Iterator, Mapping, Optional, Tuple
+from typing import Dict, Iterator, Mapping, Optional, Set, Tuple
 
 _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
+_ARGUMENT = re.compile(r"<arg\b[^>]*>")
+_NAME = re.compile(r'\bname\s*=\s*["\']([^"\']+)')
+_USED = re.compile(r"\$\(arg (\w+)\)")
 _WORLD = re.compile(r"empty_world\.launch|type=\"gz(?:server|ebo)\"")
 
 
@@ -59,7 +62,9 @@ def plan_of(packages: Mapping[str, Path], texts: Mapping[str, str], wanted: Opti
         world = min(worlds, key=lambda file: _oddity(file, "world"), default=chosen)
         has_world = world == chosen or f"/{Path(world).name}" in launches[chosen]
         files = (chosen,) if has_world else (world, chosen)
-        return Plan(lesson, tuple(_words(file, packages) for file in files))
+        return Plan(
+            lesson, tuple(_as_called(_words(file, packages), launches[file], texts) for file in files)
+        )
     return None
 
 
@@ -81,3 +86,27 @@ def _words(file: str, packages: Mapping[str, Path]) -> str:
     }
     package = max(inside, key=lambda name: len(inside[name].parts))
     return f"{package} {Path(file).name}"
+
+
+def _as_called(words: str, launch: str, texts: Mapping[str, str]) -> str:
+    """With the arguments that its author's scripts give, if the launch file lacks some without them."""
+    lacking = _lacking(launch)
+    if not lacking:
+        return words
+    command = r"[ \t]+".join(map(re.escape, ["roslaunch", *words.split()]))
+    call = re.compile(command + r"((?:[ \t]+\w+:=[^\s\"';&`]+)+)")
+    for _, text in sorted(texts.items()):
+        for arguments in call.findall(text):
+            given = arguments.split()
+            if lacking <= {word.partition(":=")[0] for word in given}:
+                return " ".join([words, *given])
+    return words
+
+
+def _lacking(launch: str) -> Set[str]:
+    """Arguments of a launch file that have no value unless they are given one."""
+    declared: Dict[str, bool] = {}
+    for tag in _ARGUMENT.findall(launch):
+        for name in _NAME.findall(tag):
+            declared[name] = declared.get(name, False) or bool(re.search(r"\b(?:default|value)\s*=", tag))
+    return {name for name in {*declared, *_USED.findall(launch)} if not declared.get(name)}
