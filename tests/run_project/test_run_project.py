@@ -91,6 +91,12 @@ class RunProjectTest(unittest.TestCase):
                 self.assertRegex(output, rf"(?m)^error: .*{words}")
                 self.assertNotIn("Traceback", output)
 
+    def test_the_last_words_of_a_script_that_gives_up_are_the_reason(self):
+        script = self._checkout / "catkin_ws/src/scripts/home_service.sh"
+        script.write_text("#!/bin/sh\necho give me the workspace\nexit 3\n")
+        output, _ = self._start(self._checkout).communicate(timeout=RUN_SECONDS)
+        self.assertIn("FAILURE: the script ended with exit code 3: give me the workspace;", output)
+
     def _start(self, path, *options):
         return subprocess.Popen(
             [str(SCRIPT), str(path), "--output", str(self._folder / "runs"), *options],

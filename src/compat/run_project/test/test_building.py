@@ -37,6 +37,8 @@ def test_programs_can_be_executed_even_if_git_does_not_know_that_they_can(tmp_pa
         "pick/scripts/drive": "#!/bin/sh\n",
         "pick/scripts/library.py": "import math\n",
         "home_service.sh": "rosrun pick home.py\n",
+        "docker/build": "#!/bin/sh\n",
+        "build/pick.make": "all:\n",
     }
     for name, text in files.items():
         (tmp_path / "repo" / name).parent.mkdir(parents=True, exist_ok=True)
@@ -44,7 +46,8 @@ def test_programs_can_be_executed_even_if_git_does_not_know_that_they_can(tmp_pa
     checkout = read_checkout(tmp_path / "repo")
     workspace = copy_checkout(checkout, Placement(Path("src"), Path(), Path("src"), {}), tmp_path / "work")
     runs = [name for name in files if os.access(workspace.checkout / name, os.X_OK)]
-    assert runs == ["pick/scripts/home.py", "pick/scripts/drive", "home_service.sh"]
+    assert runs == ["pick/scripts/home.py", "pick/scripts/drive", "home_service.sh", "docker/build"]
+    assert not (workspace.checkout / "build/pick.make").exists()
 
 
 def test_packages_that_cannot_be_configured_are_told_with_the_reason(tmp_path):

@@ -45,6 +45,17 @@ def test_a_launch_file_that_brings_the_world_along_needs_no_other():
     assert planned(files).launches == ("my_robot amcl.launch",)
 
 
+def test_a_launch_file_called_as_most_call_it_may_start_all_in_files_of_their_own():
+    included = '<include file="$(find my_robot)/launch/parts/node.launch"/>'
+    files = {
+        "my_robot/launch/amcl.launch": f"<launch>{included}</launch>",
+        "my_robot/launch/parts/node.launch": AMCL,
+    }
+    assert planned(files).launches == ("my_robot world.launch", "my_robot amcl.launch")
+    files["my_robot/launch/all.launch"] = files.pop("my_robot/launch/amcl.launch")
+    assert planned(files).launches[1] == "my_robot node.launch"
+
+
 def test_arguments_that_a_launch_file_lacks_are_those_that_its_author_gives():
     told = {
         "my_robot/launch/world.launch": WORLD + '<arg name="gui" default="true"/> $(arg gui) $(arg map)',

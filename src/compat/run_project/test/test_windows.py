@@ -16,6 +16,7 @@ from run_project.stand_ins.windows import commands_of, returns_at_once, title_of
         ("xterm", ["-T", "My -e world", "-hold", "-e", "roscore"], [["bash", "-c", "roscore"]]),
         ("xterm", ["-xrm", "XTerm*x: y", "-name", "a", "-e", "rosrun", "a", "b"], [["rosrun", "a", "b"]]),
         ("xterm", ["-hold"], []),
+        ("xterm", ["-e", "roslaunch a b map:=~/c ~"], [["bash", "-c", "roslaunch a b map:=$HOME/c ~"]]),
         ("uxterm", ["-e", "roscore"], [["bash", "-c", "roscore"]]),
         ("terminator", ["-T", "a", "-e", "roscore"], [["bash", "-c", "roscore"]]),
         ("terminator", ["--new-tab", "-x", "rosrun", "a", "b"], [["rosrun", "a", "b"]]),

@@ -6,7 +6,7 @@ from typing import List, Optional
 from planar import Pose2, Twist2, wrap
 
 # As ROBOTIS' examples: metres and radians off that are there, m/s and rad/s at most.
-NEAR, NEAR_ANGLE = 0.05, 0.05
+NEAR, NEAR_ANGLE = 0.02, 0.05
 FASTEST = Twist2(0.1, 1.5)
 # Radians off its way beyond which the robot turns on the spot.
 OFF_WAY = 0.3

@@ -10,6 +10,7 @@ _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _ARGUMENT = re.compile(r"<arg\b[^>]*>")
 _NAME = re.compile(r'\bname\s*=\s*["\']([^"\']+)')
 _USED = re.compile(r"\$\(arg (\w+)\)")
+_INCLUDED = re.compile(r"<include\b[^>]*\bfile\s*=\s*[\"']([^\"']+)")
 _WORLD = re.compile(r"empty_world\.launch|type=\"gz(?:server|ebo)\"")
 
 
@@ -54,7 +55,12 @@ def plan_of(packages: Mapping[str, Path], texts: Mapping[str, str], wanted: Opti
     for lesson, (sign, name) in _SIGNS.items():
         if wanted not in (None, lesson.value):
             continue
-        started = [file for file, text in launches.items() if sign.search(text)]
+        started = [
+            file
+            for file, text in launches.items()
+            if sign.search(text)
+            or (Path(file).stem == name and any(sign.search(part) for part in _included(text, launches)))
+        ]
         if not started:
             continue
         chosen = min(started, key=lambda file: _oddity(file, name))
@@ -72,6 +78,12 @@ def _launch_files(packages: Mapping[str, Path], texts: Mapping[str, str]) -> Ite
     for file, text in texts.items():
         if file.endswith(".launch") and any(folder in Path(file).parents for folder in packages.values()):
             yield file, _COMMENT.sub("", text)
+
+
+def _included(text: str, launches: Mapping[str, str]) -> Iterator[str]:
+    """The launch files that one includes, by their names."""
+    names = {Path(path).name for path in _INCLUDED.findall(text)}
+    return (other for file, other in launches.items() if Path(file).name in names)
 
 
 def _oddity(file: str, name: str) -> Tuple[bool, bool, int, str]:

@@ -68,7 +68,7 @@ def copy_checkout(checkout: Checkout, placement: Placement, work: Path) -> Works
         target,
         symlinks=True,
         dirs_exist_ok=True,
-        ignore=lambda _, names: LEFTOVERS & set(names),
+        ignore=lambda folder, names: {name for name in LEFTOVERS & set(names) if Path(folder, name).is_dir()},
     )
     lend(checkout.lent, target)
     for program in checkout.programs():  # git of some authors does not know that they can be executed

@@ -135,7 +135,7 @@ class ProjectRun:
             has_worked = has_worked or is_working
             nodes_are_gone = has_worked and not is_working
             if self._is_done(script.poll() is not None, now - self._news_wall, nodes_are_gone):
-                return None
+                return self._refusal(script.poll())
             if now > deadline:
                 return f"not done within {timeout:g} s of wall time"
             if now - moved_wall > STALLED_SECONDS:
@@ -161,6 +161,14 @@ class ProjectRun:
             return ledger.is_quiet and quiet_wall > enough_wall and quiet_simulated > enough_simulated
         # A goal may still come: bringing up localization and navigation takes a while on a busy machine.
         return quiet_wall > IDLE_SECONDS and quiet_simulated > IDLE_SIMULATED
+
+    def _refusal(self, code: Optional[int]) -> Optional[str]:
+        """The last words of a script that ended with a code other than 0 before anything had happened."""
+        if not code or self.observer.ledger.goals or self.observer.ledger.markers:
+            return None
+        lines = (self._logs / "script.log").read_text(errors="replace").split("\n")
+        last_words = next((line.strip() for line in reversed(lines) if line.strip()), "it said nothing")
+        return f"the script ended with exit code {code}: {last_words}"
 
     def _tell_who_asks(self, own: List[psutil.Process]) -> None:
         for process in own:

@@ -1,5 +1,6 @@
 """What a command line of a terminal emulator asks to be run."""
 
+import re
 import shlex
 from pathlib import Path
 from typing import Dict, List, Tuple
@@ -29,6 +30,8 @@ ALIASES = {
     "konsole": "xterm",
 }
 
+# zsh, many an author's shell, puts the home there as well.
+_HOME_AS_VALUE = re.compile(r"(?<=:=)~(?=/)")
 # Commands of one argument that come before what a window is opened for.
 PREPARING = ("source", ".", "cd", "export", "sleep")
 
@@ -80,7 +83,7 @@ def _takes_rest(kind: str, option: str) -> bool:
 
 def _command(words: List[str]) -> List[str]:
     if len(words) == 1:
-        return ["bash", "-c", words[0]] if words[0].strip() else []
+        return ["bash", "-c", _HOME_AS_VALUE.sub("$HOME", words[0])] if words[0].strip() else []
     return words
 
 

@@ -24,10 +24,14 @@ If you want to close, insert 's'
 
 
 def main() -> None:
-    """Exit code 0, or 2 if what is typed is no place."""
+    """Exit code 0, 1 if there is no odometry, or 2 if what is typed is no place."""
     rospy.init_node("turtlebot3_pointop_key")
-    with suppress(rospy.ROSInterruptException):
-        _go_where_is_typed(Robot())
+    try:
+        with suppress(rospy.ROSInterruptException):
+            _go_where_is_typed(Robot())
+    except rospy.ROSException as error:
+        print(error, file=sys.stderr)
+        sys.exit(1)
 
 
 def _go_where_is_typed(robot: Robot) -> None:
