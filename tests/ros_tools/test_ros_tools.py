@@ -48,6 +48,10 @@ class RosToolsTest(unittest.TestCase):
     def test_the_other_tools_of_a_mended_package_are_found(self):
         self.assertIn("tf_echo", rosrun("tf", "tf_echo").stdout)
 
+    def test_launch_files_find_the_tools_for_topics(self):
+        for name in ("relay", "mux", "throttle"):
+            self.assertTrue(roslib.packages.find_node("topic_tools", name), name)
+
     def test_robot_state_publisher_answers_to_its_former_name_too(self):
         found = [roslib.packages.find_node("robot_state_publisher", name) for name in PUBLISHERS]
         self.assertEqual([Path(nodes[0]).name for nodes in found if nodes], list(PUBLISHERS))
