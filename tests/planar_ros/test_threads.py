@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""A thread that dies takes its node along."""
+"""A thread that dies takes its node along; what comes too late while a node ends is no news."""
 
+import signal
 import subprocess
 import unittest
 
 import rosnode
 import rospy
 import rostest
+from std_msgs.msg import Empty
 
 END_SECONDS = 30.0
 
@@ -27,6 +29,16 @@ class ThreadsTest(unittest.TestCase):
                 run.stdout, r"\[/node_of_threads\] error: the thread .* has died of ValueError: no way on"
             )
             self.assertNotIn("/node_of_threads", rosnode.get_node_names())
+
+    def test_an_answer_that_comes_while_the_node_ends_is_dropped_in_silence(self):
+        command = ["rosrun", "home_service_tests", "node_of_answers.py"]
+        run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        questions = rospy.Publisher("questions", Empty, queue_size=1, latch=True)
+        questions.publish(Empty())
+        self.assertEqual(run.stdout.readline(), "asked\n")
+        run.send_signal(signal.SIGINT)
+        output, _ = run.communicate(timeout=END_SECONDS)
+        self.assertEqual(output, "")
 
 
 if __name__ == "__main__":

@@ -22,6 +22,8 @@ from supervision.interruption import SIGNALS
 SHUTDOWN_SECONDS = 5.0
 # The exit code of a node one of whose threads has died: EX_SOFTWARE of sysexits.h.
 THREAD_DIED = 70
+# What rospy raises where somebody publishes while it ends.
+CLOSED = ("publish() to a closed topic", "topic was closed during publish()")
 
 
 def run(node_name: str, start: Callable[[], object]) -> None:
@@ -45,6 +47,7 @@ def run(node_name: str, start: Callable[[], object]) -> None:
     rospy.on_shutdown(is_ending.set)
     failures: List[str] = []
     threading.excepthook = _ending_the_node(is_ending, failures)
+    logging.getLogger("rosout").addFilter(lambda record: not (is_ending.is_set() and _is_of_closing(record)))
     # Called after rospy's own hooks: then the master and all peers have been told.
     rospy.core.add_shutdown_hook(lambda _reason: is_over.set())
     try:
@@ -69,6 +72,11 @@ def fail(text: str, exit_code: int = 2) -> None:
     print(f"[{rospy.get_name()}] error: {text}", file=sys.stderr, flush=True)
     rospy.signal_shutdown(text)
     sys.exit(exit_code)
+
+
+def _is_of_closing(record: logging.LogRecord) -> bool:
+    """Whether a callback came upon a closed topic: rospy closes them before it says that it ends."""
+    return any(words in record.getMessage() for words in CLOSED)
 
 
 def _ending_the_node(

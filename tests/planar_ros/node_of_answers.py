@@ -1,0 +1,26 @@
+#!/usr/bin/env python3
+"""A node that answers what it was asked only when its topics have been closed, while it shuts down."""
+
+import time
+
+import rospy
+from std_msgs.msg import Empty
+
+from planar_ros.node.shell import run
+
+
+def start():
+    answers = rospy.Publisher("answers", Empty, queue_size=1)
+    topic = answers.impl
+
+    def answer(message):
+        print("asked", flush=True)
+        while not topic.closed:
+            time.sleep(0.01)
+        answers.publish(message)
+
+    rospy.core.add_preshutdown_hook(lambda _reason: time.sleep(1.0))
+    return rospy.Subscriber("questions", Empty, answer)
+
+
+run("node_of_answers", start)
