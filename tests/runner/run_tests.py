@@ -236,6 +236,7 @@ def main() -> int:
         *ROOT.glob("src/**/test/test_*.py"),
         *ROOT.glob("tests/runner/test_*.py"),
         *ROOT.glob("tests/repository/test_*.py"),
+        *ROOT.glob("tests/fuzz/test_*.py"),
     ]
     unit = matching(unit_paths, options.names) if options.kind in ("unit", "all") else []
     ros = matching(ROOT.glob("tests/**/*.test"), options.names) if options.kind in ("ros", "all") else []

@@ -95,12 +95,13 @@ def _joined(file: MeshFile, chosen: Sequence[Any]) -> Mesh:
     offsets = np.cumsum([0, *(len(part.vertices) for part in chosen)])
     vertices = np.vstack([np.asarray(part.vertices, dtype=float) for part in chosen]) * unit
     triangles = np.vstack([part.faces + offset for part, offset in zip(chosen, offsets)])
-    if not len(triangles) or not np.isfinite(vertices).all():
-        raise WorldError(f"{file.path}: holds no triangles, or coordinates that are not numbers")
     if file.centred:
         vertices = vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2.0
     vertices, first = _without_doubles(vertices)
-    return Mesh(vertices, first[triangles].astype(np.int32), colours)
+    mesh = Mesh(vertices, first[triangles].astype(np.int32), colours)
+    if not _is_whole(mesh):
+        raise WorldError(f"{file.path}: holds no triangles, or corners that are not three numbers each")
+    return mesh
 
 
 def _obj_by_groups(path: Path) -> Any:
