@@ -78,10 +78,10 @@ def _line(data: bytes, others: Sequence[bytes], rng: random.Random) -> bytes:
 
 def _instead_of(pattern: "re.Pattern[bytes]", words: Sequence[bytes]) -> "Callable[..., bytes]":
     def change(data: bytes, others: Sequence[bytes], rng: random.Random) -> bytes:
-        found = list(pattern.finditer(data[:LONGEST]))
+        found = pattern.search(data, rng.randrange(len(data) + 1)) or pattern.search(data)
         if not found:
             return data
-        start, end = rng.choice(found).span()
+        start, end = found.span()
         return data[:start] + rng.choice(words) + data[end:]
 
     return change

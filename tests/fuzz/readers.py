@@ -2,17 +2,19 @@
 
 import io
 import json
-import shutil
 import tempfile
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
-from typing import Callable, Dict, List, Tuple
+from typing import Any, Callable, Dict, List, Tuple
 
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 CORPUS = Path(__file__).resolve().parent / "corpus"
-URDFS = ROOT / "src/sim_bridge/src/sim_bridge/urdf"
+MESHES = "meshes"
+# Many small files get further than few large ones.
+SEED_BYTES = 6000
 
 
 @dataclass(frozen=True)
@@ -29,8 +31,9 @@ class Reader:
 
     @property
     def seeds(self) -> List[bytes]:
-        """Examples, and what has been found before."""
-        return [*self.examples(), *(path.read_bytes() for path in self.findings)]
+        """Examples, and what has been found before, as far as they are small."""
+        known = [*self.examples(), *(path.read_bytes() for path in self.findings)]
+        return [data for data in known if len(data) <= SEED_BYTES] or known
 
     @property
     def findings(self) -> List[Path]:
@@ -40,8 +43,8 @@ class Reader:
 
 def prepare(folder: Path) -> None:
     """Puts what files refer to into a folder."""
-    shutil.copy(ROOT / "map/home.pgm", folder / "home.pgm")
-    shutil.copy(ROOT / "map/zones.yaml", folder / "zones.yaml")
+    (folder / "home.pgm").write_bytes(PGM)
+    (folder / MESHES).mkdir()
 
 
 def _files(*names: str) -> Callable[[], List[bytes]]:
@@ -64,10 +67,13 @@ def _map_image(path: Path) -> object:
     return cells_from_image(path)
 
 
+PGM = b"P5\n# 0.05 m/pix\n4 3\n255\n" + bytes(range(12))
+
+
 def _small_images() -> List[bytes]:
     from PIL import Image
 
-    found = [b"P5\n# 0.05 m/pix\n4 3\n255\n" + bytes(range(12)), b"P2\n2 2\n255\n0 205 254 255\n"]
+    found = [PGM, b"P2\n2 2\n255\n0 205 254 255\n"]
     for kind in ("PNG", "BMP", "GIF", "TIFF", "PPM"):
         file = io.BytesIO()
         Image.fromarray(np.arange(48, dtype=np.uint8).reshape(4, 4, 3)).save(file, kind)
@@ -83,9 +89,15 @@ def _places(path: Path) -> object:
 
 def _mission(path: Path) -> object:
     from pick_objects import load_mission
+
+    return load_mission(path, _known_places())
+
+
+@lru_cache(maxsize=None)
+def _known_places() -> Dict[str, Any]:
     from planar.maps.places import load_places
 
-    return load_mission(path, load_places(path.parent / "zones.yaml"))
+    return load_places(ROOT / "map/zones.yaml")
 
 
 def _faults(path: Path) -> object:
@@ -173,8 +185,12 @@ def _mesh(path: Path) -> object:
     from sim_bridge.geometry.meshes import load_mesh
     from sim_bridge.geometry.shapes import MeshFile
 
-    with tempfile.TemporaryDirectory() as cache:
-        return load_mesh(MeshFile(path), Path(cache))
+    cache = path.parent / MESHES
+    try:
+        return load_mesh(MeshFile(path), cache)
+    finally:
+        for kept in cache.iterdir():
+            kept.unlink()
 
 
 def _meshes(kind: str) -> Callable[[], List[bytes]]:
@@ -320,6 +336,8 @@ REQUIRED process [sim_bridge-2] has died!
 process has died [pid 7, exit code 1, cmd /y].
 """
 _MISSIONS = _files("map/mission.yaml")
+_MOVE_BASES = ("src/move_base_lite/config/turtlebot.yaml", "tests/fuzz/examples/move_base.yaml")
+_WORLDS = ("map/home.world", "tests/cockpit/doors.world", "tests/fuzz/examples/small.world")
 _URDF = _files(*(f"src/sim_bridge/src/sim_bridge/urdf/{name}.urdf" for name in ("turtlebot2", "jackal")))
 _FAULTS = (
     "faults:\n  - {kind: scan_late, start: 8, end: 12.5, strength: 0.5, seed: 3}\n  - {kind: kidnapped}\n"
@@ -335,9 +353,9 @@ _ALL: Tuple[Reader, ...] = (
     Reader("zones", "keep_out.yaml", _zones, _texts(_ZONES)),
     Reader("inputs", "mux.yaml", _inputs, _texts(_INPUTS)),
     Reader("scenario", "scenario.yaml", _scenario, lambda: _contents(ROOT / "scenarios", "*.yaml")),
-    Reader("move_base", "move_base.yaml", _move_base, _files("src/move_base_lite/config/turtlebot.yaml")),
+    Reader("move_base", "move_base.yaml", _move_base, _files(*_MOVE_BASES)),
     Reader("amcl", "amcl.yaml", _amcl, _files("src/amcl_lite/config/turtlebot.yaml")),
-    Reader("world", "home.world", _world, _files("map/home.world")),
+    Reader("world", "home.world", _world, _files(*_WORLDS)),
     Reader("model", "model.sdf", _model, _texts(MODEL)),
     Reader("robot", "robot.urdf", _robot, _URDF),
     Reader("prop", "prop.urdf", _prop, _texts(PROP)),

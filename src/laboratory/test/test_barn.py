@@ -3,6 +3,7 @@ import pytest
 
 from laboratory.suites import scenarios_of
 from laboratory.worlds.barn import BarnFolder, reference_length, score
+from planar import SettingsError
 
 WORLD = """<sdf version="1.6"><world name="barn"><model name="ground"><static>true</static><link name="link">
 <collision name="c"><geometry><plane><normal>0 0 1</normal></plane></geometry></collision></link></model>
@@ -40,6 +41,18 @@ def test_a_folder_without_worlds_is_named_with_its_line(tmp_path):
     _, complaints = scenarios_of([str(path)])
     assert complaints[0].startswith(f"{path}:1: world.barn cannot be used: ")
     assert "world_N" in complaints[0]
+
+
+@pytest.mark.parametrize("content", [b"", b"no array", b"\x93NUMPY\x01\x00\xff\xff{"])
+def test_a_broken_reference_path_is_named(folder, content):
+    (folder / "worlds/path_7.npy").write_bytes(content)
+    with pytest.raises(SettingsError, match=r"path_7\.npy: not a reference path"):
+        BarnFolder(folder / "worlds").arena(0)
+
+
+def test_files_without_a_number_are_none_of_its_worlds(folder):
+    (folder / "worlds/world_x.world").write_text(WORLD)
+    assert len(BarnFolder(folder / "worlds").pairs()) == 2
 
 
 def test_the_score_is_at_best_a_half_and_falls_with_the_time_taken():

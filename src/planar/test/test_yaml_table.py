@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import pytest
 
 from planar import PlanarError, SettingsError
@@ -27,6 +29,20 @@ def test_values_are_read_with_their_kind(table):
     assert table.table("nested").numbers("pose", "x, y, yaw") == (1.0, 2.5, -3.0)
     assert table.table("nested").texts("tags") == ["a", "b"]
     assert [item.name for item in table.tables("items")] == ["items[1]", "items[2]"]
+
+
+def test_a_path_is_seen_from_a_folder(tmp_path):
+    table = parse_table("near: a/../b.yaml\nfar: /tmp/x\nown: ~/x", "tea.yaml")
+    assert table.path("near", tmp_path) == tmp_path.resolve() / "b.yaml"
+    assert table.path("far", tmp_path) == Path("/tmp/x").resolve()
+    assert table.path("own", tmp_path) == Path("~/x").expanduser().resolve()
+
+
+@pytest.mark.parametrize("name", ["~nobody_of_that_name/x", '"a\\0b"'])
+def test_what_no_file_can_be_called_is_named_with_its_line(tmp_path, name):
+    table = parse_table(f"\nworld: {name}", "tea.yaml")
+    with pytest.raises(SettingsError, match="tea.yaml:2: world can be no file or folder"):
+        table.path("world", tmp_path)
 
 
 def test_what_is_missing_or_empty_has_its_default(table):

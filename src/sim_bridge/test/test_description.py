@@ -279,3 +279,11 @@ def test_a_robot_that_is_part_of_a_world_is_a_robot(tmp_path):
     assert wheel.origin_in_base[:3, :3] @ wheel.axis == pytest.approx([0.0, 1.0, 0.0], abs=1e-4)
     assert robot.laser.frame == "chassis"
     assert robot.laser.pose_in_base[:3, 3] == pytest.approx([0.2, 0.0, 0.1]), "seen from the chassis"
+
+
+@pytest.mark.parametrize(
+    "name", ["~nobody_of_that_name/x.urdf", "a\0b.urdf", "a" * 300 + ".urdf", "a" * 300 + ".xacro"]
+)
+def test_what_no_file_can_be_called_is_refused(name):
+    with pytest.raises(RobotError, match="cannot be read"):
+        robot_named(name)

@@ -39,6 +39,10 @@ def robot_named(name: str, find_file: FindFile = no_file) -> RobotProfile:
     if name in ROBOTS:
         return ROBOTS[name]
     if name.endswith(FILE_ENDINGS):
-        return read_robot_file(Path(name).expanduser(), find_file)
+        try:
+            path = Path(name).expanduser()
+        except RuntimeError as error:
+            raise RobotError(f"{name}: cannot be read ({error})") from None
+        return read_robot_file(path, find_file)
     known = f"known: {', '.join(ROBOTS)}, or a .urdf or .xacro file"
     raise RobotError(f"unknown robot {name!r}{hint(name, ROBOTS)} ({known})")

@@ -108,11 +108,10 @@ def _reason(run: Rehearsed) -> str:
 def read_errand(table: Table, folder: Path) -> Deliveries:
     """``errand``: a file of zones."""
     table.allow_only("errand")
-    return Deliveries((folder / table.text("errand")).resolve())
+    return Deliveries(table.path("errand", folder))
 
 
 def read_mission(table: Table, folder: Path) -> Deliveries:
     """``mission``: a file of deliveries, between places of its own and of the ``zones``."""
     table.allow_only("mission", "zones")
-    files = [(folder / table.text(key)).resolve() for key in ("zones", "mission")]
-    return Deliveries(*files)
+    return Deliveries(table.path("zones", folder), table.path("mission", folder))

@@ -1,5 +1,6 @@
 """BARN's worlds (Perille et al., "Benchmarking metric ground navigation", 2020)."""
 
+import io
 import math
 from dataclasses import dataclass
 from functools import lru_cache
@@ -8,9 +9,11 @@ from typing import Tuple
 
 import numpy as np
 
+from laboratory.worlds.numbered import numbered_files
 from laboratory.worlds.source import Arena
 from planar import Pose2, SettingsError
 from planar.config.yaml_table import Table
+from planar.files.reading import read_bytes
 from sim_bridge import load_world
 
 START = Pose2(-2.25, 3.0, math.pi / 2.0)
@@ -21,14 +24,14 @@ REFERENCE_SPEED = 2.0
 
 @dataclass(frozen=True)
 class BarnFolder:
-    """world_N.world and path_N.npy at any depth of a folder; seeds take them by turns."""
+    """world_N.world and path_N.npy in a folder or not far below it; seeds take them by turns."""
 
     folder: Path
 
     def pairs(self) -> Tuple[Tuple[int, Path, Path], ...]:
         """Number, world and reference path. Raises SettingsError if there are none."""
-        worlds = {int(file.stem.split("_")[1]): file for file in self.folder.rglob("world_*.world")}
-        paths = {int(file.stem.split("_")[1]): file for file in self.folder.rglob("path_*.npy")}
+        worlds = numbered_files(self.folder, "world", ".world")
+        paths = numbered_files(self.folder, "path", ".npy")
         both = sorted(set(worlds) & set(paths))
         if not both:
             raise SettingsError(f"{self.folder}: no pairs of world_N.world and path_N.npy")
@@ -47,7 +50,18 @@ class BarnFolder:
 
 @lru_cache(maxsize=32)
 def _arena(number: int, world: Path, path: Path) -> Arena:
-    return Arena(load_world(world), None, f"BARN {number}", reference_length(np.load(path)))
+    return Arena(load_world(world), None, f"BARN {number}", reference_length(_read_path(path)))
+
+
+def _read_path(file: Path) -> np.ndarray:
+    """The cells (N, 2) of a reference path. Raises SettingsError."""
+    try:
+        cells = np.load(io.BytesIO(read_bytes(file)), allow_pickle=False)
+        if cells.ndim != 2 or cells.shape[1] != 2 or not np.isfinite(cells).all():
+            raise ValueError("no finite cells (N, 2)")
+    except (OSError, ValueError, TypeError, EOFError) as error:
+        raise SettingsError(f"{file}: not a reference path ({error})") from None
+    return cells
 
 
 def score(seconds: float, way: float) -> float:
@@ -67,7 +81,7 @@ def reference_length(path_cells: np.ndarray) -> float:
 def read_barn(table: Table, folder: Path) -> BarnFolder:
     """``barn``: a folder beside the scenario, or anywhere."""
     table.allow_only("barn")
-    source = BarnFolder((folder / table.text("barn")).expanduser().resolve())
+    source = BarnFolder(table.path("barn", folder))
     try:
         source.pairs()
     except SettingsError as error:

@@ -1,7 +1,6 @@
 """DynaBARN's worlds (Nair et al., "DynaBARN: Benchmarking metric ground navigation ...", 2022)."""
 
 import math
-import re
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -9,6 +8,7 @@ from typing import List, Tuple
 
 import numpy as np
 
+from laboratory.worlds.numbered import numbered_files
 from laboratory.worlds.solids import FLOOR, post, wall
 from laboratory.worlds.source import Arena
 from planar import Pose2, SettingsError
@@ -19,16 +19,16 @@ from sim_bridge.world import Body, World
 
 @dataclass(frozen=True)
 class DynabarnFolder:
-    """dynabarn_N.yaml at any depth of a folder; seeds take them by turns."""
+    """dynabarn_N.yaml in a folder or not far below it; seeds take them by turns."""
 
     folder: Path
 
     def files(self) -> Tuple[Path, ...]:
         """Raises SettingsError if there are none."""
-        numbered = {re.sub(r"\D", "", file.stem): file for file in self.folder.rglob("dynabarn_*.yaml")}
-        if not all(numbered) or not numbered:
+        numbered = numbered_files(self.folder, "dynabarn", ".yaml")
+        if not numbered:
             raise SettingsError(f"{self.folder}: no files dynabarn_N.yaml")
-        return tuple(numbered[number] for number in sorted(numbered, key=int))
+        return tuple(numbered[number] for number in sorted(numbered))
 
     def arena(self, seed: int) -> Arena:
         return _arena(self.files()[self.arena_number(seed)])
@@ -70,7 +70,7 @@ def _rows(table: Table, key: str, length: int) -> np.ndarray:
 def read_dynabarn(table: Table, folder: Path) -> DynabarnFolder:
     """``dynabarn``: a folder beside the scenario, or anywhere."""
     table.allow_only("dynabarn")
-    source = DynabarnFolder((folder / table.text("dynabarn")).expanduser().resolve())
+    source = DynabarnFolder(table.path("dynabarn", folder))
     try:
         source.files()
     except SettingsError as error:

@@ -39,5 +39,5 @@ def _arena(source: WorldFile) -> Arena:
 def read_world_file(table: Table, folder: Path) -> WorldFile:
     """``file`` and, if the robot has one, ``map``, both beside the scenario."""
     table.allow_only("file", "map")
-    known_map = folder / table.text("map") if "map" in table else None
-    return WorldFile((folder / table.text("file")).resolve(), known_map and known_map.resolve())
+    known_map = table.path("map", folder) if "map" in table else None
+    return WorldFile(table.path("file", folder), known_map)

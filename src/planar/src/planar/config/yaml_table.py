@@ -132,6 +132,15 @@ class Table:
             raise self.complaint(key, f"must be a text, got {value!r}")
         return str(value)
 
+    def path(self, key: str, folder: Path) -> Path:
+        """Where the file or folder is that is named there, as seen from ``folder``; there may be none."""
+        try:
+            path = (folder / Path(self.text(key)).expanduser()).resolve()
+            path.exists()
+        except (OSError, ValueError, RuntimeError) as problem:
+            raise self.complaint(key, f"can be no file or folder ({problem})") from None
+        return path
+
     def texts(self, key: str) -> List[str]:
         """A list of texts, or a single one; none if the key is missing."""
         values = self.value(key) or []

@@ -17,6 +17,8 @@ MOST_UNPACKED_BYTES = 1 << 30
 
 def read_bytes(path, most: int = MOST_BYTES) -> bytes:
     """The content of a regular file. Raises OSError, whose ``strerror`` says what is wrong."""
+    if "\0" in str(path):
+        raise OSError(errno.EINVAL, "no name that a file can have", str(path))
     descriptor = os.open(str(path), os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     with os.fdopen(descriptor, "rb") as file:
         status = os.fstat(descriptor)
