@@ -14,7 +14,7 @@ import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Optional
+from typing import Dict, List, Optional, Tuple
 
 import psutil
 from soak import ROOT, RUN_SECONDS, RUNS, Graph, Traces
@@ -48,7 +48,7 @@ and until the run has ended; and what of the run is left then, processes, socket
 A node that has come back goes on with what it has left at the master: amcl with its pose, pick_objects with
 how far its deliveries are and what is carried. rosout collects what nodes log, and nobody waits for it. Each
 may die three times. Without the simulator, the master or roslaunch there is no run. What else
-goes wrong: [faults](faults.md).
+goes wrong: [troubled graphs](troubled_graphs.md), [faults](faults.md).
 """
 
 
@@ -73,38 +73,51 @@ class Fate:
 def fate_of(killed: str, seed: int) -> Fate:
     """For a process of its own: rospy knows one master."""
     traces = Traces()
+    graph, folder = mission_under_way(traces, seed)
+    heard = _listen(killed) if killed in WORK else []
+    time.sleep(DRIVING_SECONDS)
+    for process in processes_of(graph, killed):
+        process.kill()
+    killed_at = time.monotonic()
+    code = wait_for_end(graph)
+    ended = time.monotonic() - killed_at
+    back = next((moment - killed_at for moment in heard if moment > killed_at + LAST_WORDS_SECONDS), None)
+    return Fate(killed, back, ended, code, reason_in(folder), len(traces.left()))
+
+
+def mission_under_way(traces: Traces, seed: int) -> Tuple[Graph, Path]:
+    """A mission whose robot has set out, and its run folder; this process is a node of its graph then."""
+    import rospy
+
     mission = ("--mission", str(ROOT / "map/mission.yaml"), "--speed", str(SPEED), "--seed", str(seed))
     graph = Graph(traces, "home_service.sh", *mission)
     graph.wait_for("(driving to)")
     folder = next((Path(traces.environment["TMPDIR"]) / RUNS).iterdir())
-    heard = _listen(killed, folder) if killed in WORK else []
-    time.sleep(DRIVING_SECONDS)
-    for process in _processes_of(graph, killed):
-        process.kill()
-    killed_at = time.monotonic()
-    code = _wait(graph)
-    ended = time.monotonic() - killed_at
-    back = next((moment - killed_at for moment in heard if moment > killed_at + LAST_WORDS_SECONDS), None)
-    reason = json.loads((folder / "result.json").read_text())["reason"]
-    return Fate(killed, back, ended, code, reason.replace(f", see {folder / 'log'}", ""), len(traces.left()))
+    uri = re.search(r"ROS_MASTER_URI=(http://[\d.:]+)", (folder / "log/roslaunch.log").read_text())
+    assert uri is not None
+    os.environ.update(ROS_MASTER_URI=uri[1], ROS_IP="127.0.0.1")
+    rospy.init_node("troublemaker", anonymous=True, disable_signals=True)
+    return graph, folder
 
 
-def _wait(graph: Graph) -> int:
+def reason_in(folder: Path) -> str:
+    """What the run says of its end."""
+    reason = str(json.loads((folder / "result.json").read_text())["reason"])
+    return reason.replace(f", see {folder / 'log'}", "")
+
+
+def wait_for_end(graph: Graph) -> int:
+    """The exit code, also of a run that has to be ended."""
     try:
         return graph.process.wait(RUN_SECONDS)
     except subprocess.TimeoutExpired:
         return graph.end()
 
 
-def _listen(node: str, folder: Path) -> List[float]:
+def _listen(node: str) -> List[float]:
     """A list that grows by the moments at which the node is heard at work."""
     import rospy
 
-    log = (folder / "log/roslaunch.log").read_text()
-    uri = re.search(r"ROS_MASTER_URI=(http://[\d.:]+)", log)
-    assert uri is not None
-    os.environ.update(ROS_MASTER_URI=uri[1], ROS_IP="127.0.0.1")
-    rospy.init_node("killer", anonymous=True, disable_signals=True)
     heard: List[float] = []
 
     def hear(message):
@@ -115,7 +128,7 @@ def _listen(node: str, folder: Path) -> List[float]:
     return heard
 
 
-def _processes_of(graph: Graph, name: str) -> List[psutil.Process]:
+def processes_of(graph: Graph, name: str) -> List[psutil.Process]:
     """Those of a node, or of one of ROS' own programs."""
     found = []
     for process in psutil.Process(graph.process.pid).children(recursive=True):

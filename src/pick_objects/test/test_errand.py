@@ -57,6 +57,27 @@ def test_the_last_refusal_ends_the_errand_with_place_and_reason():
     assert task.state is ErrandState.FAILED
 
 
+TAKEN_OVER = GoalRefused("another goal was received", is_taken_over=True)
+
+
+def test_goals_that_others_take_over_are_sent_again_and_are_no_attempts():
+    task = errand(attempts=1, retry_seconds=1.0, goal_timeout=30.0)
+    task.advance(0.0)
+    for now in range(2, 30, 2):
+        assert task.advance(now, TAKEN_OVER) is None
+        assert task.advance(now + 1.0) == GoTo(PICKUP, 1)
+    task.advance(40.0, GoalReached())
+    assert task.state is ErrandState.PICKING_UP
+
+
+def test_who_never_gets_the_robot_for_himself_gives_up_in_the_end():
+    task = errand(attempts=1, retry_seconds=1.0, goal_timeout=30.0)
+    task.advance(0.0)
+    task.advance(29.0, TAKEN_OVER)
+    assert task.advance(30.0) == GoTo(PICKUP, 1)
+    assert "after 1 attempt: another goal was received" in task.advance(31.0, TAKEN_OVER).reason
+
+
 def test_a_goal_that_takes_too_long_counts_as_refused():
     task = errand(attempts=1, goal_timeout=30.0)
     task.advance(0.0)

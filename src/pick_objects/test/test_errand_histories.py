@@ -84,7 +84,11 @@ class ErrandHistories(RuleBasedStateMachine):
         self.advance()
 
     @precondition(lambda self: isinstance(self.goal, GoTo))
-    @rule(event=st.sampled_from((GoalReached(), GoalReached(), GoalRefused("blocked"))))
+    @rule(
+        event=st.sampled_from(
+            (GoalReached(), GoalReached(), GoalRefused("blocked"), GoalRefused("taken", True))
+        )
+    )
     def the_goal_ends(self, event):
         self.goal = None
         self.advance(event)

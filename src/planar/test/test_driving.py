@@ -22,3 +22,4 @@ def test_a_drive_that_did_not_arrive_is_refused_for_the_reason_told():
     assert DriveOutcome("SUCCEEDED", "Goal reached.").event == GoalReached()
     assert DriveOutcome("ABORTED", "no way").event == GoalRefused("no way")
     assert DriveOutcome("ABORTED", "").event == GoalRefused("ABORTED")
+    assert DriveOutcome("PREEMPTED", "").event == GoalRefused("PREEMPTED", is_taken_over=True)

@@ -42,14 +42,18 @@ class Approach:
         self.attempt = 0
         self._settings = settings
         self._timeout = settings.goal_timeout if goal_timeout is None else goal_timeout
-        self._sent_at = 0.0
+        self._begun_at = self._sent_at = 0.0
         self._retry_at: Optional[float] = None
+        self._is_taken_over = False
 
     def start(self, now: float) -> GoTo:
-        """The next attempt."""
-        self.attempt += 1
+        """The next attempt, or the same once more if others took the robot for themselves."""
+        if not self._is_taken_over:
+            self.attempt += 1
+            self._begun_at = now
         self._sent_at = now
         self._retry_at = None
+        self._is_taken_over = False
         return GoTo(self.place, self.attempt)
 
     def advance(
@@ -59,6 +63,9 @@ class Approach:
         if isinstance(event, GoalReached):
             return Arrived()
         if isinstance(event, GoalRefused):
+            if event.is_taken_over and 0.0 <= now - self._begun_at <= self._timeout:
+                self._is_taken_over, self._retry_at = True, now + self._settings.retry_seconds
+                return None
             return self._give_up_or_pause(now, event.reason)
         if self._retry_at is not None:
             return self.start(now) if now >= self._retry_at else None

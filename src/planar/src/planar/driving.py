@@ -20,9 +20,13 @@ class GoalReached:
 
 @dataclass(frozen=True)
 class GoalRefused:
-    """Event: the robot gave the last order up, and why."""
+    """Event: the robot gave the last order up, and why.
+
+    ``is_taken_over``: it could have gone on, but somebody else gave it another goal, or cancelled this one.
+    """
 
     reason: str
+    is_taken_over: bool = False
 
 
 class DriveResult(enum.Enum):
@@ -58,4 +62,4 @@ class DriveOutcome:
         """The same for a task that only cares whether the robot has arrived."""
         if self.result is DriveResult.REACHED:
             return GoalReached()
-        return GoalRefused(self.text or self.status)
+        return GoalRefused(self.text or self.status, self.result is DriveResult.REPLACED)

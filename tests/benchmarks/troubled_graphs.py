@@ -1,0 +1,202 @@
+#!/usr/bin/env python3
+"""Shows what becomes of a mission when its processes stand still, its time does, or strangers meddle.
+
+python3 tests/benchmarks/troubled_graphs.py [--seed 61] [--only goal_storm ...]
+    [--table docs/troubled_graphs.md]
+"""
+
+import argparse
+import multiprocessing
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Callable, Dict, List
+
+import psutil
+from killed_nodes import (
+    DRIVING_SECONDS,
+    FATAL,
+    SPEED,
+    WORK,
+    mission_under_way,
+    processes_of,
+    reason_in,
+    wait_for_end,
+)
+from soak import Graph, Traces
+
+STILL_SECONDS = 5.0
+CALL_SECONDS = 10.0
+BUSY_SECONDS, BUSY_EACH = 15.0, 4
+STORM_GOALS, STORM_SECONDS = 2000, 2.0
+CANCELS, CANCELS_APART = 100, 0.05
+PAGE = """# Troubled graphs
+
+What becomes of `./scripts/home_service.sh --mission map/mission.yaml --speed {speed}` when, while the robot
+drives, something befalls its processes, its time or its topics: wall seconds until the run has ended, and
+what is left of it then, processes, sockets, temporary files. Made by
+`python3 tests/benchmarks/troubled_graphs.py --seed {seed} --table docs/troubled_graphs.md`.
+
+| trouble | what befalls it | ended after, s | exit code | what the run says | left |
+| --- | --- | --- | --- | --- | --- |
+{rows}
+
+Processes that die: [killed nodes](killed_nodes.md). Robots and homes that go wrong: [faults](faults.md).
+"""
+
+
+@dataclass(frozen=True)
+class Trouble:
+    """``what``: befalls the graph, in a sentence; ``make`` does it, and returns when it is over."""
+
+    what: str
+    make: Callable[[Graph], None]
+    survivable: bool = True
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a run; ``ended``: wall seconds after the trouble began."""
+
+    name: str
+    ended: float
+    code: int
+    reason: str
+    left: int
+
+    @property
+    def row(self) -> str:
+        told = (TROUBLES[self.name].what, f"{self.ended:.1f}", self.code, self.reason, self.left)
+        return f"| `{self.name}` | " + " | ".join(map(str, told)) + " |"
+
+    @property
+    def is_well(self) -> bool:
+        return not self.left and (self.code == 0 or not TROUBLES[self.name].survivable)
+
+
+def _stand_still(name: str, graph: Graph) -> None:
+    processes = processes_of(graph, name)
+    assert processes, f"no process of {name}"
+    for process in processes:
+        process.suspend()
+    time.sleep(STILL_SECONDS)
+    for process in processes:
+        process.resume()
+
+
+def _keep_busy(graph: Graph) -> None:
+    count = BUSY_EACH * (psutil.cpu_count() or 1)
+    busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(count)]
+    try:
+        time.sleep(BUSY_SECONDS)
+    finally:
+        for process in busy:
+            process.kill()
+            process.wait()
+
+
+def _pause(graph: Graph) -> None:
+    _call("/gazebo/pause_physics")
+    time.sleep(STILL_SECONDS)
+    _call("/gazebo/unpause_physics")
+
+
+def _set_time_back(graph: Graph) -> None:
+    _call("/gazebo/reset_simulation")
+
+
+def _call(service: str) -> None:
+    import rospy
+    from std_srvs.srv import Empty
+
+    rospy.wait_for_service(service, CALL_SECONDS)
+    rospy.ServiceProxy(service, Empty)()
+
+
+def _storm(graph: Graph) -> None:
+    """Goals all over the home, as from a program gone wild."""
+    import rospy
+    from move_base_msgs.msg import MoveBaseActionGoal
+
+    goals = rospy.Publisher("/move_base/goal", MoveBaseActionGoal, queue_size=STORM_GOALS)
+    _wait_for_connection(goals)
+    for number in range(STORM_GOALS):
+        goal = MoveBaseActionGoal()
+        goal.goal_id.id = f"storm {number}"
+        goal.goal.target_pose.header.frame_id = "map"
+        goal.goal.target_pose.pose.position.x = number % 5 - 2.0
+        goal.goal.target_pose.pose.orientation.w = 1.0
+        goals.publish(goal)
+        time.sleep(STORM_SECONDS / STORM_GOALS)
+
+
+def _cancel(graph: Graph) -> None:
+    """Whatever is pursued, again and again."""
+    import rospy
+    from actionlib_msgs.msg import GoalID
+
+    cancels = rospy.Publisher("/move_base/cancel", GoalID, queue_size=CANCELS)
+    _wait_for_connection(cancels)
+    for _ in range(CANCELS):
+        cancels.publish(GoalID())
+        time.sleep(CANCELS_APART)
+
+
+def _wait_for_connection(publisher) -> None:
+    deadline = time.monotonic() + 10.0
+    while not publisher.get_num_connections() and time.monotonic() < deadline:
+        time.sleep(0.02)
+
+
+TROUBLES: Dict[str, Trouble] = {
+    **{
+        f"{name}_stands_still": Trouble(
+            f"{name} is stopped (SIGSTOP) for {STILL_SECONDS:g} s", partial(_stand_still, name)
+        )
+        for name in (*WORK, *FATAL)
+    },
+    "processors_busy": Trouble(
+        f"{BUSY_EACH} endless loops for each processor, {BUSY_SECONDS:g} s", _keep_busy
+    ),
+    "time_stands_still": Trouble(f"the simulation is paused for {STILL_SECONDS:g} s", _pause),
+    "time_set_back": Trouble(
+        "/gazebo/reset_simulation: time from 0 on, the robot back at its start", _set_time_back, False
+    ),
+    "goal_storm": Trouble(f"a stranger sends {STORM_GOALS} goals in {STORM_SECONDS:g} s", _storm),
+    "cancel_race": Trouble(f"a stranger cancels all goals {CANCELS} times in a row", _cancel),
+}
+
+
+def outcome_of(name: str, seed: int) -> Outcome:
+    """For a process of its own: rospy knows one master."""
+    traces = Traces()
+    graph, folder = mission_under_way(traces, seed)
+    time.sleep(DRIVING_SECONDS)
+    began = time.monotonic()
+    TROUBLES[name].make(graph)
+    code = wait_for_end(graph)
+    return Outcome(name, time.monotonic() - began, code, reason_in(folder), len(traces.left()))
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seed", type=int, default=61, help="default: 61")
+    parser.add_argument("--only", nargs="+", default=list(TROUBLES), choices=TROUBLES, metavar="TROUBLE")
+    parser.add_argument("--table", type=Path, help="Markdown file for the table", metavar="FILE")
+    options = parser.parse_args()
+    outcomes: List[Outcome] = []
+    for name in options.only:
+        with multiprocessing.Pool(1) as pool:
+            outcomes.append(pool.apply(outcome_of, (name, options.seed)))
+        print(outcomes[-1].row, flush=True)
+    if options.table:
+        rows = "\n".join(outcome.row for outcome in outcomes)
+        options.table.write_text(PAGE.format(speed=SPEED, seed=options.seed, rows=rows))
+    return int(not all(outcome.is_well for outcome in outcomes))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
