@@ -13,6 +13,7 @@ import rospy
 import rostest
 from browser import Browser
 from command import Command
+from sim_bridge_msgs.srv import AddFault, AddFaultResponse
 from std_msgs.msg import String
 from waiting import wait_until
 
@@ -193,6 +194,25 @@ class CockpitToolsTest(unittest.TestCase):
         self.page.fill_in("or its path", "nothing.bag")
         self.page.click("Play")
         self.page.wait_for("no such bag")
+
+    def test_faults_need_a_simulator_and_the_page_waits_for_none(self):
+        self.open("Faults")
+        self.page.wait_for("nobody offers /sim_bridge/add_fault")
+        over = threading.Event()
+        service = rospy.Service(
+            "/sim_bridge/add_fault", AddFault, lambda _: over.wait() and AddFaultResponse(True, "")
+        )
+        self.addCleanup(service.shutdown)
+        self.addCleanup(over.set)
+        wait_until("somebody to be found", lambda: "nobody offers" not in self.page.text())
+        self.page.choose("Kind", "scan_nan")
+        self.page.click("Let it go wrong")
+        self.page.wait_for("...")
+        self.page.choose("Kind", "scan_inf")
+        self.page.wait_for("All beams meet nothing.")
+        self.assertNotIn("no answer", self.page.text())
+        self.page.wait_for("no answer of the service /sim_bridge/add_fault within 10 s")
+        self.assertNotIn("Goes wrong now", self.page.text())
 
     def test_the_names_of_rqt_start_the_cockpit_at_their_tool(self):
         self.assert_shows(["rosrun", "rqt_plot", "rqt_plot", "/sine/data"], "Plot", "/sine/data")

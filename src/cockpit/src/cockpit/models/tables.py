@@ -23,5 +23,10 @@ def _cell(text: str) -> str:
     return f'<td style="{CELL}{SHORT if len(text) <= LONGEST_LINE else LONG}">{escape(text)}</td>'
 
 
+def note(text: str) -> str:
+    """A sentence or two, as long as they are."""
+    return f'<div style="margin:0 12px 6px 12px;font-size:12px;opacity:.75">{escape(text)}</div>'
+
+
 def preformatted(text: str) -> str:
     return f'<div style="{STYLE};white-space:pre">{escape(text)}</div>'

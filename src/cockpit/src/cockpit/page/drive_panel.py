@@ -2,6 +2,8 @@
 
 from typing import Any, Callable, Mapping, Protocol, Sequence, Tuple
 
+from cockpit.models.tables import note
+
 LOOK, GOAL, POSE, POINT, BOX, MOVE = "Look", "Goal", "Pose", "Point", "Box", "Move"
 MODES = (LOOK, GOAL, POSE, POINT, BOX, MOVE)
 HINTS = {
@@ -79,7 +81,7 @@ class DrivePanel:
     def _build_pointing(self) -> None:
         gui = self._gui
         self.mode = gui.add_dropdown("Mouse", MODES)
-        self.hint = gui.add_html(_note(HINTS[LOOK]))
+        self.hint = gui.add_html(note(HINTS[LOOK]))
         self.robot = gui.add_dropdown("Robot", ("/",))
         self.thing = gui.add_dropdown("Thing", (NOTHING,), visible=False)
         self.cancel = gui.add_button("Cancel the goal", color="gray")
@@ -89,12 +91,12 @@ class DrivePanel:
     def _choose_mode(self, _event: Any) -> None:
         self.thing.visible = self.mode.value == MOVE
         self._driver.set_mode(self.mode.value)
-        self.hint.content = _note(HINTS[self.mode.value])  # said when it is so
+        self.hint.content = note(HINTS[self.mode.value])  # said when it is so
 
     def _build_teleop(self) -> None:
         gui = self._gui
         with gui.add_folder("Drive by hand"):
-            gui.add_html(_note("Hold a button or its key: u i o j k l, m is back. Let go: it stops."))
+            gui.add_html(note("Hold a button or its key: u i o j k l, m is back. Let go: it stops."))
             self.topic = gui.add_dropdown("Velocities to", (NOBODY,))
             for label, key in BUTTONS:
                 button = gui.add_button(f"{label}  {ARROWS[label]}")
@@ -104,7 +106,7 @@ class DrivePanel:
     def _build_mission(self) -> None:
         gui, driver, guarded = self._gui, self._driver, self._guarded
         with gui.add_folder("Mission"):
-            self.mission = gui.add_html(_note("No mission is told of."))
+            self.mission = gui.add_html(note("No mission is told of."))
             self.object = gui.add_text("Object", "parcel")
             self.source = gui.add_dropdown("From", (NOWHERE,))
             self.destination = gui.add_dropdown("To", (NOWHERE,))
@@ -141,10 +143,6 @@ class DrivePanel:
         )
         for button, do in does:
             button.on_click(self._guarded(lambda _, do=do: do()))
-
-
-def _note(text: str) -> str:
-    return f'<div style="margin:0 12px 6px 12px;font-size:12px;opacity:.75">{text}</div>'
 
 
 def _offer(dropdown: Any, options: Sequence[str]) -> None:

@@ -8,7 +8,7 @@ from typing import Any, Callable, Deque, Dict, List, Optional, Tuple
 import rosgraph
 import roslib.message
 import rospy
-from rosgraph.masterapi import MasterException
+from rosgraph.masterapi import MasterError, MasterException
 
 from cockpit.errors import CockpitError
 
@@ -94,6 +94,21 @@ class Graph:
         """The node behind each service. Raises CockpitError."""
         self._ask()
         return dict(self._state[2])
+
+    def address(self, service: str) -> Optional[str]:
+        """Where a service is offered, each time elsewhere if its node is started anew; None if it is not.
+
+        Raises CockpitError.
+        """
+
+        def ask() -> Optional[str]:
+            try:
+                return self._master.lookupService(service)
+            except MasterError:  # nobody offers it
+                return None
+
+        with self._lock:
+            return _asking(ask)
 
     def is_there(self) -> bool:
         """Whether the master answers."""

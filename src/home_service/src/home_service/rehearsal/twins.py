@@ -36,9 +36,9 @@ faults:
 `start` and `end` are simulated seconds (from the start, for ever), `strength` is in the unit of the table;
 `seed` changes what is random about a fault. While a simulation runs,
 `rosservice call /sim_bridge/add_fault scan_nan 5.0 0.0` has something go wrong for so many seconds (0: for
-ever), with that strength (0: the usual one). A kind is a class in a file of its own in
-`sim_bridge/faults/` and a line of `registry.py` there, or one of your own,
-`kind: my_package.my_module/MyFault`: [plugins](plugins.md).
+ever), with that strength (0: the usual one); so does the tool *Faults* of the [cockpit](cockpit.md).
+A kind is a class in a file of its own in `sim_bridge/faults/` and a line of `registry.py` there, or one of
+your own, `kind: my_package.my_module/MyFault`: [plugins](plugins.md).
 
 The same over the whole graph of nodes: [faults over ROS](faults_over_ros.md). What becomes of a mission whose
 nodes die: [killed nodes](killed_nodes.md).
