@@ -3,6 +3,7 @@ from pathlib import Path
 import pytest
 
 from home_service.rehearsal import Conditions, Rehearsal
+from home_service.rehearsal.twins import TAIL
 from pick_objects import errand_mission, parse_mission
 from planar import load_map
 from planar.maps.places import places_of_errand
@@ -70,3 +71,8 @@ def test_a_mission_is_repeated_bit_for_bit_with_a_place_that_is_served_from_its_
     assert first.trajectory_hash == again.trajectory_hash
     assert first.verdict.success, first.verdict.reason
     assert [record.attempts for record in first.ledger.deliveries] == [3, 3]
+
+
+def test_the_page_of_faults_ends_as_it_would_be_made_anew():
+    page = Path(__file__).parents[3] / "docs" / "faults.md"
+    assert page.read_text("utf-8").endswith(TAIL)

@@ -80,6 +80,23 @@ class BridgeSettings(RunTimeSettings):
 
 
 @dataclass(frozen=True)
+class RelaySettings:
+    """Of the node that puts faults between other people's nodes."""
+
+    faults_file: str = parameter(
+        "",
+        "YAML with a list of faults, as docs/faults.md has it, in seconds since the first clock; empty: none",
+    )
+    seed: int = parameter(0, "what is random about faults follows from it", bounds=NOT_NEGATIVE)
+    publish_tf: bool = parameter(
+        False, "/tf has odom -> base as the faulty odometry tells it; nobody else may publish that then"
+    )
+
+    def __post_init__(self):
+        check_parameters(self)
+
+
+@dataclass(frozen=True)
 class RobotSettings:
     """A robot and where it starts in the world."""
 
@@ -101,6 +118,7 @@ CONFIG_FILES = {
         *(each for each in parameters_of(BridgeSettings) if each.name not in ARGUMENTS),
         about="Settings of sim_bridge, but for the launch file's arguments. Rates are of simulated time.",
     ),
+    "fault_relay.yaml": Section("", *parameters_of(RelaySettings), about="Settings of fault_relay."),
     "noise.yaml": Section(
         "",
         *(Section(name, noise) for name, noise in NOISES.items()),

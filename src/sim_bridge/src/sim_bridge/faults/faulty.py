@@ -1,6 +1,6 @@
 """Faults put before a robot: wrappers round its sensors and its drive, and what happens to its home."""
 
-from typing import Any, List, Sequence, Tuple
+from typing import Any, Iterable, List, Optional, Sequence, Tuple, TypeVar
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from sim_bridge.sensors.base import Sensor, SensorWrapper, Surroundings
 from sim_bridge.sensors.odometry import Odometry
 
 _STREAM = 900
+T = TypeVar("T")
 
 
 class Faults:
@@ -58,6 +59,18 @@ class Faults:
             kind.end(stage)
 
 
+def through(kinds: Iterable[FaultKind], change: str, value: T) -> Optional[T]:
+    """What faults make of a value, one after the other; None: nothing.
+
+    ``change``: the method that does it, ``scan``, ``odometry`` or ``command``.
+    """
+    told: Optional[T] = value
+    for kind in kinds:
+        if told is not None:
+            told = getattr(kind, change)(told)
+    return told
+
+
 class FaultySensor(SensorWrapper[Any]):
     """Changes scans and odometry; other sensors are as they were."""
 
@@ -66,12 +79,11 @@ class FaultySensor(SensorWrapper[Any]):
         self._faults = faults
 
     def measure(self, around: Surroundings) -> Any:
-        told = super().measure(around)
-        for kind in self._faults.at(around.stamp):
-            if isinstance(told, Scan):
-                told = kind.scan(told)
-            elif isinstance(told, Odometry):
-                told = kind.odometry(told)
+        told, kinds = super().measure(around), self._faults.at(around.stamp)
+        if isinstance(told, Scan):
+            return through(kinds, "scan", told)
+        if isinstance(told, Odometry):
+            return through(kinds, "odometry", told)
         return told
 
 
@@ -84,13 +96,9 @@ class FaultyDrive:
         self.switch, self.halt = drive.switch, drive.halt
 
     def command(self, twist: Twist2) -> None:
-        heard = twist
-        for kind in self._faults.at(self._now):
-            changed = kind.command(heard)
-            if changed is None:
-                return
-            heard = changed
-        self._drive.command(heard)
+        heard = through(self._faults.at(self._now), "command", twist)
+        if heard is not None:
+            self._drive.command(heard)
 
     def wheel_speeds(self, seconds: float) -> Tuple[float, float]:
         self._now += seconds

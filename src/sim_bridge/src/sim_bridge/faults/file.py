@@ -1,7 +1,7 @@
 """Faults in files: a list ``faults``, of which every mistake is told with file, line and key."""
 
 from pathlib import Path
-from typing import Tuple
+from typing import Callable, Optional, Tuple
 
 from planar import SettingsError
 from planar.config.yaml_table import Table, read_table
@@ -11,19 +11,25 @@ from sim_bridge.faults.registry import KINDS, kind_named, usual_strength, why_no
 KEYS = ("kind", "start", "end", "strength", "seed")
 
 
-def load_faults(path: Path) -> Tuple[Fault, ...]:
-    """The faults of a file, which may hold other things beside, as a mission. Raises SettingsError."""
-    return faults_from(read_table(path))
+def load_faults(path: Path, why_not: Callable[[str], Optional[str]] = lambda _: None) -> Tuple[Fault, ...]:
+    """The faults of a file, which may hold other things beside, as a mission. Raises SettingsError.
+
+    ``why_not``: the reason for which a kind cannot be used here; None if it can.
+    """
+    return faults_from(read_table(path), why_not)
 
 
-def faults_from(table: Table) -> Tuple[Fault, ...]:
-    """The faults of a table of a file."""
-    return tuple(_fault(entry) for entry in table.tables("faults"))
+def faults_from(table: Table, why_not: Callable[[str], Optional[str]] = lambda _: None) -> Tuple[Fault, ...]:
+    """The faults of a table of a file, as ``load_faults``."""
+    return tuple(_fault(entry, why_not) for entry in table.tables("faults"))
 
 
-def _fault(entry: Table) -> Fault:
+def _fault(entry: Table, why_not: Callable[[str], Optional[str]]) -> Fault:
     entry.allow_only(*KEYS)
     name = _kind(entry)
+    reason = why_not(name)
+    if reason is not None:
+        raise entry.complaint("kind", f"cannot be used: {reason}")
     start, end = entry.number("start", 0.0), float("inf")
     entry.check(start >= 0.0, "start", "not negative")
     if "end" in entry:

@@ -32,10 +32,12 @@ def own_kind(name: str) -> Optional[Type[FaultKind]]:
 
 
 class GuardedFault(FaultKind):
-    """Stands before one of other people: what goes wrong in it is a FaultError in its name."""
+    """Stands before one of other people, of the class ``guarded``: what goes wrong in it is a FaultError in
+    its name.
+    """
 
     def __init__(self, name: str, kind: Type[FaultKind], strength: float, rng: np.random.Generator):
-        self._name = name
+        self._name, self.guarded = name, kind
         self._kind = self._watched(kind, strength, rng)
 
     def scan(self, scan: Scan) -> Optional[Scan]:

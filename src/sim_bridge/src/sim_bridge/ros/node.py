@@ -22,7 +22,7 @@ from sim_bridge.noise import noise_named
 from sim_bridge.pacing import Pacer
 from sim_bridge.robots import robot_named
 from sim_bridge.ros.describing import find_file, model_folders
-from sim_bridge.ros.fault_control import FaultControl
+from sim_bridge.ros.faults.control import FaultControl
 from sim_bridge.ros.fleet import Fleet
 from sim_bridge.ros.gazebo import GazeboInterface
 from sim_bridge.ros.gazebo.server import NAMESPACE

@@ -1,0 +1,361 @@
+"""Faults between other people's nodes: which there are, when they last, and what stays of a message."""
+
+import math
+import sys
+from dataclasses import replace
+from io import BytesIO
+
+import numpy as np
+import pytest
+import rospy
+from geometry_msgs.msg import Point, Quaternion, Twist, Vector3
+from nav_msgs.msg import Odometry as OdometryMessage
+from sensor_msgs.msg import LaserScan
+from std_msgs.msg import Header
+
+from planar import PlanarError, Pose2, SettingsError, Twist2
+from planar_ros.messages.border import MessageError
+from planar_ros.messages.conversion import LaserScanArrays, yaw_of
+from sim_bridge.faults import KINDS, Fault, load_faults
+from sim_bridge.faults.faulty import through
+from sim_bridge.faults.kind import FaultKind
+from sim_bridge.faults.registry import fault_named, usual_strength
+from sim_bridge.faults.relayed import CHANGES, RelayedFaults, why_not_relayed
+from sim_bridge.ros.faults.heard import HeardCommand, HeardOdometry, HeardScan
+from sim_bridge.ros.faults.raw import raw
+from sim_bridge.ros.faults.relay import transform_of
+
+OUT_OF_REACH = {"wheel_weak", "wheel_stuck", "wheels_blocked"} | {
+    "kidnapped", "turned_round", "object_in_way", "way_closed"
+}  # fmt: skip
+TILT = 0.1
+
+
+class FarSighted(FaultKind):
+    """Everything is twice as far, up to 5 m."""
+
+    def scan(self, scan):
+        return replace(scan, ranges=2.0 * scan.ranges.astype(float), range_max=5.0)
+
+
+class OnlyABeginning(FaultKind):
+    """Changes nothing that nodes say."""
+
+    def begin(self, stage):
+        raise AssertionError("a relay has no home")
+
+
+class FromTheFuture(FaultKind):
+    """Scans of a time that no stamp can tell."""
+
+    def scan(self, scan):
+        return replace(scan, stamp=1e12)
+
+
+@pytest.fixture(autouse=True)
+def own(monkeypatch):
+    monkeypatch.setitem(sys.modules, "own.relayed", sys.modules[__name__])
+
+
+def data_of(message):
+    buffer = BytesIO()
+    message.serialize(buffer)
+    return buffer.getvalue()
+
+
+def scan_message(second=1700000000, seq=7):
+    """Has a stamp that no float holds, and infinite range_max, as some drivers say."""
+    made = LaserScan(
+        header=Header(seq, rospy.Time(second, 123456789), "laser"),
+        angle_min=-1.0, angle_max=1.0, angle_increment=0.5, time_increment=0.001, scan_time=0.1,
+        range_min=0.1, range_max=math.inf,
+        ranges=[1.0, math.nan, 2.5, math.inf, 0.75], intensities=[10.0, 0.0, 3.0, 4.0, float(seq)],
+    )  # fmt: skip
+    return read_back(made, LaserScan)  # rounded to what it holds
+
+
+def odometry_message(x=2.0, yaw=0.5, seq=7):
+    """On a slope, and with a velocity to the side."""
+    message = OdometryMessage(header=Header(seq, rospy.Time(seq, 123456789), "odom"), child_frame_id="base")
+    message.pose.pose.position = Point(x, 3.0, 0.25)
+    half, tilted = yaw / 2.0, TILT / 2.0
+    message.pose.pose.orientation = Quaternion(
+        -math.sin(half) * math.sin(tilted), math.cos(half) * math.sin(tilted),
+        math.sin(half) * math.cos(tilted), math.cos(half) * math.cos(tilted),
+    )  # fmt: skip
+    message.twist.twist = command_message(0.4, seq)
+    message.pose.covariance = [float(number) for number in range(36)]
+    message.twist.covariance = [float(-number) for number in range(36)]
+    return message
+
+
+def command_message(v=0.4, seq=7):
+    return Twist(Vector3(v, float(seq), 0.2), Vector3(0.3, 0.4, 0.5))
+
+
+def through_kind(name, change, heard_class, *messages, strength=None):
+    """What becomes of messages, as they are read off the wire: messages, or None."""
+    kind = fault_named(name, usual_strength(name) if strength is None else strength, np.random.default_rng(0))
+    told = []
+    for message in messages:
+        heard = heard_class.of(heard_class.kind().deserialize(data_of(message)))
+        value = through([kind], change, heard)
+        told.append(None if value is None else read_back(heard.tell(value), type(message)))
+    return told
+
+
+def read_back(message, kind):
+    return kind().deserialize(data_of(message))
+
+
+def difference(one, other):
+    """The names of the fields that are not the same to the last bit."""
+    kinds = zip(one.__slots__, one._slot_types)
+    return {
+        name for name, kind in kinds if bits(getattr(one, name), kind) != bits(getattr(other, name), kind)
+    }
+
+
+def bits(value, kind):
+    if hasattr(value, "serialize"):
+        return data_of(value)
+    return np.asarray(value).tobytes() if "float" in kind else value
+
+
+def pitch_of(q):
+    return math.asin(2.0 * (q.w * q.y - q.z * q.x))
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_what_changes_messages_can_be_relayed_and_nothing_else(name):
+    reason = why_not_relayed(name)
+    assert (reason is not None) == (name in OUT_OF_REACH)
+    if reason is not None:
+        assert reason.startswith(f"{name} changes no scan, odometry or command, only wheels or the home")
+
+
+def test_other_peoples_kinds_are_judged_by_what_they_are_not_by_their_guard():
+    assert why_not_relayed("own.relayed/FarSighted") is None
+    assert "own.relayed/OnlyABeginning changes no scan" in why_not_relayed("own.relayed/OnlyABeginning")
+    faults = RelayedFaults([Fault("own.relayed/FarSighted", strength=1.0)])
+    assert [len(faults.at(0.0, change)) for change in CHANGES] == [1, 0, 0]
+
+
+@pytest.mark.parametrize("name", sorted(OUT_OF_REACH))
+def test_what_no_relay_can_do_is_refused_in_a_file_with_its_line(name, tmp_path):
+    path = tmp_path / "faults.yaml"
+    path.write_text(f"faults:\n  - {{kind: scan_nan}}\n  - {{kind: {name}}}\n")
+    assert len(load_faults(path)) == 2, "the simulator can"
+    with pytest.raises(
+        SettingsError, match=rf"faults.yaml:3: faults\[2\].kind cannot be used: {name} changes"
+    ):
+        load_faults(path, why_not_relayed)
+
+
+def test_what_no_relay_can_do_is_refused_when_asked_for():
+    faults = RelayedFaults([])
+    with pytest.raises(SettingsError, match="^kidnapped changes no scan"):
+        faults.add("kidnapped", 1.0, 0.5, 0.0)
+    with pytest.raises(SettingsError, match="there is no fault 'scan_nans', did you mean scan_nan?"):
+        faults.add("scan_nans", 1.0, 0.5, 0.0)
+    assert not any(faults.at(0.0, change) for change in CHANGES)
+
+
+def lasting(faults, times, change="scan"):
+    return [len(faults.at(time, change)) for time in times]
+
+
+def test_a_fault_lasts_by_the_seconds_since_the_clock_was_there():
+    faults = RelayedFaults([Fault("scan_nan", 2.0, 4.0)])
+    assert lasting(faults, [0.0, 3.0]) == [0, 0], "before there is a clock"
+    faults.begin(1000.0)
+    assert lasting(faults, [1001.9, 1002.0, 1003.9, 1004.0]) == [0, 1, 1, 0]
+
+
+def test_a_fault_is_asked_only_for_what_it_changes():
+    faults = RelayedFaults([Fault("scan_nan"), Fault("odometry_stopped"), Fault("commands_deaf")])
+    for change, kind in zip(CHANGES, ("scan_nan", "odometry_stopped", "commands_deaf")):
+        assert [type(each) for each in faults.at(0.0, change)] == [KINDS[kind]]
+
+
+def test_a_fault_that_is_added_lasts_from_now_on():
+    faults = RelayedFaults([])
+    faults.begin(1000.0)
+    faults.add("scan_nan", 2.0, 1.0, 1005.0)
+    assert lasting(faults, [1004.9, 1005.0, 1006.9, 1007.0]) == [0, 1, 1, 0]
+
+
+def test_when_the_clock_jumps_back_the_faults_begin_anew():
+    """Else the scans of a bag's first round would stand in the way of the second for ever."""
+    faults = RelayedFaults([Fault("scan_late", 1.0, strength=0.5)])
+    faults.begin(1000.0)
+    faults.add("scan_nan", 100.0, 1.0, 1009.0)
+    (late, _) = faults.at(1010.0, "scan")
+    assert faults.at(1009.5, "scan")[0] is late, "a correction of the clock is no jump"
+    assert lasting(faults, [1000.5, 1001.0]) == [0, 1]
+    assert faults.at(1001.0, "scan") != [late]
+    assert lasting(faults, [10.5, 11.4, 11.6]) == [0, 0, 1], "the clock begins where it has jumped to"
+
+
+def test_chance_is_that_of_the_seed():
+    def noise(seed):
+        (kind,) = RelayedFaults([Fault("scan_noisy", strength=0.5)], seed).at(0.0, "scan")
+        return kind.scan(HeardScan.of(LaserScanArrays().deserialize(data_of(scan_message())))).ranges[0]
+
+    assert noise(1) == noise(1) != noise(2)
+
+
+@pytest.mark.parametrize(
+    ("heard_class", "message"),
+    [(HeardScan, scan_message()), (HeardOdometry, odometry_message()), (HeardCommand, command_message())],
+)
+def test_a_raw_message_is_the_same_to_the_last_bit(heard_class, message):
+    kind = raw(heard_class.kind)
+    wire = data_of(message)
+    heard = kind().deserialize(wire)
+    assert data_of(heard) == wire == data_of(kind.of(message))
+    assert data_of(heard.read()) == wire
+    assert (kind._type, kind._md5sum) == (message._type, message._md5sum)
+    with pytest.raises(MessageError, match="cannot be read"):
+        kind().deserialize(wire[:-3]).read()
+
+
+@pytest.mark.parametrize(
+    ("change", "heard_class", "message"),
+    [
+        ("scan", HeardScan, scan_message()),
+        ("odometry", HeardOdometry, odometry_message()),
+        ("command", HeardCommand, command_message()),
+    ],
+)
+def test_what_no_fault_touches_is_told_as_it_was_heard(change, heard_class, message):
+    heard = heard_class.of(heard_class.kind().deserialize(data_of(message)))
+    assert data_of(heard.tell(heard)) == data_of(message)
+    assert data_of(heard.tell(replace(heard))) == data_of(message)
+
+
+@pytest.mark.parametrize(
+    ("name", "changed"),
+    [
+        ("scan_nan", {"ranges"}),
+        ("scan_biased", {"ranges"}),
+        ("scan_noisy", {"ranges"}),
+        ("scan_masked", {"ranges"}),
+        ("scan_misdated", {"header"}),
+        ("scan_turned", {"angle_min", "angle_max"}),
+        ("own.relayed/FarSighted", {"ranges", "range_max"}),
+    ],
+)
+def test_only_what_a_fault_changes_of_a_scan_is_changed(name, changed):
+    message = scan_message()
+    (told,) = through_kind(name, "scan", HeardScan, message)
+    assert difference(told, message) == changed
+
+
+def test_a_scan_is_changed_as_in_the_simulator():
+    message = scan_message()
+    (told,) = through_kind("scan_turned", "scan", HeardScan, message, strength=90.0)
+    assert told.angle_min == pytest.approx(-1.0 - math.pi / 2.0)
+    assert told.angle_max == pytest.approx(1.0 - math.pi / 2.0)
+    (told,) = through_kind("scan_misdated", "scan", HeardScan, message, strength=-0.25)
+    assert (told.header.stamp - message.header.stamp).to_sec() == pytest.approx(-0.25, abs=1e-6)
+    assert (told.header.frame_id, told.header.seq) == ("laser", 7)
+    (told,) = through_kind("own.relayed/FarSighted", "scan", HeardScan, message)
+    assert told.ranges[0] == 2.0 and told.ranges[2] == 5.0
+
+
+def test_a_late_scan_is_the_earlier_message():
+    messages = [scan_message(1700000000 + number, number) for number in range(3)]
+    told = through_kind("scan_late", "scan", HeardScan, *messages, strength=2.0)
+    assert told[:2] == [None, None]
+    assert data_of(told[2]) == data_of(messages[0])
+
+
+def test_a_frozen_scan_has_fresh_headers_to_the_nanosecond():
+    first, second = scan_message(1700000000, 1), scan_message(1700000001, 2)
+    _, told = through_kind("scan_frozen", "scan", HeardScan, first, second)
+    assert difference(told, first) == {"header"}
+    assert data_of(told.header) == data_of(second.header)
+
+
+def test_a_stamp_that_no_message_holds_is_refused():
+    with pytest.raises(MessageError, match="a scan at 1e\\+12 s means nothing"):
+        through_kind("own.relayed/FromTheFuture", "scan", HeardScan, scan_message())
+
+
+def test_odometry_that_is_scaled_keeps_height_tilt_covariances_and_all_else():
+    messages = [odometry_message(2.0), odometry_message(3.0)]
+    _, told = through_kind("odometry_scaled", "odometry", HeardOdometry, *messages, strength=2.0)
+    assert difference(told, messages[1]) == {"pose"}
+    assert list(told.pose.covariance) == messages[1].pose.covariance
+    assert (told.pose.pose.position.x, told.pose.pose.position.z) == (pytest.approx(4.0), 0.25)
+
+
+def test_odometry_that_turns_keeps_its_tilt():
+    messages = [odometry_message(yaw=0.5), odometry_message(yaw=0.5)]
+    _, told = through_kind("gyro_biased", "odometry", HeardOdometry, *messages, strength=1.0)
+    assert yaw_of(told.pose.pose.orientation) == pytest.approx(0.52)
+    assert pitch_of(messages[1].pose.pose.orientation) == pytest.approx(TILT)
+    assert pitch_of(told.pose.pose.orientation) == pytest.approx(TILT)
+
+
+def test_frozen_odometry_is_the_first_with_fresh_headers():
+    first, second = odometry_message(2.0, 0.5, seq=1), odometry_message(3.0, 0.7, seq=2)
+    _, told = through_kind("odometry_frozen", "odometry", HeardOdometry, first, second)
+    assert difference(told, first) == {"header"}
+    assert data_of(told.header) == data_of(second.header)
+
+
+def test_a_command_that_is_saturated_keeps_its_other_axes():
+    (told,) = through_kind("velocity_saturated", "command", HeardCommand, command_message(0.4))
+    assert told == Twist(Vector3(0.15, 7.0, 0.2), Vector3(0.3, 0.4, 0.5))
+
+
+def test_a_late_command_is_the_earlier_message():
+    messages = [command_message(0.1, 1), command_message(0.2, 2)]
+    told = through_kind("commands_late", "command", HeardCommand, *messages, strength=1.0)
+    assert told == [None, messages[0]]
+
+
+@pytest.mark.parametrize(
+    ("heard_class", "message"),
+    [
+        (HeardScan, LaserScan(angle_min=math.nan, ranges=[1.0])),
+        (HeardOdometry, OdometryMessage(header=Header(frame_id="odom"))),
+        (HeardCommand, Twist(linear=Vector3(math.inf, 0.0, 0.0))),
+    ],
+)
+def test_a_message_without_meaning_is_refused(heard_class, message):
+    if heard_class is HeardOdometry:
+        message.pose.pose.position.x = math.nan
+    with pytest.raises(PlanarError, match="means nothing"):
+        heard_class.of(message)
+
+
+def test_the_transform_is_where_odometry_tells():
+    message = odometry_message(2.0, 0.5)
+    transform = transform_of(message)
+    assert (transform.header, transform.child_frame_id) == (Header(0, message.header.stamp, "odom"), "base")
+    assert transform.transform.translation == Vector3(2.0, 3.0, 0.25)
+    assert yaw_of(transform.transform.rotation) == pytest.approx(0.5)
+    assert pitch_of(transform.transform.rotation) == pytest.approx(TILT)
+
+
+@pytest.mark.parametrize("lacking", ["frame", "child", "place"])
+def test_odometry_without_place_or_frame_has_no_transform(lacking):
+    message = odometry_message()
+    if lacking == "frame":
+        message.header.frame_id = ""
+    elif lacking == "child":
+        message.child_frame_id = "/"
+    else:
+        message.pose.pose.position.z = math.nan
+    with pytest.raises(PlanarError):
+        transform_of(message)
+
+
+def test_what_is_heard_is_what_faults_know():
+    heard = HeardOdometry.of(odometry_message(2.0, 0.5))
+    assert (heard.base_in_odom.x, heard.base_in_odom.y) == (2.0, 3.0)
+    assert heard.base_in_odom.yaw == pytest.approx(Pose2(2.0, 3.0, 0.5).yaw)
+    assert heard.twist == Twist2(0.4, 0.5)
