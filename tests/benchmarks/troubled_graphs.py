@@ -54,7 +54,6 @@ class Trouble:
 
     what: str
     make: Callable[[Graph], None]
-    survivable: bool = True
 
 
 @dataclass(frozen=True)
@@ -74,7 +73,7 @@ class Outcome:
 
     @property
     def is_well(self) -> bool:
-        return not self.left and (self.code == 0 or not TROUBLES[self.name].survivable)
+        return self.code == 0 and not self.left
 
 
 def _stand_still(name: str, graph: Graph) -> None:
@@ -163,7 +162,7 @@ TROUBLES: Dict[str, Trouble] = {
     ),
     "time_stands_still": Trouble(f"the simulation is paused for {STILL_SECONDS:g} s", _pause),
     "time_set_back": Trouble(
-        "/gazebo/reset_simulation: time from 0 on, the robot back at its start", _set_time_back, False
+        "/gazebo/reset_simulation: time from 0 on, the robot back at its start", _set_time_back
     ),
     "goal_storm": Trouble(f"a stranger sends {STORM_GOALS} goals in {STORM_SECONDS:g} s", _storm),
     "cancel_race": Trouble(f"a stranger cancels all goals {CANCELS} times in a row", _cancel),
