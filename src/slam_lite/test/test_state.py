@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from planar import FileWriteError
+from planar import FileWriteError, Pose2
 from slam_lite.mapper import Mapper
 from slam_lite.state import StateFileError, load_state, save_state
 
@@ -28,6 +28,13 @@ def test_a_state_comes_back_as_it_was(state, tmp_path):
 def test_an_empty_state_comes_back_too(tmp_path):
     save_state(Mapper().state(), tmp_path / "map.npz")
     assert len(load_state(tmp_path / "map.npz").surfaces) == 0
+
+
+def test_an_empty_state_can_be_gone_on_from(office):
+    mapper, place = Mapper(), Pose2(2.0, 2.0)
+    mapper.resume(Mapper().state())
+    mapper.insert(place, office.scan(place))
+    assert len(mapper.key_poses) == 1
 
 
 def test_a_folder_that_is_not_there_is_an_error_and_the_old_file_stays(state, tmp_path):
