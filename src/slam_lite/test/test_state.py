@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from planar import FileWriteError, Pose2
+from planar import FileWriteError, Pose2, Scan
 from slam_lite.mapper import Mapper
 from slam_lite.state import StateFileError, load_state, save_state
 
@@ -34,6 +34,17 @@ def test_an_empty_state_can_be_gone_on_from(office):
     mapper, place = Mapper(), Pose2(2.0, 2.0)
     mapper.resume(Mapper().state())
     mapper.insert(place, office.scan(place))
+    assert len(mapper.key_poses) == 1
+
+
+def test_sessions_that_have_seen_nothing_can_be_gone_on_from():
+    mapper = Mapper()
+    blind = Scan(0.0, -1.0, 0.1, np.full(20, np.nan, dtype=np.float32), 0.1, 5.0)
+    for _ in range(3):
+        mapper.insert(Pose2(), blind)
+        state = mapper.state()
+        mapper = Mapper()
+        mapper.resume(state, Pose2())
     assert len(mapper.key_poses) == 1
 
 
