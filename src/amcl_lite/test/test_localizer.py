@@ -5,7 +5,11 @@ import numpy as np
 import pytest
 
 from amcl_lite import LocalizationError, Localizer, LocalizerSettings
+from amcl_lite.filter.particle_filter import ParticleFilter
+from amcl_lite.filter.particles import equally_weighted
+from amcl_lite.localizer import can_start_from
 from planar import OccupancyGrid, Pose2, Scan, grid_from_picture, wrap
+from planar.geometry.limits import FARTHEST
 from planar.geometry.ray_casting import cast_rays
 
 HOME = """
@@ -196,6 +200,45 @@ def test_a_motion_just_after_new_settings_is_not_lost():
     localizer = started(toy)
     localizer.reconfigure(replace(TURTLEBOT, max_particles=1000, refine_pose=False))
     assert tracking_errors(toy, localizer, [Pose2(0.0, 0.0, 0.5)])[0, 1] < 0.1
+
+
+def test_new_settings_before_the_first_scan_hold_for_the_particles_at_once():
+    localizer = Localizer(home(), TURTLEBOT, np.random.default_rng(0))
+    for count in (600, 3000):
+        localizer.reconfigure(replace(TURTLEBOT, max_particles=count))
+        assert localizer.particles.size == count
+
+
+def test_what_was_told_since_the_last_estimate_outlasts_new_settings():
+    toy = Toy(START)
+    localizer = started(toy)
+    localizer.set_pose(Pose2(2.0, 1.0), np.diag((0.01, 0.01, 0.01)))
+    localizer.reconfigure(replace(TURTLEBOT, max_particles=1000))
+    assert np.allclose(localizer.particles.poses.mean(axis=0), (2.0, 1.0, 0.0), atol=0.05)
+    localizer.scatter()
+    localizer.reconfigure(TURTLEBOT)
+    assert localizer.is_lost
+    assert np.std(localizer.particles.poses[:, 0]) > 1.0
+
+
+def test_odometry_that_jumps_beyond_all_measure_leaves_the_robot_within_reach():
+    toy = Toy(START)
+    localizer = started(toy)
+    toy.base_in_odom = Pose2(-9e5, 9e5, 0.8)
+    estimate = localizer.update(toy.base_in_odom, toy.scan())
+    assert np.abs(localizer.particles.poses[:, :2]).max() <= FARTHEST
+    assert not can_start_from(estimate.base_in_map, estimate.covariance)
+    localizer.reconfigure(replace(TURTLEBOT, max_particles=1000))
+    assert np.abs(localizer.particles.poses[:, :2]).max() <= FARTHEST
+    localizer.set_pose(toy.base_in_map, np.diag((0.04, 0.04, 0.02)))
+    assert tracking_errors(toy, localizer, THROUGH_ALL_ROOMS[:20])[:, 0].max() < 0.15
+
+
+def test_scans_that_contradict_each_other_leave_the_weights_a_distribution():
+    particle_filter = ParticleFilter(equally_weighted(np.zeros((2, 3))), np.random.default_rng(0))
+    for logarithms in ((0.0, -1000.0), (-1000.0, 0.0)):  # no particle is likely by both
+        particle_filter.weigh(np.array(logarithms), TURTLEBOT)
+        assert particle_filter.particles.weights.tolist() == [1.0, 0.0]
 
 
 def test_furniture_that_is_not_on_the_map_does_no_harm():

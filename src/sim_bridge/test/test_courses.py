@@ -56,6 +56,12 @@ def test_after_a_rewind_it_goes_the_same_way():
     assert scans[0][: len(scans[1])] == scans[1] == scans[2]
 
 
+def test_the_world_goes_on_when_one_has_been_taken_away():
+    simulation = Simulation(world(), settings=EXACT)
+    simulation.scene.remove_model("walker")
+    assert simulation.step().stamp == simulation.step_seconds
+
+
 def test_times_that_do_not_rise_are_no_course():
     with pytest.raises(WorldError, match="walker::link: a course needs times that rise"):
         Course("walker::link", np.array([0.0, 2.0, 2.0]), POINTS)

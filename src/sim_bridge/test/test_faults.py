@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from planar import SettingsError, Twist2
+from planar import Pose2, SettingsError, Twist2
 from sim_bridge import Simulation, SimulationSettings
 from sim_bridge.errors import FaultError
 from sim_bridge.faults import KINDS, Fault, Faults, Stage, load_faults
@@ -21,14 +21,18 @@ EXACT = SimulationSettings(**noise_named("ideal"))
 START, END, SECONDS = 1.0, 2.0, 3.0
 
 
-def played(*faults, seed=0):
-    """Observations of a robot that drives towards a wall."""
+def played_world():
     floor = Body("floor::l", np.eye(4), (Collision(Plane(), np.eye(4)),))
     at = np.eye(4)
     at[:3, 3] = (6.0, 0.0, 0.5)
     wall = Body("wall::l", at, (Collision(Box((0.2, 8.0, 1.0)), np.eye(4)),))
+    return World("w", (floor, wall))
+
+
+def played(*faults, seed=0):
+    """Observations of a robot that drives towards a wall."""
     going_wrong = Faults(faults, seed)
-    simulation = Simulation(World("w", (floor, wall)), settings=EXACT, fitting=going_wrong.fitting)
+    simulation = Simulation(played_world(), settings=EXACT, fitting=going_wrong.fitting)
     seen = []
     for _ in range(round(SECONDS / simulation.step_seconds)):
         command = Twist2(0.3, math.sin(0.1 * len(seen)))
@@ -111,6 +115,21 @@ def test_a_robot_that_is_kidnapped_is_not_set_down_in_a_wall():
     simulation.close()
     assert touched == []
     assert 0.15 < seen.base_in_world.y < 0.35
+
+
+@pytest.mark.parametrize("kind", ["way_closed", "object_in_way"])
+def test_two_things_may_be_in_the_way_and_somebody_may_take_them_away(kind):
+    simulation, faults = Simulation(played_world(), settings=EXACT), Faults((), may_come=True)
+    before = simulation.scene.models.names()
+    for end, strength in ((0.5, 1.0), (0.5, 3.0), (9.0, 5.0)):
+        faults.add(Fault(kind, 0.0, end, strength))
+    stage = Stage(simulation.scene, ROBOT_NAME, Pose2())
+    faults.disturb(0.1, stage)
+    first, second, third = (name for name in simulation.scene.models.names() if name not in before)
+    simulation.scene.remove_model(second)
+    faults.disturb(0.6, stage)
+    assert simulation.scene.models.names() == [*before[:-1], third, before[-1]]
+    simulation.close()
 
 
 def test_faults_are_read_from_a_file(tmp_path):

@@ -64,6 +64,27 @@ def test_a_model_in_motion_keeps_moving(scene):
     assert scene.models.motion("crate").linear[2] == pytest.approx(-9.8 * 0.2, rel=0.05)
 
 
+@pytest.mark.parametrize("mass", [0.0, -1.0, np.nan, np.inf, 1e300])
+@pytest.mark.parametrize("moment", [1.0, np.inf])
+def test_what_nothing_can_weigh_is_refused(scene, mass, moment):
+    with pytest.raises(WorldError, match="must be positive"):
+        scene.models.set_mass("crate::link", mass, (1.0, 1.0, moment), has_weight=True)
+    drive(scene, 0.1)
+    assert np.isfinite(scene.models.motion("crate").pose).all()
+
+
+def test_bodies_of_one_name_are_refused_and_leave_nothing(scene):
+    with pytest.raises(WorldError, match="2 times"):
+        scene.add([box("twin", 8.0), box("twin", 9.0)])
+    assert "twin" not in scene.models.names()
+
+
+def test_a_model_cannot_have_the_name_of_a_robot(scene):
+    scene.add_robot("r", LIDAR)
+    with pytest.raises(WorldError, match="r is in the world already"):
+        scene.add([box("r", 8.0)])
+
+
 def test_gravity_can_be_switched_off(scene):
     scene.set_gravity(0.0)
     scene.set_model_motion("crate", at_rest(pose3(0.0, -3.0, 2.0)))

@@ -147,6 +147,24 @@ def test_odometry_that_is_reset_and_time_that_jumps_leave_the_robot_where_it_is(
     assert max(errors(broken, updates, mapper)) < FOLLOWED
 
 
+def test_a_trajectory_beside_the_map_is_near_it_wherever_it_lies(office):
+    mapper, far = Mapper(), Pose2(-9e5, 9e5, 0.8)
+    for place, stamp in (
+        (Pose2(2.0, 2.0), 10.0),
+        (Pose2(14.0, 9.0, 2.0), 5.0),
+    ):  # as if switched off and carried
+        mapper.insert(far, office.scan(place, stamp))
+    assert len(mapper.key_poses) == 2
+    assert np.abs(np.diff(mapper.key_poses[:, :2], axis=0)).max() < 100.0
+
+
+def test_odometry_is_not_believed_for_as_far_as_a_clock_may_jump():
+    continuity = Continuity()
+    assert not continuity.breaks(Pose2(1.0, 0.0, 0.0), 0.0)
+    assert not continuity.breaks(Pose2(50.0, 0.0, 0.0), 1e6)
+    assert continuity.breaks(Pose2(-9e5, 0.0, 0.0), 2e6)
+
+
 def test_a_break_is_told_from_a_drive():
     continuity = Continuity()
     driven = [(Pose2(0.5 * i, 0.0, 0.0), 1.0 * i) for i in range(5)]

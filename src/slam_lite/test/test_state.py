@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from planar import FileWriteError
+from planar import FileWriteError, Pose2, Scan
+from planar.geometry.limits import OutOfRangeError
 from slam_lite.mapper import Mapper
 from slam_lite.state import StateFileError, load_state, save_state
 
@@ -28,6 +29,44 @@ def test_a_state_comes_back_as_it_was(state, tmp_path):
 def test_an_empty_state_comes_back_too(tmp_path):
     save_state(Mapper().state(), tmp_path / "map.npz")
     assert len(load_state(tmp_path / "map.npz").surfaces) == 0
+
+
+def test_an_empty_state_can_be_gone_on_from(office):
+    mapper, place = Mapper(), Pose2(2.0, 2.0)
+    mapper.resume(Mapper().state())
+    mapper.insert(place, office.scan(place))
+    assert len(mapper.key_poses) == 1
+
+
+def test_sessions_that_have_seen_nothing_can_be_gone_on_from():
+    mapper = Mapper()
+    blind = Scan(0.0, -1.0, 0.1, np.full(20, np.nan, dtype=np.float32), 0.1, 5.0)
+    for _ in range(3):
+        mapper.insert(Pose2(), blind)
+        state = mapper.state()
+        mapper = Mapper()
+        mapper.resume(state, Pose2())
+    assert len(mapper.key_poses) == 1
+
+
+def test_a_session_of_a_single_long_beam_can_be_gone_on_from():
+    mapper = Mapper()
+    for ranges in ([np.nan], [4.9]):
+        mapper.insert(Pose2(), Scan(0.0, -3.1, 0.1, np.array(ranges, dtype=np.float32), 0.1, 5.0))
+        state = mapper.state()
+        mapper = Mapper()
+        mapper.resume(state, Pose2())
+    mapper.resume(mapper.state(), Pose2())
+    assert len(mapper.key_poses) == 1
+
+
+@pytest.mark.parametrize("place", [Pose2(9e5, 0.0), Pose2(2.0, -500.0), Pose2(np.nan, 2.0), Pose2(2e6, 2.0)])
+def test_a_place_nowhere_near_the_map_is_refused_and_nothing_is_lost(state, place):
+    mapper = Mapper()
+    mapper.resume(state)
+    with pytest.raises(OutOfRangeError):
+        mapper.resume(state, place)
+    assert np.array_equal(mapper.key_poses, state.poses)
 
 
 def test_a_folder_that_is_not_there_is_an_error_and_the_old_file_stays(state, tmp_path):

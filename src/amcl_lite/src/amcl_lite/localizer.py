@@ -1,7 +1,8 @@
 """The facade: a robot with odometry and a laser is localized in a known map."""
 
 from dataclasses import dataclass
-from typing import Optional
+from functools import partial
+from typing import Callable, Optional
 
 import numpy as np
 
@@ -53,6 +54,8 @@ class Localizer:
         self._free_space = FreeSpace(grid)
         self._odom_in_map: Optional[Pose2] = None
         self._base_in_odom = Pose2()
+        self._begin: Callable[[], None] = self._start_anywhere
+        self._update_policy, self._updates = UpdatePolicy(), 0
         self._covariance = np.zeros((3, 3))
         self._quality: Optional[Quality] = None
         self._configure(settings)
@@ -94,23 +97,29 @@ class Localizer:
         return OccupancyGrid(fits, self._grid.resolution, self._grid.origin)
 
     def reconfigure(self, settings: LocalizerSettings) -> None:
-        """Goes on with other settings, from a new start around the last estimate (as amcl does)."""
+        """Goes on with other settings, from a new start around the last estimate (as amcl does).
+
+        If no scan has counted since the last start, that is made again.
+        """
         self._configure(settings)
-        if self._odom_in_map is not None:
-            self.set_pose(self._odom_in_map @ self._base_in_odom, self._covariance)
-            self._update_policy = UpdatePolicy(self._base_in_odom)
+        updated_at = self._update_policy.updated_at
+        if self._updates > 0 and self._odom_in_map is not None:
+            base_in_map, updated_at = self._odom_in_map @ self._base_in_odom, self._base_in_odom
+            self._begin = partial(self._start_around, base_in_map, self._covariance)
+        self._begin()
+        self._update_policy = UpdatePolicy(updated_at)
 
     def set_pose(self, base_in_map: Pose2, pose_covariance: np.ndarray) -> None:
         """Starts anew around a pose; ``pose_covariance``: (3, 3), m^2 and rad^2."""
-        if not (base_in_map.is_in_range() and is_within(FARTHEST, *np.ravel(pose_covariance))):
+        if not can_start_from(base_in_map, pose_covariance):
             raise LocalizationError("a pose to start from must be finite, and where a robot can be")
-        count = self._settings.max_particles
-        self._start(gaussian_particles(base_in_map, pose_covariance, count, self._rng), is_lost=False)
+        self._begin = partial(self._start_around, base_in_map, np.array(pose_covariance))
+        self._begin()
 
     def scatter(self) -> None:
         """Starts anew with particles all over the free space: global localization."""
-        poses = self._free_space.draw(self._settings.max_particles, self._rng)
-        self._start(equally_weighted(poses), is_lost=True)
+        self._begin = self._start_anywhere
+        self._begin()
 
     def request_update(self) -> None:
         """Makes the next scan count even if the robot stands still."""
@@ -137,9 +146,16 @@ class Localizer:
         return estimate
 
     def _configure(self, settings: LocalizerSettings) -> None:
-        self._settings = settings
-        self._likelihood = ScanLikelihood(self._grid, settings)
-        self._motion = motion_model_of(settings)
+        likelihood, motion = ScanLikelihood(self._grid, settings), motion_model_of(settings)
+        self._settings, self._likelihood, self._motion = settings, likelihood, motion
+
+    def _start_around(self, base_in_map: Pose2, covariance: np.ndarray) -> None:
+        count = self._settings.max_particles
+        self._start(gaussian_particles(base_in_map, covariance, count, self._rng), is_lost=False)
+
+    def _start_anywhere(self) -> None:
+        poses = self._free_space.draw(self._settings.max_particles, self._rng)
+        self._start(equally_weighted(poses), is_lost=True)
 
     def _start(self, particles: ParticleSet, is_lost: bool) -> None:
         self._filter = ParticleFilter(particles, self._rng)
@@ -192,6 +208,11 @@ class Localizer:
         self._detector.take(self._quality, stamp)
         if self._settings.recover_when_lost and self._quality.is_doubtful:
             self._update_policy.request()  # a robot that stands would never find itself
+
+
+def can_start_from(base_in_map: Pose2, covariance: np.ndarray) -> bool:
+    """Whether a Localizer takes this pose, with its covariance (3, 3), to start from."""
+    return base_in_map.is_in_range() and is_within(FARTHEST, *np.ravel(covariance))
 
 
 def warm_up(settings: LocalizerSettings) -> None:

@@ -51,6 +51,9 @@ class Course:
 class Movable(Protocol):
     """What holds the bodies: the engine."""
 
+    def has_link(self, name: str) -> bool:
+        """Whether it is there."""
+
     def shift(self, places: Iterable[Tuple[str, float, float]]) -> None:
         """Puts bodies, each told by name, x and y, to other places."""
 
@@ -64,4 +67,7 @@ class Courses:
     def follow(self, engine: Movable, step: int, rate: int, stamp: float) -> None:
         """Before the step of physics number ``step``, of ``rate`` a second, which begins at ``stamp``."""
         if self.each and step % max(rate // COURSE_RATE, 1) == 0:
-            engine.shift((course.link, *course.at(stamp)) for course in self.each)
+            there = (
+                course for course in self.each if engine.has_link(course.link)
+            )  # nobody has taken it away
+            engine.shift((course.link, *course.at(stamp)) for course in there)

@@ -107,8 +107,7 @@ class Scene:
         Returns the names of what it is moved out of. Raises WorldError if it cannot stand there or the name
         is taken.
         """
-        if name in self.models.names():
-            raise WorldError(f"{name} is in the world already")
+        self.models.check_free([name])
         where = f"({base_in_world.x:g}, {base_in_world.y:g})"
         floor = self._engine.touch.floor_below(base_in_world.x, base_in_world.y, z + FLOOR_SEARCH)
         if floor is None:
@@ -131,7 +130,8 @@ class Scene:
         return self._robots[name]
 
     def add(self, bodies: Sequence[Body], joints: Sequence[Joint] = ()) -> None:
-        """Puts bodies into the world, held to each other by joints. Raises WorldError if a name is taken."""
+        """Puts models into the world, held together by joints. Raises WorldError if a name is taken."""
+        self.models.check_free(body.model for body in bodies)
         self._engine.add(bodies, joints)
         self.joints.add(joints)
         self.models.add(bodies)

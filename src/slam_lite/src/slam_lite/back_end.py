@@ -190,7 +190,7 @@ class BackEnd:
         self._local_map = wide_map()
         self.surfaces: List[Surface] = []
         self._edges = EdgeList()
-        self._poses = np.empty((64, 3))
+        self._poses = np.empty((0, 3))
         self._pending: Sequence[Closure] = ()
         self._memory = Memory()
         self._unsettled = 0
@@ -219,8 +219,9 @@ class BackEnd:
 
     def beside(self, surface: Surface) -> Pose2:
         """A pose from which a scan sees nothing of what was seen so far."""
-        ends = [pose[0] + _reach(known) for known, pose in zip(self.surfaces, self.poses)]
-        return Pose2(max(ends, default=0.0) + _BESIDE + _reach(surface), 0.0, 0.0)
+        ends = [(pose[0] + _reach(known), pose[1]) for known, pose in zip(self.surfaces, self.poses)]
+        end, y = max(ends, default=(0.0, 0.0))
+        return Pose2(end + _BESIDE + _reach(surface), y, 0.0)
 
     def add_first(self, surface: Surface, base_in_map: Pose2, is_lost: bool = False) -> None:
         """Adds the first key of a trajectory.
@@ -247,7 +248,7 @@ class BackEnd:
     def _append(self, surface: Surface, base_in_map: Pose2) -> None:
         n = len(self)
         if n == len(self._poses):
-            self._poses = np.concatenate((self._poses, np.empty_like(self._poses)))
+            self._poses = np.concatenate((self._poses, np.empty((max(n, 64), 3))))
         self._poses[n] = base_in_map.as_array()
         self.surfaces.append(surface)
 

@@ -7,6 +7,8 @@ from slam_lite.front_end import moves
 
 # No robot drives faster, m/s; and what odometry may jump besides, metres.
 _FASTEST, _JUMP = 5.0, 1.0
+# How many seconds of a pause of the scans a robot may have driven: clocks jump, too.
+_LONGEST_DRIVE = 20.0
 # After so many seconds without a scan a robot that has not moved may have been carried.
 _LONG_GAP = 5.0
 # Odometry nearer to zero than this, metres and radians, has begun anew.
@@ -46,6 +48,6 @@ class Continuity:
         self._stamp, self._base_in_odom = stamp, base_in_odom
         if math.isnan(elapsed):
             return False
-        is_jump = math.hypot(motion.x, motion.y) > _JUMP + _FASTEST * max(elapsed, 0.0)
+        is_jump = math.hypot(motion.x, motion.y) > _JUMP + _FASTEST * min(max(elapsed, 0.0), _LONGEST_DRIVE)
         is_gap = not 0.0 <= elapsed < _LONG_GAP
         return is_jump or (is_gap and not (moves(motion) and moves(base_in_odom, _AT_ZERO)))

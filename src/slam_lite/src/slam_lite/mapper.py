@@ -7,6 +7,7 @@ from typing import List, Optional, Tuple
 import numpy as np
 
 from planar import OccupancyGrid, Pose2, Scan
+from planar.geometry.limits import OutOfRangeError
 from planar.geometry.pose import check_place
 from slam_lite.back_end import BackEnd, ClosureResult, ClosureTask
 from slam_lite.config import MapperSettings
@@ -19,6 +20,9 @@ from slam_lite.rendering import Beams, Evidence, SessionRenderer, beams_of
 from slam_lite.sessions import renewed
 from slam_lite.state import MapState
 from slam_lite.surface import Surface, surface_of
+
+# Metres off the map that somebody may say the robot is; both have to be drawn as one picture.
+_FARTHEST_OFF = 200.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,8 +175,11 @@ class Mapper:
 
         By default the first scan tells where it is: where it was last, or anywhere else in the map. If that
         cannot be told, a trajectory beside the map begins, to be joined with it when a place is recognised.
+        Raises OutOfRangeError, and is as it was then, if ``base_in_map`` is too far from all of the map.
         """
         state = renewed(state)
+        if base_in_map is not None:
+            _check_near(base_in_map, state.poses)
         self._back_end = BackEnd(self._settings)
         self._back_end.restore(state.surfaces, state.poses, state.edges)
         self._beams = list(state.beams)
@@ -267,6 +274,14 @@ def ranges_of(scan: Scan, settings: MapperSettings, no_return: NoReturn) -> Tupl
     """maxRange and maxUrange for a scan, metres."""
     max_range = settings.max_range or min(scan.range_max - 0.01, no_return.distance)
     return max_range, settings.usable_range or max_range
+
+
+def _check_near(base_in_map: Pose2, poses: np.ndarray) -> None:
+    """Raises OutOfRangeError for a pose that is nowhere near any of ``poses`` (N, 3), if there are any."""
+    check_place(base_in_map, "a robot")
+    distances = np.hypot(poses[:, 0] - base_in_map.x, poses[:, 1] - base_in_map.y)
+    if len(poses) and distances.min() > _FARTHEST_OFF:
+        raise OutOfRangeError(f"a robot {distances.min():.0f} m away from all that is mapped means nothing")
 
 
 def _rotated(information: np.ndarray, angle: float) -> np.ndarray:

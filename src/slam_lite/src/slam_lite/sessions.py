@@ -18,7 +18,7 @@ from slam_lite.state import MapState
 _CELL, _ENOUGH = 0.2, 6
 # A scan is kept for this share of what it saw.
 _NEW_SHARE = 0.15
-# Empty cells around what the beams reached: lasers may stand beyond their ends.
+# Empty cells around the lasers and what their beams reached.
 _MARGIN = 3
 
 
@@ -39,7 +39,9 @@ def renewed(state: MapState) -> MapState:
 
 def _is_worth_keeping(beams: Sequence[Beams], poses: np.ndarray, is_newest: np.ndarray) -> np.ndarray:
     """Whether a key scan is of the newest session, or says of enough cells what few newer ones do, (N,)."""
-    extents = [_in_cells(*scan)[1] for scan in zip(beams, poses) if len(scan[0].marks)]
+    extents = [np.vstack(_in_cells(*scan)) for scan in zip(beams, poses) if len(scan[0].marks)]
+    if not extents:
+        return is_newest
     corner = np.floor(np.min([ends.min(axis=0) for ends in extents], axis=0)).astype(np.int64) - _MARGIN
     end = np.floor(np.max([ends.max(axis=0) for ends in extents], axis=0)).astype(np.int64) + _MARGIN
     counts = np.zeros(end - corner, dtype=np.uint8)

@@ -6,7 +6,7 @@ import numba
 import numpy as np
 
 from amcl_lite.config import LocalizerSettings
-from amcl_lite.filter.particles import ParticleSet
+from amcl_lite.filter.particles import ParticleSet, within_reach
 from amcl_lite.filter.resampling import DrawPoses, resampled
 from amcl_lite.filter.statistics import has_converged
 from amcl_lite.motion.own_model import MotionModel
@@ -25,7 +25,7 @@ class ParticleFilter:
     def move(self, base_before: Pose2, base_now: Pose2, motion: MotionModel) -> None:
         """Moves the particles on as the odometry moved."""
         poses = motion.moved(self.particles.poses, base_before, base_now, self._rng)
-        self.particles = ParticleSet(poses, self.particles.weights)
+        self.particles = ParticleSet(within_reach(poses), self.particles.weights)
 
     def weigh(self, log_likelihoods: np.ndarray, settings: LocalizerSettings) -> None:
         """Multiplies the weights by likelihoods, given as logarithms (N,)."""
@@ -81,10 +81,17 @@ def _decayed(average: float, value: float, alpha: float) -> float:
 
 @numba.njit(cache=True)
 def _weighted(weights, log_likelihoods):
-    """Weights times likelihoods, made to sum to 1, and what they summed to; no exponential underflows."""
-    largest = log_likelihoods.max()
-    products, total = np.empty(weights.size), 0.0
+    """Weights times likelihoods, made to sum to 1, and what they summed to; no exponential underflows.
+
+    Where a particle without weight is does not matter: it might be the only one that the scan fits.
+    """
+    largest = -np.inf
     for i in range(weights.size):
-        products[i] = weights[i] * math.exp(log_likelihoods[i] - largest)
-        total += products[i]
+        if weights[i] > 0.0:
+            largest = max(largest, log_likelihoods[i])
+    products, total = np.zeros(weights.size), 0.0
+    for i in range(weights.size):
+        if weights[i] > 0.0:
+            products[i] = weights[i] * math.exp(log_likelihoods[i] - largest)
+            total += products[i]
     return products / total, math.exp(largest) * total

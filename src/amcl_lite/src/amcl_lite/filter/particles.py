@@ -7,6 +7,7 @@ import numpy as np
 
 from amcl_lite.errors import LocalizationError
 from planar import FREE, OccupancyGrid, Pose2
+from planar.geometry.limits import FARTHEST
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +38,13 @@ def gaussian_particles(
     """``count`` particles drawn from a normal distribution; ``covariance``: (3, 3), may be singular."""
     eigenvalues, eigenvectors = np.linalg.eigh(covariance)
     spread = eigenvectors * np.sqrt(np.maximum(eigenvalues, 0.0))
-    return equally_weighted(mean.as_array() + rng.standard_normal((count, 3)) @ spread.T)
+    return equally_weighted(within_reach(mean.as_array() + rng.standard_normal((count, 3)) @ spread.T))
+
+
+def within_reach(poses: np.ndarray) -> np.ndarray:
+    """The poses (N, 3), with those beyond FARTHEST brought back to there: a robot can be no farther."""
+    np.clip(poses[:, :2], -FARTHEST, FARTHEST, out=poses[:, :2])
+    return poses
 
 
 class FreeSpace:

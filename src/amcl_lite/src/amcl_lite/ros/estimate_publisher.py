@@ -25,10 +25,9 @@ class EstimatePublisher:
 
     def take_up(self, localizer: Localizer, base_in_odom: Pose2) -> None:
         """Before the first scan: after a crash the robot is where odometry has brought it since."""
-        if self._odom_in_map_before is not None:
-            covariance = read_start_pose().covariance
-            localizer.set_pose(self._odom_in_map_before @ base_in_odom, covariance)
-            self._odom_in_map_before = None
+        before, self._odom_in_map_before = self._odom_in_map_before, None
+        if before is not None:
+            localizer.set_pose(before @ base_in_odom, read_start_pose().covariance)
 
     def publish(
         self,

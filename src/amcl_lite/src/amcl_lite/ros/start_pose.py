@@ -11,6 +11,7 @@ from typing import Optional
 import rospy
 
 from amcl_lite.config import InitialPose, NodeSettings
+from amcl_lite.localizer import can_start_from
 from planar import Pose2
 from planar.config.parameters import official_names
 from planar_ros.node.keepsake import Keepsake
@@ -52,7 +53,9 @@ class PoseKeeper:
             self._keepsake.keep(asdict(odom_in_map))
 
     def keep(self, base_in_map: Pose2, covariance) -> None:
-        """``covariance``: (3, 3); its diagonal is kept."""
+        """``covariance``: (3, 3); its diagonal is kept. A pose that no node could start from is not."""
+        if not can_start_from(base_in_map, covariance):
+            return
         variances = (float(covariance[i, i]) for i in range(3))
         kept = InitialPose(base_in_map.x, base_in_map.y, base_in_map.yaw, *variances)
         names = official_names(InitialPose)

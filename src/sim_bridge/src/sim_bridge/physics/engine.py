@@ -1,5 +1,6 @@
 """Rigid bodies in PyBullet: what stands and moves in a world."""
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import Dict, Iterable, Sequence, Tuple
 
@@ -116,11 +117,13 @@ class Engine:
     ) -> None:
         """Puts bodies into the world, their poses seen from ``placement``, (4, 4).
 
-        Raises WorldError if one of that name is there already.
+        Raises WorldError if one of that name is there already, or comes twice.
         """
-        for body in bodies:
-            if self.has_link(body.name):
-                raise WorldError(f"{body.name} is in the world already")
+        for name, count in Counter(body.name for body in bodies).items():
+            if self.has_link(name):
+                raise WorldError(f"{name} is in the world already")
+            if count > 1:
+                raise WorldError(f"{name} would be in the world {count} times")
         for tree in grow(bodies, joints):
             build(self._bullet, self._register, tree, placement)
             for body in tree.bodies:

@@ -3,7 +3,8 @@
 from typing import Dict, Iterable, List, Sequence
 
 from planar.config.hints import hint
-from sim_bridge.errors import UnknownEntityError
+from planar.geometry.limits import FARTHEST
+from sim_bridge.errors import UnknownEntityError, WorldError
 from sim_bridge.geometry.pose3 import inverse
 from sim_bridge.physics.engine import Engine, MassProperties
 from sim_bridge.physics.model_joints import ModelJoints
@@ -55,6 +56,11 @@ class Models:
 
     def names(self) -> List[str]:
         return list(dict.fromkeys([*(body.model for body in self._bodies.values()), *self._vehicles]))
+
+    def check_free(self, names: Iterable[str]) -> None:
+        """Raises WorldError if a model has one of these names."""
+        for taken in set(names).intersection(self.names()):
+            raise WorldError(f"{taken} is in the world already")
 
     def links_of(self, model: str) -> List[str]:
         """The names of a model's links; the first is the one that its pose is told by."""
@@ -121,8 +127,13 @@ class Models:
         return self._engine.mass_properties(link)
 
     def set_mass(self, link: str, mass: float, moments: Sequence[float], has_weight: bool) -> None:
-        """``mass`` in kg, ``moments`` (3,) about the link's principal axes, kg m^2, and whether it falls."""
+        """``mass`` in kg, ``moments`` (3,) about the link's principal axes, kg m^2, and whether it falls.
+
+        Raises WorldError for what nothing can weigh.
+        """
         self.check_link(link)
+        if not all(0.0 < value <= FARTHEST for value in (mass, *moments)):
+            raise WorldError("mass and moments of inertia must be positive, and no larger than 1e6")
         self._engine.set_mass(link, mass, moments, has_weight)
 
     def _links(self) -> List[str]:

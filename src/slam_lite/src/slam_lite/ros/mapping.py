@@ -7,6 +7,7 @@ import numpy as np
 import rospy
 
 from planar import Pose2, Scan
+from planar.geometry.pose import check_place
 from planar_ros.step import Step
 from slam_lite.config import NodeSettings
 from slam_lite.mapper import Follower, Mapper, PoseUpdate
@@ -54,7 +55,8 @@ class Mapping:
         return update
 
     def place(self, base_in_map: Pose2) -> None:
-        """Goes on from another pose of the robot."""
+        """Goes on from another pose of the robot. Raises OutOfRangeError if it can be nowhere near there."""
+        check_place(base_in_map, "a robot")
         with self._lock:
             if self._follower is not None:
                 self._follower.place(base_in_map)
@@ -83,8 +85,9 @@ class Mapping:
         rospy.loginfo("loaded a map of %d scans from %s", len(state.poses), path)
 
     def _go_on(self, state: MapState, base_in_map: Optional[Pose2] = None) -> None:
-        self._mapper = Mapper(self._settings, deferred=True)
-        self._mapper.resume(state, base_in_map)
+        mapper = Mapper(self._settings, deferred=True)
+        mapper.resume(state, base_in_map)
+        self._mapper = mapper
         self._renderer = self._empty_renderer()
 
     def _empty_renderer(self) -> SessionRenderer:

@@ -4,7 +4,7 @@ import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from std_srvs.srv import SetBool, SetBoolResponse
 
-from planar import Pose2
+from planar import PlanarError, Pose2
 from planar.config.parameters import official_names
 from planar_ros.messages.border import listen
 from planar_ros.messages.conversion import frame_name, pose2_from_msg, scan_from_msg
@@ -104,7 +104,10 @@ class SlamNode:
         if frame_name(message.header.frame_id) != frame_name(self._settings.map_frame):
             rospy.logwarn("ignoring an initial pose in frame %r", message.header.frame_id)
             return
-        self._mapping.place(pose2_from_msg(message.pose.pose))
+        try:
+            self._mapping.place(pose2_from_msg(message.pose.pose))
+        except PlanarError as error:
+            rospy.logwarn("ignoring an initial pose: %s", error)
 
     def _has_odometry(self):
         return self._transforms.latest_stamp(self._settings.odom_frame, self._settings.base_frame) is not None

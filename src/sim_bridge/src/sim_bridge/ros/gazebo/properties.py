@@ -4,7 +4,7 @@ import gazebo_msgs.srv as srv
 import numpy as np
 from geometry_msgs.msg import Point, Pose, Quaternion
 
-from sim_bridge.errors import UnknownEntityError
+from sim_bridge.errors import UnknownEntityError, WorldError
 from sim_bridge.geometry.pose3 import position
 from sim_bridge.ros.gazebo.server import SCOPE_HINT, Server
 from sim_bridge.ros.messages import vector_from_msg
@@ -80,13 +80,14 @@ class PropertyServices:
         axes = kept.centre[:3, :3]
         about_axes = axes.T @ inertia @ axes
         moments = np.diag(about_axes)
-        if not (request.mass > 0.0 and np.isfinite(inertia).all() and (moments > 0.0).all()):
-            return answer(False, "SetLinkProperties: mass and moments of inertia must be positive")
         if np.abs(about_axes - np.diag(moments)).max() > NEGLIGIBLE * moments.max():
             return answer(False, "SetLinkProperties: the principal axes of inertia cannot be turned")
         if np.abs(vector_from_msg(request.com.position) - kept.centre[:3, 3]).max() > NEGLIGIBLE:
             return answer(False, "SetLinkProperties: the centre of mass cannot be moved")
-        self._scene.models.set_mass(link, request.mass, moments.tolist(), request.gravity_mode)
+        try:
+            self._scene.models.set_mass(link, request.mass, moments.tolist(), request.gravity_mode)
+        except WorldError as error:
+            return answer(False, f"SetLinkProperties: {error}")
         return answer(True, "SetLinkProperties: properties set")
 
 
