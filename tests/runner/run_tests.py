@@ -75,7 +75,10 @@ def read_report(path: Path) -> Outcome:
         return failure(f"no readable report {path.name}: {error}")
     failed = counts["failures"] + counts["errors"]
     return Outcome(
-        counts["tests"] - failed - counts["skipped"], failed, counts["skipped"], first_failure(report)
+        max(counts["tests"] - failed - counts["skipped"], 0),
+        failed,
+        counts["skipped"],
+        first_failure(report),
     )
 
 

@@ -45,6 +45,11 @@ def test_the_reason_is_what_the_first_failure_says(tmp_path, kind, told):
     assert read_report(path) == Outcome(passed=1, failed=1, reason=told)
 
 
+def test_what_fails_before_the_first_test_takes_nothing_from_those_that_passed(tmp_path):
+    report = read_report(write_report(tmp_path / "unit.xml", 0, errors=1))
+    assert (report.passed, report.failed) == (0, 1)
+
+
 def test_a_ros_test_without_a_report_has_failed_although_rostest_ended_with_zero(tmp_path):
     write_report(tmp_path / "tests" / "rostest-a.xml", 1)
     outcome = judge_ros_test(["a"], tmp_path, 0)
