@@ -4,7 +4,6 @@ import random
 import re
 from typing import Callable, Sequence, Tuple
 
-LONGEST = 1 << 16
 NUMBER = re.compile(rb"-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 WORD = re.compile(rb"[A-Za-z_]\w*")
 # What stands for a number, and for a word.
@@ -24,7 +23,7 @@ def mutated(data: bytes, others: Sequence[bytes], rng: random.Random) -> bytes:
     """``data`` after a few changes; ``others``: files of its kind, to take parts from."""
     for _ in range(rng.choice((1, 1, 1, 2, 3, 6))):
         data = rng.choice(_CHANGES)(data, others, rng)
-    return data[:LONGEST]
+    return data
 
 
 def _span(data: bytes, rng: random.Random) -> Tuple[int, int]:

@@ -337,7 +337,7 @@ DEATH = """[/amcl] error: no map
 REQUIRED process [sim_bridge-2] has died!
 process has died [pid 7, exit code 1, cmd /y].
 """
-_MISSIONS = _files("map/mission.yaml")
+_MISSIONS = _files("tests/fuzz/examples/mission.yaml")
 _MOVE_BASES = ("src/move_base_lite/config/turtlebot.yaml", "tests/fuzz/examples/move_base.yaml")
 _WORLDS = ("map/home.world", "tests/cockpit/doors.world", "tests/fuzz/examples/small.world")
 _URDF = _files(*(f"src/sim_bridge/src/sim_bridge/urdf/{name}.urdf" for name in ("turtlebot2", "jackal")))

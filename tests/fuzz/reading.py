@@ -19,12 +19,14 @@ SOURCES = sorted(ROOT.glob("src/**/src"))
 sys.path[:0] = [str(Path(__file__).parent), *map(str, SOURCES)]
 
 import atheris  # noqa: E402
-from mutation import LONGEST, mutated  # noqa: E402
+from mutation import mutated  # noqa: E402
 from readers import READERS, Reader  # noqa: E402
 from trial import limit_memory, tried  # noqa: E402
 
 # Besides our own: libraries in Python that read for us.
 LIBRARIES = ["yaml", "PIL", "trimesh", "collada", "rosbag", "genpy"]
+# Files grow to as many bytes, or to twice the longest example: short ones are read the sooner.
+LEAST_LONGEST = 4096
 # Of the changes; the rest are Atheris' own, which know nothing of numbers and words.
 SHARE_OF_OURS = 0.7
 TELL_SECONDS = 1.0
@@ -55,6 +57,7 @@ def main() -> None:
 
 def _fuzz(reader: Reader, options: argparse.Namespace) -> None:
     seeds, faults, count, told = reader.seeds, set(), 0, 0.0
+    longest = max(LEAST_LONGEST, 2 * max(map(len, seeds)))
 
     def read(data: bytes) -> None:
         nonlocal count, told
@@ -68,7 +71,7 @@ def _fuzz(reader: Reader, options: argparse.Namespace) -> None:
             faults.add(outcome.way)
             _tell(options.news, cases=count, fault=outcome.fault, data=data.hex())
 
-    def change(data: bytes, longest: int, seed: int) -> bytes:
+    def change(data: bytes, _longest: int, seed: int) -> bytes:
         rng = random.Random(seed)
         if rng.random() < SHARE_OF_OURS:
             return mutated(data, seeds, rng)[:longest]
@@ -78,7 +81,7 @@ def _fuzz(reader: Reader, options: argparse.Namespace) -> None:
         "seed": options.seed + 1,  # 0 would be a seed by the clock
         "runs": options.cases,
         "max_total_time": options.seconds,
-        "max_len": LONGEST,
+        "max_len": longest,
         "len_control": 0,
         "timeout": 0,  # time and memory are limited by the trial
         "rss_limit_mb": 0,
