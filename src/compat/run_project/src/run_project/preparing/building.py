@@ -7,7 +7,7 @@ import signal
 import subprocess
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Callable, Dict, List, Set, Tuple
+from typing import Callable, Dict, Set, Tuple
 
 from run_project.checkout.layout import LEFTOVERS, Checkout
 from run_project.checkout.lent import lend
@@ -136,12 +136,8 @@ def environment(workspace: Workspace) -> Dict[str, str]:
 
 def _is_there(package: str) -> bool:
     folders = (f"share/{package}/cmake", f"lib/cmake/{package}", f"lib/*/cmake/{package}")
-    return any(any(prefix.glob(folder)) for prefix in [*_prefixes(), Path("/usr")] for folder in folders)
-
-
-def _prefixes() -> List[Path]:
-    """Of the workspaces in use."""
-    return [Path(prefix) for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(":") if prefix]
+    prefixes = [*filter(None, os.environ.get("CMAKE_PREFIX_PATH", "").split(":")), "/usr"]
+    return any(any(Path(prefix).glob(folder)) for prefix in prefixes for folder in folders)
 
 
 def _leave_out(workspace: Workspace, reasons: Dict[str, str], say: Callable[[str], None]) -> None:
