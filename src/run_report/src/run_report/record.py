@@ -176,6 +176,9 @@ def _packed(grid: OccupancyGrid) -> Dict[str, Any]:
 
 
 def _unpacked(packed: Dict[str, Any]) -> OccupancyGrid:
-    with Image.open(io.BytesIO(base64.b64decode(packed["png"]))) as image:
-        cells = np.array(image).view(np.int8)
+    try:
+        with Image.open(io.BytesIO(base64.b64decode(packed["png"]))) as image:
+            cells = np.array(image).view(np.int8)
+    except Exception as error:  # what Pillow raises for a broken file has no common class
+        raise ValueError(f"grid: no picture ({error})") from None
     return OccupancyGrid(cells, float(packed["resolution"]), Pose2.from_array(packed["origin"]))
