@@ -1,6 +1,7 @@
 """Robots from URDF, xacro and SDF: their parts, and what Gazebo's plugins make of them."""
 
 import math
+import os
 
 import numpy as np
 import pytest
@@ -287,3 +288,10 @@ def test_a_robot_that_is_part_of_a_world_is_a_robot(tmp_path):
 def test_what_no_file_can_be_called_is_refused(name):
     with pytest.raises(RobotError, match="cannot be read"):
         robot_named(name)
+
+
+def test_a_pipe_is_no_description(tmp_path):
+    path = tmp_path / "robot.xacro"
+    os.mkfifo(path)
+    with pytest.raises(RobotError, match="cannot be read"):
+        robot_named(str(path))

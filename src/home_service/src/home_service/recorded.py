@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Dict, Sequence
 
 from home_service.options import LaunchPlan
-from planar.files.reading import exists, read_text
+from planar.files.reading import is_file, read_text
 from sim_bridge import RobotError, robot_named
 
 
@@ -26,7 +26,7 @@ def _stage_of(bag: Path) -> Dict[str, str]:
         return {}
     world, robot = (told.get(key) if isinstance(told, dict) else None for key in ("world", "robot"))
     stage = {}
-    if isinstance(world, str) and exists(Path(world)) and Path(world).is_file():
+    if isinstance(world, str) and is_file(Path(world)):
         stage["world_file"] = world
     if isinstance(robot, str):
         with suppress(RobotError):

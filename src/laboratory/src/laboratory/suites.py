@@ -9,7 +9,7 @@ from laboratory.scenario import Scenario, read_scenario
 from laboratory.staging import stage
 from move_base_lite.control import check_local_planner
 from planar import PlanarError, SettingsError
-from planar.files.reading import exists
+from planar.files.reading import exists, is_file
 
 ROOT = Path(__file__).resolve().parents[4]
 FOLDER = ROOT / "scenarios"
@@ -49,7 +49,7 @@ def one_scenario(name: str, planner: str = "") -> Scenario:
 
 def _files(suite: str) -> List[Path]:
     for path in (Path(suite), FOLDER / f"{suite}.yaml"):
-        if exists(path) and path.is_file():
+        if is_file(path):
             return [path]
     if exists(Path(suite)) and Path(suite).is_dir():
         found = sorted(Path(suite).glob("*.yaml"))

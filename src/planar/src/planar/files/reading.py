@@ -45,6 +45,11 @@ def exists(path: Path) -> bool:
         return False
 
 
+def is_file(path: Path) -> bool:
+    """Whether there is such a regular file."""
+    return exists(path) and path.is_file()
+
+
 def read_arrays(path) -> Dict[str, np.ndarray]:
     """The arrays of an .npz file, without objects. Raises OSError, or ValueError for what is none."""
     content = io.BytesIO(read_bytes(path))

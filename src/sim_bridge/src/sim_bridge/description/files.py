@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Dict
 
-from planar.files.reading import exists, read_text
+from planar.files.reading import is_file, read_text
 from sim_bridge.description.profile import RobotProfile
 from sim_bridge.description.robot import read_urdf_robot
 from sim_bridge.description.urdf import FindFile
@@ -28,7 +28,7 @@ def read_description(path: Path, arguments: Dict[str, str] = {}) -> str:
 def _expanded(path: Path, arguments: Dict[str, str]) -> str:
     import xacro
 
-    if not exists(path) or path.is_dir():
+    if not is_file(path):
         raise RobotError(f"{path}: cannot be read (no such file)")
     try:
         return xacro.process_file(str(path), mappings=dict(arguments)).toxml()
