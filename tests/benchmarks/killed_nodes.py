@@ -66,8 +66,12 @@ class Fate:
     @property
     def row(self) -> str:
         back = "" if self.back is None else f"{self.back:.1f}"
-        told = (self.killed, back, f"{self.ended:.1f}", self.code, self.reason, self.left)
-        return f"| `{told[0]}` | " + " | ".join(map(str, told[1:])) + " |"
+        return table_row(self.killed, back, f"{self.ended:.1f}", self.code, self.reason, self.left)
+
+
+def table_row(name: str, *told: object) -> str:
+    """A row of a Markdown table."""
+    return f"| `{name}` | " + " | ".join(map(str, told)) + " |"
 
 
 def fate_of(killed: str, seed: int) -> Fate:

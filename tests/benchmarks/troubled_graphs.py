@@ -24,6 +24,7 @@ from killed_nodes import (
     mission_under_way,
     processes_of,
     reason_in,
+    table_row,
     wait_for_end,
 )
 from soak import Graph, Traces
@@ -68,8 +69,8 @@ class Outcome:
 
     @property
     def row(self) -> str:
-        told = (TROUBLES[self.name].what, f"{self.ended:.1f}", self.code, self.reason, self.left)
-        return f"| `{self.name}` | " + " | ".join(map(str, told)) + " |"
+        what = TROUBLES[self.name].what
+        return table_row(self.name, what, f"{self.ended:.1f}", self.code, self.reason, self.left)
 
     @property
     def is_well(self) -> bool:

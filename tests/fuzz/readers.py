@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Callable, Dict, List, Tuple
+from unittest.mock import patch
 
 import numpy as np
 
@@ -65,8 +66,8 @@ def _map_image(path: Path) -> object:
     """With a lower limit of pixels: a file of a few bytes with a hundred million takes a second."""
     from planar.maps import map_file
 
-    map_file.MOST_PIXELS = 1_000_000
-    return map_file.cells_from_image(path)
+    with patch.object(map_file, "MOST_PIXELS", 1_000_000):
+        return map_file.cells_from_image(path)
 
 
 PGM = b"P5\n# 0.05 m/pix\n4 3\n255\n" + bytes(range(12))

@@ -67,7 +67,6 @@ class Courses:
     def follow(self, engine: Movable, step: int, rate: int, stamp: float) -> None:
         """Before the step of physics number ``step``, of ``rate`` a second, which begins at ``stamp``."""
         if self.each and step % max(rate // COURSE_RATE, 1) == 0:
-            there = (
-                course for course in self.each if engine.has_link(course.link)
-            )  # nobody has taken it away
+            # Somebody may have taken one away.
+            there = (course for course in self.each if engine.has_link(course.link))
             engine.shift((course.link, *course.at(stamp)) for course in there)

@@ -42,7 +42,7 @@ class HeardScan(Scan):
 
     def tell(self, told: Scan) -> Any:
         """The message that tells ``told`` when this one was heard."""
-        source = told.message if isinstance(told, HeardScan) else self.message
+        source = _source(told, self)
         message = copy.copy(source)
         message.header = _header(told.stamp, source.header, self.message.header)
         message.angle_min, message.angle_increment = told.angle_min, told.angle_increment
@@ -69,7 +69,7 @@ class HeardOdometry(Odometry):
 
     def tell(self, told: Odometry) -> Any:
         """The message that tells ``told`` when this one was heard."""
-        message = copy.deepcopy(told.message if isinstance(told, HeardOdometry) else self.message)
+        message = copy.deepcopy(_source(told, self))
         message.header = self.message.header
         _move(message.pose.pose, told.base_in_odom)
         _drive(message.twist.twist, told.twist)
@@ -91,9 +91,14 @@ class HeardCommand(Twist2):
 
     def tell(self, told: Twist2) -> Any:
         """The message that tells ``told`` when this one was heard."""
-        message = copy.deepcopy(told.message if isinstance(told, HeardCommand) else self.message)
+        message = copy.deepcopy(_source(told, self))
         _drive(message, told)
         return message
+
+
+def _source(told: Any, heard: Any) -> Any:
+    """The message that ``told`` was heard in, if it is an earlier one, else that of ``heard``."""
+    return getattr(told, "message", heard.message)
 
 
 def _header(stamp: float, *headers: Header) -> Header:
