@@ -5,6 +5,7 @@ import unittest
 
 import actionlib
 import numpy as np
+import rosgraph
 import rospy
 from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from geometry_msgs.msg import PoseStamped, Quaternion, Twist
@@ -46,9 +47,14 @@ class Heard:
         self.messages.append(message)
 
     def connected(self):
-        """Itself, once there is a publisher that sends to it: what is published only once is not missed."""
-        wait_until("a publisher", lambda: self._subscriber.get_num_connections() > 0)
+        """Itself, once all publishers send to it: what one of them publishes only once is not missed."""
+        wait_until("the publishers", self._hears_all)
         return self
+
+    def _hears_all(self):
+        published = dict(rosgraph.Master(rospy.get_name()).getSystemState()[0])
+        publishers = published.get(self._subscriber.resolved_name, [])
+        return 0 < len(publishers) <= self._subscriber.get_num_connections()
 
     def close(self):
         self._subscriber.unregister()
