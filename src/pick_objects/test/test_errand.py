@@ -6,7 +6,6 @@ from pick_objects import (
     ErrandSettings,
     ErrandState,
     Finish,
-    Fit,
     GoalReached,
     GoalRefused,
     GoTo,
@@ -15,7 +14,6 @@ from pick_objects import (
     MissionError,
     Stage,
     WaysMeasured,
-    believed,
     errand_mission,
 )
 from planar import Pose2, SettingsError
@@ -248,20 +246,3 @@ def test_the_time_left_shrinks_to_nothing():
     assert left == sorted(left, reverse=True)
     assert left[0] > 10.0
     assert left[-1] == 0.0
-
-
-def test_an_arrival_needs_two_scans_that_speak_for_it():
-    fit = Fit()
-    assert fit.least is None
-    for told, least in ((0.9, 0.9), (0.05, 0.05), (1.0, 0.05), (0.8, 0.8)):
-        fit.take(told)
-        assert fit.least == least
-
-
-@pytest.mark.parametrize("fit, is_believed", [(None, True), (0.9, True), (0.05, False)])
-def test_a_robot_that_sees_something_else_does_not_claim_to_have_arrived(fit, is_believed):
-    event = believed(GoalReached(), fit)
-    assert (event == GoalReached()) is is_believed
-    refused = GoalRefused("blocked")
-    assert believed(refused, fit) is refused
-    assert believed(None, fit) is None

@@ -1,7 +1,7 @@
 """Missions of deliveries between named places; pure but for node.py and nodes."""
 
 from pick_objects.approach import GoTo
-from pick_objects.arrival import Fit, believed
+from pick_objects.arrival import Arrival, Fit, SendAgain
 from pick_objects.config import ErrandSettings
 from pick_objects.errand import Errand, MeasureWays, WaysMeasured
 from pick_objects.job import ErrandState, Job, Stage, Whereabouts
@@ -11,6 +11,7 @@ from pick_objects.record import record_of, resumed
 from planar.driving import Finish, GoalReached, GoalRefused
 
 __all__ = [
+    "Arrival",
     "Delivery",
     "Errand",
     "ErrandSettings",
@@ -24,11 +25,11 @@ __all__ = [
     "MeasureWays",
     "Mission",
     "MissionError",
+    "SendAgain",
     "Stage",
     "Thing",
     "WaysMeasured",
     "Whereabouts",
-    "believed",
     "errand_mission",
     "load_mission",
     "parse_mission",

@@ -12,7 +12,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Deque, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Deque, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -35,6 +35,7 @@ from move_base_lite import (
 )
 from move_base_lite.control import check_local_planner
 from pick_objects import (
+    Arrival,
     Errand,
     Finish,
     Fit,
@@ -43,9 +44,10 @@ from pick_objects import (
     GoTo,
     MeasureWays,
     Mission,
+    SendAgain,
     WaysMeasured,
-    believed,
 )
+from pick_objects.arrival import Judged
 from pick_objects.errand import Order
 from planar import OccupancyGrid, Pose2, Scan, Twist2
 from planar.config.settings_file import settings_from_yaml
@@ -156,15 +158,15 @@ class Rehearsal:
         self._steps_of_latency = round(self._latency / self._simulation.step_seconds)
         self._command: Optional[Twist2] = None
         self._command_under_way: Optional[Twist2] = None
+        self._sent_to, self._arrival = start, Arrival(start)
         self._goal: Optional[Pose2] = None
-        self._event: Union[None, GoalReached, GoalRefused] = None
+        self._event: Judged = None
         self._now, self._periods_up = 0.0, 0
         self._solids: Deque[List[Solid]] = deque()
         self._errand = Errand(mission)
         self._bodies = RehearsedBodies(self._simulation, grid)
         self._parcel = parcel
-        self._places = mission.places
-        self._ledger, self._fit = Ledger(), Fit()
+        self._places, self._ledger, self._fit = mission.places, Ledger(), Fit()
         self._deliveries = DeliveryWatch(mission.places, self._ledger.deliveries, say=lambda line: None)
         self._trajectory: List[Tuple[float, float, float, float]] = []
         self._errors: List[float] = []
@@ -209,13 +211,15 @@ class Rehearsal:
         )
         complaint = self._senses.complaint(self._now)
         self._command = decision.command if complaint is None else Twist2()
+        self._goal = self._sent_to if isinstance(self._event, SendAgain) else None
         order = self._advance_errand(base_in_map, observation.base_in_world)
-        self._event = believed(_event_of(decision), self._fit.least)
+        if isinstance(order, GoTo):
+            self._goal, self._sent_to, self._arrival = order.pose, order.pose, Arrival(order.pose)
+        self._event = self._arrival.judge(_event_of(decision), base_in_map, self._fit.least, self._now)
         if complaint is not None and self._senses.is_out_of_patience(self._now):
             # As move_base does with a sensor that it cannot trust.
             self._navigator.forget_goal()
             self._event = GoalRefused(f"waiting for a trustworthy sensor ({complaint})")
-        self._goal = order.pose if isinstance(order, GoTo) else None
         return order if isinstance(order, Finish) else None
 
     def _advance_errand(self, base_in_map: Pose2, truth: Pose2) -> Optional[Order]:
@@ -223,7 +227,7 @@ class Rehearsal:
         self._periods_up += 1
         if self._periods_up <= PERIODS_TO_FIND:
             return None
-        order = self._errand.advance(self._now, self._event)
+        order = self._errand.advance(self._now, None if isinstance(self._event, SendAgain) else self._event)
         while isinstance(order, MeasureWays):
             order = self._errand.advance(self._now, self._measure(order, base_in_map))
         self._note_state(truth)

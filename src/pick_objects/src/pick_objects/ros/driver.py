@@ -6,7 +6,7 @@ import rospy
 from std_msgs.msg import Float32
 
 from pick_objects.approach import GoTo
-from pick_objects.arrival import Fit, believed
+from pick_objects.arrival import Arrival, Fit, SendAgain
 from pick_objects.errand import MeasureWays, WaysMeasured
 from planar import Pose2
 from planar.driving import GoalReached, GoalRefused
@@ -26,6 +26,7 @@ class Driver:
         self.move_base = MoveBase(frame_id)
         self.move_base.cancel_at_end()
         self._order: Optional[GoTo] = None
+        self._arrival = Arrival(Pose2())
         self._fit, self._fit_at = Fit(), rospy.Time(0)
         rospy.Subscriber(QUALITY_TOPIC, Float32, self._keep_fit, queue_size=1)
 
@@ -37,17 +38,23 @@ class Driver:
         if order.attempt > 1:
             place, pose = order.place.name, order.pose
             rospy.logwarn("place %s: attempt %d, at (%g, %g)", place, order.attempt, pose.x, pose.y)
-        self._order = order
+        self._order, self._arrival = order, Arrival(order.pose)
         self.move_base.send(order.pose)
 
     def event(self) -> Union[None, GoalReached, GoalRefused]:
         """What came of the last goal, told once; None while it is pursued."""
         outcome = self.move_base.outcome()
-        if outcome is None or self._order is None:
+        if self._order is None:
             return None
-        event = believed(outcome.event, self._least_fit)
+        told = None if outcome is None else outcome.event
+        event = self._arrival.judge(told, self.robot_in_map, self._least_fit, rospy.get_time())
+        place = self._order.place.name
+        if isinstance(event, SendAgain):
+            rospy.logwarn("place %s: the robot may be elsewhere, and is sent there again", place)
+            self.move_base.send(self._order.pose)
+            return None
         if isinstance(event, GoalRefused):
-            rospy.logwarn("place %s: %s", self._order.place.name, event.reason)
+            rospy.logwarn("place %s: %s", place, event.reason)
         return event
 
     def measure(self, order: MeasureWays) -> WaysMeasured:
