@@ -36,7 +36,9 @@ def test_without_the_token_nothing_is_shown(cookies):
     assert status(cookies=cookies, origin=f"http://{HOST}", is_socket=True) == FORBIDDEN
 
 
-@pytest.mark.parametrize("target", ["/?token=wrong", "/?token=", "/?token=secre%C3%A9", "/?tokens=secret"])
+@pytest.mark.parametrize(
+    "target", ["/?token=wrong", "/?token=", "/?token=secre%C3%A9", "/?tokens=secret", "//["]
+)
 def test_a_wrong_token_is_refused(target):
     assert status(target, cookies="") == FORBIDDEN
 

@@ -46,7 +46,9 @@ def test_a_box_that_is_larger_than_any_world_is_refused(tmp_path):
         load_world(world_with(tmp_path, "<box><size>1e30 1 1</size></box>"))
 
 
-@pytest.mark.parametrize("uri", ["x" * 300 + ".obj", "file:///dev/zero", "model://../../etc/passwd"])
+@pytest.mark.parametrize(
+    "uri", ["x" * 300 + ".obj", "file:///dev/zero", "model://../../etc/passwd", "//[a.obj"]
+)
 def test_a_mesh_that_is_no_file_is_left_out_or_refused(tmp_path, uri):
     try:
         world = load_world(world_with(tmp_path, f"<mesh><uri>{uri}</uri></mesh>"), [tmp_path])

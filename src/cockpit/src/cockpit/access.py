@@ -43,7 +43,7 @@ class Access:
             return Answer(FORBIDDEN, "asked for by a page of another site")
         if is_socket and origin is None:
             return Answer(FORBIDDEN, "asked for by no page")
-        told = parse_qs(urlsplit(target).query).get("token", [""])[0]
+        told = parse_qs(target.partition("?")[2]).get("token", [""])[0]
         if not is_socket and self._is_token(told):
             return Answer(SEE_OTHER, cookie=f"{self._cookie}={self.token}; HttpOnly; SameSite=Lax; Path=/")
         if not self._is_token(self._kept(cookies)):

@@ -4,14 +4,14 @@ import argparse
 import os
 from pathlib import Path
 from typing import List, Optional
-from urllib.parse import unquote, urlparse
+from urllib.parse import unquote
 
 from rospkg import ResourceNotFound, RosPack
 
 from planar import PlanarError
 from sim_bridge.description.frames import with_frames_of
 from sim_bridge.robots import ROBOTS, robot_named
-from sim_bridge.sdf.includes import resolve
+from sim_bridge.sdf.includes import parts_of, resolve
 
 
 def model_folders() -> List[Path]:
@@ -22,8 +22,8 @@ def model_folders() -> List[Path]:
 
 def find_file(uri: str) -> Optional[Path]:
     """The file that a robot's description names: ``package://``, ``model://``, ``file://`` or a path."""
-    parts = urlparse(uri)
-    if parts.scheme != "package":
+    parts = parts_of(uri)
+    if parts is None or parts.scheme != "package":
         return resolve(uri, Path.cwd(), model_folders())
     try:
         path = Path(RosPack().get_path(parts.netloc)) / unquote(parts.path).lstrip("/")

@@ -3,7 +3,7 @@
 import os
 from pathlib import Path
 from typing import Optional, Sequence
-from urllib.parse import unquote, urlparse
+from urllib.parse import ParseResult, unquote, urlparse
 
 from planar.files.reading import exists, read_bytes
 from sim_bridge.errors import WorldError
@@ -16,7 +16,9 @@ def resolve(uri: str, beside: Path, model_folders: Sequence[Path]) -> Optional[P
     ``model://name/...`` is looked up in ``model_folders``, and leads out of none. ``file://`` and plain
     paths are absolute, or relative to the folder ``beside`` and then to the model folders, as Gazebo does.
     """
-    parts = urlparse(uri)
+    parts = parts_of(uri)
+    if parts is None:
+        return None
     path = Path(unquote(parts.netloc + parts.path))
     if parts.scheme == "model":
         leads_out = ".." in Path(os.path.normpath(path)).parts
@@ -26,6 +28,14 @@ def resolve(uri: str, beside: Path, model_folders: Sequence[Path]) -> Optional[P
     else:
         candidates = []
     return next((candidate for candidate in candidates if exists(candidate)), None)
+
+
+def parts_of(uri: str) -> Optional[ParseResult]:
+    """Its scheme, its host and its path; None if it is no URI."""
+    try:
+        return urlparse(uri)
+    except ValueError:
+        return None
 
 
 def has_model(path: Path) -> bool:
