@@ -35,6 +35,14 @@ MANY_VISUALS = "".join(
     f"<visual name='v{number}'><geometry><box><size>{size} 1 1</size></box></geometry></visual>"
     for number, size in enumerate([1] * 4000 + [-1])
 )
+CENTIPEDE = "<sdf version='1.6'><model name='any'>{}</model></sdf>".format(
+    "<link name='l0'/>"
+    + "".join(
+        f"<link name='l{number}'/><joint name='j{number}' type='revolute'><parent>l{number - 1}</parent>"
+        f"<child>l{number}</child><axis><xyz>0 0 1</xyz></axis></joint>"
+        for number in range(1, 150)
+    )
+)
 LINKS = "<link name='a'/><link name='b'/><link name='c'/>"
 HINGE = "<joint name='j{}' type='fixed'><parent link='{}'/><child link='{}'/></joint>"
 
@@ -175,6 +183,7 @@ class TestGazebo(unittest.TestCase):
             ("<robot name='r'/>", "its root is <robot>"),
             ("<sdf version='1.6'><model name='any'/></sdf>", "has no links"),
             (unicorn, "model://unicorn not found"),
+            (CENTIPEDE, "150 parts hang together, 128 is the most"),
         ):
             answer = call("/gazebo/spawn_sdf_model", srv.SpawnModel, "crate", xml, "", Pose(), "")
             self.assertFalse(answer.success, xml)
