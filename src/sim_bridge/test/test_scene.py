@@ -186,6 +186,7 @@ def test_a_robot_must_have_room_and_a_name_of_its_own(scene):
     with pytest.raises(WorldError, match="inside one::base_footprint"):
         scene.add_robot("two", LIDAR, Pose2(0.1, 0.0))
     assert "two" not in scene.models.names()
+    assert drive(scene, 0.5)["one"].contacts == (), "nothing of it is left in the engine either"
 
 
 def test_resetting_poses_puts_all_back_and_time_goes_on(scene):
