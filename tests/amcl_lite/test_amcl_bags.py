@@ -14,6 +14,7 @@ import numpy as np
 import rosgraph
 import rospy
 import rostest
+from bad_scans import BROKEN, break_scans
 from bag_stage import BagStage
 from waiting import wait_until
 
@@ -57,13 +58,18 @@ class AmclBagsTest(unittest.TestCase):
         self.assertLess(found.distance_to(truth), NEAR, f"{found} is not near {truth}")
         self.assertLess(abs(wrap(found.yaw - truth.yaw)), NEAR_ANGLE, f"{found} is not near {truth}")
 
-    def replay(self, name, *arguments):
-        """The trajectory, as bytes, and what the command prints."""
+    def command(self, name, bag, *arguments):
+        """What localizes in a bag, and the file that it writes its trajectory to."""
         tum = self.folder / f"{name}.tum"
         config = self.folder / "amcl.yaml"
         config.write_text(f"base_frame_id: {BASE_FRAME}\n")
-        command = ["rosrun", "amcl_lite", "amcl_lite_replay", self.bag, "--config", str(config)]
+        command = ["rosrun", "amcl_lite", "amcl_lite_replay", str(bag), "--config", str(config)]
         command += ["--map", str(self.folder / "home.yaml"), "--trajectory", str(tum), *arguments]
+        return command, tum
+
+    def replay(self, name, *arguments):
+        """The trajectory, as bytes, and what the command prints."""
+        command, tum = self.command(name, self.bag, *arguments)
         printed = subprocess.run(command, stdout=subprocess.PIPE, check=True).stdout.decode()
         return tum.read_bytes(), printed
 
@@ -84,6 +90,17 @@ class AmclBagsTest(unittest.TestCase):
         errors = np.hypot(*(rows[:, 1:3] - truth).T)
         self.assertAlmostEqual(rmse, math.sqrt(np.mean(errors**2)), delta=1e-3)
         self.assertLess(rmse, NEAR)
+
+    def test_scans_that_mean_nothing_are_left_out_with_a_sentence(self):
+        """They once ended the program by a signal."""
+        broken = self.folder / "broken.bag"
+        break_scans(self.bag, broken)
+        command, tum = self.command("broken", broken)
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        sentence = f"{broken}: a scan is left out (a scan with angle_increment nan means nothing)"
+        self.assertIn(sentence, done.stderr)
+        self.assertEqual(len(tum.read_text().splitlines()), len(self.sightings) - BROKEN)
 
     def test_a_bag_that_is_none_and_a_map_that_is_none_are_told_in_one_line(self):
         for bag, map_file in ((__file__, self.folder / "home.yaml"), (self.bag, self.folder / "none.yaml")):

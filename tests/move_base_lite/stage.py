@@ -60,6 +60,7 @@ class Stage:
         self.twist = Twist()
         self.has_localization = self.has_odometry = self.has_scan = True
         self.scan_frame = "laser"
+        self.spoil = lambda ranges: ranges
         self.cloud_xyz = None
         self.now, self._steps = 100.0, 0
         self._reached, self._told = 0.0, threading.Event()
@@ -122,7 +123,8 @@ class Stage:
         message.header.stamp, message.header.frame_id = stamp, self.scan_frame
         message.angle_min, message.angle_increment = -math.pi, 2.0 * math.pi / BEAMS
         message.range_min, message.range_max = 0.1, RANGE_MAX
-        message.ranges = cast_rays(self.grid, self.base_in_map, angles, RANGE_MAX).astype(np.float32)
+        seen = cast_rays(self.grid, self.base_in_map, angles, RANGE_MAX).astype(np.float32)
+        message.ranges = self.spoil(seen)
         message.intensities = np.empty(0, np.float32)
         self._scan.publish(message)
 

@@ -9,6 +9,7 @@ import numpy as np
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus, GoalStatusArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseStamped, Twist
 from move_base_client import START_SECONDS, Heard, MoveBaseTestCase, pose_at
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal, RecoveryStatus
@@ -53,6 +54,7 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
     def setUp(self):
         self.stage.has_localization = self.stage.has_odometry = self.stage.has_scan = True
         self.stage.scan_frame, self.stage.cloud_xyz = "laser", None
+        self.stage.spoil = lambda ranges: ranges
         self.stage.base_in_odom, self.stage.odom_in_map = HERE, Pose2()
         rospy.sleep(1.0)
 
@@ -161,6 +163,33 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
         self.assert_stands(after=1.3)
         self.stage.has_scan = True
         self.assertEqual(self.result_of(), (GoalStatus.SUCCEEDED, "Goal reached."))
+
+    def test_with_a_dead_laser_that_goes_on_talking_the_robot_stands_and_names_it(self):
+        frozen = []
+
+        def freeze(ranges):
+            frozen.append(ranges)
+            return frozen[0]
+
+        for spoil, why in (
+            (lambda ranges: np.full_like(ranges, np.nan), "nearly all of its beams are NaN"),
+            (freeze, "it stays the same to the last bit while the robot moves"),
+        ):
+            self.setUp()
+            diagnostics = Heard("/diagnostics", DiagnosticArray).connected()
+            self.drive(pose_at(*NEXT_ROOM))
+            self.stage.spoil = spoil
+            self.assert_stands(after=2.0)
+            status = diagnostics.messages[-1].status[0]
+            self.assertEqual(
+                (status.level, status.message, status.hardware_id),
+                (DiagnosticStatus.ERROR, f"scan: {why}", "scan"),
+            )
+            self.assertTrue(self.has_active_goal())
+            state, text = self.result_of()
+            self.assertEqual(state, GoalStatus.ABORTED)
+            self.assertIn(f"[code=TF_ERROR: waiting for a trustworthy sensor (scan: {why})]", text)
+            diagnostics.close()
 
     def test_scans_from_a_frame_that_tf_does_not_know_count_as_none(self):
         self.drive(pose_at(*NEXT_ROOM))

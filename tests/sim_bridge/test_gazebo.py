@@ -2,6 +2,8 @@
 """Gazebo's services and topics, and control of time."""
 
 import math
+import os
+import tempfile
 import time
 import unittest
 
@@ -12,6 +14,7 @@ from dynamic_reconfigure.client import Client
 from gazebo_msgs.msg import LinkState, LinkStates, ModelState, ModelStates, PerformanceMetrics
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3, Wrench
 from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import LaserScan
 from sim_bridge_msgs.srv import Step
 from std_msgs.msg import Float64
@@ -25,6 +28,23 @@ BOX = """<sdf version='1.6'><model name='any'><pose>0 0 0.2 0 0 0</pose><link na
 CAN = """<robot name='can'><link name='can'><inertial><mass value='0.3'/>
 <inertia ixx='0.001' iyy='0.001' izz='0.001' ixy='0' ixz='0' iyz='0'/></inertial>
 <collision><geometry><cylinder radius='0.05' length='0.2'/></geometry></collision></link></robot>"""
+
+MODEL = "<sdf version='1.6'><model name='any'><link name='a'>{}</link></model></sdf>"
+THING = "<robot name='any'><link name='a'>{}</link></robot>"
+MANY_VISUALS = "".join(
+    f"<visual name='v{number}'><geometry><box><size>{size} 1 1</size></box></geometry></visual>"
+    for number, size in enumerate([1] * 4000 + [-1])
+)
+CENTIPEDE = "<sdf version='1.6'><model name='any'>{}</model></sdf>".format(
+    "<link name='l0'/>"
+    + "".join(
+        f"<link name='l{number}'/><joint name='j{number}' type='revolute'><parent>l{number - 1}</parent>"
+        f"<child>l{number}</child><axis><xyz>0 0 1</xyz></axis></joint>"
+        for number in range(1, 150)
+    )
+)
+LINKS = "<link name='a'/><link name='b'/><link name='c'/>"
+HINGE = "<joint name='j{}' type='fixed'><parent link='{}'/><child link='{}'/></joint>"
 
 
 def call(name, kind, *arguments, **named):
@@ -163,6 +183,7 @@ class TestGazebo(unittest.TestCase):
             ("<robot name='r'/>", "its root is <robot>"),
             ("<sdf version='1.6'><model name='any'/></sdf>", "has no links"),
             (unicorn, "model://unicorn not found"),
+            (CENTIPEDE, "150 parts hang together, 128 is the most"),
         ):
             answer = call("/gazebo/spawn_sdf_model", srv.SpawnModel, "crate", xml, "", Pose(), "")
             self.assertFalse(answer.success, xml)
@@ -174,6 +195,37 @@ class TestGazebo(unittest.TestCase):
             "did you forget to scope the link by model name?",
         )
         self.assertEqual(self.spawn(math.nan).status_message, "SpawnModel: Failure - the pose is not finite")
+
+    def test_what_takes_long_to_read_or_cannot_be_read_does_not_hold_up_time(self):
+        fork = "".join(HINGE.format(number, *ends) for number, ends in enumerate(("ab", "bc", "cb")))
+        with tempfile.TemporaryDirectory() as folder:
+            os.mkfifo(f"{folder}/pipe.obj")
+            mesh = f"<collision><geometry><mesh {{}}file://{folder}/pipe.obj{{}}</geometry></collision>"
+            for kind, xml, reason in (
+                ("sdf", MODEL.format(mesh.format("><uri>", "</uri></mesh>")), "not a regular file"),
+                ("urdf", THING.format(mesh.format('filename="', '"/>')), "not a regular file"),
+                ("urdf", f"<robot name='r'>{LINKS}{fork}</robot>", "joints go round in a circle: "),
+                ("sdf", MODEL.format(MANY_VISUALS), "box > size: must be positive, got '-1 1 1'"),
+            ):
+                answer, seconds, standstill = self.spawned_while_time_passes(kind, xml)
+                self.assertFalse(answer.success)
+                self.assertIn(reason, answer.status_message)
+                self.assertLess(seconds, 20.0)
+                self.assertLess(standstill, max(0.5, 0.5 * seconds), f"while {kind} took {seconds:.1f} s")
+        self.assertGreater(seconds, 1.5, "or the last was no test")
+
+    def spawned_while_time_passes(self, kind, xml):
+        """The answer, how long it took, and how long the clock stood still meanwhile; wall seconds."""
+        ticks = []
+        clock = rospy.Subscriber("/clock", Clock, lambda message: ticks.append(time.monotonic()))
+        wait_until("the clock", lambda: len(ticks) > 1)
+        begin = time.monotonic()
+        answer = call(f"/gazebo/spawn_{kind}_model", srv.SpawnModel, "crate", xml, "", Pose(), "")
+        end = time.monotonic()
+        wait_until("time to go on", lambda: ticks[-1] > end)
+        clock.unregister()
+        during = [begin, *(tick for tick in ticks if begin < tick < end), end]
+        return answer, end - begin, max(later - earlier for earlier, later in zip(during, during[1:]))
 
     def test_states_are_relative_to_the_frame_asked_for(self):
         state = ModelState("mobile_base", pose_at(1.0, 0.0, 0.0, math.pi / 2.0), Twist(), "world")
@@ -256,6 +308,27 @@ class TestGazebo(unittest.TestCase):
         ):
             self.assertEqual((answer.success, answer.status_message), (False, text))
         self.assertTrue(math.isfinite(model_state("mobile_base").pose.position.x))
+
+    def test_states_in_which_nothing_can_be_are_refused_and_time_goes_on(self):
+        far, fast = pose_at(1e308, 0.0), Twist(angular=Vector3(0.0, 0.0, 1e308))
+        for pose, twist, text in (
+            (far, Twist(), "SetModelState: nothing can be at the pose"),
+            (Pose(), fast, "SetModelState: nothing is as fast as the twist"),
+        ):
+            state = ModelState("mobile_base", pose, twist, "")
+            answer = call("/gazebo/set_model_state", srv.SetModelState, state)
+            self.assertEqual((answer.success, answer.status_message), (False, text))
+        self.simulated(0.1)
+        self.assertLess(abs(model_state("mobile_base").pose.position.x), 1.0)
+
+    def test_an_orientation_that_nobody_has_filled_in_turns_nothing(self):
+        for turn in (Quaternion(), Quaternion(0.0, 0.0, 1e-200, 0.0)):
+            state = ModelState("mobile_base", Pose(Point(0.5, 0.0, 0.0), turn), Twist(), "")
+            self.assertTrue(call("/gazebo/set_model_state", srv.SetModelState, state).success)
+            self.simulated(0.1)
+            pose = model_state("mobile_base").pose
+            self.assertAlmostEqual(pose.position.x, 0.5, delta=0.01)
+            self.assertAlmostEqual(yaw_of(pose), 0.0, delta=0.01)
 
     def test_states_can_be_set_by_topic(self):
         publisher = rospy.Publisher("/gazebo/set_model_state", ModelState, queue_size=1)

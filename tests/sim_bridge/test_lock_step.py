@@ -6,6 +6,7 @@ import unittest
 
 import rospy
 import rostest
+from rosgraph_msgs.msg import Log
 from std_msgs.msg import Float64
 from waiting import wait_until
 
@@ -35,9 +36,14 @@ class TestLockStep(unittest.TestCase):
         self.assertLess(max(gaps), PERIOD + 1e-6)
         self.assertLess(max(ahead[10:]), PERIOD + 1e-6, "but for the first, which start the lock-step")
 
+        said = []
+        log = rospy.Subscriber("/rosout", Log, lambda line: said.append((line.name, line.msg)))
+        wait_until("the log", log.get_num_connections)
         working = False
         count = len(stamps)
         wait_until("more scans", lambda: len(stamps) > count + 20, 25.0)
+        words = "no progress of lock_step: the simulation goes on without it in real time"
+        wait_until("the name of who is silent", lambda: ("/sim_bridge", words) in said)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ import rostest
 from geometry_msgs.msg import Twist
 from listening import Heard
 from nav_msgs.msg import Odometry
-from rosgraph_msgs.msg import Clock
+from rosgraph_msgs.msg import Clock, Log
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64, String
 from tf2_msgs.msg import TFMessage
@@ -127,6 +127,22 @@ class TestSimBridge(unittest.TestCase):
             )
         finally:
             pushing.set()
+
+    def test_a_box_that_cannot_be_is_refused_with_a_reason_and_time_goes_on(self):
+        said = Heard("/rosout", Log)
+        wait_until("the log", said.is_connected)
+        for size, x, reason in (
+            (1e30, 2.0, "a box needs positive lengths and a place, got (1e+30,"),
+            (math.nan, 2.0, "a box needs positive lengths and a place, got (nan,"),
+            (0.4, 1e308, "a pose at 1e+308, 0, 0 means nothing"),
+        ):
+            box = Marker(type=Marker.CUBE, ns="giant")
+            box.pose.position.x, box.pose.orientation.w = x, 1.0
+            box.scale.x = box.scale.y = box.scale.z = size
+            self.boxes.publish(box)
+            words = f"box not added: {'giant: ' if x < 1e30 else ''}{reason}"
+            wait_until(words, lambda words=words: any(words in line.msg for line in said.messages))
+        self.assertTrue(np.allclose(periods(self.odom.following(50)), 0.02))
 
     def _push_until(self, done):
         while not done.is_set():

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The node slam_gmapping of slam_lite keeps the contract of gmapping 1.4, and offers what is its own."""
 
+import itertools
 import math
 import shutil
 import subprocess
@@ -150,6 +151,23 @@ class SlamContractTest(unittest.TestCase):
             self.sense(step)
         self.assertEqual(self.newest_map().header.stamp, before)
         self.assertTrue(pause(False).success)
+
+    def test_a_scan_whose_directions_are_no_numbers_is_left_out_and_mapping_goes_on(self):
+        stamp = rospy.Time.now()
+        self.transforms.send(circle(0.0), "odom", "base_link", stamp)
+        scan = sweep(self.truth, circle(0.0), stamp, "laser")
+        scan.angle_increment = math.nan
+        self.scans.publish(scan)
+        words = "skipping a scan: a scan with angle_increment nan means nothing"
+        self.wait_for(lambda: words in self.words)
+        before = self.newest_map().header.stamp
+        steps = itertools.count(STEPS)
+
+        def is_newer():
+            self.sense(next(steps))
+            return self.newest_map().header.stamp > before
+
+        self.wait_for(is_newer)
 
     def test_a_laser_that_is_not_mounted_planar_is_refused(self):
         before = self.newest_map().header.stamp

@@ -13,6 +13,7 @@ import numpy as np
 import rosbag
 import rospy
 import rostest
+from bad_scans import BROKEN, break_scans
 from sensor_msgs.msg import LaserScan
 from tf2_msgs.msg import TFMessage
 from toy_room import circle, room
@@ -133,6 +134,16 @@ class SlamReplayTest(unittest.TestCase):
         self.assertIn(
             f"warning: {self.bag}: time goes back by 29.800 s, at stamp 982.000, 50 % into the bag\n", text
         )
+        self.assert_mapped()
+
+    def test_scans_that_mean_nothing_are_left_out_with_a_sentence(self):
+        """They once ended the program by a signal."""
+        write_bag(self.folder / "whole.bag")
+        break_scans(self.folder / "whole.bag", self.bag)
+        code, text = self.replay()
+        self.assertEqual(code, 0, text)
+        self.assertIn(f"{self.bag}: a scan is left out (a scan with angle_increment nan means nothing)", text)
+        self.assertEqual(len(self.poses()), SCANS - BROKEN)
         self.assert_mapped()
 
     def test_a_bag_that_is_cut_off_is_mapped_up_to_there(self):

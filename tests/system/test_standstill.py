@@ -32,6 +32,7 @@ class StandstillTest(unittest.TestCase):
             code, said = self.run_to_its_end("--faults", faults.name)
         self.assertEqual(code, 1)
         self.assertRegex(said, r"FAILURE: place pickup not reached .*odometry: none for [\d.]+ s")
+        self.assertNotIn("no progress of", said, "or amcl, without odometry, would hold up time")
 
     def run_to_its_end(self, *options, do=lambda folder: None):
         """Exit code and what was said; ``do`` is done with the folder of runs when the robot sets out."""

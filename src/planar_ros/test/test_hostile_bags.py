@@ -1,5 +1,7 @@
 """Bags that are made to break whoever reads them."""
 
+import math
+
 import pytest
 import rosbag
 import rospy
@@ -33,6 +35,21 @@ def test_stamps_at_the_end_of_all_time_are_left_out(tmp_path):
             bag.write("/scan", scan, at)
     assert len(list(log_of(path, told.append))) == 3
     assert [text for text in told if "its stamp means nothing" in text]
+
+
+@pytest.mark.parametrize("direction", ["angle_increment", "angle_min"])
+def test_a_scan_whose_directions_are_no_numbers_is_left_out_with_a_sentence(tmp_path, direction):
+    path, told = tmp_path / "nowhere.bag", []
+    with rosbag.Bag(str(path), "w") as bag:
+        for i in range(3):
+            scan = LaserScan(ranges=[1.0] * 3, range_max=10.0)
+            scan.header.stamp = Time(100 + i)
+            if i == 1:
+                setattr(scan, direction, math.nan)
+            bag.write("/scan", scan, scan.header.stamp)
+    assert [one.scan.stamp for one in log_of(path, told.append)] == [100.0, 102.0]
+    sentence = f"{path}: a scan is left out (a scan with {direction} nan means nothing), at stamp 101.000"
+    assert any(text.startswith(sentence) for text in told)
 
 
 @pytest.mark.parametrize("topic", ["/scan", "/tf", "/tf_static"])

@@ -61,10 +61,17 @@ def test_one_who_is_behind_another_has_not_jumped(intake, buffer):
     assert buffer.get_latest_common_time("map", "base_link").to_sec() == pytest.approx(12.0)
 
 
-def test_stamps_that_mean_nothing_are_left_out(intake, buffer):
+@pytest.mark.parametrize("is_static", [False, True])
+@pytest.mark.parametrize(
+    "stamp",
+    [SimpleNamespace(secs=-1, nsecs=0), rospy.Time(2**31, 5), rospy.Time(2**32 - 1, 999_999_999)],
+    ids=str,
+)
+def test_stamps_that_mean_nothing_are_left_out(intake, buffer, stamp, is_static):
+    """tf2 ends the interpreter for differences of time that it cannot hold."""
     tell(intake, "odom", "base_link", 1.0)
-    bad = transform_msg(Pose2(), "odom", "base_link", SimpleNamespace(secs=-1, nsecs=0))
-    intake.take([bad], "simulator")
+    bad = transform_msg(Pose2(), "odom", "base_link", stamp)
+    intake.take([bad], "simulator", is_static)
     assert buffer.get_latest_common_time("odom", "base_link").to_sec() == pytest.approx(1.0)
 
 

@@ -102,3 +102,22 @@ def test_a_node_that_falls_silent_is_given_up_once_until_it_reports_again():
     assert pacer.give_up(2.02, 99.0) == []
     reported(pacer, "amcl", 2.0)
     assert not pacer.is_missing("amcl")
+
+
+def test_a_node_that_lags_behind_what_it_can_never_catch_up_with_does_not_slow_time_down():
+    """As amcl without odometry, which skips a scan when a hundred others have come: 10 s later."""
+    pacer, stamp, wall, given_up = Pacer(0.0, ["amcl"], patience=5.0), 0.0, 0.0, 0
+    reported(pacer, "amcl", 0.0)
+    while wall < 60.0:
+        while pacer.delay(stamp + 0.02, wall) <= 0.0:
+            stamp += 0.02
+            if stamp > 20.0 and round(stamp / 0.02) % 5 == 0:
+                pacer.report("amcl", stamp - 10.0)
+            elif stamp < 10.0:
+                pacer.report("amcl", stamp)
+        given_up += len(pacer.give_up(stamp + 0.02, wall))
+        wall += 0.01
+    assert given_up == 1
+    assert stamp > 45.0
+    reported(pacer, "amcl", stamp)
+    assert not pacer.is_missing("amcl")

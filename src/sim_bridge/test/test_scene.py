@@ -79,6 +79,31 @@ def test_bodies_of_one_name_are_refused_and_leave_nothing(scene):
     assert "twin" not in scene.models.names()
 
 
+def chain_of(count):
+    """Bodies and joints of a post ahead, and of so many links above it, each on a hinge on the one before."""
+    ends = "<parent>l{}</parent><child>l{}</child><axis><xyz>0 0 1</xyz></axis>"
+    ball = "<geometry><sphere><radius>0.2</radius></sphere></geometry>"
+    solid = f"<inertial><mass>1</mass></inertial><collision name='c'>{ball}</collision>"
+    links = "".join(f"<link name='l{i}'><pose>0 0 {2 + i} 0 0 0</pose>{solid}</link>" for i in range(count))
+    joints = [f"<joint name='j{i}' type='revolute'>{ends.format(i, i + 1)}</joint>" for i in range(count - 1)]
+    post = f"<link name='post'>{solid}</link>"
+    xml = f"<sdf version='1.6'><model name='m'>{post}{links}{''.join(joints)}</model></sdf>"
+    model = read_model(xml, "chain", pose3(1.0, 0.0, 0.2))
+    return model.bodies, model.joints
+
+
+def test_what_is_too_much_for_the_engine_is_refused_and_leaves_nothing(scene):
+    """Of the two things that hang together in this model only the second is too large."""
+    scene.add_robot("one", LIDAR)
+    with pytest.raises(WorldError, match="chain::l0: 129 parts hang together, 128 is the most"):
+        scene.add(*chain_of(129))
+    seen = drive(scene, 4.0, {"one": Twist2(0.5, 0.0)})["one"]
+    assert seen.base_in_world.x > 1.5
+    scene.remove_model("one")
+    scene.add(*chain_of(128))
+    assert len(scene.models.links_of("chain")) == 129
+
+
 def test_a_model_cannot_have_the_name_of_a_robot(scene):
     scene.add_robot("r", LIDAR)
     with pytest.raises(WorldError, match="r is in the world already"):
@@ -161,6 +186,7 @@ def test_a_robot_must_have_room_and_a_name_of_its_own(scene):
     with pytest.raises(WorldError, match="inside one::base_footprint"):
         scene.add_robot("two", LIDAR, Pose2(0.1, 0.0))
     assert "two" not in scene.models.names()
+    assert drive(scene, 0.5)["one"].contacts == (), "nothing of it is left in the engine either"
 
 
 def test_resetting_poses_puts_all_back_and_time_goes_on(scene):

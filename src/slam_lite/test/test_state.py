@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -67,6 +69,25 @@ def test_a_place_nowhere_near_the_map_is_refused_and_nothing_is_lost(state, plac
     with pytest.raises(OutOfRangeError):
         mapper.resume(state, place)
     assert np.array_equal(mapper.key_poses, state.poses)
+
+
+def test_a_map_at_the_end_of_all_space_ends_there_and_can_be_loaded(office, tmp_path):
+    """Odometry begins anew in each session, and so may lead beyond what means anything."""
+    scan, rim = office.scan(Pose2(2.0, 2.0)), Pose2(999_998.0, 0.0)
+    mapper = Mapper()
+    mapper.insert(rim, scan)
+    state, mapper = mapper.state(), Mapper()
+    mapper.resume(state, rim)
+    blind = replace(scan, ranges=np.full(len(scan.ranges), np.nan, dtype=np.float32))
+    refused = 0
+    for step in range(8):
+        try:
+            mapper.insert(Pose2(0.9 * step), replace(blind, stamp=1.0 + step))
+        except OutOfRangeError:
+            refused += 1
+    save_state(mapper.state(), tmp_path / "map.npz")
+    assert load_state(tmp_path / "map.npz").base_in_map.x > rim.x
+    assert refused == 5
 
 
 def test_a_folder_that_is_not_there_is_an_error_and_the_old_file_stays(state, tmp_path):

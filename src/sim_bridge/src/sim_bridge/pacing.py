@@ -20,7 +20,8 @@ class Pacer:
     report how far they have come; simulated time never passes more than one of a node's periods ahead of it.
     The period is the longest of the latest times between two of its reports, not less than
     ``shortest_period`` seconds. A node that keeps all others waiting for ``patience`` wall seconds is given
-    up as missing until its reports tell its period anew.
+    up as missing until its reports tell its period anew and it has caught up: one that lags behind for good,
+    as who waits for odometry that is dead, would keep them waiting again and again.
     ``odometry_delay``: simulated seconds that a scan may have to wait for odometry; they are granted besides.
     While a node is missing, as all are at the start, the simulation goes on at most in real time.
     """
@@ -36,6 +37,8 @@ class Pacer:
         self._shortest_period = shortest_period
         self._patience = patience
         self._missing: Set[str] = set(self.wait_for)
+        self._given_up: Set[str] = set()
+        self._next_stamp = 0.0
         self._reached: Dict[str, float] = {}
         self._gaps: Dict[str, Deque[float]] = {}
         self._blocked_since: Optional[float] = None
@@ -50,7 +53,9 @@ class Pacer:
         self._reached[name] = stamp
         if 0.0 < gap <= LONGEST_PERIOD:
             self._gaps.setdefault(name, deque(maxlen=GAPS_KEPT)).append(gap)
-            self._missing.discard(name)
+            if name not in self._given_up or stamp >= self._next_stamp - LONGEST_PERIOD:
+                self._missing.discard(name)
+                self._given_up.discard(name)
 
     def is_missing(self, name: str) -> bool:
         return name in self._missing - self.in_step
@@ -60,6 +65,7 @@ class Pacer:
         self._reached.clear()
         self._gaps.clear()
         self._missing = set(self.wait_for)
+        self._given_up.clear()
         self._blocked_since = None
         self._anchor_speed = -1.0
 
@@ -68,6 +74,7 @@ class Pacer:
 
         Unless ``is_limited``, only the nodes are waited for.
         """
+        self._next_stamp = stamp
         if self.behind(stamp):
             if self._blocked_since is None:
                 self._blocked_since = wall
@@ -93,6 +100,7 @@ class Pacer:
             return []
         given_up = self.behind(stamp)
         self._missing.update(given_up)
+        self._given_up.update(given_up)
         for name in given_up:
             self._gaps.pop(name, None)
         self._blocked_since = None

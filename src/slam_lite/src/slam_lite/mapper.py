@@ -83,8 +83,8 @@ class Mapper:
     def insert(self, base_in_odom: Pose2, scan: Scan) -> Optional[MapUpdate]:
         """Takes one scan in; None if it says nothing new because the robot stands still.
 
-        Raises OutOfRangeError for odometry at which no robot can be, MatchingError if a matcher of somebody's
-        own fails; the next scan is taken as if this one had not been made then.
+        Raises OutOfRangeError for odometry at which no robot can be, or which leads to such a place in the
+        map, MatchingError if a matcher of somebody's own fails; the scan leaves nothing in the map then.
         """
         check_place(base_in_odom, "odometry")
         if self._pause.lasts(base_in_odom, scan.stamp) and not self._front_end.odometry_is_stuck:
@@ -96,6 +96,7 @@ class Mapper:
         if self._is_to_be_found:
             self._find(surface)
         tracked = self._front_end.track(base_in_odom, surface)
+        check_place(self._in_map(tracked.base_in_track), "a robot in the map")
         is_key = self._is_key(tracked.base_in_track)
         if is_key:
             self._no_return.add(scan.ranges)
@@ -207,6 +208,12 @@ class Mapper:
         self._key_in_track = None
         self._recent = RecentScans(self._settings.window_keys)
         self._front_end = FrontEnd(self._settings, self._recent, base_in_track)
+
+    def _in_map(self, base_in_track: Pose2) -> Pose2:
+        """As the latest key has it, if there is one."""
+        if self._key_in_track is None:
+            return base_in_track
+        return self._back_end.pose(len(self._back_end) - 1) @ (self._key_in_track.inverse() @ base_in_track)
 
     def _is_key(self, base_in_track: Pose2) -> bool:
         if self._key_in_track is None:

@@ -4,6 +4,7 @@ from typing import Any, Dict, List, Optional, Tuple
 
 import numpy as np
 
+from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import IDENTITY, inverse, position, quaternion
 from sim_bridge.physics.bullet import BulletClient, pybullet
 from sim_bridge.physics.colliders import make_colliders
@@ -12,19 +13,24 @@ from sim_bridge.physics.multibody import Tree
 from sim_bridge.physics.register import Link, MovingJoint, Register
 from sim_bridge.world import Body, Joint
 
+# Of which one of Bullet's multibodies is made: its root and its links.
+MOST_PARTS = 128
 _KINDS = {"revolute": pybullet.JOINT_REVOLUTE, "prismatic": pybullet.JOINT_PRISMATIC}
 
 
 def build(bullet: BulletClient, register: Register, tree: Tree, placement: np.ndarray) -> int:
     """Puts a tree, whose poses are seen from ``placement`` (4, 4), into Bullet; returns its number.
 
-    Each body is a link on its parent's; the shapes that do not fit into one are fixed links on it.
+    Each body is a link on its parent's; the shapes that do not fit into one are fixed links on it. Raises
+    WorldError if these are more than Bullet takes.
     """
     root = tree.bodies[0]
     centre = root.inertia.pose_in_body
     root_shape, *more = make_colliders(bullet, root.collisions, root.mass is not None, centre)
     links, indices = _hanging_links(bullet, tree)
     links += [_link(shape, IDENTITY, 0) for shape in more]
+    if len(links) >= MOST_PARTS:
+        raise WorldError(f"{root.name}: {len(links) + 1} parts hang together, {MOST_PARTS} is the most")
     placed = placement @ root.pose_in_world @ centre
     number = bullet.createMultiBody(
         baseMass=root.mass or 0.0,

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from dataclasses import dataclass
-from typing import Dict, Iterable, Sequence, Tuple
+from typing import Dict, Iterable, List, Sequence, Tuple
 
 import numpy as np
 
@@ -117,15 +117,22 @@ class Engine:
     ) -> None:
         """Puts bodies into the world, their poses seen from ``placement``, (4, 4).
 
-        Raises WorldError if one of that name is there already, or comes twice.
+        Raises WorldError, and is as it was then, if one of that name is there already, or comes twice, or if
+        what hangs together has too many parts.
         """
         for name, count in Counter(body.name for body in bodies).items():
             if self.has_link(name):
                 raise WorldError(f"{name} is in the world already")
             if count > 1:
                 raise WorldError(f"{name} would be in the world {count} times")
+        built: List[int] = []
         for tree in grow(bodies, joints):
-            build(self._bullet, self._register, tree, placement)
+            try:
+                built.append(build(self._bullet, self._register, tree, placement))
+            except WorldError:
+                for number in built:
+                    self._take_out(number)
+                raise
             for body in tree.bodies:
                 if not body.has_weight and body.mass is not None:
                     self._weightless[body.name] = body.mass
@@ -135,6 +142,9 @@ class Engine:
         number = self._register.links[name].number
         self.attachments.detach_from(number)
         self._upright.pop(name, None)
+        self._take_out(number)
+
+    def _take_out(self, number: int) -> None:
         self._bullet.removeBody(number)
         self._register.forget(number)
         self._weightless = {key: mass for key, mass in self._weightless.items() if self.has_link(key)}

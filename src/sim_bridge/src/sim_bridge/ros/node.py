@@ -8,7 +8,7 @@ import rospy
 from rosgraph_msgs.msg import Clock
 from visualization_msgs.msg import Marker
 
-from planar import Pose2
+from planar import PlanarError, Pose2
 from planar.config.settings import check
 from planar_ros.messages.conversion import pose2_from_msg, time_of
 from planar_ros.node.parameters import parameters_below, read_settings
@@ -16,7 +16,6 @@ from planar_ros.node.shell import run
 from planar_ros.step import transport
 from sim_bridge.config import BridgeSettings, RobotSettings, SimulationSettings
 from sim_bridge.description import read_sdf_robot
-from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.noise import noise_named
 from sim_bridge.pacing import Pacer
@@ -114,7 +113,7 @@ class Bridge:
         try:
             self._scene.add([box_on_floor(name, size, pose2_from_msg(message.pose))])
             rospy.loginfo("%s added", name)
-        except WorldError as error:
+        except PlanarError as error:
             rospy.logwarn("box not added: %s", error)
 
 

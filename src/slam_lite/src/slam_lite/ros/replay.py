@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import List, Optional
 
-from planar import save_map
+from planar import PlanarError, save_map
 from planar_ros.bags.bag import BagError
 from planar_ros.bags.replaying import (
     add_replay_options,
@@ -17,7 +17,6 @@ from planar_ros.bags.replaying import (
 from planar_ros.bags.scan_log import LoggedScan, ScanLog
 from slam_lite.config import NodeSettings
 from slam_lite.mapper import Mapper
-from slam_lite.matching.scan_matcher import MatchingError
 from slam_lite.trajectory import Trajectory
 
 
@@ -52,7 +51,7 @@ def _replay(options: argparse.Namespace) -> int:
         update = None
         try:
             update = mapper.insert(logged.base_in_odom, logged.scan)
-        except MatchingError as error:
+        except PlanarError as error:
             warn(f"{options.bag}: scan ignored: {error}")
         trajectory.add(logged.base_in_odom, logged.scan, update)
 
