@@ -66,14 +66,19 @@ class Trace:
         outcomes = {entry for entry in self._outcomes if start <= entry.stamp}
         return [*map(str, sorted(seen | outcomes)), *self._marks]
 
-    def write(self, folder: Path) -> Optional[str]:
-        """Writes the trace into the folder; returns its hash, None if nothing was driven."""
-        lines = self.lines()
-        if not lines:
-            return None
-        content = "".join(f"{line}\n" for line in lines).encode()
-        write_atomically(folder / FILE, content)
-        return hashlib.sha256(content).hexdigest()
+    def content(self) -> bytes:
+        """What is written of it; empty if nothing was driven."""
+        return "".join(f"{line}\n" for line in self.lines()).encode()
+
+
+def hash_of(content: bytes) -> str:
+    """That of a trace."""
+    return hashlib.sha256(content).hexdigest()
+
+
+def write_trace(folder: Path, content: bytes) -> None:
+    """Raises FileWriteError."""
+    write_atomically(folder / FILE, content)
 
 
 def read_trace(folder: Path) -> List[str]:
