@@ -7,6 +7,7 @@ python3 tests/benchmarks/soak.py serve [--runs 100]
 """
 
 import argparse
+import contextlib
 import ctypes
 import os
 import re
@@ -93,13 +94,24 @@ class Graph:
             return self.process.wait()
 
     def memory(self) -> Dict[str, int]:
-        """Bytes of each node that are its own, by its name."""
-        found = {}
-        for process in psutil.Process(self.process.pid).children(recursive=True):
-            name = re.search(r"__name:=(\S+)", " ".join(process.cmdline()))
-            if name:
-                found[name[1]] = process.memory_full_info().uss
+        """Bytes of each process that are its own, the script's too, by its name."""
+        found: Dict[str, int] = {}
+        script = psutil.Process(self.process.pid)
+        for process in (script, *script.children(recursive=True)):
+            with contextlib.suppress(psutil.NoSuchProcess):
+                name = name_of(process.cmdline())
+                found[name] = found.get(name, 0) + process.memory_full_info().uss
         return found
+
+
+def name_of(words: Sequence[str]) -> str:
+    """A node's name, or the module or program that a command line runs; those of one name count as one."""
+    command = " ".join(words)
+    node = re.search(r"__name:=(\S+)", command)
+    if node:
+        return node[1]
+    programs = [word for word in words if not Path(word).name.startswith(("python", "bash", "-"))]
+    return Path(programs[0]).name if programs else command
 
 
 def missions(options: argparse.Namespace, traces: Traces) -> int:
