@@ -28,7 +28,7 @@ PR_SET_CHILD_SUBREAPER = 36
 RUNS = "runs"
 RUN_SECONDS, UP_SECONDS, DOWN_SECONDS = 300.0, 90.0, 60.0
 # Of the deliveries of a graph the first ones fill caches.
-SETTLED = 0.2
+SETTLED = 0.1
 MISSION = """
 places: {here: {x: 0.0, y: 0.0}, there: {x: 0.9, y: 0.2}}
 settings: {pickup_seconds: 0.2}

@@ -41,11 +41,11 @@ class RunTrace:
 
     def leave(self, result: Result) -> None:
         """Adds to a result what belongs there, and writes the trace beside it, if anything was driven."""
-        content = self._trace.content()
-        if content:
-            result.add(hash=hash_of(content))
-            result.add(repeatable=not self._remarks, not_repeatable_because=self._remarks)
-            with result.noting_what_is_missing(FILE):
+        with result.noting_what_is_missing(FILE):
+            content = self._trace.content()
+            if content:
+                result.add(hash=hash_of(content))
+                result.add(repeatable=not self._remarks, not_repeatable_because=self._remarks)
                 write_trace(result.folder, content)
 
     def _follow(
