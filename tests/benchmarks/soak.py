@@ -94,14 +94,25 @@ class Graph:
             return self.process.wait()
 
     def memory(self) -> Dict[str, int]:
-        """Bytes of each process that are its own, the script's too, by its name."""
+        """Bytes of each process, the script's too, by its name: of memory that no file could be read for.
+
+        What is mapped of libraries is now shared and now not, whatever a process does.
+        """
         found: Dict[str, int] = {}
         script = psutil.Process(self.process.pid)
         for process in (script, *script.children(recursive=True)):
             with contextlib.suppress(psutil.NoSuchProcess):
                 name = name_of(process.cmdline())
-                found[name] = found.get(name, 0) + process.memory_full_info().uss
+                found[name] = found.get(name, 0) + _anonymous(process)
         return found
+
+
+def _anonymous(process: psutil.Process) -> int:
+    status = Path(f"/proc/{process.pid}/status")
+    with contextlib.suppress(FileNotFoundError):
+        told = re.search(r"RssAnon:\s+(\d+) kB", status.read_text())
+        return int(told[1]) << 10 if told else 0  # a zombie has none
+    raise psutil.NoSuchProcess(process.pid)
 
 
 def name_of(words: Sequence[str]) -> str:

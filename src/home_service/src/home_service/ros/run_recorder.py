@@ -26,7 +26,7 @@ from planar_ros.messages.conversion import (
 from run_report import Collision, Goal, Marking, RunRecord, State, Warned, Zone
 
 ENOUGH_WARNINGS = 200
-MOST_EVENTS, MOST_PLANS = 1000, 200
+MOST_EVENTS, MOST_PLANS, MOST_COLLISIONS = 300, 100, 1000
 MAP_FRAME, ODOM_FRAME = "map", "odom"
 
 
@@ -117,7 +117,7 @@ class RunRecorder:
 
     def _see_contact(self, message):
         for name in message.data.splitlines():
-            self._keep(self._record.collisions, Collision(self._now, name))
+            self._keep(self._record.collisions, Collision(self._now, name), MOST_COLLISIONS)
 
     def _see_marker(self, message):
         name = f"{message.ns} {message.id}"
