@@ -5,8 +5,8 @@ from array import array
 import numpy as np
 
 SAMPLES_PER_SECOND = 10.0
-# Of twenty minutes.
-MOST_SAMPLES = 12_000
+# Of sixteen minutes.
+MOST_SAMPLES = 9_600
 
 
 class Samples:
