@@ -2,7 +2,7 @@
 # Usage: ./scripts/add_marker.sh [options]
 #
 # Shows the object at pick-up, hides it, and shows it at drop-off, by the clock. Sets everything up first if need be.
-# Exit code: 0 success, 1 failure, 2 bad input, 130 interrupted.
+# Exit code: 0 success, 1 failure or no result.json, 2 bad input, 130 interrupted.
 #
 #   --zones FILE     YAML of the zones (default: map/zones.yaml)
 #   --rviz           show it in rviz, where there is a display

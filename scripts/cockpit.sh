@@ -5,7 +5,7 @@
 # Prints the page's URL, with the token without which nothing is shown. The graph is that of ROS_MASTER_URI or,
 # if nobody answers there, the newest one on this machine. Ctrl-C closes the page; the graph goes on.
 # With bags, or folders of them or of runs: plays what was recorded, from wherever one likes, at any pace.
-# Exit code: 0 success, 1 failure, 2 bad input, 130 interrupted.
+# Exit code: 0 success, 1 failure or no result.json, 2 bad input, 130 interrupted.
 #
 #   --web-port [ADDRESS:]PORT
 #                    where the page is served (default: a free port of 127.0.0.1)

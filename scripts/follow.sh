@@ -3,7 +3,7 @@
 #
 # A second TurtleBot, with localization and navigation of its own, follows the first one through its errand.
 # Sets everything up first if need be. Success: no collision, and within 1.5 m for 90 % of the time.
-# Exit code: 0 success, 1 failure, 2 bad input, 130 interrupted.
+# Exit code: 0 success, 1 failure or no result.json, 2 bad input, 130 interrupted.
 #
 #   --zones FILE     YAML of the zones (default: map/zones.yaml)
 #   --rviz           show it in rviz, where there is a display

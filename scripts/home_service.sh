@@ -4,7 +4,7 @@
 # Fetches the object at the pick-up zone and delivers it at the drop-off zone, in the simulated home,
 # or carries out another mission.
 # Sets everything up first if need be, names the run folder with the logs and result.json, prints a verdict.
-# Exit code: 0 success, and Ctrl-C with --serve; 1 failure, 2 bad input, 130 interrupted.
+# Exit code: 0 success, and Ctrl-C with --serve; 1 failure or no result.json, 2 bad input, 130 interrupted.
 #
 #   --mission FILE   carry out the deliveries of this file instead (docs/missions.md; map/mission.yaml is one)
 #   --serve          wait for missions sent to the action deliver, until Ctrl-C

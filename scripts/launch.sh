@@ -2,7 +2,7 @@
 # Usage: ./scripts/launch.sh [options]
 #
 # Starts the simulated home with the robot in it, until Ctrl-C. Sets everything up first if need be.
-# Exit code: 0 ended by Ctrl-C, 1 failure, 2 bad input, 130 interrupted before it was open.
+# Exit code: 0 ended by Ctrl-C, 1 failure or no result.json, 2 bad input, 130 interrupted before it was open.
 #
 #   --rviz           show it in rviz, where there is a display
 #   --web            show it in the browser: prints the URL of the page (docs/cockpit.md)

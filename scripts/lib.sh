@@ -102,9 +102,21 @@ finish_aside() { # TITLE: waits, and returns the exit code of what was started a
 }
 
 enter_workspace() {
+    check_temporary_files
     set +u
     ros_environment "$root"
     set -u
+}
+
+check_temporary_files() { # the environment and the nodes need some
+    local file reason
+    if file=$(mktemp 2>&1); then
+        reason=$(head -c 65536 /dev/zero 2>&1 >"$file") || reason=${reason##*: }
+        rm -f "$file"
+        [[ -z $reason ]] || fail "${TMPDIR:-/tmp}: no temporary files can be written there ($reason)"
+    else
+        fail "${TMPDIR:-/tmp}: no temporary files can be made there (${file##*: })"
+    fi
 }
 
 answer_help() { # ARGUMENT...

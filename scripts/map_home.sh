@@ -2,7 +2,7 @@
 # Usage: ./scripts/map_home.sh [options]
 #
 # Lets the robot explore a world with SLAM and come back, saves the map, and scores it against the true one.
-# Sets everything up first if need be. Exit code: 0 success, 1 failure, 2 bad input, 130 interrupted.
+# Sets everything up first if need be. Exit code: 0 success, 1 failure or no result.json, 2 bad input, 130 interrupted.
 #
 #   --save STEM      write STEM.pgm and STEM.yaml (default: map in the run folder)
 #   --rviz           show it in rviz, where there is a display

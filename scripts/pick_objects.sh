@@ -2,7 +2,7 @@
 # Usage: ./scripts/pick_objects.sh [options]
 #
 # Drives to the pick-up zone, waits there, and on to the drop-off zone. Sets everything up first if need be.
-# Exit code: 0 success, 1 failure, 2 bad input, 130 interrupted.
+# Exit code: 0 success, 1 failure or no result.json, 2 bad input, 130 interrupted.
 #
 #   --mission FILE   carry out the deliveries of this file instead (docs/missions.md)
 #   --zones FILE     YAML of the zones (default: map/zones.yaml)

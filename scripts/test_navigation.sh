@@ -2,7 +2,7 @@
 # Usage: ./scripts/test_navigation.sh [options]
 #
 # Starts home, localization and navigation; goals by hand, or from --goals. Sets everything up first if need be.
-# Exit code: 0 success, and Ctrl-C without --goals; 1 failure, 2 bad input, 130 interrupted.
+# Exit code: 0 success, and Ctrl-C without --goals; 1 failure or no result.json, 2 bad input, 130 interrupted.
 #
 #   --goals "X Y YAW; X Y YAW"
 #                    drive to these poses of the map (metres, radians), then end

@@ -4,7 +4,7 @@
 # Starts home and SLAM; the robot is driven with the keys of the terminal or of a pipe, such as
 #   echo i:2.0 j:1.5 | ./scripts/test_slam.sh
 # at the page in the browser, or by itself. Saves the map at the end. Sets everything up first if need be.
-# Exit code: 0 success, 1 failure, 2 bad input, 130 interrupted.
+# Exit code: 0 success, 1 failure or no result.json, 2 bad input, 130 interrupted.
 #
 #   --drive WHO      keys; page: in the browser, until Ctrl-C, --web is implied; auto: the robot explores by itself
 #                    (default: keys)

@@ -7,6 +7,7 @@ python3 tests/benchmarks/soak.py serve [--runs 100]
 """
 
 import argparse
+import contextlib
 import ctypes
 import os
 import re
@@ -27,7 +28,7 @@ PR_SET_CHILD_SUBREAPER = 36
 RUNS = "runs"
 RUN_SECONDS, UP_SECONDS, DOWN_SECONDS = 300.0, 90.0, 60.0
 # Of the deliveries of a graph the first ones fill caches.
-SETTLED = 0.2
+SETTLED = 0.1
 MISSION = """
 places: {here: {x: 0.0, y: 0.0}, there: {x: 0.9, y: 0.2}}
 settings: {pickup_seconds: 0.2}
@@ -93,13 +94,35 @@ class Graph:
             return self.process.wait()
 
     def memory(self) -> Dict[str, int]:
-        """Bytes of each node that are its own, by its name."""
-        found = {}
-        for process in psutil.Process(self.process.pid).children(recursive=True):
-            name = re.search(r"__name:=(\S+)", " ".join(process.cmdline()))
-            if name:
-                found[name[1]] = process.memory_full_info().uss
+        """Bytes of each process, the script's too, by its name: of memory that no file could be read for.
+
+        What is mapped of libraries is now shared and now not, whatever a process does.
+        """
+        found: Dict[str, int] = {}
+        script = psutil.Process(self.process.pid)
+        for process in (script, *script.children(recursive=True)):
+            with contextlib.suppress(psutil.NoSuchProcess):
+                name = name_of(process.cmdline())
+                found[name] = found.get(name, 0) + _anonymous(process)
         return found
+
+
+def _anonymous(process: psutil.Process) -> int:
+    status = Path(f"/proc/{process.pid}/status")
+    with contextlib.suppress(FileNotFoundError):
+        told = re.search(r"RssAnon:\s+(\d+) kB", status.read_text())
+        return int(told[1]) << 10 if told else 0  # a zombie has none
+    raise psutil.NoSuchProcess(process.pid)
+
+
+def name_of(words: Sequence[str]) -> str:
+    """A node's name, or the module or program that a command line runs; those of one name count as one."""
+    command = " ".join(words)
+    node = re.search(r"__name:=(\S+)", command)
+    if node:
+        return node[1]
+    programs = [word for word in words if not Path(word).name.startswith(("python", "bash", "-"))]
+    return Path(programs[0]).name if programs else command
 
 
 def missions(options: argparse.Namespace, traces: Traces) -> int:

@@ -40,6 +40,17 @@ class ThreadsTest(unittest.TestCase):
         output, _ = run.communicate(timeout=END_SECONDS)
         self.assertEqual(output, "")
 
+    def test_a_log_that_cannot_be_written_while_the_node_ends_is_no_reason_for_a_traceback(self):
+        command = ["rosrun", "home_service_tests", "node_without_a_log.py"]
+        run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.assertEqual(run.stdout.readline(), "up\n")
+        run.send_signal(signal.SIGINT)
+        output, _ = run.communicate(timeout=END_SECONDS)
+        self.assertIn("the node ends", output)
+        self.assertNotIn("Traceback", output)
+        self.assertNotIn("Logging error", output)
+        self.assertEqual(run.returncode, 0)
+
 
 if __name__ == "__main__":
     rospy.init_node("test_threads")

@@ -33,6 +33,17 @@ def test_a_script_tells_the_options_that_its_command_takes(folder, command, caps
     assert set(OPTION.findall(usage)) == set(OPTION.findall(capsys.readouterr().out))
 
 
+def test_a_script_that_can_write_no_temporary_files_says_so_in_a_line(tmp_path):
+    for limit, folder, reason in (("unlimited", tmp_path / "gone", "made"), ("1", tmp_path, "written")):
+        command = f"trap '' XFSZ; ulimit -f {limit}; TMPDIR={folder} exec {SCRIPTS}/doctor.sh"
+        result = subprocess.run(["bash", "-c", command], capture_output=True, text=True)
+        assert result.returncode == 1
+        assert re.fullmatch(
+            rf"error: {folder}: no temporary files can be {reason} there \(.+\)\n", result.stderr
+        )
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_the_set_up_refuses_an_option_that_it_does_not_know():
     result = subprocess.run([SCRIPTS / "setup.sh", "--nonsense"], capture_output=True, text=True)
     assert result.returncode == 2

@@ -1,15 +1,22 @@
 #!/usr/bin/env python3
 """What a run leaves in its folder, and that a full disk neither stops it nor stays untold."""
 
+import contextlib
 import json
+import os
+import resource
 import subprocess
 import tempfile
 import unittest
+import uuid
 from pathlib import Path
 
 import fastjsonschema
 import numpy as np
+import psutil
 import rostest
+from command import Command
+from processes import processes_of, processes_with
 
 from run_report import load_record
 
@@ -18,6 +25,8 @@ SCHEMA = ROOT / "src/home_service/config/result.schema.json"
 FILES = {"report.html", "run.png", "record.json", "result.json", "trace.txt", "log"}
 FILES |= {f"trajectory_{name}.tum" for name in ("true", "estimated", "odometry")}
 FULL = 100 * 1024  # room for logs and little more, bytes
+FULL_DISK = "File too large"  # as such a limit is told, by the words of the system
+RUN_SECONDS = 100.0
 
 
 class ReportTest(unittest.TestCase):
@@ -55,6 +64,36 @@ class ReportTest(unittest.TestCase):
         print(f"missing: {gaps}")
         self.assertTrue([gap for gap in gaps if gap.startswith("run.gif: ")], gaps)
         self.assertIn("warning: missing: run.gif", output)
+
+    def test_a_disk_that_fills_meanwhile_is_told_in_a_few_words_and_makes_a_failure_of_the_run(self):
+        mark = f"HOME_SERVICE_TEST={uuid.uuid4()}"
+        name, value = mark.split("=")
+        command = [ROOT / "scripts/test_navigation.sh", "--goals", "1.0 0.5 0.0; 0.0 0.5 3.0", "--output"]
+        with tempfile.TemporaryDirectory() as parent:
+            with Command(*command, parent, env={**os.environ, name: value, "PYTHONUNBUFFERED": "1"}) as run:
+                run.told("goal 1 (")
+                _fill_the_disk_of(mark)
+                code = run.process.wait(RUN_SECONDS)
+            written = [path.name for path in next(Path(parent).iterdir()).iterdir()]
+        said = "".join(run.lines)
+        print(said)
+        self.assertEqual(code, 1)
+        self.assertRegex(
+            said, r"(?m)^FAILURE: result.json: cannot be written \(File too large\); .* goals reached"
+        )
+        about_the_disk = [line for line in run.lines if FULL_DISK in line]
+        self.assertLessEqual(len(about_the_disk), 2, said)
+        self.assertNotIn("Traceback", said)
+        self.assertEqual(written, ["log"])
+        self.assertEqual(processes_with(mark), [])
+
+
+def _fill_the_disk_of(mark):
+    """No file of any process becomes larger, but rosout's: what is not Python would be killed by that."""
+    for process in processes_of(mark):
+        with contextlib.suppress(psutil.NoSuchProcess):
+            if process.name() != "rosout":
+                process.rlimit(psutil.RLIMIT_FSIZE, (0, resource.RLIM_INFINITY))
 
 
 def _run(parent, *options, script=f"exec '{ROOT}/scripts/test_navigation.sh' \"$@\""):

@@ -7,12 +7,15 @@ import subprocess
 import tempfile
 import threading
 import unittest
+import uuid
 from pathlib import Path
 
 import rostest
+from processes import processes_of, processes_with
 from waiting import wait_until
 
 SCRIPT = Path(__file__).resolve().parents[2] / "scripts/home_service.sh"
+MARK = str(uuid.uuid4())
 TIMEOUT, RUN_SECONDS = 75.0, 150.0
 LOST_ODOMETRY = "faults: [{kind: odometry_stopped, start: 8.0}]\n"
 
@@ -23,6 +26,20 @@ class StandstillTest(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertRegex(said, r"time stands still at [\d.]+ s: the simulation is paused")
         self.assertRegex(said, r"FAILURE: not done within .*; simulated time stands still at")
+
+    def test_a_node_that_stands_still_is_named_as_soon_as_time_does_and_at_the_end(self):
+        code, said = self.run_to_its_end("--timeout", "25", do=lambda _: self.stop("move_base"))
+        self.assertEqual(code, 1)
+        self.assertRegex(said, r"time stands still at [\d.]+ s: the simulator waits for move_base")
+        self.assertRegex(said, r"FAILURE: not done within .*; no answer of move_base")
+        self.assertEqual(processes_with(MARK), [])
+
+    def test_a_simulator_that_stands_still_is_named(self):
+        code, said = self.run_to_its_end("--timeout", "25", do=lambda _: self.stop("sim_bridge"))
+        self.assertEqual(code, 1)
+        self.assertRegex(said, r"time stands still at [\d.]+ s: the simulator does not answer")
+        self.assertRegex(said, r"FAILURE: not done within .*; no answer of sim_bridge")
+        self.assertEqual(processes_with(MARK), [])
 
     def test_odometry_that_is_lost_for_good_ends_the_run_long_before_its_time(self):
         """Three times the patience of move_base, at as many times real time as ever."""
@@ -39,7 +56,7 @@ class StandstillTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             run = subprocess.Popen(
                 [str(SCRIPT), "--output", folder, *options],
-                env={**os.environ, "PYTHONUNBUFFERED": "1"},
+                env={**os.environ, "PYTHONUNBUFFERED": "1", "HOME_SERVICE_TEST": MARK},
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
@@ -57,6 +74,13 @@ class StandstillTest(unittest.TestCase):
             hearing.join(TIMEOUT)
         print("".join(said))
         return code, "".join(said)
+
+    @staticmethod
+    def stop(node):
+        """By SIGSTOP, upon which it does nothing any more, but is there."""
+        for process in processes_of(MARK):
+            if f"__name:={node}" in process.cmdline():
+                process.suspend()
 
     @staticmethod
     def pause(folder):

@@ -9,12 +9,13 @@ import pytest
 from home_service import commands
 from home_service.judging.verdict import DeliveryRecord
 from home_service.options import RunOptions
-from home_service.result import Result
+from home_service.result import Result, in_few_words
 from home_service.ros.following import FollowWatch
 from home_service.ros.referee import Referee
-from planar import Pose2
+from planar import FileWriteError, Pose2
 from planar.maps.places import Place
 from run_report import RunRecord, summary
+from supervision import run_folder
 
 SCHEMA = json.loads((Path(__file__).resolve().parents[1] / "config/result.schema.json").read_text())
 VERDICT = {
@@ -65,7 +66,41 @@ def test_a_judge_that_never_began_has_found_nothing():
     assert Referee({}, say=lambda line: None).findings() == {}
 
 
-def test_a_result_that_cannot_be_written_is_missing_not_an_error(tmp_path):
+def test_a_result_that_cannot_be_written_has_a_reason(tmp_path):
     result = Result(tmp_path / "gone")
     result.write()
-    assert result.missing == ["result.json: cannot be written (No such file or directory)"]
+    assert result.gap == "result.json: cannot be written (No such file or directory)"
+    assert result.all_missing == [result.gap]
+
+
+def test_a_result_that_tells_less_than_is_known_does_not_stay(tmp_path, monkeypatch):
+    result = Result(tmp_path)
+    result.write()
+    monkeypatch.setattr(run_folder, "write_atomically", full_disk)
+    result.write()
+    assert list(tmp_path.iterdir()) == []
+    assert result.gap == "result.json: cannot be written (No space left on device)"
+
+
+def test_the_result_before_makes_room_for_the_one_to_come(tmp_path, monkeypatch):
+    """A disk with room for one."""
+    result = Result(tmp_path)
+    result.write()
+    write = run_folder.write_atomically
+    monkeypatch.setattr(
+        run_folder, "write_atomically", lambda path, data: (full_disk if path.exists() else write)(path, data)
+    )
+    result.add(**VERDICT)
+    result.write()
+    assert json.loads((tmp_path / "result.json").read_text())["reason"] == VERDICT["reason"]
+    assert result.gap is None
+
+
+def test_what_is_missing_is_told_with_each_reason_once():
+    full = "cannot be written (No space left on device)"
+    missing = [f"run.png: {full}", "bag: 2.bag was not closed", f"report.html: {full}", f"run.png: {full}"]
+    assert in_few_words(missing) == [f"run.png, report.html: {full}", "bag: 2.bag was not closed"]
+
+
+def full_disk(path, data):
+    raise FileWriteError(f"{path}: cannot be written (No space left on device)")

@@ -1,15 +1,26 @@
 """Traces of runs, and where two of them part."""
 
+import errno
+import tempfile
+
 import pytest
 
-from home_service.judging.trace import Difference, Entry, Trace, first_difference, read_trace
-from planar import SettingsError
+from home_service.judging.trace import (
+    Difference,
+    Entry,
+    Trace,
+    first_difference,
+    hash_of,
+    read_trace,
+    write_trace,
+)
+from planar import FileWriteError, SettingsError
 
 SECOND = 1_000_000_000
 
 
-def trace_of(poses, end=10, marks=("marker shown",)):
-    trace = Trace()
+def trace_of(poses, end=10, marks=("marker shown",), **how):
+    trace = Trace(**how)
     for stamp, text in poses:
         trace.note(Entry(stamp * SECOND, "/truth", "/sim_bridge", text))
     trace.begin(2 * SECOND)
@@ -25,20 +36,69 @@ def test_a_trace_goes_from_the_first_goal_to_the_last_outcome():
     assert lines[3:] == ["marker shown"]
 
 
-def test_the_order_in_which_messages_come_does_not_count(tmp_path):
+def test_the_order_in_which_messages_come_does_not_count():
     poses = [(2, "a"), (3, "b"), (4, "c")]
-    hashes = {trace_of(order).write(tmp_path) for order in (poses, poses[::-1])}
+    hashes = {hash_of(trace_of(order).content()) for order in (poses, poses[::-1])}
     assert len(hashes) == 1
 
 
-def test_any_other_bit_gives_another_hash(tmp_path):
+def test_any_other_bit_gives_another_hash():
     other = [trace_of([(2, "a")]), trace_of([(2, "b")]), trace_of([(3, "a")]), trace_of([(2, "a")], marks=())]
-    assert len({trace.write(tmp_path) for trace in other}) == 4
+    assert len({hash_of(trace.content()) for trace in other}) == 4
 
 
-def test_a_run_without_goals_has_no_hash(tmp_path):
-    assert Trace().write(tmp_path) is None
-    assert not list(tmp_path.iterdir())
+def long_trace(**how):
+    """Missions for an hour, each with a goal and an outcome, in the order in which the messages come."""
+    trace = Trace(**how)
+    for second in range(3600):
+        for topic in ("/truth", "/estimate"):
+            trace.note(Entry(second * SECOND, topic, "/node", f"at {second}"))
+        if second % 20 == 3:
+            trace.begin(second * SECOND)
+        if second % 20 == 17:
+            outcome = Entry(second * SECOND, "/result", "/move_base", "3 'reached'")
+            trace.note(outcome)
+            trace.end(outcome)
+    trace.mark("marker shown")
+    return trace
+
+
+def test_what_a_long_run_has_put_aside_is_written_as_ever():
+    trace = long_trace(most=100)
+    assert len(trace._entries) <= 100 and len(trace._outcomes) <= 5
+    whole = long_trace(most=1_000_000)
+    assert len(whole._entries) > 7000
+    assert trace.content() == whole.content()
+    assert trace.content() == whole.content(), "a second time"
+
+
+def test_before_there_is_a_goal_nothing_is_kept_for_long():
+    trace = Trace(most=100)
+    for second in range(1000):
+        trace.note(Entry(second * SECOND, "/truth", "/node", "stands"))
+    assert len(trace._entries) <= 100
+    assert trace.content() == b""
+
+
+def test_a_long_run_without_room_for_what_is_put_aside_has_no_trace(monkeypatch):
+    def full_disk(*_arguments, **_named):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(tempfile, "TemporaryFile", full_disk)
+    trace = long_trace(most=100)
+    assert len(trace._entries) == 0
+    with pytest.raises(FileWriteError, match="No space left on device"):
+        trace.content()
+
+
+def test_a_run_without_goals_has_no_trace():
+    assert Trace().content() == b""
+
+
+def test_what_is_written_is_what_is_read(tmp_path):
+    trace = trace_of([(2, "a"), (3, "b")])
+    write_trace(tmp_path, trace.content())
+    assert read_trace(tmp_path) == trace.lines()
 
 
 def test_two_traces_part_at_the_first_entry_that_only_one_has():

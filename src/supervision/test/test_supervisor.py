@@ -41,6 +41,7 @@ def graph(monkeypatch):
     deaths = SimpleNamespace(failure=None, restarts=[])
     graph = SimpleNamespace(deaths=deaths, is_running=True, how_it_ended="ended", log_gap=None)
     monkeypatch.setattr(supervisor, "RosGraph", lambda *_: graph)
+    monkeypatch.setattr(supervisor, "silent_nodes", list)
     return graph
 
 
@@ -71,6 +72,12 @@ def test_a_node_that_refuses_its_input_is_an_error(graph, tmp_path):
 def test_a_watch_gives_up_in_time(graph, tmp_path):
     reason = supervised(tmp_path, time_limit=0.05).watch(lambda: False, str)
     assert reason == "not done within 0.05 s of wall-clock time"
+
+
+def test_a_watch_that_gives_up_names_the_nodes_that_do_not_answer(graph, tmp_path, monkeypatch):
+    monkeypatch.setattr(supervisor, "silent_nodes", lambda: ["amcl", "map_server"])
+    reason = supervised(tmp_path, time_limit=0.05).watch(lambda: False, str)
+    assert reason == "not done within 0.05 s of wall-clock time; no answer of amcl, map_server"
 
 
 def test_what_was_waited_for_when_the_graph_ended_is_named(graph, tmp_path):

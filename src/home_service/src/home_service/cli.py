@@ -8,6 +8,7 @@ from home_service import commands
 from home_service.command import Command, CommandFolder
 from home_service.nursery import prepare_nodes
 from home_service.options import GraphOptions
+from home_service.result import ResultError
 from planar import PlanarError
 from supervision import command_line
 from supervision.display import complain
@@ -31,6 +32,9 @@ def main(arguments: Optional[List[str]] = None, folder: CommandFolder = commands
     except LaunchError as error:
         complain(str(error))
         return BAD_INPUT if error.is_bad_input else FAILURE
+    except ResultError as error:
+        complain(str(error))
+        return FAILURE
     except PlanarError as error:
         complain(str(error))
         return BAD_INPUT

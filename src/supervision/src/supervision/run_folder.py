@@ -7,6 +7,8 @@ from pathlib import Path
 
 from planar import SettingsError, write_atomically
 
+RESULT_FILE = "result.json"
+
 
 def create_run_folder(parent: Path, name: str) -> Path:
     """A new folder ``parent``/<date>-<time>-<name> with a folder ``log`` in it. Raises SettingsError."""
@@ -28,6 +30,6 @@ def _suffixes():
 
 def write_result(folder: Path, result: dict) -> Path:
     """Writes result.json, whole or not at all."""
-    path = folder / "result.json"
+    path = folder / RESULT_FILE
     write_atomically(path, (json.dumps(result, indent=2) + "\n").encode("utf-8"))
     return path

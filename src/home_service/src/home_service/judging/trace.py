@@ -1,14 +1,20 @@
 """What of a run must be the same when it is repeated: the truth and the decisions, by simulated time."""
 
 import hashlib
+import math
+import os
+import tempfile
+import threading
 from pathlib import Path
-from typing import List, NamedTuple, Optional, Sequence, Set, Tuple
+from typing import IO, Iterator, List, NamedTuple, Optional, Sequence, Set, Tuple
 
-from planar import SettingsError, write_atomically
+from planar import FileWriteError, SettingsError, write_atomically
 
 FILE = "trace.txt"
 # Nanoseconds before the end from which on messages may still be under way.
 UNDER_WAY = 300_000_000
+# Nanoseconds after which none comes any more, and how many entries a run of some minutes has.
+LATE, MOST_IN_MEMORY = 10_000_000_000, 10_000
 
 
 class Entry(NamedTuple):
@@ -31,17 +37,28 @@ class Difference(NamedTuple):
 
 
 class Trace:
-    """Collects entries. It begins with the first goal and ends with the last outcome of what was asked."""
+    """Collects entries. It begins with the first goal and ends with the last outcome of what was asked.
 
-    def __init__(self):
+    Of a long run the latest are in memory, about ``most``, and those before them in a temporary file.
+    """
+
+    def __init__(self, most: int = MOST_IN_MEMORY):
+        self._most = most
         self._entries: List[Entry] = []
         self._outcomes: Set[Entry] = set()
         self._marks: List[str] = []
         self._start: Optional[int] = None
         self._end: Optional[int] = None
+        self._aside: Optional[IO[str]] = None
+        self._why_lost: Optional[str] = None
+        self._lock = threading.Lock()
 
     def note(self, entry: Entry) -> None:
-        self._entries.append(entry)
+        with self._lock:
+            if self._why_lost is None:
+                self._entries.append(entry)
+            if len(self._entries) > self._most:
+                self._put_aside(max(each.stamp for each in self._entries) - LATE)
 
     def mark(self, text: str) -> None:
         """Something without a time: its place among its like is what counts."""
@@ -58,22 +75,58 @@ class Trace:
         self._end = outcome.stamp if self._end is None else max(outcome.stamp, self._end)
 
     def lines(self) -> List[str]:
-        """The entries in order."""
-        if self._start is None or self._end is None:
-            return []
-        start, last = self._start, self._end - UNDER_WAY
-        seen = {entry for entry in self._entries if start <= entry.stamp <= last}
-        outcomes = {entry for entry in self._outcomes if start <= entry.stamp}
-        return [*map(str, sorted(seen | outcomes)), *self._marks]
+        """The entries in order. Raises FileWriteError if some were lost for want of room."""
+        with self._lock:
+            if self._why_lost is not None:
+                raise FileWriteError(f"{FILE}: cannot be written ({self._why_lost})")
+            if self._start is None or self._end is None:
+                return []
+            last = self._end - UNDER_WAY
+            return [*self._lines_aside(last), *map(str, self._those_until(last)), *self._marks]
 
-    def write(self, folder: Path) -> Optional[str]:
-        """Writes the trace into the folder; returns its hash, None if nothing was driven."""
-        lines = self.lines()
-        if not lines:
-            return None
-        content = "".join(f"{line}\n" for line in lines).encode()
-        write_atomically(folder / FILE, content)
-        return hashlib.sha256(content).hexdigest()
+    def content(self) -> bytes:
+        """What is written of it; empty if nothing was driven. Raises FileWriteError as ``lines`` does."""
+        return "".join(f"{line}\n" for line in self.lines()).encode()
+
+    def _those_until(self, last: int, last_outcome: float = math.inf) -> List[Entry]:
+        """What counts of those in memory, in order."""
+        if self._start is None:
+            return []
+        seen = {entry for entry in self._entries if self._start <= entry.stamp <= last}
+        return sorted(seen | {one for one in self._outcomes if self._start <= one.stamp <= last_outcome})
+
+    def _put_aside(self, last: int) -> None:
+        """What is that old."""
+        try:
+            if self._aside is None:
+                self._aside = tempfile.TemporaryFile("w+", encoding="utf-8")  # noqa: SIM115
+            self._aside.seek(0, os.SEEK_END)
+            for entry in self._those_until(last, last):
+                self._aside.write(f"{entry.stamp} {int(entry in self._outcomes)} {entry}\n")
+            self._aside.flush()
+        except OSError as error:
+            self._why_lost, self._entries = error.strerror, []
+        self._entries = [entry for entry in self._entries if entry.stamp > last]
+        self._outcomes -= {one for one in self._outcomes if one.stamp <= last}
+
+    def _lines_aside(self, last: int) -> Iterator[str]:
+        """What counts of those in the file, which may end after ``last``."""
+        if self._aside is not None:
+            self._aside.seek(0)
+            for line in self._aside:
+                stamp, is_outcome, text = line.rstrip("\n").split(" ", 2)
+                if int(stamp) <= last or is_outcome == "1":
+                    yield text
+
+
+def hash_of(content: bytes) -> str:
+    """That of a trace."""
+    return hashlib.sha256(content).hexdigest()
+
+
+def write_trace(folder: Path, content: bytes) -> None:
+    """Raises FileWriteError."""
+    write_atomically(folder / FILE, content)
 
 
 def read_trace(folder: Path) -> List[str]:

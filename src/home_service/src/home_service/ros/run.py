@@ -13,7 +13,7 @@ from cockpit.process import FREE_PORT, CockpitProcess
 from home_service.judging.contracts import Judge, Recorder
 from home_service.judging.verdict import Verdict
 from home_service.options import LaunchPlan, RunOptions
-from home_service.result import Result
+from home_service.result import Result, ResultError, in_few_words
 from home_service.ros.bags.rosbag_process import RosbagProcess
 from home_service.ros.run_trace import RunTrace
 from home_service.ros.standstill import Standstill
@@ -27,6 +27,7 @@ from supervision.processes import start_of_this_process
 from supervision.ros.node_api import is_master_online
 from supervision.ros.supervisor import Supervisor
 from supervision.run_folder import create_run_folder
+from supervision.streams import drop_what_cannot_be_written
 from supervision.versions import versions
 
 REPORT_SECONDS = 60.0
@@ -58,9 +59,11 @@ class Run:
         self._cockpit: Optional[CockpitProcess] = None
         self._trace = RunTrace()
         self._standstill = Standstill(display.say)
+        self._has_succeeded = False
 
     def __enter__(self) -> "Run":
         raise_when_interrupted()
+        drop_what_cannot_be_written()
         self.display.__enter__()
         try:
             self._bring_up()
@@ -70,27 +73,25 @@ class Run:
         return self
 
     def __exit__(self, _kind, error, _traceback) -> None:
-        if error is None and self._options.has_view:
-            self._linger()
-        self.display.show("shutting down")
-        if self._cockpit is not None:
-            self._cockpit.close()
-        if isinstance(error, (PlanarError, RunInterruptedError)):
-            self._keep(Verdict(False, str(error)))
-        if self._bags is not None:
-            self.result.missing += self._bags.close()
-        rospy.signal_shutdown("the run is over")
+        """Raises ResultError if a run that has succeeded leaves no result."""
         # The report is made while the nodes end, so that it costs no time.
         reporting = threading.Thread(target=self._report, daemon=True)
-        reporting.start()
-        self._supervisor.end()
+        try:
+            self._finish(error)
+            reporting.start()
+        finally:
+            self._supervisor.end()
         reporting.join(REPORT_SECONDS)
         if reporting.is_alive():
             self.result.missing.append(f"the report: not made within {REPORT_SECONDS:g} s")
-        for gap in self.result.missing:
+        is_hollow = error is None and self._has_succeeded and self.result.gap is not None
+        gaps = self.result.missing if is_hollow else self.result.all_missing
+        for gap in in_few_words(gaps):
             self.display.say(f"warning: missing: {gap}")
         self.display.say(f"result, report and logs in {self.folder}")
         self.display.__exit__()
+        if is_hollow:
+            raise ResultError(f"{self.folder}/{self.result.gap}: without it the run is no success")
 
     def watch(self, is_over: Callable[[], bool]) -> Optional[str]:
         """Shows progress until ``is_over``; returns why the run cannot go on, or None if it got there.
@@ -108,6 +109,10 @@ class Run:
     def conclude(self, verdict: Verdict, **findings: Any) -> int:
         """Keeps the findings for result.json, prints the verdict, and returns the exit code it deserves."""
         self._keep(verdict, **findings)
+        if self.result.gap is not None:
+            verdict = Verdict(False, f"{self.result.gap}; what the run came to: {verdict.reason}")
+            self.result.add(success=False, reason=verdict.reason)
+        self._has_succeeded = verdict.success
         self.display.say(f"{'SUCCESS' if verdict.success else 'FAILURE'}: {verdict.reason}")
         return 0 if verdict.success else 1
 
@@ -139,6 +144,19 @@ class Run:
         if self._bags is not None:
             wait_for("the recorder of bags", self._bags.is_ready)
 
+    def _finish(self, error: Optional[BaseException]) -> None:
+        """All that is to be done before the nodes end."""
+        if error is None and self._options.has_view:
+            self._linger()
+        self.display.show("shutting down")
+        if self._cockpit is not None:
+            self._cockpit.close()
+        if isinstance(error, (PlanarError, RunInterruptedError)):
+            self._keep(Verdict(False, str(error)))
+        if self._bags is not None:
+            self.result.missing += self._bags.close()
+        rospy.signal_shutdown("the run is over")
+
     def _linger(self) -> None:
         """Leaves the views open for those who have looked on; Ctrl-C ends it."""
         ending = time.monotonic() + VIEW_SECONDS
@@ -153,7 +171,8 @@ class Run:
         self.result.add(**about, **self._options.told(), arguments=words(self._options))
         self.result.add(wall_seconds=round(time.time() - start_of_this_process(), 3))
         self.result.add(restarts=[asdict(restart) for restart in self._supervisor.restarts])
-        self.result.add(**self._trace.findings(self.folder, self._launch.is_simulated))
+        if self._launch.is_simulated:
+            self._trace.leave(self.result)
         self.result.add(**{**self._judge.findings(), **findings, "versions": versions()})
         self.result.write()
 

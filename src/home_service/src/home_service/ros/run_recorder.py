@@ -1,7 +1,7 @@
 """Keeps what a report needs of a run; does next to nothing while the run goes on."""
 
 import time
-from typing import Dict, List, Mapping, Optional, Tuple
+from typing import Dict, Mapping, Optional
 
 import numpy as np
 from geometry_msgs.msg import PoseStamped
@@ -11,6 +11,7 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker
 
+from home_service.judging.samples import Samples
 from home_service.ros.hearing import hear
 from home_service.ros.referee import CONNECTION_CHATTER
 from planar import Pose2
@@ -24,24 +25,26 @@ from planar_ros.messages.conversion import (
 )
 from run_report import Collision, Goal, Marking, RunRecord, State, Warned, Zone
 
-SAMPLES_PER_SECOND = 10.0
 ENOUGH_WARNINGS = 200
+MOST_EVENTS, MOST_PLANS, MOST_COLLISIONS = 300, 100, 1000
 MAP_FRAME, ODOM_FRAME = "map", "odom"
 
 
 class RunRecorder:
-    """Samples truth, estimate and odometry ten times a simulated second, and notes every event."""
+    """Samples truth, estimate and odometry ten times a simulated second, less often in the long run.
+
+    Notes every event, and keeps the latest.
+    """
 
     def __init__(self, places: Mapping[str, Place]):
         self._places = places
         self._record = RunRecord()
         self._start_wall: Optional[float] = None
         self._now = 0.0
-        self._truth: List[Tuple[float, ...]] = []
-        self._odometry: List[Tuple[float, ...]] = []
-        self._estimate: List[Tuple[float, ...]] = []
+        self._truth, self._odometry, self._estimate = Samples(7), Samples(4), Samples(4)
         self._odom_in_map: Optional[Pose2] = None
         self._map = None
+        self._plans_wanted = 0
         self._latest_markings: Dict[str, Marking] = {}
 
     def start(self) -> None:
@@ -63,31 +66,29 @@ class RunRecorder:
     def record(self) -> RunRecord:
         """All that has been seen so far."""
         record = self._record
-        truth = np.array(self._truth).reshape(-1, 7)
+        truth = self._truth.rows()
         record.truth, record.velocity, record.pace = truth[:, :4], truth[:, [0, 4, 5]], truth[:, [0, 6]]
-        record.estimate = np.array(self._estimate).reshape(-1, 4)
-        record.odometry = _from_start(np.array(self._odometry).reshape(-1, 4), record.truth)
+        record.estimate = self._estimate.rows()
+        record.odometry = _from_start(self._odometry.rows(), record.truth)
         record.grid = None if self._map is None else grid_from_msg(self._map)
         return record
 
     def _see_truth(self, message):
         stamp = message.header.stamp.to_sec()
         self._now = stamp
-        if not _is_due(stamp, self._truth):
+        if not self._truth.is_due(stamp):
             return
         wall = time.monotonic()
         self._start_wall = self._start_wall or wall
         pose, twist = message.pose.pose, message.twist.twist
-        self._truth.append(
-            (
-                stamp,
-                pose.position.x,
-                pose.position.y,
-                yaw_of(pose.orientation),
-                twist.linear.x,
-                twist.angular.z,
-                wall - self._start_wall,
-            )
+        self._truth.add(
+            stamp,
+            pose.position.x,
+            pose.position.y,
+            yaw_of(pose.orientation),
+            twist.linear.x,
+            twist.angular.z,
+            wall - self._start_wall,
         )
 
     def _see_transforms(self, message):
@@ -100,22 +101,23 @@ class RunRecorder:
 
     def _see_odometry(self, transform):
         stamp = transform.header.stamp.to_sec()
-        if not _is_due(stamp, self._odometry):
+        if not self._odometry.is_due(stamp):
             return
         base_in_odom = _pose_of(transform)
-        self._odometry.append((stamp, base_in_odom.x, base_in_odom.y, base_in_odom.yaw))
+        self._odometry.add(stamp, base_in_odom.x, base_in_odom.y, base_in_odom.yaw)
         if self._odom_in_map is not None:
             base_in_map = self._odom_in_map @ base_in_odom
-            self._estimate.append((stamp, base_in_map.x, base_in_map.y, base_in_map.yaw))
+            self._estimate.add(stamp, base_in_map.x, base_in_map.y, base_in_map.yaw)
 
     def _see_map(self, message):
         self._map = message
 
     def _see_state(self, message):
-        self._record.states.append(State(self._now, message.data))
+        self._keep(self._record.states, State(self._now, message.data))
 
     def _see_contact(self, message):
-        self._record.collisions.extend(Collision(self._now, name) for name in message.data.splitlines())
+        for name in message.data.splitlines():
+            self._keep(self._record.collisions, Collision(self._now, name), MOST_COLLISIONS)
 
     def _see_marker(self, message):
         name = f"{message.ns} {message.id}"
@@ -124,30 +126,31 @@ class RunRecorder:
         latest = self._latest_markings.get(name)
         if latest is None or latest[2:] != marking[2:]:
             self._latest_markings[name] = marking
-            self._record.markings.append(marking)
+            self._keep(self._record.markings, marking)
 
     def _see_goal(self, message):
         goal = pose2_from_msg(message.pose)
-        self._record.goals.append(Goal(self._now, goal.x, goal.y, goal.yaw))
+        self._plans_wanted += 1
+        self._keep(self._record.goals, Goal(self._now, goal.x, goal.y, goal.yaw))
 
     def _see_plan(self, message):
         """Keeps the first plan for each goal, of which the others are the rest."""
-        if len(self._record.plans) < len(self._record.goals):
+        if self._plans_wanted:
+            self._plans_wanted -= 1
             points = [(pose.pose.position.x, pose.pose.position.y) for pose in message.poses]
-            self._record.plans.append(np.array(points).reshape(-1, 2))
+            self._keep(self._record.plans, np.array(points).reshape(-1, 2), MOST_PLANS)
+
+    @staticmethod
+    def _keep(events: list, event: object, most: int = MOST_EVENTS) -> None:
+        """The latest, of a run that serves for days."""
+        events.append(event)
+        del events[:-most]
 
     def _hear(self, message):
         if message.level < Log.WARN or message.file == CONNECTION_CHATTER:
             return
         if len(self._record.warnings) < ENOUGH_WARNINGS:
             self._record.warnings.append(Warned(self._now, message.name.lstrip("/"), message.msg))
-
-
-def _is_due(stamp: float, samples: List[Tuple[float, ...]]) -> bool:
-    """Whether a sample of this stamp is one of those kept: the first of each tenth of a second."""
-    return not samples or int(stamp * SAMPLES_PER_SECOND + 1e-6) != int(
-        samples[-1][0] * SAMPLES_PER_SECOND + 1e-6
-    )
 
 
 def _pose_of(transform) -> Pose2:

@@ -1,7 +1,6 @@
 """Follows a run for its trace, and for what may keep it from being repeatable."""
 
-from pathlib import Path
-from typing import Any, Callable, Dict, List
+from typing import Any, Callable, List
 
 import rospy
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
@@ -11,7 +10,8 @@ from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 from visualization_msgs.msg import Marker
 
-from home_service.judging.trace import Entry, Trace
+from home_service.judging.trace import FILE, Entry, Trace, hash_of, write_trace
+from home_service.result import Result
 from home_service.ros.hearing import hear
 
 AUDIENCE_PARAMETER = "/simulation/audience"
@@ -39,12 +39,14 @@ class RunTrace:
         hear("/simulation/remarks", String, self._keep_remarks)
         rospy.set_param(AUDIENCE_PARAMETER, [rospy.get_name()])
 
-    def findings(self, folder: Path, is_simulated: bool) -> Dict[str, Any]:
-        """What belongs into result.json; writes the trace beside it."""
-        digest = self._trace.write(folder) if is_simulated else None
-        if digest is None:
-            return {}
-        return {"hash": digest, "repeatable": not self._remarks, "not_repeatable_because": self._remarks}
+    def leave(self, result: Result) -> None:
+        """Adds to a result what belongs there, and writes the trace beside it, if anything was driven."""
+        with result.noting_what_is_missing(FILE):
+            content = self._trace.content()
+            if content:
+                result.add(hash=hash_of(content))
+                result.add(repeatable=not self._remarks, not_repeatable_because=self._remarks)
+                write_trace(result.folder, content)
 
     def _follow(
         self,

@@ -2,16 +2,19 @@
 
 import threading
 import time
-from typing import Callable, Optional
+from typing import Callable, List, Optional, Sequence
 
 import rospy
 from gazebo_msgs.srv import GetPhysicsProperties, GetPhysicsPropertiesRequest
 from rosgraph_msgs.msg import Clock
+from std_msgs.msg import String
 
 from planar_ros.calls.services import ServiceError, call_service
+from planar_ros.node.waiting import TOPIC as WAITING_TOPIC
 
+SIMULATOR = "/sim_bridge"
 # Wall seconds after which it is worth a word, and that the simulator has to answer.
-STANDING_SECONDS, ANSWER_SECONDS = 15.0, 3.0
+STANDING_SECONDS, ANSWER_SECONDS = 3.0, 3.0
 
 
 class Standstill:
@@ -26,10 +29,18 @@ class Standstill:
         self._stamp: Optional[float] = None
         self._since = 0.0
         self._is_asking = False
+        self._waits_for: List[str] = []
 
     def start(self) -> None:
         """This process is a node by then."""
         rospy.Subscriber("/clock", Clock, lambda message: self.hear(message.clock.to_sec()), queue_size=1)
+        rospy.Subscriber(
+            f"{SIMULATOR}/{WAITING_TOPIC}", String, lambda message: self.hear_waiting(message.data)
+        )
+
+    def hear_waiting(self, names: str) -> None:
+        """What the simulator waits for, one a line."""
+        self._waits_for = names.splitlines()
 
     def hear(self, stamp: float) -> None:
         """What time it is, seconds."""
@@ -44,18 +55,20 @@ class Standstill:
             threading.Thread(target=self._ask, args=(self._stamp,), daemon=True).start()
 
     def _ask(self, stamp: float) -> None:
-        why = why_time_stands()
+        why = why_time_stands(self._waits_for)
         if stamp == self._stamp:
             self.reason = f"simulated time stands still at {stamp:.1f} s: {why}"
             self._say(self.reason)
         self._is_asking = False
 
 
-def why_time_stands() -> str:
-    """What the simulator says of it."""
+def why_time_stands(waits_for: Sequence[str]) -> str:
+    """What the simulator says of it; ``waits_for``: what it has said before."""
     request, name = GetPhysicsPropertiesRequest(), "/gazebo/get_physics_properties"
     try:
         is_paused = call_service(name, GetPhysicsProperties, request, ANSWER_SECONDS).pause
     except ServiceError as error:
         return f"the simulator does not answer ({error})"
-    return "the simulation is paused" if is_paused else "the simulator waits for nodes (see doctor.sh)"
+    if is_paused:
+        return "the simulation is paused"
+    return f"the simulator waits for {', '.join(waits_for) or 'nodes (see doctor.sh)'}"

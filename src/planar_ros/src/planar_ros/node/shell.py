@@ -7,8 +7,7 @@ import queue
 import signal
 import sys
 import threading
-from contextlib import suppress
-from typing import Callable, List, TextIO
+from typing import Callable, List
 
 import rospy
 from rosgraph import get_master_uri
@@ -17,6 +16,7 @@ from threadpoolctl import threadpool_limits
 from planar import PlanarError
 from planar_ros.node.backlog import let_many_wait
 from supervision.interruption import SIGNALS
+from supervision.streams import drop_what_cannot_be_written
 
 # Longer than any node needs to end in order.
 SHUTDOWN_SECONDS = 5.0
@@ -32,9 +32,7 @@ def run(node_name: str, start: Callable[[], object]) -> None:
     A PlanarError during the start is a user's mistake: one line on stderr, exit code 2.
     """
     _shut_down_on_signals()
-    # A line of a log that cannot be written, as when the terminal is gone, is no reason for a traceback.
-    logging.raiseExceptions = False
-    sys.stdout, sys.stderr = _Forgiving(sys.stdout), _Forgiving(sys.stderr)
+    drop_what_cannot_be_written()
     # A node's matrices are small: more threads of BLAS would only wait for work, in busy loops.
     threadpool_limits(1, user_api="blas")
     let_many_wait()
@@ -111,28 +109,6 @@ def _end_within(seconds: float, exit_code: int) -> None:
     watchdog = threading.Timer(seconds, os._exit, [exit_code])
     watchdog.daemon = True
     watchdog.start()
-
-
-class _Forgiving:
-    """A stream that drops what cannot be written, as on a full disk.
-
-    rospy's own logging would raise in whatever the node is doing, a service's answer for example.
-    """
-
-    def __init__(self, stream: TextIO):
-        self._stream = stream
-
-    def __getattr__(self, name: str):
-        return getattr(self._stream, name)
-
-    def write(self, text: str) -> int:
-        with suppress(OSError):
-            self._stream.write(text)
-        return len(text)
-
-    def flush(self) -> None:
-        with suppress(OSError):
-            self._stream.flush()
 
 
 def _shut_down_on_signals() -> None:

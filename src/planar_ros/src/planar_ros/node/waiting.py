@@ -13,7 +13,7 @@ from planar_ros.step import Step
 # Private topic, latched: what the node waits for, one a line; empty once it has everything.
 TOPIC = "waiting_for"
 PATIENCE_SECONDS = 4.0
-POLL_SECONDS = 0.2
+POLL_SECONDS, HELD_UP_SECONDS = 0.2, 1.0
 
 
 class Waiting:
@@ -56,6 +56,29 @@ class Waiting:
             if missing != self._missing:
                 self._missing = missing
                 self._publisher.publish("\n".join(missing))
+
+
+class HoldUp:
+    """Tells on ``~waiting_for`` whom a node that works already waits for, if it does so for a while."""
+
+    def __init__(self, patience: float = HELD_UP_SECONDS):
+        self._patience = patience
+        self._since: Optional[float] = None
+        self._told: List[str] = []
+        self._publisher = rospy.Publisher(f"~{TOPIC}", String, queue_size=1, latch=True)
+
+    def look(self, names: List[str]) -> None:
+        """Those that are waited for now; to be called again and again."""
+        now = time.monotonic()
+        if not names:
+            self._since = None
+        elif self._since is None:
+            self._since = now
+        is_long = self._since is not None and now - self._since > self._patience
+        to_tell = names if is_long else []
+        if to_tell != self._told:
+            self._told = to_tell
+            self._publisher.publish("\n".join(to_tell))
 
 
 class Readiness:

@@ -118,6 +118,6 @@ class RosGraph:
                 try:
                     log.write(line)
                 except OSError as error:
-                    self.log_gap = f"log/roslaunch.log: {error.strerror}"
+                    self.log_gap = f"log/roslaunch.log: cannot be written ({error.strerror})"
                     log = None
         self._is_ending.set()

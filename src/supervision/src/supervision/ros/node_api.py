@@ -1,8 +1,9 @@
 """What the master and the nodes answer when asked by XML-RPC, none of which is waited for long."""
 
 import xmlrpc.client
+from contextlib import suppress
 from itertools import chain
-from typing import Any, Container, Set, Tuple
+from typing import Any, Container, List, Set, Tuple
 
 import rosgraph
 
@@ -45,6 +46,17 @@ def node_names() -> Set[str]:
     except _SILENCE:
         return set()
     return {node for part in state for _name, nodes in part for node in nodes}
+
+
+def silent_nodes() -> List[str]:
+    """The nodes that the master knows and that do not answer, without the slash."""
+    uri = rosgraph.get_master_uri()
+    silent = []
+    for name in sorted(node_names()):
+        with suppress(*_SILENCE):
+            if not answers(_ask(uri, "lookupNode", name)[1]):
+                silent.append(name.lstrip("/"))
+    return silent
 
 
 def hears_all(node: str, topics: Container[str]) -> bool:

@@ -10,6 +10,7 @@ from supervision.errors import LaunchError
 from supervision.interruption import raise_if_interrupted
 from supervision.processes import end_descendants
 from supervision.ros.graph import RosGraph
+from supervision.ros.node_api import silent_nodes
 
 POLL_SECONDS = 0.05
 BRING_UP_SECONDS = 60.0
@@ -52,7 +53,7 @@ class Supervisor:
         while not is_over():
             failure = self._failure()
             if failure is None and time.monotonic() > self._deadline:
-                failure = f"not done within {self._time_limit:g} s of wall-clock time"
+                failure = f"not done within {self._time_limit:g} s of wall-clock time{_who_is_silent()}"
             if failure:
                 return failure
             self._display.show(status())
@@ -94,3 +95,9 @@ class Supervisor:
         if self._graph.is_running:
             return None
         return f"roslaunch {self._graph.how_it_ended}{when}, see {self._log_folder}"
+
+
+def _who_is_silent() -> str:
+    """Of nodes that are there and do not answer, for the end of a sentence."""
+    silent = silent_nodes()
+    return f"; no answer of {', '.join(silent)}" if silent else ""

@@ -4,7 +4,7 @@ import shutil
 import signal
 import subprocess
 from pathlib import Path
-from typing import List
+from typing import BinaryIO, List
 
 import roslib.packages
 
@@ -33,14 +33,13 @@ class RosbagProcess:
     """
 
     def __init__(self, profile: str, folder: Path):
-        folder.mkdir()
         self._folder = folder
         nodes = roslib.packages.find_node("rosbag", "record")
         if not nodes:
             raise LaunchError("rosbag's recorder is not installed: run scripts/setup.sh")
         command = [nodes[0], "--split", f"--size={SPLIT_MEGABYTES}", f"--max-splits={MOST_SPLITS}"]
         command += ["--repeat-latched", "--output-name", str(folder / profile), *PROFILES[profile]]
-        with (folder / "record.log").open("wb") as log:
+        with _opened_log(folder) as log:
             self._process = subprocess.Popen(
                 [*command, f"__name:={NODE}"],
                 stdin=subprocess.DEVNULL,
@@ -72,3 +71,12 @@ class RosbagProcess:
         if shutil.disk_usage(self._folder).free < FULL_BYTES:
             return "the disk is full"
         return f"exit code {self._process.returncode}, see bag/record.log"
+
+
+def _opened_log(folder: Path) -> BinaryIO:
+    """In a folder made for the bags. Raises LaunchError."""
+    try:
+        folder.mkdir()
+        return (folder / "record.log").open("wb")
+    except OSError as error:
+        raise LaunchError(f"{folder}: no bags can be written there ({error.strerror})") from None

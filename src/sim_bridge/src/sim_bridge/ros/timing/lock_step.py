@@ -69,6 +69,10 @@ class LockStep:
         """The nodes that time stands still for."""
         return self._conductor.awaited() if self._blocked_since is not None else ()
 
+    def waits_for(self) -> List[str]:
+        """What time stands still for, for people."""
+        return [name[1:] for name in self.awaited] or self._loop.gaps()
+
     def may_pass(self, stamp: float) -> bool:
         """Whether time may pass ``stamp``; what is due then happens."""
         if self._conductor.is_over(stamp):

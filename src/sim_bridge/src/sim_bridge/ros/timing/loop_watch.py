@@ -58,6 +58,10 @@ class LoopWatch:
             untold, self._untold = self._untold, []
         return untold
 
+    def gaps(self) -> List[str]:
+        """What the loop is open for, for people."""
+        return [] if self.is_closed else sorted(set(self._since) - self._given_up)
+
     def _watch(self) -> None:
         while not rospy.is_shutdown():
             with self._changed:
@@ -65,7 +69,7 @@ class LoopWatch:
                 version = self._version
             if self._seen == version:
                 continue
-            gaps = self._gaps()
+            gaps = self._missing()
             with self._changed:
                 if not gaps and version == self._version:
                     self._seen, self.is_closed = version, True
@@ -73,7 +77,7 @@ class LoopWatch:
             if gaps:
                 time.sleep(POLL_SECONDS)
 
-    def _gaps(self) -> List[str]:
+    def _missing(self) -> List[str]:
         """What is missing and not given up; those given up are remembered."""
         with self._changed:
             absent, members = sorted(self._absent), {self._me, *self._joined}

@@ -12,7 +12,7 @@ from std_msgs.msg import Header
 from planar_ros.messages.conversion import time_of
 from planar_ros.node.progress import TOPIC as PROGRESS_TOPIC
 from planar_ros.node.reconfigure import Reconfiguration
-from planar_ros.node.waiting import Waiting
+from planar_ros.node.waiting import HoldUp, Waiting
 from sim_bridge.config import RunTimeSettings
 from sim_bridge.pacing import Pacer
 from sim_bridge.ros.orders import Orders
@@ -43,6 +43,7 @@ class TimeControl:
         self._grants: List[_Grant] = []
         rospy.Subscriber(PROGRESS_TOPIC, Header, self._on_progress, queue_size=100, tcp_nodelay=True)
         rospy.Service("~step", Step, self._on_step)
+        self._hold_up = HoldUp()
         Waiting({f"{name} on {PROGRESS_TOPIC}": self._follows(name) for name in pacer.wait_for})
 
     @property
@@ -63,6 +64,11 @@ class TimeControl:
 
     def wait_for_turn(self) -> bool:
         """Waits until the next step may be taken, or something else is to be done first (then False)."""
+        may_go = self._may_go()
+        self._hold_up.look([] if may_go else self._waits_for())
+        return may_go
+
+    def _may_go(self) -> bool:
         if self.is_paused and not self._grants:
             self._orders.wait(LONGEST_WAIT_SECONDS)
             return False
@@ -80,6 +86,11 @@ class TimeControl:
             rospy.logwarn("no progress of %s: the simulation goes on without it in real time", name)
         self._orders.wait(min(delay, LONGEST_WAIT_SECONDS))
         return False
+
+    def _waits_for(self) -> List[str]:
+        if self.is_paused and not self._grants:
+            return []
+        return [*self._step.waits_for(), *self._pacer.behind(self._scene.stamp + self._scene.step_seconds)]
 
     def count_step(self) -> None:
         """A step has been taken."""

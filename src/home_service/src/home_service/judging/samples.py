@@ -1,0 +1,44 @@
+"""What is kept of a series of numbers, however long it becomes."""
+
+from array import array
+
+import numpy as np
+
+SAMPLES_PER_SECOND = 10.0
+# Of sixteen minutes.
+MOST_SAMPLES = 9_600
+
+
+class Samples:
+    """Rows of so many ``columns``, the first being the stamp in seconds: ten a second.
+
+    When there are more than ``most``, every other one goes, and from then on half as many come.
+    """
+
+    def __init__(self, columns: int, most: int = MOST_SAMPLES):
+        self._columns, self._most = columns, most
+        self._per_second = SAMPLES_PER_SECOND
+        self._numbers = array("d")
+
+    def is_due(self, stamp: float) -> bool:
+        """Whether a sample of this stamp is one of those kept: the first of each tenth of a second."""
+        return not self._numbers or self._slot(stamp) != self._slot(self._numbers[-self._columns])
+
+    def add(self, *row: float) -> None:
+        self._numbers.extend(row)
+        if len(self._numbers) > self._most * self._columns:
+            self._thin()
+
+    def rows(self) -> np.ndarray:
+        """All that are kept (N, columns)."""
+        return np.array(self._numbers).reshape(-1, self._columns)
+
+    def _slot(self, stamp: float) -> int:
+        return int(stamp * self._per_second + 1e-6)
+
+    def _thin(self) -> None:
+        self._per_second /= 2.0
+        rows = self.rows()
+        slots = np.array([self._slot(stamp) for stamp in rows[:, 0]])
+        is_kept = np.concatenate([[True], np.diff(slots) != 0])
+        self._numbers = array("d", rows[is_kept].ravel())

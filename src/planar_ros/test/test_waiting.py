@@ -1,0 +1,48 @@
+"""Who is waited for while a node works is told after a while, and taken back as soon as it goes on."""
+
+import pytest
+
+from planar_ros.node import waiting
+from planar_ros.node.waiting import HoldUp
+
+
+@pytest.fixture
+def told(monkeypatch):
+    said = []
+
+    class Publisher:
+        def __init__(self, *_arguments, **_named):
+            pass
+
+        def publish(self, text):
+            said.append(text)
+
+    monkeypatch.setattr(waiting.rospy, "Publisher", Publisher)
+    return said
+
+
+def look(hold_up, monkeypatch, *moments):
+    for moment, names in moments:
+        monkeypatch.setattr(waiting.time, "monotonic", lambda moment=moment: moment)
+        hold_up.look(names)
+
+
+def test_a_short_wait_is_nothing_to_tell(told, monkeypatch):
+    look(
+        HoldUp(1.0),
+        monkeypatch,
+        (0.0, ["amcl"]),
+        (0.9, ["amcl"]),
+        (1.0, []),
+        (1.5, ["amcl"]),
+        (2.4, ["amcl"]),
+    )
+    assert told == []
+
+
+def test_a_long_wait_is_told_once_and_taken_back(told, monkeypatch):
+    both = ["amcl", "move_base"]
+    look(
+        HoldUp(1.0), monkeypatch, (0.0, both), (1.1, both), (1.2, both), (1.3, ["amcl"]), (1.4, []), (1.5, [])
+    )
+    assert told == ["amcl\nmove_base", "amcl", ""]
