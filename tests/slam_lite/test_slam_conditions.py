@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The node slam_gmapping under conditions that are not the usual ones; each robot has a tf of its own."""
 
+import math
 import shutil
 import subprocess
 import tempfile
@@ -59,6 +60,9 @@ class Robot:
         self._tf.publish(TFMessage(transforms))
         beams = 180 if self._changes_beams and step % 3 == 0 else 360
         self._scans.publish(sweep(grid, self.base_in_map, stamp, "laser", beams, self._upside_down))
+
+    def publish(self, scan):
+        self._scans.publish(scan)
 
     @property
     def error(self) -> float:
@@ -145,6 +149,18 @@ class SlamConditionsTest(unittest.TestCase):
         self.assert_followed(self.robot("lost"))
         text = "no odometry (no transform odom -> base_link): mapping from the scans alone"
         self.wait_for(lambda: self.told("lost", text), "a warning")
+
+    def test_without_odometry_a_scan_whose_directions_are_no_numbers_is_left_out(self):
+        lost = self.robot("lost")
+        words = "skipping a scan: a scan with angle_increment nan means nothing"
+
+        def is_told():
+            scan = sweep(self.grid, lost.base_in_map, rospy.Time.now(), "laser")
+            scan.angle_increment = math.nan
+            lost.publish(scan)
+            return ("/lost/slam_gmapping", words) in self.log
+
+        self.wait_for(is_told, "what is told of it")
 
     def test_mapping_goes_on_after_time_has_gone_back(self):
         robot = self.robot("changing")

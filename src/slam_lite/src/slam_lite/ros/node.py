@@ -91,8 +91,11 @@ class SlamNode:
                 settings.odom_frame,
                 settings.base_frame,
             )
-            self._on_scan(message, scan_from_msg(message, *mounting), Pose2())
-            return
+            try:
+                self._on_scan(message, scan_from_msg(message, *mounting), Pose2())
+                return
+            except PlanarError as error:
+                reason = str(error)
         rospy.logwarn_throttle(ALARM_SECONDS, "skipping a scan: %s", reason)
         self._step.report(message.header.stamp)
 
