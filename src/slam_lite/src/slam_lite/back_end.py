@@ -35,6 +35,7 @@ from slam_lite.loops.place_recognition import (
     ways_along,
 )
 from slam_lite.loops.relocation import KnownMap
+from slam_lite.loops.ways_back import ways_back
 from slam_lite.matching.local_map import LocalMap, wide_map
 from slam_lite.surface import Surface
 
@@ -53,6 +54,8 @@ _MAX_PENDING = 50
 _MAX_RECOGNISED = 3
 # When to end an optimisation, metres and radians: while mapping, and in the end.
 _ROUGHLY, _EXACTLY = 5e-3, 1e-5
+# How often ways driven again are looked for, and which chi-square says that one was not.
+_LOOKS_BACK, _UNMET_CHI_SQUARE = 2, 16.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -292,8 +295,17 @@ class BackEnd:
         self._unsettled = 0 if result.moved else self._unsettled + len(result.edges)
 
     def settle(self) -> None:
-        """Optimises to the end."""
-        self._poses[: len(self)] = optimise(self.poses, self.edges, _EXACTLY)
+        """Optimises to the end, and ties ways that were driven again."""
+        poses, found = optimise(self.poses, self.edges, _EXACTLY), []
+        for _ in range(_LOOKS_BACK if self._settings.close_loops else 0):
+            found = ways_back(poses, self.edges, self.surfaces, self._local_map)
+            if not found:
+                break
+            poses = optimise(poses, _with(self.edges, found), _EXACTLY, fresh=len(found))
+        for edge, chi in zip(found, chi_squares(poses, edges_of(*found))):
+            if chi < _UNMET_CHI_SQUARE:
+                self._edges.append(edge)
+        self._poses[: len(self)] = poses
         self._unsettled = 0
 
 

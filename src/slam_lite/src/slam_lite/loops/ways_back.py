@@ -1,0 +1,189 @@
+"""Ways driven again: in the end, long stretches of them are laid over each other.
+
+Where little is seen, and that from the other side, as on the way back through a yard of trees, the few scans
+of a closure tell nothing. What some thirty metres of way have seen together does, in a coarse grid that does
+not ask from which side: as it was followed from scan to scan, for what closures elsewhere have bent the graph
+by lies evenly on many steps, whereas wheels slip on one.
+"""
+
+from dataclasses import dataclass
+from typing import Iterator, List, Optional, Sequence, Tuple
+
+import numpy as np
+
+from planar import Pose2, wrap
+from slam_lite.graph.drift import variances_xy
+from slam_lite.graph.pose_graph import Edge, Edges
+from slam_lite.loops.lasting import lasting
+from slam_lite.loops.sight import Placed
+from slam_lite.matching.correlative import Window, scores, search_far
+from slam_lite.matching.local_map import LocalMap
+from slam_lite.surface import Surface, thinned
+
+# A place is looked for every so many metres, so near by the graph and so far back on the way.
+_EVERY, _NEAR, _LATER = 3.0, 5.0, 60.0
+# Places farther apart than so many keys are two; one nearer than this to a closure, metres, is known.
+_KEYS_APART, _KNOWN = 30, 6.0
+# Metres of way to each side of the recent key, and of the place; of the former so many scans at most.
+_RECENT_WAY, _PLACE_WAY = 14.0, 20.0
+_MOST_SCANS = 60
+_LEAST_POINTS, _MOST_POINTS = 500, 400
+_WINDOW, _LEAST_SCORE, _APART = Window(3.0, 0.15), 0.3, 0.6
+# Poses around the best one that are weighed, by how much of its score they lack.
+_STEPS_XY, _STEPS_YAW = np.arange(-1.0, 1.05, 0.2), np.arange(-0.12, 0.125, 0.02)
+_SOFTNESS = 0.1
+# Standard deviations, metres and radians: more in all directions is no fit, more in one a slide, of which
+# that much is to be expected; and what is left in doubt anyway.
+_MOST_XY, _MOST_YAW, _SLIDE, _SLID = 0.35, 0.04, 0.4, 1.0
+_OWN_XY, _OWN_YAW = 0.1, 0.008
+# Witnesses: how many, how far from it on the two ways, and by how much they may differ: metres and radians,
+# and the same a metre of way.
+_WITNESSES, _RECENT_APART, _PLACE_APART = 2, (2.0, 20.0), 25.0
+_ERROR, _TURN, _ERROR_RATE, _TURN_RATE = 0.35, 0.05, 0.015, 0.001
+# A step that is less sure than this, metres, is none: the robot was put down anew.
+_BROKEN = 0.4
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """Keys' ``poses`` (N, 3), as the robot was followed, and the ``metres`` (N,) driven up to each."""
+
+    poses: np.ndarray
+    metres: np.ndarray
+
+    def between(self, first: int, second: int) -> Pose2:
+        return _between(self.poses, first, second)
+
+    def around(self, key: int, reach: float) -> Tuple[int, int]:
+        """The first and the last key at most so many metres of way away."""
+        ends = np.searchsorted(self.metres, self.metres[key] + np.array([-reach, reach]))
+        return int(ends[0]), int(ends[1]) - 1
+
+    def apart(self, first: int, second: int) -> float:
+        return float(abs(self.metres[second] - self.metres[first]))
+
+
+def way_of(first: np.ndarray, edges: Edges) -> Way:
+    """The way of a graph whose first key is at ``first`` (3,)."""
+    steps = np.flatnonzero(~edges.is_loop)
+    steps = steps[np.argsort(edges.nodes[steps, 1])]
+    measured = edges.measured[steps]
+    yaw = np.concatenate((first[2:], first[2] + np.cumsum(measured[:, 2])))
+    c, s = np.cos(yaw[:-1]), np.sin(yaw[:-1])
+    x, y = measured[:, 0], measured[:, 1]
+    moves = np.column_stack((c * x - s * y, s * x + c * y))
+    lengths = np.hypot(x, y) + np.where(variances_xy(edges)[steps] > _BROKEN**2, np.inf, 0.0)
+    lengths[np.isinf(lengths)] = 10.0 * _PLACE_WAY
+    xy = np.vstack((first[:2], first[:2] + np.cumsum(moves, axis=0)))
+    return Way(np.column_stack((xy, wrap(yaw))), np.concatenate(([0.0], np.cumsum(lengths))))
+
+
+def ways_back(
+    poses: np.ndarray, edges: Edges, surfaces: Sequence[Surface], local_map: LocalMap
+) -> List[Edge]:
+    """Closures of a settled graph, ``poses`` (N, 3), where it has none; ``local_map`` is overwritten."""
+    if len(poses) < 2:
+        return []
+    way = way_of(poses[0], edges)
+    found = []
+    for place, recent in _pairs(poses, way, edges.nodes[edges.is_loop]):
+        edge = _laid(place, recent, _between(poses, place, recent), way, surfaces, local_map)
+        if edge is not None:
+            found.append(edge)
+    return [edge for edge in found if sum(_agree(edge, other, way) for other in found) >= _WITNESSES]
+
+
+def _pairs(poses: np.ndarray, way: Way, loops: np.ndarray) -> Iterator[Tuple[int, int]]:
+    """Places where the robot has been before, and keys of when it was there again."""
+    last = -np.inf
+    for recent in range(len(poses)):
+        if way.metres[recent] - last < _EVERY:
+            continue
+        last = way.metres[recent]
+        end = int(np.searchsorted(way.metres, last - _LATER))
+        distances = np.hypot(*(poses[:end, :2] - poses[recent, :2]).T)
+        near = np.flatnonzero(distances < _NEAR)
+        known = loops[np.abs(way.metres[loops[:, 1]] - last) < _KNOWN, 0]
+        for stretch in np.split(near, np.flatnonzero(np.diff(near) > _KEYS_APART) + 1):
+            if len(stretch) == 0:
+                continue
+            place = int(stretch[np.argmin(distances[stretch])])
+            if not (np.abs(way.metres[known] - way.metres[place]) < _KNOWN).any():
+                yield place, recent
+
+
+def _laid(
+    place: int,
+    recent: int,
+    guess: Pose2,
+    way: Way,
+    surfaces: Sequence[Surface],
+    local_map: LocalMap,
+) -> Optional[Edge]:
+    """The stretches around two keys laid over each other, if they fit in one way only."""
+    first, last = way.around(recent, _RECENT_WAY)
+    here = _placed(first, last, recent, way, surfaces)
+    seen = lasting(here[:: max(1, len(here) // _MOST_SCANS)])
+    if len(seen) < _LEAST_POINTS:
+        return None
+    start, end = way.around(place, _PLACE_WAY)
+    local_map.clear(Pose2())
+    for placed in _placed(start, min(end, first - 1), place, way, surfaces):
+        local_map.add(*placed)
+    coarse, sample = local_map.beyond or local_map, thinned(seen, _MOST_POINTS)
+    peak = search_far(sample, coarse, guess, _WINDOW, _LEAST_SCORE, apart=_APART)
+    if peak is None or not peak.is_unique:
+        return None
+    weighed = _weighed(peak.base_pose, sample, coarse)
+    return None if weighed is None else Edge(place, recent, *weighed, is_loop=True)
+
+
+def _weighed(peak: Pose2, surface: Surface, local_map: LocalMap) -> Optional[Tuple[Pose2, np.ndarray]]:
+    """Mean and information (3, 3) of the poses around a peak, by how well they fit; None if too many do.
+
+    After E. Olson, "Real-time correlative scan matching", ICRA 2009.
+    """
+    poses = np.stack(np.meshgrid(_STEPS_XY, _STEPS_XY, _STEPS_YAW, indexing="ij"), -1).reshape(-1, 3)
+    poses += peak.as_array()
+    fits = scores(surface, local_map, [Pose2.from_array(pose) for pose in poses])
+    weights = np.exp((fits / fits.max() - 1.0) / _SOFTNESS)
+    mean = np.average(poses, axis=0, weights=weights)
+    spread = np.cov(poses.T, aweights=weights, ddof=0)
+    (least, most), axes = np.linalg.eigh(spread[:2, :2])
+    if least > _MOST_XY**2 or spread[2, 2] > _MOST_YAW**2:
+        return None
+    if most > _SLIDE**2:
+        spread[:2, :2] += _SLID**2 * np.outer(axes[:, 1], axes[:, 1])
+    own = np.diag([_OWN_XY**2, _OWN_XY**2, _OWN_YAW**2])
+    return Pose2.from_array(mean), np.linalg.inv(spread + own)
+
+
+def _agree(one: Edge, other: Edge, way: Way) -> bool:
+    """Whether two closures near each other tell the same story, but for what they slide along."""
+    on_way, at_place = way.apart(one.second, other.second), way.apart(one.first, other.first)
+    if not _RECENT_APART[0] < on_way < _RECENT_APART[1] or at_place > _PLACE_APART:
+        return False
+    step = way.between(one.first, other.first)
+    told = one.second_in_first @ way.between(one.second, other.second)
+    retold = step @ other.second_in_first
+    error = np.array([retold.x - told.x, retold.y - told.y])
+    turned = Pose2(0.0, 0.0, step.yaw).transform_points(_slide(other)[None])[0]
+    for slide in (_slide(one), turned):
+        error -= (error @ slide) * slide
+    far, turn = on_way + at_place, abs(wrap(retold.yaw - told.yaw))
+    return bool(np.hypot(*error) < _ERROR + _ERROR_RATE * far and turn < _TURN + _TURN_RATE * far)
+
+
+def _slide(edge: Edge) -> np.ndarray:
+    """Unit vector (2,), along first's axes, in which an edge knows little, or zeros."""
+    (_, most), axes = np.linalg.eigh(np.linalg.inv(edge.information)[:2, :2])
+    return axes[:, 1] if most > _SLIDE**2 + 0.5 * _SLID**2 else np.zeros(2)
+
+
+def _placed(first: int, last: int, origin: int, way: Way, surfaces: Sequence[Surface]) -> List[Placed]:
+    """Scans of some keys, each with its pose seen from ``origin``."""
+    return [(surfaces[key], way.between(origin, key)) for key in range(first, last + 1)]
+
+
+def _between(poses: np.ndarray, first: int, second: int) -> Pose2:
+    return Pose2.from_array(poses[first]).inverse() @ Pose2.from_array(poses[second])
