@@ -8,7 +8,7 @@ import pytest
 from planar import Pose2, Scan
 from slam_lite.back_end import BackEnd
 from slam_lite.config import MapperSettings
-from slam_lite.graph.pose_graph import Edge, chi_squares, edges_of
+from slam_lite.graph.pose_graph import Edge, Edges, chi_squares, edges_of
 from slam_lite.loops.ways_back import way_of, ways_back
 from slam_lite.matching.local_map import wide_map
 from slam_lite.surface import surface_of
@@ -72,6 +72,24 @@ def test_the_way_back_is_tied_but_where_wheels_have_slipped(seed):
     assert np.median(chi) < 4.0
     assert np.mean(chi > 16.0) < 0.2
     assert all(edge.is_loop and edge.first < KEYS < edge.second for edge in found)
+
+
+def with_loop(yard, first, second):
+    """The yard's edges, with a closure between two keys."""
+    true = yard.true[first].inverse() @ yard.true[second]
+    loop = edges_of(Edge(first, second, true, FIRM, is_loop=True))
+    return Edges(*(np.concatenate(pair) for pair in zip(vars(yard.edges).values(), vars(loop).values())))
+
+
+@pytest.mark.parametrize("seed", [60, 68])
+def test_the_last_tie_tells_where_the_robot_is_however_far_off_the_graph_is(seed):
+    yard = Yard(seed)
+    yard.poses[KEYS:, 1] += 12.0
+    assert ways_back(yard.poses, yard.edges, yard.surfaces, wide_map()) == []
+    edges = with_loop(yard, KEYS - 30, KEYS + 30)
+    found = ways_back(yard.poses, edges, yard.surfaces, wide_map())
+    assert len(found) > 12
+    assert np.mean(yard.chi_squares(found) > 16.0) < 0.2
 
 
 @pytest.mark.parametrize("seed", [63, 64])

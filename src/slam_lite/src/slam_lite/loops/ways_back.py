@@ -7,7 +7,7 @@ by lies evenly on many steps, whereas wheels slip on one.
 """
 
 from dataclasses import dataclass
-from typing import Iterator, List, Optional, Sequence, Tuple
+from typing import List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -24,11 +24,14 @@ from slam_lite.surface import Surface, thinned
 _EVERY, _NEAR, _LATER = 3.0, 5.0, 60.0
 # Places farther apart than so many keys are two; one nearer than this to a closure, metres, is known.
 _KEYS_APART, _KNOWN = 30, 6.0
+# So many metres of way a tie tells where the robot is.
+_SINCE = 40.0
 # Metres of way to each side of the recent key, and of the place; of the former so many scans at most.
 _RECENT_WAY, _PLACE_WAY = 14.0, 20.0
 _MOST_SCANS = 60
-_LEAST_POINTS, _MOST_POINTS = 500, 400
-_WINDOW, _LEAST_SCORE, _APART = Window(3.0, 0.15), 0.3, 0.6
+_LEAST_POINTS, _MOST_POINTS = 200, 400
+# What is searched, in turn, and for which score; fits nearer to each other than this, metres, are one.
+_SEARCHES, _APART = ((Window(3.0, 0.15), 0.3), (Window(6.0, 0.3), 0.5)), 0.6
 # Poses around the best one that are weighed, by how much of its score they lack.
 _STEPS_XY, _STEPS_YAW = np.arange(-1.0, 1.05, 0.2), np.arange(-0.12, 0.125, 0.02)
 _SOFTNESS = 0.1
@@ -84,32 +87,90 @@ def ways_back(
     """Closures of a settled graph, ``poses`` (N, 3), where it has none; ``local_map`` is overwritten."""
     if len(poses) < 2:
         return []
-    way = way_of(poses[0], edges)
-    found = []
-    for place, recent in _pairs(poses, way, edges.nodes[edges.is_loop]):
-        edge = _laid(place, recent, _between(poses, place, recent), way, surfaces, local_map)
-        if edge is not None:
-            found.append(edge)
-    return [edge for edge in found if sum(_agree(edge, other, way) for other in found) >= _WITNESSES]
+    search = _Search(poses, edges, surfaces, local_map)
+    found = search.found()
+    return [edge for edge in found if sum(_agree(edge, other, search.way) for other in found) >= _WITNESSES]
 
 
-def _pairs(poses: np.ndarray, way: Way, loops: np.ndarray) -> Iterator[Tuple[int, int]]:
-    """Places where the robot has been before, and keys of when it was there again."""
-    last = -np.inf
-    for recent in range(len(poses)):
-        if way.metres[recent] - last < _EVERY:
-            continue
-        last = way.metres[recent]
-        end = int(np.searchsorted(way.metres, last - _LATER))
-        distances = np.hypot(*(poses[:end, :2] - poses[recent, :2]).T)
+class _Search:
+    """Goes along the way, there and back, and ties it to what lies beside it.
+
+    Where that is, the last tie tells, and the way since; if there is none, the graph does.
+    """
+
+    def __init__(self, poses: np.ndarray, edges: Edges, surfaces: Sequence[Surface], local_map: LocalMap):
+        self.way = way_of(poses[0], edges)
+        self._poses, self._surfaces, self._local_map = poses, surfaces, local_map
+        self._ties = [_edge(edges, number) for number in np.flatnonzero(edges.is_loop)]
+        self._closures = len(self._ties)
+        self._tried: Set[Tuple[int, int]] = set()
+
+    def found(self) -> List[Edge]:
+        """All that fit, also those that nobody confirms."""
+        looks = np.flatnonzero(np.diff(np.floor(self.way.metres / _EVERY), prepend=-1.0)).tolist()
+        for recent in (*looks, *reversed(looks)):
+            for place, guess in self._beside(recent):
+                if (place, recent) not in self._tried:
+                    self._tried.add((place, recent))
+                    edge = _laid(place, recent, guess, self.way, self._surfaces, self._local_map)
+                    self._ties += [] if edge is None else [edge]
+        return self._ties[self._closures :]
+
+    def _beside(self, recent: int) -> List[Tuple[int, Pose2]]:
+        """Places where the robot has been before, and from each where it is now."""
+        numbers, beside = self._latest_ties(recent), []
+        for number in numbers:
+            tie = self._ties[number]
+            is_known = number < self._closures and self.way.apart(tie.second, recent) < _KNOWN
+            place = None if is_known else self._place_by(tie, recent)
+            beside += [] if place is None else [place]
+        for key in self._near(recent):
+            if all(self.way.apart(self._ties[number].first, key) > 2.0 * _SINCE for number in numbers):
+                beside.append((key, _between(self._poses, key, recent)))
+        return beside
+
+    def _latest_ties(self, recent: int) -> List[int]:
+        """Numbers of the ties nearest on the way, one for each stretch of places."""
+        nodes = np.array([(tie.first, tie.second) for tie in self._ties], dtype=np.int64).reshape(-1, 2)
+        since = np.abs(self.way.metres[nodes[:, 1]] - self.way.metres[recent])
+        latest: List[int] = []
+        for number in np.argsort(since, kind="stable")[: np.count_nonzero(since <= _SINCE)].tolist():
+            others = (self._ties[other].first for other in latest)
+            if all(self.way.apart(self._ties[number].first, other) > 2.0 * _SINCE for other in others):
+                latest.append(number)
+        return latest
+
+    def _place_by(self, tie: Edge, recent: int) -> Optional[Tuple[int, Pose2]]:
+        """The place nearest to the robot by a tie and the way since, and where the robot is from there."""
+        start, end = self.way.around(tie.first, 2.0 * _SINCE)
+        end = min(end, self._end_of_places(recent) - 1)
+        if end < start:
+            return None
+        robot = Pose2.from_array(self.way.poses[tie.first]) @ tie.second_in_first
+        robot = robot @ self.way.between(tie.second, recent)
+        distances = np.hypot(*(self.way.poses[start : end + 1, :2] - [robot.x, robot.y]).T)
+        place = start + int(np.argmin(distances))
+        if distances.min() > _NEAR:
+            return None
+        return place, Pose2.from_array(self.way.poses[place]).inverse() @ robot
+
+    def _near(self, recent: int) -> List[int]:
+        """Places near by as the graph has it."""
+        distances = np.hypot(*(self._poses[: self._end_of_places(recent), :2] - self._poses[recent, :2]).T)
         near = np.flatnonzero(distances < _NEAR)
-        known = loops[np.abs(way.metres[loops[:, 1]] - last) < _KNOWN, 0]
-        for stretch in np.split(near, np.flatnonzero(np.diff(near) > _KEYS_APART) + 1):
-            if len(stretch) == 0:
-                continue
-            place = int(stretch[np.argmin(distances[stretch])])
-            if not (np.abs(way.metres[known] - way.metres[place]) < _KNOWN).any():
-                yield place, recent
+        stretches = np.split(near, np.flatnonzero(np.diff(near) > _KEYS_APART) + 1)
+        return [int(stretch[np.argmin(distances[stretch])]) for stretch in stretches if len(stretch)]
+
+    def _end_of_places(self, recent: int) -> int:
+        """The first key that is too near on the way to be another time."""
+        return int(np.searchsorted(self.way.metres, self.way.metres[recent] - _LATER))
+
+
+def _edge(edges: Edges, number: int) -> Edge:
+    first, second = edges.nodes[number].tolist()
+    return Edge(
+        first, second, Pose2.from_array(edges.measured[number]), edges.information[number], is_loop=True
+    )
 
 
 def _laid(
@@ -131,7 +192,10 @@ def _laid(
     for placed in _placed(start, min(end, first - 1), place, way, surfaces):
         local_map.add(*placed)
     coarse, sample = local_map.beyond or local_map, thinned(seen, _MOST_POINTS)
-    peak = search_far(sample, coarse, guess, _WINDOW, _LEAST_SCORE, apart=_APART)
+    for window, least_score in _SEARCHES:
+        peak = search_far(sample, coarse, guess, window, least_score, apart=_APART)
+        if peak is not None:
+            break
     if peak is None or not peak.is_unique:
         return None
     weighed = _weighed(peak.base_pose, sample, coarse)
