@@ -12,6 +12,7 @@ import re
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Dict, List, Optional, Tuple
@@ -32,8 +33,6 @@ WORK = {
 FATAL = ("sim_bridge", "rosmaster", "roslaunch")
 # A mission is over too soon otherwise; the robot is on its way by then.
 SPEED, DRIVING_SECONDS = 4, 2.0
-# What a node has sent before its end is heard by then, and none is back so soon.
-LAST_WORDS_SECONDS = 0.3
 PAGE = """# Killed nodes
 
 What becomes of `./scripts/home_service.sh --mission map/mission.yaml --speed {speed}` when one of its
@@ -81,11 +80,15 @@ def fate_of(killed: str, seed: int) -> Fate:
     heard = _listen(killed) if killed in WORK else []
     time.sleep(DRIVING_SECONDS)
     for process in processes_of(graph, killed):
-        process.kill()
+        with suppress(psutil.NoSuchProcess):  # gone with its parent
+            process.kill()
     killed_at = time.monotonic()
     code = wait_for_end(graph)
     ended = time.monotonic() - killed_at
-    back = next((moment - killed_at for moment in heard if moment > killed_at + LAST_WORDS_SECONDS), None)
+    # What it has sent before its end came by a connection that was there.
+    known = [connection for moment, connection in heard if moment <= killed_at]
+    moments = [moment for moment, connection in heard if all(connection is not other for other in known)]
+    back = moments[0] - killed_at if moments else None
     return Fate(killed, back, ended, code, reason_in(folder), len(traces.left()))
 
 
@@ -118,15 +121,15 @@ def wait_for_end(graph: Graph) -> int:
         return graph.end()
 
 
-def _listen(node: str) -> List[float]:
-    """A list that grows by the moments at which the node is heard at work."""
+def _listen(node: str) -> List[Tuple[float, Dict[str, str]]]:
+    """A list that grows by the moments at which the node is heard, each with the connection's header."""
     import rospy
 
-    heard: List[float] = []
+    heard: List[Tuple[float, Dict[str, str]]] = []
 
     def hear(message):
         if message._connection_header["callerid"] == f"/{node}":
-            heard.append(time.monotonic())
+            heard.append((time.monotonic(), message._connection_header))
 
     rospy.Subscriber(WORK[node], rospy.AnyMsg, hear)
     return heard
