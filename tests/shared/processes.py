@@ -1,8 +1,16 @@
 """What is running on this machine."""
 
+import os
+import uuid
 from pathlib import Path
 
 import psutil
+
+
+def marked_environment():
+    """A mark that no process has yet, and this environment with it."""
+    name, value = "HOME_SERVICE_TEST", str(uuid.uuid4())
+    return f"{name}={value}", {**os.environ, "PYTHONUNBUFFERED": "1", name: value}
 
 
 def processes_of(mark):

@@ -13,7 +13,7 @@ import uuid
 from pathlib import Path
 
 import rostest
-from processes import processes_with
+from processes import marked_environment, processes_with
 from waiting import wait_until
 
 SCRIPT = Path(__file__).resolve().parents[2] / "scripts/home_service.sh"
@@ -45,12 +45,11 @@ class InterruptTest(unittest.TestCase):
             self.assertEqual(processes_with(mark), [], f"interrupted {moment:.3f} s after the guard of nodes")
 
     def test_what_a_person_is_meant_to_end_ends_well(self):
-        mark = f"HOME_SERVICE_TEST={uuid.uuid4()}"
-        name, value = mark.split("=")
+        mark, environment = marked_environment()
         with tempfile.TemporaryDirectory() as folder:
             run = subprocess.Popen(
                 [str(SCRIPT.with_name("launch.sh")), "--output", folder],
-                env={**os.environ, name: value},
+                env=environment,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,

@@ -2,15 +2,13 @@
 """A run whose simulator is killed says so, and ends."""
 
 import json
-import os
 import tempfile
 import unittest
-import uuid
 from pathlib import Path
 
 import rostest
 from command import Command
-from processes import processes_of, processes_with
+from processes import marked_environment, processes_of, processes_with
 
 ROOT = Path(__file__).resolve().parents[2]
 NODE = "__name:=sim_bridge"
@@ -20,11 +18,10 @@ REASON = "sim_bridge: was ended by SIGKILL"
 
 class KilledTest(unittest.TestCase):
     def test_a_mission_whose_simulator_is_killed_ends_with_that_for_its_reason(self):
-        mark = f"HOME_SERVICE_TEST={uuid.uuid4()}"
-        name, value = mark.split("=")
+        mark, environment = marked_environment()
         command = [ROOT / "scripts/home_service.sh", "--speed", "4", "--output"]
         with tempfile.TemporaryDirectory() as parent:
-            with Command(*command, parent, env={**os.environ, name: value, "PYTHONUNBUFFERED": "1"}) as run:
+            with Command(*command, parent, env=environment) as run:
                 run.told("pick_objects: driving to")
                 for process in processes_of(mark):
                     if NODE in process.cmdline():

@@ -3,12 +3,10 @@
 
 import contextlib
 import json
-import os
 import resource
 import subprocess
 import tempfile
 import unittest
-import uuid
 from pathlib import Path
 
 import fastjsonschema
@@ -16,7 +14,7 @@ import numpy as np
 import psutil
 import rostest
 from command import Command
-from processes import processes_of, processes_with
+from processes import marked_environment, processes_of, processes_with
 
 from run_report import load_record
 
@@ -66,11 +64,10 @@ class ReportTest(unittest.TestCase):
         self.assertIn("warning: missing: run.gif", output)
 
     def test_a_disk_that_fills_meanwhile_is_told_in_a_few_words_and_makes_a_failure_of_the_run(self):
-        mark = f"HOME_SERVICE_TEST={uuid.uuid4()}"
-        name, value = mark.split("=")
+        mark, environment = marked_environment()
         command = [ROOT / "scripts/test_navigation.sh", "--goals", "1.0 0.5 0.0; 0.0 0.5 3.0", "--output"]
         with tempfile.TemporaryDirectory() as parent:
-            with Command(*command, parent, env={**os.environ, name: value, "PYTHONUNBUFFERED": "1"}) as run:
+            with Command(*command, parent, env=environment) as run:
                 run.told("goal 1 (")
                 _fill_the_disk_of(mark)
                 code = run.process.wait(RUN_SECONDS)

@@ -2,17 +2,15 @@
 """What a running home listens on: nothing that another host could reach, as docs/security.md tells."""
 
 import ipaddress
-import os
 import signal
 import subprocess
 import tempfile
 import unittest
-import uuid
 from pathlib import Path
 
 import psutil
 import rostest
-from processes import processes_of
+from processes import marked_environment, processes_of
 
 SCRIPT = Path(__file__).resolve().parents[2] / "scripts/launch.sh"
 EXIT_SECONDS = 20.0
@@ -22,12 +20,11 @@ OF_THE_SYSTEM = {"robot_state_publisher", "rosout"}
 
 class SocketsTest(unittest.TestCase):
     def test_only_this_host_reaches_what_the_project_listens_on(self):
-        mark = f"HOME_SERVICE_TEST={uuid.uuid4()}"
-        name, value = mark.split("=")
+        mark, environment = marked_environment()
         with tempfile.TemporaryDirectory() as folder:
             run = subprocess.Popen(
                 [str(SCRIPT), "--web", "--output", folder],
-                env={**os.environ, name: value},
+                env=environment,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 text=True,

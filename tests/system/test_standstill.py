@@ -7,15 +7,14 @@ import subprocess
 import tempfile
 import threading
 import unittest
-import uuid
 from pathlib import Path
 
 import rostest
-from processes import processes_of, processes_with
+from processes import marked_environment, processes_of, processes_with
 from waiting import wait_until
 
 SCRIPT = Path(__file__).resolve().parents[2] / "scripts/home_service.sh"
-MARK = str(uuid.uuid4())
+MARK, ENVIRONMENT = marked_environment()
 TIMEOUT, RUN_SECONDS = 75.0, 150.0
 LOST_ODOMETRY = "faults: [{kind: odometry_stopped, start: 8.0}]\n"
 
@@ -56,7 +55,7 @@ class StandstillTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             run = subprocess.Popen(
                 [str(SCRIPT), "--output", folder, *options],
-                env={**os.environ, "PYTHONUNBUFFERED": "1", "HOME_SERVICE_TEST": MARK},
+                env=ENVIRONMENT,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
