@@ -4,9 +4,8 @@ from typing import Dict, Tuple
 
 import numpy as np
 
-from planar import Pose2
 from slam_lite.graph.drift import drift_along, shortest_ways, variances_xy
-from slam_lite.graph.pose_graph import Edge, EdgeList, Edges
+from slam_lite.graph.pose_graph import Edge, EdgeList, Edges, between
 
 # A loop's end may be moved so far to a node that is kept, metres.
 _NEAR = 1.0
@@ -25,7 +24,7 @@ def condensed(poses: np.ndarray, edges: Edges, kept: np.ndarray) -> Edges:
     steps = {tuple(pair): i for i, pair in enumerate(edges.nodes.tolist()) if not edges.is_loop[i]}
     for first, second in zip(kept[:-1], kept[1:]):
         known = steps.get((int(first), int(second)))
-        edge = _edge(edges, known) if known is not None else _tie(int(first), int(second), poses, edges)
+        edge = edges[known] if known is not None else _tie(int(first), int(second), poses, edges)
         table.append(_renumbered(edge, number))
     for edge in _moved_loops(poses, edges, kept).values():
         table.append(_renumbered(edge, number))
@@ -36,7 +35,7 @@ def _tie(first: int, second: int, poses: np.ndarray, edges: Edges) -> Edge:
     ways, before = shortest_ways(first, len(poses), edges, np.sqrt(variances_xy(edges)))
     xy, yaw = (drift[second] for drift in drift_along(ways, before, poses, edges))
     xy, yaw = max(float(xy), _LEAST_XY), max(float(yaw), _LEAST_YAW)
-    return Edge(first, second, _between(poses, first, second), np.diag([xy**-2, xy**-2, yaw**-2]))
+    return Edge(first, second, between(poses, first, second), np.diag([xy**-2, xy**-2, yaw**-2]))
 
 
 def _moved_loops(poses: np.ndarray, edges: Edges, kept: np.ndarray) -> Dict[Tuple[int, int], Edge]:
@@ -45,12 +44,12 @@ def _moved_loops(poses: np.ndarray, edges: Edges, kept: np.ndarray) -> Dict[Tupl
     is_near = np.hypot(*(poses[:, :2] - poses[nearest, :2]).T) < _NEAR
     loops: Dict[Tuple[int, int], Edge] = {}
     for i in np.flatnonzero(edges.is_loop & is_near[edges.nodes].all(axis=1)):
-        loop = _edge(edges, i)
+        loop = edges[i]
         first, second = int(nearest[loop.first]), int(nearest[loop.second])
         if abs(first - second) < 2:
             continue
-        first_in_new = _between(poses, first, loop.first)
-        measured = first_in_new @ loop.second_in_first @ _between(poses, loop.second, second)
+        first_in_new = between(poses, first, loop.first)
+        measured = first_in_new @ loop.second_in_first @ between(poses, loop.second, second)
         c, s = np.cos(first_in_new.yaw), np.sin(first_in_new.yaw)
         turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
         moved = Edge(first, second, measured, turn @ loop.information @ turn.T, is_loop=True)
@@ -68,16 +67,6 @@ def _nearest(poses: np.ndarray, kept: np.ndarray) -> np.ndarray:
     return np.where(np.abs(kept[after] - numbers) <= np.abs(numbers - kept[before]), after, before)
 
 
-def _edge(edges: Edges, i: int) -> Edge:
-    first, second = (int(node) for node in edges.nodes[i])
-    measured = Pose2.from_array(edges.measured[i])
-    return Edge(first, second, measured, edges.information[i], bool(edges.is_loop[i]))
-
-
 def _renumbered(edge: Edge, number: Dict[int, int]) -> Edge:
     first, second = number[edge.first], number[edge.second]
     return Edge(first, second, edge.second_in_first, edge.information, edge.is_loop)
-
-
-def _between(poses: np.ndarray, first: int, second: int) -> Pose2:
-    return Pose2.from_array(poses[first]).inverse() @ Pose2.from_array(poses[second])

@@ -49,6 +49,11 @@ class Edges:
     def __len__(self) -> int:
         return len(self.nodes)
 
+    def __getitem__(self, number: int) -> Edge:
+        first, second = (int(node) for node in self.nodes[number])
+        measured = Pose2.from_array(self.measured[number])
+        return Edge(first, second, measured, self.information[number], bool(self.is_loop[number]))
+
 
 class EdgeList:
     """A list of edges that only grows, kept as arrays; what it has given out does not change."""
@@ -79,6 +84,11 @@ class EdgeList:
     def view(self) -> Edges:
         """The edges so far."""
         return Edges(*(array[: self._count] for array in vars(self._arrays).values()))
+
+
+def between(poses: np.ndarray, first: int, second: int) -> Pose2:
+    """One of ``poses`` (N, 3) as seen from another."""
+    return Pose2.from_array(poses[first]).inverse() @ Pose2.from_array(poses[second])
 
 
 def edges_of(*edges: Edge) -> Edges:

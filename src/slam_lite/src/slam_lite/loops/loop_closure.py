@@ -17,6 +17,7 @@ from planar import Pose2, wrap
 from slam_lite.config import MapperSettings
 from slam_lite.graph.drift import shortest_ways, variances_xy
 from slam_lite.graph.pose_graph import Edge, Edges
+from slam_lite.loops.cycle import cycle_error, turned
 from slam_lite.loops.lasting import lasting
 from slam_lite.loops.place_recognition import Hypothesis
 from slam_lite.loops.sight import Placed, clash
@@ -241,18 +242,15 @@ def _disagreement(one: Closure, other: Closure, poses: np.ndarray) -> Tuple[floa
     a, b = one.edge, other.edge
     recent_step = _between(poses[a.second], poses[b.second])
     place_step = _between(poses[a.first], poses[b.first])
-    told, retold = a.second_in_first @ recent_step, place_step @ b.second_in_first
-    error = np.array([retold.x - told.x, retold.y - told.y])
-    for slide in (one.slide, _slide_of(other, one, poses)):
-        error -= (error @ slide) * slide
+    error, turn = cycle_error(a, b, recent_step, place_step, one.slide, other.slide)
     recent_way, place_way = (math.hypot(step.x, step.y) for step in (recent_step, place_step))
-    return recent_way, place_way, math.hypot(*error), abs(wrap(retold.yaw - told.yaw))
+    return recent_way, place_way, error, turn
 
 
 def _slide_of(closure: Closure, seen_from: Closure, poses: np.ndarray) -> np.ndarray:
     """The slide of a closure along the axes of another one's place, (2,)."""
     place_step = _between(poses[seen_from.edge.first], poses[closure.edge.first])
-    return Pose2(0.0, 0.0, place_step.yaw).transform_points(closure.slide[None])[0]
+    return turned(closure.slide, place_step.yaw)
 
 
 def lengths_of(edges: Edges) -> np.ndarray:

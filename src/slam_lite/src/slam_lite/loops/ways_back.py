@@ -13,7 +13,8 @@ import numpy as np
 
 from planar import Pose2, wrap
 from slam_lite.graph.drift import variances_xy
-from slam_lite.graph.pose_graph import Edge, Edges
+from slam_lite.graph.pose_graph import Edge, Edges, between
+from slam_lite.loops.cycle import cycle_error
 from slam_lite.loops.lasting import lasting
 from slam_lite.loops.sight import Placed
 from slam_lite.matching.correlative import Window, scores, search_far
@@ -55,7 +56,7 @@ class Way:
     metres: np.ndarray
 
     def between(self, first: int, second: int) -> Pose2:
-        return _between(self.poses, first, second)
+        return between(self.poses, first, second)
 
     def around(self, key: int, reach: float) -> Tuple[int, int]:
         """The first and the last key at most so many metres of way away."""
@@ -75,8 +76,8 @@ def way_of(first: np.ndarray, edges: Edges) -> Way:
     c, s = np.cos(yaw[:-1]), np.sin(yaw[:-1])
     x, y = measured[:, 0], measured[:, 1]
     moves = np.column_stack((c * x - s * y, s * x + c * y))
-    lengths = np.hypot(x, y) + np.where(variances_xy(edges)[steps] > _BROKEN**2, np.inf, 0.0)
-    lengths[np.isinf(lengths)] = 10.0 * _PLACE_WAY
+    is_broken = variances_xy(edges)[steps] > _BROKEN**2
+    lengths = np.where(is_broken, 10.0 * _PLACE_WAY, np.hypot(x, y))
     xy = np.vstack((first[:2], first[:2] + np.cumsum(moves, axis=0)))
     return Way(np.column_stack((xy, wrap(yaw))), np.concatenate(([0.0], np.cumsum(lengths))))
 
@@ -101,7 +102,7 @@ class _Search:
     def __init__(self, poses: np.ndarray, edges: Edges, surfaces: Sequence[Surface], local_map: LocalMap):
         self.way = way_of(poses[0], edges)
         self._poses, self._surfaces, self._local_map = poses, surfaces, local_map
-        self._ties = [_edge(edges, number) for number in np.flatnonzero(edges.is_loop)]
+        self._ties = [edges[number] for number in np.flatnonzero(edges.is_loop)]
         self._closures = len(self._ties)
         self._tried: Set[Tuple[int, int]] = set()
 
@@ -126,7 +127,7 @@ class _Search:
             beside += [] if place is None else [place]
         for key in self._near(recent):
             if all(self.way.apart(self._ties[number].first, key) > 2.0 * _SINCE for number in numbers):
-                beside.append((key, _between(self._poses, key, recent)))
+                beside.append((key, between(self._poses, key, recent)))
         return beside
 
     def _latest_ties(self, recent: int) -> List[int]:
@@ -164,13 +165,6 @@ class _Search:
     def _end_of_places(self, recent: int) -> int:
         """The first key that is too near on the way to be another time."""
         return int(np.searchsorted(self.way.metres, self.way.metres[recent] - _LATER))
-
-
-def _edge(edges: Edges, number: int) -> Edge:
-    first, second = edges.nodes[number].tolist()
-    return Edge(
-        first, second, Pose2.from_array(edges.measured[number]), edges.information[number], is_loop=True
-    )
 
 
 def _laid(
@@ -227,15 +221,16 @@ def _agree(one: Edge, other: Edge, way: Way) -> bool:
     on_way, at_place = way.apart(one.second, other.second), way.apart(one.first, other.first)
     if not _RECENT_APART[0] < on_way < _RECENT_APART[1] or at_place > _PLACE_APART:
         return False
-    step = way.between(one.first, other.first)
-    told = one.second_in_first @ way.between(one.second, other.second)
-    retold = step @ other.second_in_first
-    error = np.array([retold.x - told.x, retold.y - told.y])
-    turned = Pose2(0.0, 0.0, step.yaw).transform_points(_slide(other)[None])[0]
-    for slide in (_slide(one), turned):
-        error -= (error @ slide) * slide
-    far, turn = on_way + at_place, abs(wrap(retold.yaw - told.yaw))
-    return bool(np.hypot(*error) < _ERROR + _ERROR_RATE * far and turn < _TURN + _TURN_RATE * far)
+    error, turn = cycle_error(
+        one,
+        other,
+        way.between(one.second, other.second),
+        way.between(one.first, other.first),
+        _slide(one),
+        _slide(other),
+    )
+    far = on_way + at_place
+    return error < _ERROR + _ERROR_RATE * far and turn < _TURN + _TURN_RATE * far
 
 
 def _slide(edge: Edge) -> np.ndarray:
@@ -247,7 +242,3 @@ def _slide(edge: Edge) -> np.ndarray:
 def _placed(first: int, last: int, origin: int, way: Way, surfaces: Sequence[Surface]) -> List[Placed]:
     """Scans of some keys, each with its pose seen from ``origin``."""
     return [(surfaces[key], way.between(origin, key)) for key in range(first, last + 1)]
-
-
-def _between(poses: np.ndarray, first: int, second: int) -> Pose2:
-    return Pose2.from_array(poses[first]).inverse() @ Pose2.from_array(poses[second])
