@@ -124,7 +124,7 @@ def _inputs(path: Path) -> object:
 def _scenario(path: Path) -> object:
     from laboratory.scenario.reading import read_scenario
 
-    return read_scenario(path)
+    return read_scenario(path).digest()
 
 
 def _move_base(path: Path) -> object:

@@ -1,5 +1,6 @@
 """What is running on this machine."""
 
+import contextlib
 import os
 import uuid
 from pathlib import Path
@@ -14,23 +15,15 @@ def marked_environment():
 
 
 def processes_of(mark):
-    """Living processes whose environment holds ``mark``."""
+    """Processes whose environment holds ``mark``, with their command lines; none that is ending."""
     found = []
     for process in psutil.process_iter():
-        try:
+        with contextlib.suppress(OSError, psutil.Error):
             if mark.encode() in Path(f"/proc/{process.pid}/environ").read_bytes():
-                found.append(process)
-        except (OSError, psutil.Error):
-            continue
+                found.append((process, process.cmdline()))
     return found
 
 
 def processes_with(mark):
     """Their command lines."""
-    found = []
-    for process in processes_of(mark):
-        try:
-            found.append(" ".join(process.cmdline()))
-        except psutil.Error:
-            continue
-    return found
+    return [" ".join(words) for _, words in processes_of(mark)]

@@ -23,8 +23,8 @@ class KilledTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as parent:
             with Command(*command, parent, env=environment) as run:
                 run.told("pick_objects: driving to")
-                for process in processes_of(mark):
-                    if NODE in process.cmdline():
+                for process, words in processes_of(mark):
+                    if NODE in words:
                         process.kill()
                 code = run.process.wait(END_SECONDS)
             result = json.loads(next(Path(parent).glob("*/result.json")).read_text())

@@ -87,7 +87,7 @@ class ReportTest(unittest.TestCase):
 
 def _fill_the_disk_of(mark):
     """No file of any process becomes larger, but rosout's: what is not Python would be killed by that."""
-    for process in processes_of(mark):
+    for process, _ in processes_of(mark):
         with contextlib.suppress(psutil.NoSuchProcess):
             if process.name() != "rosout":
                 process.rlimit(psutil.RLIMIT_FSIZE, (0, resource.RLIM_INFINITY))

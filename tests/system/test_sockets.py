@@ -30,7 +30,7 @@ class SocketsTest(unittest.TestCase):
                 text=True,
             )
             if any("Ctrl-C closes it" in line for line in run.stdout):
-                found = {each for process in processes_of(mark) for each in _listening(process)}
+                found = {each for process, _ in processes_of(mark) for each in _listening(process)}
             run.send_signal(signal.SIGINT)
             run.communicate(timeout=EXIT_SECONDS)
         for program, address, port in sorted(found):

@@ -77,8 +77,8 @@ class StandstillTest(unittest.TestCase):
     @staticmethod
     def stop(node):
         """By SIGSTOP, upon which it does nothing any more, but is there."""
-        for process in processes_of(MARK):
-            if f"__name:={node}" in process.cmdline():
+        for process, words in processes_of(MARK):
+            if f"__name:={node}" in words:
                 process.suspend()
 
     @staticmethod

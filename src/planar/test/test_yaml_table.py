@@ -45,6 +45,23 @@ def test_what_no_file_can_be_called_is_named_with_its_line(tmp_path, name):
         table.path("world", tmp_path)
 
 
+def test_keys_and_dates_are_texts():
+    table = parse_table(
+        "day: 2020-01-01\nnested: {at: 2001-12-14t21:59:43.10-05:00, 1: [{2: 3}]}", "tea.yaml"
+    )
+    assert table.values() == {
+        "day": "2020-01-01",
+        "nested": {"at": "2001-12-14t21:59:43.10-05:00", "1": [{"2": 3}]},
+    }
+
+
+@pytest.mark.parametrize("value", ["!!binary aGk=", "!!set {a}", "!!timestamp 2020-01-01", "!!omap [a: 1]"])
+def test_what_settings_are_not_made_of_is_refused(value):
+    table = parse_table(f"ok: 1\nnested: {{much: {value}}}", "tea.yaml")
+    with pytest.raises(SettingsError, match="tea.yaml:2: nested cannot be understood .could not determine a"):
+        table.values()
+
+
 def test_what_is_missing_or_empty_has_its_default(table):
     assert table.number("empty", 7.0) == 7.0
     assert table.text("nothing", "x") == "x"
@@ -86,7 +103,7 @@ def test_a_wrong_value_is_named_with_file_line_and_key(table, read, complaint):
         ("? [1, 2]\n: 3", "x:1: a key must be a plain text"),
         ("<<: 3", "x:1: '<<' merges no table"),
         ("a: " + "[" * 5000, "not valid YAML"),
-        ("a: 2001-99-99", "x:1: a cannot be understood"),
+        ("a: !!float x", "x:1: a cannot be understood"),
         ("a: !!python/name:os.system", "x:1: a cannot be understood"),
     ],
 )

@@ -13,6 +13,9 @@ from planar.files.reading import read_text
 _REQUIRED: Any = object()
 # No table that people write is nearly as large.
 MOST_BYTES = 4 << 20
+_TAG = "tag:yaml.org,2002:"
+# None: what stands for all others, by refusing them.
+_KNOWN = {None, *(_TAG + kind for kind in ("null", "bool", "int", "float", "str", "seq", "map"))}
 
 
 def read_table(
@@ -36,7 +39,7 @@ def read_table(
 def parse_table(text: str, source: str, error: Type[PlanarError] = SettingsError) -> "Table":
     """The table that a YAML text holds; ``source`` is what errors call the text. Raises ``error``."""
     try:
-        loader = yaml.SafeLoader(text)
+        loader = _Loader(text)
         node = loader.get_single_node()
     except (yaml.YAMLError, RecursionError) as problem:
         mark = getattr(problem, "problem_mark", None)
@@ -48,6 +51,22 @@ def parse_table(text: str, source: str, error: Type[PlanarError] = SettingsError
     document = _Document(source, loader, error)
     _check_keys(document, node)
     return Table(document, node, "")
+
+
+class _Loader(yaml.SafeLoader):
+    """Knows what JSON knows, of which settings are made: keys and dates are texts; no bytes, no sets."""
+
+    yaml_constructors = {
+        tag: constructor for tag, constructor in yaml.SafeLoader.yaml_constructors.items() if tag in _KNOWN
+    }
+    yaml_implicit_resolvers = {
+        first: [(tag, pattern) for tag, pattern in resolvers if tag != f"{_TAG}timestamp"]
+        for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
+    }
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> Dict[str, Any]:  # type: ignore[override]
+        self.flatten_mapping(node)
+        return {key.value: self.construct_object(value, deep=deep) for key, value in node.value}
 
 
 class _Document:
