@@ -84,6 +84,7 @@ class Hunter:
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
             pass_fds=[tell],
+            cwd=self._case.parent,  # Atheris leaves files where it stands
         )
         os.close(tell)
         try:
