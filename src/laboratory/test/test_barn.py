@@ -43,7 +43,11 @@ def test_a_folder_without_worlds_is_named_with_its_line(tmp_path):
     assert "world_N" in complaints[0]
 
 
-@pytest.mark.parametrize("content", [b"", b"no array", b"\x93NUMPY\x01\x00\xff\xff{"])
+NPZ = b"PK\x05\x06" + bytes(18)
+HUGE = b"\x93NUMPY\x01\x00\x43\x00{'descr': '<f8', 'fortran_order': False, 'shape': (999999999999, 2)}\n"
+
+
+@pytest.mark.parametrize("content", [b"", b"no array", b"\x93NUMPY\x01\x00\xff\xff{", NPZ, HUGE])
 def test_a_broken_reference_path_is_named(folder, content):
     (folder / "worlds/path_7.npy").write_bytes(content)
     with pytest.raises(SettingsError, match=r"path_7\.npy: not a reference path"):

@@ -67,6 +67,13 @@ def test_arrays_of_objects_are_not_unpickled(tmp_path):
         read_arrays(tmp_path / "objects.npz")
 
 
+def test_what_is_no_array_is_not_taken_for_one(tmp_path):
+    with zipfile.ZipFile(tmp_path / "text.npz", "w") as archive:
+        archive.writestr("poses.npy", "no array")
+    with pytest.raises(ValueError, match="poses is no array"):
+        read_arrays(tmp_path / "text.npz")
+
+
 def png_that_claims(width, height):
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))

@@ -1,6 +1,5 @@
 """BARN's worlds (Perille et al., "Benchmarking metric ground navigation", 2020)."""
 
-import io
 import math
 from dataclasses import dataclass
 from functools import lru_cache
@@ -13,7 +12,7 @@ from laboratory.worlds.numbered import numbered_files
 from laboratory.worlds.source import Arena
 from planar import Pose2, SettingsError
 from planar.config.yaml_table import Table
-from planar.files.reading import read_bytes
+from planar.files.reading import read_array
 from sim_bridge import load_world
 
 START = Pose2(-2.25, 3.0, math.pi / 2.0)
@@ -56,10 +55,10 @@ def _arena(number: int, world: Path, path: Path) -> Arena:
 def _read_path(file: Path) -> np.ndarray:
     """The cells (N, 2) of a reference path. Raises SettingsError."""
     try:
-        cells = np.load(io.BytesIO(read_bytes(file)), allow_pickle=False)
+        cells = read_array(file)
         if cells.ndim != 2 or cells.shape[1] != 2 or not np.isfinite(cells).all():
             raise ValueError("no finite cells (N, 2)")
-    except (OSError, ValueError, TypeError, EOFError) as error:
+    except (OSError, ValueError, TypeError) as error:
         raise SettingsError(f"{file}: not a reference path ({error})") from None
     return cells
 

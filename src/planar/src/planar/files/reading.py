@@ -59,6 +59,19 @@ def read_arrays(path) -> Dict[str, np.ndarray]:
         if unpacked > MOST_UNPACKED_BYTES:
             raise ValueError(f"{unpacked >> 20} MB when unpacked")
         with np.load(content, allow_pickle=False) as file:
-            return dict(file)
+            arrays = dict(file)
+        for name, array in arrays.items():
+            if not isinstance(array, np.ndarray):  # numpy gives the bytes of what is none
+                raise ValueError(f"{name} is no array")
+        return arrays
     except Exception as error:  # what zipfile, zlib and numpy raise for broken files has no common class
+        raise ValueError(str(error) or type(error).__name__) from None
+
+
+def read_array(path) -> np.ndarray:
+    """The array of an .npy file, without objects. Raises OSError, or ValueError for what is none."""
+    content = io.BytesIO(read_bytes(path))
+    try:
+        return np.asarray(np.lib.format.read_array(content, allow_pickle=False))
+    except Exception as error:  # as above
         raise ValueError(str(error) or type(error).__name__) from None
