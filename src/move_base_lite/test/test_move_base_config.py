@@ -120,6 +120,11 @@ def test_a_footprint_may_be_written_as_text_and_stand_above_the_costmaps():
             {"recovery_behaviors": [{"name": "jump", "type": "jump/Jump"}]},
             "recovery_behaviors: jump has an unknown type 'jump/Jump'",
         ),
+        ({"footprint": 5000 * "["}, "/move_base/global_costmap/footprint must be a list of points"),
+        (
+            {"global_costmap": {"obstacle_layer": "many", "scan": {"topic": "scan"}}},
+            "/move_base/global_costmap/obstacle_layer must be a table of parameters, got 'many'",
+        ),
     ],
 )
 def test_a_senseless_value_is_refused_by_its_full_name(parameters, text):
@@ -192,6 +197,21 @@ def test_move_slow_and_clear_is_read():
     settings, warnings = settings_from_parameters({"recovery_behaviors": listed, "slow": slow})
     assert settings.recoveries[0].settings == SlowSettings(limited_trans_speed=0.1)
     assert warnings == []
+
+
+@pytest.mark.parametrize("listed", [5, [{"name": ["a"], "type": "b"}], [{"name": "a"}], "look"])
+def test_instead_of_recoveries_that_are_none_there_are_the_default_ones(listed):
+    settings, warnings = settings_from_parameters({"recovery_behaviors": listed})
+    assert settings.recoveries == settings_from_parameters({})[0].recoveries
+    assert "recovery_behaviors must be a list of {name, type}" in warnings[0]
+
+
+def test_a_layer_to_clear_that_is_no_name_is_warned_of():
+    listed = [{"name": "forget", "type": "clear_costmap_recovery/ClearCostmapRecovery"}]
+    _, warnings = settings_from_parameters(
+        {"recovery_behaviors": listed, "forget": {"layer_names": [["obstacle_layer"]]}}
+    )
+    assert "no costmap has a layer ['obstacle_layer']" in warnings[0]
 
 
 def test_recoveries_come_in_the_configured_order():

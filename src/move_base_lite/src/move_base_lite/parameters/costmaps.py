@@ -24,7 +24,7 @@ _COSTMAP_IGNORED = {
 
 def costmap_settings(reader: Reader, values: Tree, name: str, parameters: Tree) -> CostmapSettings:
     """One costmap and its layers."""
-    values = with_plugins(values)
+    values = with_plugins(values, f"{reader.where}{name}/")
     for inherited in INHERITED:
         if inherited in parameters:
             values.setdefault(inherited, parameters[inherited])
@@ -53,8 +53,11 @@ def costmap_settings(reader: Reader, values: Tree, name: str, parameters: Tree) 
     )
 
 
-def with_plugins(values: Mapping[str, Any]) -> Dict[str, Any]:
-    """A costmap's parameters with a list of plugins, made as costmap_2d does if they are older than that."""
+def with_plugins(values: Mapping[str, Any], where: str) -> Dict[str, Any]:
+    """A costmap's parameters with a list of plugins, made as costmap_2d does if they are older than that.
+
+    ``where`` they stand, for people. Raises SettingsError if a layer is no table.
+    """
     if "plugins" in values:
         return dict(values)
     kinds = {"static_layer": STATIC} if values.get("static_map") else {}
@@ -62,6 +65,8 @@ def with_plugins(values: Mapping[str, Any]) -> Dict[str, Any]:
     kinds["inflation_layer"] = INFLATION
     moved: Dict[str, Any] = {"plugins": [], **{layer: {} for layer in kinds}}
     for layer, kind in kinds.items():
+        if not isinstance(values.get(layer, {}), dict):
+            raise SettingsError(f"{where}{layer} must be a table of parameters, got {values[layer]!r}")
         moved["plugins"].append({"name": layer, "type": kind.name})
     all_keys = set().union(*map(_keys_of, (STATIC, OBSTACLES, INFLATION)))
     for key, value in values.items():
@@ -119,5 +124,5 @@ def _corners(value: Any, name: str) -> Tuple[Tuple[float, float], ...]:
     try:
         points = yaml.safe_load(value) if isinstance(value, str) else value
         return tuple((float(x), float(y)) for x, y in points)
-    except (yaml.YAMLError, TypeError, ValueError, OverflowError):
+    except (yaml.YAMLError, TypeError, ValueError, OverflowError, RecursionError):
         raise SettingsError(f"{name} must be a list of points [x, y], got {value!r}") from None

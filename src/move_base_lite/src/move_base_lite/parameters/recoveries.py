@@ -39,14 +39,16 @@ def _listed(reader: Reader, parameters: Tree, rotation_allowed: bool) -> List[Di
     listed = parameters.get("recovery_behaviors")
     if listed is None:
         return _default_recoveries(rotation_allowed)
-    names = [item["name"] for item in listed if isinstance(item, dict) and "name" in item and "type" in item]
-    if len(names) != len(listed) or len(set(names)) != len(names):
+    items = listed if isinstance(listed, list) else [listed]
+    names = [item["name"] for item in items if isinstance(item, dict) and {"name", "type"} <= set(item)]
+    is_usable = len(names) == len(items) and all(isinstance(name, str) for name in names)
+    if not is_usable or len(set(names)) != len(names):
         reader.warnings.append(
             f"{reader.where}recovery_behaviors must be a list of {{name, type}} with different names, "
             "the default ones take their place"
         )
         return _default_recoveries(rotation_allowed)
-    return listed
+    return items
 
 
 def _settings_of(
@@ -75,10 +77,14 @@ def _check_layers(reader: Reader, parameters: Tree, name: str, named: Any) -> No
     there = {
         layer
         for costmap in ("global_costmap", "local_costmap")
-        for layer in layers_of(Reader(reader.where), with_plugins(below(parameters, costmap)), costmap)
+        for layer in layers_of(
+            Reader(reader.where),
+            with_plugins(below(parameters, costmap), f"{reader.where}{costmap}/"),
+            costmap,
+        )
     }
     for layer in named if isinstance(named, list) else [named]:
-        if layer not in there:
+        if not isinstance(layer, str) or layer not in there:
             reader.warnings.append(
                 f"{reader.where}{name}/layer_names: no costmap has a layer {layer} "
                 f"(but {', '.join(sorted(there))}); the obstacles of all layers are cleared"

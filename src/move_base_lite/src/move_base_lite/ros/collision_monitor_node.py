@@ -90,7 +90,7 @@ def _settings_from(parameters) -> MonitorSettings:
         try:
             points = yaml.safe_load(value) if isinstance(value, str) else value
             parameters["footprint"] = tuple((float(x), float(y)) for x, y in points)
-        except (yaml.YAMLError, TypeError, ValueError):
+        except (yaml.YAMLError, TypeError, ValueError, OverflowError, RecursionError):
             raise SettingsError(f"{where}footprint must be a list of points [x, y], got {value!r}") from None
     settings, unknown = settings_from(MonitorSettings, parameters, where=where)
     for name in unknown:
