@@ -9,7 +9,8 @@ from planar import Pose2, Scan
 from slam_lite.back_end import BackEnd
 from slam_lite.config import MapperSettings
 from slam_lite.graph.pose_graph import Edge, Edges, chi_squares, edges_of
-from slam_lite.loops.ways_back import way_of, ways_back
+from slam_lite.loops.way import way_of
+from slam_lite.loops.ways_back import ways_back
 from slam_lite.matching.local_map import wide_map
 from slam_lite.surface import surface_of
 

@@ -6,17 +6,17 @@ not ask from which side: as it was followed from scan to scan, for what closures
 by lies evenly on many steps, whereas wheels slip on one.
 """
 
-from dataclasses import dataclass
 from typing import List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
-from planar import Pose2, wrap
-from slam_lite.graph.drift import variances_xy
+from planar import Pose2
 from slam_lite.graph.pose_graph import Edge, Edges, between
 from slam_lite.loops.cycle import cycle_error
 from slam_lite.loops.lasting import lasting
+from slam_lite.loops.recollection import recollected
 from slam_lite.loops.sight import Placed
+from slam_lite.loops.way import Way, way_of
 from slam_lite.matching.correlative import Window, scores, search_far
 from slam_lite.matching.local_map import LocalMap
 from slam_lite.surface import Surface, thinned
@@ -44,42 +44,6 @@ _OWN_XY, _OWN_YAW = 0.1, 0.008
 # and the same a metre of way.
 _WITNESSES, _RECENT_APART, _PLACE_APART = 2, (2.0, 20.0), 25.0
 _ERROR, _TURN, _ERROR_RATE, _TURN_RATE = 0.35, 0.05, 0.015, 0.001
-# A step that is less sure than this, metres, is none: the robot was put down anew.
-_BROKEN = 0.4
-
-
-@dataclass(frozen=True, eq=False)
-class Way:
-    """Keys' ``poses`` (N, 3), as the robot was followed, and the ``metres`` (N,) driven up to each."""
-
-    poses: np.ndarray
-    metres: np.ndarray
-
-    def between(self, first: int, second: int) -> Pose2:
-        return between(self.poses, first, second)
-
-    def around(self, key: int, reach: float) -> Tuple[int, int]:
-        """The first and the last key at most so many metres of way away."""
-        ends = np.searchsorted(self.metres, self.metres[key] + np.array([-reach, reach]))
-        return int(ends[0]), int(ends[1]) - 1
-
-    def apart(self, first: int, second: int) -> float:
-        return float(abs(self.metres[second] - self.metres[first]))
-
-
-def way_of(first: np.ndarray, edges: Edges) -> Way:
-    """The way of a graph whose first key is at ``first`` (3,)."""
-    steps = np.flatnonzero(~edges.is_loop)
-    steps = steps[np.argsort(edges.nodes[steps, 1])]
-    measured = edges.measured[steps]
-    yaw = np.concatenate((first[2:], first[2] + np.cumsum(measured[:, 2])))
-    c, s = np.cos(yaw[:-1]), np.sin(yaw[:-1])
-    x, y = measured[:, 0], measured[:, 1]
-    moves = np.column_stack((c * x - s * y, s * x + c * y))
-    is_broken = variances_xy(edges)[steps] > _BROKEN**2
-    lengths = np.where(is_broken, 10.0 * _PLACE_WAY, np.hypot(x, y))
-    xy = np.vstack((first[:2], first[:2] + np.cumsum(moves, axis=0)))
-    return Way(np.column_stack((xy, wrap(yaw))), np.concatenate(([0.0], np.cumsum(lengths))))
 
 
 def ways_back(
@@ -96,7 +60,8 @@ def ways_back(
 class _Search:
     """Goes along the way, there and back, and ties it to what lies beside it.
 
-    Where that is, the last tie tells, and the way since; if there is none, the graph does.
+    Where that is, the last tie tells, and the way since; if there is none, what it looks like there along
+    a long way, or the graph.
     """
 
     def __init__(self, poses: np.ndarray, edges: Edges, surfaces: Sequence[Surface], local_map: LocalMap):
@@ -105,6 +70,7 @@ class _Search:
         self._ties = [edges[number] for number in np.flatnonzero(edges.is_loop)]
         self._closures = len(self._ties)
         self._tried: Set[Tuple[int, int]] = set()
+        self._recollected = recollected(poses, edges, surfaces, self.way)
 
     def found(self) -> List[Edge]:
         """All that fit, also those that nobody confirms."""
@@ -125,10 +91,18 @@ class _Search:
             is_known = number < self._closures and self.way.apart(tie.second, recent) < _KNOWN
             place = None if is_known else self._place_by(tie, recent)
             beside += [] if place is None else [place]
-        for key in self._near(recent):
+        for key, guess in (*self._recalled(recent), *self._near(recent)):
             if all(self.way.apart(self._ties[number].first, key) > 2.0 * _SINCE for number in numbers):
-                beside.append((key, between(self._poses, key, recent)))
+                beside.append((key, guess))
         return beside
+
+    def _recalled(self, recent: int) -> List[Tuple[int, Pose2]]:
+        """The place that it looks like about here, if many looks agree."""
+        return [
+            (each.place, each.recent_in_place @ self.way.between(each.recent, recent))
+            for each in self._recollected
+            if self.way.apart(each.recent, recent) < 0.5 * _EVERY
+        ]
 
     def _latest_ties(self, recent: int) -> List[int]:
         """Numbers of the ties nearest on the way, one for each stretch of places."""
@@ -155,12 +129,13 @@ class _Search:
             return None
         return place, Pose2.from_array(self.way.poses[place]).inverse() @ robot
 
-    def _near(self, recent: int) -> List[int]:
+    def _near(self, recent: int) -> List[Tuple[int, Pose2]]:
         """Places near by as the graph has it."""
         distances = np.hypot(*(self._poses[: self._end_of_places(recent), :2] - self._poses[recent, :2]).T)
         near = np.flatnonzero(distances < _NEAR)
         stretches = np.split(near, np.flatnonzero(np.diff(near) > _KEYS_APART) + 1)
-        return [int(stretch[np.argmin(distances[stretch])]) for stretch in stretches if len(stretch)]
+        keys = [int(stretch[np.argmin(distances[stretch])]) for stretch in stretches if len(stretch)]
+        return [(key, between(self._poses, key, recent)) for key in keys]
 
     def _end_of_places(self, recent: int) -> int:
         """The first key that is too near on the way to be another time."""

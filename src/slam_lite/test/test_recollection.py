@@ -1,0 +1,118 @@
+"""A street of houses that is driven again, after a way on which nothing was seen."""
+
+import math
+
+import numpy as np
+import pytest
+
+from planar import Pose2, wrap
+from slam_lite.graph.pose_graph import Edge, edges_of
+from slam_lite.loops.recollection import recollected
+from slam_lite.loops.way import way_of
+from slam_lite.surface import Surface
+
+KEYS, STEP, SIGHT = 250, 0.4, 15.0
+FIRM, LOOSE = np.diag([100.0**2, 100.0**2, 1000.0**2]), np.diag([30.0**-2, 30.0**-2, 0.5**-2])
+# From the end of the street back to its beginning, as it was measured, wrongly.
+MEASURED = Pose2(-80.0, 30.0, 0.6)
+
+
+def houses(rng, period=0.0):
+    """Rows x, y, length, depth of the houses on both sides, repeated after ``period`` metres if given."""
+    rows = []
+    for side in (-1.0, 1.0):
+        x = -20.0
+        while x < 120.0:
+            length, depth, away, gap = rng.uniform((3.0, 3.0, 3.0, 1.5), (9.0, 8.0, 7.0, 6.0))
+            rows.append((x, side * away, length, side * depth))
+            x += length + gap
+    rows = np.array(rows)
+    if not period:
+        return rows
+    first = rows[(rows[:, 0] >= 0.0) & (rows[:, 0] < period)]
+    return np.concatenate([first + [period * i, 0.0, 0.0, 0.0] for i in range(-2, 14)])
+
+
+def walls(rows):
+    """Points (N, 2) on all walls, and their normals (N, 2), outwards."""
+    points, normals = [], []
+    for x, y, length, depth in rows:
+        corners = np.array([(x, y), (x + length, y), (x + length, y + depth), (x, y + depth)])
+        middle = corners.mean(axis=0)
+        for one, other in zip(corners, np.roll(corners, -1, axis=0)):
+            count = round(math.dist(one, other) / 0.1)
+            points.append(one + (other - one) * np.linspace(0.0, 1.0, count)[:, None])
+            along = (other - one) / math.dist(one, other)
+            normal = np.array([along[1], -along[0]])
+            normals.append(np.tile(normal * np.sign(normal @ (one - middle)), (count, 1)))
+    return np.concatenate(points), np.concatenate(normals)
+
+
+def seen_from(pose, world, rng):
+    points, normals = world
+    toward = [pose.x, pose.y] - points
+    seen = (np.hypot(*toward.T) < SIGHT) & ((toward * normals).sum(axis=1) > 0.0)
+    seen &= rng.uniform(size=len(points)) < 0.2
+    points = pose.inverse().transform_points(points[seen]) + rng.normal(0.0, 0.02, (seen.sum(), 2))
+    return Surface(
+        points.astype(np.float32),
+        Pose2(0.0, 0.0, -pose.yaw).transform_points(normals[seen]).astype(np.float32),
+    )
+
+
+class Street:
+    def __init__(self, seed, period=0.0, there_again=True, back=LOOSE):
+        rng = np.random.default_rng(seed)
+        world = walls(houses(rng, period))
+        again = world if there_again else walls(houses(rng, period))
+        self.true = 2 * [Pose2(STEP * i, 0.0, 0.0) for i in range(KEYS)]
+        worlds = KEYS * [world] + KEYS * [again]
+        self.surfaces = [seen_from(pose, each, rng) for pose, each in zip(self.true, worlds)]
+        steps = [a.inverse() @ b for a, b in zip(self.true, self.true[1:])]
+        steps = [step @ Pose2(*rng.normal(0.0, (0.01, 0.01, 0.001))) for step in steps]
+        steps[KEYS - 1] = MEASURED
+        information = [back if i == KEYS - 1 else FIRM for i in range(len(steps))]
+        self.edges = edges_of(*(Edge(i, i + 1, *step) for i, step in enumerate(zip(steps, information))))
+        self.way = way_of(np.zeros(3), self.edges)
+
+    def recollected(self):
+        return recollected(self.way.poses, self.edges, self.surfaces, self.way)
+
+
+@pytest.mark.parametrize("seed", [80, 81, 82])
+def test_a_way_driven_again_is_told_by_its_looks(seed):
+    street = Street(seed)
+    found = street.recollected()
+    assert len(found) >= 5
+    for each in found:
+        true = street.true[each.place].inverse() @ street.true[each.recent]
+        assert each.place < KEYS <= each.recent
+        assert each.recent_in_place.distance_to(true) < 1.0
+        assert abs(wrap(each.recent_in_place.yaw - true.yaw)) < 0.05
+
+
+@pytest.mark.parametrize("seed", [80, 81, 82])
+def test_equal_houses_tell_nothing(seed):
+    assert Street(seed, period=12.0).recollected() == []
+
+
+@pytest.mark.parametrize("seed", [80, 81, 82])
+def test_another_street_tells_nothing(seed):
+    assert Street(seed, there_again=False).recollected() == []
+
+
+def test_a_graph_that_is_sure_of_another_place_is_believed():
+    assert Street(80, back=FIRM).recollected() == []
+
+
+def test_what_the_graph_knows_is_no_news():
+    street = Street(80)
+    true = np.array([pose.as_array() for pose in street.true])
+    assert recollected(true, street.edges, street.surfaces, street.way) == []
+
+
+def test_without_keys_nothing_is_recollected():
+    assert (
+        recollected(np.zeros((1, 3)), edges_of(), [Street(80).surfaces[0]], way_of(np.zeros(3), edges_of()))
+        == []
+    )
