@@ -25,7 +25,7 @@ def servers(parameters: Tree) -> Dict[str, List[Tuple[Tunable, Any]]]:
     found = {"": _offered(parameters, "", [*chosen, *tunables_of(MoveBaseSettings)])}
     for costmap in COSTMAPS:
         found[costmap] = _offered(parameters, costmap, tunables_of(CostmapSettings))
-        values = with_plugins(below(parameters, costmap))
+        values = with_plugins(below(parameters, costmap), f"{costmap}/")
         for layer, kind in layers_of(Reader(""), values, costmap).items():
             found[f"{costmap}/{layer}"] = _offered(parameters, f"{costmap}/{layer}", kind.tunables, kind)
     for key, registry in PLANNERS.items():
@@ -43,7 +43,7 @@ def changed(parameters: Tree, namespace: str, values: Tree) -> Dict[str, Any]:
         return {**parameters, **values}
     tree = below(parameters, name)
     if name in COSTMAPS:
-        tree = with_plugins(tree)
+        tree = with_plugins(tree, f"{name}/")
     return {**parameters, name: changed(tree, rest, values)}
 
 
@@ -53,7 +53,8 @@ def _offered(
     """The tunables with their values in force, also if these are inherited or have an old name."""
     tree = parameters
     for name in filter(None, namespace.split("/")):
-        tree = with_plugins(below(tree, name)) if name in COSTMAPS else below(tree, name)
+        tree = below(tree, name)
+        tree = with_plugins(tree, f"{name}/") if name in COSTMAPS else tree
     offered = []
     for tunable in map(_in_a_message, tunables):
         names = (tunable.name, *(kind.old_names(tunable.name) if kind else ()))

@@ -15,7 +15,7 @@ from planar import wrap
 from slam_lite.graph.drift import drift_along, shortest_ways
 from slam_lite.graph.pose_graph import Edges, between
 from slam_lite.loops.loop_closure import is_credible, lengths_of
-from slam_lite.loops.place_recognition import Hypothesis, Memory, hypotheses
+from slam_lite.loops.place_recognition import Appearance, Hypothesis, Memory, hypotheses
 from slam_lite.loops.way import Way
 from slam_lite.surface import Surface
 
@@ -57,7 +57,8 @@ def recollected(poses: np.ndarray, edges: Edges, surfaces: Sequence[Surface], wa
 
 def _heard(surfaces: Sequence[Surface], way: Way, tied: np.ndarray) -> Iterator[Hypothesis]:
     """What each stretch of the way looks like, of those driven long before; nothing near ``tied`` keys."""
-    memory, places = Memory(), []
+    memory = Memory()
+    places: List[Appearance] = []
     stretch = memory.next_stretch(way.metres)
     while stretch is not None:
         place = stretch.appearance(surfaces, way.poses)
