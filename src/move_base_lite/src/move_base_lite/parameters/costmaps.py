@@ -29,7 +29,7 @@ def costmap_settings(reader: Reader, values: Tree, name: str, parameters: Tree) 
         if inherited in parameters:
             values.setdefault(inherited, parameters[inherited])
     if "footprint" in values:
-        values["footprint"] = _corners(values["footprint"], f"{reader.where}{name}/footprint")
+        values["footprint"] = corners_of(values["footprint"], f"{reader.where}{name}/footprint")
     settings = reader.read(CostmapSettings, values, name + "/", _COSTMAP_IGNORED)
     static = StaticSettings(enabled=False)
     obstacles = ObstacleSettings(enabled=False)
@@ -120,7 +120,8 @@ def _obstacle_settings(
     return replace(layer, sources=tuple(sources))
 
 
-def _corners(value: Any, name: str) -> Tuple[Tuple[float, float], ...]:
+def corners_of(value: Any, name: str) -> Tuple[Tuple[float, float], ...]:
+    """A footprint, which may be written as text, too; ``name`` of the parameter. Raises SettingsError."""
     try:
         points = yaml.safe_load(value) if isinstance(value, str) else value
         return tuple((float(x), float(y)) for x, y in points)

@@ -5,12 +5,12 @@ from typing import Optional
 
 import numpy as np
 import rospy
-import yaml
 from geometry_msgs.msg import Twist
 from std_msgs.msg import String
 
 from move_base_lite.collision_monitor import STOPPED, CollisionMonitor, MonitorSettings, Verdict
-from planar import SettingsError, Twist2
+from move_base_lite.parameters.costmaps import corners_of
+from planar import Twist2
 from planar.config.settings import settings_from
 from planar_ros.messages.border import listen
 from planar_ros.messages.conversion import LaserScanArrays, frame_name, scan_from_msg
@@ -86,12 +86,7 @@ class CollisionMonitorNode:
 def _settings_from(parameters) -> MonitorSettings:
     where = rospy.get_name() + "/"
     if "footprint" in parameters:
-        value = parameters["footprint"]
-        try:
-            points = yaml.safe_load(value) if isinstance(value, str) else value
-            parameters["footprint"] = tuple((float(x), float(y)) for x, y in points)
-        except (yaml.YAMLError, TypeError, ValueError, OverflowError, RecursionError):
-            raise SettingsError(f"{where}footprint must be a list of points [x, y], got {value!r}") from None
+        parameters["footprint"] = corners_of(parameters["footprint"], f"{where}footprint")
     settings, unknown = settings_from(MonitorSettings, parameters, where=where)
     for name in unknown:
         rospy.logwarn("unknown parameter %s", where + name)
