@@ -118,12 +118,17 @@ class Memory:
 
 def remembered(surfaces: Sequence[Surface], poses: np.ndarray) -> Memory:
     """The memory of a finished map, before the robot goes on in it."""
-    memory, ways = Memory(), ways_along(poses)
+    return Memory(places_along(surfaces, poses, ways_along(poses)), (), len(poses), len(poses))
+
+
+def places_along(surfaces: Sequence[Surface], poses: np.ndarray, ways: np.ndarray) -> Tuple[Appearance, ...]:
+    """What the stretches of a way look like, in their order; ``ways`` (N,): as above."""
+    memory = Memory()
     stretch = memory.next_stretch(ways)
     while stretch is not None:
         memory = memory.after(stretch, stretch.appearance(surfaces, poses), ())
         stretch = memory.next_stretch(ways)
-    return Memory(memory.places, (), len(poses), len(poses))
+    return memory.places
 
 
 def ways_along(poses: np.ndarray) -> np.ndarray:

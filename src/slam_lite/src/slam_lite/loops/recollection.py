@@ -15,7 +15,7 @@ from planar import wrap
 from slam_lite.graph.drift import drift_along, shortest_ways
 from slam_lite.graph.pose_graph import Edges, between
 from slam_lite.loops.loop_closure import is_credible, lengths_of
-from slam_lite.loops.place_recognition import Appearance, Hypothesis, Memory, hypotheses
+from slam_lite.loops.place_recognition import Hypothesis, hypotheses, places_along
 from slam_lite.loops.way import Way
 from slam_lite.surface import Surface
 
@@ -47,29 +47,19 @@ def recollected(poses: np.ndarray, edges: Edges, surfaces: Sequence[Surface], wa
     for recent in np.unique(nodes[counts >= _LOOKS, 1]).tolist():
         numbers = np.flatnonzero(nodes[:, 1] == recent)
         first = numbers[np.argmax(counts[numbers])]
-        if (
-            _AHEAD * counts[numbers[_elsewhere(robots[numbers], robots[first])]].max(initial=0)
-            <= counts[first]
-        ):
+        others = numbers[_elsewhere(robots[numbers], robots[first])]
+        if _AHEAD * counts[others].max(initial=0) <= counts[first]:
             best.append(heard[first])
     return [each for each in best if _is_possible_news(each, poses, edges)]
 
 
 def _heard(surfaces: Sequence[Surface], way: Way, tied: np.ndarray) -> Iterator[Hypothesis]:
     """What each stretch of the way looks like, of those driven long before; nothing near ``tied`` keys."""
-    memory = Memory()
-    places: List[Appearance] = []
-    stretch = memory.next_stretch(way.metres)
-    while stretch is not None:
-        place = stretch.appearance(surfaces, way.poses)
-        if place is not None:
-            if np.abs(way.metres[tied] - way.metres[place.key]).min(initial=np.inf) > _KNOWN:
-                yield from hypotheses(
-                    place, [each for each in places if way.apart(each.key, place.key) > _LATER]
-                )
-            places.append(place)
-        memory = memory.after(stretch, place, ())
-        stretch = memory.next_stretch(way.metres)
+    places = places_along(surfaces, way.poses, way.metres)
+    for place in places:
+        if np.abs(way.metres[tied] - way.metres[place.key]).min(initial=np.inf) > _KNOWN:
+            before = way.metres[place.key] - _LATER
+            yield from hypotheses(place, [each for each in places if way.metres[each.key] < before])
 
 
 def _elsewhere(robots: np.ndarray, robot: np.ndarray) -> np.ndarray:
