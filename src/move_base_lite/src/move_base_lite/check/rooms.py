@@ -87,7 +87,7 @@ def _centre_of(mark: str, picture: str) -> Tuple[float, float]:
 
 
 def situation_of(costmap: LayeredCostmap, pose: Pose2, twist: Twist2 = Twist2()) -> Situation:
-    return Situation(pose, pose, twist, costmap, NO_MOVERS)
+    return Situation(pose, pose, twist, costmap, NO_MOVERS, costmap)
 
 
 def plan_in(room: Room) -> np.ndarray:

@@ -25,7 +25,8 @@ class Situation:
 
     ``base_in_local``, ``base_in_map``: the robot in the frame of the ``costmap``, odometry's, and in the map.
     ``twist``: m/s, rad/s. ``movers``: rows (N, 5) of what moves, in the local frame: x, y, velocity by x and
-    y, radius (see people.Movers); the costmap shows them where they have been seen.
+    y, radius (see people.Movers); the costmap shows them where they have been seen. ``whole``: the costmap
+    that was planned on, in the map: it also knows what is out of sight.
     """
 
     base_in_map: Pose2
@@ -33,6 +34,7 @@ class Situation:
     twist: Twist2
     costmap: LayeredCostmap
     movers: np.ndarray
+    whole: LayeredCostmap
 
 
 @dataclass(frozen=True, eq=False)

@@ -84,4 +84,5 @@ class Crew:
             twist,
             self.costmaps.near,
             self._movers.at(moment.now + self.latency),
+            self.costmaps.whole,
         )

@@ -44,7 +44,8 @@ class PathIntegral:
         """The mean of the ways tried, or the best of them if that is better."""
         twist = situation.twist
         start = np.array([*situation.base_in_local.as_array(), twist.v, twist.omega])
-        problem = arguments_of(scene_of(situation, plan), self._limits(limits), self._weights)
+        scene = scene_of(situation, plan, self._settings.heed_global_costmap)
+        problem = arguments_of(scene, self._limits(limits), self._weights)
         ways = (self._noise, self._mean, self._fan)
         mean, cost, poses, speeds = best_way(*ways, start, self._settings.temperature, *problem)
         if not math.isfinite(cost):

@@ -7,7 +7,8 @@ import numba
 import numpy as np
 
 from move_base_lite.control.local_planner import Plan, Situation
-from move_base_lite.costmap import LETHAL, LayeredCostmap
+from move_base_lite.control.mppi.remembered import costs_with_remembered
+from move_base_lite.costmap import LETHAL, Window
 from move_base_lite.errors import ControlError
 from move_base_lite.planning.wavefront import NEUTRAL, cost_to_go
 from planar.geometry.distance_field import distance_field
@@ -38,13 +39,14 @@ class Scene(NamedTuple):
 ARRAYS = 4
 
 
-def scene_of(situation: Situation, plan: Plan) -> Scene:
+def scene_of(situation: Situation, plan: Plan, heeds_remembered: bool = False) -> Scene:
     """Clearance and cost to go around the robot. Raises ControlError if the plan is blocked."""
     costmap, movers = situation.costmap, situation.movers
+    costs = costs_with_remembered(situation) if heeds_remembered else costmap.costs
     window = costmap.window
     return Scene(
-        clearance=distance_field(_standing(costmap, movers), window.resolution, FAR),
-        to_go=_cost_to_go(costmap, plan.path_xy),
+        clearance=distance_field(_standing(costs, window, movers), window.resolution, FAR),
+        to_go=_cost_to_go(costs, window, plan.path_xy),
         outline_xy=costmap.outline_xy,
         movers=movers,
         origin_x=window.origin_x,
@@ -55,19 +57,18 @@ def scene_of(situation: Situation, plan: Plan) -> Scene:
     )
 
 
-def _cost_to_go(costmap: LayeredCostmap, path_xy: np.ndarray) -> np.ndarray:
+def _cost_to_go(costs: np.ndarray, window: Window, path_xy: np.ndarray) -> np.ndarray:
     """Metres, float32 (rows, cols), to the path's last point in the window that is free."""
-    window = costmap.window
     cells = np.floor((path_xy - (window.origin_x, window.origin_y)) / window.resolution)
-    field = cost_to_go(costmap.costs, cells[:, ::-1].astype(np.int64))
+    field = cost_to_go(costs, cells[:, ::-1].astype(np.int64))
     if field is None:
         raise ControlError("all of the plan in sight is blocked")
     return field * np.float32(window.resolution / NEUTRAL)
 
 
-def _standing(costmap: LayeredCostmap, movers: np.ndarray) -> np.ndarray:
+def _standing(costs: np.ndarray, window: Window, movers: np.ndarray) -> np.ndarray:
     """Which cells (rows, cols) are obstacles that stay: those that movers are seen in will have gone."""
-    obstacles, window = costmap.costs >= LETHAL, costmap.window
+    obstacles = costs >= LETHAL
     for x, y, _, _, radius in movers:
         bounds = window.bounds_around(x, y, radius + AROUND_MOVER)
         block = obstacles[slice(*bounds[:2]), slice(*bounds[2:])]

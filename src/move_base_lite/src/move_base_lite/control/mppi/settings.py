@@ -62,6 +62,11 @@ class MppiSettings(ControllerSettings):
         "a home some furniture seems to move",
         dynamic=True,
     )
+    heed_global_costmap: bool = parameter(
+        False,
+        "whether walls that only the global costmap knows count, too: for a sensor that only looks ahead",
+        dynamic=True,
+    )
     predict_movers: bool = parameter(
         True,
         "whether people and all that moves are expected where they will be instead of where they are seen",
