@@ -28,6 +28,7 @@ def wait_until_heard(*publishers: rospy.Publisher, patience: float = PATIENCE_SE
         expected = listeners_of(publisher.resolved_name)
         while publisher.get_num_connections() < expected and time.monotonic() < deadline:
             time.sleep(POLL_SECONDS)
+        transport.keep_counts(publisher.resolved_name)
     sockets = [each for publisher in publishers for each in _flushed(publisher, deadline)]
     for each in sockets:
         with suppress(OSError):

@@ -14,6 +14,8 @@ STATIC_TOPIC = "/tf_static"
 # They go by themselves: the first two say how many of all others there are, the moment is the time.
 UNCOUNTED = frozenset((MOMENT_TOPIC, ANSWER_TOPIC, CLOCK_TOPIC))
 LENGTH_BYTES = 4
+# By receiver and topic, of connections that may have been removed since.
+_last_counts: Dict[Tuple[str, str], int] = {}
 _init = TCPROSSub.__init__
 
 
@@ -114,13 +116,25 @@ def flush() -> None:
             connection.flush()
 
 
+def keep_counts(topic: str) -> None:
+    """What has been sent on a topic until now is told although all who listen are about to hang up.
+
+    rospy removes their connections twice a second, and so perhaps before the moment's answer.
+    """
+    _last_counts.update(
+        ((receiver, name), _count_of(connection))
+        for receiver, name, connection in connections()
+        if name == topic
+    )
+
+
 def sent(sender: str) -> Dict[str, int]:
     """How many messages have gone out on each connection to a node in step, by "sender receiver topic"."""
-    members = CountedConnection.members
+    now = {(receiver, topic): _count_of(connection) for receiver, topic, connection in connections()}
     return {
-        f"{sender} {receiver} {topic}": _count_of(connection)
-        for receiver, topic, connection in connections()
-        if receiver in members and topic not in UNCOUNTED
+        f"{sender} {receiver} {topic}": count
+        for (receiver, topic), count in {**_last_counts, **now}.items()
+        if receiver in CountedConnection.members and topic not in UNCOUNTED
     }
 
 

@@ -1,0 +1,93 @@
+"""What a node in step has sent before all hang up is told with the moment's answer."""
+
+import socket
+import threading
+from types import SimpleNamespace
+
+import pytest
+
+from planar_ros.node import last_words
+from planar_ros.step import transport
+from planar_ros.step.transport import CountedConnection
+
+SENDER, RECEIVER, TOPIC = "/pick_objects", "/add_markers", "/pick_objects/mission_state"
+CHANNEL = f"{SENDER} {RECEIVER} {TOPIC}"
+
+
+@pytest.fixture
+def publisher(monkeypatch):
+    """A topic without anybody who listens to it yet; its node is in step with the receiver."""
+    found = SimpleNamespace(
+        resolved_name=TOPIC,
+        impl=SimpleNamespace(connections=[]),
+        get_num_connections=lambda: len(found.impl.connections),
+    )
+    monkeypatch.setattr(
+        transport, "connections", lambda: ((RECEIVER, TOPIC, each) for each in found.impl.connections)
+    )
+    monkeypatch.setattr(transport, "_last_counts", {})
+    monkeypatch.setattr(last_words, "listeners_of", lambda topic: 1)
+    monkeypatch.setattr(CountedConnection, "members", frozenset((SENDER, RECEIVER)))
+    return found
+
+
+@pytest.fixture
+def connect(publisher):
+    """Connects the receiver; returns its end, and what is then written to."""
+    ends = []
+
+    def connect():
+        near, far = socket.socketpair()
+        ends.extend((near, far))
+        plain = SimpleNamespace(
+            endpoint_id=RECEIVER,
+            protocol=SimpleNamespace(resolved_name=TOPIC),
+            socket=near,
+            done=False,
+            stat_bytes=0,
+            stat_num_msg=0,
+            set_cleanup_callback=lambda callback: None,
+        )
+        connection = CountedConnection(plain, 50)
+        publisher.impl.connections.append(connection)
+        return far, connection
+
+    yield connect
+    for end in ends:
+        end.close()
+
+
+def hang_up_after_reading(far, publisher):
+    """As rospy does it: a node whose publisher says no more hangs up, and its connection is removed."""
+
+    def read():
+        while far.recv(1024):
+            pass
+        publisher.impl.connections.clear()
+        far.close()
+
+    reading = threading.Thread(target=read)
+    reading.start()
+    return reading
+
+
+def test_last_words_are_counted_though_their_connection_has_been_removed(publisher, connect):
+    far, connection = connect()
+    connection.write_data(b"setting down")
+    assert transport.sent(SENDER) == {CHANNEL: 1}
+    connection.write_data(b"delivered")
+    reading = hang_up_after_reading(far, publisher)
+    last_words.wait_until_heard(publisher)
+    reading.join(5.0)
+    assert publisher.impl.connections == []
+    assert transport.sent(SENDER) == {CHANNEL: 2}
+
+
+def test_who_connects_anew_has_had_nothing(publisher, connect):
+    far, connection = connect()
+    connection.write_data(b"delivered")
+    reading = hang_up_after_reading(far, publisher)
+    last_words.wait_until_heard(publisher)
+    reading.join(5.0)
+    connect()
+    assert transport.sent(SENDER) == {CHANNEL: 0}
