@@ -91,3 +91,5 @@ def test_who_connects_anew_has_had_nothing(publisher, connect):
     reading.join(5.0)
     connect()
     assert transport.sent(SENDER) == {CHANNEL: 0}
+    publisher.impl.connections.clear()
+    assert transport.sent(SENDER) == {}
