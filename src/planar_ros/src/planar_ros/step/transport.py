@@ -131,12 +131,11 @@ def keep_counts(topic: str) -> None:
 def sent(sender: str) -> Dict[str, int]:
     """How many messages have gone out on each connection to a node in step, by "sender receiver topic"."""
     now = {(receiver, topic): _count_of(connection) for receiver, topic, connection in connections()}
-    counts = {**_last_counts, **now}
     for connected in now:
         _last_counts.pop(connected, None)
     return {
         f"{sender} {receiver} {topic}": count
-        for (receiver, topic), count in counts.items()
+        for (receiver, topic), count in {**_last_counts, **now}.items()
         if receiver in CountedConnection.members and topic not in UNCOUNTED
     }
 

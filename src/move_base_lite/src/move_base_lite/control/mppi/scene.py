@@ -39,7 +39,7 @@ class Scene(NamedTuple):
 ARRAYS = 4
 
 
-def scene_of(situation: Situation, plan: Plan, heeds_remembered: bool = False) -> Scene:
+def scene_of(situation: Situation, plan: Plan, heeds_remembered: bool) -> Scene:
     """Clearance and cost to go around the robot. Raises ControlError if the plan is blocked."""
     costmap, movers = situation.costmap, situation.movers
     costs = costs_with_remembered(situation) if heeds_remembered else costmap.costs
