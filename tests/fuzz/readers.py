@@ -255,6 +255,18 @@ def _states() -> List[bytes]:
     return [file.getvalue()]
 
 
+def _particles(path: Path) -> object:
+    from amcl_lite.belief import load_particles
+
+    return load_particles(path)
+
+
+def _particle_sets() -> List[bytes]:
+    file = io.BytesIO()
+    np.save(file, np.array([[1.0, 2.0, 0.5, 0.25], [1.5, 2.0, -3.0, 0.75]]))
+    return [file.getvalue()]
+
+
 def _record(path: Path) -> object:
     from run_report.record import load_record
 
@@ -366,6 +378,7 @@ _ALL: Tuple[Reader, ...] = (
     Reader("obj", "mesh.obj", _mesh, _meshes("obj")),
     Reader("dae", "mesh.dae", _mesh, _texts(DAE)),
     Reader("state", "map.npz", _state, _states),
+    Reader("particles", "amcl.kept", _particles, _particle_sets),
     Reader("record", "record.json", _record, _records),
     Reader("result", "result.json", _result, _texts(RESULT)),
     Reader("repeated", "result.json", _repeated, _texts(RESULT)),

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from amcl_lite import LocalizationError, Localizer, LocalizerSettings
+from amcl_lite.belief import Belief, load_particles, save_particles
 from amcl_lite.filter.particle_filter import ParticleFilter
 from amcl_lite.filter.particles import equally_weighted
 from amcl_lite.localizer import can_start_from
@@ -131,6 +132,65 @@ def test_a_wrong_start_is_pulled_in():
     localizer.set_pose(toy.base_in_map @ Pose2(0.5, 0.4, 0.3), np.diag((0.25, 0.25, 0.07)))
     localizer.update(toy.base_in_odom, toy.scan())
     assert tracking_errors(toy, localizer, THROUGH_ALL_ROOMS)[-1, 0] < 0.15
+
+
+def test_what_goes_on_after_a_crash_believes_what_was_believed(tmp_path):
+    """Also of two places, between which a mean would lie, and although the robot has driven on since."""
+    toy = Toy(START)
+    elsewhere = Pose2(2.0, 1.0, 0.4)
+    poses = np.array([toy.base_in_map.as_array()] * 300 + [elsewhere.as_array()] * 300)
+    save_particles(equally_weighted(poses), tmp_path / "kept")
+    belief = Belief(load_particles(tmp_path / "kept"), toy.base_in_odom, Pose2(1.0, 2.0, 0.0), is_lost=True)
+    for step in way((0.9, 0.6)):
+        toy.move(step)
+    localizer = Localizer(toy.grid, replace(TURTLEBOT, beams=0), np.random.default_rng(1))
+    localizer.go_on(belief)
+    assert localizer.is_lost
+    assert localizer.odom_in_map == belief.odom_in_map
+    localizer.update(toy.base_in_odom, toy.scan())
+    moved = belief.base_in_odom.inverse() @ toy.base_in_odom
+    for place in (START, elsewhere):
+        distances = np.hypot(*(localizer.particles.poses[:, :2] - (place @ moved).as_array()[:2]).T)
+        assert np.mean(distances < 0.5) > 0.3
+
+
+def test_a_kept_belief_is_that_of_the_last_update():
+    toy = Toy(START)
+    localizer = started(toy)
+    where, odom_in_map = toy.base_in_odom, localizer.odom_in_map
+    toy.move(Pose2(0.05, 0.0, 0.0))
+    localizer.update(toy.base_in_odom, toy.scan())
+    assert localizer.belief.base_in_odom == where
+    assert localizer.belief.odom_in_map == odom_in_map
+    assert localizer.belief.particles is localizer.particles
+    localizer.scatter()
+    assert localizer.belief is None
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        np.zeros((0, 4)),
+        np.full((3, 4), 1.0 / 3.0, dtype=np.float32),
+        np.full((3, 3), 1.0 / 3.0),
+        np.full((3, 4), 1.0),
+        np.array([[0.0, 0.0, 0.0, 1.5], [0.0, 0.0, 0.0, -0.5]]),
+        np.array([[math.nan, 0.0, 0.0, 1.0]]),
+        np.array([[1e30, 0.0, 0.0, 1.0]]),
+        np.array([[0.0, 0.0, 0.0, math.nan]]),
+    ],
+)
+def test_a_file_of_no_particles_is_named(tmp_path, table):
+    np.save(tmp_path / "kept.npy", table)
+    with pytest.raises(LocalizationError, match=r"kept\.npy"):
+        load_particles(tmp_path / "kept.npy")
+
+
+def test_a_file_that_is_none_is_named(tmp_path):
+    (tmp_path / "kept").write_bytes(b"nothing")
+    for name in ("kept", "not there"):
+        with pytest.raises(LocalizationError, match=name):
+            load_particles(tmp_path / name)
 
 
 def test_a_scattered_filter_finds_the_robot():

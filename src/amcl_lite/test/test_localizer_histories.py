@@ -204,6 +204,13 @@ class LocalizerHistories(RuleBasedStateMachine):
         self.rng = np.random.default_rng(0)
         self.start_on(self.map)
 
+    @rule()
+    def it_comes_back_with_what_it_believed(self):
+        belief = self.localizer.belief
+        self.the_node_dies_and_comes_back()
+        if belief is not None:
+            self.localizer.go_on(belief)
+
     @rule(seconds=st.sampled_from((5.0, 1e6, -5.0, -1e6)))
     def the_clock_jumps(self, seconds):
         self.now += seconds

@@ -6,6 +6,7 @@ from typing import Callable, Optional
 
 import numpy as np
 
+from amcl_lite.belief import Belief
 from amcl_lite.config import InitialPose, LocalizerSettings
 from amcl_lite.errors import LocalizationError
 from amcl_lite.filter.particle_filter import ParticleFilter
@@ -76,6 +77,14 @@ class Localizer:
         return self._odom_in_map
 
     @property
+    def belief(self) -> Optional[Belief]:
+        """What another one may go on from; None while there is no estimate since the last start."""
+        updated_at = self._update_policy.updated_at
+        if self._updates == 0 or updated_at is None or self._odom_in_map is None:
+            return None
+        return Belief(self.particles, updated_at, self._odom_in_map, self.is_lost)
+
+    @property
     def updates(self) -> int:
         """How many scans have been worked into the filter since the last start."""
         return self._updates
@@ -116,6 +125,13 @@ class Localizer:
         self._begin = partial(self._start_around, base_in_map, np.array(pose_covariance))
         self._begin()
 
+    def go_on(self, belief: Belief) -> None:
+        """Starts with what another one believed; odometry has gone on since."""
+        self._begin = partial(self._start_with, belief)
+        self._begin()
+        self._update_policy = UpdatePolicy(belief.base_in_odom)
+        self._odom_in_map = belief.odom_in_map
+
     def scatter(self) -> None:
         """Starts anew with particles all over the free space: global localization."""
         self._begin = self._start_anywhere
@@ -152,6 +168,13 @@ class Localizer:
     def _start_around(self, base_in_map: Pose2, covariance: np.ndarray) -> None:
         count = self._settings.max_particles
         self._start(gaussian_particles(base_in_map, covariance, count, self._rng), is_lost=False)
+
+    def _start_with(self, belief: Belief) -> None:
+        particles, settings = belief.particles, self._settings
+        if not settings.min_particles <= particles.size <= settings.max_particles:
+            drawn = self._rng.choice(particles.size, settings.max_particles, p=particles.weights)
+            particles = equally_weighted(particles.poses[drawn])
+        self._start(particles, belief.is_lost)
 
     def _start_anywhere(self) -> None:
         poses = self._free_space.draw(self._settings.max_particles, self._rng)

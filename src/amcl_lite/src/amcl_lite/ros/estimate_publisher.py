@@ -6,7 +6,7 @@ import rospy
 
 from amcl_lite.localizer import Estimate, Localizer
 from amcl_lite.ros.shared_localizer import SharedLocalizer
-from amcl_lite.ros.start_pose import PoseKeeper, read_start_pose
+from amcl_lite.ros.start_pose import PoseKeeper
 from amcl_lite.ros.tf_bridge import TfBridge
 from amcl_lite.ros.views import Views
 from planar import Pose2
@@ -20,14 +20,14 @@ class EstimatePublisher:
         self.last_stamp = rospy.Time(0)
         self._shared, self._views, self._tf_bridge = shared, views, tf_bridge
         self._keeper = PoseKeeper()
-        self._odom_in_map_before = self._keeper.odom_in_map
+        self._belief_before = self._keeper.left_belief()
         self._base_in_odom: Optional[Pose2] = None
 
     def take_up(self, localizer: Localizer, base_in_odom: Pose2) -> None:
-        """Before the first scan: after a crash the robot is where odometry has brought it since."""
-        before, self._odom_in_map_before = self._odom_in_map_before, None
+        """Before the first scan: goes on with what a node that has crashed believed."""
+        before, self._belief_before = self._belief_before, None
         if before is not None:
-            localizer.set_pose(before @ base_in_odom, read_start_pose().covariance)
+            localizer.go_on(before)
 
     def publish(
         self,
@@ -44,18 +44,15 @@ class EstimatePublisher:
         if estimate is not None:
             self.last_estimate, self.last_stamp = estimate, stamp
             self._views.show_estimate(estimate, stamp)
-        if localizer.odom_in_map is None or self.last_estimate is None:  # which come together
+        if localizer.odom_in_map is None or self.last_estimate is None:
             return
         self._tf_bridge.send(localizer.odom_in_map, stamp)
         self._views.show_quality(localizer)
         self._views.show_diagnostics(localizer, self.last_estimate)
-        if estimate is None:
-            self._keeper.keep_if_due(
-                self._shared.settings.save_pose_rate,
-                localizer.odom_in_map,
-                base_in_odom,
-                self.last_estimate.covariance,
-            )
+        belief = localizer.belief if estimate is None else None
+        if belief is not None:
+            rate, covariance = self._shared.settings.save_pose_rate, self.last_estimate.covariance
+            self._keeper.keep_if_due(rate, belief, base_in_odom, covariance)
 
     def keep_pose(self) -> None:
         """Before the node ends: a restarted one resumes where this one was."""

@@ -1,22 +1,28 @@
-"""The start pose on the parameter server, where a restarted node finds where it was.
+"""What is kept for a restart, where the node finds out where it was.
 
 The official parameters say where the robot was; it has driven on meanwhile. So after a crash, where odometry
-goes on, the place of odometry's origin counts instead.
+goes on, what the filter believed counts instead, and where odometry has brought the robot since.
 """
 
 import math
 from dataclasses import asdict
+from functools import partial
 from typing import Optional
 
 import rospy
 
+from amcl_lite.belief import Belief, load_particles, save_particles
 from amcl_lite.config import InitialPose, NodeSettings
+from amcl_lite.errors import LocalizationError
 from amcl_lite.localizer import can_start_from
-from planar import Pose2
+from planar import FileWriteError, Pose2
 from planar.config.parameters import official_names
-from planar_ros.node.keepsake import Keepsake
+from planar_ros.node.kept_file import KeptFile
 from planar_ros.node.parameters import ParameterWriter, read_settings
 from planar_ros.node.reconfigure import RESTORE
+
+# Wall seconds from one complaint to the next.
+_ALARM_SECONDS = 60.0
 
 
 def read_start_pose() -> InitialPose:
@@ -31,26 +37,33 @@ def read_start_pose() -> InitialPose:
 
 
 class PoseKeeper:
-    """Writes the pose to the parameter server, no more often than the rate says."""
+    """Keeps pose and belief, no more often than the rate says: one as amcl does, one for after a crash."""
 
     def __init__(self):
         self._kept_at = rospy.Time(0)
         self._writer = ParameterWriter()
-        self._keepsake = Keepsake()
+        self._kept_file = KeptFile()
 
-    @property
-    def odom_in_map(self) -> Optional[Pose2]:
-        """As a node of this name has left it that has crashed; None without such a one."""
-        found = self._keepsake.found
-        return None if found is None else Pose2(**found)
+    def left_belief(self) -> Optional[Belief]:
+        """What a node of this name that has crashed believed; None without such a one."""
+        found = self._kept_file.found
+        if found is None:
+            return None
+        try:
+            particles = load_particles(found.path)
+        except LocalizationError as error:
+            rospy.logwarn("where the robot was before the crash is not known: %s", error)
+            return None
+        poses = {name: Pose2(**found.value[name]) for name in ("base_in_odom", "odom_in_map")}
+        return Belief(particles, is_lost=found.value["is_lost"], **poses)
 
-    def keep_if_due(self, rate: float, odom_in_map: Pose2, base_in_odom: Pose2, covariance) -> None:
+    def keep_if_due(self, rate: float, belief: Belief, base_in_odom: Pose2, covariance) -> None:
         """``rate``: Hz, 0 or less for never."""
         now = rospy.Time.now()
         if rate > 0.0 and abs((now - self._kept_at).to_sec()) >= 1.0 / rate:
             self._kept_at = now
-            self.keep(odom_in_map @ base_in_odom, covariance)
-            self._keepsake.keep(asdict(odom_in_map))
+            self.keep(belief.odom_in_map @ base_in_odom, covariance)
+            self._keep_belief(belief)
 
     def keep(self, base_in_map: Pose2, covariance) -> None:
         """``covariance``: (3, 3); its diagonal is kept. A pose that no node could start from is not."""
@@ -60,3 +73,12 @@ class PoseKeeper:
         kept = InitialPose(base_in_map.x, base_in_map.y, base_in_map.yaw, *variances)
         names = official_names(InitialPose)
         self._writer.write({"~" + name: getattr(kept, field) for name, field in names.items()})
+
+    def _keep_belief(self, belief: Belief) -> None:
+        poses = {"base_in_odom": asdict(belief.base_in_odom), "odom_in_map": asdict(belief.odom_in_map)}
+        try:
+            self._kept_file.keep(
+                partial(save_particles, belief.particles), {**poses, "is_lost": belief.is_lost}
+            )
+        except FileWriteError as error:
+            rospy.logwarn_throttle(_ALARM_SECONDS, "nothing is kept for a node after this one: %s", error)
