@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Shows what becomes of a mission when each of its processes is killed by SIGKILL in turn.
+"""Shows what becomes of a mission, or of a map, when each of the processes is killed by SIGKILL in turn.
 
 python3 tests/benchmarks/killed_nodes.py [--seed 61] [--only amcl ...] [--table docs/killed_nodes.md]
 """
@@ -20,6 +20,7 @@ from typing import Dict, List, Optional, Tuple
 import psutil
 from soak import ROOT, RUN_SECONDS, RUNS, Graph, Traces
 
+MAPPER = "slam_gmapping"
 # Of each node that comes back, a topic on which it is heard as soon as it is at work again.
 WORK = {
     "amcl": "/tf",
@@ -29,23 +30,26 @@ WORK = {
     "add_markers": "/visualization_marker",
     "robot_state_publisher": "/tf_static",
     "rosout": "/rosout_agg",
+    MAPPER: "/map",
 }
 FATAL = ("sim_bridge", "rosmaster", "roslaunch")
 # A mission is over too soon otherwise; the robot is on its way by then.
 SPEED, DRIVING_SECONDS = 4, 2.0
 PAGE = """# Killed nodes
 
-What becomes of `./scripts/home_service.sh --mission map/mission.yaml --speed {speed}` when one of its
-processes is killed (`kill -9`) while the robot drives: wall seconds until the node is heard at work again,
-and until the run has ended; and what of the run is left then, processes, sockets, temporary files. Made by
+What becomes of `./scripts/home_service.sh --mission map/mission.yaml --speed {speed}`, for slam_gmapping of
+`./scripts/map_home.sh --speed {speed}`, when one of its processes is killed (`kill -9`) while the robot
+drives: wall seconds until the node is heard at work again, and until the run has ended; and what of the run
+is left then, processes, sockets, temporary files. Made by
 `python3 tests/benchmarks/killed_nodes.py --seed {seed} --table docs/killed_nodes.md`.
 
 | killed | at work again, s | ended after, s | exit code | what the run says | left |
 | --- | --- | --- | --- | --- | --- |
 {rows}
 
-A node that has come back goes on with what it has left at the master: amcl with its pose, pick_objects with
-how far its deliveries are and what is carried. rosout collects what nodes log, and nobody waits for it. Each
+A node that has come back goes on with what it has left at the master, or in a file of which the master knows:
+amcl with its particles, slam_gmapping with its graph of at most five seconds ago, pick_objects with how far
+its deliveries are and what is carried. rosout collects what nodes log, and nobody waits for it. Each
 may die three times. Without the simulator, the master or roslaunch there is no run. What else
 goes wrong: [troubled graphs](troubled_graphs.md), [faults](faults.md).
 """
@@ -76,7 +80,7 @@ def table_row(name: str, *told: object) -> str:
 def fate_of(killed: str, seed: int) -> Fate:
     """For a process of its own: rospy knows one master."""
     traces = Traces()
-    graph, folder = mission_under_way(traces, seed)
+    graph, folder = run_under_way(traces, seed, makes_map=killed == MAPPER)
     heard = _listen(killed) if killed in WORK else []
     time.sleep(DRIVING_SECONDS)
     for process in processes_of(graph, killed):
@@ -92,13 +96,17 @@ def fate_of(killed: str, seed: int) -> Fate:
     return Fate(killed, back, ended, code, reason_in(folder), len(traces.left()))
 
 
-def mission_under_way(traces: Traces, seed: int) -> Tuple[Graph, Path]:
-    """A mission whose robot has set out, and its run folder; this process is a node of its graph then."""
+def run_under_way(traces: Traces, seed: int, makes_map: bool = False) -> Tuple[Graph, Path]:
+    """A run whose robot has set out, and its folder; this process is a node of its graph then."""
     import rospy
 
-    mission = ("--mission", str(ROOT / "map/mission.yaml"), "--speed", str(SPEED), "--seed", str(seed))
-    graph = Graph(traces, "home_service.sh", *mission)
-    graph.wait_for("(driving to)")
+    options = ("--speed", str(SPEED), "--seed", str(seed))
+    if makes_map:
+        graph = Graph(traces, "map_home.sh", *options)
+        graph.wait_for("(exploring, )")
+    else:
+        graph = Graph(traces, "home_service.sh", "--mission", str(ROOT / "map/mission.yaml"), *options)
+        graph.wait_for("(driving to)")
     folder = next((Path(traces.environment["TMPDIR"]) / RUNS).iterdir())
     uri = re.search(r"ROS_MASTER_URI=(http://[\d.:]+)", (folder / "log/roslaunch.log").read_text())
     assert uri is not None

@@ -21,9 +21,9 @@ from killed_nodes import (
     FATAL,
     SPEED,
     WORK,
-    mission_under_way,
     processes_of,
     reason_in,
+    run_under_way,
     table_row,
     wait_for_end,
 )
@@ -173,7 +173,7 @@ TROUBLES: Dict[str, Trouble] = {
 def outcome_of(name: str, seed: int) -> Outcome:
     """For a process of its own: rospy knows one master."""
     traces = Traces()
-    graph, folder = mission_under_way(traces, seed)
+    graph, folder = run_under_way(traces, seed)
     time.sleep(DRIVING_SECONDS)
     began = time.monotonic()
     TROUBLES[name].make(graph)

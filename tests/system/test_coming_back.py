@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Each node of a mission is killed in turn: it comes back, the mission goes on, the result tells of it."""
+"""Nodes of a run are killed in turn: they come back, the run goes on, and the result tells of it."""
 
 import json
 import os
@@ -16,16 +16,25 @@ import rostest
 from waiting import wait_until
 
 ROOT = Path(__file__).resolve().parents[2]
+MAPPING_NODES = ("slam_gmapping", "move_base", "robot_state_publisher", "slam_gmapping")
 NODES = ("amcl", "move_base", "pick_objects", "map_server", "add_markers", "robot_state_publisher", "rosout")
 RUN_SECONDS = 200.0
 BACK_SECONDS = 20.0
-APART_SECONDS = 1.0
+APART_SECONDS, APART_EXPLORING_SECONDS = 1.0, 5.0
 
 
 class ComingBackTest(unittest.TestCase):
     def test_a_mission_survives_the_death_of_each_of_its_nodes(self):
         with tempfile.TemporaryDirectory() as folder:
-            run = Run("--mission", str(ROOT / "map/mission.yaml"), "--seed", "61", "--output", folder)
+            run = Run(
+                "home_service",
+                "--mission",
+                str(ROOT / "map/mission.yaml"),
+                "--seed",
+                "61",
+                "--output",
+                folder,
+            )
             try:
                 wait_until("the robot to set out", lambda: run.has_said("driving to"), 60.0)
                 for node in NODES:
@@ -40,9 +49,28 @@ class ComingBackTest(unittest.TestCase):
         self.assertEqual(result["final_state"], "delivered")
         self.assertFalse(result["repeatable"])
 
+    def test_a_map_survives_the_death_of_what_makes_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            run = Run("map_home", "--seed", "61", "--output", folder)
+            try:
+                wait_until("the explorer to begin", lambda: run.has_said("exploring, "), 60.0)
+                for node in MAPPING_NODES:
+                    time.sleep(APART_EXPLORING_SECONDS)
+                    run.kill(node)
+                code = run.process.wait(RUN_SECONDS)
+            finally:
+                run.end()
+            result = json.loads(next(Path(folder).glob("*/result.json")).read_text())
+            logs = next(Path(folder).glob("*/log/roslaunch.log")).read_text()
+            left = list(Path(folder).glob("**/*.kept"))
+        self.assertEqual(code, 0)
+        self.assertEqual([restart["node"] for restart in result["restarts"]], list(MAPPING_NODES))
+        self.assertEqual(logs.count("loaded a map of"), MAPPING_NODES.count("slam_gmapping"))
+        self.assertEqual(left, [])
+
     def test_a_node_that_cannot_stay_alive_ends_the_run_with_its_reason(self):
         with tempfile.TemporaryDirectory() as folder:
-            run = Run("--output", folder)
+            run = Run("home_service", "--output", folder)
             try:
                 wait_until("the robot to set out", lambda: run.has_said("driving to"), 60.0)
                 for _ in range(4):
@@ -55,11 +83,11 @@ class ComingBackTest(unittest.TestCase):
 
 
 class Run:
-    """home_service.sh, what it says, and its nodes; in real time, so that it is not over too soon."""
+    """A command, what it says, and its nodes; at a steady pace, so that it is not over too soon."""
 
-    def __init__(self, *options):
+    def __init__(self, command, *options):
         self.process = subprocess.Popen(
-            [str(ROOT / "scripts/home_service.sh"), "--speed", "4", *options],
+            [str(ROOT / f"scripts/{command}.sh"), "--speed", "4", *options],
             env={**os.environ, "PYTHONUNBUFFERED": "1"},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,

@@ -77,6 +77,28 @@ def test_what_fits_in_two_places_is_found_in_neither(office, state):
     assert known.find([(surface, Pose2())], believed).distance_to(Pose2(13.6, 5.0, -1.9)) < FOUND
 
 
+@pytest.mark.parametrize("off", [Pose2(0.3, -0.2, 0.1), Pose2(-0.15, 0.3, -0.1)])
+def test_a_mapper_goes_on_after_a_crash(office, off):
+    """Halfway round, a little from where odometry has brought the robot since the map was kept."""
+    drive = office.drive(laps=1.3)
+    mapper, crash, later = Mapper(), len(drive) // 2, len(drive) // 2 + 12
+    mapped(drive[:crash], mapper)
+    following = Mapper()
+    following.resume_near(mapper.state(), drive[later].base_in_map @ off)
+    updates = [following.insert(sighting.base_in_odom, sighting.scan) for sighting in drive[later:]]
+    assert updates[0].base_in_map.distance_to(drive[later].base_in_map) < FOLLOWED
+    following.settle()
+    assert max(errors(drive[later:], updates, following)) < FOLLOWED
+
+
+def test_where_nothing_tells_the_robot_is_where_odometry_has_brought_it(office, state):
+    believed = Pose2(40.0, 40.0, 0.5)
+    mapper = Mapper()
+    mapper.resume_near(state, believed)
+    sighting = restarted(office.drive(laps=0.3), 100.0)[0]
+    assert mapper.insert(sighting.base_in_odom, sighting.scan).base_in_map == believed
+
+
 def test_places_are_spread_over_the_map(state):
     places = spread(state.poses, 4.0)
     chosen = state.poses[places, :2]

@@ -208,6 +208,10 @@ class GraphOptions(RunOptions, WorldOptions):
         return LaunchPlan(file, {**world, **arguments}, bags=self.record)
 
 
+# Of the nodes that make a map, those that go on where they were.
+MAPPING_NODES = ("slam_gmapping", "robot_state_publisher")
+
+
 @dataclass(frozen=True)
 class MappingOptions(GraphOptions):
     """A run that leaves a map."""
@@ -215,3 +219,9 @@ class MappingOptions(GraphOptions):
     save: Optional[Path] = option(
         None, "write STEM.pgm and STEM.yaml, not to the run folder", type=Path, metavar="STEM"
     )
+
+    def mapping(self, explores: bool) -> LaunchPlan:
+        """The simulation with SLAM and, if the robot explores by itself, all that it takes for that."""
+        if explores:
+            return self.launch("mapping.launch").respawning(*MAPPING_NODES, "move_base")
+        return self.launch("slam.launch").respawning(*MAPPING_NODES)

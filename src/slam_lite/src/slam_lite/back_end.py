@@ -216,9 +216,11 @@ class BackEnd:
         """Where a key lies in the map."""
         return Pose2.from_array(self._poses[key])
 
-    def place_of(self, surface: Surface, believed: Optional[Pose2] = None) -> Optional[Pose2]:
+    def place_of(self, surface: Surface, believed: Pose2, only_near: bool) -> Optional[Pose2]:
         """Where a scan was taken, looked for around ``believed`` first; None if it cannot be told."""
-        return KnownMap(self.surfaces, self.poses, self._local_map).find([(surface, Pose2())], believed)
+        known = KnownMap(self.surfaces, self.poses, self._local_map)
+        recent = [(surface, Pose2())]
+        return known.find_near(recent, believed) if only_near else known.find(recent, believed)
 
     def beside(self, surface: Surface) -> Pose2:
         """A pose from which a scan sees nothing of what was seen so far."""

@@ -127,6 +127,9 @@ class NodeSettings(MapperSettings):
     localization_only: bool = parameter(
         False, "follow the robot in the loaded map and leave the map as it is"
     )
+    resume: bool = parameter(
+        False, "for a node that is respawned: whether to keep the map as it grows, and to go on with it"
+    )
 
     def __post_init__(self):
         super().__post_init__()

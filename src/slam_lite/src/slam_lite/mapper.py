@@ -1,7 +1,7 @@
 """The mapper: scans and odometry in, poses and a map out."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import List, Optional, Tuple
 
 import numpy as np
@@ -76,9 +76,10 @@ class Mapper:
         self._no_return = NoReturn()
         self._session = 0
         self._sessions: List[int] = []
-        # Whether the robot has to be found in the map, and where it is believed to be in a finished one.
+        # Whether the robot has to be found in the map; where it is believed to be, and whether it is near.
         self._is_to_be_found, self._is_lost = False, False
         self._believed: Optional[Pose2] = None
+        self._is_near = False
 
     def insert(self, base_in_odom: Pose2, scan: Scan) -> Optional[MapUpdate]:
         """Takes one scan in; None if it says nothing new because the robot stands still.
@@ -188,20 +189,32 @@ class Mapper:
         self._sessions = list(state.sessions)
         self._session = self._sessions[-1] + 1 if self._sessions else 0
         self._continuity = Continuity()
-        self._believed, self._is_lost = state.base_in_map, False
+        self._believed, self._is_lost, self._is_near = state.base_in_map, False, False
         self._is_to_be_found = base_in_map is None and len(state.poses) > 0
         start = base_in_map or state.base_in_map
         if len(state.poses):
             self._last_in_key = Pose2.from_array(state.poses[-1]).inverse() @ start
         self._begin(start)
 
+    def resume_near(self, state: MapState, base_in_map: Pose2) -> None:
+        """Goes on from a state of moments ago, with the robot within some decimetres of ``base_in_map``.
+
+        The first scan tells more exactly where, if it can.
+        """
+        self.resume(replace(state, base_in_map=base_in_map))
+        self._is_near = True
+
     def _find(self, surface: Surface) -> None:
         """Begins a trajectory where the scan says that the robot is, or beside the map.
 
         One scan is enough in a finished map; in one that grows, it may look the same elsewhere.
         """
-        found = None if self._believed is None else self._back_end.place_of(surface, self._believed)
-        self._is_to_be_found, self._is_lost, self._believed = False, found is None, None
+        found = None
+        if self._believed is not None:
+            found = self._back_end.place_of(surface, self._believed, only_near=self._is_near)
+        if self._is_near:
+            found = found or self._believed
+        self._is_to_be_found, self._is_lost, self._believed, self._is_near = False, found is None, None, False
         self._begin(found or self._back_end.beside(surface))
 
     def _begin(self, base_in_track: Pose2) -> None:

@@ -12,4 +12,4 @@ class MapHome(MappingOptions):
         from home_service.stage import read_stage
 
         stage = read_stage(self)
-        return make_scored_map(self, self.launch("mapping.launch"), stage)
+        return make_scored_map(self, self.mapping(explores=True), stage)

@@ -28,5 +28,5 @@ class TestSlam(MappingOptions):
 
         read_stage(self)
         drive = {"keys": drive_by_keys, "page": drive_at_the_page, "auto": explore}[self.drive]
-        launch = self.launch("mapping.launch" if self.drive == "auto" else "slam.launch")
+        launch = self.mapping(explores=self.drive == "auto")
         return make_map(self, launch, drive)

@@ -49,15 +49,21 @@ class KnownMap:
         surface = thinned(joined(recent), _MOST_POINTS)
         if len(surface) < _FEWEST_POINTS or len(self._poses) == 0:
             return None
-        if believed is not None:
-            pose = self._confirmed(self._peak(surface, believed, _BELIEVED), surface, recent)
-            if pose is not None:
-                return pose
+        pose = None if believed is None else self.find_near(recent, believed)
+        if pose is not None:
+            return pose
         places = spread(self._poses, _APART)
         if len(places) > _MOST_PLACES:
             return None
         peaks = [self._peak(surface, Pose2(*self._poses[place, :2]), _WINDOW) for place in places]
         return self._confirmed(_only(peaks), surface, recent)
+
+    def find_near(self, recent: Sequence[Placed], believed: Pose2) -> Optional[Pose2]:
+        """The same, looked for around ``believed`` only."""
+        surface = thinned(joined(recent), _MOST_POINTS)
+        if len(surface) < _FEWEST_POINTS:
+            return None
+        return self._confirmed(self._peak(surface, believed, _BELIEVED), surface, recent)
 
     def closure(self, surfaces: Sequence[Surface], poses: np.ndarray, recent_keys: int) -> Optional[Closure]:
         """The tie to the map of the last of keys at ``poses`` (M, 3), found by the ``recent_keys`` last."""

@@ -1,7 +1,7 @@
 """The one mapper of the node, for all its threads."""
 
 import threading
-from typing import NamedTuple, Optional
+from typing import NamedTuple, Optional, Tuple
 
 import numpy as np
 import rospy
@@ -41,12 +41,16 @@ class Mapping:
         self._renderer = self._empty_renderer()
         self._base_in_odom: Optional[Pose2] = None
         self._information: Optional[np.ndarray] = None
+        self._is_taken_over = False
         self.odom_in_map = Pose2()
 
     def insert(self, base_in_odom: Pose2, scan: Scan) -> Optional[PoseUpdate]:
         """Takes one scan in; None if it says nothing new."""
         with self._lock:
             self._base_in_odom = base_in_odom
+            if self._is_taken_over:
+                self._is_taken_over = False
+                self._go_on_near(self.odom_in_map @ base_in_odom)
             update = (self._follower or self._mapper).insert(base_in_odom, scan)
             if update is not None:
                 self.odom_in_map = update.odom_in_map
@@ -72,8 +76,12 @@ class Mapping:
 
     def state(self) -> MapState:
         """All that it takes to go on later."""
+        return self.now()[0]
+
+    def now(self) -> Tuple[MapState, Pose2]:
+        """The state, and where odometry has its origin in that map."""
         with self._lock:
-            return self._mapper.state()
+            return self._mapper.state(), self.odom_in_map
 
     def load(self, path: str) -> None:
         """Goes on from a saved state. Raises StateFileError if there is none."""
@@ -83,6 +91,18 @@ class Mapping:
             self._go_on(state)
             self._follower = Follower(settings, state) if settings.localization_only else None
         rospy.loginfo("loaded a map of %d scans from %s", len(state.poses), path)
+
+    def take_over(self, path: str, odom_in_map: Pose2) -> None:
+        """Goes on from a state of moments ago; odometry has gone on since. Raises StateFileError."""
+        self.load(path)
+        with self._lock:
+            self.odom_in_map, self._is_taken_over = odom_in_map, True
+
+    def _go_on_near(self, base_in_map: Pose2) -> None:
+        if self._follower is not None:
+            self._follower.place(base_in_map)
+        else:
+            self._mapper.resume_near(self._mapper.state(), base_in_map)
 
     def _go_on(self, state: MapState, base_in_map: Optional[Pose2] = None) -> None:
         mapper = Mapper(self._settings, deferred=True)

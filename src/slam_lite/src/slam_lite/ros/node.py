@@ -20,6 +20,7 @@ from slam_lite.ros.file_services import FileServices
 from slam_lite.ros.map_topics import MapTopics
 from slam_lite.ros.map_transform import MapTransform
 from slam_lite.ros.mapping import Mapping
+from slam_lite.ros.state_keeper import StateKeeper
 from slam_lite.warming import warm_up
 
 SCAN_QUEUE_SIZE = 5
@@ -40,6 +41,7 @@ class SlamNode:
         self._scan_count = 0
         if settings.state:
             self._mapping.load(settings.state)
+        self._keeper = StateKeeper(self._mapping) if settings.resume else None
         warm_up(settings.matcher_plugin)
         self._connect()
 
@@ -79,6 +81,8 @@ class SlamNode:
             if update is not None:
                 self._odometry_alarm.note(update.surprise)
             self._maps.note_scan(scan.stamp)
+            if self._keeper is not None:
+                self._keeper.note_scan(scan.stamp)
         self._step.report(message.header.stamp)
 
     def _on_skipped_scan(self, message, reason):
