@@ -16,7 +16,7 @@ import rostest
 from waiting import wait_until
 
 ROOT = Path(__file__).resolve().parents[2]
-MAPPING_NODES = ("slam_gmapping", "move_base", "robot_state_publisher", "slam_gmapping")
+MAPPING_NODES = ("slam_gmapping", "move_base", "explore", "robot_state_publisher", "slam_gmapping")
 NODES = ("amcl", "move_base", "pick_objects", "map_server", "add_markers", "robot_state_publisher", "rosout")
 RUN_SECONDS = 200.0
 BACK_SECONDS = 20.0

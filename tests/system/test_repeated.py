@@ -16,9 +16,16 @@ RUN_SECONDS = 150.0
 
 
 class RepeatedTest(unittest.TestCase):
-    def test_a_run_is_the_same_again_beside_other_work(self):
+    def test_a_mission_is_the_same_again_beside_other_work(self):
+        self._repeats("home_service.sh", "--seed", "5")
+
+    def test_a_map_is_the_same_again_beside_other_work(self):
+        """The robot explores by itself; a small world, so that it is soon known."""
+        self._repeats("map_home.sh", "--seed", "5", "--world", str(ROOT / "tests/system/two_rooms.world"))
+
+    def _repeats(self, *command):
         with tempfile.TemporaryDirectory() as parent:
-            done = _script("home_service.sh", "--seed", "5", "--output", parent)
+            done = _script(*command, "--output", parent)
             self.assertEqual(done.returncode, 0, done.stdout)
             folder = next(Path(parent).iterdir())
             result = json.loads((folder / "result.json").read_text(encoding="utf-8"))

@@ -40,6 +40,14 @@ def explorer(return_to_start=True, **settings):
     return Explorer(ExplorerSettings(**{**vars(SETTINGS), **settings}), return_to_start)
 
 
+def test_an_explorer_that_takes_over_returns_to_where_the_one_before_began():
+    start = Pose2(2.25, 1.25)
+    task = Explorer(SETTINGS, start=start)
+    task.advance(0.0, grid(OPEN_TO_THE_RIGHT), ROBOT)
+    assert task.advance(5.0, grid(CLOSED), Pose2(3.0, 1.25)) == GoTo(start)
+    assert task.start == start
+
+
 def test_the_robot_is_sent_to_the_frontier_and_home_when_all_is_known():
     task = explorer()
     order = task.advance(0.0, grid(OPEN_TO_THE_RIGHT), ROBOT)

@@ -82,6 +82,10 @@ class NodeSettings:
     server_timeout: float = parameter(
         60.0, "how long map, transform or move_base may be missing, by the wall clock", "s", POSITIVE
     )
+    autostart: bool = parameter(
+        False, "explore, once, as soon as there is all that it takes, without being asked by the action"
+    )
+    return_to_start: bool = parameter(True, "whether to return then to where that began")
 
     def __post_init__(self):
         check_parameters(self)

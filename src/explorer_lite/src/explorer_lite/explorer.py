@@ -48,13 +48,19 @@ class Explorer:
     other viewpoints and given up after some attempts.
     """
 
-    def __init__(self, settings: ExplorerSettings = ExplorerSettings(), return_to_start: bool = True):
+    def __init__(
+        self,
+        settings: ExplorerSettings = ExplorerSettings(),
+        return_to_start: bool = True,
+        start: Optional[Pose2] = None,
+    ):
+        """``start``: where to return to, in the map; by default where the robot is at first."""
         self._settings = settings
         self._return_to_start = return_to_start
         self._elapsed = Elapsed()
         self._grid: Optional[OccupancyGrid] = None
         self._grid_time = 0.0
-        self._start = Pose2()
+        self._start = start
         self._next_look = 0.0
         self._target: Optional[Target] = None
         self._arrived_at: Optional[float] = None
@@ -80,6 +86,11 @@ class Explorer:
             return 0.0
         return float(np.count_nonzero(self._grid.cells == FREE)) * self._grid.resolution**2
 
+    @property
+    def start(self) -> Optional[Pose2]:
+        """Where the robot returns to, None before it is known."""
+        return self._start
+
     def advance(
         self, now: float, grid: Optional[OccupancyGrid], robot: Pose2, event: Optional[Event] = None
     ) -> Optional[Order]:
@@ -94,7 +105,7 @@ class Explorer:
         if self._grid is None or self.state in (ExplorerState.DONE, ExplorerState.FAILED):
             return None
         if self.state is ExplorerState.READY:
-            self._start, self._next_look = robot, now
+            self._start, self._next_look = self._start or robot, now
             self._progress.restart(now)
             self.state = ExplorerState.EXPLORING
         if self.state is ExplorerState.RETURNING and event is not None:
@@ -126,7 +137,8 @@ class Explorer:
                 self._refuse_target()
                 targets = self._finder.find(reach)
             self._target = None
-        goal = self._target.viewpoint if self._target is not None else self._start
+        goal = self._start if self._target is None else self._target.viewpoint
+        assert goal is not None
         if self._progress.is_stuck(now, reach.distance_to(goal)):
             if self.state is ExplorerState.RETURNING:
                 return self._end_return(now, GoalRefused("no progress"))
@@ -177,6 +189,7 @@ class Explorer:
         return self._set_out_for_start(now)
 
     def _set_out_for_start(self, now: float) -> Order:
+        assert self._start is not None
         self._return_attempts += 1
         self._progress.restart(now)
         return GoTo(self._start)

@@ -209,7 +209,7 @@ class GraphOptions(RunOptions, WorldOptions):
 
 
 # Of the nodes that make a map, those that go on where they were.
-MAPPING_NODES = ("slam_gmapping", "robot_state_publisher")
+MAPPING_NODES, EXPLORING_NODES = ("slam_gmapping", "robot_state_publisher"), ("move_base", "explore")
 
 
 @dataclass(frozen=True)
@@ -223,5 +223,7 @@ class MappingOptions(GraphOptions):
     def mapping(self, explores: bool) -> LaunchPlan:
         """The simulation with SLAM and, if the robot explores by itself, all that it takes for that."""
         if explores:
-            return self.launch("mapping.launch").respawning(*MAPPING_NODES, "move_base")
+            return self.launch("mapping.launch", autostart="true").respawning(
+                *MAPPING_NODES, *EXPLORING_NODES
+            )
         return self.launch("slam.launch").respawning(*MAPPING_NODES)

@@ -1,12 +1,12 @@
 """The ROS node of explorer_lite: the action ``explore``, carried out with move_base on the growing map."""
 
 import time
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Optional, Union
 
 import rospy
 from geometry_msgs.msg import Point, PoseStamped
-from home_service_msgs.msg import ExploreAction, ExploreFeedback, ExploreResult
+from home_service_msgs.msg import ExploreAction, ExploreActionGoal, ExploreFeedback, ExploreResult
 from visualization_msgs.msg import MarkerArray
 
 from explorer_lite.config import ExplorerSettings, NodeSettings
@@ -19,6 +19,7 @@ from planar_ros.calls.move_base import MoveBase
 from planar_ros.messages.border import listen
 from planar_ros.messages.conversion import LaserScanArrays, OccupancyGridArrays, grid_from_msg, pose2_to_msg
 from planar_ros.messages.transforms import Transforms
+from planar_ros.node.keepsake import Keepsake
 from planar_ros.node.parameters import read_settings
 from planar_ros.node.shell import run
 from planar_ros.node.waiting import Waiting
@@ -27,6 +28,33 @@ from planar_ros.step import Step
 POLL_SECONDS = 0.02
 FEEDBACK_SECONDS = 1.0
 STOP_SECONDS = 2.0
+
+
+class Autostart:
+    """Has the node explore as if somebody had asked for it, and, after a crash, go on with that.
+
+    The goal goes the way of all messages, so that whoever follows the action sees nothing special.
+    """
+
+    def __init__(self, return_to_start: bool):
+        self._goal = ExploreActionGoal()
+        self._goal.goal.return_to_start = return_to_start
+        self._goals = rospy.Publisher("explore/goal", ExploreActionGoal, queue_size=1)
+        self._keepsake = Keepsake()
+        self._has_begun = False
+
+    @property
+    def start(self) -> Optional[Pose2]:
+        """Where the robot returns to, as far as it is known."""
+        return None if self._keepsake.found is None else Pose2(**self._keepsake.found)
+
+    def keep(self, start: Pose2) -> None:
+        self._keepsake.keep(asdict(start))
+
+    def begin(self) -> None:
+        if not self._has_begun and self._goals.get_num_connections() > 0:
+            self._has_begun = True
+            self._goals.publish(self._goal)
 
 
 class Explore:
@@ -57,11 +85,14 @@ class Explore:
         Waiting(self._conditions)
         self._server = ActionServer("explore", ExploreAction, auto_start=False)
         self._server.start()
+        self._autostart = Autostart(self._settings.return_to_start) if self._settings.autostart else None
 
     def serve(self) -> None:
         """Until shutdown."""
         self._step.join(takes_turns=True)
         while not rospy.is_shutdown():
+            if self._autostart is not None and all(is_met() for is_met in self._conditions.values()):
+                self._autostart.begin()
             if self._server.is_new_goal_available():
                 self._execute(self._server.accept_new_goal())
             self._step.pause(POLL_SECONDS)
@@ -72,7 +103,8 @@ class Explore:
             settings = replace(settings, field_of_view=self._field_of_view)
         if self._field_of_view > 0.0:
             self._scans.unregister()
-        explorer = Explorer(settings, goal.return_to_start)
+        before = None if self._autostart is None else self._autostart.start
+        explorer = Explorer(settings, goal.return_to_start, before)
         start = rospy.get_time()
         rospy.loginfo("exploring")
         end = self._explore(explorer)
@@ -113,6 +145,8 @@ class Explore:
                 seen_map, event = grid, None
             if isinstance(order, Finish):
                 return order
+            if self._autostart is not None and explorer.start is not None:
+                self._autostart.keep(explorer.start)
             if isinstance(order, GoTo):
                 goal = order.pose
                 self._move_base.send(goal)

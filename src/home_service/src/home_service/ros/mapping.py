@@ -5,21 +5,20 @@ import subprocess
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
-from typing import Callable, Optional
+from typing import Callable, List, Optional
 
-import actionlib
 from actionlib_msgs.msg import GoalStatus
-from home_service_msgs.msg import ExploreAction, ExploreGoal
+from home_service_msgs.msg import ExploreActionFeedback, ExploreActionResult
 
 from home_service.judging.map_truth import judge_map, score_against_world
 from home_service.judging.verdict import Verdict
 from home_service.options import LaunchPlan, MappingOptions
+from home_service.ros.hearing import hear
 from home_service.ros.referee import Referee
 from home_service.ros.run import Run
 from home_service.ros.run_recorder import RunRecorder
 from home_service.stage import Stage
 from planar import Pose2, SettingsError, load_map
-from planar_ros.calls.actions import goal_is_over, server_is_ready
 from supervision.display import Display
 from supervision.errors import LaunchError
 from supervision.interruption import RunInterruptedError
@@ -59,22 +58,19 @@ def make_scored_map(options: MappingOptions, launch: LaunchPlan, stage: Stage) -
 
 def explore(run: Run, referee: Referee) -> Optional[str]:
     """A driver: the robot explores by itself and returns."""
-    client = actionlib.SimpleActionClient("explore", ExploreAction)
-    failure = run.watch(lambda: server_is_ready(client))
-    if failure:
+
+    def show(message: ExploreActionFeedback) -> None:
+        told = message.feedback
+        referee.state = f"{told.state}, {told.explored_area:.0f} m2 known, {told.frontiers} frontiers"
+
+    ends: List[GoalStatus] = []
+    hear("explore/feedback", ExploreActionFeedback, show)
+    hear("explore/result", ExploreActionResult, lambda message: ends.append(message.status))
+    failure = run.watch(lambda: len(ends) > 0)
+    if failure is not None:
         return failure
-
-    def show(feedback):
-        referee.state = (
-            f"{feedback.state}, {feedback.explored_area:.0f} m2 known, {feedback.frontiers} frontiers"
-        )
-
-    client.send_goal(ExploreGoal(return_to_start=True), feedback_cb=show)
-    failure = run.watch(lambda: goal_is_over(client))
-    if failure is None and client.get_state() != GoalStatus.SUCCEEDED:
-        failure = client.get_goal_status_text()
-    run.display.say(f"{client.get_goal_status_text()}, {referee.simulated_seconds:.0f} s simulated")
-    return failure
+    run.display.say(f"{ends[0].text}, {referee.simulated_seconds:.0f} s simulated")
+    return None if ends[0].status == GoalStatus.SUCCEEDED else ends[0].text
 
 
 def drive_by_keys(run: Run, _referee: Referee) -> Optional[str]:
