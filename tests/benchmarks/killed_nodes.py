@@ -20,7 +20,8 @@ from typing import Dict, List, Optional, Tuple
 import psutil
 from soak import ROOT, RUN_SECONDS, RUNS, Graph, Traces
 
-MAPPER = "slam_gmapping"
+# Those of map_home.sh; the others are a mission's.
+MAPPERS = ("slam_gmapping", "explore")
 # Of each node that comes back, a topic on which it is heard as soon as it is at work again.
 WORK = {
     "amcl": "/tf",
@@ -30,17 +31,18 @@ WORK = {
     "add_markers": "/visualization_marker",
     "robot_state_publisher": "/tf_static",
     "rosout": "/rosout_agg",
-    MAPPER: "/map",
+    "slam_gmapping": "/map",
+    "explore": "/explore/feedback",
 }
 FATAL = ("sim_bridge", "rosmaster", "roslaunch")
 # A mission is over too soon otherwise; the robot is on its way by then.
 SPEED, DRIVING_SECONDS = 4, 2.0
 PAGE = """# Killed nodes
 
-What becomes of `./scripts/home_service.sh --mission map/mission.yaml --speed {speed}`, for slam_gmapping of
-`./scripts/map_home.sh --speed {speed}`, when one of its processes is killed (`kill -9`) while the robot
-drives: wall seconds until the node is heard at work again, and until the run has ended; and what of the run
-is left then, processes, sockets, temporary files. Made by
+What becomes of `./scripts/home_service.sh --mission map/mission.yaml --speed {speed}`, for slam_gmapping
+and explore of `./scripts/map_home.sh --speed {speed}`, when one of its processes is killed (`kill -9`)
+while the robot drives: wall seconds until the node is heard at work again, and until the run has ended; and
+what of the run is left then, processes, sockets, temporary files. Made by
 `python3 tests/benchmarks/killed_nodes.py --seed {seed} --table docs/killed_nodes.md`.
 
 | killed | at work again, s | ended after, s | exit code | what the run says | left |
@@ -48,10 +50,10 @@ is left then, processes, sockets, temporary files. Made by
 {rows}
 
 A node that has come back goes on with what it has left at the master, or in a file of which the master knows:
-amcl with its particles, slam_gmapping with its graph of at most five seconds ago, pick_objects with how far
-its deliveries are and what is carried. rosout collects what nodes log, and nobody waits for it. Each
-may die three times. Without the simulator, the master or roslaunch there is no run. What else
-goes wrong: [troubled graphs](troubled_graphs.md), [faults](faults.md).
+amcl with its particles, slam_gmapping with its graph of at most five seconds ago, explore with where it is to
+return to, pick_objects with how far its deliveries are and what is carried. rosout collects what nodes log,
+and nobody waits for it. Each may die three times. Without the simulator, the master or roslaunch there is no
+run. What else goes wrong: [troubled graphs](troubled_graphs.md), [faults](faults.md).
 """
 
 
@@ -80,7 +82,7 @@ def table_row(name: str, *told: object) -> str:
 def fate_of(killed: str, seed: int) -> Fate:
     """For a process of its own: rospy knows one master."""
     traces = Traces()
-    graph, folder = run_under_way(traces, seed, makes_map=killed == MAPPER)
+    graph, folder = run_under_way(traces, seed, makes_map=killed in MAPPERS)
     heard = _listen(killed) if killed in WORK else []
     time.sleep(DRIVING_SECONDS)
     for process in processes_of(graph, killed):
