@@ -30,13 +30,15 @@ class NodeMeter:
 
     def __init__(self, parent: psutil.Process):
         self._parent = parent
-        self._before: Dict[str, float] = {}
-        self.cpu: Dict[str, float] = {}
+        # By process, as a node may have several; one that has ended has taken what it took.
+        self._nodes: Dict[int, str] = {}
+        self._cpu: Dict[int, float] = {}
+        self._before: Dict[int, float] = {}
         self.memory: Dict[str, float] = {}
 
     def start(self) -> None:
         self.look()
-        self._before = dict(self.cpu)
+        self._before = dict(self._cpu)
 
     def look(self) -> None:
         for process in self._parent.children(recursive=True):
@@ -45,13 +47,18 @@ class NodeMeter:
                 if match is None:
                     continue
                 name, times = match[1], process.cpu_times()
-                self.cpu[name] = times.user + times.system
+                self._nodes[process.pid] = name
+                self._cpu[process.pid] = max(self._cpu.get(process.pid, 0.0), times.user + times.system)
                 self.memory[name] = max(self.memory.get(name, 0.0), process.memory_info().rss / 2**20)
             except psutil.Error:
                 continue
 
     def cpu_since_start(self) -> Dict[str, float]:
-        return {name: seconds - self._before.get(name, 0.0) for name, seconds in self.cpu.items()}
+        taken: Dict[str, float] = {}
+        for process, seconds in self._cpu.items():
+            name = self._nodes[process]
+            taken[name] = taken.get(name, 0.0) + seconds - self._before.get(process, 0.0)
+        return taken
 
 
 def main() -> int:

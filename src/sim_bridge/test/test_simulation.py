@@ -258,6 +258,7 @@ def test_what_a_robot_is_moved_out_of_is_named():
 
 def test_a_kobuki_feels_a_wall_ahead_with_the_centre_of_its_bumper():
     simulation = Simulation(WALLED, settings=EXACT)
+    simulation.scene.robot(ROBOT_NAME).want("kobuki")
     assert simulation.step().kobuki == KobukiReading()
     felt = set()
     for _ in range(200):
@@ -268,6 +269,7 @@ def test_a_kobuki_feels_a_wall_ahead_with_the_centre_of_its_bumper():
 def test_a_kobuki_feels_the_edge_of_its_floor_and_its_wheels_hang_beyond():
     table = body("table::link", Box((2.0, 2.0, 0.1)), pose3(0.0, 0.0, -0.05))
     simulation = Simulation(World("table", (table,)), settings=EXACT)
+    simulation.scene.robot(ROBOT_NAME).want("kobuki")
     first_cliff = None
     for _ in range(200):
         seen = simulation.step(Twist2(0.5, 0.0))

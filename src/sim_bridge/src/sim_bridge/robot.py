@@ -87,7 +87,7 @@ class Observation:
 
     @property
     def kobuki(self) -> Optional[KobukiReading]:
-        """What a Kobuki base feels, None of other robots."""
+        """What a Kobuki base feels, if that is wanted; None of other robots."""
         told = self.readings.get("kobuki")
         return told.value if told else None
 

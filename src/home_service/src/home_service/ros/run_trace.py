@@ -13,8 +13,8 @@ from visualization_msgs.msg import Marker
 from home_service.judging.trace import FILE, Entry, Trace, hash_of, write_trace
 from home_service.result import Result
 from home_service.ros.hearing import hear
+from planar_ros.step.step import AUDIENCE_PARAMETER
 
-AUDIENCE_PARAMETER = "/simulation/audience"
 ROBOTS = ("", "follower/")
 
 

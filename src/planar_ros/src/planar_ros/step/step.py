@@ -25,6 +25,8 @@ POLL_SECONDS = 0.02
 DEFAULT_PERIOD = 0.1
 # The nodes that the simulator waits for.
 WAIT_FOR_PARAMETER = "/simulation/wait_for"
+# Nodes outside that are to miss nothing.
+AUDIENCE_PARAMETER = "/simulation/audience"
 # Nodes that are not in step, whose static transforms are heard before the first moment is worked on.
 STATIC_PUBLISHERS_PARAMETER = "/simulation/static_publishers"
 # Wall seconds without a moment after which messages of strangers are handed on as they come.
@@ -158,6 +160,7 @@ class Step:
                 self._leave()
             return
         with self._working:
+            transport.save_sends()
             self._begin(message, members)
             self._work()
             transport.flush()
@@ -170,6 +173,7 @@ class Step:
         first_words = {} if self.is_on else _first_words()
         if members != self._inbox.members:
             self._inbox.members = CountedConnection.members = members
+            CountedConnection.audience = audience()
             self._required.clear()
             self._told.clear()
         self._required.update(_sent_to(self._name, message))
@@ -237,6 +241,11 @@ def is_heard_in_step(topic: rospy.Subscriber) -> bool:
     """Whether a node that is to be in step sends on the topic: what it sends takes simulated time."""
     expected = rospy.get_param(WAIT_FOR_PARAMETER, [])
     return any(connection.callerid_pub in expected for connection in topic.impl.connections)
+
+
+def audience() -> FrozenSet[str]:
+    """The nodes outside that are to miss nothing."""
+    return frozenset(rospy.get_param(AUDIENCE_PARAMETER, []))
 
 
 def _first_words() -> Dict[Tuple[str, str], int]:

@@ -1,8 +1,9 @@
 """rospy's connections, so that messages between nodes in step are counted and come in one piece a moment."""
 
 import threading
+from collections import deque
 from io import BytesIO
-from typing import Any, ClassVar, Dict, FrozenSet, Iterator, List, Tuple
+from typing import Any, ClassVar, Deque, Dict, FrozenSet, Iterator, List, Optional, Tuple
 
 import rospy.topics
 from rospy.impl.tcpros_pubsub import TCPROSSub
@@ -14,6 +15,8 @@ STATIC_TOPIC = "/tf_static"
 # They go by themselves: the first two say how many of all others there are, the moment is the time.
 UNCOUNTED = frozenset((MOMENT_TOPIC, ANSWER_TOPIC, CLOCK_TOPIC))
 LENGTH_BYTES = 4
+# Of messages to those who only look on, so many at most are sent in one piece.
+MOST_TOGETHER = 10
 # By receiver and topic, of connections that may have been removed since.
 _last_counts: Dict[Tuple[str, str], int] = {}
 _init = TCPROSSub.__init__
@@ -23,9 +26,15 @@ class CountedConnection(PromptConnection):
     """Towards a node in step it keeps what is sent back until the moment's answer, and loses nothing.
 
     ``members``: the nodes in step with this one; none, and it is a connection as any other.
+    ``audience``: nodes that only look on, and miss nothing either. What the thread ``saver`` sends to them,
+    and the clock to anybody, is kept back too, for a send costs as much as the message: until it calls
+    ``flush``, which it does before it waits for anything.
     """
 
     members: ClassVar[FrozenSet[str]] = frozenset()
+    audience: ClassVar[FrozenSet[str]] = frozenset()
+    saver: ClassVar[Optional[int]] = None
+    _full: ClassVar[Deque["CountedConnection"]] = deque()
 
     def __init__(self, connection, queue_size: int):
         self.count = 0
@@ -42,16 +51,35 @@ class CountedConnection(PromptConnection):
         with self._keeping:
             self.count += 1
             if is_in_step and self._topic not in UNCOUNTED:
-                self._queue_size = 0  # rospy's word for: drop nothing
-                self._kept.append(data)
-                return True
+                return self._keep(data)
+            if self._may_save() and len(self._kept) < MOST_TOGETHER:
+                return self._keep(data)
             self._send_kept()
             return super().write_data(data)
+
+    @classmethod
+    def flush_all(cls) -> None:
+        """Sends whatever has been kept back, first what was first."""
+        while cls._full:
+            cls._full.popleft().flush()
 
     def flush(self) -> None:
         """Sends what was kept back."""
         with self._keeping:
             self._send_kept()
+
+    def _may_save(self) -> bool:
+        if self.saver is None or threading.get_ident() != self.saver:
+            return False
+        return self._topic == CLOCK_TOPIC or (self.receiver in self.audience and self._topic not in UNCOUNTED)
+
+    def _keep(self, data) -> bool:
+        if self._topic != CLOCK_TOPIC:
+            self._queue_size = 0  # rospy's word for: drop nothing
+        if not self._kept:
+            self._full.append(self)
+        self._kept.append(data)
+        return True
 
     def _send_kept(self) -> None:
         if self._kept:
@@ -111,9 +139,12 @@ def connections() -> Iterator[Tuple[str, str, Any]]:
 
 def flush() -> None:
     """Sends whatever has been kept back."""
-    for _, _, connection in connections():
-        if isinstance(connection, CountedConnection):
-            connection.flush()
+    CountedConnection.flush_all()
+
+
+def save_sends() -> None:
+    """From now on the calling thread's messages to those who look on are sent when it calls ``flush``."""
+    CountedConnection.saver = threading.get_ident()
 
 
 def keep_counts(topic: str) -> None:

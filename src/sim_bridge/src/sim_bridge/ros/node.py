@@ -82,6 +82,7 @@ class Bridge:
 
     def run(self) -> None:
         """Steps until shutdown."""
+        transport.save_sends()
         try:
             while not rospy.is_shutdown():
                 self._orders.carry_out(self._lock_step.awaited, self._lock_step.members)
@@ -91,6 +92,7 @@ class Bridge:
                 self._step()
                 self._performance.report(self._scene.stamp, self._fleet.publishers)
         finally:
+            transport.flush()
             self._time.close()
             self._orders.close()
             self._scene.close()

@@ -50,7 +50,7 @@ class KobukiProfile:
 class KobukiSensors:
     """Reads the sensors of a base."""
 
-    name, frame, on_demand = "kobuki", "base_link", False
+    name, frame, on_demand = "kobuki", "base_link", True
 
     def __init__(self, profile: KobukiProfile):
         self._downward_xyz = np.vstack([*CLIFF_SENSORS.values(), profile.hubs_xyz])

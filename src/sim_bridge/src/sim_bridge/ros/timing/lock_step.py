@@ -132,6 +132,7 @@ class LockStep:
         members = frozenset((self._name, *self.members)) if self.members else frozenset()
         if has_new_members:
             self._inbox.members = CountedConnection.members = members
+            CountedConnection.audience = self._loop.audience
             self._told.clear()
         transport.flush()
         counts = {**self._conductor.effects(), **transport.sent(self._name)}

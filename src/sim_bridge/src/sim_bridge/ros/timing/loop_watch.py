@@ -2,28 +2,28 @@
 
 import threading
 import time
-from typing import Collection, Dict, List, Set
+from typing import Collection, Dict, FrozenSet, List, Set
 
 import rospy
 
 from planar_ros.step.closure import Closure
+from planar_ros.step.step import audience
 
 POLL_SECONDS = 0.02
 # Wall seconds: for nodes to come, for one that is there to show that it can be in step, for connections.
 COMING_SECONDS, STRANGE_SECONDS, CONNECTING_SECONDS = 30.0, 5.0, 5.0
-# Nodes outside that are to miss nothing.
-AUDIENCE_PARAMETER = "/simulation/audience"
 
 
 class LoopWatch:
     """The loop is closed when all ``expected`` nodes have joined and hear each other and the node ``me``.
 
     They are connected to the ``static_publishers`` by then too.
-    What does not come within its time is given up.
+    What does not come within its time is given up. ``audience``: who looks on, as far as it is known.
     """
 
     def __init__(self, me: str, expected: Collection[str], static_publishers: Collection[str]):
         self.is_closed = not expected
+        self.audience: FrozenSet[str] = frozenset()
         self._me = me
         self._joined: Set[str] = set()
         self._absent = set(expected)
@@ -88,9 +88,9 @@ class LoopWatch:
                 gaps[f"the node {name}, which is not one of ours,"] = STRANGE_SECONDS
             else:
                 gaps[f"the node {name}"] = COMING_SECONDS
-        audience = rospy.get_param(AUDIENCE_PARAMETER, [])
+        self.audience = audience()
         if not absent:
-            for gap in self._closure.gaps(members, audience, self._static_publishers):
+            for gap in self._closure.gaps(members, self.audience, self._static_publishers):
                 gaps[f"the connection of {gap}"] = CONNECTING_SECONDS
         return [gap for gap, seconds in gaps.items() if not self._is_given_up(gap, seconds)]
 

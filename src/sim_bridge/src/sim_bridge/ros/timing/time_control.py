@@ -13,6 +13,7 @@ from planar_ros.messages.conversion import time_of
 from planar_ros.node.progress import TOPIC as PROGRESS_TOPIC
 from planar_ros.node.reconfigure import Reconfiguration
 from planar_ros.node.waiting import HoldUp, Waiting
+from planar_ros.step import transport
 from sim_bridge.config import RunTimeSettings
 from sim_bridge.pacing import Pacer
 from sim_bridge.ros.orders import Orders
@@ -70,13 +71,11 @@ class TimeControl:
 
     def _may_go(self) -> bool:
         if self.is_paused and not self._grants:
-            self._orders.wait(LONGEST_WAIT_SECONDS)
-            return False
+            return self._wait(LONGEST_WAIT_SECONDS)
         if not self._step.may_pass(self._scene.stamp):
-            self._orders.wait(LONGEST_WAIT_SECONDS)
-            return False
+            return self._wait(LONGEST_WAIT_SECONDS)
         if self._orders.are_waiting:  # what has just taken effect
-            return False
+            return self._wait(0.0)
         self._pacer.in_step = self._step.names
         wall, stamp = time.monotonic(), self._scene.stamp + self._scene.step_seconds
         delay = self._pacer.delay(stamp, wall, is_limited=not self.is_paused)
@@ -84,7 +83,12 @@ class TimeControl:
             return True
         for name in self._pacer.give_up(stamp, wall):
             rospy.logwarn("no progress of %s: the simulation goes on without it in real time", name)
-        self._orders.wait(min(delay, LONGEST_WAIT_SECONDS))
+        return self._wait(min(delay, LONGEST_WAIT_SECONDS))
+
+    def _wait(self, seconds: float) -> bool:
+        """False, when orders have come or after ``seconds``; before, all that was published is sent."""
+        transport.flush()
+        self._orders.wait(seconds)
         return False
 
     def _waits_for(self) -> List[str]:
