@@ -5,6 +5,7 @@ goes on, what the filter believed counts instead, and where odometry has brought
 """
 
 import math
+import time
 from dataclasses import asdict
 from functools import partial
 from typing import Optional
@@ -23,6 +24,8 @@ from planar_ros.node.reconfigure import RESTORE
 
 # Wall seconds from one complaint to the next.
 _ALARM_SECONDS = 60.0
+# Wall seconds between two writings at the least: a simulation may be so fast that the master did little else.
+_LEAST_SECONDS = 0.5
 
 
 def read_start_pose() -> InitialPose:
@@ -40,7 +43,7 @@ class PoseKeeper:
     """Keeps pose and belief, no more often than the rate says: one as amcl does, one for after a crash."""
 
     def __init__(self):
-        self._kept_at = rospy.Time(0)
+        self._kept_at, self._kept_at_wall = rospy.Time(0), 0.0
         self._writer = ParameterWriter()
         self._kept_file = KeptFile()
 
@@ -59,9 +62,10 @@ class PoseKeeper:
 
     def keep_if_due(self, rate: float, belief: Belief, base_in_odom: Pose2, covariance) -> None:
         """``rate``: Hz, 0 or less for never."""
-        now = rospy.Time.now()
-        if rate > 0.0 and abs((now - self._kept_at).to_sec()) >= 1.0 / rate:
-            self._kept_at = now
+        now, wall = rospy.Time.now(), time.monotonic()
+        is_due = rate > 0.0 and abs((now - self._kept_at).to_sec()) >= 1.0 / rate
+        if is_due and wall - self._kept_at_wall >= _LEAST_SECONDS:
+            self._kept_at, self._kept_at_wall = now, wall
             self.keep(belief.odom_in_map @ base_in_odom, covariance)
             self._keep_belief(belief)
 
