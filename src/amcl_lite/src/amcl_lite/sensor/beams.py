@@ -57,12 +57,11 @@ def _beams(scan: Scan, settings: LocalizerSettings, step: int) -> Beams:
         min_range = max(min_range, settings.laser_min_range)
     if not (max_range > 0.0 and min_range >= 0.0 and np.isfinite(max_range)):
         raise LocalizationError(f"a scan has senseless limits: range_min {min_range}, range_max {max_range}")
-    angles = scan.angles_of(np.arange(0, len(scan.ranges), step))
-    ranges, directions = _measured(
-        scan.ranges[::step].astype(np.float64), angles + scan.laser_in_base.yaw, min_range, max_range
-    )
+    sign = -1.0 if scan.upside_down else 1.0
+    sweep = (sign * scan.angle_min, sign * scan.angle_increment, scan.laser_in_base.yaw)
+    ranges, directions = _measured(scan.ranges.astype(np.float64), step, sweep, min_range, max_range)
     start_xy = np.array([scan.laser_in_base.x, scan.laser_in_base.y])
-    return Beams(ranges, directions, max_range, start_xy, len(angles) - len(ranges))
+    return Beams(ranges, directions, max_range, start_xy, -(-len(scan.ranges) // step) - len(ranges))
 
 
 def _step(count: int, settings: LocalizerSettings) -> int:
@@ -73,15 +72,21 @@ def _step(count: int, settings: LocalizerSettings) -> int:
 
 
 @numba.njit(cache=True)
-def _measured(ranges, directions, min_range, max_range):
-    """Those that are not NaN; ``max_range`` for those out of limits."""
-    count = 0
-    for i in range(ranges.size):
-        if not math.isnan(ranges[i]):
-            is_within = min_range < ranges[i] <= max_range
-            ranges[count], directions[count] = ranges[i] if is_within else max_range, directions[i]
+def _measured(ranges, step, sweep, min_range, max_range):
+    """Every so manyth range and its direction, if it is not NaN; ``max_range`` for those out of limits.
+
+    ``sweep``: the first angle, from one beam to the next, and how the laser is turned in the base frame.
+    """
+    most, count = -(-ranges.size // step), 0
+    kept, directions = np.empty(most), np.empty(most)
+    first, increment, turned = sweep
+    for i in range(0, ranges.size, step):
+        told = ranges[i]
+        if not math.isnan(told):
+            kept[count] = told if min_range < told <= max_range else max_range
+            directions[count] = first + increment * i + turned
             count += 1
-    return ranges[:count], directions[:count]
+    return kept[:count], directions[:count]
 
 
 @numba.njit(cache=True)

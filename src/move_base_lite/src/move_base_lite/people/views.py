@@ -26,13 +26,10 @@ class View:
 
     def __init__(self, sensor_in_odom: Pose2, sighting: Sighting, reach: float):
         self.sensor_in_odom, self.stamp = sensor_in_odom, sighting.stamp
-        angles, ranges = sighting.angles, np.asarray(sighting.ranges, dtype=float)
         self.things: List[Thing] = []
-        near, self._free = _near_and_free(angles, ranges, sighting.range_min, sighting.range_max, reach)
-        self.beams = near[np.argsort(angles[near])]
-        angles = angles[self.beams]
-        ends = np.column_stack((np.cos(angles), np.sin(angles))) * ranges[self.beams, None]
-        self.points_xy = sensor_in_odom.transform_points(ends)
+        at, ranges = sensor_in_odom, np.asarray(sighting.ranges, dtype=float)
+        limits = (sighting.range_min, sighting.range_max, reach)
+        self.beams, self.points_xy, self._free = _seen(sighting.angles, ranges, limits, (at.x, at.y, at.yaw))
 
     def share_seen_through(self, points_xy: np.ndarray) -> float:
         """Which share of points (N, 2) lay in the free then."""
@@ -91,8 +88,32 @@ def _fitted(points_xy, expected_xy, radius, prior):
 
 
 @numba.njit(cache=True)
-def _near_and_free(angles, ranges, range_min, range_max, reach):
+def _seen(angles, ranges, limits, place):
+    """The beams that end within reach by angle, (N,), where, (N, 2), and how far it was free, (DIRECTIONS,).
+
+    ``limits``: the laser's and the reach, ``place``: its x, y and yaw.
+    """
+    near, free = _near_and_free(angles, ranges, limits)
+    beams = near
+    for i in range(1, near.size):
+        if angles[near[i]] < angles[near[i - 1]]:
+            beams = near[np.argsort(angles[near])]
+            break
+    x, y, yaw = place
+    c, s = math.cos(yaw), math.sin(yaw)
+    points_xy = np.empty((beams.size, 2))
+    for i in range(beams.size):
+        ahead = ranges[beams[i]] * math.cos(angles[beams[i]])
+        aside = ranges[beams[i]] * math.sin(angles[beams[i]])
+        points_xy[i, 0] = c * ahead - s * aside + x
+        points_xy[i, 1] = s * ahead + c * aside + y
+    return beams, points_xy, free
+
+
+@numba.njit(cache=True)
+def _near_and_free(angles, ranges, limits):
     """The beams that end within reach, and how far it was free, (DIRECTIONS,)."""
+    range_min, range_max, reach = limits
     near, count = np.empty(ranges.size, dtype=np.int64), 0
     free = np.full(DIRECTIONS, np.inf)
     for i in range(ranges.size):
