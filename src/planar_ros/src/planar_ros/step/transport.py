@@ -161,14 +161,18 @@ def keep_counts(topic: str) -> None:
 
 def sent(sender: str) -> Dict[str, int]:
     """How many messages have gone out on each connection to a node in step, by "sender receiver topic"."""
-    now = {(receiver, topic): _count_of(connection) for receiver, topic, connection in connections()}
-    for connected in now:
-        _last_counts.pop(connected, None)
-    return {
-        f"{sender} {receiver} {topic}": count
-        for (receiver, topic), count in {**_last_counts, **now}.items()
-        if receiver in CountedConnection.members and topic not in UNCOUNTED
+    members = CountedConnection.members
+    now = {
+        (receiver, topic): _count_of(connection)
+        for receiver, topic, connection in connections()
+        if receiver in members and topic not in UNCOUNTED
     }
+    for channel, count in list(_last_counts.items()):
+        if channel in now:
+            del _last_counts[channel]
+        elif channel[0] in members:
+            now[channel] = count
+    return {f"{sender} {receiver} {topic}": count for (receiver, topic), count in now.items()}
 
 
 def _count_of(connection: Any) -> int:
