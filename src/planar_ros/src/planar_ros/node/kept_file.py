@@ -1,9 +1,8 @@
 """A file that a node leaves for the next of its name, should it end all of a sudden."""
 
-import tempfile
 import threading
 from pathlib import Path
-from typing import Any, Callable, NamedTuple, Optional
+from typing import Any, Callable, List, NamedTuple, Optional
 
 import rospkg
 import rospy
@@ -29,8 +28,11 @@ class KeptFile:
         self._lock = threading.Lock()
         self._is_closed = False
         rospy.on_shutdown(self._close)
+        self._folder = Path(rospkg.get_log_dir())
+        name = rospy.get_name().strip("/").replace("/", "-")
+        self._stem = f"{name}-{rospy.get_param('/run_id', 'run')}.kept"
         self._keepsake = Keepsake()
-        self._path = None if self._keepsake.found is None else Path(self._keepsake.found["path"])
+        self._remove(but=self.found and self.found.path)
 
     @property
     def found(self) -> Optional[Kept]:
@@ -43,27 +45,26 @@ class KeptFile:
         with self._lock:
             if self._is_closed:
                 return
-            path, before = _new_path(), self._path
+            before = self.found and self.found.path
+            path = next(one for one in self._both() if one != before)
+            try:
+                self._folder.mkdir(parents=True, exist_ok=True)
+            except OSError as error:
+                raise FileWriteError(f"{self._folder}: cannot be made ({error.strerror})") from None
             write(path)
             self._keepsake.keep({"path": str(path), "value": value})
-            self._path = path
-            if before is not None:
-                before.unlink(missing_ok=True)
+
+    def _both(self) -> List[Path]:
+        """One is written while the other one is what is found."""
+        return [self._folder / f"{self._stem}{number}" for number in range(2)]
 
     def _close(self) -> None:
         with self._lock:
             self._is_closed = True
-            if self._path is not None:
-                self._path.unlink(missing_ok=True)
+            self._remove()
 
-
-def _new_path() -> Path:
-    """Of a file that nobody has. Raises FileWriteError."""
-    folder = Path(rospkg.get_log_dir())
-    name = rospy.get_name().strip("/").replace("/", "-")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=folder, prefix=f"{name}-", suffix=".kept", delete=False) as file:
-            return Path(file.name)
-    except OSError as error:
-        raise FileWriteError(f"{folder}: no file can be kept there ({error.strerror})") from None
+    def _remove(self, but: Optional[Path] = None) -> None:
+        """Also what a node has left that died while it wrote."""
+        for path in self._folder.glob(f"{self._stem}*"):
+            if path != but:
+                path.unlink(missing_ok=True)

@@ -64,9 +64,12 @@ class CountedConnection(PromptConnection):
             cls._full.popleft().flush()
 
     def flush(self) -> None:
-        """Sends what was kept back."""
+        """Sends what was kept back; an error is left to the next message, where rospy expects it."""
         with self._keeping:
-            self._send_kept()
+            try:
+                self._send_kept()
+            except Exception as error:
+                self._error = error
 
     def _may_save(self) -> bool:
         if self.saver is None or threading.get_ident() != self.saver:
@@ -74,6 +77,8 @@ class CountedConnection(PromptConnection):
         return self._topic == CLOCK_TOPIC or (self.receiver in self.audience and self._topic not in UNCOUNTED)
 
     def _keep(self, data) -> bool:
+        if self._error or self._connection.done:
+            return super().write_data(data)
         if self._topic != CLOCK_TOPIC:
             self._queue_size = 0  # rospy's word for: drop nothing
         if not self._kept:
