@@ -12,6 +12,28 @@ ros_environment() { # ROOT: what ROS needs in the environment, every socket on t
     export ROS_HOME
     export ROS_LOG_DIR=${ROS_LOG_DIR:-$ROS_HOME/log}
     use_own_kernels "$1"
+    use_known_versions "$1"
+}
+
+# Before roslaunch starts anything, roscore.xml has two programs in Python tell ROS's versions, one after the other.
+# ROS_ETC_DIR is where it is looked for: in a folder like the one in effect, but with the answers.
+use_known_versions() { # ROOT
+    local etc=${ROS_ETC_DIR:-/etc/ros} known=$1/build/etc
+    grep -qs 'command="rosversion' "$etc/roscore.xml" || return 0
+    [[ -e $known/roscore.xml && ! $etc/roscore.xml -nt $known/roscore.xml ]] || know_versions "$etc" "$known" || return 0
+    export ROS_ETC_DIR=$known
+}
+
+know_versions() { # ETC FOLDER
+    local version distribution beside=$2.$$
+    version=$(rosversion roslaunch) && distribution=$(rosversion -d) && mkdir "$beside" 2>/dev/null || return 1
+    ln -s "$1"/* "$beside"
+    rm "$beside/roscore.xml"
+    sed "s/command=\"rosversion roslaunch\"/value=\"$version\"/; s/command=\"rosversion -d\"/value=\"$distribution\"/" \
+        "$1/roscore.xml" >"$beside/roscore.xml"
+    rm -rf "$2"
+    mv -T "$beside" "$2" 2>/dev/null || rm -rf "$beside" # another run was faster
+    [[ -e $2/roscore.xml ]]
 }
 
 # Numba reads what it has compiled beside the sources only if it may also write there. Who may not, as another user or

@@ -138,9 +138,11 @@ readonly giving_way='src/(compat|tutorials)/'
 
 ignored_packages() { # folders
     local packages name folder
+    local -A is_of_user=()
     packages=$(packages_in_source)
+    while read -r name folder; do is_of_user[_$name]=yes; done < <(of_user <<<"$packages")
     while read -r name folder; do
-        if is_of_system "$name" && [[ $folder == src/compat/* ]] || of_user <<<"$packages" | grep -q "^$name "; then
+        if is_of_system "$name" && [[ $folder == src/compat/* ]] || [[ -n ${is_of_user[_$name]:-} ]]; then
             say "$folder"
         fi
     done < <(grep -E " ${giving_way}[^/]+\$" <<<"$packages")
