@@ -85,7 +85,7 @@ class LoopWatch:
         known, able = self._closure.known() if absent else (set(), set())
         for name in absent:
             if name in known and name not in able:
-                gaps[f"the node {name}, which is not one of ours,"] = STRANGE_SECONDS
+                gaps[f"the node {name}, which is not one of ours"] = STRANGE_SECONDS
             else:
                 gaps[f"the node {name}"] = COMING_SECONDS
         self.audience = audience()
