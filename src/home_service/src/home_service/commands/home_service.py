@@ -29,19 +29,25 @@ class HomeService(GraphOptions, MissionOptions):
     def run(self) -> int:
         from home_service.ros.conducting import carry_out, stay_open
         from home_service.stage import read_mission
-        from sim_bridge.faults import load_faults
 
         places = read_mission(self).places
-        faulty = self.faults or self.mission
-        faults_file = faulty.resolve() if faulty and load_faults(faulty) else ""
         launch = self.launch(
             "home_service.launch",
             **self.files(),
             marker_source=self.marker_source,
             marker_mode="mission" if self.mission or self.serve else "service",
             serve=str(self.serve).lower(),
-            faults_file=faults_file,
+            faults_file=self._faults_file(),
         ).respawning(*COMES_BACK)
         if self.serve:
             return stay_open(self, launch, "send missions to the action deliver; Ctrl-C ends", places)
         return carry_out(self, launch, places, {ERRAND, OBJECTS if self.mission else MARKERS})
+
+    def _faults_file(self) -> str:
+        """The file with faults, if there are any."""
+        faulty = self.faults or self.mission
+        if faulty is None:
+            return ""
+        from sim_bridge.faults import load_faults  # late: with it comes half of the simulator
+
+        return str(faulty.resolve()) if load_faults(faulty) else ""
