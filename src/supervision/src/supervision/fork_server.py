@@ -59,11 +59,12 @@ def main() -> None:
     with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as listener:
         listener.bind(f"\0{name}")
         listener.listen(WAITING_CLIENTS)
+        gc.disable()  # nearly all that is made is to stay
         for preparation in preparations:
             with suppress(Exception):  # the node that needs it fails of it and says so
                 _call(preparation)
-        gc.collect()
         gc.freeze()  # so that children share what they do not change
+        gc.enable()
         order, connection = _ForkServer(listener).serve()
     _become(order, connection)
     _call(*order["call"])
