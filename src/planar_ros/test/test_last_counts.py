@@ -1,6 +1,5 @@
 """What a node in step has sent before all hang up is told with the moment's answer."""
 
-import socket
 import threading
 from types import SimpleNamespace
 
@@ -32,29 +31,15 @@ def publisher(monkeypatch):
 
 
 @pytest.fixture
-def connect(publisher):
+def connect(publisher, connected):
     """Connects the receiver; returns its end, and what is then written to."""
-    ends = []
 
     def connect():
-        near, far = socket.socketpair()
-        ends.extend((near, far))
-        plain = SimpleNamespace(
-            endpoint_id=RECEIVER,
-            protocol=SimpleNamespace(resolved_name=TOPIC),
-            socket=near,
-            done=False,
-            stat_bytes=0,
-            stat_num_msg=0,
-            set_cleanup_callback=lambda callback: None,
-        )
-        connection = CountedConnection(plain, 50)
+        far, connection = connected(RECEIVER, TOPIC)
         publisher.impl.connections.append(connection)
         return far, connection
 
-    yield connect
-    for end in ends:
-        end.close()
+    return connect
 
 
 def hang_up_after_reading(far, publisher):

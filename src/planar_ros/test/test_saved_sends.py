@@ -3,7 +3,6 @@
 import socket
 import threading
 import time
-from types import SimpleNamespace
 
 import pytest
 
@@ -15,32 +14,18 @@ BROKEN_SECONDS = 5.0
 
 
 @pytest.fixture
-def connect(monkeypatch):
-    """Connects a node to a topic: its end, and what is written to. This thread saves its sends."""
-    ends = []
+def connect(monkeypatch, connected):
+    """Connects a node to a topic, by default one that looks on; this thread saves its sends."""
     monkeypatch.setattr(CountedConnection, "members", frozenset(("/sim_bridge", "/amcl")))
     monkeypatch.setattr(CountedConnection, "audience", frozenset((REFEREE,)))
     monkeypatch.setattr(CountedConnection, "saver", threading.get_ident())
 
     def connect(node=REFEREE, topic=TOPIC):
-        near, far = socket.socketpair()
-        ends.extend((near, far))
+        far, connection = connected(node, topic)
         far.settimeout(0.1)
-        plain = SimpleNamespace(
-            endpoint_id=node,
-            protocol=SimpleNamespace(resolved_name=topic),
-            socket=near,
-            done=False,
-            stat_bytes=0,
-            stat_num_msg=0,
-            set_cleanup_callback=lambda callback: None,
-            write_data=near.sendall,
-        )
-        return far, CountedConnection(plain, 50)
+        return far, connection
 
     yield connect
-    for end in ends:
-        end.close()
     transport.flush()
 
 

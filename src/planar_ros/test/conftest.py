@@ -1,0 +1,33 @@
+"""Connections as rospy has them, whose other end a test holds."""
+
+import socket
+from types import SimpleNamespace
+
+import pytest
+
+from planar_ros.step.transport import CountedConnection
+
+
+@pytest.fixture
+def connected():
+    """Connects a node to a topic: returns its end, and what is written to."""
+    ends = []
+
+    def connected(node, topic):
+        near, far = socket.socketpair()
+        ends.extend((near, far))
+        plain = SimpleNamespace(
+            endpoint_id=node,
+            protocol=SimpleNamespace(resolved_name=topic),
+            socket=near,
+            done=False,
+            stat_bytes=0,
+            stat_num_msg=0,
+            set_cleanup_callback=lambda callback: None,
+            write_data=near.sendall,
+        )
+        return far, CountedConnection(plain, 50)
+
+    yield connected
+    for end in ends:
+        end.close()
