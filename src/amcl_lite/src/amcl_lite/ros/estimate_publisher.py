@@ -23,7 +23,7 @@ class EstimatePublisher:
         self._belief_before = self._keeper.left_belief()
         self._base_in_odom: Optional[Pose2] = None
 
-    def take_up(self, localizer: Localizer, base_in_odom: Pose2) -> None:
+    def take_up(self, localizer: Localizer) -> None:
         """Before the first scan: goes on with what a node that has crashed believed."""
         before, self._belief_before = self._belief_before, None
         if before is not None:

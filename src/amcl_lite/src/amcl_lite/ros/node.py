@@ -102,7 +102,7 @@ class AmclNode:
             localizer = self._shared.localizer
             if localizer is not None:
                 try:
-                    self._publisher.take_up(localizer, base_in_odom)
+                    self._publisher.take_up(localizer)
                     updates = localizer.updates
                     estimate = localizer.update(base_in_odom, scan, laser)
                     is_updated = localizer.updates != updates

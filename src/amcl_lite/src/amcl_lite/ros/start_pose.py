@@ -16,14 +16,12 @@ from amcl_lite.belief import Belief, load_particles, save_particles
 from amcl_lite.config import InitialPose, NodeSettings
 from amcl_lite.errors import LocalizationError
 from amcl_lite.localizer import can_start_from
-from planar import FileWriteError, Pose2
+from planar import Pose2
 from planar.config.parameters import official_names
 from planar_ros.node.kept_file import KeptFile
 from planar_ros.node.parameters import ParameterWriter, read_settings
 from planar_ros.node.reconfigure import RESTORE
 
-# Wall seconds from one complaint to the next.
-_ALARM_SECONDS = 60.0
 # Wall seconds between two writings at the least: a simulation may be so fast that the master did little else.
 _LEAST_SECONDS = 0.5
 
@@ -80,9 +78,4 @@ class PoseKeeper:
 
     def _keep_belief(self, belief: Belief) -> None:
         poses = {"base_in_odom": asdict(belief.base_in_odom), "odom_in_map": asdict(belief.odom_in_map)}
-        try:
-            self._kept_file.keep(
-                partial(save_particles, belief.particles), {**poses, "is_lost": belief.is_lost}
-            )
-        except FileWriteError as error:
-            rospy.logwarn_throttle(_ALARM_SECONDS, "nothing is kept for a node after this one: %s", error)
+        self._kept_file.keep(partial(save_particles, belief.particles), {**poses, "is_lost": belief.is_lost})

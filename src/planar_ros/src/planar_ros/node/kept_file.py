@@ -10,6 +10,9 @@ import rospy
 from planar import FileWriteError
 from planar_ros.node.keepsake import Keepsake
 
+# Wall seconds from one complaint to the next.
+ALARM_SECONDS = 60.0
+
 
 class Kept(NamedTuple):
     """``value``: what was known, when the file was written, of what it holds; made of what JSON knows."""
@@ -41,7 +44,10 @@ class KeptFile:
         return None if told is None else Kept(Path(told["path"]), told["value"])
 
     def keep(self, write: Callable[[Path], None], value: Any) -> None:
-        """From now on this is what is found. ``write`` writes the file. Raises FileWriteError."""
+        """From now on this is what is found; if that cannot be, a warning tells so.
+
+        ``write`` writes the file, and may raise FileWriteError.
+        """
         with self._lock:
             if self._is_closed:
                 return
@@ -49,9 +55,10 @@ class KeptFile:
             path = next(one for one in self._both() if one != before)
             try:
                 self._folder.mkdir(parents=True, exist_ok=True)
-            except OSError as error:
-                raise FileWriteError(f"{self._folder}: cannot be made ({error.strerror})") from None
-            write(path)
+                write(path)
+            except (OSError, FileWriteError) as error:
+                rospy.logwarn_throttle(ALARM_SECONDS, "nothing is kept for a node after this one: %s", error)
+                return
             self._keepsake.keep({"path": str(path), "value": value})
 
     def _both(self) -> List[Path]:

@@ -8,15 +8,13 @@ from functools import partial
 
 import rospy
 
-from planar import FileWriteError, Pose2
+from planar import Pose2
 from planar_ros.node.kept_file import KeptFile
 from slam_lite.ros.mapping import Mapping
 from slam_lite.state import StateFileError, save_state
 
 # Seconds of scans from one time to the next, and the most of the node's time that it may take.
 KEEP_SECONDS, MOST_SHARE = 5.0, 0.05
-# Wall seconds from one complaint to the next.
-ALARM_SECONDS = 60.0
 
 
 class StateKeeper:
@@ -56,9 +54,5 @@ class StateKeeper:
 
     def _keep(self) -> None:
         state, odom_in_map = self._mapping.now()
-        if len(state.poses) == 0:
-            return
-        try:
+        if len(state.poses) > 0:
             self._kept_file.keep(partial(save_state, state), asdict(odom_in_map))
-        except FileWriteError as error:
-            rospy.logwarn_throttle(ALARM_SECONDS, "no map is kept for a node after this one: %s", error)
