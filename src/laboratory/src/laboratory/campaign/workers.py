@@ -35,6 +35,7 @@ class Workers:
                 "distributed.scheduler.worker-saturation": 1.0,
                 "distributed.scheduler.allowed-failures": DEATHS - 1,
                 "distributed.worker.daemon": True,
+                "distributed.worker.profile.enabled": False,
             }
         )
         for name in ("distributed", "distributed.nanny", "distributed.scheduler", "distributed.worker"):
