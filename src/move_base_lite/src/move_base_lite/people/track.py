@@ -8,7 +8,7 @@ import numpy as np
 from move_base_lite.people.views import Thing, View, middle_of
 
 # Standard deviations of where a thing is seen (m), of its acceleration (m/s^2) and its first velocity (m/s).
-SEEN, ACCELERATION, FIRST_VELOCITY = 0.06, 1.0, 0.8
+SEEN, ACCELERATION, FIRST_VELOCITY = 0.03, 3.0, 0.8
 # Standard deviations and metres within which a sighting belongs to a track.
 GATE, GATE_METRES = 3.0, 0.2
 # Standard deviations off from which on a thing must have turned: its velocity is anybody's guess again.

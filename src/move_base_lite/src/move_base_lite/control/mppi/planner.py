@@ -38,6 +38,7 @@ class PathIntegral:
             heading=settings.heading_weight,
             delay=settings.delay_weight,
             mover=settings.mover_weight,
+            mover_distance=settings.mover_distance,
         )
 
     def follow(self, situation: Situation, plan: Plan, limits: Twist2) -> Trajectory:

@@ -44,6 +44,7 @@ class Weights(NamedTuple):
     heading: float
     delay: float
     mover: float
+    mover_distance: float
 
 
 @numba.njit(cache=True)
@@ -89,7 +90,7 @@ def arguments_of(scene: Scene, limits: Limits, weights: Weights) -> Tuple[Any, .
 def _named(clearance, to_go, outline_xy, movers, n):
     scene = Scene(clearance, to_go, outline_xy, movers, n[0], n[1], n[2], n[3], n[4])
     limits = Limits(n[5], n[6], n[7], n[8], n[9], n[10], n[11], n[12])
-    return scene, limits, Weights(n[13], n[14], n[15], n[16], n[17], n[18], n[19])
+    return scene, limits, Weights(n[13], n[14], n[15], n[16], n[17], n[18], n[19], n[20])
 
 
 @numba.njit(cache=True)
@@ -122,7 +123,7 @@ def drive(wanted, start, scene, limits, weights, poses, speeds):
     x, y, yaw, v, omega = start
     c, s, poses[0] = math.cos(yaw), math.sin(yaw), (x, y, yaw)
     cell = 1.0 / scene.cells_per_metre
-    enough, aside = _exact_below(scene, limits, weights), max(weights.safe_distance, cell)
+    enough, aside = _exact_below(scene, limits, weights), max(weights.mover_distance, cell)
     still_room = room_at(scene, x, y, c, s, enough)
     least_room = min(cell, still_room, room_beside_movers(scene, x, y, 0.0, aside))
     allowed_v = _highest_speed_in(still_room, limits)
@@ -186,11 +187,11 @@ def _with_step(cost, v, omega, still_room, passing_room, to_go, limits, weights)
     """The cost with that of one period: nearness to what stays and to what moves, delay, turning, backing."""
     dt = limits.period
     if still_room < weights.safe_distance:
-        nearness = _nearness(still_room, weights)
+        nearness = _nearness(still_room, weights.safe_distance)
         cost += weights.obstacle * nearness * nearness * (abs(v) + CREEPING) * dt
-    if passing_room < weights.safe_distance:
+    if passing_room < weights.mover_distance:
         # Standing still makes nobody pass at a greater distance.
-        nearness = _nearness(passing_room, weights)
+        nearness = _nearness(passing_room, weights.mover_distance)
         cost += weights.obstacle * nearness * nearness * limits.highest_v * dt
     return cost + dt * (weights.delay * to_go + weights.turn * omega * omega - weights.backward * min(v, 0.0))
 
@@ -209,9 +210,9 @@ def _slope(scene, x, y, yaw, to_go):
 
 
 @numba.njit(cache=True)
-def _nearness(room, weights):
+def _nearness(room, safe_distance):
     """1 in touch, 0 at the safe distance."""
-    return 1.0 - max(room, 0.0) / weights.safe_distance
+    return 1.0 - max(room, 0.0) / safe_distance
 
 
 @numba.njit(cache=True)

@@ -53,6 +53,9 @@ class MppiSettings(ControllerSettings):
     mover_weight: float = parameter(
         10.0, "of a way that ends at what moves, less the later it does", "m", at_least(0.0), dynamic=True
     )
+    mover_distance: float = parameter(
+        0.15, "from the outline to what moves, within which it is dear to be", "m", POSITIVE, dynamic=True
+    )
     mover_range: float = parameter(
         4.0, "up to which it is looked for what moves", "m", POSITIVE, dynamic=True
     )
