@@ -1,14 +1,11 @@
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
-from run_tests import (
-    NEEDS,
-    ROOT,
-    Outcome,
-    judge_ros_test,
-    judge_unit_tests,
-    lacking,
-    read_report,
-    time_limits,
-)
+from outcome import Outcome, judge_ros_test, judge_unit_tests, read_report
+from ros_test import time_limits
+from run_tests import NEEDS, ROOT, lacking
 
 
 def write_report(path, tests, failures=0, errors=0, skipped=0):
@@ -116,3 +113,36 @@ def test_a_test_may_need_more_than_its_folder_does():
 
 def test_what_needs_a_command_is_there():
     assert all((ROOT / place).exists() for place in NEEDS)
+
+
+def kept(command, log, limit=60.0):
+    """What a process of its own, which ends what is left behind, says of a command that is kept by it."""
+    script = (
+        "import sys; from pathlib import Path; from keeping import run_kept; from outcome import Outcome;"
+        "log, limit, *command = sys.argv[1:];"
+        "print(run_kept(command, Path(log), float(limit), lambda code: Outcome(passed=1)).reason)"
+    )
+    told = subprocess.run(
+        [sys.executable, "-c", script, str(log), str(limit), *command],
+        cwd=Path(__file__).parent,
+        stdout=subprocess.PIPE,
+        text=True,
+        timeout=60.0,
+        check=True,
+    )
+    return told.stdout.strip()
+
+
+def test_a_command_that_leaves_nothing_behind_is_judged_by_what_it_says(tmp_path):
+    assert kept(["true"], tmp_path / "x.log") == ""
+
+
+def test_what_outlives_its_command_is_ended_and_told(tmp_path):
+    number = tmp_path / "number"
+    left = f"sleep 1000 & echo $! > {number}"
+    assert kept(["sh", "-c", left], tmp_path / "x.log") == "left processes behind: sleep"
+    assert not Path("/proc", number.read_text().strip()).exists()
+
+
+def test_a_command_that_does_not_end_is_ended_at_its_limit(tmp_path):
+    assert kept(["sleep", "1000"], tmp_path / "x.log", 0.5) == "not done after its limit of 0 s"

@@ -1,0 +1,90 @@
+"""What became of a test file, by the reports that its tests left."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Sequence
+from xml.etree import ElementTree
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How many tests of a file passed, failed, were skipped; ``reason`` if it did not run as it should."""
+
+    passed: int = 0
+    failed: int = 0
+    skipped: int = 0
+    reason: str = ""
+
+    def __add__(self, other: "Outcome") -> "Outcome":
+        return Outcome(
+            self.passed + other.passed,
+            self.failed + other.failed,
+            self.skipped + other.skipped,
+            self.reason or other.reason,
+        )
+
+    def __str__(self) -> str:
+        skipped = f", {self.skipped} skipped" if self.skipped else ""
+        return f"{self.passed} passed, {self.failed} failed{skipped}"
+
+
+def failure(reason: str) -> Outcome:
+    return Outcome(failed=1, reason=reason)
+
+
+def read_report(path: Path) -> Outcome:
+    """The counts of a JUnit report, over all its suites, and what the first failure says."""
+    try:
+        report = ElementTree.parse(path).getroot()
+        suites = list(report.iter("testsuite"))
+        counts = {
+            name: sum(int(suite.get(name, 0)) for suite in suites)
+            for name in ("tests", "failures", "errors", "skipped")
+        }
+    except (OSError, ElementTree.ParseError, ValueError) as error:
+        return failure(f"no readable report {path.name}: {error}")
+    failed = counts["failures"] + counts["errors"]
+    return Outcome(
+        max(counts["tests"] - failed - counts["skipped"], 0),
+        failed,
+        counts["skipped"],
+        first_failure(report),
+    )
+
+
+def first_failure(report: ElementTree.Element) -> str:
+    """The name and the message of the first test that failed; empty if none did."""
+    for case in report.iter("testcase"):
+        for kind in ("failure", "error"):
+            found = case.find(kind)
+            if found is not None:
+                # pytest's is an attribute; rosunit's stands before the traceback.
+                message = found.get("message") or (found.text or "").strip().partition("\n")[0]
+                return f"{case.get('name')}: {' '.join(message.split())[:300]}"
+    return ""
+
+
+def judge_unit_tests(report: Path, exit_code: int) -> Outcome:
+    outcome = read_report(report)
+    if exit_code != 0 and not outcome.failed:
+        return outcome + failure(f"pytest ended with exit code {exit_code}")
+    return outcome
+
+
+def judge_ros_test(test_names: Sequence[str], reports: Path, exit_code: int) -> Outcome:
+    """Sums the reports of the tests named in one .test file; each must have reported at least one test."""
+    total = Outcome()
+    for name in test_names:
+        found = sorted(reports.rglob(f"rosunit-{name}.xml"))
+        outcome = read_report(found[0]) if found else failure(f"test '{name}' left no report")
+        if outcome == Outcome():
+            outcome = failure(f"test '{name}' ran no test")
+        total += outcome
+    if not test_names:
+        total = failure("it names no test")
+    for path in sorted(reports.rglob("rostest-*.xml")):
+        if read_report(path).failed and not total.failed:
+            total += failure("rostest reports a test that did not end well")
+    if exit_code != 0 and not total.failed:
+        total += failure(f"rostest ended with exit code {exit_code}")
+    return total

@@ -1,0 +1,73 @@
+"""One file of ROS tests, run below a process of its own: ``ros_test.py FOLDER FILE`` prints its outcome."""
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import asdict
+from pathlib import Path
+from typing import Dict, Optional, Tuple
+from xml.etree import ElementTree
+
+from keeping import ROOT, run_kept
+from outcome import Outcome, failure, judge_ros_test
+
+DEFAULT_SECONDS = 60.0  # of a <test> without time-limit
+START_AND_STOP_SECONDS = 60.0  # of everything around the <test>s of a file
+
+
+def time_limits(path: Path) -> Dict[str, float]:
+    """The time limit, in seconds, of each test that a .test file names."""
+    tests = ElementTree.parse(path).getroot().iter("test")
+    return {test.attrib["test-name"]: float(test.get("time-limit", DEFAULT_SECONDS)) for test in tests}
+
+
+def name_of(path: Path) -> str:
+    return path.relative_to(ROOT).with_suffix("").as_posix()
+
+
+def log_of(folder: Path, name: str) -> Path:
+    return folder / f"{name.replace('/', '.')}.log"
+
+
+class RosTest:
+    """Starts at once, below a process of its own; logs and reports go into ``folder``."""
+
+    def __init__(self, folder: Path, path: Path):
+        self.name = name_of(path)
+        self._started = time.monotonic()
+        command = [sys.executable, __file__, str(folder), str(path)]
+        # Only what is meant for it interrupts it, and once.
+        self._process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True)
+
+    def wait(self) -> Tuple[Outcome, float]:
+        """Its outcome and the seconds that it took."""
+        said, _ = self._process.communicate()
+        outcome = Outcome(**json.loads(said)) if said else failure("was ended from outside")
+        return outcome, time.monotonic() - self._started
+
+    def end(self) -> None:
+        """Has it end what it has started."""
+        self._process.send_signal(signal.SIGINT)
+
+
+def run(folder: Path, path: Path) -> Outcome:
+    limits = time_limits(path)
+    log = log_of(folder, name_of(path))
+    reports = log.with_suffix("")
+    command = ["rostest", f"--results-base-dir={reports}", str(path)]
+    limit = sum(limits.values()) + START_AND_STOP_SECONDS
+    return run_kept(command, log, limit, lambda code: judge_ros_test(list(limits), reports, code))
+
+
+def main(folder: str, path: str) -> Optional[int]:
+    try:
+        print(json.dumps(asdict(run(Path(folder), Path(path)))))
+    except KeyboardInterrupt:
+        return 130
+    return None
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))
