@@ -79,7 +79,10 @@ class ReportTest(unittest.TestCase):
             said, r"(?m)^FAILURE: result.json: cannot be written \(File too large\); .* goals reached"
         )
         about_the_disk = [line for line in run.lines if FULL_DISK in line]
-        self.assertLessEqual(len(about_the_disk), 2, said)
+        # amcl says so of its own if it wants to keep something meanwhile.
+        by_amcl = [line for line in about_the_disk if line.startswith("amcl: warning: nothing is kept")]
+        self.assertLessEqual(len(by_amcl), 1, said)
+        self.assertLessEqual(len(about_the_disk) - len(by_amcl), 2, said)
         self.assertNotIn("Traceback", said)
         self.assertEqual(written, ["log"])
         self.assertEqual(processes_with(mark), [])
