@@ -8,7 +8,6 @@ python3 tests/benchmarks/soak.py serve [--runs 100]
 
 import argparse
 import contextlib
-import ctypes
 import os
 import re
 import signal
@@ -22,9 +21,10 @@ from typing import Dict, List, Sequence
 import numpy as np
 import psutil
 
+from supervision.processes import adopt_orphans
+
 ROOT = Path(__file__).resolve().parents[2]
 SHARED_MEMORY = Path("/dev/shm")
-PR_SET_CHILD_SUBREAPER = 36
 RUNS = "runs"
 RUN_SECONDS, UP_SECONDS, DOWN_SECONDS = 300.0, 90.0, 60.0
 # Of the deliveries of a graph the first ones fill caches.
@@ -40,7 +40,7 @@ class Traces:
     """What graphs leave behind: processes, and files where temporary ones and shared memory are."""
 
     def __init__(self) -> None:
-        ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+        adopt_orphans()
         self._folder = tempfile.TemporaryDirectory()
         self._shared = set(SHARED_MEMORY.iterdir())
         self.environment = {**os.environ, "TMPDIR": self._folder.name, "PYTHONUNBUFFERED": "1"}

@@ -1,6 +1,6 @@
 """A command that is run to its end, its time limit, or ours, and leaves no process behind."""
 
-import ctypes
+import contextlib
 import os
 import signal
 import subprocess
@@ -10,9 +10,10 @@ from typing import Callable, List, Sequence
 import psutil
 from outcome import Outcome, failure
 
+from supervision.processes import adopt_orphans, end_descendants
+
 ROOT = Path(__file__).resolve().parents[2]
 GRACE_SECONDS = 15.0
-PR_SET_CHILD_SUBREAPER = 36
 
 
 def run_kept(command: Sequence[str], log: Path, limit: float, judge: Callable[[int], Outcome]) -> Outcome:
@@ -21,8 +22,7 @@ def run_kept(command: Sequence[str], log: Path, limit: float, judge: Callable[[i
 
     ``limit``: seconds. Nothing else may run below this process.
     """
-    # Whatever outlives its parent becomes a child of this process, so that nothing escapes the sweep.
-    ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+    adopt_orphans()
     home = str(log.with_suffix(""))
     environment = {**os.environ, "ROS_HOME": home, "ROS_LOG_DIR": home, "PYTHONUNBUFFERED": "1"}
     try:
@@ -52,13 +52,11 @@ def sweep() -> List[str]:
     children = psutil.Process().children(recursive=True)
     _, alive = psutil.wait_procs(children, timeout=0.0)
     names = [_name(process) for process in alive]
-    for number in (signal.SIGINT, signal.SIGKILL):
-        for process in alive:
-            try:
-                process.send_signal(number)
-            except psutil.NoSuchProcess:
-                continue
-        _, alive = psutil.wait_procs(alive, timeout=GRACE_SECONDS)
+    for process in alive:
+        with contextlib.suppress(psutil.NoSuchProcess):
+            process.send_signal(signal.SIGINT)
+    psutil.wait_procs(alive, timeout=GRACE_SECONDS)
+    end_descendants()
     return names
 
 

@@ -49,7 +49,7 @@ class RosTest:
 
     def end(self) -> None:
         """Has it end what it has started."""
-        self._process.send_signal(signal.SIGINT)
+        self._process.terminate()
 
 
 def run(folder: Path, path: Path) -> Outcome:
@@ -70,4 +70,6 @@ def main(folder: str, path: str) -> Optional[int]:
 
 
 if __name__ == "__main__":
+    # Whoever was started in the background by a shell does not hear SIGINT.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     sys.exit(main(*sys.argv[1:]))

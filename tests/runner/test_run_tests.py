@@ -146,3 +146,10 @@ def test_what_outlives_its_command_is_ended_and_told(tmp_path):
 
 def test_a_command_that_does_not_end_is_ended_at_its_limit(tmp_path):
     assert kept(["sleep", "1000"], tmp_path / "x.log", 0.5) == "not done after its limit of 0 s"
+
+
+def test_what_is_started_while_all_is_ended_is_ended_too(tmp_path):
+    number = tmp_path / "number"
+    stubborn = f"trap 'sleep 1000 & echo $! > {number}; exit' INT; sleep 1000 & wait"
+    assert kept(["sh", "-c", stubborn], tmp_path / "x.log", 1.0) == "not done after its limit of 1 s"
+    assert not Path("/proc", number.read_text().strip()).exists()
