@@ -21,6 +21,8 @@ from keeping import ROOT, run_kept
 from outcome import Outcome, judge_unit_tests
 from ros_test import RosTest, log_of
 
+from home_service.options import count
+
 PYTEST = ("-m", "pytest", "-n", "auto", "--dist", "worksteal")
 UNIT_SECONDS = 900.0  # of a machine that has other things to do; else a minute
 MOST_JOBS = 4
@@ -119,13 +121,6 @@ def matching(paths, names: Sequence[str]) -> List[Path]:
     return sorted(path for path, text in relative.items() if not names or any(name in text for name in names))
 
 
-def count(text: str) -> int:
-    number = int(text)
-    if number < 1:
-        raise argparse.ArgumentTypeError(f"{number} is no count")
-    return number
-
-
 def main() -> int:
     parser = argparse.ArgumentParser(prog="test.sh", description="Runs the tests.")
     parser.add_argument("kind", nargs="?", choices=("unit", "ros", "all"), default="all")
@@ -153,10 +148,11 @@ def main() -> int:
         # A file that is named is collected even where its folder's conftest.py leaves it out.
         outcome = run_unit_tests(folder, unit if options.names else [])
         account.note("unit", outcome, time.monotonic() - started)
-    possible = [path for path in ros if lacking(path) is None]
-    RosTests(folder, account).run(possible, options.jobs)
-    for path in sorted({*ros} - {*possible}):
-        print(f"left out: {path.relative_to(ROOT)}, which needs {lacking(path)} (./scripts/setup.sh --dev)")
+    lacks = {path: lacking(path) for path in ros}
+    RosTests(folder, account).run([path for path in ros if lacks[path] is None], options.jobs)
+    for path, command in lacks.items():
+        if command is not None:
+            print(f"left out: {path.relative_to(ROOT)}, which needs {command} (./scripts/setup.sh --dev)")
     return account.conclude()
 
 
