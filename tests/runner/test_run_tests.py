@@ -139,7 +139,8 @@ def test_a_command_that_leaves_nothing_behind_is_judged_by_what_it_says(tmp_path
 
 def test_what_outlives_its_command_is_ended_and_told(tmp_path):
     number = tmp_path / "number"
-    left = f"sleep 1000 & echo $! > {number}"
+    named = "until grep -q sleep /proc/$!/comm; do :; done"  # until then it is a copy of the shell
+    left = f"sleep 1000 & echo $! > {number}; {named}"
     assert kept(["sh", "-c", left], tmp_path / "x.log") == "left processes behind: sleep"
     assert not Path("/proc", number.read_text().strip()).exists()
 
