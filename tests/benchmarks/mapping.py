@@ -29,6 +29,7 @@ from pick_objects import load_mission
 from planar import OccupancyGrid, PlanarError, Pose2, Twist2, save_map
 from planar.config.settings_file import settings_from_yaml
 from planar.maps.map_score import MapScore
+from planar_ros.node.entry import use_one_blas_thread
 from sim_bridge import RobotProfile, Simulation, load_world, robot_named
 from sim_bridge.world import World
 from slam_lite.config import NodeSettings
@@ -174,6 +175,7 @@ def judge(run: MappingRun, end: Finish, score: MapScore, seed: int, cpu: float, 
 
 
 def main() -> int:
+    use_one_blas_thread()
     options = _options()
     robot = robot_named(options.robot)
     results = []

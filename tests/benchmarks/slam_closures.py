@@ -25,6 +25,7 @@ from slam import relation_errors
 from slam_logs import DRIVES, made, relations_of
 
 from planar import wrap
+from planar_ros.node.entry import use_one_blas_thread
 from slam_lite.config import NodeSettings
 from slam_lite.graph.pose_graph import chi_squares
 from slam_lite.mapper import Mapper
@@ -56,6 +57,7 @@ class Closures:
 
 
 def main() -> int:
+    use_one_blas_thread()
     options = _options()
     results = []
     for seed in options.seeds:

@@ -106,10 +106,6 @@ def save_map(grid: OccupancyGrid, stem, occupied_at: int = 65, free_at: int = 25
     without a folder, so that the pair can be moved together.
     """
     stem = Path(stem)
-    image = np.full(grid.cells.shape, 205, dtype=np.uint8)
-    image[(grid.cells >= 0) & (grid.cells <= free_at)] = 254
-    image[grid.cells >= occupied_at] = 0
-    header = f"P5\n# {grid.resolution:.3f} m/pix\n{grid.cols} {grid.rows}\n255\n"
     pgm_path, yaml_path = stem.with_name(stem.name + ".pgm"), stem.with_name(stem.name + ".yaml")
     description = (
         f"image: {pgm_path.name}\n"
@@ -117,6 +113,16 @@ def save_map(grid: OccupancyGrid, stem, occupied_at: int = 65, free_at: int = 25
         f"origin: [{grid.origin.x:f}, {grid.origin.y:f}, {grid.origin.yaw:f}]\n"
         "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n\n"
     )
-    pgm = header.encode("ascii") + np.flipud(image).tobytes()
-    write_together({pgm_path: pgm, yaml_path: description.encode("ascii")})
+    write_together({pgm_path: _pgm(grid, occupied_at, free_at), yaml_path: description.encode("ascii")})
     return yaml_path
+
+
+def _pgm(grid: OccupancyGrid, occupied_at: int, free_at: int) -> bytearray:
+    """The image, and no second one in memory: those of a campus have many millions of pixels."""
+    shades = np.full(256, 205, dtype=np.uint8)  # of the cells' bytes; the negative ones' are from 128 on
+    shades[: free_at + 1] = 254
+    shades[occupied_at:128] = 0
+    pgm = bytearray(f"P5\n# {grid.resolution:.3f} m/pix\n{grid.cols} {grid.rows}\n255\n", "ascii")
+    for row in np.flipud(grid.cells):
+        pgm.extend(row.tobytes().translate(shades.tobytes()))
+    return pgm

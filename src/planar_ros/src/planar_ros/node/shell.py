@@ -11,7 +11,6 @@ from typing import Callable, List
 
 import rospy
 from rosgraph import get_master_uri
-from threadpoolctl import threadpool_limits
 
 from planar import PlanarError
 from planar_ros.node.backlog import let_many_wait
@@ -33,8 +32,6 @@ def run(node_name: str, start: Callable[[], object]) -> None:
     """
     _shut_down_on_signals()
     drop_what_cannot_be_written()
-    # A node's matrices are small: more threads of BLAS would only wait for work, in busy loops.
-    threadpool_limits(1, user_api="blas")
     let_many_wait()
     try:
         rospy.init_node(node_name, disable_signals=True)
