@@ -12,9 +12,7 @@ import numba
 import numpy as np
 
 from planar import wrap
-from slam_lite.graph.drift import drift_along, shortest_ways
-from slam_lite.graph.pose_graph import Edges, between
-from slam_lite.loops.loop_closure import is_credible, lengths_of
+from slam_lite.graph.pose_graph import Edges, between, relative_covariance
 from slam_lite.loops.place_recognition import Hypothesis, hypotheses, places_along
 from slam_lite.loops.way import Way
 from slam_lite.surface import Surface
@@ -29,6 +27,9 @@ _REACH, _PLACES_APART = 30.0, 55.0
 _ERROR, _TURN, _ERROR_RATE, _TURN_RATE = 0.8, 0.06, 0.02, 0.002
 # So many looks say the same, and as many times more than whatever else is said about there.
 _LOOKS, _AHEAD = 14, 1.5
+# Standard deviations of a hypothesis, metres and radians; and how far off the graph may be: the chi-square of
+# one in a thousand, with three degrees of freedom.
+_OWN_ERROR, _CREDIBLE = np.array([1.0, 1.0, 0.05]), 16.3
 
 
 def recollected(poses: np.ndarray, edges: Edges, surfaces: Sequence[Surface], way: Way) -> List[Hypothesis]:
@@ -69,14 +70,18 @@ def _elsewhere(robots: np.ndarray, robot: np.ndarray) -> np.ndarray:
 
 
 def _is_possible_news(hypothesis: Hypothesis, poses: np.ndarray, edges: Edges) -> bool:
-    """Whether the graph says something else, and may be so much off."""
+    """Whether the graph says something else, and may be so much off by all that it knows.
+
+    Houses that are alike go on to say the same, too, along any way.
+    """
     place, recent = hypothesis.place, hypothesis.recent
     told = hypothesis.recent_in_place.as_array()
     if not _elsewhere(told[None], between(poses, place, recent).as_array())[0]:
         return False
-    ways, before = shortest_ways(recent, len(poses), edges, lengths_of(edges))
-    drift = np.column_stack(drift_along(ways, before, poses, edges))
-    return is_credible(hypothesis, poses, drift[place])
+    error = _compounded(poses[place][None], told[None])[0] - poses[recent]
+    error[2] = wrap(error[2])
+    covariance = relative_covariance(poses, edges, place, recent) + np.diag(_OWN_ERROR**2)
+    return bool(error @ np.linalg.solve(covariance, error) < _CREDIBLE)
 
 
 def _agreeing(nodes: np.ndarray, told: np.ndarray, poses: np.ndarray, metres: np.ndarray) -> np.ndarray:
