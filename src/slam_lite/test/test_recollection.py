@@ -86,7 +86,7 @@ class Street:
 
 
 def recollected_of_twins(seed):
-    """Two streets of the same houses; between them wheels slip and nothing is seen; one end sees the other."""
+    """Two streets of the same houses; between them wheels slip, nothing is seen; one end sees the other."""
     rng = np.random.default_rng(seed)
     world = walls(houses(rng))
     nothing = Surface(np.zeros((0, 2), dtype=np.float32), np.zeros((0, 2), dtype=np.float32))
