@@ -4,13 +4,15 @@ The search is cut out as a task that holds all it needs by value, so that it can
 the front end goes on: ``result = back_end.task().run()``, then ``back_end.adopt(result)``.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
 from planar import Pose2, wrap
 from slam_lite.config import MapperSettings
+from slam_lite.graph.certainty import Certainty
 from slam_lite.graph.drift import drift_along, shortest_ways
 from slam_lite.graph.pose_graph import Edge, EdgeList, Edges, chi_squares, edges_of, optimise
 from slam_lite.loops.loop_closure import (
@@ -50,6 +52,9 @@ _LOST_KEYS, _BESIDE = 20, 30.0
 # A new closure with a larger chi-square, or this many smaller ones, are worth an optimisation.
 _NEWS_CHI_SQUARE, _NEWS_COUNT = 10.0, 20
 _MAX_PENDING = 50
+# A closure that differs by so much from what the graph knows, as chi-square, needs a witness: what the graph
+# knows is told cautiously, and of the right ones not one in a hundred does.
+_SURPRISING = 6.0
 # Places that look alike, searched for a closure after one look.
 _MAX_RECOGNISED = 3
 # When to end an optimisation, metres and radians: while mapping, and in the end.
@@ -96,14 +101,14 @@ class ClosureTask:
         memory, alike = self._look()
         for closure in self._found(alike):
             witnesses = [other for other in pending if agree(closure, other, self.poses)]
-            if is_confirmed(closure, witnesses, self.poses) and not self._is_disputed(
-                closure, witnesses, pending
-            ):
-                accepted += [closure, *witnesses]
-                pending = [other for other in pending if other not in witnesses]
+            is_confirmed_now = is_confirmed(closure, witnesses, self.poses)
+            believed = self._believed([closure, *witnesses]) if is_confirmed_now else []
+            if closure in believed and not self._is_disputed(closure, witnesses, pending):
+                accepted += believed
+                pending = [other for other in pending if other not in believed]
             else:
                 pending = [*pending[1 - _MAX_PENDING :], closure]
-        edges = [_widened(closure.edge, _CLOSURE_SIGMA_XY, _CLOSURE_SIGMA_YAW) for closure in accepted]
+        edges = [_told(closure) for closure in accepted]
         if not self._is_news(edges):
             return ClosureResult(edges, self.poses, pending, memory, False)
         poses = optimise(self._joined(edges), _with(self.edges, edges), _ROUGHLY, fresh=len(edges))
@@ -115,7 +120,7 @@ class ClosureTask:
         for candidate in (*near, *alike):
             closure = find_closure(candidate, self.poses, self.surfaces, self.local_map, self.settings)
             if closure is not None:
-                yield closure
+                yield closure if closure.witnesses_needed else self._weighed(closure)
         if self.lost_since is not None:
             known = KnownMap(self.surfaces[: self.lost_since], self.poses[: self.lost_since], self.local_map)
             closure = known.closure(
@@ -123,6 +128,25 @@ class ClosureTask:
             )
             if closure is not None:
                 yield closure
+
+    def _weighed(self, closure: Closure) -> Closure:
+        """The closure, and whether it surprises the graph."""
+        return replace(closure, is_surprising=self._certainty.is_surprised_by(_told(closure), _SURPRISING))
+
+    def _believed(self, group: Sequence[Closure]) -> List[Closure]:
+        """Those of some that say the same which surprise the graph no more when it knows the others."""
+        return [one for one in group if not (one.is_surprising and self._surprises_still(one, group))]
+
+    def _surprises_still(self, closure: Closure, group: Sequence[Closure]) -> bool:
+        others = [_told(other) for other in group if other is not closure]
+        edges = _with(self.edges, others)
+        poses = optimise(self.poses, edges, _ROUGHLY, fresh=len(others))
+        return Certainty(poses, edges, closure.edge.second).is_surprised_by(_told(closure), _SURPRISING)
+
+    @cached_property
+    def _certainty(self) -> Certainty:
+        """How surely the graph knows where the newest key is."""
+        return Certainty(self.poses, self.edges, len(self.poses) - 1)
 
     def _joined(self, edges: Sequence[Edge]) -> np.ndarray:
         """The poses (N, 3), with a lost trajectory moved to where one of ``edges`` puts it."""
@@ -319,6 +343,10 @@ def _reach(surface: Surface) -> float:
 def _with(edges: Edges, more: Sequence[Edge]) -> Edges:
     pairs = zip(vars(edges).values(), vars(edges_of(*more)).values())
     return Edges(*(np.concatenate(pair) for pair in pairs))
+
+
+def _told(closure: Closure) -> Edge:
+    return _widened(closure.edge, _CLOSURE_SIGMA_XY, _CLOSURE_SIGMA_YAW)
 
 
 def _widened(edge: Edge, sigma_xy: float, sigma_yaw: float) -> Edge:

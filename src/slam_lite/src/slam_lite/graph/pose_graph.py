@@ -155,33 +155,27 @@ def _cost(poses: np.ndarray, edges: Edges, free: np.ndarray) -> float:
 
 def _step(poses: np.ndarray, edges: Edges, free: np.ndarray, damping: float) -> np.ndarray:
     """One Gauss-Newton step (N, 3) with loop edges weighed by how well they are met."""
-    matrix, gradient = _normal_equations(poses, edges, free)
-    step = _factors(matrix[3:, 3:], damping).solve(gradient[3:])
+    matrix, gradient = normal_equations(poses, edges, free)
+    step = factors_of(matrix[3:, 3:], damping).solve(gradient[3:])
     return np.vstack((np.zeros((1, 3)), -step.reshape(-1, 3)))
 
 
-def relative_covariance(poses: np.ndarray, edges: Edges, origin: int, key: int) -> np.ndarray:
-    """Covariance (3, 3), along the map's axes, of where a key lies if ``origin`` stays where it is.
+def normal_equations(
+    poses: np.ndarray, edges: Edges, free: Optional[np.ndarray] = None
+) -> Tuple[csc_matrix, np.ndarray]:
+    """The information matrix (3 N, 3 N) of all poses, and the gradient (3 N,).
 
-    By all that a settled graph knows, loops included (M. Kaess and F. Dellaert, "Covariance recovery from a
-    square root information matrix for data association", RAS 2009).
+    ``free`` (E,): chi-square at which each loop edge's influence starts to fade; default: as in the end.
     """
-    matrix, _ = _normal_equations(poses, edges, np.full(len(edges), _FREE_CHI_SQUARE))
-    others = np.delete(np.arange(3 * len(poses)), np.arange(3 * origin, 3 * origin + 3))
-    rows = np.searchsorted(others, np.arange(3 * key, 3 * key + 3))
-    sides = np.zeros((len(others), 3))
-    sides[rows, range(3)] = 1.0
-    return _factors(matrix[others][:, others], 0.0).solve(sides)[rows]
-
-
-def _normal_equations(poses: np.ndarray, edges: Edges, free: np.ndarray) -> Tuple[csc_matrix, np.ndarray]:
+    free = np.full(len(edges), _FREE_CHI_SQUARE) if free is None else free
     rows, cols, values, gradient = _linearize(
         poses, edges.nodes, edges.measured, edges.information, edges.is_loop, free
     )
     return coo_matrix((values, (rows, cols)), shape=(3 * len(poses), 3 * len(poses))).tocsc(), gradient
 
 
-def _factors(matrix: csc_matrix, damping: float) -> SuperLU:
+def factors_of(matrix: csc_matrix, damping: float = 0.0) -> SuperLU:
+    """Those of an information matrix without the rows and columns of one node, which is changed."""
     matrix.setdiag(matrix.diagonal() * (1.0 + damping) + 1e-9)
     return splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 

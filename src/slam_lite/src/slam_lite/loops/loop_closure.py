@@ -85,18 +85,20 @@ class Closure:
     """An edge from a place seen before to a recent key, and the candidate that it was found at.
 
     ``slide``: unit vector (2,), along first's axes, in which the edge knows nothing, or zeros.
+    ``is_surprising``: whether the graph believed something else.
     """
 
     edge: Edge
     candidate: Candidate
     slide: np.ndarray
+    is_surprising: bool = False
 
     @property
     def witnesses_needed(self) -> int:
         """How many others have to say the same; none if the graph knew the place well beforehand."""
         if self.candidate.is_recognised:
             return 2
-        return 0 if self.candidate.window.distance <= _FAMILIAR_DISTANCE else 1
+        return 0 if self.candidate.window.distance <= _FAMILIAR_DISTANCE and not self.is_surprising else 1
 
 
 def candidates(recent: int, poses: np.ndarray, edges: Edges, settings: MapperSettings) -> List[Candidate]:

@@ -12,7 +12,8 @@ import numba
 import numpy as np
 
 from planar import wrap
-from slam_lite.graph.pose_graph import Edges, between, relative_covariance
+from slam_lite.graph.certainty import Certainty
+from slam_lite.graph.pose_graph import Edge, Edges, between
 from slam_lite.loops.place_recognition import Hypothesis, hypotheses, places_along
 from slam_lite.loops.way import Way
 from slam_lite.surface import Surface
@@ -27,9 +28,9 @@ _REACH, _PLACES_APART = 30.0, 55.0
 _ERROR, _TURN, _ERROR_RATE, _TURN_RATE = 0.8, 0.06, 0.02, 0.002
 # So many looks say the same, and as many times more than whatever else is said about there.
 _LOOKS, _AHEAD = 14, 1.5
-# Standard deviations of a hypothesis, metres and radians; and how far off the graph may be: the chi-square of
-# one in a thousand, with three degrees of freedom.
-_OWN_ERROR, _CREDIBLE = np.array([1.0, 1.0, 0.05]), 16.3
+# A hypothesis's own information, of 1 m and 0.05 rad; and how far off the graph may be: the chi-square of one
+# in a thousand, with three degrees of freedom.
+_OWN_INFORMATION, _CREDIBLE = np.diag([1.0, 1.0, 0.05**-2]), 16.3
 
 
 def recollected(poses: np.ndarray, edges: Edges, surfaces: Sequence[Surface], way: Way) -> List[Hypothesis]:
@@ -75,13 +76,11 @@ def _is_possible_news(hypothesis: Hypothesis, poses: np.ndarray, edges: Edges) -
     Houses that are alike go on to say the same, too, along any way.
     """
     place, recent = hypothesis.place, hypothesis.recent
-    told = hypothesis.recent_in_place.as_array()
-    if not _elsewhere(told[None], between(poses, place, recent).as_array())[0]:
+    told = Edge(place, recent, hypothesis.recent_in_place, _OWN_INFORMATION)
+    believed = between(poses, place, recent).as_array()
+    if not _elsewhere(told.second_in_first.as_array()[None], believed)[0]:
         return False
-    error = _compounded(poses[place][None], told[None])[0] - poses[recent]
-    error[2] = wrap(error[2])
-    covariance = relative_covariance(poses, edges, place, recent) + np.diag(_OWN_ERROR**2)
-    return bool(error @ np.linalg.solve(covariance, error) < _CREDIBLE)
+    return not Certainty(poses, edges, recent).is_surprised_by(told, _CREDIBLE)
 
 
 def _agreeing(nodes: np.ndarray, told: np.ndarray, poses: np.ndarray, metres: np.ndarray) -> np.ndarray:
