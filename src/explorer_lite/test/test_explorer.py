@@ -170,6 +170,14 @@ def test_a_robot_in_no_free_space_waits_for_a_better_map_but_not_for_ever():
     assert end == Finish(False, "the map shows no free space around the robot")
 
 
+def test_a_robot_that_took_long_to_arrive_may_look_about_there():
+    task = explorer()
+    order = task.advance(0.0, grid(OPEN_AT_BOTH_ENDS), ROBOT)
+    assert task.advance(19.0, None, order.pose, GoalReached()) is None
+    order = task.advance(21.0, grid(OPEN_AT_BOTH_ENDS), order.pose)
+    assert isinstance(order, GoTo)
+
+
 @pytest.mark.parametrize("name, value", [("attempts", 0), ("reach", 0.0), ("max_frontier_size", 0.1)])
 def test_senseless_settings_are_refused(name, value):
     with pytest.raises(SettingsError, match=name):

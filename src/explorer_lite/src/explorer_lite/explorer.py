@@ -117,6 +117,7 @@ class Explorer:
                 return self._finish(False, f"the robot does not get away from here: {event.reason}")
         elif isinstance(event, GoalReached):
             self._arrived_at = now
+            self._progress.restart(now)
         return self._look(now, robot) if self._is_time_to_look(now) else None
 
     def _is_time_to_look(self, now: float) -> bool:
@@ -162,6 +163,7 @@ class Explorer:
             return None
         else:
             best = current
+            self._progress.goal_moved()
         self._target = best
         return GoTo(best.viewpoint)
 

@@ -23,10 +23,16 @@ class ProgressWatch:
         """There is a new goal."""
         self._nearest, self._progress_at = math.inf, now
 
+    def goal_moved(self) -> None:
+        """The goal is elsewhere now: that the robot is nearer or farther is not its doing."""
+        self._nearest = math.inf
+
     def is_stuck(self, now: float, distance: float) -> bool:
         """Whether the robot, now at this distance from its goal, has come no nearer for too long."""
         if distance < self._nearest - PROGRESS_DISTANCE:
-            self._nearest, self._progress_at = distance, now
+            if math.isfinite(self._nearest):
+                self._progress_at = now
+            self._nearest = distance
         return now - self._progress_at > self._timeout
 
     def note_refusal(self, robot: Pose2) -> None:
