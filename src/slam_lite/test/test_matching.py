@@ -80,6 +80,26 @@ def test_a_wall_is_not_taken_for_its_other_side():
     assert error(match.base_pose, Pose2()) == (0.0, 0.0)
 
 
+def test_the_end_of_a_wall_does_not_pull_one_side_to_the_other():
+    along, end = np.arange(0.0, 1.0, 0.03), np.arange(0.0, 0.15, 0.03)
+    far = np.column_stack((np.arange(-3.0, 3.0, 0.03), np.full(200, 3.0)))
+    left, right = (np.column_stack((np.full(len(along), x), along)) for x in (2.0, 2.15))
+    cap = np.column_stack((2.0 + end, np.zeros(len(end))))  # too short for a line
+
+    def seen(side, normal, *more):
+        points = np.concatenate((far, side, *more))
+        normals = np.zeros_like(points)
+        normals[: len(far)] = (0.0, -1.0)
+        normals[len(far) : len(far) + len(side)] = (normal, 0.0)
+        return Surface(points.astype(np.float32), normals.astype(np.float32))
+
+    local_map = LocalMap()
+    local_map.clear(Pose2())
+    local_map.add(seen(left, -1.0), Pose2())
+    match = refine(seen(right, 1.0, cap), local_map, Pose2(), Pose2(), np.zeros((3, 3)))
+    assert match.base_pose.distance_to(Pose2()) < 0.01
+
+
 def test_normals_point_to_where_the_surface_was_seen_from(office):
     surface = surface_at(office, HERE)
     has_normal = surface.normals_xy.any(axis=1)

@@ -25,8 +25,8 @@ _ON_SURFACE = 0.1
 _SIGMA = 0.05
 # Chi-square at which the belief in the prior is halved.
 _FREE_CHI_SQUARE = 9.0
-# Two normals whose cosine is less than this belong to the two sides of a wall; those whose cosine is more than
-# this, to the same wall.
+# Two normals whose cosine is less than this belong to the two sides of a wall; those where it is more than
+# that, to one wall.
 _OPPOSED, _ALIKE = -0.5, 0.5
 # Weight of a point that has no line to be drawn to, only a point.
 _CORNER_WEIGHT = 0.2
