@@ -48,8 +48,8 @@ def test_hypotheses_say_the_same_if_they_put_the_way_to_the_same_place():
     poses[3] = (Pose2.from_array(poses[2]) @ Pose2(3.0, 0.0, 0.0)).as_array()
     one, same = Hypothesis(0, 2, Pose2(0.2, 0.1, 0.0), 0.9), Hypothesis(1, 3, Pose2(0.3, 0.0, 0.0), 0.8)
     other = Hypothesis(1, 3, Pose2(3.3, 0.0, 0.0), 0.8)
-    assert say_the_same(one, same, poses)
-    assert not say_the_same(one, other, poses)
+    assert say_the_same([one], [same, other], poses).tolist() == [[True, False]]
+    assert say_the_same([one], [], poses).shape == (1, 0)
 
 
 def test_an_error_in_heading_swings_what_lies_behind_it():

@@ -19,12 +19,12 @@ from slam_lite.loops.loop_closure import (
     Candidate,
     Closure,
     agree,
+    are_out_of_reach,
     candidates,
     contradict,
     find_closure,
     is_confirmed,
     is_credible,
-    is_out_of_reach,
     lengths_of,
     recognised,
 )
@@ -168,7 +168,7 @@ class ClosureTask:
         while stretch is not None:
             place = stretch.appearance(self.surfaces, self.poses)
             look = [] if place is None else self._credible(place, memory)
-            seen = [hypothesis for hypothesis in look if memory.has_seen(hypothesis, self.poses)]
+            seen = memory.confirmed(look, self.poses)
             step = Pose2.from_array(self.poses[stretch.middle]).inverse() @ Pose2.from_array(
                 self.poses[stretch.last]
             )
@@ -185,9 +185,9 @@ class ClosureTask:
         """Where the robot may be by what it looks like, among what the other search does not reach."""
         ways, before = shortest_ways(recent.key, len(self.poses), self.edges, lengths_of(self.edges))
         drift = np.column_stack(drift_along(ways, before, self.poses, self.edges))
-        places = [
-            place for place in memory.places if is_out_of_reach(float(ways[place.key]), drift[place.key])
-        ]
+        keys = [place.key for place in memory.places]
+        are_out = are_out_of_reach(ways[keys], drift[keys])
+        places = [place for place, is_out in zip(memory.places, are_out) if is_out]
         return [
             hypothesis
             for hypothesis in hypotheses(recent, places)

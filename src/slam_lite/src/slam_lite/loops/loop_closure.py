@@ -184,13 +184,13 @@ def _around(
     return [(surface, pose) for surface, pose in seen if math.hypot(pose.x, pose.y) < scale * _PLACE_RADIUS]
 
 
-def is_out_of_reach(way: float, drift: np.ndarray) -> bool:
-    """Whether a place, ``way`` metres along the graph, may lie elsewhere than ``candidates`` looks for it.
+def are_out_of_reach(ways: np.ndarray, drift: np.ndarray) -> np.ndarray:
+    """Which places (N,), so many metres along the graph, may lie elsewhere than ``candidates`` looks for.
 
-    ``drift``: standard deviations (2,) of position and heading.
+    ``drift``: standard deviations (N, 2) of position and heading.
     """
-    window = np.clip(_DRIFT_DISTANCE * way, _MIN_WINDOW.distance, _MAX_WINDOW.distance)
-    return bool(_CREDIBLE * drift[0] > window + 2.0 or _CREDIBLE * drift[1] > _MAX_WINDOW.angle)
+    windows = np.clip(_DRIFT_DISTANCE * ways, _MIN_WINDOW.distance, _MAX_WINDOW.distance)
+    return (_CREDIBLE * drift[:, 0] > windows + 2.0) | (_CREDIBLE * drift[:, 1] > _MAX_WINDOW.angle)
 
 
 def is_credible(hypothesis: Hypothesis, poses: np.ndarray, drift: np.ndarray) -> bool:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
+from scipy.fft import irfft
 
 from planar import Pose2, wrap
 from slam_lite.surface import Surface, joined
@@ -111,9 +112,12 @@ class Memory:
         """The memory of a robot whose present way begins at ``key``."""
         return Memory(self.places, (), key, key)
 
-    def has_seen(self, hypothesis: Hypothesis, poses: np.ndarray) -> bool:
-        """Whether one of the last looks said the same."""
-        return any(say_the_same(hypothesis, other, poses) for look in self.looks for other in look)
+    def confirmed(self, look: Sequence[Hypothesis], poses: np.ndarray) -> List[Hypothesis]:
+        """Those of a look's hypotheses that one of the last looks said, too."""
+        seen = np.zeros(len(look), dtype=bool)
+        for earlier in self.looks:
+            seen |= say_the_same(look, earlier, poses).any(axis=1)
+        return [hypothesis for hypothesis, is_seen in zip(look, seen) if is_seen]
 
 
 def remembered(surfaces: Sequence[Surface], poses: np.ndarray) -> Memory:
@@ -168,7 +172,7 @@ def hypotheses(recent: Appearance, places: Sequence[Appearance]) -> List[Hypothe
     turned = recent.spectra
     for quarters in range(4):
         correlated = (stacked * turned.conj()).reshape(len(places), 2, 2, -1).sum(axis=2)
-        likeness = np.fft.irfft(correlated, _BINS, axis=-1)[:, :, _SHIFTS]
+        likeness = irfft(correlated, _BINS, axis=-1)[:, :, _SHIFTS]
         best = likeness.argmax(axis=2)
         alike = np.take_along_axis(likeness, best[:, :, None], axis=2)[:, :, 0].prod(axis=1)
         for i in np.argsort(-alike)[:_MAX_HYPOTHESES]:
@@ -181,14 +185,30 @@ def hypotheses(recent: Appearance, places: Sequence[Appearance]) -> List[Hypothe
 _SHIFTS = np.arange(-round(_MAX_SHIFT / _BIN), round(_MAX_SHIFT / _BIN) + 1)
 
 
-def say_the_same(one: Hypothesis, other: Hypothesis, poses: np.ndarray) -> bool:
-    """Whether two hypotheses of different recent keys place the way alike; ``poses`` (N, 3) of the keys."""
-    step = _pose(poses, one.recent).inverse() @ _pose(poses, other.recent)
-    told = _pose(poses, one.place) @ one.recent_in_place @ step
-    retold = _pose(poses, other.place) @ other.recent_in_place
+def say_the_same(look: Sequence[Hypothesis], other: Sequence[Hypothesis], poses: np.ndarray) -> np.ndarray:
+    """Which hypotheses of two looks place the way alike: (N, M) booleans; ``poses`` (K, 3) of the keys."""
+    if not look or not other:
+        return np.zeros((len(look), len(other)), dtype=bool)
+    step = _pose(poses, look[0].recent).inverse() @ _pose(poses, other[0].recent)
+    told, retold = compounded(_told(look, poses), step.as_array()[None]), _told(other, poses)
     way = math.hypot(step.x, step.y)
-    near = told.distance_to(retold) < _SAME_PLACE + _DRIFT * way
-    return near and abs(wrap(told.yaw - retold.yaw)) < _SAME_HEADING
+    away = told[:, None] - retold[None]
+    near = np.hypot(away[..., 0], away[..., 1]) < _SAME_PLACE + _DRIFT * way
+    return near & (np.abs(wrap(away[..., 2])) < _SAME_HEADING)
+
+
+def _told(look: Sequence[Hypothesis], poses: np.ndarray) -> np.ndarray:
+    """Where each hypothesis of a look (N, 3) puts the recent key."""
+    places = [hypothesis.place for hypothesis in look]
+    return compounded(poses[places], np.array([each.recent_in_place.as_array() for each in look]))
+
+
+def compounded(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Poses (N, 3) that are seen from the ``first`` ones (N, 3) at the ``second`` (N, 3), or (1, 3)."""
+    c, s = np.cos(first[:, 2]), np.sin(first[:, 2])
+    x = first[:, 0] + c * second[:, 0] - s * second[:, 1]
+    y = first[:, 1] + s * second[:, 0] + c * second[:, 1]
+    return np.column_stack((x, y, wrap(first[:, 2] + second[:, 2])))
 
 
 def _profile(points: np.ndarray, normals: np.ndarray, along: int, sign: float) -> np.ndarray:

@@ -14,7 +14,7 @@ import numpy as np
 from planar import wrap
 from slam_lite.graph.certainty import Certainty
 from slam_lite.graph.pose_graph import Edge, Edges, between
-from slam_lite.loops.place_recognition import Hypothesis, hypotheses, places_along
+from slam_lite.loops.place_recognition import Hypothesis, compounded, hypotheses, places_along
 from slam_lite.loops.way import Way
 from slam_lite.surface import Surface
 
@@ -44,7 +44,7 @@ def recollected(poses: np.ndarray, edges: Edges, surfaces: Sequence[Surface], wa
     nodes = np.array([(each.place, each.recent) for each in heard])
     told = np.array([each.recent_in_place.as_array() for each in heard])
     counts = _agreeing(nodes, told, way.poses, way.metres)
-    robots = _compounded(poses[nodes[:, 0]], told)
+    robots = compounded(poses[nodes[:, 0]], told)
     best: List[Hypothesis] = []
     for recent in np.unique(nodes[counts >= _LOOKS, 1]).tolist():
         numbers = np.flatnonzero(nodes[:, 1] == recent)
@@ -88,16 +88,8 @@ def _agreeing(nodes: np.ndarray, told: np.ndarray, poses: np.ndarray, metres: np
 
     ``nodes``: (N, 2) place and recent key, in the order of the latter; ``told``: (N, 3) recent in place.
     """
-    robots = _compounded(poses[nodes[:, 0]], told)
+    robots = compounded(poses[nodes[:, 0]], told)
     return _counts(nodes[:, 1], metres[nodes], poses[nodes[:, 1]], robots)
-
-
-def _compounded(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Poses (N, 3) that are seen from the ``first`` ones (N, 3) at the ``second`` (N, 3)."""
-    c, s = np.cos(first[:, 2]), np.sin(first[:, 2])
-    x = first[:, 0] + c * second[:, 0] - s * second[:, 1]
-    y = first[:, 1] + s * second[:, 0] + c * second[:, 1]
-    return np.column_stack((x, y, wrap(first[:, 2] + second[:, 2])))
 
 
 @numba.njit(cache=True, nogil=True)
