@@ -97,16 +97,18 @@ def _linearize(layers, points, normals, pose, far_scale):
         scale = _OUTLIER_SCALE if number == 0 else far_scale
         if nx != 0.0 or ny != 0.0:
             error = ex * nx + ey * ny
-            w = 1.0 / (1.0 + (error / scale) ** 2) ** 2 if cosine > _ALIKE else 0.0
+            w = 1.0 / (1.0 + (error / scale) ** 2) ** 2
+            if cosine <= _ALIKE and number == 0:
+                w = 0.0
             jt = ny * rx - nx * ry
             g0, g1, g2 = g0 - w * nx * error, g1 - w * ny * error, g2 - w * jt * error
             h00, h01, h02 = h00 + w * nx * nx, h01 + w * nx * ny, h02 + w * nx * jt
             h11, h12, h22 = h11 + w * ny * ny, h12 + w * ny * jt, h22 + w * jt * jt
         else:
             error = math.hypot(ex, ey)
-            w = 0.0
-            if normals[p, 0] == 0.0 and normals[p, 1] == 0.0:
-                w = _CORNER_WEIGHT / (1.0 + (error / scale) ** 2) ** 2
+            w = _CORNER_WEIGHT / (1.0 + (error / scale) ** 2) ** 2
+            if number == 0 and (normals[p, 0] != 0.0 or normals[p, 1] != 0.0):
+                w = 0.0
             g0, g1, g2 = g0 - w * ex, g1 - w * ey, g2 - w * (rx * ey - ry * ex)
             h00, h02 = h00 + w, h02 - w * ry
             h11, h12, h22 = h11 + w, h12 + w * rx, h22 + w * (rx * rx + ry * ry)
