@@ -97,9 +97,7 @@ def _linearize(layers, points, normals, pose, far_scale):
         scale = _OUTLIER_SCALE if number == 0 else far_scale
         if nx != 0.0 or ny != 0.0:
             error = ex * nx + ey * ny
-            w = 1.0 / (1.0 + (error / scale) ** 2) ** 2
-            if cosine <= _ALIKE and number == 0:
-                w = 0.0
+            w = 1.0 / (1.0 + (error / scale) ** 2) ** 2 if cosine > _ALIKE or number > 0 else 0.0
             jt = ny * rx - nx * ry
             g0, g1, g2 = g0 - w * nx * error, g1 - w * ny * error, g2 - w * jt * error
             h00, h01, h02 = h00 + w * nx * nx, h01 + w * nx * ny, h02 + w * nx * jt
