@@ -14,7 +14,7 @@ from planar import Pose2, wrap
 from slam_lite.config import MapperSettings
 from slam_lite.graph.certainty import Certainty
 from slam_lite.graph.drift import drift_along, shortest_ways
-from slam_lite.graph.pose_graph import Edge, EdgeList, Edges, chi_squares, edges_of, optimise
+from slam_lite.graph.pose_graph import Edge, EdgeList, Edges, between, chi_squares, edges_of, optimise
 from slam_lite.loops.loop_closure import (
     Candidate,
     Closure,
@@ -101,9 +101,12 @@ class ClosureTask:
         memory, alike = self._look()
         for closure in self._found(alike):
             witnesses = [other for other in pending if agree(closure, other, self.poses)]
-            is_confirmed_now = is_confirmed(closure, witnesses, self.poses)
-            believed = self._believed([closure, *witnesses]) if is_confirmed_now else []
-            if closure in believed and not self._is_disputed(closure, witnesses, pending):
+            believed: Sequence[Closure] = ()
+            if is_confirmed(closure, witnesses, self.poses) and not self._is_disputed(
+                closure, witnesses, pending
+            ):
+                believed = self._believed([closure, *witnesses])
+            if closure in believed:
                 accepted += believed
                 pending = [other for other in pending if other not in believed]
             else:
@@ -169,9 +172,7 @@ class ClosureTask:
             place = stretch.appearance(self.surfaces, self.poses)
             look = [] if place is None else self._credible(place, memory)
             seen = memory.confirmed(look, self.poses)
-            step = Pose2.from_array(self.poses[stretch.middle]).inverse() @ Pose2.from_array(
-                self.poses[stretch.last]
-            )
+            step = between(self.poses, stretch.middle, stretch.last)
             count = stretch.last - stretch.first + 1
             alike = [
                 recognised(hypothesis.place, stretch.last, count, hypothesis.recent_in_place @ step)

@@ -14,6 +14,7 @@ from planar.config.settings_file import settings_from_yaml
 from planar.files.tum import tum_text
 from planar_ros.bags.bag import BagError
 from planar_ros.bags.scan_log import LoggedScan, ScanLog
+from planar_ros.node.blas import use_one_blas_thread
 
 T = TypeVar("T")
 
@@ -32,6 +33,7 @@ def run_replay(
     arguments: Optional[List[str]],
 ) -> int:
     """The exit code of ``replay``; 2 if it came to nothing, which is told in a line."""
+    use_one_blas_thread()
     try:
         return replay(parser.parse_args(arguments))
     except PlanarError as error:

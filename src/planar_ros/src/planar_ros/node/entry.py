@@ -4,8 +4,6 @@ import importlib
 import sys
 from typing import Any
 
-from threadpoolctl import threadpool_limits
-
 from supervision.forked import live_forked
 from supervision.interruption import leaving_on_signals
 
@@ -28,10 +26,4 @@ def call(function: str, *arguments: object) -> Any:
     module, _, name = function.partition(":")
     with leaving_on_signals():
         found = getattr(importlib.import_module(module), name)
-    use_one_blas_thread()
     return found(*arguments)
-
-
-def use_one_blas_thread() -> None:
-    """Matrices here are small: more threads of what is imported would only wait for work, in busy loops."""
-    threadpool_limits(1, user_api="blas")

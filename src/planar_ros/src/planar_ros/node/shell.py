@@ -14,6 +14,7 @@ from rosgraph import get_master_uri
 
 from planar import PlanarError
 from planar_ros.node.backlog import let_many_wait
+from planar_ros.node.blas import use_one_blas_thread
 from supervision.interruption import SIGNALS
 from supervision.streams import drop_what_cannot_be_written
 
@@ -32,6 +33,7 @@ def run(node_name: str, start: Callable[[], object]) -> None:
     """
     _shut_down_on_signals()
     drop_what_cannot_be_written()
+    use_one_blas_thread()
     let_many_wait()
     try:
         rospy.init_node(node_name, disable_signals=True)

@@ -175,7 +175,7 @@ def normal_equations(
 
 
 def factors_of(matrix: csc_matrix, damping: float = 0.0) -> SuperLU:
-    """Those of an information matrix without the rows and columns of one node, which is changed."""
+    """Those of an information matrix, which is changed, without the rows and columns of one node."""
     matrix.setdiag(matrix.diagonal() * (1.0 + damping) + 1e-9)
     return splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 

@@ -16,6 +16,7 @@ import numpy as np
 from scipy.fft import irfft
 
 from planar import Pose2, wrap
+from slam_lite.graph.pose_graph import between
 from slam_lite.surface import Surface, joined
 
 # Width of a profile's bins, metres, and how many there are; the outer half stays empty, so that profiles can
@@ -189,7 +190,7 @@ def say_the_same(look: Sequence[Hypothesis], other: Sequence[Hypothesis], poses:
     """Which hypotheses of two looks place the way alike: (N, M) booleans; ``poses`` (K, 3) of the keys."""
     if not look or not other:
         return np.zeros((len(look), len(other)), dtype=bool)
-    step = _pose(poses, look[0].recent).inverse() @ _pose(poses, other[0].recent)
+    step = between(poses, look[0].recent, other[0].recent)
     told, retold = compounded(_told(look, poses), step.as_array()[None]), _told(other, poses)
     way = math.hypot(step.x, step.y)
     away = told[:, None] - retold[None]

@@ -26,7 +26,8 @@ _SIGMA = 0.05
 # Chi-square at which the belief in the prior is halved.
 _FREE_CHI_SQUARE = 9.0
 # Two normals whose cosine is less than this belong to the two sides of a wall; those where it is more than
-# that, to one wall.
+# that, to one wall. Only these pull in the fine grid, and corners only corners: the points of a wall's end
+# would pull one side to the other. In the coarse one a tree or a car is of no kind for sure.
 _OPPOSED, _ALIKE = -0.5, 0.5
 # Weight of a point that has no line to be drawn to, only a point.
 _CORNER_WEIGHT = 0.2

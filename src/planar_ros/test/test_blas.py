@@ -1,0 +1,30 @@
+import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
+
+from planar_ros.bags.replaying import run_replay
+from planar_ros.node.blas import use_one_blas_thread
+
+
+def threads():
+    return {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"}
+
+
+@pytest.fixture(autouse=True)
+def two_threads():
+    threadpool_limits(2, user_api="blas")
+    assert threads() == {2}
+
+
+def test_blas_has_one_thread():
+    use_one_blas_thread()
+    assert threads() == {1}
+
+
+def test_a_replay_has_one_too():
+    class Parser:
+        def parse_args(self, arguments):
+            return arguments
+
+    seen = []
+    assert run_replay(Parser(), lambda arguments: seen.append(threads()) or 0, []) == 0
+    assert seen == [{1}]
