@@ -12,7 +12,7 @@ from slam_lite.graph.drift import variances_xy
 from slam_lite.graph.pose_graph import edges_of
 from slam_lite.loops.loop_closure import Candidate, agree, contradict, find_closure
 from slam_lite.loops.sliding import known_of, refined
-from slam_lite.matching.correlative import Peak, Window
+from slam_lite.matching.correlative import Peak, Window, search_far
 from slam_lite.matching.local_map import LocalMap
 from slam_lite.surface import Surface
 
@@ -132,3 +132,30 @@ def test_two_places_across_a_corridor_that_look_alike_are_no_slide():
 def test_an_edge_is_as_uncertain_as_it_is_in_its_worst_direction():
     closure, _ = closure_in(SMOOTH, Window(4.0, 0.1))
     assert variances_xy(edges_of(closure.edge))[0] > 100.0**2
+
+
+def test_who_sees_a_walls_other_side_does_not_know_how_near_it_is():
+    floor = wall(-1.0, 1.0, -4.0, 4.0)
+    known, seen = (
+        seen_from(Pose2(), (floor, *end_of_a_wall(x, facing)))
+        for x, facing in ((0.0, 1.0), (-THICKNESS, -1.0))
+    )
+    local_map = LocalMap()
+    local_map.clear(Pose2())
+    local_map.add(known, Pose2())
+    peak = search_far(seen, local_map, Pose2(), Window(0.5, 0.1), 0.5, apart=0.6)
+    assert peak.base_pose.x > 0.5 * THICKNESS  # it knows no sides
+    found = known_of(peak, Pose2(), seen, local_map, lambda start: refined(seen, local_map, start, 0.5))
+    off = found.base_in_place.as_array()
+    assert off @ found.information @ off < 4.0
+
+
+THICKNESS = 0.15
+
+
+def end_of_a_wall(x, facing):
+    """One side of a wall, and its end: of the points there no line can be told."""
+    end = np.column_stack((np.linspace(-THICKNESS, 0.0, 7), np.full(7, 0.5)))
+    edge = np.column_stack((np.full(3, x), np.linspace(0.5, 0.6, 3)))
+    corner = np.concatenate((end, edge))
+    return (corner, np.zeros_like(corner)), tuple(column[:, ::-1] for column in wall(x, facing, 0.6, 2.5))

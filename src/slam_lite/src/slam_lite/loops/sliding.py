@@ -12,9 +12,9 @@ from typing import Callable, Optional
 import numpy as np
 
 from planar import Pose2
-from slam_lite.matching.correlative import Peak, scores
+from slam_lite.matching.correlative import Peak
 from slam_lite.matching.local_map import LocalMap, Match
-from slam_lite.matching.refinement import refine
+from slam_lite.matching.refinement import refine, sided_scores
 from slam_lite.surface import Surface
 
 # A match may slide by these ways, metres, if the score there is this share of its own.
@@ -79,11 +79,11 @@ def _way_open(match: Match, direction: np.ndarray, surface: Surface, local_map: 
     """How far a match could as well lie along a direction, metres, as far as ``_SLIDES`` goes.
 
     Along a smooth wall, a few points of noise hold a match in place, and its information takes them for
-    features.
+    features; so do the corners of a wall of which one side was seen before, and the other one is seen now.
     """
     pose = match.base_pose
     slid = [Pose2(pose.x + way * direction[0], pose.y + way * direction[1], pose.yaw) for way in _SLIDES]
-    fits = scores(surface, local_map, [pose, *slid])
+    fits = sided_scores(surface, local_map, [pose, *slid])
     return float(np.abs(_SLIDES[fits[1:] >= _SLIDE_SHARE * fits[0]]).max(initial=0.0))
 
 
