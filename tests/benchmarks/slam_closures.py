@@ -51,6 +51,7 @@ class Closures:
     mean_error: float
     median_error: float
     end_off: float
+    farthest_off: float
     cpu_mean: float
     cpu_p99: float
     cpu_mean_of_last_quarter: float
@@ -99,6 +100,7 @@ def judge(name: str, seed: int) -> Closures:
         mean_error=float(errors.mean()),
         median_error=float(np.median(errors)),
         end_off=float(np.hypot(*end_off[0, :2])),
+        farthest_off=float(_positions_off(mapper.key_poses, true_keys).max()),
         cpu_mean=float(spent.mean()),
         cpu_p99=float(np.percentile(spent, 99)),
         cpu_mean_of_last_quarter=float(spent[-len(spent) // 4 :].mean()),
@@ -134,12 +136,21 @@ def _seen_from(poses: np.ndarray, pairs: np.ndarray) -> np.ndarray:
     return np.column_stack((ahead, left, wrap(step[:, 2])))
 
 
+def _positions_off(poses: np.ndarray, truth: np.ndarray) -> np.ndarray:
+    """How far positions (N,) are off once both have been laid over each other as well as they can be."""
+    mine, real = (each[:, 0] + 1j * each[:, 1] for each in (poses, truth))
+    mine, real = mine - mine.mean(), real - real.mean()
+    turn = np.vdot(mine, real)
+    return np.abs(mine * turn / np.abs(turn) - real)
+
+
 def _line(one: Closures) -> str:
     return (
         f"{one.log} {one.seed}: {one.scans} scans, {one.keys} kept; "
         f"closures {one.right} right, {one.wrong} wrong "
         f"({one.harmful} followed); error {one.mean_error:.3f} m, median {one.median_error:.3f}, "
-        f"end off {one.end_off:.2f}; a scan {one.cpu_mean:.1f} ms, p99 {one.cpu_p99:.1f}, "
+        f"end off {one.end_off:.2f}, key scans by up to {one.farthest_off:.2f}; "
+        f"a scan {one.cpu_mean:.1f} ms, p99 {one.cpu_p99:.1f}, "
         f"in the last quarter {one.cpu_mean_of_last_quarter:.1f}"
     )
 
