@@ -15,6 +15,7 @@ from planar import (
     load_map,
     save_map,
 )
+from planar.geometry.grid import GridInBands
 
 GOOD = """image: a.pgm
 resolution: 0.05
@@ -38,6 +39,28 @@ def test_a_saved_map_is_loaded_as_it_was(tmp_path):
     assert loaded.cells.tolist() == grid.cells.tolist()
     assert (loaded.resolution, loaded.origin) == (grid.resolution, grid.origin)
     assert "image: home.pgm" in (tmp_path / "home.yaml").read_text()
+
+
+def test_a_map_in_bands_is_saved_as_the_whole_one(tmp_path):
+    whole = grid_from_picture("#.?\n..#\n??.\n.#.", resolution=0.1, origin=Pose2(-1.0, 2.0, 0.25))
+    bands = iter([whole.cells[3:], whole.cells[1:3], whole.cells[:1]])
+    save_map(whole, tmp_path / "whole")
+    save_map(GridInBands(whole.rows, whole.cols, whole.resolution, whole.origin, bands), tmp_path / "bands")
+    assert (tmp_path / "bands.pgm").read_bytes() == (tmp_path / "whole.pgm").read_bytes()
+    assert load_map(tmp_path / "bands.yaml").cells.tolist() == whole.cells.tolist()
+
+
+def test_bands_that_fail_leave_the_old_map_alone(tmp_path):
+    def bands():
+        yield whole.cells[1:]
+        raise KeyboardInterrupt
+
+    whole = grid_from_picture("#.\n.#")
+    save_map(whole, tmp_path / "home")
+    old = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    with pytest.raises(KeyboardInterrupt):
+        save_map(GridInBands(2, 2, 1.0, Pose2(), bands()), tmp_path / "home")
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == old
 
 
 def test_shade_205_is_unknown_and_the_first_image_row_is_the_highest(tmp_path):

@@ -1,10 +1,21 @@
 import math
 import tracemalloc
+from dataclasses import replace
 
 import numpy as np
+import pytest
 
-from planar import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Pose2, Scan
-from slam_lite.rendering import MapRenderer, beams_of, on_canvas
+from planar import FREE, OCCUPIED, UNKNOWN, Scan
+from slam_lite.rendering import (
+    Beams,
+    Evidence,
+    MapRenderer,
+    SessionRenderer,
+    beams_of,
+    drawn_in_bands,
+    on_canvas,
+)
+from slam_lite.tiles import Box, around
 
 
 def scan(*ranges, range_max=10.0, **kwargs):
@@ -77,14 +88,58 @@ def test_two_places_far_apart_take_no_memory_for_what_lies_between():
 
 
 def test_a_canvas_is_as_large_as_asked_and_grows_by_ten_metres():
-    grid = OccupancyGrid(np.zeros((20, 20), dtype=np.int8), 0.1, Pose2(-3.0, 0.5, 0.0))
-    canvas = on_canvas(grid, (-1.0, -1.0, 1.0, 1.0))
-    assert (canvas.origin.x, canvas.origin.y) == (-11.0, -1.0)
-    assert canvas.cols % 32 == 0 and canvas.rows % 32 == 0
-    assert canvas.value_at(-2.0, 1.5) == FREE
-    assert (canvas.cells == FREE).sum() == grid.cells.size
+    canvas = on_canvas(Box(5, -30, 25, -10), (-1.0, -1.0, 1.0, 1.0), 0.1)
+    assert (canvas.col, canvas.row) == (-110, -10)
+    assert canvas.shape[0] % 32 == 0 and canvas.shape[1] % 32 == 0
+    assert around(canvas, Box(5, -30, 25, -10)) == canvas
 
 
 def test_the_official_canvas_has_the_official_size():
-    canvas = on_canvas(OccupancyGrid(np.zeros((1, 1), dtype=np.int8), 0.05), (-100.0, -100.0, 100.0, 100.0))
-    assert canvas.cells.shape == (4000, 4000)
+    assert on_canvas(Box(0, 0, 1, 1), (-100.0, -100.0, 100.0, 100.0), 0.05).shape == (4000, 4000)
+
+
+def test_on_a_canvas_the_map_is_the_same():
+    renderer = SessionRenderer(0.1, 0.25)
+    renderer.update(Evidence([beams_of(scan(2.0, 1.0, 1.5, 3.0), 9.0, 9.0)], np.zeros((1, 3))))
+    grid, canvas = renderer.grid(), renderer.grid((-1.0, -1.0, 1.0, 1.0))
+    assert (canvas.cells != UNKNOWN).sum() == (grid.cells != UNKNOWN).sum()
+    inside = grid.points_of(np.argwhere(grid.cells != UNKNOWN))
+    assert [canvas.value_at(*xy) for xy in inside] == [grid.value_at(*xy) for xy in inside]
+
+
+def evidence_of(keys, older, seed, farthest=12.0):
+    """Scans at random poses, some of which see nothing."""
+    rng = np.random.default_rng(seed)
+    angles, beams = np.linspace(-np.pi, np.pi, 60), []
+    for _ in range(keys):
+        ends = np.column_stack((np.cos(angles), np.sin(angles))) * rng.uniform(0.0, farthest, (60, 1))
+        count = rng.choice([0, 1, 60])
+        beams.append(Beams(rng.normal(0.0, 0.1, 2), ends[:count].astype(np.float32), rng.random(count) < 0.7))
+    poses = rng.uniform((-9.0, -20.0, -3.0), (9.0, 30.0, 3.0), (keys, 3))
+    return Evidence(beams, poses, older)
+
+
+@pytest.mark.parametrize("most_cells", [1, 40_000, 10**9])
+@pytest.mark.parametrize("keys, older", [(40, 0), (40, 15), (12, 12), (1, 0), (0, 0)])
+def test_a_map_in_bands_is_the_map(keys, older, most_cells):
+    for seed in range(5):
+        evidence, renderer = evidence_of(keys, older, seed), SessionRenderer(0.05, 0.25)
+        renderer.update(evidence)
+        whole, banded = renderer.grid(), drawn_in_bands(evidence, 0.05, 0.25, most_cells)
+        bands = list(banded.bands)
+        assert all(band.size <= max(most_cells, 64 * banded.cols) for band in bands)
+        joined = replace(banded, bands=bands).joined()
+        assert np.array_equal(joined.cells, whole.cells)
+        assert (joined.origin, joined.resolution) == (whole.origin, whole.resolution)
+
+
+def test_a_map_in_bands_never_takes_the_memory_of_all_of_it():
+    evidence = evidence_of(400, 0, 0, farthest=30.0)
+    size = SessionRenderer(0.02, 0.25)
+    size.update(evidence)
+    tracemalloc.start()
+    cells = sum(band.size for band in drawn_in_bands(evidence, 0.02, 0.25, 500_000).bands)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert cells == size.grid().cells.size
+    assert peak < cells

@@ -7,6 +7,7 @@ from typing import List, Optional, Tuple
 import numpy as np
 
 from planar import OccupancyGrid, Pose2, Scan
+from planar.geometry.grid import GridInBands
 from planar.geometry.limits import OutOfRangeError
 from planar.geometry.pose import check_place
 from slam_lite.back_end import BackEnd, ClosureResult, ClosureTask
@@ -16,7 +17,7 @@ from slam_lite.front_end import FrontEnd, KnownScans, RecentScans, Tracked
 from slam_lite.loops.relocation import KnownMap
 from slam_lite.matching.local_map import LocalMap
 from slam_lite.no_return import NoReturn
-from slam_lite.rendering import Beams, Evidence, SessionRenderer, beams_of
+from slam_lite.rendering import Beams, Evidence, beams_of, drawn_in_bands
 from slam_lite.sessions import renewed
 from slam_lite.state import MapState
 from slam_lite.surface import Surface, surface_of
@@ -157,9 +158,11 @@ class Mapper:
 
     def grid(self) -> OccupancyGrid:
         """The map of all key scans at their present poses, drawn from scratch."""
-        renderer = SessionRenderer(self._settings.resolution, self._settings.occupied_threshold)
-        renderer.update(self.evidence())
-        return renderer.grid()
+        return self.grid_in_bands().joined()
+
+    def grid_in_bands(self) -> GridInBands:
+        """The same map, drawn band by band while it is used: it never takes the memory of all its cells."""
+        return drawn_in_bands(self.evidence(), self._settings.resolution, self._settings.occupied_threshold)
 
     def state(self) -> MapState:
         """All that is needed to go on later."""

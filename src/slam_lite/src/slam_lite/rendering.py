@@ -2,22 +2,27 @@
 
 A cell is occupied if the share of hits among the beams that reached it exceeds a threshold (Haehnel's
 counting model as used by gmapping). Counts are sums over scans, so a scan whose pose has changed is taken out
-and put in anew. They are kept in tiles, and only where a beam has been: of a large site little is ever seen.
+and put in anew. A map that is drawn but once is drawn in bands, which never take the memory of all of it.
 """
 
 import math
 from dataclasses import dataclass
-from typing import List, NamedTuple, Sequence, Tuple
+from typing import Iterator, List, NamedTuple, Optional, Sequence, Tuple, Union
 
-import numba
 import numpy as np
 
-from planar import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Pose2, Scan, wrap
+from planar import UNKNOWN, OccupancyGrid, Pose2, Scan, wrap
+from planar.geometry.grid import GridInBands
+from slam_lite.tiles import TILE, Box, TileCounts, around
 
 _GROWTH = 10.0
-# Side of a tile, cells, and how many there is room for at first.
-_TILE, _FIRST_TILES = 64, 256
 _SIZE_MULTIPLE = 32
+# Cells of a band, which with their counts take five bytes each and session where all of them were seen.
+_BAND_CELLS = 4_000_000
+# (xmin, ymin, xmax, ymax), metres.
+Extent = Tuple[float, float, float, float]
+# The map of nothing: a cell.
+_NOTHING = Box(0, 0, 1, 1)
 # From so many beams on, the present session knows a cell, whatever older ones say.
 _ENOUGH_VISITS = 5
 
@@ -69,6 +74,7 @@ class SessionRenderer:
     """
 
     def __init__(self, resolution: float, occupied_threshold: float):
+        self._resolution, self._threshold = resolution, occupied_threshold
         self._before, self._now = (MapRenderer(resolution, occupied_threshold) for _ in range(2))
 
     def update(self, evidence: Evidence) -> None:
@@ -77,11 +83,14 @@ class SessionRenderer:
         self._before.update(beams[:older], poses[:older])
         self._now.update(beams[older:], poses[older:])
 
-    def grid(self) -> OccupancyGrid:
-        """The map as it is now, and where that was not seen, as it was."""
-        if self._before.is_empty:
-            return self._now.grid()
-        return overlaid([self._now.grid(), self._before.grid(), self._now.grid(_ENOUGH_VISITS)])
+    def grid(self, extent: Optional[Extent] = None) -> OccupancyGrid:
+        """The map as it is now, and where that was not seen, as it was; on a canvas, if one is given."""
+        now, before = self._now.counts, None if self._before.is_empty else self._before.counts
+        box = _box_of(now, before)
+        if extent is not None:
+            box = on_canvas(box, extent, self._resolution)
+        cells = _judged(now, before, box, self._threshold)
+        return OccupancyGrid(cells, self._resolution, _origin(box, self._resolution))
 
 
 class MapRenderer:
@@ -91,11 +100,7 @@ class MapRenderer:
         self._resolution = resolution
         self._threshold = occupied_threshold
         self._placed: List[np.ndarray] = []
-        # Hits and visits (tiles, 2, rows, cols), the number of each place's tile or -1, and the first place.
-        self._tiles = np.zeros((0, 2, _TILE, _TILE), dtype=np.uint16)
-        self._used = 0
-        self._index = np.empty((0, 0), dtype=np.int32)
-        self._corner = np.zeros(2, dtype=np.int64)
+        self.counts = TileCounts(np.zeros(2, dtype=np.int64), (0, 0))
 
     @property
     def is_empty(self) -> bool:
@@ -105,7 +110,9 @@ class MapRenderer:
     def update(self, beams: Sequence[Beams], poses: np.ndarray) -> None:
         """Brings the counts up to date with the scans' present poses (N, 3) in the map."""
         news = [i for i in range(len(beams)) if i >= len(self._placed) or self._has_moved(i, poses[i])]
-        self._cover([(beams[i], poses[i]) for i in news])
+        if news:
+            bounds = _bounds([beams[i] for i in news], poses[news], self._resolution)
+            self.counts.cover(*_tiles_around(bounds))
         for i in news:
             if i < len(self._placed):
                 self._count(beams[i], self._placed[i], -1)
@@ -118,166 +125,148 @@ class MapRenderer:
         x, y, turn = pose - self._placed[i]
         return math.hypot(x, y) > 0.5 * self._resolution or abs(wrap(float(turn))) > 0.005
 
-    def grid(self, least_visits: int = 1) -> OccupancyGrid:
-        """The map of all scans counted so far, as large as what they reached; fewer beams leave UNKNOWN."""
-        row, col, end_row, end_col = _extent(self._tiles, self._index)
-        if end_row <= row:
-            return OccupancyGrid(np.full((1, 1), UNKNOWN, dtype=np.int8), self._resolution)
-        box = row, col, end_row, end_col
-        cells = _judged(self._tiles, self._index, self._threshold, least_visits, *box)
-        x, y = (self._corner * _TILE + [col, row]) * self._resolution
-        return OccupancyGrid(cells, self._resolution, Pose2(float(x), float(y), 0.0))
-
     def _count(self, beams: Beams, pose: np.ndarray, amount: int) -> None:
-        start, ends = self._in_cells(beams, pose)
-        start, ends = start - self._corner * _TILE, ends - self._corner * _TILE
-        first = 0
-        while first < len(ends):
-            traced, self._used = _trace(
-                self._tiles, self._index, self._used, start, ends[first:], beams.marks[first:], amount
-            )
-            first += traced
-            if first < len(ends):
-                self._tiles = _with_room(self._tiles)
+        self.counts.count(*_in_cells(beams, pose, self._resolution), beams.marks, amount)
 
-    def _in_cells(self, beams: Beams, pose: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-        """Where a scan's beams start, (2,), and end, (N, 2), in cells from the map's origin."""
-        base_in_map = Pose2.from_array(pose)
-        start = base_in_map.transform_points(beams.laser_xy[None])[0]
-        return start / self._resolution, base_in_map.transform_points(beams.ends_xy) / self._resolution
-
-    def _cover(self, placed: Sequence[Tuple[Beams, np.ndarray]]) -> None:
-        """Makes places for tiles where the beams of some scans are at their poses."""
-        if not placed:
-            return
-        extents = []
-        for beams, pose in placed:
-            cells = np.vstack(self._in_cells(beams, pose))
-            extents.append((cells.min(axis=0), cells.max(axis=0)))
-        lowest = np.floor(np.min([low for low, _ in extents], axis=0) / _TILE).astype(np.int64) - 1
-        highest = np.floor(np.max([high for _, high in extents], axis=0) / _TILE).astype(np.int64) + 2
-        end = self._corner + self._index.shape[::-1]
-        if self._index.size:
-            lowest, highest = np.minimum(lowest, self._corner), np.maximum(highest, end)
-            if (lowest == self._corner).all() and (highest == end).all():
-                return
-        index = np.full((highest - lowest)[::-1], -1, dtype=np.int32)
-        col, row = self._corner - lowest
-        index[row : row + self._index.shape[0], col : col + self._index.shape[1]] = self._index
-        self._corner, self._index = lowest, index
+    def grid(self) -> OccupancyGrid:
+        """The map of all scans counted so far, as large as what they reached."""
+        box = _box_of(self.counts, None)
+        cells = _judged(self.counts, None, box, self._threshold)
+        return OccupancyGrid(cells, self._resolution, _origin(box, self._resolution))
 
 
-def _with_room(tiles: np.ndarray) -> np.ndarray:
-    """The tiles and at least as many empty ones, which take no memory until they are counted in."""
-    larger = np.zeros((2 * len(tiles) + _FIRST_TILES, *tiles.shape[1:]), dtype=tiles.dtype)
-    larger[: len(tiles)] = tiles
-    return larger
+def drawn_in_bands(
+    evidence: Evidence, resolution: float, occupied_threshold: float, most_cells: int = _BAND_CELLS
+) -> GridInBands:
+    """The map as a SessionRenderer draws it, in bands of at most ``most_cells``, or as low as a tile.
 
-
-def overlaid(grids: Sequence[OccupancyGrid]) -> OccupancyGrid:
-    """Grids of one resolution as one, each over those before it wherever it knows something."""
-    resolution = grids[0].resolution
-    corners = [
-        np.rint(np.array([grid.origin.x, grid.origin.y]) / resolution).astype(np.int64) for grid in grids
-    ]
-    ends = [corner + [grid.cols, grid.rows] for corner, grid in zip(corners, grids)]
-    lowest, highest = np.min(corners, axis=0), np.max(ends, axis=0)
-    cells = np.full((highest - lowest)[::-1], UNKNOWN, dtype=np.int8)
-    for grid, corner in zip(grids, corners):
-        col, row = corner - lowest
-        below = cells[row : row + grid.rows, col : col + grid.cols]
-        np.copyto(below, grid.cells, where=grid.cells != UNKNOWN)
-    x, y = lowest * resolution
-    return OccupancyGrid(cells, resolution, Pose2(float(x), float(y)))
-
-
-def on_canvas(grid: OccupancyGrid, extent: Tuple[float, float, float, float]) -> OccupancyGrid:
-    """The grid put on a canvas as gmapping would: ``extent`` is (xmin, ymin, xmax, ymax), metres, and grows
-    by steps of 10 m where the grid is larger; sizes are multiples of 32 cells.
+    Each is drawn when it is asked for, from the beams that reach it.
     """
-    resolution = grid.resolution
-    corner = np.rint(np.array([grid.origin.x, grid.origin.y]) / resolution).astype(np.int64)
-    end = corner + np.array([grid.cols, grid.rows])
+    beams, poses, older = evidence
+    now = _SessionScans(beams[older:], poses[older:], resolution)
+    before = _SessionScans(beams[:older], poses[:older], resolution) if older else None
+    box = _box_of(now, before)
+    rows, cols = box.shape
+    bands = _bands(now, before, box, occupied_threshold, max(1, most_cells // (TILE * cols)))
+    return GridInBands(rows, cols, resolution, _origin(box, resolution), bands)
+
+
+def _bands(
+    now: "_SessionScans", before: "Optional[_SessionScans]", box: Box, threshold: float, height: int
+) -> Iterator[np.ndarray]:
+    """The cells of ``box`` from the top band, ``height`` tiles high, to the lowest."""
+    for end in range(-(-box.end_row // TILE), box.row // TILE, -height):
+        tiles = max(end - height, box.row // TILE), end
+        low, high = max(tiles[0] * TILE, box.row), min(end * TILE, box.end_row)
+        band = Box(low, box.col, high, box.end_col)
+        older = None if before is None else before.counted(*tiles)
+        yield _judged(now.counted(*tiles), older, band, threshold)
+
+
+class _SessionScans:
+    """The key scans of one session, to be counted as a MapRenderer does, but only in some rows of tiles.
+
+    ``box``: around all cells that they reach, None if there is none.
+    """
+
+    def __init__(self, beams: Sequence[Beams], poses: np.ndarray, resolution: float):
+        self._beams, self._poses, self._resolution = beams, poses, resolution
+        bounds = _bounds(beams, poses, resolution)
+        self._corner, end = _tiles_around(bounds)
+        self._cols = int(end[0] - self._corner[0])
+        # Columns and rows (N, 2) where each scan begins and ends; rounding may lead a beam astray by one.
+        self._first = np.floor(bounds[:, 0]).astype(np.int64) - 1
+        self._end = np.floor(bounds[:, 1]).astype(np.int64) + 2
+        self.box = self._reached()
+
+    def counted(self, first: int, end: int) -> TileCounts:
+        """The counts from one row of tiles to the one before another."""
+        is_there = (self._first[:, 1] < end * TILE) & (self._end[:, 1] > first * TILE)
+        return self._counts(first, end, np.flatnonzero(is_there).tolist())
+
+    def _counts(self, first: int, end: int, numbers: Sequence[int]) -> TileCounts:
+        counts = TileCounts(self._corner, (end - first, self._cols), first - int(self._corner[1]))
+        for i in numbers:
+            beams = self._beams[i]
+            counts.count(*_in_cells(beams, self._poses[i], self._resolution), beams.marks, 1)
+        return counts
+
+    def _reached(self) -> Optional[Box]:
+        """Only the outermost scans have to be followed for it."""
+        box, is_left = None, np.ones(len(self._beams), dtype=bool)
+        while is_left.any():
+            beyond = np.where(is_left, self._beyond(box), 0)
+            outermost = int(np.argmax(beyond))
+            if beyond[outermost] == 0:
+                break
+            first, end = self._first[outermost, 1] // TILE, -(-self._end[outermost, 1] // TILE)
+            box = around(box, self._counts(int(first), int(end), [outermost]).box)
+            is_left[outermost] = False
+        return box
+
+    def _beyond(self, box: Optional[Box]) -> np.ndarray:
+        """By how many cells (N,) each scan may reach out of a box."""
+        if box is None:
+            return np.ones(len(self._beams), dtype=np.int64)
+        before, after = [box.col, box.row] - self._first, self._end - [box.end_col, box.end_row]
+        return np.maximum(before, after).max(axis=1, initial=0)
+
+
+def _bounds(beams: Sequence[Beams], poses: np.ndarray, resolution: float) -> np.ndarray:
+    """First and last column and row (N, 2, 2) of where N scans lie, in cells from the map's origin."""
+    bounds = np.empty((len(beams), 2, 2))
+    for i, (scan, pose) in enumerate(zip(beams, poses)):
+        cells = np.vstack(_in_cells(scan, pose, resolution))
+        bounds[i] = cells.min(axis=0), cells.max(axis=0)
+    return bounds
+
+
+def _tiles_around(bounds: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """The first tile (2,), column and row, of those in which scans between ``bounds`` lie, and the end."""
+    if len(bounds) == 0:
+        return np.zeros(2, dtype=np.int64), np.zeros(2, dtype=np.int64)
+    lowest = np.floor(bounds[:, 0].min(axis=0) / TILE).astype(np.int64) - 1
+    return lowest, np.floor(bounds[:, 1].max(axis=0) / TILE).astype(np.int64) + 2
+
+
+def _in_cells(beams: Beams, pose: np.ndarray, resolution: float) -> Tuple[np.ndarray, np.ndarray]:
+    """Where a scan's beams start, (2,), and end, (N, 2), in cells from the map's origin."""
+    base_in_map = Pose2.from_array(pose)
+    start = base_in_map.transform_points(beams.laser_xy[None])[0]
+    return start / resolution, base_in_map.transform_points(beams.ends_xy) / resolution
+
+
+def _box_of(now: "Union[TileCounts, _SessionScans]", before: "Union[TileCounts, _SessionScans, None]") -> Box:
+    """The cells of a map of two sessions; what saw nothing has the one cell of the map's origin."""
+    box = around(*(each.box or _NOTHING for each in (now, before) if each is not None))
+    assert box is not None
+    return box
+
+
+def _judged(now: TileCounts, before: Optional[TileCounts], box: Box, threshold: float) -> np.ndarray:
+    """The cells of ``box`` as now, or as before where that saw too little."""
+    cells = np.full(box.shape, UNKNOWN, dtype=np.int8)
+    now.judge(cells, box, threshold, 1)
+    if before is not None:
+        before.judge(cells, box, threshold, 1)
+        now.judge(cells, box, threshold, _ENOUGH_VISITS)
+    return cells
+
+
+def _origin(box: Box, resolution: float) -> Pose2:
+    return Pose2(float(box.col * resolution), float(box.row * resolution))
+
+
+def on_canvas(box: Box, extent: Extent, resolution: float) -> Box:
+    """The canvas that gmapping would draw a map on: ``extent`` grows by steps of 10 m where the map's ``box``
+    is larger; its sides are multiples of 32 cells.
+    """
+    corner, end = np.array([box.col, box.row]), np.array([box.end_col, box.end_row])
     lowest = np.floor(np.array(extent[:2]) / resolution).astype(np.int64)
     highest = np.ceil(np.array(extent[2:]) / resolution).astype(np.int64)
     step = round(_GROWTH / resolution)
     lowest -= np.maximum(0, -((corner - lowest) // step)) * step
     highest += np.maximum(0, -((highest - end) // step)) * step
     cols, rows = -((lowest - highest) // _SIZE_MULTIPLE) * _SIZE_MULTIPLE
-    cells = np.full((rows, cols), UNKNOWN, dtype=np.int8)
-    col, row = corner - lowest
-    cells[row : row + grid.rows, col : col + grid.cols] = grid.cells
-    x, y = lowest * resolution
-    return OccupancyGrid(cells, resolution, Pose2(float(x), float(y)))
-
-
-@numba.njit(cache=True, nogil=True)
-def _trace(tiles, index, used, start, ends, marks, amount):
-    """Adds ``amount`` to the visits, [1], of each beam's cells and the hits, [0], of its end.
-
-    Takes tiles from ``used`` on where there are none yet. Returns how many beams there was room for, and
-    ``used`` afterwards.
-    """
-    for i in range(len(ends)):
-        col, row = int(math.floor(start[0])), int(math.floor(start[1]))
-        end_col, end_row = int(math.floor(ends[i, 0])), int(math.floor(ends[i, 1]))
-        steps = abs(end_col - col) + abs(end_row - row)
-        if len(tiles) - used < steps // _TILE + 4:
-            return i, used
-        dx, dy = ends[i, 0] - start[0], ends[i, 1] - start[1]
-        col_step, row_step = (1 if dx > 0 else -1), (1 if dy > 0 else -1)
-        next_col = (col + (dx > 0) - start[0]) / dx if dx != 0.0 else np.inf
-        next_row = (row + (dy > 0) - start[1]) / dy if dy != 0.0 else np.inf
-        col_delta = abs(1.0 / dx) if dx != 0.0 else np.inf
-        row_delta = abs(1.0 / dy) if dy != 0.0 else np.inf
-        for _ in range(steps):
-            used = _add(tiles, index, used, row, col, 1, amount)
-            if next_col < next_row:
-                next_col, col = next_col + col_delta, col + col_step
-            else:
-                next_row, row = next_row + row_delta, row + row_step
-        if marks[i]:
-            used = _add(tiles, index, used, end_row, end_col, 1, amount)
-            used = _add(tiles, index, used, end_row, end_col, 0, amount)
-    return len(ends), used
-
-
-@numba.njit(cache=True, nogil=True)
-def _add(tiles, index, used, row, col, which, amount):
-    tile = index[row // _TILE, col // _TILE]
-    if tile < 0:
-        tile = index[row // _TILE, col // _TILE] = used
-        used += 1
-    tiles[tile, which, row % _TILE, col % _TILE] += amount
-    return used
-
-
-@numba.njit(cache=True, nogil=True)
-def _extent(tiles, index):
-    """First row and column that were visited, and the ones after the last."""
-    row, col, end_row, end_col = 2**31, 2**31, 0, 0
-    for i in range(index.shape[0]):
-        for j in range(index.shape[1]):
-            if index[i, j] < 0:
-                continue
-            for r in range(_TILE):
-                for c in range(_TILE):
-                    if tiles[index[i, j], 1, r, c] > 0:
-                        row, col = min(row, i * _TILE + r), min(col, j * _TILE + c)
-                        end_row, end_col = max(end_row, i * _TILE + r + 1), max(end_col, j * _TILE + c + 1)
-    return row, col, end_row, end_col
-
-
-@numba.njit(cache=True, nogil=True)
-def _judged(tiles, index, threshold, least_visits, first_row, first_col, end_row, end_col):
-    """The cells of a box, FREE, OCCUPIED or UNKNOWN, that these counts speak for."""
-    cells = np.full((end_row - first_row, end_col - first_col), UNKNOWN, dtype=np.int8)
-    for row in range(first_row, end_row):
-        for col in range(first_col, end_col):
-            tile = index[row // _TILE, col // _TILE]
-            if tile < 0:
-                continue
-            hits, visits = tiles[tile, 0, row % _TILE, col % _TILE], tiles[tile, 1, row % _TILE, col % _TILE]
-            if visits >= least_visits:
-                cells[row - first_row, col - first_col] = OCCUPIED if hits > threshold * visits else FREE
-    return cells
+    col, row = lowest.tolist()
+    return Box(row, col, row + int(rows), col + int(cols))

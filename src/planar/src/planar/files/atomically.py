@@ -3,7 +3,7 @@
 import os
 import tempfile
 from pathlib import Path
-from typing import Dict, Mapping
+from typing import Dict, Iterable, Mapping
 
 from planar.errors import PlanarError
 
@@ -14,18 +14,21 @@ class FileWriteError(PlanarError):
 
 def write_atomically(path, data: bytes) -> None:
     """Writes beside ``path``, then renames, so that no reader sees half a file. Raises FileWriteError."""
-    write_together({Path(path): data})
+    write_together({Path(path): [data]})
 
 
-def write_together(files: Mapping[Path, bytes]) -> None:
-    """Writes all files beside their paths, then renames them: on a full disk the old ones stay."""
+def write_together(files: Mapping[Path, Iterable[bytes]]) -> None:
+    """Writes all files beside their paths, then renames them: on a full disk the old ones stay.
+
+    Each is told in chunks, so that one which is made while it is written need not be held in memory.
+    """
     written: Dict[Path, Path] = {}
     try:
-        for path, data in files.items():
+        for path, chunks in files.items():
             descriptor, name = tempfile.mkstemp(dir=str(path.parent), prefix=path.name + ".")
             written[path] = Path(name)
             with os.fdopen(descriptor, "wb") as file:
-                file.write(data)
+                file.writelines(chunks)
             written[path].chmod(0o644)
         for path in files:
             written[path].replace(path)

@@ -1,6 +1,7 @@
 """Occupancy grids: what is known of free and occupied space."""
 
 from dataclasses import dataclass, field
+from typing import Iterable
 
 import numpy as np
 
@@ -41,6 +42,11 @@ class OccupancyGrid:
     def cols(self) -> int:
         return self.cells.shape[1]
 
+    @property
+    def in_bands(self) -> "GridInBands":
+        """The same, in one band."""
+        return GridInBands(self.rows, self.cols, self.resolution, self.origin, [self.cells])
+
     def cells_of(self, points_xy) -> np.ndarray:
         """Cells (N, 2) int64 as (row, col) in which map points (N, 2) lie; they may be outside the grid."""
         local_xy = self.origin.inverse().transform_points(np.atleast_2d(np.asarray(points_xy, dtype=float)))
@@ -60,6 +66,29 @@ class OccupancyGrid:
         """Value of the cell at a map point; unknown outside the grid."""
         cell = self.cells_of(np.array([[x, y]]))
         return int(self.cells[tuple(cell[0])]) if self.contains(cell)[0] else UNKNOWN
+
+
+@dataclass(frozen=True, eq=False)
+class GridInBands:
+    """An OccupancyGrid that is larger than memory should be, had in bands of its rows, once.
+
+    ``bands``: cells int8 (some rows, cols), the top band first, in each of which row 0 has the lowest y.
+    ``rows``, ``cols``, ``resolution``, ``origin``: of the whole grid.
+    """
+
+    rows: int
+    cols: int
+    resolution: float
+    origin: Pose2
+    bands: Iterable[np.ndarray]
+
+    def joined(self) -> OccupancyGrid:
+        """The whole grid."""
+        cells, end = np.empty((self.rows, self.cols), dtype=np.int8), self.rows
+        for band in self.bands:
+            cells[end - len(band) : end] = band
+            end -= len(band)
+        return OccupancyGrid(cells, self.resolution, self.origin)
 
 
 def grid_from_picture(picture: str, resolution: float = 1.0, origin: Pose2 = Pose2()) -> OccupancyGrid:

@@ -2,6 +2,7 @@
 
 import io
 from pathlib import Path
+from typing import Iterator, Union
 
 import numpy as np
 from PIL import Image, UnidentifiedImageError
@@ -10,7 +11,7 @@ from planar.config.yaml_table import read_table
 from planar.errors import PlanarError
 from planar.files.atomically import write_together
 from planar.files.reading import read_bytes
-from planar.geometry.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
+from planar.geometry.grid import FREE, OCCUPIED, UNKNOWN, GridInBands, OccupancyGrid
 from planar.geometry.limits import COARSEST_CELL, FINEST_CELL
 from planar.geometry.pose import Pose2
 
@@ -99,7 +100,7 @@ def cells_from_image(
     return cells
 
 
-def save_map(grid: OccupancyGrid, stem, occupied_at: int = 65, free_at: int = 25) -> Path:
+def save_map(grid: Union[OccupancyGrid, GridInBands], stem, occupied_at: int = 65, free_at: int = 25) -> Path:
     """Writes ``stem``.pgm and ``stem``.yaml as map_saver does, both or none; returns the YAML.
 
     Cells of 0..free_at become free, occupied_at..100 occupied, all others unknown. The YAML names the image
@@ -113,16 +114,17 @@ def save_map(grid: OccupancyGrid, stem, occupied_at: int = 65, free_at: int = 25
         f"origin: [{grid.origin.x:f}, {grid.origin.y:f}, {grid.origin.yaw:f}]\n"
         "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n\n"
     )
-    write_together({pgm_path: _pgm(grid, occupied_at, free_at), yaml_path: description.encode("ascii")})
+    bands = grid.in_bands if isinstance(grid, OccupancyGrid) else grid
+    write_together({pgm_path: _pgm(bands, occupied_at, free_at), yaml_path: [description.encode("ascii")]})
     return yaml_path
 
 
-def _pgm(grid: OccupancyGrid, occupied_at: int, free_at: int) -> bytearray:
-    """The image, and no second one in memory: those of a campus have many millions of pixels."""
+def _pgm(grid: GridInBands, occupied_at: int, free_at: int) -> Iterator[bytes]:
+    """The image, row by row: those of a campus have many millions of pixels."""
     shades = np.full(256, 205, dtype=np.uint8)  # of the cells' bytes; the negative ones' are from 128 on
     shades[: free_at + 1] = 254
     shades[occupied_at:128] = 0
-    pgm = bytearray(f"P5\n# {grid.resolution:.3f} m/pix\n{grid.cols} {grid.rows}\n255\n", "ascii")
-    for row in np.flipud(grid.cells):
-        pgm.extend(row.tobytes().translate(shades.tobytes()))
-    return pgm
+    yield f"P5\n# {grid.resolution:.3f} m/pix\n{grid.cols} {grid.rows}\n255\n".encode("ascii")
+    for band in grid.bands:
+        for row in np.flipud(band):
+            yield row.tobytes().translate(shades.tobytes())

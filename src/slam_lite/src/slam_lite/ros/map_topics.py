@@ -14,7 +14,6 @@ from planar import OccupancyGrid
 from planar_ros.messages.conversion import GetMapArrays, OccupancyGridArrays, frame_name, grid_to_msg
 from planar_ros.step import Step
 from slam_lite.config import NodeSettings
-from slam_lite.rendering import on_canvas
 from slam_lite.ros.mapping import Mapping
 
 # The entropy is that of the pose told to this much: 1 cm, 1 cm and 0.01 rad.
@@ -76,7 +75,7 @@ class MapTopics:
         renderer, evidence, information = self._mapping.drawing()
         with self._drawing:
             renderer.update(evidence)
-            grid = on_canvas(renderer.grid(), settings.extent)
+            grid = renderer.grid(settings.extent)
         message = grid_to_msg(grid, rospy.Time.now(), frame_name(settings.map_frame))
         self._message = message
         self._map_publisher.publish(message)

@@ -72,4 +72,4 @@ def _save(options: argparse.Namespace, mapper: Mapper, trajectory: Trajectory) -
             write_trajectory(options.trajectory, trajectory.poses(mapper.key_poses, of_laser=of_laser))
     finally:
         if options.map:
-            save_map(mapper.grid(), options.map)
+            save_map(mapper.grid_in_bands(), options.map)

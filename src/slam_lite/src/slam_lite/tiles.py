@@ -1,0 +1,189 @@
+"""Counts of beams per cell, in tiles, and only where a beam has been: of a large site little is ever seen."""
+
+import math
+from typing import NamedTuple, Optional, Tuple
+
+import numba
+import numpy as np
+
+from planar import FREE, OCCUPIED
+
+# Side of a tile, cells, and how many there is room for at first.
+TILE, _FIRST_TILES = 64, 256
+
+
+class Box(NamedTuple):
+    """Some cells of a map: first row and column, from the map's origin, and the ones after the last."""
+
+    row: int
+    col: int
+    end_row: int
+    end_col: int
+
+    @property
+    def shape(self) -> Tuple[int, int]:
+        """Rows and columns."""
+        return self.end_row - self.row, self.end_col - self.col
+
+
+def around(*boxes: Optional[Box]) -> Optional[Box]:
+    """The least box that holds all that there are."""
+    firsts, ends = [box[:2] for box in boxes if box], [box[2:] for box in boxes if box]
+    return Box(*map(min, *firsts, *firsts), *map(max, *ends, *ends)) if firsts else None
+
+
+class TileCounts:
+    """How many beams reached each cell, and how many met something there.
+
+    Beams are told and followed in cells from ``corner``: (2,) column and row, tiles from the map's origin.
+    """
+
+    def __init__(self, corner: np.ndarray, shape: Tuple[int, int], first_row: int = 0):
+        """There are places for ``shape``: rows and columns of tiles, the first row that many from the corner.
+
+        What beams meet outside of them is not counted.
+        """
+        self.corner = corner
+        self._first_row = first_row
+        # Hits and visits (tiles, 2, rows, cols), and the number of each place's tile or -1.
+        self._tiles = np.zeros((0, 2, TILE, TILE), dtype=np.uint16)
+        self._used = 0
+        self._index = np.full(shape, -1, dtype=np.int32)
+
+    def cover(self, lowest: np.ndarray, highest: np.ndarray) -> None:
+        """Makes places from the tile ``lowest`` (2,), column and row, to the one before ``highest`` (2,)."""
+        if self._index.size:
+            end = self.corner + self._index.shape[::-1]
+            lowest, highest = np.minimum(lowest, self.corner), np.maximum(highest, end)
+            if (lowest == self.corner).all() and (highest == end).all():
+                return
+        index = np.full((highest - lowest)[::-1], -1, dtype=np.int32)
+        col, row = self.corner - lowest
+        index[row : row + self._index.shape[0], col : col + self._index.shape[1]] = self._index
+        self.corner, self._index = lowest, index
+
+    def count(self, start: np.ndarray, ends: np.ndarray, marks: np.ndarray, amount: int) -> None:
+        """Counts beams from ``start`` (2,) to ``ends`` (N, 2), cells from the map's origin, ``amount`` times.
+
+        ``marks``: (N,), whether they met something there.
+        """
+        start, ends = start - self.corner * TILE, ends - self.corner * TILE
+        first = 0
+        while first < len(ends):
+            traced, self._used = _trace(
+                self._tiles,
+                self._index,
+                self._first_row * TILE,
+                self._used,
+                start,
+                ends[first:],
+                marks[first:],
+                amount,
+            )
+            first += traced
+            if first < len(ends):
+                self._tiles = _with_room(self._tiles)
+
+    @property
+    def box(self) -> Optional[Box]:
+        """All cells that a beam has reached, if there is one."""
+        row, col, end_row, end_col = _extent(self._tiles, self._index)
+        if end_row <= row:
+            return None
+        first_col, first_row = (self.corner + [0, self._first_row]) * TILE
+        return Box(
+            int(first_row + row), int(first_col + col), int(first_row + end_row), int(first_col + end_col)
+        )
+
+    def judge(self, cells: np.ndarray, box: Box, threshold: float, least_visits: int) -> None:
+        """Writes FREE or OCCUPIED into the ``cells`` of a box that at least so many beams speak of.
+
+        ``threshold``: share of hits among them above which one is occupied.
+        """
+        col, row = (box.col, box.row) - (self.corner + [0, self._first_row]) * TILE
+        _judge(self._tiles, self._index, threshold, least_visits, row, col, cells)
+
+
+def _with_room(tiles: np.ndarray) -> np.ndarray:
+    """The tiles and at least as many empty ones, which take no memory until they are counted in."""
+    larger = np.zeros((2 * len(tiles) + _FIRST_TILES, *tiles.shape[1:]), dtype=tiles.dtype)
+    larger[: len(tiles)] = tiles
+    return larger
+
+
+@numba.njit(cache=True, nogil=True)
+def _trace(tiles, index, low, used, start, ends, marks, amount):
+    """Adds ``amount`` to the visits, [1], of each beam's cells and the hits, [0], of its end.
+
+    Only in the rows from ``low`` on that ``index`` covers; takes tiles from ``used`` on where there are none
+    yet. Returns how many beams there was room for, and ``used`` afterwards.
+    """
+    high = low + len(index) * TILE
+    for i in range(len(ends)):
+        col, row = int(math.floor(start[0])), int(math.floor(start[1]))
+        end_col, end_row = int(math.floor(ends[i, 0])), int(math.floor(ends[i, 1]))
+        if max(row, end_row) < low - 1 or min(row, end_row) > high:
+            continue
+        steps = abs(end_col - col) + abs(end_row - row)
+        if len(tiles) - used < steps // TILE + 4:
+            return i, used
+        dx, dy = ends[i, 0] - start[0], ends[i, 1] - start[1]
+        col_step, row_step = (1 if dx > 0 else -1), (1 if dy > 0 else -1)
+        next_col = (col + (dx > 0) - start[0]) / dx if dx != 0.0 else np.inf
+        next_row = (row + (dy > 0) - start[1]) / dy if dy != 0.0 else np.inf
+        col_delta = abs(1.0 / dx) if dx != 0.0 else np.inf
+        row_delta = abs(1.0 / dy) if dy != 0.0 else np.inf
+        past = high if row_step > 0 else low - 1
+        for _ in range(steps):
+            if low <= row < high:
+                used = _add(tiles, index, used, row - low, col, 1, amount)
+            elif row == past:
+                break
+            if next_col < next_row:
+                next_col, col = next_col + col_delta, col + col_step
+            else:
+                next_row, row = next_row + row_delta, row + row_step
+        if marks[i] and low <= end_row < high:
+            used = _add(tiles, index, used, end_row - low, end_col, 1, amount)
+            used = _add(tiles, index, used, end_row - low, end_col, 0, amount)
+    return len(ends), used
+
+
+@numba.njit(cache=True, nogil=True)
+def _add(tiles, index, used, row, col, which, amount):
+    tile = index[row // TILE, col // TILE]
+    if tile < 0:
+        tile = index[row // TILE, col // TILE] = used
+        used += 1
+    tiles[tile, which, row % TILE, col % TILE] += amount
+    return used
+
+
+@numba.njit(cache=True, nogil=True)
+def _extent(tiles, index):
+    """First row and column that were visited, and the ones after the last."""
+    row, col, end_row, end_col = 2**31, 2**31, 0, 0
+    for i in range(index.shape[0]):
+        for j in range(index.shape[1]):
+            if index[i, j] < 0:
+                continue
+            for r in range(TILE):
+                for c in range(TILE):
+                    if tiles[index[i, j], 1, r, c] > 0:
+                        row, col = min(row, i * TILE + r), min(col, j * TILE + c)
+                        end_row, end_col = max(end_row, i * TILE + r + 1), max(end_col, j * TILE + c + 1)
+    return row, col, end_row, end_col
+
+
+@numba.njit(cache=True, nogil=True)
+def _judge(tiles, index, threshold, least_visits, first_row, first_col, cells):
+    """Judges ``cells``, the first of which lies ``first_row`` and ``first_col`` from the tiles' first."""
+    rows, cols = index.shape[0] * TILE, index.shape[1] * TILE
+    for row in range(max(0, first_row), min(rows, first_row + cells.shape[0])):
+        for col in range(max(0, first_col), min(cols, first_col + cells.shape[1])):
+            tile = index[row // TILE, col // TILE]
+            if tile < 0:
+                continue
+            hits, visits = tiles[tile, 0, row % TILE, col % TILE], tiles[tile, 1, row % TILE, col % TILE]
+            if visits >= least_visits:
+                cells[row - first_row, col - first_col] = OCCUPIED if hits > threshold * visits else FREE
