@@ -1,4 +1,5 @@
 import dataclasses
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -7,7 +8,7 @@ from planar import Pose2, wrap
 from slam_lite.graph.drift import drift_along, shortest_ways
 from slam_lite.graph.pose_graph import Edge, edges_of
 from slam_lite.loops.lasting import lasting
-from slam_lite.loops.place_recognition import Hypothesis, appearance_of, hypotheses, say_the_same
+from slam_lite.loops.place_recognition import Appearance, Hypothesis, appearance_of, hypotheses, say_the_same
 from slam_lite.loops.sight import share_seen_through
 from slam_lite.mapper import Mapper
 from slam_lite.surface import Surface, joined, surface_of
@@ -33,6 +34,33 @@ def test_a_place_is_told_by_its_looks_and_so_is_the_pose_in_it(office):
     recent_in_place = there[140].base_in_map.inverse() @ back[145].base_in_map @ turned.inverse()
     assert best.recent_in_place.distance_to(recent_in_place) < LIKE[0]
     assert abs(wrap(best.recent_in_place.yaw - recent_in_place.yaw)) < LIKE[1]
+
+
+def random_places(count):
+    rng = np.random.default_rng(0)
+    profiles = rng.uniform(0.0, 1.0, (count, 4, 256))
+    profiles[:, :, 64:192] = 0.0
+    lengths = np.sqrt((profiles.reshape(count, 2, 2, 256) ** 2).sum(axis=(2, 3))).repeat(2, axis=1)
+    spectra = np.fft.rfft(profiles / lengths[:, :, None]).astype(np.complex64)
+    return [Appearance(key, 0.0, spectrum) for key, spectrum in enumerate(spectra)]
+
+
+def test_a_place_is_compared_with_many_as_with_few_at_a_time():
+    recent, *places = random_places(301)
+    told = hypotheses(recent, places)
+    few = [each for i in range(0, 300, 50) for each in hypotheses(recent, places[i : i + 50])]
+    likeliest = sorted(few, key=lambda each: -each.likeness)[: len(told)]
+    assert [each.likeness for each in told] == pytest.approx([each.likeness for each in likeliest])
+    assert {each.place for each in told} <= {each.place for each in few}
+
+
+def test_a_place_is_compared_with_thousands_in_little_memory():
+    recent, *places = random_places(2001)
+    tracemalloc.start()
+    hypotheses(recent, places)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 4e6  # of all spectra at once one copy takes 8e6
 
 
 def test_where_nothing_has_a_direction_nothing_is_recognised():

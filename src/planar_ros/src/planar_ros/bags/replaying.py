@@ -1,6 +1,7 @@
 """What commands share that work through a bag offline."""
 
 import argparse
+import ctypes
 import sys
 from pathlib import Path
 from typing import Callable, Iterable, List, Optional, Type, TypeVar
@@ -17,6 +18,8 @@ from planar_ros.bags.scan_log import LoggedScan, ScanLog
 from planar_ros.node.blas import use_one_blas_thread
 
 T = TypeVar("T")
+# Of malloc.h, and a size in bytes.
+_M_MMAP_THRESHOLD, _LARGE = -3, 2**20
 
 
 def add_replay_options(parser: argparse.ArgumentParser, node: str) -> None:
@@ -34,11 +37,22 @@ def run_replay(
 ) -> int:
     """The exit code of ``replay``; 2 if it came to nothing, which is told in a line."""
     use_one_blas_thread()
+    give_back_large_arrays()
     try:
         return replay(parser.parse_args(arguments))
     except PlanarError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
+
+
+def give_back_large_arrays() -> None:
+    """Large arrays are mapped, and unmapped when they are freed.
+
+    Otherwise glibc takes them from its heap, where what is kept, like scans, soon lies between them.
+    """
+    mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
+    if mallopt is not None:
+        mallopt(_M_MMAP_THRESHOLD, _LARGE)
 
 
 def work_through(log: ScanLog, use: Callable[[LoggedScan], None], activity: str, shows_progress: bool) -> int:

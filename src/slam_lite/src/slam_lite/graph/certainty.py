@@ -48,7 +48,8 @@ class Certainty:
         """Of another node, (3, 3), along the map's axes, if the node stays where it is."""
         if self._factors is None:
             matrix, _ = normal_equations(self._poses, self._edges)
-            self._factors = factors_of(matrix[self._others][:, self._others])
+            matrix = matrix[self._others][:, self._others]
+            self._factors = factors_of(matrix)
         rows = np.searchsorted(self._others, np.arange(3 * other, 3 * other + 3))
         sides = np.zeros((len(self._others), 3))
         sides[rows, range(3)] = 1.0

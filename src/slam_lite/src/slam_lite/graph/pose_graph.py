@@ -156,7 +156,8 @@ def _cost(poses: np.ndarray, edges: Edges, free: np.ndarray) -> float:
 def _step(poses: np.ndarray, edges: Edges, free: np.ndarray, damping: float) -> np.ndarray:
     """One Gauss-Newton step (N, 3) with loop edges weighed by how well they are met."""
     matrix, gradient = normal_equations(poses, edges, free)
-    step = factors_of(matrix[3:, 3:], damping).solve(gradient[3:])
+    matrix = matrix[3:, 3:]  # before it is solved, so that the whole one takes no memory then
+    step = factors_of(matrix, damping).solve(gradient[3:])
     return np.vstack((np.zeros((1, 3)), -step.reshape(-1, 3)))
 
 

@@ -30,6 +30,8 @@ _PIECE = 0.1
 _ALONG, _MIN_PIECES, _MIN_STRENGTH = 0.9, 60, 0.3
 # How far apart two places may be and still be told from each other's surroundings, metres.
 _MAX_SHIFT = 12.0
+# Places compared in one go, for the memory that it takes.
+_AT_ONCE = 128
 # Hypotheses taken from one comparison, and how alike the places must be at least, 0 to 1.
 _MAX_HYPOTHESES, _MIN_LIKENESS = 40, 0.3
 # The way of the robot on which it sees one place, and from one to the next, metres; and in how many of the
@@ -166,21 +168,34 @@ def appearance_of(key: int, surface: Surface) -> Optional[Appearance]:
 
 def hypotheses(recent: Appearance, places: Sequence[Appearance]) -> List[Hypothesis]:
     """Where ``recent`` may lie among other places, most likely first."""
-    if not places:
-        return []
-    stacked = np.stack([place.spectra for place in places])
-    found: List[Hypothesis] = []
-    turned = recent.spectra
-    for quarters in range(4):
-        correlated = (stacked * turned.conj()).reshape(len(places), 2, 2, -1).sum(axis=2)
-        likeness = irfft(correlated, _BINS, axis=-1)[:, :, _SHIFTS]
-        best = likeness.argmax(axis=2)
-        alike = np.take_along_axis(likeness, best[:, :, None], axis=2)[:, :, 0].prod(axis=1)
-        for i in np.argsort(-alike)[:_MAX_HYPOTHESES]:
-            if alike[i] > _MIN_LIKENESS:
-                found.append(_hypothesis(places[i], recent, quarters, _SHIFTS[best[i]] * _BIN, alike[i]))
-        turned = _quarter_turned(turned)
+    turns = [recent.spectra]
+    for _ in range(3):
+        turns.append(_quarter_turned(turns[-1]))
+    alike = np.empty((4, len(places)), dtype=np.float32)
+    best = np.empty((4, len(places), 2), dtype=np.int64)
+    for start in range(0, len(places), _AT_ONCE):
+        block = slice(start, start + _AT_ONCE)
+        stacked = np.stack([place.spectra for place in places[block]])
+        for quarters, turned in enumerate(turns):
+            alike[quarters, block], best[quarters, block] = _compared(stacked, turned)
+    found = [
+        _hypothesis(places[i], recent, quarters, _SHIFTS[best[quarters, i]] * _BIN, alike[quarters, i])
+        for quarters in range(4)
+        for i in np.argsort(-alike[quarters])[:_MAX_HYPOTHESES]
+        if alike[quarters, i] > _MIN_LIKENESS
+    ]
     return sorted(found, key=lambda hypothesis: -hypothesis.likeness)[:_MAX_HYPOTHESES]
+
+
+def _compared(stacked: np.ndarray, turned: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """How alike to a place some others are, (N,), and at which of ``_SHIFTS`` along both directions, (N, 2).
+
+    ``stacked``: spectra (N, 4, F) of the others; ``turned``: (4, F).
+    """
+    correlated = (stacked * turned.conj()).reshape(len(stacked), 2, 2, -1).sum(axis=2)
+    likeness = irfft(correlated, _BINS, axis=-1)[:, :, _SHIFTS]
+    best = likeness.argmax(axis=2)
+    return np.take_along_axis(likeness, best[:, :, None], axis=2)[:, :, 0].prod(axis=1), best
 
 
 _SHIFTS = np.arange(-round(_MAX_SHIFT / _BIN), round(_MAX_SHIFT / _BIN) + 1)

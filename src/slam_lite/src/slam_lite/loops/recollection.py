@@ -6,12 +6,12 @@ ways to be laid over each other there.
 """
 
 import math
-from typing import Iterator, List, Sequence
+from typing import List, Sequence
 
 import numba
 import numpy as np
 
-from planar import wrap
+from planar import Pose2, wrap
 from slam_lite.graph.certainty import Certainty
 from slam_lite.graph.pose_graph import Edge, Edges, between
 from slam_lite.loops.place_recognition import Hypothesis, compounded, hypotheses, places_along
@@ -38,11 +38,8 @@ def recollected(poses: np.ndarray, edges: Edges, surfaces: Sequence[Surface], wa
 
     ``poses``: (N, 3) of the settled graph.
     """
-    heard = list(_heard(surfaces, way, edges.nodes[edges.is_loop, 1]))
-    if not heard:
-        return []
-    nodes = np.array([(each.place, each.recent) for each in heard])
-    told = np.array([each.recent_in_place.as_array() for each in heard])
+    heard = _heard(surfaces, way, edges.nodes[edges.is_loop, 1])
+    nodes, told = heard[:, :2].astype(np.int64), heard[:, 2:5]
     counts = _agreeing(nodes, told, way.poses, way.metres)
     robots = compounded(poses[nodes[:, 0]], told)
     best: List[Hypothesis] = []
@@ -51,17 +48,26 @@ def recollected(poses: np.ndarray, edges: Edges, surfaces: Sequence[Surface], wa
         first = numbers[np.argmax(counts[numbers])]
         others = numbers[_elsewhere(robots[numbers], robots[first])]
         if _AHEAD * counts[others].max(initial=0) <= counts[first]:
-            best.append(heard[first])
+            place, likeness = int(nodes[first, 0]), float(heard[first, 5])
+            best.append(Hypothesis(place, recent, Pose2.from_array(told[first]), likeness))
     return [each for each in best if _is_possible_news(each, poses, edges)]
 
 
-def _heard(surfaces: Sequence[Surface], way: Way, tied: np.ndarray) -> Iterator[Hypothesis]:
-    """What each stretch of the way looks like, of those driven long before; nothing near ``tied`` keys."""
+def _heard(surfaces: Sequence[Surface], way: Way, tied: np.ndarray) -> np.ndarray:
+    """What each stretch of the way looks like, of those driven long before; nothing near ``tied`` keys.
+
+    Rows (N, 6): place and recent key, the latter's x, y and yaw in the former, likeness. As rows they take a
+    tenth of the memory.
+    """
     places = places_along(surfaces, way.poses, way.metres)
+    rows = [np.empty((0, 6))]
     for place in places:
         if np.abs(way.metres[tied] - way.metres[place.key]).min(initial=np.inf) > _KNOWN:
             before = way.metres[place.key] - _LATER
-            yield from hypotheses(place, [each for each in places if way.metres[each.key] < before])
+            look = hypotheses(place, [each for each in places if way.metres[each.key] < before])
+            told = [(one.place, one.recent, *one.recent_in_place.as_array(), one.likeness) for one in look]
+            rows.append(np.array(told).reshape(-1, 6))
+    return np.concatenate(rows)
 
 
 def _elsewhere(robots: np.ndarray, robot: np.ndarray) -> np.ndarray:

@@ -1,0 +1,28 @@
+"""What a replay does about memory, in a process of its own, for which it holds to its end."""
+
+import subprocess
+import sys
+
+FRAGMENTED = """
+import numpy as np
+from planar_ros.bags.replaying import give_back_large_arrays
+
+def resident():
+    return int(open("/proc/self/statm").read().split()[1]) * 4096
+
+{call}
+before, kept = resident(), []
+for _ in range(20):
+    large = [np.ones(3 * 2**20 // 8) for _ in range(5)]
+    kept.append([np.ones(2000) for _ in range(5)])
+    large.insert(0, np.ones(3 * 2**20 // 8))
+    kept.append(np.ones(2000))
+    del large
+print(resident() - before)
+"""
+
+
+def test_what_was_taken_for_a_moment_is_given_back():
+    script = FRAGMENTED.format(call="give_back_large_arrays()")
+    done = subprocess.run([sys.executable, "-c", script], stdout=subprocess.PIPE, check=True)
+    assert int(done.stdout) < 4e6
