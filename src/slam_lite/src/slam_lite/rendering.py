@@ -156,11 +156,16 @@ def _bands(
 ) -> Iterator[np.ndarray]:
     """The cells of ``box`` from the top band, ``height`` tiles high, to the lowest."""
     for end in range(-(-box.end_row // TILE), box.row // TILE, -height):
-        tiles = max(end - height, box.row // TILE), end
-        low, high = max(tiles[0] * TILE, box.row), min(end * TILE, box.end_row)
-        band = Box(low, box.col, high, box.end_col)
-        older = None if before is None else before.counted(*tiles)
-        yield _judged(now.counted(*tiles), older, band, threshold)
+        yield _band(now, before, box, threshold, max(end - height, box.row // TILE), end)
+
+
+def _band(
+    now: "_SessionScans", before: "Optional[_SessionScans]", box: Box, threshold: float, first: int, end: int
+) -> np.ndarray:
+    """What of ``box`` lies between two rows of tiles."""
+    band = Box(max(first * TILE, box.row), box.col, min(end * TILE, box.end_row), box.end_col)
+    older = None if before is None else before.counted(first, end)
+    return _judged(now.counted(first, end), older, band, threshold)
 
 
 class _SessionScans:

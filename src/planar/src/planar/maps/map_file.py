@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Iterator, Union
 
 import numpy as np
-from PIL import Image, UnidentifiedImageError
 
 from planar.config.yaml_table import read_table
 from planar.errors import PlanarError
@@ -64,6 +63,8 @@ def cells_from_image(
     image_path, negate=False, occupied_thresh=0.65, free_thresh=0.196, mode="trinary"
 ) -> np.ndarray:
     """Cells int8 (rows, cols), row 0 lowest, of an image read as map_server reads it."""
+    from PIL import Image, UnidentifiedImageError  # late: who only writes maps need not have it in memory
+
     try:
         data = read_bytes(image_path)
         if data.startswith(LFS_POINTER):
@@ -125,6 +126,11 @@ def _pgm(grid: GridInBands, occupied_at: int, free_at: int) -> Iterator[bytes]:
     shades[: free_at + 1] = 254
     shades[occupied_at:128] = 0
     yield f"P5\n# {grid.resolution:.3f} m/pix\n{grid.cols} {grid.rows}\n255\n".encode("ascii")
-    for band in grid.bands:
-        for row in np.flipud(band):
-            yield row.tobytes().translate(shades.tobytes())
+    for rows in map(_rows, grid.bands):  # which hold no band any more when the next is made
+        yield from (row.translate(shades.tobytes()) for row in rows)
+
+
+def _rows(cells: np.ndarray) -> Iterator[bytes]:
+    """The bytes of the rows from the top."""
+    for row in np.flipud(cells):
+        yield row.tobytes()

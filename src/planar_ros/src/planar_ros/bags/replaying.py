@@ -4,11 +4,9 @@ import argparse
 import ctypes
 import sys
 from pathlib import Path
-from typing import Callable, Iterable, List, Optional, Type, TypeVar
+from typing import Callable, Iterable, Iterator, List, Optional, Type, TypeVar
 
 import numpy as np
-from rich.console import Console
-from rich.progress import Progress
 
 from planar import PlanarError, write_atomically
 from planar.config.settings_file import settings_from_yaml
@@ -18,8 +16,9 @@ from planar_ros.bags.scan_log import LoggedScan, ScanLog
 from planar_ros.node.blas import use_one_blas_thread
 
 T = TypeVar("T")
-# Of malloc.h, and a size in bytes.
-_M_MMAP_THRESHOLD, _LARGE = -3, 2**20
+# Of malloc.h; and from how many bytes on an array is large, and how many may lie idle at the heap's end.
+_M_MMAP_THRESHOLD, _M_TRIM_THRESHOLD = -3, -1
+_LARGE, _SPARE = 2**20, 2**20
 
 
 def add_replay_options(parser: argparse.ArgumentParser, node: str) -> None:
@@ -53,6 +52,7 @@ def give_back_large_arrays() -> None:
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
     if mallopt is not None:
         mallopt(_M_MMAP_THRESHOLD, _LARGE)
+        mallopt(_M_TRIM_THRESHOLD, _SPARE)
 
 
 def work_through(log: ScanLog, use: Callable[[LoggedScan], None], activity: str, shows_progress: bool) -> int:
@@ -60,20 +60,28 @@ def work_through(log: ScanLog, use: Callable[[LoggedScan], None], activity: str,
 
     What has been made of the scans so far is good in any case.
     """
-    console = Console(stderr=True)
-    with Progress(console=console, disable=not shows_progress, transient=True) as progress:
-        task = progress.add_task(activity, total=1.0)
-        try:
-            for logged in log:
-                use(logged)
-                progress.update(task, completed=logged.position)
-        except BagError as error:
-            warn(str(error))
-            return 1
-        except KeyboardInterrupt:
-            warn(f"{log.path}: interrupted")
-            return 130
+    try:
+        for logged in _watched(log, activity) if shows_progress else log:
+            use(logged)
+    except BagError as error:
+        warn(str(error))
+        return 1
+    except KeyboardInterrupt:
+        warn(f"{log.path}: interrupted")
+        return 130
     return 0
+
+
+def _watched(log: ScanLog, activity: str) -> Iterator[LoggedScan]:
+    """The scans; meanwhile it is shown how far they have been used."""
+    from rich.console import Console  # late: it takes memory that most replays can do without
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task(activity, total=1.0)
+        for logged in log:
+            yield logged
+            progress.update(task, completed=logged.position)
 
 
 def settings_of(kind: Type[T], path: Optional[Path], also_known: Iterable[str] = ()) -> T:

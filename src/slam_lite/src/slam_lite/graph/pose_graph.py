@@ -178,7 +178,13 @@ def normal_equations(
 def factors_of(matrix: csc_matrix, damping: float = 0.0) -> SuperLU:
     """Those of an information matrix, which is changed, without the rows and columns of one node."""
     matrix.setdiag(matrix.diagonal() * (1.0 + damping) + 1e-9)
-    return splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    return splu(
+        matrix,
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        panel_size=1,  # larger ones take more memory and, with so few entries in a column, more time
+        options={"SymmetricMode": True},
+    )
 
 
 @numba.njit(cache=True, nogil=True)

@@ -45,6 +45,17 @@ def _parser() -> argparse.ArgumentParser:
 
 def _replay(options: argparse.Namespace) -> int:
     mapper, trajectory = Mapper(settings_of(NodeSettings, options.config)), Trajectory()
+    exit_code = _work_through(options, mapper, trajectory)
+    if len(trajectory) == 0:
+        raise BagError(f"{options.bag}: no scans on {options.scan_topic} could be used")
+    mapper.settle()
+    _save(options, mapper, trajectory)
+    print(f"{len(trajectory)} scans, {len(mapper.key_poses)} kept, {mapper.loop_count} loop closures")
+    return exit_code
+
+
+def _work_through(options: argparse.Namespace, mapper: Mapper, trajectory: Trajectory) -> int:
+    """Maps all scans; the bag's index takes no memory any more then."""
     log = ScanLog(options.bag, options.scan_topic, options.base_frame, options.odom_frame, warn)
 
     def insert(logged: LoggedScan) -> None:
@@ -55,13 +66,7 @@ def _replay(options: argparse.Namespace) -> int:
             warn(f"{options.bag}: scan ignored: {error}")
         trajectory.add(logged.base_in_odom, logged.scan, update)
 
-    exit_code = work_through(log, insert, "mapping", options.progress)
-    if len(trajectory) == 0:
-        raise BagError(f"{options.bag}: no scans on {options.scan_topic} could be used")
-    mapper.settle()
-    _save(options, mapper, trajectory)
-    print(f"{len(trajectory)} scans, {len(mapper.key_poses)} kept, {mapper.loop_count} loop closures")
-    return exit_code
+    return work_through(log, insert, "mapping", options.progress)
 
 
 def _save(options: argparse.Namespace, mapper: Mapper, trajectory: Trajectory) -> None:
