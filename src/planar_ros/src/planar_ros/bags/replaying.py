@@ -18,7 +18,7 @@ from planar_ros.node.blas import use_one_blas_thread
 T = TypeVar("T")
 # Of malloc.h; and from how many bytes on an array is large, and how many may lie idle at the heap's end.
 _M_MMAP_THRESHOLD, _M_TRIM_THRESHOLD = -3, -1
-_LARGE, _SPARE = 2**20, 2**20
+_LARGE, _SPARE = 2**20, 2**22
 
 
 def add_replay_options(parser: argparse.ArgumentParser, node: str) -> None:
