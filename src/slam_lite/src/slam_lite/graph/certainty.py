@@ -7,6 +7,7 @@ import numpy as np
 from scipy.sparse.linalg import SuperLU
 
 from planar import wrap
+from slam_lite.graph.drift import on_average
 from slam_lite.graph.pose_graph import Edge, Edges, between, factors_of, normal_equations
 
 
@@ -47,7 +48,7 @@ class Certainty:
     def _covariance_of(self, other: int) -> np.ndarray:
         """Of another node, (3, 3), along the map's axes, if the node stays where it is."""
         if self._factors is None:
-            matrix, _ = normal_equations(self._poses, self._edges)
+            matrix, _ = normal_equations(self._poses, on_average(self._edges))
             matrix = matrix[self._others][:, self._others]
             self._factors = factors_of(matrix)
         rows = np.searchsorted(self._others, np.arange(3 * other, 3 * other + 3))

@@ -6,7 +6,7 @@ not ask from which side: as it was followed from scan to scan, for what closures
 by lies evenly on many steps, whereas wheels slip on one.
 """
 
-from typing import List, Optional, Sequence, Set, Tuple
+from typing import List, NamedTuple, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -40,6 +40,8 @@ _SOFTNESS = 0.1
 # that much is to be expected; and what is left in doubt anyway.
 _MOST_XY, _MOST_YAW, _SLIDE, _SLID = 0.35, 0.04, 0.4, 1.0
 _OWN_XY, _OWN_YAW = 0.1, 0.008
+# A vaguer fit ties nothing, but leads the search on, up to these.
+_VAGUE_XY, _VAGUE_YAW = 0.45, 0.055
 # Witnesses: how many, how far from it on the two ways, and by how much they may differ: metres and radians,
 # and the same a metre of way.
 _WITNESSES, _RECENT_APART, _PLACE_APART = 2, (2.0, 20.0), 25.0
@@ -55,6 +57,13 @@ def ways_back(
     search = _Search(poses, edges, surfaces, local_map)
     found = search.found()
     return [edge for edge in found if sum(_agree(edge, other, search.way) for other in found) >= _WITNESSES]
+
+
+class _Fit(NamedTuple):
+    """A stretch laid over another one, and whether it is sharp enough to tie them."""
+
+    edge: Edge
+    is_sharp: bool
 
 
 class _Search:
@@ -73,15 +82,17 @@ class _Search:
         self._recollected = recollected(poses, edges, surfaces, self.way)
 
     def found(self) -> List[Edge]:
-        """All that fit, also those that nobody confirms."""
+        """All that fit sharply, also those that nobody confirms."""
+        sharp: List[Edge] = []
         looks = np.flatnonzero(np.diff(np.floor(self.way.metres / _EVERY), prepend=-1.0)).tolist()
         for recent in (*looks, *reversed(looks)):
             for place, guess in self._beside(recent):
                 if (place, recent) not in self._tried:
                     self._tried.add((place, recent))
-                    edge = _laid(place, recent, guess, self.way, self._surfaces, self._local_map)
-                    self._ties += [] if edge is None else [edge]
-        return self._ties[self._closures :]
+                    fit = _laid(place, recent, guess, self.way, self._surfaces, self._local_map)
+                    self._ties += [] if fit is None else [fit.edge]
+                    sharp += [fit.edge] if fit is not None and fit.is_sharp else []
+        return sharp
 
     def _beside(self, recent: int) -> List[Tuple[int, Pose2]]:
         """Places where the robot has been before, and from each where it is now."""
@@ -149,7 +160,7 @@ def _laid(
     way: Way,
     surfaces: Sequence[Surface],
     local_map: LocalMap,
-) -> Optional[Edge]:
+) -> Optional[_Fit]:
     """The stretches around two keys laid over each other, if they fit in one way only."""
     first, last = way.around(recent, _RECENT_WAY)
     here = _placed(first, last, recent, way, surfaces)
@@ -167,12 +178,15 @@ def _laid(
             break
     if peak is None or not peak.is_unique:
         return None
-    weighed = _weighed(peak.base_pose, sample, coarse)
-    return None if weighed is None else Edge(place, recent, *weighed, is_loop=True)
+    mean, spread = _weighed(peak.base_pose, sample, coarse)
+    if not _is_within(spread, _VAGUE_XY, _VAGUE_YAW):
+        return None
+    edge = Edge(place, recent, mean, _information(spread), is_loop=True)
+    return _Fit(edge, _is_within(spread, _MOST_XY, _MOST_YAW))
 
 
-def _weighed(peak: Pose2, surface: Surface, local_map: LocalMap) -> Optional[Tuple[Pose2, np.ndarray]]:
-    """Mean and information (3, 3) of the poses around a peak, by how well they fit; None if too many do.
+def _weighed(peak: Pose2, surface: Surface, local_map: LocalMap) -> Tuple[Pose2, np.ndarray]:
+    """Mean and covariance (3, 3) of the poses around a peak, by how well they fit.
 
     After E. Olson, "Real-time correlative scan matching", ICRA 2009.
     """
@@ -181,14 +195,21 @@ def _weighed(peak: Pose2, surface: Surface, local_map: LocalMap) -> Optional[Tup
     fits = scores(surface, local_map, [Pose2.from_array(pose) for pose in poses])
     weights = np.exp((fits / fits.max() - 1.0) / _SOFTNESS)
     mean = np.average(poses, axis=0, weights=weights)
-    spread = np.cov(poses.T, aweights=weights, ddof=0)
-    (least, most), axes = np.linalg.eigh(spread[:2, :2])
-    if least > _MOST_XY**2 or spread[2, 2] > _MOST_YAW**2:
-        return None
+    return Pose2.from_array(mean), np.cov(poses.T, aweights=weights, ddof=0)
+
+
+def _is_within(spread: np.ndarray, xy: float, yaw: float) -> bool:
+    """Whether a covariance (3, 3) is of a fit so sharp, in one direction at least."""
+    return bool(np.linalg.eigvalsh(spread[:2, :2])[0] <= xy**2 and spread[2, 2] <= yaw**2)
+
+
+def _information(spread: np.ndarray) -> np.ndarray:
+    """The information (3, 3) of a fit, which may be a slide, and has errors that its spread does not tell."""
+    covariance = spread + np.diag([_OWN_XY**2, _OWN_XY**2, _OWN_YAW**2])
+    (_, most), axes = np.linalg.eigh(spread[:2, :2])
     if most > _SLIDE**2:
-        spread[:2, :2] += _SLID**2 * np.outer(axes[:, 1], axes[:, 1])
-    own = np.diag([_OWN_XY**2, _OWN_XY**2, _OWN_YAW**2])
-    return Pose2.from_array(mean), np.linalg.inv(spread + own)
+        covariance[:2, :2] += _SLID**2 * np.outer(axes[:, 1], axes[:, 1])
+    return np.linalg.inv(covariance)
 
 
 def _agree(one: Edge, other: Edge, way: Way) -> bool:
