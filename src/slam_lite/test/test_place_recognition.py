@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from planar import Pose2, wrap
-from slam_lite.graph.drift import drift_along, shortest_ways
+from slam_lite.graph.drift import drift_along, on_average, shortest_ways
 from slam_lite.graph.pose_graph import Edge, edges_of
 from slam_lite.loops.lasting import lasting
 from slam_lite.loops.place_recognition import Appearance, Hypothesis, appearance_of, hypotheses, say_the_same
@@ -92,6 +92,18 @@ def test_an_error_in_heading_swings_what_lies_behind_it():
     np.testing.assert_allclose(
         xy, [0.0, 1.0, np.hypot(2.0, 0.01), np.hypot(3.0, 0.01 * np.sqrt(2))], rtol=0.01
     )
+
+
+def test_of_many_steps_that_may_have_slipped_few_have_but_of_a_new_beginning_nothing_is_known():
+    step, anew = np.diag([0.04**-2, 0.04**-2, 0.07**-2]), np.diag([1e-6, 1e-6, 1e-4])
+    ahead, count = Pose2(0.3, 0.0, 0.0), 900
+    steps = [Edge(i, i + 1, ahead, step) for i in range(count)]
+    edges = edges_of(*steps, Edge(count, count + 1, Pose2(), anew))
+    poses = np.array([[0.3 * i, 0.0, 0.0] for i in range(count + 2)])
+    ways, before = shortest_ways(0, len(poses), edges, np.full(len(edges), 0.3))
+    xy, yaw = drift_along(ways, before, poses, on_average(edges))
+    assert 0.2 < yaw[count] < 0.5 and 30.0 < xy[count] < 80.0  # and not 2.1 rad and 320 m
+    assert yaw[count + 1] > 90.0 and xy[count + 1] > 900.0
 
 
 @pytest.fixture(scope="module")

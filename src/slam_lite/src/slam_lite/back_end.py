@@ -13,7 +13,7 @@ import numpy as np
 from planar import Pose2, wrap
 from slam_lite.config import MapperSettings
 from slam_lite.graph.certainty import Certainty
-from slam_lite.graph.drift import drift_along, shortest_ways
+from slam_lite.graph.drift import drift_along, on_average, shortest_ways
 from slam_lite.graph.pose_graph import Edge, EdgeList, Edges, between, chi_squares, edges_of, optimise
 from slam_lite.loops.loop_closure import (
     Candidate,
@@ -185,7 +185,7 @@ class ClosureTask:
     def _credible(self, recent: Appearance, memory: Memory) -> List[Hypothesis]:
         """Where the robot may be by what it looks like, among what the other search does not reach."""
         ways, before = shortest_ways(recent.key, len(self.poses), self.edges, lengths_of(self.edges))
-        drift = np.column_stack(drift_along(ways, before, self.poses, self.edges))
+        drift = np.column_stack(drift_along(ways, before, self.poses, on_average(self.edges)))
         keys = [place.key for place in memory.places]
         are_out = are_out_of_reach(ways[keys], drift[keys])
         places = [place for place, is_out in zip(memory.places, are_out) if is_out]

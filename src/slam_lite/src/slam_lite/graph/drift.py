@@ -52,7 +52,6 @@ def drift_along(
     ``ways``, ``before``: of ``shortest_ways``; ``poses``: (N, 3). An error in heading swings all that lies
     behind it: it counts as often as the straight way from there is long.
     """
-    edges = on_average(edges)
     first, second = edges.nodes.T
     xy = variances_xy(edges)
     yaw = 1.0 / edges.information[:, 2, 2]
