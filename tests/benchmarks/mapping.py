@@ -34,7 +34,7 @@ from sim_bridge import RobotProfile, Simulation, load_world, robot_named
 from sim_bridge.world import World
 from slam_lite.config import NodeSettings
 from slam_lite.mapper import Mapper
-from slam_lite.rendering import SessionRenderer
+from slam_lite.rendering import Extent, SessionRenderer
 
 ROOT = Path(__file__).resolve().parents[2]
 KINECT_CONFIG = ROOT / "src/move_base_lite/config/turtlebot_kinect.yaml"
@@ -129,18 +129,14 @@ class MappingRun:
         if seen.scan.stamp - self._map_stamp < self._settings.map_update_interval:
             return None
         self._map_stamp = seen.scan.stamp
-        self._navigator.set_map(self._published())
-        return self._published()
+        grid = self.grid(self._settings.extent)
+        self._navigator.set_map(grid)
+        return grid
 
-    def grid(self) -> OccupancyGrid:
-        """The map as it is now."""
+    def grid(self, extent: Optional[Extent] = None) -> OccupancyGrid:
+        """The map as it is now; with an ``extent`` on a canvas, as the node publishes it."""
         self._renderer.update(self.mapper.evidence())
-        return self._renderer.grid()
-
-    def _published(self) -> OccupancyGrid:
-        """The map as the node would publish it now."""
-        self._renderer.update(self.mapper.evidence())
-        return self._renderer.grid(self._settings.extent)
+        return self._renderer.grid(extent)
 
 
 def _event_of(decision: Decision):
