@@ -12,9 +12,9 @@ from slam_lite.graph.pose_graph import Edges
 # Nothing is known less surely than this, 1 / m^2.
 _LEAST_INFORMATION = 1e-6
 # Steps on which wheels may have slipped unseen are tied loosely, for the graph to bend there; but few have.
-# Standard deviations of one on the average, metres and radians; and of heading, from which on it is no step,
-# but a guess of where a new trajectory begins.
-_AVERAGE_XY, _AVERAGE_YAW, _GUESSED_YAW = 0.02, 0.012, 0.2
+# Standard deviation of heading of one on the average, radians; and of what is no step, but a guess of where a
+# new trajectory begins, from which on.
+_AVERAGE_YAW, _GUESSED_YAW = 0.024, 0.2
 
 
 def shortest_ways(
@@ -32,8 +32,7 @@ def on_average(edges: Edges) -> Edges:
     """The edges, with loose steps as sure as many of them are together, of which a few have slipped."""
     information, yaw = edges.information.copy(), edges.information[:, 2, 2]
     is_loose = ~edges.is_loop & (yaw < _AVERAGE_YAW**-2) & (yaw > _GUESSED_YAW**-2)
-    for i, sigma in enumerate((_AVERAGE_XY, _AVERAGE_XY, _AVERAGE_YAW)):
-        information[is_loose, i, i] = np.maximum(information[is_loose, i, i], sigma**-2)
+    information[is_loose, 2, 2] = _AVERAGE_YAW**-2
     return Edges(edges.nodes, edges.measured, information, edges.is_loop)
 
 

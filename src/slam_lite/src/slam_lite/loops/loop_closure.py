@@ -33,8 +33,8 @@ _OFTEN_DISTANCE = 8.0
 _MIN_WINDOW, _MAX_WINDOW = Window(0.3, 0.1), Window(12.0, 0.8)
 # From this way on the window does not grow any more, metres.
 _FARTHEST = _MAX_WINDOW.distance / _DRIFT_DISTANCE
-# By how many standard deviations the graph may be off.
-_CREDIBLE = 3.0
+# By how many standard deviations the graph may be off; those that matches tell of themselves are cautious.
+_CREDIBLE = 1.5
 # Share of the walls that may be seen through where a place is doubtful, as by people who have gone on.
 _MAX_CLASH = 0.025
 # Two closures that differ by more than this, metres, put the robot to different places.
