@@ -134,6 +134,17 @@ def test_an_edge_is_as_uncertain_as_it_is_in_its_worst_direction():
     assert variances_xy(edges_of(closure.edge))[0] > 100.0**2
 
 
+THICKNESS = 0.15
+
+
+def end_of_a_wall(x, facing):
+    """One side of a wall, and its end: of the points there no line can be told."""
+    end = np.column_stack((np.linspace(-THICKNESS, 0.0, 7), np.full(7, 0.5)))
+    edge = np.column_stack((np.full(3, x), np.linspace(0.5, 0.6, 3)))
+    corner = np.concatenate((end, edge))
+    return (corner, np.zeros_like(corner)), tuple(column[:, ::-1] for column in wall(x, facing, 0.6, 2.5))
+
+
 def test_who_sees_a_walls_other_side_does_not_know_how_near_it_is():
     floor = wall(-1.0, 1.0, -4.0, 4.0)
     known, seen = (
@@ -148,14 +159,3 @@ def test_who_sees_a_walls_other_side_does_not_know_how_near_it_is():
     found = known_of(peak, Pose2(), seen, local_map, lambda start: refined(seen, local_map, start, 0.5))
     off = found.base_in_place.as_array()
     assert off @ found.information @ off < 4.0
-
-
-THICKNESS = 0.15
-
-
-def end_of_a_wall(x, facing):
-    """One side of a wall, and its end: of the points there no line can be told."""
-    end = np.column_stack((np.linspace(-THICKNESS, 0.0, 7), np.full(7, 0.5)))
-    edge = np.column_stack((np.full(3, x), np.linspace(0.5, 0.6, 3)))
-    corner = np.concatenate((end, edge))
-    return (corner, np.zeros_like(corner)), tuple(column[:, ::-1] for column in wall(x, facing, 0.6, 2.5))

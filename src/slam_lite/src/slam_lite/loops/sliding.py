@@ -12,9 +12,9 @@ from typing import Callable, Optional
 import numpy as np
 
 from planar import Pose2
-from slam_lite.matching.correlative import Peak
+from slam_lite.matching.correlative import Peak, scores
 from slam_lite.matching.local_map import LocalMap, Match
-from slam_lite.matching.refinement import refine, sided_scores
+from slam_lite.matching.refinement import refine
 from slam_lite.surface import Surface
 
 # A match may slide by these ways, metres, if the score there is this share of its own.
@@ -83,7 +83,7 @@ def _way_open(match: Match, direction: np.ndarray, surface: Surface, local_map: 
     """
     pose = match.base_pose
     slid = [Pose2(pose.x + way * direction[0], pose.y + way * direction[1], pose.yaw) for way in _SLIDES]
-    fits = sided_scores(surface, local_map, [pose, *slid])
+    fits = scores(surface, local_map, [pose, *slid], is_sided=True)
     return float(np.abs(_SLIDES[fits[1:] >= _SLIDE_SHARE * fits[0]]).max(initial=0.0))
 
 

@@ -14,7 +14,7 @@ import numba
 import numpy as np
 
 from planar import Pose2, wrap
-from slam_lite.matching.local_map import LocalMap, are_far, cell_of
+from slam_lite.matching.local_map import OPPOSED, LocalMap, are_far, cell_of, turned_cosine
 from slam_lite.surface import Surface
 
 
@@ -73,14 +73,19 @@ _NEAR_ANGLE_STEP = 0.02
 _OVERRULING_SHARE, _OVERRULING_POINTS, _HALF_CHI_SQUARE = 0.15, 12.0, 9.0
 
 
-def scores(surface: Surface, local_map: LocalMap, poses: Sequence[Pose2]) -> np.ndarray:
-    """Mean likelihood (N,), 0 to 1, of the surface's points at each pose of the base."""
+def scores(
+    surface: Surface, local_map: LocalMap, poses: Sequence[Pose2], is_sided: bool = False
+) -> np.ndarray:
+    """Mean likelihood (N,), 0 to 1, of the surface's points at each pose of the base.
+
+    If ``is_sided``, a point that lies on the other side of a wall, as near as that may be, is on nothing.
+    """
     in_grid = np.array([local_map.to_grid(pose) for pose in poses])
-    return _scores(local_map.layers, surface.points_xy, in_grid)
+    return _scores(local_map.layers, surface.points_xy, surface.normals_xy, in_grid, is_sided)
 
 
 @numba.njit(cache=True, nogil=True)
-def _scores(layers, points, poses):
+def _scores(layers, points, normals, poses, is_sided):
     found = np.empty(len(poses))
     for i in range(len(poses)):
         total, c, s = 0, math.cos(poses[i, 2]), math.sin(poses[i, 2])
@@ -90,10 +95,18 @@ def _scores(layers, points, poses):
                 poses[i, 1] + s * points[p, 0] + c * points[p, 1],
             )
             number, row, col = cell_of(layers, x, y)
-            if number >= 0:
+            if number >= 0 and not (is_sided and _is_opposed(layers[number], row, col, normals[p], c, s)):
                 total += layers[number][1][row, col]
         found[i] = total / (255.0 * len(points))
     return found
+
+
+@numba.njit(cache=True, nogil=True)
+def _is_opposed(layer, row, col, normal, c, s):
+    """Whether the map's nearest point is on the other side of a wall from one of a ``normal``, turned."""
+    nearest, _, _, map_normals, _, _ = layer
+    i = nearest[row, col]
+    return i >= 0 and turned_cosine(normal, map_normals[i], c, s) < OPPOSED
 
 
 @numba.njit(cache=True, nogil=True)

@@ -27,6 +27,9 @@ _NEAR, _FAR_SHARE = 15.0, 0.2
 # The coarser grid of maps that reach far: size of a cell and reach, metres.
 _WIDE_RESOLUTION, _WIDE_REACH = 0.2, 85.0
 
+# Two normals whose cosine is less than this belong to the two sides of a wall.
+OPPOSED = -0.5
+
 # A local map's four arrays, its resolution, and how far its corner lies below the finest one's, (2,).
 Layer = Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float, np.ndarray]
 
@@ -166,6 +169,13 @@ def are_far(layers, points, pose):
         x, y = pose[0] + c * points[p, 0] - s * points[p, 1], pose[1] + s * points[p, 0] + c * points[p, 1]
         is_far[p] = cell_of(layers, x, y)[0] != 0
     return is_far
+
+
+@numba.njit(cache=True, nogil=True, inline="always")
+def turned_cosine(normal, map_normal, c, s):
+    """Of the angle between a normal, turned by the angle whose cosine and sine are c and s, and another."""
+    nx, ny = map_normal[0], map_normal[1]
+    return c * (normal[0] * nx + normal[1] * ny) + s * (normal[0] * ny - normal[1] * nx)
 
 
 def _likelihood_kernel() -> np.ndarray:

@@ -6,13 +6,12 @@ other side of a wall: that would make two rooms one wall's thickness too close.
 """
 
 import math
-from typing import Sequence
 
 import numba
 import numpy as np
 
 from planar import Pose2
-from slam_lite.matching.local_map import LocalMap, Match, are_far, cell_of
+from slam_lite.matching.local_map import OPPOSED, LocalMap, Match, are_far, cell_of, turned_cosine
 from slam_lite.surface import Surface
 
 _MAX_STEPS = 20
@@ -26,10 +25,10 @@ _ON_SURFACE = 0.1
 _SIGMA = 0.05
 # Chi-square at which the belief in the prior is halved.
 _FREE_CHI_SQUARE = 9.0
-# Two normals whose cosine is less than this belong to the two sides of a wall; those where it is more than
-# that, to one wall. Only these pull in the fine grid, and corners only corners: the points of a wall's end
-# would pull one side to the other. In the coarse one a tree or a car is of no kind for sure.
-_OPPOSED, _ALIKE = -0.5, 0.5
+# Two normals whose cosine is more than this belong to one wall. Only these pull in the fine grid, and corners
+# only corners: the points of a wall's end would pull one side to the other. In the coarse one a tree or a car
+# is of no kind for sure.
+_ALIKE = 0.5
 # Weight of a point that has no line to be drawn to, only a point.
 _CORNER_WEIGHT = 0.2
 
@@ -51,40 +50,6 @@ def refine(
         prior_information * _SIGMA**2,
     )
     return Match(local_map.from_grid(pose), information / _SIGMA**2, response)
-
-
-def sided_scores(surface: Surface, local_map: LocalMap, poses: Sequence[Pose2]) -> np.ndarray:
-    """Mean likelihood (N,), 0 to 1, of the surface's points at each pose of the base.
-
-    A point that lies on the other side of a wall, as near as that may be, is on nothing.
-    """
-    in_grid = np.array([local_map.to_grid(pose) for pose in poses])
-    return _sided_scores(local_map.layers, surface.points_xy, surface.normals_xy, in_grid)
-
-
-@numba.njit(cache=True, nogil=True)
-def _sided_scores(layers, points, normals, poses):
-    found = np.empty(len(poses))
-    for i in range(len(poses)):
-        total, c, s = 0, math.cos(poses[i, 2]), math.sin(poses[i, 2])
-        for p in range(len(points)):
-            x = poses[i, 0] + c * points[p, 0] - s * points[p, 1]
-            y = poses[i, 1] + s * points[p, 0] + c * points[p, 1]
-            number, row, col = cell_of(layers, x, y)
-            if number < 0 or layers[number][0][row, col] < 0:
-                continue
-            nearest, likelihood, _, map_normals, _, _ = layers[number]
-            if _cosine(normals[p], map_normals[nearest[row, col]], c, s) >= _OPPOSED:
-                total += likelihood[row, col]
-        found[i] = total / (255.0 * len(points))
-    return found
-
-
-@numba.njit(cache=True, nogil=True, inline="always")
-def _cosine(normal, map_normal, c, s):
-    """Of the angle between a normal, turned by the angle whose cosine and sine are c and s, and another."""
-    nx, ny = map_normal[0], map_normal[1]
-    return c * (normal[0] * nx + normal[1] * ny) + s * (normal[0] * ny - normal[1] * nx)
 
 
 @numba.njit(cache=True, nogil=True)
@@ -127,8 +92,8 @@ def _linearize(layers, points, normals, pose, far_scale):
         i = nearest[row, col]
         ex, ey = x + shift[0] - map_points[i, 0], y + shift[1] - map_points[i, 1]
         nx, ny = map_normals[i, 0], map_normals[i, 1]
-        cosine = _cosine(normals[p], map_normals[i], c, s)
-        if cosine < _OPPOSED:
+        cosine = turned_cosine(normals[p], map_normals[i], c, s)
+        if cosine < OPPOSED:
             continue
         scale = _OUTLIER_SCALE if number == 0 else far_scale
         if nx != 0.0 or ny != 0.0:
