@@ -8,7 +8,7 @@ from planar import OCCUPIED, OccupancyGrid, Pose2, wrap
 from planar.maps.map_score import score_map
 from slam_lite.config import MapperSettings
 from slam_lite.mapper import Follower, Mapper
-from slam_lite.rendering import MapRenderer, beams_of
+from slam_lite.rendering import Evidence, SessionRenderer, beams_of
 
 # half a cell of the true grid, from which ranges are cast, plus what the front end drifts in a lap
 FOLLOWED = 0.15
@@ -46,9 +46,9 @@ def test_the_robot_is_followed_although_odometry_drifts(drive):
 
 
 def test_the_map_is_as_good_as_one_drawn_from_the_true_poses(office, drive, mapper):
-    renderer = MapRenderer(resolution=0.05, occupied_threshold=0.25)
+    renderer = SessionRenderer(resolution=0.05, occupied_threshold=0.25)
     beams = [beams_of(s.scan, s.scan.range_max, s.scan.range_max) for s in drive]
-    renderer.update(beams, np.array([s.base_in_map.as_array() for s in drive]))
+    renderer.update(Evidence(beams, np.array([s.base_in_map.as_array() for s in drive])))
     best, score = (
         score_map(grid, office.truth, start_in_truth=Pose2(2.0, 2.0, 0.0))
         for grid in (renderer.grid(), mapper.grid())

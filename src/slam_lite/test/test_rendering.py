@@ -9,7 +9,6 @@ from planar import FREE, OCCUPIED, UNKNOWN, Scan
 from slam_lite.rendering import (
     Beams,
     Evidence,
-    MapRenderer,
     SessionRenderer,
     beams_of,
     drawn_in_bands,
@@ -23,9 +22,9 @@ def scan(*ranges, range_max=10.0, **kwargs):
 
 
 def drawn(one_scan, max_range=9.99, usable_range=9.99, times=1):
-    renderer = MapRenderer(0.1, 0.25)
+    renderer = SessionRenderer(0.1, 0.25)
     beams = [beams_of(one_scan, max_range, usable_range)] * times
-    renderer.update(beams, np.zeros((times, 3)) + [0.05, 0.05, 0.0])
+    renderer.update(Evidence(beams, np.zeros((times, 3)) + [0.05, 0.05, 0.0]))
     return renderer.grid()
 
 
@@ -60,28 +59,28 @@ def test_nan_and_zero_say_nothing():
 
 
 def test_a_cell_seen_through_more_often_than_hit_is_free():
-    renderer = MapRenderer(0.1, 0.25)
+    renderer = SessionRenderer(0.1, 0.25)
     beams = [beams_of(scan(2.0 if i == 0 else 3.0), 9.0, 9.0) for i in range(5)]
-    renderer.update(beams, np.zeros((5, 3)) + [0.05, 0.05, 0.0])
+    renderer.update(Evidence(beams, np.zeros((5, 3)) + [0.05, 0.05, 0.0]))
     assert renderer.grid().value_at(2.05, 0.05) == FREE
 
 
 def test_a_moved_scan_leaves_nothing_behind():
     beams = [beams_of(scan(2.0, 1.0, 1.5, 3.0), 9.0, 9.0)]
-    moved, fresh = MapRenderer(0.1, 0.25), MapRenderer(0.1, 0.25)
+    moved, fresh = SessionRenderer(0.1, 0.25), SessionRenderer(0.1, 0.25)
     pose = np.array([[0.73, -0.41, 0.6]])
-    moved.update(beams, np.zeros((1, 3)))
-    moved.update(beams, pose)
-    fresh.update(beams, pose)
+    moved.update(Evidence(beams, np.zeros((1, 3))))
+    moved.update(Evidence(beams, pose))
+    fresh.update(Evidence(beams, pose))
     assert np.array_equal(moved.grid().cells, fresh.grid().cells)
     assert moved.grid().origin == fresh.grid().origin
 
 
 def test_two_places_far_apart_take_no_memory_for_what_lies_between():
-    renderer = MapRenderer(0.05, 0.25)
+    renderer = SessionRenderer(0.05, 0.25)
     beams = [beams_of(scan(2.0, 1.0, 1.5, 3.0), 9.0, 9.0)] * 2
     tracemalloc.start()
-    renderer.update(beams, np.array([[0.0, 0.0, 0.0], [1500.0, 1500.0, 0.0]]))
+    renderer.update(Evidence(beams, np.array([[0.0, 0.0, 0.0], [1500.0, 1500.0, 0.0]])))
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert peak < 10e6  # counts of all cells would take 3.6e9

@@ -75,7 +75,7 @@ class SessionRenderer:
 
     def __init__(self, resolution: float, occupied_threshold: float):
         self._resolution, self._threshold = resolution, occupied_threshold
-        self._before, self._now = (MapRenderer(resolution, occupied_threshold) for _ in range(2))
+        self._before, self._now = (ScanCounter(resolution) for _ in range(2))
 
     def update(self, evidence: Evidence) -> None:
         """Brings the map up to date; ``evidence``: as many ``older`` scans as ever."""
@@ -93,12 +93,11 @@ class SessionRenderer:
         return OccupancyGrid(cells, self._resolution, _origin(box, self._resolution))
 
 
-class MapRenderer:
-    """Counts beams per cell and turns the counts into a grid."""
+class ScanCounter:
+    """Counts the beams of one session's key scans per cell."""
 
-    def __init__(self, resolution: float, occupied_threshold: float):
+    def __init__(self, resolution: float):
         self._resolution = resolution
-        self._threshold = occupied_threshold
         self._placed: List[np.ndarray] = []
         self.counts = TileCounts(np.zeros(2, dtype=np.int64), (0, 0))
 
@@ -127,12 +126,6 @@ class MapRenderer:
 
     def _count(self, beams: Beams, pose: np.ndarray, amount: int) -> None:
         self.counts.count(*_in_cells(beams, pose, self._resolution), beams.marks, amount)
-
-    def grid(self) -> OccupancyGrid:
-        """The map of all scans counted so far, as large as what they reached."""
-        box = _box_of(self.counts, None)
-        cells = _judged(self.counts, None, box, self._threshold)
-        return OccupancyGrid(cells, self._resolution, _origin(box, self._resolution))
 
 
 def drawn_in_bands(
@@ -169,7 +162,7 @@ def _band(
 
 
 class _SessionScans:
-    """The key scans of one session, to be counted as a MapRenderer does, but only in some rows of tiles.
+    """The key scans of one session, to be counted as a ScanCounter does, but only in some rows of tiles.
 
     ``box``: around all cells that they reach, None if there is none.
     """
