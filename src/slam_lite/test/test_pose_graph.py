@@ -65,6 +65,17 @@ def test_a_false_closure_hardly_bends_the_map(poses, steps):
     assert farthest(poses, optimised) < 0.05
 
 
+def test_false_closures_that_agree_do_not_undo_right_ones(poses, steps):
+    steps[10] = edge(poses, 10, 11, np.diag([1e3, 1e3, 10.0]))  # wheels may have slipped there
+    steps[30] = edge(poses, 30, 31, np.diag([1e3, 1e3, 10.0]))
+    right = [edge(poses, last, last - 38, is_loop=True) for last in (38, 39)]
+    true = np.array([pose.as_array() for pose in poses])
+    moved = [Pose2(0.0, 25.0, 0.0) @ pose for pose in poses]
+    false = [Edge(20 + i, i, poses[20 + i].inverse() @ moved[i], 0.1 * SURE, is_loop=True) for i in range(4)]
+    optimised = optimise(true, edges_of(*steps, *right, *false), 1e-6, fresh=len(false))
+    assert farthest(poses, optimised) < 0.1
+
+
 def test_the_first_node_stays(poses, steps):
     optimised = optimise(drifting(poses), edges_of(*steps), 1e-6)
     assert tuple(optimised[0]) == tuple(poses[0].as_array())

@@ -18,6 +18,8 @@ from planar import Pose2, wrap
 _MAX_STEPS = 20
 # Phi of dynamic covariance scaling: the chi-square of a loop edge at which its influence starts to fade.
 _FREE_CHI_SQUARE = 10.0
+# From this one on it has as good as none.
+_UNMET_CHI_SQUARE = 100.0
 # A new edge's influence is narrowed down by this factor at a time.
 _RELAXATION = 0.1
 
@@ -103,21 +105,31 @@ def optimise(poses: np.ndarray, edges: Edges, tolerance: float, fresh: int = 0) 
     """Poses (N, 3) that agree best with the edges, starting from ``poses``; node 0 stays where it is.
 
     The last ``fresh`` edges are new: the poses do not yet know of them, so they are believed at first however
-    badly they are met, and less and less so (graduated non-convexity, H. Yang et al., RA-L 2020). Ends when
-    no pose moves more than ``tolerance`` (metres, radians) in a step.
+    badly they are met, and less and less so (graduated non-convexity, H. Yang et al., RA-L 2020). Those that
+    are not met in the end may have pulled others apart for nothing: all begins anew, without believing in
+    them at first. Ends when no pose moves more than ``tolerance`` (metres, radians) in a step.
     """
     if len(edges) == 0:
         return poses.copy()
-    free = np.full(len(edges), _FREE_CHI_SQUARE)
     is_fresh = np.arange(len(edges)) >= len(edges) - fresh
+    while True:
+        found = _descend_believing(poses, edges, is_fresh, tolerance)
+        is_unmet = is_fresh & (chi_squares(found, edges) > _UNMET_CHI_SQUARE)
+        if not is_unmet.any():
+            return np.column_stack((found[:, :2], wrap(found[:, 2])))
+        is_fresh &= ~is_unmet
+
+
+def _descend_believing(poses: np.ndarray, edges: Edges, is_fresh: np.ndarray, tolerance: float) -> np.ndarray:
+    """Descends to where the edges agree best; those that are ``is_fresh`` (E,) are believed at first."""
+    free = np.full(len(edges), _FREE_CHI_SQUARE)
     relaxed = chi_squares(poses, edges)[is_fresh].max(initial=_FREE_CHI_SQUARE)
     while relaxed > _FREE_CHI_SQUARE:
         free[is_fresh] = relaxed
         poses = _descend(poses, edges, free, 10.0 * tolerance)
         relaxed *= _RELAXATION
     free[is_fresh] = _FREE_CHI_SQUARE
-    poses = _descend(poses, edges, free, tolerance)
-    return np.column_stack((poses[:, :2], wrap(poses[:, 2])))
+    return _descend(poses, edges, free, tolerance)
 
 
 def _descend(poses: np.ndarray, edges: Edges, free: np.ndarray, tolerance: float) -> np.ndarray:
