@@ -14,6 +14,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import replace
 from datetime import datetime
+from importlib.util import find_spec
 from pathlib import Path
 from typing import List, Optional, Sequence
 
@@ -26,21 +27,27 @@ from home_service.options import count
 PYTEST = ("-m", "pytest", "-n", "auto", "--dist", "worksteal")
 UNIT_SECONDS = 900.0  # of a machine that has other things to do; else a minute
 MOST_JOBS = 4
-BROWSERS = ("chromium", "chromium-browser", "google-chrome")
-# Commands that scripts/setup.sh --dev installs, by the test, or folder of tests, that needs one of them.
+# Commands and Python packages that scripts/setup.sh --dev installs, by the test, or folder of tests, that
+# needs one of each group.
+BROWSERS, PAGE = ("chromium", "chromium-browser", "google-chrome"), ("viser",)
 NEEDS = {
-    "tests/cockpit": BROWSERS,
-    "tests/two_hosts": ("ip",),
-    "tests/two_hosts/cockpit_alone.test": BROWSERS,
+    "tests/cockpit": (BROWSERS, PAGE),
+    "tests/two_hosts": (("ip",),),
+    "tests/two_hosts/cockpit_alone.test": (BROWSERS, PAGE),
+    "tests/two_hosts/laboratory_two_hosts.test": (("distributed",),),
 }
 
 
-def lacking(path: Path, find=shutil.which) -> Optional[str]:
-    """The command that the tests of a .test file need and this machine has not."""
+def is_installed(name: str) -> bool:
+    return shutil.which(name) is not None or find_spec(name) is not None
+
+
+def lacking(path: Path, is_there=is_installed) -> Optional[str]:
+    """What the tests of a .test file need and this machine has not."""
     place = path.relative_to(ROOT)
-    for names in (NEEDS.get(each.as_posix(), ()) for each in (place.parent, place)):
-        if names and not any(map(find, names)):
-            return names[0]
+    for group in (*NEEDS.get(place.parent.as_posix(), ()), *NEEDS.get(place.as_posix(), ())):
+        if not any(map(is_there, group)):
+            return group[0]
     return None
 
 
@@ -150,9 +157,9 @@ def main() -> int:
         account.note("unit", outcome, time.monotonic() - started)
     lacks = {path: lacking(path) for path in ros}
     RosTests(folder, account).run([path for path in ros if lacks[path] is None], options.jobs)
-    for path, command in lacks.items():
-        if command is not None:
-            print(f"left out: {path.relative_to(ROOT)}, which needs {command} (./scripts/setup.sh --dev)")
+    for path, need in lacks.items():
+        if need is not None:
+            print(f"left out: {path.relative_to(ROOT)}, which needs {need} (./scripts/setup.sh --dev)")
     return account.conclude()
 
 

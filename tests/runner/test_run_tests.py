@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from outcome import Outcome, judge_ros_test, judge_unit_tests, read_report
 from ros_test import time_limits
-from run_tests import NEEDS, ROOT, lacking
+from run_tests import NEEDS, ROOT, is_installed, lacking
 
 
 def write_report(path, tests, failures=0, errors=0, skipped=0):
@@ -97,22 +97,32 @@ def test_the_time_limits_of_a_file_are_read(tmp_path):
     assert time_limits(path) == {"a": 90.0, "b": 60.0}
 
 
-def test_what_needs_a_command_that_is_not_there_is_left_out():
+def test_what_needs_something_that_is_not_there_is_left_out():
     two_hosts, mission = ROOT / "tests/two_hosts/two_hosts.test", ROOT / "tests/system/m.test"
-    assert lacking(two_hosts, find=lambda name: None) == "ip"
-    assert lacking(two_hosts, find=lambda name: f"/bin/{name}") is None
-    assert lacking(mission, find=lambda name: None) is None
+    assert lacking(two_hosts, lambda name: False) == "ip"
+    assert lacking(two_hosts, lambda name: True) is None
+    assert lacking(mission, lambda name: False) is None
+
+
+def test_a_browser_alone_shows_no_page():
+    page = ROOT / "tests/cockpit/course.test"
+    assert lacking(page, lambda name: name == "google-chrome") == "viser"
+    assert lacking(page, lambda name: name in ("google-chrome", "viser")) is None
 
 
 def test_a_test_may_need_more_than_its_folder_does():
     alone = ROOT / "tests" / "two_hosts" / "cockpit_alone.test"
-    assert lacking(alone, find=lambda name: name == "ip") == "chromium"
-    assert lacking(alone, find=lambda name: name == "google-chrome") == "ip"
-    assert lacking(alone, find=lambda name: name in ("ip", "google-chrome")) is None
+    assert lacking(alone, lambda name: name == "ip") == "chromium"
+    assert lacking(alone, lambda name: name == "google-chrome") == "ip"
+    assert lacking(alone, lambda name: name in ("ip", "google-chrome", "viser")) is None
 
 
-def test_what_needs_a_command_is_there():
+def test_what_needs_something_is_there():
     assert all((ROOT / place).exists() for place in NEEDS)
+
+
+def test_commands_and_packages_are_found():
+    assert is_installed("bash") and is_installed("numpy") and not is_installed("no_such_thing")
 
 
 def kept(command, log, limit=60.0):

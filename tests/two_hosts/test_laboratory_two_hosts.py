@@ -8,7 +8,6 @@ import tempfile
 import time
 import unittest
 from dataclasses import replace
-from importlib.util import find_spec
 from pathlib import Path
 
 import rostest
@@ -37,7 +36,6 @@ print(*Client(sys.argv[1], timeout=5).scheduler_info(n_workers=-1)["workers"])
 
 
 @unittest.skipUnless(os.geteuid() == 0, "only root can make network namespaces")
-@unittest.skipUnless(find_spec("distributed"), "Dask comes with the first run of evaluate.sh")
 class LaboratoryOnTwoHostsTest(unittest.TestCase):
     def test_two_hosts_make_what_one_process_makes(self):
         with tempfile.TemporaryDirectory() as name, Cable() as cable:
