@@ -50,6 +50,28 @@ def test_one_walks_through_the_door_at_ones_own_speed():
     assert walked(Simulation(hall(anna), base_in_world=Pose2(3.0, -2.0)), 1.0)[0].shape == (50, 1, 5)
 
 
+@pytest.mark.parametrize("speed", [0.7, 1.4])
+@pytest.mark.parametrize("width", [0.6, 0.9])
+def test_slow_and_fast_pass_narrow_doors(width, speed):
+    sides = (
+        box_on_floor("left", (0.2, 3.0 - width / 2, 1.0), Pose2(0.0, 1.5 + width / 4)),
+        box_on_floor("right", (0.2, 3.0 - width / 2, 1.0), Pose2(0.0, -1.5 - width / 4)),
+    )
+    anna = person("anna", (-2.0, 0.5), (2.0, 0.5), speed=speed)
+    rows, contacts = walked(Simulation(hall(anna, solids=HALL + sides), base_in_world=Pose2(3.0, -2.0)), 10.0)
+    assert np.hypot(*(rows[:, 0, :2] - (2.0, 0.5)).T).min() < 0.4
+    assert not contacts
+
+
+def test_who_does_not_get_on_turns_back_however_much_they_sway():
+    # A robot stands in the door.
+    anna = person("anna", (-2.0, -1.2), (2.0, -1.2), speed=1.4)
+    rows, _ = walked(Simulation(hall(anna, solids=HALL + WALL), base_in_world=Pose2(0.0, -1.2)), 20.0)
+    at_door = np.hypot(*(rows[:, 0, :2] - (0.0, -1.2)).T) < 1.0
+    longest = np.diff(np.flatnonzero(np.diff(np.concatenate(([0], at_door, [0])))))[::2].max() / 50.0
+    assert at_door.any() and longest < 8.0
+
+
 def test_two_who_meet_give_way():
     pair = person("anna", (-3.0, 0.0), (3.0, 0.0)), person("bert", (3.0, 0.0), (-3.0, 0.0))
     rows, _ = walked(Simulation(hall(*pair), base_in_world=Pose2(0.0, -2.5)), 6.0)

@@ -1,5 +1,6 @@
 """All people of a scene, moved on together."""
 
+import math
 from typing import Iterable, Protocol, Sequence, Tuple
 
 import numpy as np
@@ -15,9 +16,9 @@ from sim_bridge.world import Body, Collision, World
 
 # Times a second that people are moved on.
 WALK_RATE = 25
-# Metres from a goal at which one has come; m/s below which one does not get on, and for how many seconds one
-# puts up with that before going elsewhere.
-ARRIVED, SLOW, PATIENCE = 0.35, 0.1, 4.0
+# Metres from a goal at which one has come; by which one has to come nearer to it to get on, however one sways,
+# and for how many seconds one puts up with getting on no more before going elsewhere.
+ARRIVED, NEARER, PATIENCE = 0.35, 0.3, 4.0
 # Metres: of a robot to people, who keep more off it than it is wide.
 ROBOT_RADIUS = 0.25
 NOBODY = np.empty((0, 5))
@@ -60,9 +61,10 @@ class Crowd:
         firsts = [(*walker.goals_xy[0], 0.0, 0.0, walker.radius) for walker in self._walkers]
         self.rows = np.array(firsts, dtype=float).reshape(-1, 5)
         self._turns = [0] * len(self._walkers)
-        # Until when each rests, and since when each has not got on.
+        # Until when each rests; how near to the goal each has come, metres of way, and since when no nearer.
         self._rests = [walker.rest for walker in self._walkers]
-        self._slow_since = [0.0] * len(self._walkers)
+        self._nearest = [math.inf] * len(self._walkers)
+        self._stuck_since = [0.0] * len(self._walkers)
 
     def follow(self, engine: Movable, step: int, rate: int, stamp: float, robots: Iterable[Robot]) -> None:
         """Before the step of physics number ``step``, of ``rate`` a second, which begins at ``stamp``.
@@ -96,16 +98,18 @@ class Crowd:
     def _choose(self, stamp: float) -> None:
         """Who has come to a goal rests and then goes to the next; so does who cannot get on."""
         for number, walker in enumerate(self._walkers):
-            x, y, v_x, v_y, _ = self.rows[number].tolist()
-            goal_x, goal_y = self._goals_xy[self._first_goals[number] + self._turns[number]].tolist()
-            is_there = np.hypot(goal_x - x, goal_y - y) < ARRIVED
-            if is_there or stamp < self._rests[number] or np.hypot(v_x, v_y) > SLOW:
-                self._slow_since[number] = stamp
+            x, y = self.rows[number, :2].tolist()
+            goal = self._first_goals[number] + self._turns[number]
+            goal_x, goal_y = self._goals_xy[goal].tolist()
+            is_there = math.hypot(goal_x - x, goal_y - y) < ARRIVED
+            left = self._ground.way_left(self._ways[goal], x, y)
+            if is_there or stamp < self._rests[number] or left < self._nearest[number] - NEARER:
+                self._nearest[number], self._stuck_since[number] = left, stamp
             if stamp < self._rests[number] or len(walker.goals_xy) == 1:
                 continue
-            if is_there or stamp - self._slow_since[number] > PATIENCE:
+            if is_there or stamp - self._stuck_since[number] > PATIENCE:
                 self._turns[number] = (self._turns[number] + 1) % len(walker.goals_xy)
-                self._slow_since[number] = stamp
+                self._nearest[number], self._stuck_since[number] = math.inf, stamp
                 self._rests[number] = stamp + walker.rest if is_there else stamp
 
 

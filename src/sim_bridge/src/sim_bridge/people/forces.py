@@ -14,7 +14,9 @@ RELAXATION = 0.5
 # Of Moussaid et al.: strength, weight of velocities, reach, and how narrow the push back and the push aside
 # are.
 STRENGTH, OF_VELOCITY, REACH, NARROW_BACK, NARROW_ASIDE = 4.5, 2.0, 0.35, 3.0, 2.0
-# Of bodies that nearly touch, and of walls (Helbing, Farkas and Vicsek, 2000): strength, reach, metres.
+# Of walls (Moussaid et al.), and of bodies that nearly touch (Helbing, Farkas and Vicsek, 2000): strength,
+# reach, metres.
+WALL_STRENGTH, WALL_REACH = 3.0, 0.1
 TOUCH_STRENGTH, TOUCH_REACH = 12.0, 0.08
 # Who walks together draws near its middle when farther off than this, metres, with this strength.
 TOGETHER, COHESION = 0.6, 1.5
@@ -121,13 +123,11 @@ def _social_force(own, other):
 def _wall_force(x, y, radius, walls, size):
     """Of what is solid; x, y from the corner of ``walls``, metres to it of cells with sides of ``size``."""
     near = _value_at(walls, x / size, y / size)
+    # Between two walls the field rises less, as they push against each other: it is flat in the middle.
+    force = 0.5 / size * WALL_STRENGTH * math.exp(min(radius - near + 0.5 * size, 0.1) / WALL_REACH)
     slope_x = _value_at(walls, x / size + 1.0, y / size) - _value_at(walls, x / size - 1.0, y / size)
     slope_y = _value_at(walls, x / size, y / size + 1.0) - _value_at(walls, x / size, y / size - 1.0)
-    steep = math.hypot(slope_x, slope_y)
-    if steep < 1e-9:
-        return 0.0, 0.0
-    force = TOUCH_STRENGTH * math.exp(min(radius - near + 0.5 * size, 0.1) / TOUCH_REACH)
-    return force * slope_x / steep, force * slope_y / steep
+    return force * slope_x, force * slope_y
 
 
 @numba.njit(cache=True)

@@ -33,6 +33,11 @@ class Ground:
         ways[~np.isfinite(ways)] = UNREACHABLE
         return ways.reshape(-1, *self.walls.shape)
 
+    def way_left(self, ways: np.ndarray, x: float, y: float) -> float:
+        """Metres from a place to the goal that ``ways`` (rows, cols) lead to."""
+        ((row, col),) = self._grid.cells_of([[x, y]])
+        return float(ways[row, col])
+
     def _node_at(self, x: float, y: float) -> int:
         ((row, col),) = self._grid.cells_of([[x, y]])
         if not (self._grid.contains(np.array([[row, col]]))[0] and self._is_open[row, col]):
