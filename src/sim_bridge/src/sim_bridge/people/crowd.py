@@ -16,8 +16,8 @@ from sim_bridge.world import Body, Collision, World
 
 # Times a second that people are moved on.
 WALK_RATE = 25
-# Metres from a goal at which one has come; by which one has to come nearer to it to get on, however one sways,
-# and for how many seconds one puts up with getting on no more before going elsewhere.
+# Metres from a goal at which one has come; by which one has to come nearer to it, however one sways, to get
+# on, and for how many seconds one puts up with getting on no more before going elsewhere.
 ARRIVED, NEARER, PATIENCE = 0.35, 0.3, 4.0
 # Metres: of a robot to people, who keep more off it than it is wide.
 ROBOT_RADIUS = 0.25
