@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import partial
-from typing import Callable, Optional
+from typing import Callable, Optional, Tuple
 
 import numpy as np
 
@@ -10,7 +10,14 @@ from amcl_lite.belief import Belief
 from amcl_lite.config import InitialPose, LocalizerSettings
 from amcl_lite.errors import LocalizationError
 from amcl_lite.filter.particle_filter import ParticleFilter
-from amcl_lite.filter.particles import FreeSpace, ParticleSet, equally_weighted, gaussian_particles
+from amcl_lite.filter.particles import (
+    FreeSpace,
+    ParticleSet,
+    equally_weighted,
+    gaussian_particles,
+    gaussian_poses,
+)
+from amcl_lite.filter.resampling import DrawPoses
 from amcl_lite.filter.statistics import best_cluster, mean_and_covariance
 from amcl_lite.motion.own_model import motion_model_of
 from amcl_lite.motion.update_policy import UpdatePolicy
@@ -24,6 +31,9 @@ from planar.geometry.limits import FARTHEST, is_within
 
 # Of the particles of a lost robot, this share is put where the scan fits the map.
 _RECOVERY_SHARE = 0.3
+# Of those of one that is not, and whose scan fits, this share is put about where scan matching puts it: those
+# drawn by weight lag behind where odometry errs always alike.
+_MATCHED_SHARE = 0.1
 
 
 @dataclass(frozen=True)
@@ -60,8 +70,7 @@ class Localizer:
         self._covariance = np.zeros((3, 3))
         self._quality: Optional[Quality] = None
         self._configure(settings)
-        start = InitialPose()
-        self.set_pose(start.pose, start.covariance)
+        self.set_pose(InitialPose().pose, InitialPose().covariance)
 
     @property
     def settings(self) -> LocalizerSettings:
@@ -185,6 +194,7 @@ class Localizer:
         self._detector = LostDetector(is_lost)
         self._update_policy = UpdatePolicy()
         self._updates = 0
+        self._matched: Optional[Tuple[Pose2, np.ndarray]] = None
 
     def _move(self, base_now: Pose2) -> None:
         base_before = self._update_policy.updated_at
@@ -198,18 +208,23 @@ class Localizer:
         self._updates += 1
 
     def _resample_if_due(self, beams: Beams) -> bool:
-        """Draws anew every ``resample_interval`` updates, some where the scan fits if the robot is lost."""
-        if self._updates % self._settings.resample_interval != 0:
-            return False
-        share, draw = 0.0, self._free_space.draw
+        """Draws anew every ``resample_interval`` updates."""
+        is_due = self._updates % self._settings.resample_interval == 0
+        if is_due and self._filter.is_worth_resampling(self._settings):
+            self._filter.resample(self._settings, *self._newcomers(beams))
+        return is_due
+
+    def _newcomers(self, beams: Beams) -> Tuple[float, DrawPoses]:
+        """Which share of the particles comes from elsewhere, and from where (augmented and mixture MCL)."""
         if self._settings.recover_when_lost and self.is_lost:
-            hypotheses = find_hypotheses(
-                beams, self._likelihood.field, self._grid, self._free_space, self._rng
-            )
-            if len(hypotheses) > 0:
-                share, draw = _RECOVERY_SHARE, hypotheses.draw
-        self._filter.resample(self._settings, self._free_space.draw, share, draw)
-        return True
+            places = find_hypotheses(beams, self._likelihood.field, self._grid, self._free_space, self._rng)
+            if len(places) > 0:
+                return _RECOVERY_SHARE, places.draw
+        fallen = self._filter.take_fallen_share()
+        if fallen == 0.0 and self._matched and self._quality and self._quality.is_sure:
+            odom_in_map, spread = self._matched
+            return _MATCHED_SHARE, partial(gaussian_poses, odom_in_map @ self._base_in_odom, spread)
+        return fallen, self._free_space.draw
 
     def _estimate(self, base_in_odom: Pose2, scan: Scan) -> Estimate:
         cluster = best_cluster(self.particles)
@@ -217,6 +232,7 @@ class Localizer:
         if self._settings.refine_pose:
             ends_xy = all_beams(scan, self._settings).ends_xy
             base_in_map = matched(base_in_map, covariance, ends_xy, self._likelihood.field)
+            self._matched = base_in_map @ base_in_odom.inverse(), covariance
         if cluster is not self.particles:
             _, covariance = mean_and_covariance(self.particles)
         self._odom_in_map = base_in_map @ base_in_odom.inverse()

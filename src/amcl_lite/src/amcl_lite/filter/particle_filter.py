@@ -33,24 +33,16 @@ class ParticleFilter:
         self.particles = ParticleSet(self.particles.poses, weights)
         self._likelihood.take(likelihood, settings)
 
-    def resample(
-        self,
-        settings: LocalizerSettings,
-        draw_random: DrawPoses,
-        share_elsewhere: float,
-        draw_elsewhere: DrawPoses,
-    ) -> None:
-        """Draws particles anew by weight.
+    def is_worth_resampling(self, settings: LocalizerSettings) -> bool:
+        """Whether it is always done, or the weights have become uneven."""
+        return not settings.selective_resampling or 2.0 * self.particles.effective_size <= self.particles.size
 
-        Some come from ``draw_random`` instead if the likelihood has fallen (augmented MCL), and a share of
-        ``share_elsewhere`` from ``draw_elsewhere``.
-        """
-        if settings.selective_resampling and 2.0 * self.particles.effective_size > self.particles.size:
-            return
-        if share_elsewhere > 0.0:
-            share, draw = share_elsewhere, draw_elsewhere
-        else:
-            share, draw = self._likelihood.take_fallen_share(), draw_random
+    def take_fallen_share(self) -> float:
+        """By how much the likelihood has fallen; if at all, what it was before is forgotten."""
+        return self._likelihood.take_fallen_share()
+
+    def resample(self, settings: LocalizerSettings, share: float, draw: DrawPoses) -> None:
+        """Draws particles anew by weight, but for a share that comes from ``draw``."""
         self.particles = resampled(self.particles, settings, share, draw, self._rng)
         self.has_converged = has_converged(self.particles)
 

@@ -35,10 +35,15 @@ def equally_weighted(poses: np.ndarray) -> ParticleSet:
 def gaussian_particles(
     mean: Pose2, covariance: np.ndarray, count: int, rng: np.random.Generator
 ) -> ParticleSet:
-    """``count`` particles drawn from a normal distribution; ``covariance``: (3, 3), may be singular."""
+    """``count`` particles drawn from a normal distribution; see gaussian_poses."""
+    return equally_weighted(gaussian_poses(mean, covariance, count, rng))
+
+
+def gaussian_poses(mean: Pose2, covariance: np.ndarray, count: int, rng: np.random.Generator) -> np.ndarray:
+    """Poses (count, 3) from a normal distribution; ``covariance``: (3, 3), may be singular."""
     eigenvalues, eigenvectors = np.linalg.eigh(covariance)
     spread = eigenvectors * np.sqrt(np.maximum(eigenvalues, 0.0))
-    return equally_weighted(within_reach(mean.as_array() + rng.standard_normal((count, 3)) @ spread.T))
+    return within_reach(mean.as_array() + rng.standard_normal((count, 3)) @ spread.T)
 
 
 def within_reach(poses: np.ndarray) -> np.ndarray:

@@ -25,6 +25,8 @@ _BIAS, _PER_EXPLAINED, _PER_THROUGH = -6.85, 17.2, -9.8
 # rise above FOUND_ABOVE for it to be found again.
 SMOOTHING_SECONDS = 1.0
 LOST_BELOW, FOUND_ABOVE = 0.2, 0.7
+# From which on a single scan is believed.
+SURE_ABOVE = 0.99
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,11 @@ class Quality:
     def is_doubtful(self) -> bool:
         """Whether the scan speaks against the pose."""
         return self.probability < LOST_BELOW
+
+    @property
+    def is_sure(self) -> bool:
+        """Whether the scan all but proves the pose."""
+        return self.probability > SURE_ABOVE
 
 
 def quality_of(base_in_map: Pose2, beams: Beams, field: LikelihoodField, grid: OccupancyGrid) -> Quality:
