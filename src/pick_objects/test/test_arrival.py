@@ -1,6 +1,6 @@
 """A robot does not claim to have arrived where it is not, and does not despair where it is."""
 
-from pick_objects import Arrival, Fit, GoalReached, GoalRefused, SendAgain
+from pick_objects import Arrival, Fit, GoalLeft, GoalReached, GoalRefused, SendAgain
 from planar import Pose2
 
 GOOD, BAD = 0.9, 0.05
@@ -18,6 +18,23 @@ def test_an_arrival_needs_two_scans_that_speak_for_it():
 def test_a_robot_that_sees_what_it_should_or_of_which_nobody_tells_has_arrived():
     for fit in (GOOD, None):
         assert Arrival(GOAL).judge(GoalReached(), NEAR, fit, 0.0) == GoalReached()
+
+
+def test_a_robot_that_has_arrived_and_then_sees_something_else_has_left():
+    arrival = Arrival(GOAL)
+    assert arrival.judge(GoalReached(), NEAR, GOOD, 0.0) == GoalReached()
+    assert [arrival.judge(None, NEAR, fit, 1.0) for fit in (None, GOOD, BAD, BAD)] == [
+        None,
+        None,
+        GoalLeft(),
+        None,
+    ]
+
+
+def test_a_robot_that_has_never_been_sure_of_having_arrived_has_not_left():
+    arrival = in_doubt()
+    assert arrival.judge(GoalReached(), GOAL, BAD, 6.2) == GoalReached()
+    assert [arrival.judge(None, GOAL, fit, 6.3) for fit in (BAD, None, BAD)] == [None, None, None]
 
 
 def test_what_has_not_been_reached_is_as_it_was_told():

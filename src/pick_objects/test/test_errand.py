@@ -6,6 +6,7 @@ from pick_objects import (
     ErrandSettings,
     ErrandState,
     Finish,
+    GoalLeft,
     GoalReached,
     GoalRefused,
     GoTo,
@@ -37,6 +38,27 @@ def test_the_robot_is_sent_to_pickup_and_after_five_seconds_there_to_dropoff():
     assert task.advance(40.0, GoalReached()) == Finish(True, "delivered at place dropoff")
     assert task.state is ErrandState.DELIVERED
     assert task.advance(41.0) is None
+
+
+def test_a_robot_that_is_carried_away_while_it_picks_up_goes_back():
+    task = errand(attempts=2)
+    task.advance(0.0)
+    task.advance(20.0, GoalReached())
+    assert task.advance(24.0, GoalLeft()) == GoTo(PICKUP, 1)
+    assert task.state is ErrandState.GOING_TO_PICKUP
+    assert task.advance(25.0) is None
+    assert task.advance(26.0, GoalReached()) is None
+    assert task.advance(30.9) is None
+    assert task.advance(31.0) == GoTo(DROPOFF, 1)
+
+
+def test_who_is_carried_away_again_and_again_gives_up():
+    task = errand(attempts=2)
+    task.advance(0.0)
+    for now in (10.0, 20.0):
+        task.advance(now, GoalReached())
+        order = task.advance(now + 1.0, GoalLeft())
+    assert order == Finish(False, "place pickup: carried away, or in doubt of it, 2 times")
 
 
 def test_a_refused_goal_is_tried_again_after_a_pause():

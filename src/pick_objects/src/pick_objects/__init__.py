@@ -8,7 +8,7 @@ from pick_objects.job import ErrandState, Job, Stage, Whereabouts
 from pick_objects.mission import Delivery, Mission, MissionError, Thing, errand_mission
 from pick_objects.mission_file import load_mission, parse_mission
 from pick_objects.record import record_of, resumed
-from planar.driving import Finish, GoalReached, GoalRefused
+from planar.driving import Finish, GoalLeft, GoalReached, GoalRefused
 
 __all__ = [
     "Arrival",
@@ -19,6 +19,7 @@ __all__ = [
     "Finish",
     "Fit",
     "GoTo",
+    "GoalLeft",
     "GoalReached",
     "GoalRefused",
     "Job",

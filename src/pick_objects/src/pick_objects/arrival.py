@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Deque, Optional, Union
 
 from planar import Pose2
-from planar.driving import GoalReached, GoalRefused
+from planar.driving import GoalLeft, GoalReached, GoalRefused
 from planar.elapsed import Elapsed
 
 # Below, the scan of the moment speaks against the robot's pose. As amcl_lite tells it: the probability that
@@ -41,19 +41,20 @@ class SendAgain:
 
 
 Outcome = Union[None, GoalReached, GoalRefused]
-Judged = Union[Outcome, SendAgain]
+Judged = Union[Outcome, SendAgain, GoalLeft]
 
 
 class Arrival:
     """That at one goal. In doubt the robot stands for a moment, and is then sent there once more.
 
-    Scans of a turn may fit badly where the robot is, and one that stands finds out where it is.
+    Scans of a turn may fit badly where the robot is, and one that stands finds out where it is. One that has
+    arrived and been sure of it, and is in doubt again, may have been carried away.
     """
 
     def __init__(self, goal: Pose2):
         self._goal = goal
         self._standing: Optional[Elapsed] = None
-        self._is_sent_again = self._was_found = False
+        self._is_sent_again = self._was_found = self._has_arrived = self._is_sure = False
         self._way = 0.0
 
     def judge(self, told: Outcome, robot: Pose2, fit: Optional[float], now: float) -> Judged:
@@ -64,9 +65,12 @@ class Arrival:
         """
         if self._standing is not None:
             return self._stand(fit, now)
+        if self._has_arrived:
+            return self._watch(fit)
         if self._is_sent_again:
             self._way = max(self._way, self._goal.distance_to(robot))
         if not isinstance(told, GoalReached) or fit is None or fit >= LEAST_FIT or self._is_surely_near:
+            self._has_arrived = isinstance(told, GoalReached)
             return told
         if self._is_sent_again:
             return GoalRefused("the robot may be elsewhere: what the laser sees does not fit the map there")
@@ -77,6 +81,10 @@ class Arrival:
     def _is_surely_near(self) -> bool:
         """From where it was found, standing, it has come too short a way to be lost again."""
         return self._was_found and self._way < SHORT_WAY
+
+    def _watch(self, fit: Optional[float]) -> Optional[GoalLeft]:
+        was_sure, self._is_sure = self._is_sure, fit is not None and fit >= LEAST_FIT
+        return GoalLeft() if was_sure and fit is not None and fit < LEAST_FIT else None
 
     def _stand(self, fit: Optional[float], now: float) -> Optional[SendAgain]:
         if self._standing is None or self._standing.at(now) < STANDING_SECONDS:

@@ -6,7 +6,7 @@ from pick_objects.approach import Approach, Arrived, GivenUp, GoTo
 from pick_objects.forecast import Forecast
 from pick_objects.job import Job, Stage, Whereabouts
 from pick_objects.mission import Mission
-from planar.driving import GoalReached, GoalRefused
+from planar.driving import GoalLeft, GoalReached, GoalRefused
 
 
 class Carrier:
@@ -26,7 +26,7 @@ class Carrier:
     ):
         self.job, self.approach = job, approach
         self._mission, self._whereabouts, self._forecast = mission, whereabouts, forecast
-        self._since = 0.0
+        self._since, self._left = 0.0, 0
 
     def set_out(self, now: float) -> Optional[GoTo]:
         """The first order; None if the delivery has failed already."""
@@ -38,12 +38,12 @@ class Carrier:
             return None
         return self._go(now, Stage.FETCHING)
 
-    def advance(self, now: float, event: Union[None, GoalReached, GoalRefused]) -> Optional[GoTo]:
+    def advance(self, now: float, event: Union[None, GoalReached, GoalRefused, GoalLeft]) -> Optional[GoTo]:
         """The next order, or None to carry on, or if the delivery has ended."""
         if self.job.stage in (Stage.PICKING_UP, Stage.SETTING_DOWN):
-            return self._handle(now)
+            return self._go_back(now) if isinstance(event, GoalLeft) else self._handle(now)
         assert self.approach is not None
-        answer = self.approach.advance(now, event)
+        answer = self.approach.advance(now, None if isinstance(event, GoalLeft) else event)
         if isinstance(answer, GoTo):
             self.job.attempts += 1
             return answer
@@ -84,6 +84,17 @@ class Carrier:
         self._whereabouts[delivery.thing] = Whereabouts(delivery.destination, pose)
         self.job.stage = Stage.DELIVERED
         return None
+
+    def _go_back(self, now: float) -> Optional[GoTo]:
+        """To where the robot was about to pick up or set down, as often as places are tried at most."""
+        assert self.approach is not None
+        self._left += 1
+        if self._left >= self._mission.settings.attempts:
+            self._fail(
+                f"place {self.approach.place.name}: carried away, or in doubt of it, {self._left} times"
+            )
+            return None
+        return self._go(now, Stage.FETCHING if self.job.stage is Stage.PICKING_UP else Stage.CARRYING)
 
     def _fail(self, reason: str) -> None:
         self.job.fail(reason)

@@ -10,7 +10,7 @@ from pick_objects.job import ENDED, ON_ROBOT, STATE_OF_STAGE, ErrandState, Job, 
 from pick_objects.mission import Delivery, Mission, MissionError
 from pick_objects.schedule import Schedule
 from planar import Pose2
-from planar.driving import Finish, GoalReached, GoalRefused
+from planar.driving import Finish, GoalLeft, GoalReached, GoalRefused
 from planar.elapsed import Elapsed
 from planar.maps.places import Place
 
@@ -30,7 +30,7 @@ class WaysMeasured:
 
 
 Order = Union[GoTo, MeasureWays, Finish]
-Event = Union[GoalReached, GoalRefused, WaysMeasured]
+Event = Union[GoalReached, GoalRefused, GoalLeft, WaysMeasured]
 
 
 class Errand:

@@ -29,6 +29,11 @@ class GoalRefused:
     is_taken_over: bool = False
 
 
+@dataclass(frozen=True)
+class GoalLeft:
+    """Event: the robot, which stood there, sees something else: somebody may have carried it away."""
+
+
 class DriveResult(enum.Enum):
     REACHED = "reached"
     REPLACED = "replaced"

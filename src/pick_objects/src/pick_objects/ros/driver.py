@@ -9,7 +9,7 @@ from pick_objects.approach import GoTo
 from pick_objects.arrival import Arrival, Fit, SendAgain
 from pick_objects.errand import MeasureWays, WaysMeasured
 from planar import Pose2
-from planar.driving import GoalReached, GoalRefused
+from planar.driving import GoalLeft, GoalReached, GoalRefused
 from planar_ros.calls.move_base import MoveBase
 from planar_ros.calls.services import ServiceError
 
@@ -41,8 +41,8 @@ class Driver:
         self._order, self._arrival = order, Arrival(order.pose)
         self.move_base.send(order.pose)
 
-    def event(self) -> Union[None, GoalReached, GoalRefused]:
-        """What came of the last goal, told once; None while it is pursued."""
+    def event(self) -> Union[None, GoalReached, GoalRefused, GoalLeft]:
+        """What came of the last goal, told once; None while it is pursued, or the robot stands there."""
         outcome = self.move_base.outcome()
         if self._order is None:
             return None
@@ -53,6 +53,8 @@ class Driver:
             rospy.logwarn("place %s: the robot may be elsewhere, and is sent there again", place)
             self.move_base.send(self._order.pose)
             return None
+        if isinstance(event, GoalLeft):
+            rospy.logwarn("place %s: the robot may have been carried away", place)
         if isinstance(event, GoalRefused):
             rospy.logwarn("place %s: %s", place, event.reason)
         return event
