@@ -206,9 +206,7 @@ class LocalizerSettings:
     resample_method: str = parameter(
         "systematic", "how particles are drawn by weight", choices=RESAMPLE_METHODS
     )
-    refine_pose: bool = parameter(
-        True, "improve the estimate by scan matching, and draw a tenth of the particles about it"
-    )
+    refine_pose: bool = parameter(True, "improve the estimate and a tenth of the particles by scan matching")
     recover_when_lost: bool = parameter(True, "when scans do not fit the map, add particles where they do")
     update_when_still: float = parameter(
         0.0,
