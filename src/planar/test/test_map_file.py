@@ -16,6 +16,7 @@ from planar import (
     save_map,
 )
 from planar.geometry.grid import GridInBands
+from planar.maps.map_file import cells_from_image
 
 GOOD = """image: a.pgm
 resolution: 0.05
@@ -75,6 +76,13 @@ def test_scale_mode_grades_between_the_thresholds(tmp_path):
 def test_raw_mode_keeps_the_pixel_values(tmp_path):
     grid = load_map(write(tmp_path, GOOD + "mode: raw\n", ((0, 100), (255, 7))))
     assert grid.cells.tolist() == [[-1, 7], [0, 100]]
+
+
+def test_pillow_does_not_warn_of_a_map_that_is_large_but_not_too_large(tmp_path, monkeypatch, recwarn):
+    monkeypatch.setattr(Image, "MAX_IMAGE_PIXELS", 10)
+    Image.new("L", (4, 4)).save(tmp_path / "map.pgm")
+    assert cells_from_image(tmp_path / "map.pgm").shape == (4, 4)
+    assert not recwarn.list
 
 
 def test_an_ascii_image_is_read(tmp_path):

@@ -65,6 +65,7 @@ def cells_from_image(
     """Cells int8 (rows, cols), row 0 lowest, of an image read as map_server reads it."""
     from PIL import Image, UnidentifiedImageError  # late: who only writes maps need not have it in memory
 
+    Image.MAX_IMAGE_PIXELS = None  # it would warn of less than MOST_PIXELS
     try:
         data = read_bytes(image_path)
         if data.startswith(LFS_POINTER):
