@@ -63,23 +63,7 @@ def cells_from_image(
     image_path, negate=False, occupied_thresh=0.65, free_thresh=0.196, mode="trinary"
 ) -> np.ndarray:
     """Cells int8 (rows, cols), row 0 lowest, of an image read as map_server reads it."""
-    from PIL import Image, UnidentifiedImageError  # late: who only writes maps need not have it in memory
-
-    Image.MAX_IMAGE_PIXELS = None  # it would warn of less than MOST_PIXELS
-    try:
-        data = read_bytes(image_path)
-        if data.startswith(LFS_POINTER):
-            raise ValueError("a pointer of Git LFS, which git lfs pull replaces by the image")
-        with Image.open(io.BytesIO(data)) as image:
-            if image.width * image.height > MOST_PIXELS:
-                raise ValueError(f"{image.width} x {image.height} pixels are too many")
-            pixels = np.asarray(image.convert("RGBA" if "A" in image.getbands() else "RGB"))
-    except FileNotFoundError:
-        raise MapImageError(f"{image_path}: no such map image") from None
-    except UnidentifiedImageError:
-        raise MapImageError(f"{image_path}: not a readable image (of no known format)") from None
-    except Exception as error:  # what Pillow's many readers raise for a broken file has no common class
-        raise MapImageError(f"{image_path}: not a readable image ({error})") from None
+    pixels = _pixels(image_path)
     channels = pixels if mode == "trinary" else pixels[:, :, :3]
     sums = np.flipud(channels.sum(axis=2, dtype=np.uint16))
     # Of each sum that there may be, which are far fewer than pixels.
@@ -100,6 +84,27 @@ def cells_from_image(
     if mode == "scale" and pixels.shape[2] == 4:
         cells[(np.flipud(pixels[:, :, 3]) < 255) & ~is_certain[sums]] = UNKNOWN
     return cells
+
+
+def _pixels(image_path) -> np.ndarray:
+    """Those of an image, uint8 (rows, cols, 3), or with transparency (rows, cols, 4)."""
+    from PIL import Image, UnidentifiedImageError  # late: who only writes maps need not have it in memory
+
+    Image.MAX_IMAGE_PIXELS = None  # it would warn of less than MOST_PIXELS
+    try:
+        data = read_bytes(image_path)
+        if data.startswith(LFS_POINTER):
+            raise ValueError("a pointer of Git LFS, which git lfs pull replaces by the image")
+        with Image.open(io.BytesIO(data)) as image:
+            if image.width * image.height > MOST_PIXELS:
+                raise ValueError(f"{image.width} x {image.height} pixels are too many")
+            return np.asarray(image.convert("RGBA" if "A" in image.getbands() else "RGB"))
+    except FileNotFoundError:
+        raise MapImageError(f"{image_path}: no such map image") from None
+    except UnidentifiedImageError:
+        raise MapImageError(f"{image_path}: not a readable image (of no known format)") from None
+    except Exception as error:  # what Pillow's many readers raise for a broken file has no common class
+        raise MapImageError(f"{image_path}: not a readable image ({error})") from None
 
 
 def save_map(grid: Union[OccupancyGrid, GridInBands], stem, occupied_at: int = 65, free_at: int = 25) -> Path:
