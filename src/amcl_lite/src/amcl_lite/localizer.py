@@ -194,7 +194,7 @@ class Localizer:
         self._detector = LostDetector(is_lost)
         self._update_policy = UpdatePolicy()
         self._updates = 0
-        self._matched: Optional[Tuple[Pose2, np.ndarray]] = None
+        self._matched_spread: Optional[np.ndarray] = None
 
     def _move(self, base_now: Pose2) -> None:
         base_before = self._update_policy.updated_at
@@ -220,10 +220,10 @@ class Localizer:
             places = find_hypotheses(beams, self._likelihood.field, self._grid, self._free_space, self._rng)
             if len(places) > 0:
                 return _RECOVERY_SHARE, places.draw
-        fallen = self._filter.take_fallen_share()
-        if fallen == 0.0 and self._matched and self._quality and self._quality.is_sure:
-            odom_in_map, spread = self._matched
-            return _MATCHED_SHARE, partial(gaussian_poses, odom_in_map @ self._base_in_odom, spread)
+        fallen, spread = self._filter.take_fallen_share(), self._matched_spread
+        is_sure = self._quality is not None and self._quality.is_sure
+        if fallen == 0.0 and is_sure and self._odom_in_map is not None and spread is not None:
+            return _MATCHED_SHARE, partial(gaussian_poses, self._odom_in_map @ self._base_in_odom, spread)
         return fallen, self._free_space.draw
 
     def _estimate(self, base_in_odom: Pose2, scan: Scan) -> Estimate:
@@ -232,7 +232,7 @@ class Localizer:
         if self._settings.refine_pose:
             ends_xy = all_beams(scan, self._settings).ends_xy
             base_in_map = matched(base_in_map, covariance, ends_xy, self._likelihood.field)
-            self._matched = base_in_map @ base_in_odom.inverse(), covariance
+            self._matched_spread = covariance
         if cluster is not self.particles:
             _, covariance = mean_and_covariance(self.particles)
         self._odom_in_map = base_in_map @ base_in_odom.inverse()
