@@ -69,7 +69,7 @@ class Arrival:
             return self._watch(fit)
         if self._is_sent_again:
             self._way = max(self._way, self._goal.distance_to(robot))
-        if not isinstance(told, GoalReached) or fit is None or fit >= LEAST_FIT or self._is_surely_near:
+        if not isinstance(told, GoalReached) or not _speaks_against(fit) or self._is_surely_near:
             self._has_arrived = isinstance(told, GoalReached)
             return told
         if self._is_sent_again:
@@ -83,12 +83,17 @@ class Arrival:
         return self._was_found and self._way < SHORT_WAY
 
     def _watch(self, fit: Optional[float]) -> Optional[GoalLeft]:
-        was_sure, self._is_sure = self._is_sure, fit is not None and fit >= LEAST_FIT
-        return GoalLeft() if was_sure and fit is not None and fit < LEAST_FIT else None
+        was_sure, self._is_sure = self._is_sure, fit is not None and not _speaks_against(fit)
+        return GoalLeft() if was_sure and _speaks_against(fit) else None
 
     def _stand(self, fit: Optional[float], now: float) -> Optional[SendAgain]:
         if self._standing is None or self._standing.at(now) < STANDING_SECONDS:
             return None
         self._standing, self._is_sent_again = None, True
-        self._was_found = fit is None or fit >= LEAST_FIT
+        self._was_found = not _speaks_against(fit)
         return SendAgain()
+
+
+def _speaks_against(fit: Optional[float]) -> bool:
+    """Whether the last scans do against the robot's pose; what nobody has told does not."""
+    return fit is not None and fit < LEAST_FIT
