@@ -19,7 +19,7 @@ _MAX_STEPS = 20
 # Phi of dynamic covariance scaling: the chi-square of a loop edge at which its influence starts to fade.
 _FREE_CHI_SQUARE = 10.0
 # From this one on it has as good as none.
-_UNMET_CHI_SQUARE = 100.0
+_FADED_CHI_SQUARE = 100.0
 # A new edge's influence is narrowed down by this factor at a time.
 _RELAXATION = 0.1
 
@@ -114,7 +114,7 @@ def optimise(poses: np.ndarray, edges: Edges, tolerance: float, fresh: int = 0) 
     is_fresh = np.arange(len(edges)) >= len(edges) - fresh
     while True:
         found = _descend_believing(poses, edges, is_fresh, tolerance)
-        is_unmet = is_fresh & (chi_squares(found, edges) > _UNMET_CHI_SQUARE)
+        is_unmet = is_fresh & (chi_squares(found, edges) > _FADED_CHI_SQUARE)
         if not is_unmet.any():
             return np.column_stack((found[:, :2], wrap(found[:, 2])))
         is_fresh &= ~is_unmet
