@@ -33,7 +33,7 @@ def places(arena):
 @pytest.mark.parametrize("source", [Fields(), Crossings()], ids=["fields", "crossings"])
 def test_a_seed_has_a_world_of_its_own(source):
     uncached = type(source).arena.__globals__["_arena"].__wrapped__
-    arguments = (1,) if isinstance(source, Fields) else (source.slowest, source.fastest, 1)
+    arguments = (1,) if isinstance(source, Fields) else (source, 1)
     assert places(source.arena(1)) == places(uncached(*arguments)) != places(source.arena(2))
 
 
@@ -43,11 +43,18 @@ def test_there_is_a_way_through_every_field():
     assert len(set(ways)) > 1
 
 
-def test_crossings_go_there_and_back_without_a_leap():
-    for course in Crossings(1.0, 1.0).arena(3).world.courses:
+@pytest.mark.parametrize("legs", [1, 4])
+def test_crossings_go_there_and_back_without_a_leap(legs):
+    for course in Crossings(1.0, 1.0, legs=legs).arena(3).world.courses:
         places_xy = np.array([course.at(stamp) for stamp in np.arange(0.0, 100.0, 0.1)])
         speeds = np.hypot(*np.diff(places_xy, axis=0).T) / 0.1
         assert np.median(speeds) > 0.85 and speeds.max() < 1.15
+
+
+def test_crossings_are_as_many_and_turn_as_often_as_asked_for():
+    courses = Crossings(1.0, 1.0, fewest=20, most=22, legs=4).arena(3).world.courses
+    assert 20 <= len(courses) <= 22
+    assert {len(course.times) for course in courses} == {2 * 4 + 2}
 
 
 @pytest.fixture

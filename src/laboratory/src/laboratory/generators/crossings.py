@@ -19,18 +19,25 @@ from sim_bridge.world import Body, World
 HALF, THICKNESS, RADIUS, HEIGHT = 10.0, 0.5, 0.5, 1.0
 START, GOAL_IN_ODOM = Pose2(11.0, 0.0, math.pi), Pose2(20.0, 0.0)
 SLOWEST, FASTEST, FEWEST, MOST = 0.5, 1.9, 8, 14
+MOST_CYLINDERS, MOST_LEGS = 60, 20
 _STREAM = 45
 
 
 @dataclass(frozen=True)
 class Crossings:
-    """``slowest``, ``fastest``: m/s; of each seed all cylinders are about as fast."""
+    """``slowest``, ``fastest``: m/s; of each seed all cylinders are about as fast.
+
+    There are ``fewest`` to ``most``, each with a way from side to side of so many straight ``legs``.
+    """
 
     slowest: float = SLOWEST
     fastest: float = FASTEST
+    fewest: int = FEWEST
+    most: int = MOST
+    legs: int = 1
 
     def arena(self, seed: int) -> Arena:
-        return _arena(self.slowest, self.fastest, seed)
+        return _arena(self, seed)
 
     def files(self) -> Tuple[Path, ...]:
         return ()
@@ -40,16 +47,16 @@ class Crossings:
 
 
 @lru_cache(maxsize=64)
-def _arena(slowest: float, fastest: float, seed: int) -> Arena:
+def _arena(source: Crossings, seed: int) -> Arena:
     rng = np.random.default_rng([seed, _STREAM])
-    speed = rng.uniform(slowest, fastest)
+    speed = rng.uniform(source.slowest, source.fastest)
     bodies: List[Body] = [FLOOR, *_walls()]
     courses = []
-    for number in range(rng.integers(FEWEST, MOST, endpoint=True)):
-        ends_xy = _ends(rng)
-        post_there = post(f"crossing_{number}", Pose2(*ends_xy[0]), RADIUS, HEIGHT, is_on_course=True)
+    for number in range(rng.integers(source.fewest, source.most, endpoint=True)):
+        way_xy = _way(source.legs, rng)
+        post_there = post(f"crossing_{number}", Pose2(*way_xy[0]), RADIUS, HEIGHT, is_on_course=True)
         bodies.append(post_there)
-        courses.append(_course(post_there.name, ends_xy, speed * rng.uniform(0.9, 1.1), rng))
+        courses.append(_course(post_there.name, way_xy, speed * rng.uniform(0.9, 1.1), rng))
     world = World(f"crossings {seed}", tuple(bodies), courses=tuple(courses))
     return Arena(world, None, f"crossings at {speed:.1f} m/s", GOAL_IN_ODOM.x)
 
@@ -63,29 +70,40 @@ def _walls() -> List[Body]:
     ]
 
 
-def _ends(rng: np.random.Generator) -> np.ndarray:
-    """From somewhere on one side to somewhere on the other, (2, 2)."""
-    along = rng.uniform(-HALF + 2.0 * RADIUS, HALF - 2.0 * RADIUS, 2)
-    across = np.array([-1.0, 1.0]) * (HALF - 2.0 * RADIUS)
-    return np.column_stack((along, across) if rng.random() < 0.7 else (across, along))
+def _way(legs: int, rng: np.random.Generator) -> np.ndarray:
+    """From somewhere on one side, in so many straight legs, to somewhere on the other, (legs + 1, 2)."""
+    most = HALF - 2.0 * RADIUS
+    along = rng.uniform(-most, most, 2)
+    across = np.array([-most, most])
+    ends_xy = np.column_stack((along, across) if rng.random() < 0.7 else (across, along))
+    return np.vstack((ends_xy[:1], rng.uniform(-most, most, (legs - 1, 2)), ends_xy[1:]))
 
 
-def _course(link: str, ends_xy: np.ndarray, speed: float, rng: np.random.Generator) -> Course:
+def _course(link: str, way_xy: np.ndarray, speed: float, rng: np.random.Generator) -> Course:
     """There and back for ever, begun anywhere on the way."""
-    there = float(np.linalg.norm(ends_xy[1] - ends_xy[0])) / speed
-    begun = rng.uniform(0.0, 2.0 * there)
-    turns = np.array([-2.0 * there, -there, 0.0, there, 2.0 * there, 3.0 * there, 4.0 * there])
-    inner = turns[(turns > begun) & (turns < begun + 2.0 * there)]
-    times = np.concatenate(([begun], inner, [begun + 2.0 * there]))
-    share = np.abs((times / there + 1.0) % 2.0 - 1.0)
-    return Course(link, times - begun, ends_xy[0] + share[:, None] * (ends_xy[1] - ends_xy[0]))
+    reached = np.concatenate(([0.0], np.linalg.norm(np.diff(way_xy, axis=0), axis=1).cumsum())) / speed
+    round_trip = 2.0 * float(reached[-1])
+    begun = rng.uniform(0.0, round_trip)
+    corners = np.concatenate((reached, round_trip - reached[-2:0:-1]))
+    ahead = np.sort((corners - begun) % round_trip)
+    times = np.concatenate(([0.0], ahead[(ahead > 0.0) & (ahead < round_trip)], [round_trip]))
+    on_way = (begun + times) % round_trip
+    on_way = np.minimum(on_way, round_trip - on_way)
+    return Course(link, times, np.column_stack([np.interp(on_way, reached, xy) for xy in way_xy.T]))
 
 
 def read_crossings(table: Table, folder: Path) -> Crossings:
-    """``crossings``: the least and the greatest speed, m/s."""
+    """``crossings``: the least and the greatest ``speed``, m/s; perhaps how many ``cylinders`` at least and at
+    most, and the ``legs`` of their ways.
+    """
     table.allow_only("crossings")
     part = table.table("crossings")
-    part.allow_only("speed")
+    part.allow_only("speed", "cylinders", "legs")
     slowest, fastest = part.numbers("speed", "least, greatest")
     part.check(0.0 < slowest <= fastest <= 5.0, "speed", "two speeds up to 5 m/s, the lesser first")
-    return Crossings(slowest, fastest)
+    fewest, most = part.numbers("cylinders", "least, most") if "cylinders" in part else (FEWEST, MOST)
+    are_counts = fewest == int(fewest) and most == int(most) and 0 <= fewest <= most <= MOST_CYLINDERS
+    part.check(are_counts, "cylinders", f"two counts up to {MOST_CYLINDERS}, the lesser first")
+    legs = part.count("legs", 1)
+    part.check(legs <= MOST_LEGS, "legs", f"at most {MOST_LEGS}")
+    return Crossings(slowest, fastest, int(fewest), int(most), legs)
