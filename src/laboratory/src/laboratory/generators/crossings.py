@@ -93,8 +93,8 @@ def _course(link: str, way_xy: np.ndarray, speed: float, rng: np.random.Generato
 
 
 def read_crossings(table: Table, folder: Path) -> Crossings:
-    """``crossings``: the least and the greatest ``speed``, m/s; perhaps how many ``cylinders`` at least and at
-    most, and the ``legs`` of their ways.
+    """``crossings``: the least and the greatest ``speed``, m/s; perhaps how many ``cylinders`` at least and
+    at most, and the ``legs`` of their ways.
     """
     table.allow_only("crossings")
     part = table.table("crossings")
