@@ -59,6 +59,33 @@ def test_a_thing_a_metre_wide_that_moves_is_tracked():
         assert radius == pytest.approx(0.5, abs=0.15)
 
 
+def test_what_passes_close_by_is_as_wide_as_from_afar():
+    def cart_at(t):
+        return 1.9, 0.0 + 1.0 * t
+
+    found = watch(room(8.0, 8.0), lambda t: Pose2(1.0, 4.0), cart_at, 7.0, radius=0.5)
+    widths = [rows[0][4] for _, rows in found[20:] if len(rows)]
+    assert len(widths) > 40
+    assert 0.43 < min(widths) <= max(widths) < 0.57
+
+
+def test_posts_that_hide_each_other_do_not_move():
+    rng = np.random.default_rng(5)
+    posts = [xy for xy in rng.uniform((1.0, 0.5), (11.0, 7.5), (90, 2)) if abs(xy[1] - 4.0) > 0.6]
+    lookout = Lookout(9.0, True)
+    found = watch(
+        room(12.0, 8.0),
+        lambda t: Pose2(1.0 + 1.5 * t, 4.0),
+        lambda t: posts,
+        5.0,
+        radius=0.08,
+        lookout=lookout,
+    )
+    moving = [len(rows) for _, rows in found]
+    print(f"{np.mean(moving):.2f} a look")
+    assert np.mean(moving) < 0.2
+
+
 def test_who_comes_towards_a_robot_that_has_just_started_is_found_in_time():
     found = watch(room(8.0, 4.0), lambda t: Pose2(1.0, 2.0), lambda t: (4.0 - 1.2 * t, 2.0), 1.0)
     first = next(stamp for stamp, rows in found if len(rows))

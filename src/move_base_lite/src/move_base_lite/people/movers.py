@@ -50,16 +50,17 @@ class Movers:
             self._tracks.clear()
         view = View(base_in_odom @ sighting.sensor_in_base, sighting, lookout.reach)
         things = things_in(view)
-        before, lately = self._view_before(view.stamp), self._view_at(view.stamp - GLANCE)
+        before, shortly = self._view_before(view.stamp), self._view_at(view.stamp - BLIND)
+        lately = self._view_at(view.stamp - GLANCE)
         for track in self._tracks:
             track.predict(view.stamp)
         for thing in things:
-            has_come = before is not None and before.share_seen_through(thing.points_xy) >= SHARE_FREE
+            has_come = _was_free(thing, before)
             is_watched = lookout.watches_all or bool(self._tracks)
             is_new = has_come or (is_watched and _is_news(thing, view.stamp, lately))
             own = self._track_of(thing, -math.inf if is_new else view.stamp - OVERLOOKED)
             if own is not None:
-                own.correct(thing, has_come)
+                own.correct(thing, has_come, has_come or _was_free(thing, shortly))
             elif has_come or (is_new and lookout.watches_all):
                 self._tracks.append(Track(thing, view.stamp))
         view.things = things
@@ -97,6 +98,11 @@ class Movers:
         """The nearest track that the thing may belong to and that nothing else belongs to."""
         candidates = [track for track in self._tracks if track.may_be(thing, seen_since)]
         return min(candidates, key=lambda track: track.distance_to(thing)) if candidates else None
+
+
+def _was_free(thing: Thing, before: Optional[View]) -> bool:
+    """Whether the thing is where that view saw nothing."""
+    return before is not None and before.share_seen_through(thing.points_xy) >= SHARE_FREE
 
 
 def _is_news(thing: Thing, stamp: float, before: Optional[View]) -> bool:

@@ -27,8 +27,9 @@ AROUND = 0.1
 class Track:
     """A thing at constant velocity (Kalman filter; both axes alike, so one covariance serves them).
 
-    When its velocity was last known it surely moved, ``is_moving``: it had come where it was free, or gone
-    far and fast while it was watched; or it surely stood, ``stands``, and had never moved.
+    When its velocity was last known it surely moved, ``is_moving``: it had come where it was free, or had
+    gone far and fast while it was watched, and entered what was free: what stands seems to go, too, as other
+    things hide one side of it after the other. Or it surely stood, ``stands``, and had never moved.
     """
 
     def __init__(self, thing: Thing, stamp: float):
@@ -38,6 +39,7 @@ class Track:
         self._first_xy = self._position
         self.is_moving = self.stands = False
         self.moved_at = -math.inf
+        self._has_entered = False
 
     def predict(self, stamp: float) -> None:
         """Moves on in time."""
@@ -67,8 +69,9 @@ class Track:
         is_free = view.share_seen_through(self._position[None, :]) > 0.0
         return view.stamp - self.seen_at <= (gone if is_free else hidden)
 
-    def correct(self, thing: Thing, has_come: bool) -> None:
-        """Is seen there; ``has_come``: where it was free before."""
+    def correct(self, thing: Thing, has_come: bool, has_entered: bool) -> None:
+        """Is there; ``has_come``: where it was free a while before; ``has_entered``: or shortly before."""
+        self._has_entered = self._has_entered or has_entered
         self._radius *= min(max(thing.radius / self._radius, SHRINKING), GROWING)
         prior = SEEN**2 / self._covariance[0, 0]
         off = middle_of(thing.points_xy, self._position, self._radius, prior) - self._position
@@ -81,7 +84,9 @@ class Track:
         self.seen_at = self._stamp
         if self._covariance[1, 1] < KNOWN**2:
             speed = math.hypot(*self._velocity)
-            has_gone = speed >= FAST and math.dist(self._position, self._first_xy) >= WAY
+            has_gone = (
+                self._has_entered and speed >= FAST and math.dist(self._position, self._first_xy) >= WAY
+            )
             self.is_moving = (has_come and speed >= MOVING) or has_gone
             self.stands = not has_come and self.moved_at == -math.inf and not self.is_moving
         if self.is_moving:

@@ -19,6 +19,9 @@ HOLLOW = 0.15
 # Metres by which a beam must have gone beyond a place that was free.
 BEYOND = 0.12
 DIRECTIONS = 180
+# Of half the angle that a thing fills, from which on it shows whether it is round; the share of a circle's depth
+# that is enough.
+LEAST_SINE, ROUND = 0.2, 0.5
 
 
 class View:
@@ -164,11 +167,10 @@ def _groups(points_xy, x, y):
         cuts, pieces = _cuts(points_xy, first + start, first + end)
         for piece in range(pieces):
             from_, to = cuts[piece], cuts[piece + 1]
-            if to - from_ >= FEWEST_BEAMS:
+            if to - from_ >= FEWEST_BEAMS and _chord(points_xy, from_, to) <= WIDEST:
                 middles[count] = _middle(points_xy, from_, to, x, y)
-                if 2.0 * middles[count, 2] <= WIDEST:
-                    groups[count] = from_ - first, to - first
-                    count += 1
+                groups[count] = from_ - first, to - first
+                count += 1
         start = end
     return first, groups[:count], middles[:count]
 
@@ -218,17 +220,43 @@ def _apart(points_xy, i):
 
 
 @numba.njit(cache=True)
-def _middle(points_xy, start, end, x, y):
-    """The middle of a thing, x and y, and its radius; its points go on behind the last with the first."""
-    low_x = low_y = nearest = np.inf
+def _chord(points_xy, start, end):
+    """Metres from corner to corner; the points go on behind the last with the first."""
+    low_x = low_y = np.inf
     high_x = high_y = -np.inf
-    sum_x = sum_y = 0.0
     for i in range(start, end):
         at_x, at_y = points_xy[i % points_xy.shape[0]]
         low_x, high_x = min(low_x, at_x), max(high_x, at_x)
         low_y, high_y = min(low_y, at_y), max(high_y, at_y)
-        nearest = min(nearest, math.hypot(at_x - x, at_y - y))
-        sum_x, sum_y = sum_x + at_x - x, sum_y + at_y - y
-    radius = 0.5 * math.hypot(high_x - low_x, high_y - low_y)
+    return math.hypot(high_x - low_x, high_y - low_y)
+
+
+@numba.njit(cache=True)
+def _middle(points_xy, start, end, x, y):
+    """The middle of a thing, x and y, and its radius."""
+    size = points_xy.shape[0]
+    nearest, sum_x, sum_y = np.inf, 0.0, 0.0
+    for i in range(start, end):
+        off_x, off_y = points_xy[i % size, 0] - x, points_xy[i % size, 1] - y
+        nearest = min(nearest, math.hypot(off_x, off_y))
+        sum_x, sum_y = sum_x + off_x, sum_y + off_y
+    first, last = points_xy[start % size], points_xy[(end - 1) % size]
+    round_radius = _radius_if_round(first[0] - x, first[1] - y, last[0] - x, last[1] - y, nearest)
+    radius = max(0.5 * _chord(points_xy, start, end), round_radius)
     away = (nearest + radius) / math.hypot(sum_x, sum_y)
     return x + away * sum_x, y + away * sum_y, radius
+
+
+@numba.njit(cache=True)
+def _radius_if_round(first_x, first_y, last_x, last_y, nearest):
+    """Of the circle that the outermost beams touch, if the nearest lies as far before them as it would; else
+    0. From near, a laser sees far less than half of it.
+    """
+    to_first, to_last = math.hypot(first_x, first_y), math.hypot(last_x, last_y)
+    angle_c = (first_x * last_x + first_y * last_y) / max(to_first * to_last, 1e-9)
+    c, s = math.sqrt(0.5 * max(1.0 + angle_c, 0.0)), math.sqrt(0.5 * max(1.0 - angle_c, 0.0))
+    if s < LEAST_SINE or c < LEAST_SINE:
+        return 0.0
+    radius = 0.5 * math.hypot(last_x - first_x, last_y - first_y) / c
+    before_ends = radius * (c / s - 1.0 / s + 1.0)
+    return radius if min(to_first, to_last) - nearest > ROUND * before_ends else 0.0
