@@ -6,7 +6,7 @@ import numpy as np
 
 from move_base_lite.control.local_planner import Plan, Situation, Trajectory
 from move_base_lite.control.mppi.rollout import Limits, Weights, arguments_of, best_way
-from move_base_lite.control.mppi.samples import KNOTS, fan, smooth_noise
+from move_base_lite.control.mppi.samples import KNOTS, evasions, fan, smooth_noise
 from move_base_lite.control.mppi.scene import scene_of
 from move_base_lite.control.mppi.settings import MppiSettings
 from move_base_lite.errors import ControlError
@@ -29,6 +29,7 @@ class PathIntegral:
         steps = max(KNOTS, round(settings.horizon / period))
         self._noise = smooth_noise(np.random.default_rng(settings.seed), settings, steps)
         self._fan = fan(settings, steps)
+        self._fan_and_evasions = np.concatenate((self._fan, evasions(settings, steps)))
         self._mean = np.zeros((steps, 2))
         self._weights = Weights(
             safe_distance=settings.safe_distance,
@@ -47,7 +48,8 @@ class PathIntegral:
         start = np.array([*situation.base_in_local.as_array(), twist.v, twist.omega])
         scene = scene_of(situation, plan, self._settings.heed_global_costmap)
         problem = arguments_of(scene, self._limits(limits), self._weights)
-        ways = (self._noise, self._mean, self._fan)
+        others = self._fan_and_evasions if len(situation.movers) else self._fan
+        ways = (self._noise, self._mean, others)
         mean, cost, poses, speeds = best_way(*ways, start, self._settings.temperature, *problem)
         if not math.isfinite(cost):
             self._mean[:] = 0.0

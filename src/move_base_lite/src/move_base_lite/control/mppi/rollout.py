@@ -19,6 +19,8 @@ SURELY_FREE = 1.5
 SMALL_ANGLE = 0.2
 # m/s that a robot counts as at least when it lingers near an obstacle.
 CREEPING = 0.1
+# By how much what moves may be nearer than expected: m, and m/s for the time ahead.
+DOUBT, DOUBT_GROWTH = 0.1, 0.1
 
 
 class Limits(NamedTuple):
@@ -125,9 +127,9 @@ def drive(wanted, start, scene, limits, weights, poses, speeds):
     cell = 1.0 / scene.cells_per_metre
     enough, aside = _exact_below(scene, limits, weights), max(weights.mover_distance, cell)
     still_room = room_at(scene, x, y, c, s, enough)
-    least_room = min(cell, still_room, room_beside_movers(scene, x, y, 0.0, aside))
+    least_room, least_aside = min(cell, still_room), min(cell, room_beside_movers(scene, x, y, 0.0, aside))
     allowed_v = _highest_speed_in(still_room, limits)
-    cost, moved, turned, seconds_to_stop = 0.0, 0.0, 0.0, abs(v) / limits.acceleration
+    cost, moved, turned, risk, seconds_to_stop = 0.0, 0.0, 0.0, 0.0, abs(v) / limits.acceleration
     to_go = value_at(scene.to_go, scene, x, y)
     for step in range(steps):
         v, omega = _reached(v, omega, wanted[step], allowed_v, limits)
@@ -140,10 +142,12 @@ def drive(wanted, start, scene, limits, weights, poses, speeds):
             still_room = room_at(scene, x_next, y_next, c, s, enough)
             allowed_v = _highest_speed_in(still_room, limits)
         passing_room = room_beside_movers(scene, x_next, y_next, (step + 1) * dt, aside)
-        if min(still_room, passing_room) < least_room:
+        risk_before, risk = risk, max(risk, _risk(passing_room - least_aside, (step + 1) * dt))
+        cost += (1.0 - step / steps) * weights.mover * (risk - risk_before)
+        if still_room < least_room or risk == 1.0:
             if still_room < least_room and (step - 1) * dt < seconds_to_stop:
                 return np.inf
-            cost += (1.0 - step / steps) * _cut_short(steps * dt * to_go, passing_room < least_room, weights)
+            cost += (1.0 - step / steps) * (1.0 + weights.delay * steps * dt * to_go)
             poses[step + 1 :], speeds[step:] = poses[step], 0.0
             break
         x, y, yaw = x_next, y_next, yaw_next
@@ -197,9 +201,9 @@ def _with_step(cost, v, omega, still_room, passing_room, to_go, limits, weights)
 
 
 @numba.njit(cache=True)
-def _cut_short(delay, is_moving, weights):
-    """What it costs to get no farther, for good: in front of what stays, or of what moves."""
-    return 1.0 + weights.delay * delay + (weights.mover if is_moving else 0.0)
+def _risk(room, seconds):
+    """How likely what moves is touched, so many seconds from now, if it is expected ``room`` metres away."""
+    return min(max(0.5 - 0.5 * room / (DOUBT + DOUBT_GROWTH * seconds), 0.0), 1.0)
 
 
 @numba.njit(cache=True)

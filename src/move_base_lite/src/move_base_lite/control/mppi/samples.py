@@ -6,6 +6,8 @@ from move_base_lite.control.mppi.settings import MppiSettings
 
 # Points in time at which the speeds of a sample are drawn; between them they change evenly.
 KNOTS = 5
+# Share of the time that the first of two arcs takes.
+FIRST = 1.0 / 3.0
 
 
 def smooth_noise(rng: np.random.Generator, settings: MppiSettings, steps: int) -> np.ndarray:
@@ -25,3 +27,15 @@ def fan(settings: MppiSettings, steps: int) -> np.ndarray:
     rates = np.linspace(-settings.max_vel_theta, settings.max_vel_theta, 11)
     arcs = np.array([(v, omega) for v in speeds for omega in rates])
     return np.repeat(arcs[:, None, :], steps, axis=1)
+
+
+def evasions(settings: MppiSettings, steps: int) -> np.ndarray:
+    """Ways (N, steps, 2) that let something pass and then go on, or get out of its way and then stop: every
+    two of some arcs, one after the other.
+    """
+    speeds = [settings.max_vel_x, 0.0, settings.min_vel_x]
+    rates = settings.max_vel_theta * np.array([-1.0, -0.3, 0.0, 0.3, 1.0])
+    arcs = np.array([(v, omega) for v in speeds for omega in rates])
+    first, second = (~np.eye(len(arcs), dtype=bool)).nonzero()
+    is_first = (np.arange(steps) < steps * FIRST)[None, :, None]
+    return np.where(is_first, arcs[first, None], arcs[second, None])

@@ -1,0 +1,44 @@
+"""What a robot does that something is about to run into."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from move_base_lite.check import rooms
+from move_base_lite.control import Plan
+from move_base_lite.control.mppi import MPPI
+from move_base_lite.control.mppi.samples import evasions
+from planar import Pose2, Twist2
+
+HERE_XY = np.array([3.0, 1.75])
+MOVER_RADIUS = 0.25
+
+
+def command(bearing, room, closing, twist):
+    """In an open room, on the way to the goal, where something comes from a side, rad, so near, so fast."""
+    open_room = rooms.room_of("open")
+    aside = np.array([np.cos(bearing), np.sin(bearing)])
+    mover_xy, velocity = HERE_XY + (rooms.RADIUS + MOVER_RADIUS + room) * aside, -closing * aside
+    situation = replace(
+        rooms.situation_of(open_room.costmap, Pose2(*HERE_XY, 0.0), twist),
+        movers=np.array([[*mover_xy, *velocity, MOVER_RADIUS]]),
+    )
+    planner = MPPI.make(MPPI.settings(), rooms.PERIOD)
+    plan = Plan(np.linspace(HERE_XY, open_room.goal_xy, 20), 2.0)
+    return planner.follow(situation, plan, Twist2(0.5, 1.5)).command
+
+
+@pytest.mark.parametrize("bearing", [1.6, -1.6, 2.6, 3.1])
+def test_a_robot_that_stands_drives_off_even_if_it_will_be_come_closer_to_before(bearing):
+    assert command(bearing, 0.04, 0.3, Twist2()).v > 0.1
+
+
+def test_a_robot_goes_back_from_who_comes_from_ahead():
+    assert command(0.0, 0.04, 0.3, Twist2()).v < 0.0
+
+
+def test_evasions_are_of_two_different_arcs_each():
+    ways = evasions(MPPI.settings(), 20)
+    assert (ways[:, 0] != ways[:, -1]).any(axis=1).all()
+    assert len(np.unique(ways[:, [0, -1]].reshape(len(ways), 4), axis=0)) == len(ways) == 15 * 14
