@@ -19,8 +19,8 @@ HOLLOW = 0.15
 # Metres by which a beam must have gone beyond a place that was free.
 BEYOND = 0.12
 DIRECTIONS = 180
-# Of half the angle that a thing fills, from which on it shows whether it is round; the share of a circle's depth
-# that is enough.
+# Of half the angle that a thing fills, from which on it shows whether it is round; the share of a circle's
+# depth that is enough.
 LEAST_SINE, ROUND = 0.2, 0.5
 
 
