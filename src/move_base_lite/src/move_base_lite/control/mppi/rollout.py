@@ -19,7 +19,7 @@ SURELY_FREE = 1.5
 SMALL_ANGLE = 0.2
 # m/s that a robot counts as at least when it lingers near an obstacle.
 CREEPING = 0.1
-# By how much what moves may be nearer than expected: m, and m/s for the time ahead.
+# See _doubt: m, and m/s for the time ahead.
 DOUBT, DOUBT_GROWTH = 0.1, 0.1
 
 
@@ -117,22 +117,20 @@ def _add(average, weight, way):
 def drive(wanted, start, scene, limits, weights, poses, speeds):
     """The cost of a robot that is asked for the speeds ``wanted`` (N, 2), in metres left to drive.
 
-    Fills in the poses (N + 1, 3) and speeds (N, 2), those it can reach, cut to what its clearance allows. The
-    cost is inf if it hits what stays before it could have stopped. A robot in touch may move as long as it
-    never touches at more points.
+    Fills in the poses (N + 1, 3) and speeds (N, 2), those it can reach, cut to what its clearance allows. It is
+    inf if it hits what stays before it could have stopped. A robot in touch may move if no more points touch.
     """
     steps, dt = wanted.shape[0], limits.period
     x, y, yaw, v, omega = start
     c, s, poses[0] = math.cos(yaw), math.sin(yaw), (x, y, yaw)
-    cell = 1.0 / scene.cells_per_metre
-    enough, aside = _exact_below(scene, limits, weights), max(weights.mover_distance, cell)
+    cell, enough = 1.0 / scene.cells_per_metre, _exact_below(scene, limits, weights)
+    aside = max(weights.mover_distance, cell + _doubt(steps * dt))
     still_room = room_at(scene, x, y, c, s, enough)
     least_room, least_aside = min(cell, still_room), min(cell, room_beside_movers(scene, x, y, 0.0, aside))
-    allowed_v = _highest_speed_in(still_room, limits)
     cost, moved, turned, risk, seconds_to_stop = 0.0, 0.0, 0.0, 0.0, abs(v) / limits.acceleration
     to_go = value_at(scene.to_go, scene, x, y)
     for step in range(steps):
-        v, omega = _reached(v, omega, wanted[step], allowed_v, limits)
+        v, omega = _reached(v, omega, wanted[step], still_room, limits)
         ahead_c, ahead_s = _turned(c, s, 0.5 * omega * dt)
         x_next, y_next, yaw_next = x + v * dt * ahead_c, y + v * dt * ahead_s, yaw + omega * dt
         c, s = _turned(ahead_c, ahead_s, 0.5 * omega * dt)
@@ -140,14 +138,14 @@ def drive(wanted, start, scene, limits, weights, poses, speeds):
         if moved > CHECKED_DISTANCE or turned > CHECKED_ANGLE or step == steps - 1:
             moved, turned = 0.0, 0.0
             still_room = room_at(scene, x_next, y_next, c, s, enough)
-            allowed_v = _highest_speed_in(still_room, limits)
         passing_room = room_beside_movers(scene, x_next, y_next, (step + 1) * dt, aside)
-        risk_before, risk = risk, max(risk, _risk(passing_room - least_aside, (step + 1) * dt))
-        cost += (1.0 - step / steps) * weights.mover * (risk - risk_before)
+        left, risk_before = 1.0 - step / steps, risk
+        risk = max(risk, _risk(passing_room - least_aside, (step + 1) * dt))
+        cost += left * weights.mover * (risk - risk_before)
         if still_room < least_room or risk == 1.0:
             if still_room < least_room and (step - 1) * dt < seconds_to_stop:
                 return np.inf
-            cost += (1.0 - step / steps) * (1.0 + weights.delay * steps * dt * to_go)
+            cost += left * (1.0 + weights.delay * steps * dt * to_go)
             poses[step + 1 :], speeds[step:] = poses[step], 0.0
             break
         x, y, yaw = x_next, y_next, yaw_next
@@ -166,8 +164,9 @@ def _exact_below(scene, limits, weights):
 
 
 @numba.njit(cache=True)
-def _reached(v, omega, wanted, allowed_v, limits):
-    """The speeds that a robot has after a period in which it is asked for others."""
+def _reached(v, omega, wanted, room, limits):
+    """The speeds that a robot with so much ``room`` has after a period in which it is asked for others."""
+    allowed_v = _highest_speed_in(room, limits)
     v = _towards(v, wanted[0], limits.acceleration * limits.period)
     v = min(max(v, limits.lowest_v, -allowed_v), allowed_v)
     omega = _towards(omega, wanted[1], limits.turn_acceleration * limits.period)
@@ -203,7 +202,13 @@ def _with_step(cost, v, omega, still_room, passing_room, to_go, limits, weights)
 @numba.njit(cache=True)
 def _risk(room, seconds):
     """How likely what moves is touched, so many seconds from now, if it is expected ``room`` metres away."""
-    return min(max(0.5 - 0.5 * room / (DOUBT + DOUBT_GROWTH * seconds), 0.0), 1.0)
+    return min(max(0.5 - 0.5 * room / _doubt(seconds), 0.0), 1.0)
+
+
+@numba.njit(cache=True)
+def _doubt(seconds):
+    """Metres by which what moves may be nearer than expected, so many seconds ahead."""
+    return DOUBT + DOUBT_GROWTH * seconds
 
 
 @numba.njit(cache=True)
