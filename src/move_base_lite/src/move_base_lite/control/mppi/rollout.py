@@ -117,8 +117,8 @@ def _add(average, weight, way):
 def drive(wanted, start, scene, limits, weights, poses, speeds):
     """The cost of a robot that is asked for the speeds ``wanted`` (N, 2), in metres left to drive.
 
-    Fills in the poses (N + 1, 3) and speeds (N, 2), those it can reach, cut to what its clearance allows. It is
-    inf if it hits what stays before it could have stopped. A robot in touch may move if no more points touch.
+    Fills in the poses (N + 1, 3) and speeds (N, 2), those it can reach, cut to what its clearance allows; it
+    is inf if it hits what stays before it could have stopped. In touch it may move if no more points touch.
     """
     steps, dt = wanted.shape[0], limits.period
     x, y, yaw, v, omega = start
