@@ -167,8 +167,9 @@ def _groups(points_xy, x, y):
         cuts, pieces = _cuts(points_xy, first + start, first + end)
         for piece in range(pieces):
             from_, to = cuts[piece], cuts[piece + 1]
-            if to - from_ >= FEWEST_BEAMS and _chord(points_xy, from_, to) <= WIDEST:
-                middles[count] = _middle(points_xy, from_, to, x, y)
+            width = _width(points_xy, from_, to)
+            if to - from_ >= FEWEST_BEAMS and width <= WIDEST:
+                middles[count] = _middle(points_xy, from_, to, x, y, width)
                 groups[count] = from_ - first, to - first
                 count += 1
         start = end
@@ -220,7 +221,7 @@ def _apart(points_xy, i):
 
 
 @numba.njit(cache=True)
-def _chord(points_xy, start, end):
+def _width(points_xy, start, end):
     """Metres from corner to corner; the points go on behind the last with the first."""
     low_x = low_y = np.inf
     high_x = high_y = -np.inf
@@ -232,8 +233,8 @@ def _chord(points_xy, start, end):
 
 
 @numba.njit(cache=True)
-def _middle(points_xy, start, end, x, y):
-    """The middle of a thing, x and y, and its radius."""
+def _middle(points_xy, start, end, x, y, width):
+    """The middle of a thing, x and y, and its radius: half its width, or more if it is round."""
     size = points_xy.shape[0]
     nearest, sum_x, sum_y = np.inf, 0.0, 0.0
     for i in range(start, end):
@@ -242,7 +243,7 @@ def _middle(points_xy, start, end, x, y):
         sum_x, sum_y = sum_x + off_x, sum_y + off_y
     first, last = points_xy[start % size], points_xy[(end - 1) % size]
     round_radius = _radius_if_round(first[0] - x, first[1] - y, last[0] - x, last[1] - y, nearest)
-    radius = max(0.5 * _chord(points_xy, start, end), round_radius)
+    radius = max(0.5 * width, round_radius)
     away = (nearest + radius) / math.hypot(sum_x, sum_y)
     return x + away * sum_x, y + away * sum_y, radius
 

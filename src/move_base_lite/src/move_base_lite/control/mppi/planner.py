@@ -19,8 +19,9 @@ class PathIntegral:
 
     What a way costs is what is left to drive at its end, through free cells and shy of obstacles, in metres,
     with penalties for nearness, turning and driving backwards. A way that touches something ends there; if
-    the robot could not stop before, it does not count. What moves is expected where it will be by then.
-    The random deviations are drawn once, from the seed. What was tried is not shown.
+    the robot could not stop before, it does not count. What moves is expected where it will be by then, the
+    less surely the later; where anything does, ways that evade it are tried as well. The random deviations
+    are drawn once, from the seed. What was tried is not shown.
     """
 
     def __init__(self, settings: MppiSettings, period: float):

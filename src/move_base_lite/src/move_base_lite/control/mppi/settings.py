@@ -51,7 +51,11 @@ class MppiSettings(ControllerSettings):
         0.5, "of the way left while it is left", "1/s", at_least(0.0), dynamic=True
     )
     mover_weight: float = parameter(
-        10.0, "of a way that ends at what moves, less the later it does", "m", at_least(0.0), dynamic=True
+        10.0,
+        "of a way that ends at what moves, less the later and the less surely it does",
+        "m",
+        at_least(0.0),
+        dynamic=True,
     )
     mover_distance: float = parameter(
         0.15, "from the outline to what moves, within which it is dear to be", "m", POSITIVE, dynamic=True
