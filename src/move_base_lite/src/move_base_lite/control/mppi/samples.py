@@ -1,5 +1,7 @@
 """Ways of driving to be tried: speeds and turn rates over time."""
 
+from typing import List
+
 import numpy as np
 
 from move_base_lite.control.mppi.settings import MppiSettings
@@ -25,8 +27,7 @@ def fan(settings: MppiSettings, steps: int) -> np.ndarray:
     """Ways (N, steps, 2) that a stuck mean would not come upon: arcs at some speeds, ahead and back."""
     speeds = [settings.max_vel_x, 0.5 * settings.max_vel_x, settings.creep_vel_x, 0.0, settings.min_vel_x]
     rates = np.linspace(-settings.max_vel_theta, settings.max_vel_theta, 11)
-    arcs = np.array([(v, omega) for v in speeds for omega in rates])
-    return np.repeat(arcs[:, None, :], steps, axis=1)
+    return np.repeat(_arcs(speeds, rates)[:, None, :], steps, axis=1)
 
 
 def evasions(settings: MppiSettings, steps: int) -> np.ndarray:
@@ -35,7 +36,12 @@ def evasions(settings: MppiSettings, steps: int) -> np.ndarray:
     """
     speeds = [settings.max_vel_x, 0.0, settings.min_vel_x]
     rates = settings.max_vel_theta * np.array([-1.0, -0.3, 0.0, 0.3, 1.0])
-    arcs = np.array([(v, omega) for v in speeds for omega in rates])
+    arcs = _arcs(speeds, rates)
     first, second = (~np.eye(len(arcs), dtype=bool)).nonzero()
     is_first = (np.arange(steps) < steps * FIRST)[None, :, None]
     return np.where(is_first, arcs[first, None], arcs[second, None])
+
+
+def _arcs(speeds: List[float], rates: np.ndarray) -> np.ndarray:
+    """Every speed with every turn rate, (N, 2)."""
+    return np.array([(v, omega) for v in speeds for omega in rates])
