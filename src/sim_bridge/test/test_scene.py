@@ -248,6 +248,39 @@ def test_the_rate_of_physics_can_be_changed_and_time_goes_on(scene):
         scene.set_physics_rate(77)
 
 
+@pytest.mark.parametrize("pair", [("wall::link", "crate::link"), ("crate::link", "wall::link")])
+def test_what_stands_holds_what_is_attached_to_it_and_takes_it_along(scene, pair):
+    scene.set_model_motion("crate", at_rest(pose3(5.0, 1.0, 1.5)))
+    scene.attach(*pair)
+    drive(scene, 1.0)
+    np.testing.assert_allclose(scene.models.motion("crate").pose[:3, 3], (5.0, 1.0, 1.5), atol=0.01)
+    scene.set_model_motion("wall", at_rest(pose3(6.0, 0.0, 0.25)))
+    drive(scene, 2.0)
+    np.testing.assert_allclose(scene.models.motion("crate").pose[:3, 3], (6.0, 1.0, 1.5), atol=0.01)
+    scene.detach(*pair)
+    drive(scene, 2.0)
+    assert scene.models.motion("crate").pose[2, 3] == pytest.approx(0.25, abs=0.01)
+    assert scene.models.motion("wall").pose == pytest.approx(pose3(6.0, 0.0, 0.25))
+
+
+def test_what_stands_can_be_attached_to_what_stands_and_let_go(scene):
+    scene.attach("wall::link", "floor::link")
+    drive(scene, 0.1)
+    scene.detach("wall::link", "floor::link")
+    assert scene.models.motion("wall").pose == pytest.approx(pose3(5.0, 0.0, 0.25))
+
+
+def test_what_stands_stays_whatever_it_weighs_and_however_it_is_to_move(scene):
+    up = pose3(5.0, 0.0, 1.25)
+    scene.models.set_mass("wall::link", 3.0, (0.1, 0.2, 0.3), has_weight=True)
+    scene.set_model_motion("wall", Motion(up, np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])))
+    drive(scene, 1.0)
+    assert scene.models.motion("wall").pose == pytest.approx(up)
+    assert not scene.models.motion("wall").linear.any()
+    told = scene.models.mass_properties("wall::link")
+    assert (told.mass, *told.moments) == (3.0, 0.1, 0.2, 0.3)
+
+
 def test_what_is_attached_to_a_robot_goes_with_it_until_it_is_let_go(scene):
     scene.add_robot("robot", LIDAR)
     scene.add([box("parcel", 0.0, mass=0.2)])

@@ -1,47 +1,77 @@
 """Links that are held together for a while, as by a gripper."""
 
 import itertools
-from typing import Dict, Tuple
+from typing import Dict, Optional, Tuple
 
-from sim_bridge.geometry.pose3 import inverse, position, quaternion
+from sim_bridge.geometry.pose3 import IDENTITY, inverse, position, quaternion
 from sim_bridge.physics.bullet import BulletClient, pybullet
 from sim_bridge.physics.frames import centre_of
 from sim_bridge.physics.register import Link, Register
 
 
 class Attachments:
-    """Pairs of links, the first of which holds the second."""
+    """Pairs of links, the first of which holds the second.
+
+    Bullet cannot hold anything to its rigid bodies: what is held to something that stands is held to the
+    world, where that is.
+    """
 
     def __init__(self, bullet: BulletClient, register: Register):
         self._bullet = bullet
         self._register = register
-        self._constraints: Dict[Tuple[str, str], int] = {}
+        self._constraints: Dict[Tuple[str, str], Optional[int]] = {}
+        # What stands and holds something, by the number of the constraint.
+        self._anchors: Dict[int, Link] = {}
 
     def attach(self, first: str, second: str) -> None:
         """Holds two links together as they are now until they are detached; meanwhile they never collide."""
         if (first, second) in self._constraints:
             self.detach(first, second)
         one, other = self._register.links[first], self._register.links[second]
-        other_in_one = inverse(centre_of(self._bullet, one)) @ centre_of(self._bullet, other)
-        self._constraints[first, second] = self._bullet.createConstraint(
+        self._constraints[first, second] = self._hold(one, other)
+        self._let_collide(one, other, False)
+
+    def follow(self) -> None:
+        """What is held to something that stands is held to where that is now."""
+        for number, anchor in self._anchors.items():
+            place = centre_of(self._bullet, anchor)
+            self._bullet.changeConstraint(number, position(place), quaternion(place))
+
+    def _hold(self, one: Link, other: Link) -> Optional[int]:
+        """The number of a new constraint, None if both stand."""
+        if self._register.stands(one.number):
+            one, other = other, one
+        if self._register.stands(one.number):
+            return None
+        place = centre_of(self._bullet, other)
+        other_in_one = inverse(centre_of(self._bullet, one)) @ place
+        is_anchored = self._register.stands(other.number)
+        frame = place if is_anchored else IDENTITY
+        number = self._bullet.createConstraint(
             one.number,
             one.index,
-            other.number,
-            other.index,
+            -1 if is_anchored else other.number,
+            -1 if is_anchored else other.index,
             pybullet.JOINT_FIXED,
             [0.0, 0.0, 0.0],
             position(other_in_one),
-            [0.0, 0.0, 0.0],
+            position(frame),
             quaternion(other_in_one),
+            quaternion(frame),
         )
-        self._let_collide(one, other, False)
+        if is_anchored:
+            self._anchors[number] = other
+        return int(number)
 
     def are_attached(self, first: str, second: str) -> bool:
         return (first, second) in self._constraints
 
     def detach(self, first: str, second: str) -> None:
         """Lets go what was attached in this order."""
-        self._bullet.removeConstraint(self._constraints.pop((first, second)))
+        number = self._constraints.pop((first, second))
+        if number is not None:
+            self._bullet.removeConstraint(number)
+            self._anchors.pop(number, None)
         self._let_collide(self._register.links[first], self._register.links[second], True)
 
     def detach_all(self) -> None:

@@ -31,15 +31,18 @@ def build(bullet: BulletClient, register: Register, tree: Tree, placement: np.nd
     links += [_link(shape, IDENTITY, 0) for shape in more]
     if len(links) >= MOST_PARTS:
         raise WorldError(f"{root.name}: {len(links) + 1} parts hang together, {MOST_PARTS} is the most")
+    stands = all(body.mass is None for body in tree.bodies)
     placed = placement @ root.pose_in_world @ centre
     number = bullet.createMultiBody(
         baseMass=root.mass or 0.0,
         baseCollisionShapeIndex=root_shape,
         basePosition=position(placed),
         baseOrientation=quaternion(placed),
+        # What Bullet calls a rigid body costs next to nothing in each step; it cannot have links.
+        useMaximalCoordinates=int(stands and not links),
         **{key: [link[key] for link in links] for key in (links[0] if links else {})},
     )
-    if any(body.mass is not None for body in tree.bodies):
+    if not stands:
         register.movers.add(number)
     for index, body in _owners(tree, indices, links).items():
         register.own(number, index, body.name)

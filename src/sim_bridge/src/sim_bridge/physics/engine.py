@@ -64,6 +64,8 @@ class Engine:
         self.set_gravity(gravity)
         # Links that are not drawn down, and their masses.
         self._weightless: Dict[str, float] = {}
+        # Of links that stand, what they have been told to weigh, to which Bullet gives no mass.
+        self._told_masses: Dict[str, Tuple[float, Sequence[float]]] = {}
         # What is shifted, as long as nobody puts it elsewhere.
         self._upright: Dict[str, _Upright] = {}
         self.joints = Joints(self._bullet, self._register)
@@ -80,6 +82,7 @@ class Engine:
             self._time_steps(count)
         for name, mass in self._weightless.items():
             self.push(name, (0.0, 0.0, mass * self._gravity), (0.0, 0.0, 0.0))
+        self.attachments.follow()
         self._bullet.stepSimulation()
 
     def mark(self) -> int:
@@ -148,6 +151,7 @@ class Engine:
         self._bullet.removeBody(number)
         self._register.forget(number)
         self._weightless = {key: mass for key, mass in self._weightless.items() if self.has_link(key)}
+        self._told_masses = {key: told for key, told in self._told_masses.items() if self.has_link(key)}
 
     def has_link(self, name: str) -> bool:
         return name in self._register.links
@@ -178,15 +182,19 @@ class Engine:
         return pose
 
     def set_motion(self, name: str, motion: Motion) -> None:
-        """Puts a link to another place, with all that hangs together with it, and sets its velocity."""
+        """Puts a link to another place, with all that hangs together with it, and sets its velocity.
+
+        What stands has none.
+        """
         link = self._register.links[name]
         self._upright.pop(name, None)
         centre = motion.pose @ link.centre
         if link.index >= 0:
             centre = centre @ inverse(centre_of(self._bullet, link)) @ root_of(self._bullet, link)
         self._bullet.resetBasePositionAndOrientation(link.number, position(centre), quaternion(centre))
-        linear = motion.linear + cross(motion.angular, centre[:3, 3] - motion.pose[:3, 3])
-        self._bullet.resetBaseVelocity(link.number, linear.tolist(), motion.angular.tolist())
+        if not self._register.stands(link.number):
+            linear = motion.linear + cross(motion.angular, centre[:3, 3] - motion.pose[:3, 3])
+            self._bullet.resetBaseVelocity(link.number, linear.tolist(), motion.angular.tolist())
 
     def shift(self, places: Iterable[Tuple[str, float, float]]) -> None:
         """Puts bodies that stand alone, by name, x and y, elsewhere, as high and turned as they are."""
@@ -205,7 +213,7 @@ class Engine:
         self._bullet.resetBasePositionAndOrientation(number, (x, y, z), turn)
         (x, y, z_now), turn_now = self._bullet.getBasePositionAndOrientation(number)
         is_rounded = (z_now, turn_now) != (z, turn)
-        if not is_rounded and number not in self._register.movers:
+        if not is_rounded and self._register.stands(number):
             link_above_origin = self.pose_of(name)
             link_above_origin[:2, 3] -= x, y
             self._upright[name] = _Upright(number, x, y, z, turn, link_above_origin)
@@ -222,11 +230,15 @@ class Engine:
     def mass_properties(self, name: str) -> MassProperties:
         link = self._register.links[name]
         mass, _, moments, *_ = self._bullet.getDynamicsInfo(link.number, link.index)
+        mass, moments = self._told_masses.get(name, (mass, moments))
         return MassProperties(mass, link.centre, np.array(moments), name not in self._weightless)
 
     def set_mass(self, name: str, mass: float, moments: Sequence[float], has_weight: bool) -> None:
         """``mass`` in kg, ``moments`` (3,) about the principal axes, kg m^2."""
         link = self._register.links[name]
+        if self._register.stands(link.number):
+            self._told_masses[name] = (mass, moments)
+            return
         self._bullet.changeDynamics(link.number, link.index, mass=mass, localInertiaDiagonal=list(moments))
         self._weightless.pop(name, None)
         if not has_weight:

@@ -51,6 +51,10 @@ class Register:
         self.movers: Set[int] = set()
         self._owners: Dict[Tuple[int, int], str] = {}
 
+    def stands(self, number: int) -> bool:
+        """Whether physics moves nothing of what hangs together under a number."""
+        return number not in self.movers
+
     def own(self, number: int, index: int, link: str) -> None:
         """A part of Bullet's belongs to a link; a large one has several."""
         self._owners[number, index] = link
