@@ -8,7 +8,8 @@
 # Exit code: 0 success, 1 a rule does not hold, 2 bad input (the rest is played), 130 interrupted.
 #
 #   --seeds SEEDS      like 0-999 or 1,5,7 (default: those of the scenario)
-#   --planner NAME...  with each of these local planners (default: the scenario's)
+#   --planner NAME...  with each of these local planners (default: the scenario's); over ROS also official, which
+#                    is the official move_base with its DWA
 #   --workers N        processes (default: one for each core)
 #   --scheduler ADDRESS  Dask's, instead of processes here: tcp://HOST:8786
 #   --require RULE...  exit code 1 unless this holds of each scenario: "success >= 0.99"

@@ -7,7 +7,7 @@
 # Sets everything up first if need be. Exit code: 0 success, 1 failure, 2 bad input, 130 interrupted.
 #
 #   --seed N         of all chance (default: 0)
-#   --planner NAME   local planner (default: that of the scenario)
+#   --planner NAME   local planner (default: that of the scenario); over ROS also official: the official move_base
 #   --over WHAT      what plays it: process, or ros (default: process)
 #   --help           this text
 #

@@ -51,6 +51,24 @@ def test_what_nodes_cannot_play_is_said_before_anything_is_played():
     assert "fields.yaml: the task reach is played in one process only" in complaints[0]
 
 
+def test_the_official_move_base_plays_only_over_ros_and_only_where_it_is_installed(tmp_path, monkeypatch):
+    with pytest.raises(SettingsError, match="planner official: that move_base is a node: add --over ros"):
+        scenarios_of(["home_errand"], ["official"])
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
+    with pytest.raises(SettingsError, match="the official move_base is not there"):
+        scenarios_of(["home_errand"], ["official"], is_over_ros=True)
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(FOLDER.parent / "src"))
+    with pytest.raises(SettingsError, match="the official move_base is not there"):
+        scenarios_of(["home_errand"], ["official"], is_over_ros=True)
+    package = "<package><name>move_base</name></package>"
+    (tmp_path / "package.xml").write_text(package)
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
+    (scenario,), _ = scenarios_of(["home_errand"], ["official"], is_over_ros=True)
+    arguments = stage(scenario, 0, tmp_path)
+    assert arguments["move_base_pkg"] == "move_base"
+    assert "planner" not in arguments
+
+
 def test_results_over_ros_have_keys_of_their_own():
     scenario = read_scenario(ERRAND)
     over_ros = replace(scenario, is_over_ros=True)

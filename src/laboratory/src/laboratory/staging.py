@@ -7,7 +7,7 @@ from typing import Any, Dict
 
 import yaml
 
-from laboratory.scenario.scenario import Scenario
+from laboratory.scenario.scenario import OFFICIAL, Scenario
 from planar import SettingsError, save_map, write_atomically
 from sim_bridge.faults import Fault
 
@@ -30,12 +30,19 @@ def stage(scenario: Scenario, seed: int, folder: Path) -> Dict[str, Any]:
         "parameters_file": write_yaml(folder / "parameters.yaml", parameters_of(scenario)),
         **files,
     }
-    if scenario.planner:
-        arguments["planner"] = scenario.planner
+    arguments.update(_driver(scenario.planner))
     if scenario.faults:
         faults = {"faults": [table_of(fault) for fault in scenario.faults]}
         arguments["faults_file"] = write_yaml(folder / "faults.yaml", faults)
     return arguments
+
+
+def _driver(planner: str) -> Dict[str, str]:
+    if planner != OFFICIAL:
+        return {"planner": planner} if planner else {}
+    from laboratory.ros.official import official_move_base
+
+    return {"move_base_pkg": official_move_base()}
 
 
 def parameters_of(scenario: Scenario) -> Dict[str, Any]:

@@ -5,7 +5,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import List, Sequence, Tuple
 
-from laboratory.scenario import Scenario, read_scenario
+from laboratory.scenario import OFFICIAL, Scenario, read_scenario
 from laboratory.staging import stage
 from move_base_lite.control import check_local_planner
 from planar import PlanarError, SettingsError
@@ -24,7 +24,7 @@ def scenarios_of(
     planner that is not there.
     """
     for name in planners:
-        check_local_planner(name)
+        _check_planner(name, is_over_ros)
     scenarios, complaints = [], []
     for path in [file for suite in suites for file in _files(suite)]:
         try:
@@ -37,9 +37,20 @@ def scenarios_of(
     return scenarios, complaints
 
 
-def one_scenario(name: str, planner: str = "") -> Scenario:
+def _check_planner(name: str, is_over_ros: bool) -> None:
+    if name != OFFICIAL:
+        check_local_planner(name)
+    elif is_over_ros:
+        from laboratory.ros.official import official_move_base
+
+        official_move_base()
+    else:
+        raise SettingsError(f"planner {name}: that move_base is a node: add --over ros")
+
+
+def one_scenario(name: str, planner: str = "", is_over_ros: bool = False) -> Scenario:
     """The scenario of a file or name. Raises SettingsError, also if that is wrong or there are several."""
-    scenarios, complaints = scenarios_of([name], [planner] if planner else [])
+    scenarios, complaints = scenarios_of([name], [planner] if planner else [], is_over_ros)
     if complaints:
         raise SettingsError(complaints[0])
     if len(scenarios) != 1:

@@ -15,7 +15,10 @@ class Evaluate:
     )
     seeds: Optional[str] = option(None, "like 0-999 (default: those of the scenario)", metavar="SEEDS")
     planner: Optional[Tuple[str, ...]] = option(
-        None, "with each of these local planners (default: the scenario's)", nargs="+", metavar="NAME"
+        None,
+        "with each of these local planners, or official over ROS (default: the scenario's)",
+        nargs="+",
+        metavar="NAME",
     )
     workers: Optional[int] = option(None, "processes (default: one for each core)", type=count)
     scheduler: str = option("", "Dask's, instead of processes here: tcp://HOST:8786", metavar="ADDRESS")

@@ -20,7 +20,7 @@ class Play(RunOptions):
 
         if self.over == "ros":
             prepare_nodes()
-        scenario = one_scenario(self.scenario, self.planner)
+        scenario = one_scenario(self.scenario, self.planner, self.over == "ros")
         if self.over == "ros":
             from laboratory.ros.conducting import conduct
 

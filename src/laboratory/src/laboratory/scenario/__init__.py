@@ -1,6 +1,6 @@
 """Scenarios: what is played, as data."""
 
 from laboratory.scenario.reading import read_scenario
-from laboratory.scenario.scenario import Scenario
+from laboratory.scenario.scenario import OFFICIAL, Scenario
 
-__all__ = ["Scenario", "read_scenario"]
+__all__ = ["OFFICIAL", "Scenario", "read_scenario"]

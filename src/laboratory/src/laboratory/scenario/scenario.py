@@ -16,6 +16,9 @@ from sim_bridge import SimulationSettings
 from sim_bridge.doorway import Door
 from sim_bridge.faults import Fault
 
+# A planner that is none of ours: the node of the official package move_base with its DWA, over ROS.
+OFFICIAL = "official"
+
 
 @dataclass(frozen=True)
 class Scenario:
