@@ -12,7 +12,7 @@ from laboratory.scenario import read_scenario
 from laboratory.search.cases import Case, Ingredients, Noise
 from laboratory.search.falsifying import ease, shrunk
 from laboratory.search.study import BATCH, Study
-from laboratory.search.tuning import cost, merged, nested, read_space, text_of, with_values
+from laboratory.search.tuning import cost, nested, read_space, text_of, with_values
 from laboratory.search.writing import scenario_text, write_case
 from laboratory.suites import FOLDER
 from laboratory.worlds.boxes import TO_OTHERS
@@ -130,7 +130,6 @@ def test_parameters_are_nested_as_move_base_has_them(tmp_path):
     values = {"Planner/speed": 0.2, "Planner/Inner/weight": 1.5, "patience": 2.0}
     assert nested(values) == {"Planner": {"speed": 0.2, "Inner": {"weight": 1.5}}, "patience": 2.0}
     assert yaml.safe_load(text_of(values)) == nested(values)
-    assert merged({"a": {"b": 1, "c": 2}}, {"a": {"c": 3}}) == {"a": {"b": 1, "c": 3}}
 
 
 def test_a_space_that_is_none_is_told_with_line_and_key(tmp_path):

@@ -13,6 +13,7 @@ from move_base_lite.costmap import CostmapSettings
 from move_base_lite.costmap.layers.inflation import InflationSettings
 from move_base_lite.costmap.layers.obstacles import ObstacleSettings, SourceSettings
 from move_base_lite.costmap.layers.static import StaticSettings
+from move_base_lite.parameters import merged
 from move_base_lite.planning import NavfnSettings
 from move_base_lite.recovery import RotateSettings, SlowSettings
 from planar import Pose2, SettingsError, grid_from_picture
@@ -233,6 +234,12 @@ def test_no_parameters_at_all_mean_the_official_defaults():
         "aggressive_reset",
     ]
     assert warnings == []
+
+
+def test_of_nested_parameters_those_above_win():
+    below = {"a": {"b": 1, "c": 2}, "d": 1}
+    assert merged(below, {"a": {"c": 3}, "d": {"e": 4}}) == {"a": {"b": 1, "c": 3}, "d": {"e": 4}}
+    assert below == {"a": {"b": 1, "c": 2}, "d": 1}
 
 
 @pytest.mark.parametrize("name", ["turtlebot3_burger", "turtlebot3_waffle", "turtlebot_kinect"])

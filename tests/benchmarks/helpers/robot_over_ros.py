@@ -57,7 +57,7 @@ def _start_node(options) -> subprocess.Popen:
     return subprocess.Popen([path[0], "__name:=move_base"], stdout=sys.stderr)
 
 
-def add_node_options(parser, config: Path) -> None:
+def add_node_options(parser, config: Optional[Path]) -> None:
     """What says which node drives, and how fast."""
     parser.add_argument("--node", default="move_base_lite/move_base_lite", help="package/executable")
     parser.add_argument("--config", default=config, help="parameters of move_base")

@@ -14,6 +14,7 @@ from laboratory.results.result import Result
 from laboratory.results.version import version
 from laboratory.scenario.scenario import Scenario
 from laboratory.search.study import Study
+from move_base_lite.parameters import merged
 from planar.config.yaml_table import Table, read_table
 
 SEPARATOR = "/"
@@ -48,15 +49,6 @@ def nested(values: Values) -> Dict[str, Any]:
             table = table.setdefault(part, {})
         table[key] = value
     return tables
-
-
-def merged(below: Values, above: Values) -> Dict[str, Any]:
-    """Nested tables, one over the other."""
-    both = dict(below)
-    for key, value in above.items():
-        has_tables = isinstance(value, Mapping) and isinstance(both.get(key), Mapping)
-        both[key] = merged(both[key], value) if has_tables else value
-    return both
 
 
 def with_values(scenario: Scenario, values: Values) -> Scenario:

@@ -25,17 +25,17 @@ def load_settings(*paths, **chosen: Any) -> NavigatorSettings:
     """
     parameters: Dict[str, Any] = {}
     for path in paths:
-        parameters = _merged(parameters, read_table(path).values())
-    return settings_from_parameters(_merged(parameters, chosen), f"{paths[-1]}: ")[0]
+        parameters = merged(parameters, read_table(path).values())
+    return settings_from_parameters(merged(parameters, chosen), f"{paths[-1]}: ")[0]
 
 
-def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> Dict[str, Any]:
-    """Nested dictionaries, one over the other."""
-    merged = dict(below)
+def merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> Dict[str, Any]:
+    """Nested tables, one over the other."""
+    both = dict(below)
     for key, value in above.items():
-        both = isinstance(value, dict) and isinstance(merged.get(key), dict)
-        merged[key] = _merged(merged[key], value) if both else value
-    return merged
+        has_tables = isinstance(value, Mapping) and isinstance(both.get(key), Mapping)
+        both[key] = merged(both[key], value) if has_tables else value
+    return both
 
 
 def settings_from_parameters(

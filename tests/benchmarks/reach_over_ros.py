@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+"""Drives a scenario's robot to a place without a map, as evaluate.sh does, by any node that is a move_base.
+
+SCENARIO is a file or a name in scenarios/ whose task is to reach a place: barn, dynabarn, fields, crossings.
+The official move_base, where it is installed, is compared on the same seeds:
+
+    python3 tests/benchmarks/reach_over_ros.py dynabarn --seeds 0-23
+    python3 tests/benchmarks/reach_over_ros.py dynabarn --seeds 0-23 --node move_base/move_base \\
+        --local-planner dwa_local_planner/DWAPlannerROS
+"""
+
+import argparse
+import json
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import yaml
+from helpers.robot_over_ros import RobotOverRos, add_node_options, client_with_goal, is_under_way, move_base
+
+from laboratory.scenario.seeds import seeds_of
+from laboratory.statistics.summary import share
+from laboratory.suites import one_scenario
+from laboratory.tasks.reach import config_of
+from laboratory.worlds.barn import score
+from move_base_lite.parameters import merged
+from planar.config.yaml_table import read_table
+from sim_bridge import Simulation, robot_named
+
+
+def main() -> int:
+    options = _options()
+    scenario = one_scenario(options.scenario)
+    seeds = scenario.seeds if options.seeds is None else seeds_of(options.seeds)
+    robot_profile, runs = robot_named(scenario.robot), []
+    with tempfile.TemporaryDirectory() as folder:
+        options.config = _parameters_file(scenario, options.config, Path(folder))
+        with move_base(options):
+            robot = RobotOverRos(options.speed)
+            for seed in seeds:
+                arena = scenario.arena(seed)
+                simulation = Simulation(arena.world, robot_profile, scenario.simulation, seed, scenario.start)
+                outcome, seconds = _drive(robot, simulation, scenario)
+                points = score(seconds, arena.way) if outcome == "success" and arena.way else 0.0
+                print(f"seed {seed}: {outcome:9s} {seconds:5.1f} s, score {points:.3f}", flush=True)
+                runs.append((outcome, seconds, points))
+    print(json.dumps(_summary(runs), indent=2))
+    return 0
+
+
+def _parameters_file(scenario, config, folder: Path) -> Path:
+    """move_base's, those of the scenario over those of its robot."""
+    below = read_table(config or config_of(scenario.robot)).values()
+    path = folder / "move_base.yaml"
+    path.write_text(yaml.safe_dump(merged(below, scenario.parameters)), encoding="utf-8")
+    return path
+
+
+def _drive(robot: RobotOverRos, simulation: Simulation, scenario):
+    """Outcome and simulated seconds of one run; the clock starts with the goal."""
+    robot.put(simulation)
+    client = client_with_goal(robot, "odom", scenario.task.goal)
+    began, goal, outcome = robot.now, scenario.start @ scenario.task.goal, "timeout"
+    while robot.now - began < scenario.seconds:
+        robot.step()
+        if robot.observation.contacts:
+            outcome = "collision"
+            break
+        if robot.observation.base_in_world.distance_to(goal) <= scenario.task.radius:
+            outcome = "success"
+            break
+        if not is_under_way(client):
+            outcome = "aborted"
+            break
+    client.cancel_all_goals()
+    return outcome, robot.now - began
+
+
+def _summary(runs) -> dict:
+    outcomes, seconds, points = zip(*runs)
+    arrived = [each for outcome, each in zip(outcomes, seconds) if outcome == "success"]
+    return {
+        "runs": len(runs),
+        "score": round(float(np.mean(points)), 4),
+        "outcomes": {outcome: outcomes.count(outcome) for outcome in sorted(set(outcomes))},
+        "success": str(share(len(arrived), len(runs))),
+        "mean_seconds": round(float(np.mean(arrived)), 2) if arrived else None,
+    }
+
+
+def _options():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("scenario", help="file of a scenario, or its name in scenarios/")
+    parser.add_argument("--seeds", help="like 0-23 (default: those of the scenario)")
+    add_node_options(parser, None)
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
