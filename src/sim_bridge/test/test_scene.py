@@ -270,15 +270,16 @@ def test_what_stands_can_be_attached_to_what_stands_and_let_go(scene):
     assert scene.models.motion("wall").pose == pytest.approx(pose3(5.0, 0.0, 0.25))
 
 
-def test_what_stands_stays_whatever_it_weighs_and_however_it_is_to_move(scene):
+@pytest.mark.parametrize("has_weight", [True, False])
+def test_what_stands_stays_whatever_it_weighs_and_however_it_is_to_move(scene, has_weight):
     up = pose3(5.0, 0.0, 1.25)
-    scene.models.set_mass("wall::link", 3.0, (0.1, 0.2, 0.3), has_weight=True)
+    scene.models.set_mass("wall::link", 3.0, (0.1, 0.2, 0.3), has_weight)
     scene.set_model_motion("wall", Motion(up, np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])))
     drive(scene, 1.0)
     assert scene.models.motion("wall").pose == pytest.approx(up)
     assert not scene.models.motion("wall").linear.any()
     told = scene.models.mass_properties("wall::link")
-    assert (told.mass, *told.moments) == (3.0, 0.1, 0.2, 0.3)
+    assert (told.mass, *told.moments, told.has_weight) == (3.0, 0.1, 0.2, 0.3, has_weight)
 
 
 def test_what_is_attached_to_a_robot_goes_with_it_until_it_is_let_go(scene):

@@ -64,8 +64,8 @@ class Engine:
         self.set_gravity(gravity)
         # Links that are not drawn down, and their masses.
         self._weightless: Dict[str, float] = {}
-        # Of links that stand, what they have been told to weigh, to which Bullet gives no mass.
-        self._told_masses: Dict[str, Tuple[float, Sequence[float]]] = {}
+        # What links that stand have been told to weigh: in Bullet they have no mass.
+        self._told: Dict[str, MassProperties] = {}
         # What is shifted, as long as nobody puts it elsewhere.
         self._upright: Dict[str, _Upright] = {}
         self.joints = Joints(self._bullet, self._register)
@@ -151,7 +151,7 @@ class Engine:
         self._bullet.removeBody(number)
         self._register.forget(number)
         self._weightless = {key: mass for key, mass in self._weightless.items() if self.has_link(key)}
-        self._told_masses = {key: told for key, told in self._told_masses.items() if self.has_link(key)}
+        self._told = {key: told for key, told in self._told.items() if self.has_link(key)}
 
     def has_link(self, name: str) -> bool:
         return name in self._register.links
@@ -228,16 +228,17 @@ class Engine:
         self._bullet.applyExternalTorque(link.number, link.index, torque, pybullet.WORLD_FRAME)
 
     def mass_properties(self, name: str) -> MassProperties:
+        if name in self._told:
+            return self._told[name]
         link = self._register.links[name]
         mass, _, moments, *_ = self._bullet.getDynamicsInfo(link.number, link.index)
-        mass, moments = self._told_masses.get(name, (mass, moments))
         return MassProperties(mass, link.centre, np.array(moments), name not in self._weightless)
 
     def set_mass(self, name: str, mass: float, moments: Sequence[float], has_weight: bool) -> None:
         """``mass`` in kg, ``moments`` (3,) about the principal axes, kg m^2."""
         link = self._register.links[name]
         if self._register.stands(link.number):
-            self._told_masses[name] = (mass, moments)
+            self._told[name] = MassProperties(mass, link.centre, np.array(moments), has_weight)
             return
         self._bullet.changeDynamics(link.number, link.index, mass=mass, localInertiaDiagonal=list(moments))
         self._weightless.pop(name, None)
