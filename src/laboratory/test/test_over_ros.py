@@ -69,6 +69,17 @@ def test_the_official_move_base_plays_only_over_ros_and_only_where_it_is_install
     assert "planner" not in arguments
 
 
+def test_a_file_that_asks_for_the_official_move_base_is_not_played_in_one_process(tmp_path):
+    file = tmp_path / "with_official.yaml"
+    text = ERRAND.read_text().replace("../map", str(FOLDER.parent / "map"))
+    file.write_text(text + "planner: {name: official}\n")
+    scenarios, complaints = scenarios_of([str(file)])
+    assert not scenarios
+    assert complaints == [f"{file}: planner official: that move_base is a node: add --over ros"]
+    (scenario,), _ = scenarios_of([str(file)], ["move_base_lite/MppiPlannerROS"])
+    assert scenario.planner == "move_base_lite/MppiPlannerROS"
+
+
 def test_results_over_ros_have_keys_of_their_own():
     scenario = read_scenario(ERRAND)
     over_ros = replace(scenario, is_over_ros=True)

@@ -57,6 +57,11 @@ def test_every_key_of_a_scenario_is_read(tmp_path):
         ("scan_noisy", "scan_nosy", ":8: happens.faults[1].kind must be one of"),
         ("max_vel_x: 0.4", "max_vel_x: fast", "max_vel_x must be a number, got 'fast'"),
         ("max_vel_x: 0.4", "max_val_x: 0.4", ":9: planner.parameters cannot be used: "),
+        (
+            "dwa_local_planner/DWAPlannerROS",
+            "dwa/DVAPlanner",
+            ":9: planner.name cannot be used: there is no ",
+        ),
         ("seconds: 200", "seconds: 0", ":10: limits.seconds must be positive"),
         ("0-4,9", "9-4", ":11: seeds cannot be used: seeds must be like 0-999"),
     ],

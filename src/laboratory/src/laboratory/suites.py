@@ -29,11 +29,12 @@ def scenarios_of(
     for path in [file for suite in suites for file in _files(suite)]:
         try:
             scenario = replace(read_scenario(path), is_over_ros=is_over_ros)
-            _check(scenario)
+            each = [scenario.with_planner(name) for name in planners] or [scenario]
+            _check(each[0])
         except PlanarError as error:
             complaints.append(str(error))
         else:
-            scenarios += [scenario.with_planner(name) for name in planners] or [scenario]
+            scenarios += each
     return scenarios, complaints
 
 
@@ -78,6 +79,8 @@ def _check(scenario: Scenario) -> None:
 
     start = scenario.start
     try:
+        if scenario.planner:
+            _check_planner(scenario.planner, scenario.is_over_ros)
         scenario.digest()
         arena = scenario.arena(scenario.seeds[0])
         scenario.task.places(arena)

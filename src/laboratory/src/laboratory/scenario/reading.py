@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any, Callable, Dict, Mapping, Tuple, TypeVar
 
 from home_service.rehearsal import Conditions
-from laboratory.scenario.scenario import Scenario
+from laboratory.scenario.scenario import OFFICIAL, Scenario
 from laboratory.scenario.seeds import seeds_of
 from laboratory.tasks.reach import config_of
 from laboratory.tasks.registry import TASKS
@@ -14,6 +14,7 @@ from laboratory.worlds.people import People, read_people
 from laboratory.worlds.registry import SOURCES
 from laboratory.worlds.source import WorldSource
 from move_base_lite import settings_from_parameters
+from move_base_lite.control import check_local_planner
 from planar import Pose2, SettingsError
 from planar.config.hints import hint
 from planar.config.settings import settings_from
@@ -47,7 +48,7 @@ def read_scenario(path: Path) -> Scenario:
         doors=read_doors(happens) if happens else 0,
         people=read_people(happens) if happens else People(),
         faults=faults_from(happens) if happens else (),
-        planner=planner.text("name") if planner and "name" in planner else "",
+        planner=_planner(planner) if planner and "name" in planner else "",
         parameters=_parameters(planner, robot) if planner else {},
         seconds=_seconds(_part(table, "limits", "seconds")),
         seeds=_seeds(table),
@@ -122,6 +123,16 @@ def _simulation(table: Table) -> SimulationSettings:
     if unknown:
         part.allow_only("noise", *(key for key in part if key not in unknown))
     return settings
+
+
+def _planner(planner: Table) -> str:
+    name = planner.text("name")
+    try:
+        if name != OFFICIAL:
+            check_local_planner(name)
+    except SettingsError as error:
+        raise planner.complaint("name", f"cannot be used: {error}") from None
+    return name
 
 
 def _parameters(planner: Table, robot: str) -> Mapping[str, Any]:
