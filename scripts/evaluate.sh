@@ -9,7 +9,7 @@
 #
 #   --seeds SEEDS      like 0-999 or 1,5,7 (default: those of the scenario)
 #   --planner NAME...  with each of these local planners (default: the scenario's); over ROS also official, which
-#                    is the official move_base with its DWA
+#                      is the official move_base with its DWA
 #   --workers N        processes (default: one for each core)
 #   --scheduler ADDRESS  Dask's, instead of processes here: tcp://HOST:8786
 #   --require RULE...  exit code 1 unless this holds of each scenario: "success >= 0.99"

@@ -12,11 +12,8 @@ The official move_base, where it is installed, is compared on the same seeds:
 import argparse
 import json
 import sys
-import tempfile
-from pathlib import Path
 
 import numpy as np
-import yaml
 from helpers.robot_over_ros import RobotOverRos, add_node_options, client_with_goal, is_under_way, move_base
 
 from laboratory.scenario.seeds import seeds_of
@@ -24,8 +21,6 @@ from laboratory.statistics.summary import share
 from laboratory.suites import one_scenario
 from laboratory.tasks.reach import config_of
 from laboratory.worlds.barn import score
-from move_base_lite.parameters import merged
-from planar.config.yaml_table import read_table
 from sim_bridge import Simulation, robot_named
 
 
@@ -33,28 +28,19 @@ def main() -> int:
     options = _options()
     scenario = one_scenario(options.scenario)
     seeds = scenario.seeds if options.seeds is None else seeds_of(options.seeds)
-    robot_profile, runs = robot_named(scenario.robot), []
-    with tempfile.TemporaryDirectory() as folder:
-        options.config = _parameters_file(scenario, options.config, Path(folder))
-        with move_base(options):
-            robot = RobotOverRos(options.speed)
-            for seed in seeds:
-                arena = scenario.arena(seed)
-                simulation = Simulation(arena.world, robot_profile, scenario.simulation, seed, scenario.start)
-                outcome, seconds = _drive(robot, simulation, scenario)
-                points = score(seconds, arena.way) if outcome == "success" and arena.way else 0.0
-                print(f"seed {seed}: {outcome:9s} {seconds:5.1f} s, score {points:.3f}", flush=True)
-                runs.append((outcome, seconds, points))
+    profile, runs = robot_named(scenario.robot), []
+    options.config = options.config or config_of(scenario.robot)
+    with move_base(options, scenario.parameters):
+        robot = RobotOverRos(options.speed)
+        for seed in seeds:
+            arena = scenario.arena(seed)
+            simulation = Simulation(arena.world, profile, scenario.simulation, seed, scenario.start)
+            outcome, seconds = _drive(robot, simulation, scenario)
+            points = score(seconds, arena.way) if outcome == "success" and arena.way else 0.0
+            print(f"seed {seed}: {outcome:9s} {seconds:5.1f} s, score {points:.3f}", flush=True)
+            runs.append((outcome, seconds, points))
     print(json.dumps(_summary(runs), indent=2))
     return 0
-
-
-def _parameters_file(scenario, config, folder: Path) -> Path:
-    """move_base's, those of the scenario over those of its robot."""
-    below = read_table(config or config_of(scenario.robot)).values()
-    path = folder / "move_base.yaml"
-    path.write_text(yaml.safe_dump(merged(below, scenario.parameters)), encoding="utf-8")
-    return path
 
 
 def _drive(robot: RobotOverRos, simulation: Simulation, scenario):

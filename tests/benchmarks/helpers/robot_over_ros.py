@@ -5,7 +5,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import Iterator, Optional
+from typing import Any, Iterator, Mapping, Optional
 
 import actionlib
 import numpy as np
@@ -23,6 +23,7 @@ from tf2_msgs.msg import TFMessage
 from tf2_ros import StaticTransformBroadcaster
 
 from helpers.lockstep import Master
+from move_base_lite.parameters import merged
 from planar import OccupancyGrid, Pose2, Twist2
 from planar_ros.calls.actions import server_is_ready
 from planar_ros.messages.conversion import LaserScanArrays, grid_to_msg, pose2_to_msg, transform_msg
@@ -33,10 +34,13 @@ GAP = 1.0
 
 
 @contextlib.contextmanager
-def move_base(options) -> Iterator[subprocess.Popen]:
-    """A master and the node ``options.node`` with parameters as the launch file sets them, while it lasts."""
+def move_base(options, above: Mapping[str, Any] = {}) -> Iterator[subprocess.Popen]:
+    """A master and the node ``options.node`` with parameters as the launch file sets them, while it lasts.
+
+    ``above``: parameters over those of the file.
+    """
     with contextlib.closing(Master(options.port)):
-        node = _start_node(options)
+        node = _start_node(options, above)
         try:
             yield node
         finally:
@@ -44,8 +48,8 @@ def move_base(options) -> Iterator[subprocess.Popen]:
             node.wait()
 
 
-def _start_node(options) -> subprocess.Popen:
-    parameters = yaml.safe_load(Path(options.config).read_text(encoding="utf-8"))
+def _start_node(options, above: Mapping[str, Any]) -> subprocess.Popen:
+    parameters = merged(yaml.safe_load(Path(options.config).read_text(encoding="utf-8")), above)
     parameters.setdefault("DWAPlannerROS", {})["global_frame_id"] = "odom"
     if options.local_planner:
         parameters["base_local_planner"] = options.local_planner
