@@ -13,6 +13,7 @@ from gymnasium.utils.env_checker import check_env, data_equivalence
 import home_service_gym
 from home_service_gym.environments import Barn, Dynabarn, Explore, Follow, HomeService, PointGoal
 from home_service_gym.maps.discovery import Discovery
+from home_service_gym.tasks.follow import _walk
 from home_service_gym.turtlebot3_stage import WALKS, TurtleBot3Stage
 from planar import FREE, OCCUPIED, Pose2, Scan, SettingsError, grid_from_picture
 
@@ -177,6 +178,34 @@ def test_a_leader_who_is_left_alone_is_lost_and_one_who_is_followed_is_not():
         Follow(), lambda seen: steer({"goal": seen["leader"] - (0.9, 0.0, 0.0)}), 2, steps=150
     )
     assert outcome == "" and total > 2.0
+
+
+def test_a_leader_walks_on_from_a_place_that_is_one_step_from_the_last():
+    class Neighbours:
+        stations = (0, 1)
+
+        def way_between(self, start, goal):
+            return np.array([[start, 0.0], [goal, 0.0]] if start != goal else [[start, 0.0]], dtype=float)
+
+    way_xy = _walk(Neighbours(), np.random.default_rng(0))
+    assert len(way_xy) > 20 and (np.hypot(*np.diff(way_xy, axis=0).T) == 1.0).all()
+
+
+def test_a_robot_that_spins_out_of_control_is_told_as_fast_as_is_declared():
+    env = Dynabarn()
+    env.reset(seed=1003)
+    env.action_space.seed(1003)
+    fastest = 0.0
+    for period in range(300):
+        if period % 10 == 0:
+            action = env.action_space.sample()
+        observation, _, is_over, *_ = env.step(action)
+        assert observation in env.observation_space
+        fastest = max(fastest, abs(env.moment.twist.omega))
+        if is_over:
+            break
+    assert fastest > 8.0, "it did not spin"
+    env.close()
 
 
 def test_turning_round_shows_more_of_a_home_only_once():

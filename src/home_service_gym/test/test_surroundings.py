@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from home_service_gym.maps.around import NOTHING, OPEN, SIDE, SOLID, MapAround
+from home_service_gym.playground import crowd_of
 from home_service_gym.surroundings import NOBODY, nearest_people
 from planar import Pose2, SettingsError, grid_from_picture
 
@@ -46,6 +47,28 @@ def test_people_are_told_as_they_walk_and_others_for_each_seed():
     assert np.hypot(*later["people"][:, 2:].T).max() > 0.3
     assert (later["people"][:, :2] != again["people"][:, :2]).any()
     env.close()
+
+
+def test_no_episode_begins_where_somebody_stands():
+    env = gymnasium.make("home_service_gym:PointGoal-v0", scenario="home_people", people=1).unwrapped
+    nearest = []
+    for seed in range(60):
+        observation, _ = env.reset(seed=seed, options={"seed": 1})
+        nearest.append(np.hypot(*observation["people"][0, :2]))
+        assert observation in env.observation_space
+    assert min(nearest) > 0.5
+    env.close()
+
+
+def test_what_moves_is_known_by_where_it_begins():
+    fields = gymnasium.make("home_service_gym:DynaBARN-v0").unwrapped
+    fields.reset(seed=1, options={"seed": 1})
+    world = fields._playground.arena.world
+    crowd = crowd_of(world)
+    assert len(crowd) == len(world.courses) > 0
+    for disc, course in zip(crowd.tolist(), world.courses):
+        assert disc[:2] == pytest.approx(course.at(0.0)) and 0.1 < disc[2] < 2.0
+    fields.close()
 
 
 def test_what_cannot_be_told_is_refused():

@@ -20,6 +20,8 @@ from sim_bridge import robot_named
 
 # Playgrounds that an environment keeps built, and control periods a second.
 KEPT, RATE = 16, 10
+# Odometry tells at most so many times a robot's greatest speed; one that slips or is bumped may be faster.
+BUMPED = 2.0
 
 
 def scenario_of(name: str) -> Scenario:
@@ -35,8 +37,9 @@ class TaskEnv(gymnasium.Env):
     """A robot of a scenario, in its worlds and with its noise, that has a task.
 
     An observation has ``scan`` (m, as the lidar tells, 0 if too near, the greatest range if nothing is in
-    reach), ``velocity`` (m/s and rad/s, of odometry) and what the task tells. An action is the share, -1 to
-    1, of the robot's greatest speed and turn rate. An episode ends with the task, or at the first touch.
+    reach), ``velocity`` (m/s and rad/s, of odometry, to ``BUMPED`` times the greatest) and what the task
+    tells. An action is the share, -1 to 1, of the robot's greatest speed and turn rate. An episode ends with
+    the task, or at the first touch.
 
     ``people``: so many, the nearest, are told of; ``has_map``: the map around the robot is told, too.
     ``reset(options={"seed": N})`` takes the world of that seed of the scenario; otherwise one is drawn.
@@ -63,7 +66,8 @@ class TaskEnv(gymnasium.Env):
         lidar, drive = lidar_of(self._robot), self._robot.drive
         self._farthest = lidar.range_max
         self._most_v, self._most_omega = drive.max_speed, drive.max_turn_rate
-        fastest = np.array((2.0 * drive.max_speed, 2.0 * drive.max_turn_rate), np.float32)
+        fastest = np.array((drive.max_speed, drive.max_turn_rate), np.float32) * BUMPED
+        self._fastest = fastest.tolist()
         self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
         self.observation_space = spaces.Dict(
             {
@@ -142,8 +146,10 @@ class TaskEnv(gymnasium.Env):
     def _observation(self) -> Dict[str, np.ndarray]:
         assert self._moment is not None
         twist = self._moment.twist
+        told = zip((twist.v, twist.omega), self._fastest)
+        velocity = [max(-fastest, min(speed, fastest)) for speed, fastest in told]
         return {
             "scan": self._moment.ranges(self._farthest),
-            "velocity": np.array((twist.v, twist.omega), dtype=np.float32),
+            "velocity": np.array(velocity, dtype=np.float32),
             **self._task.observe(self._moment),
         }

@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import Dict, Optional, Tuple
 
 import numpy as np
+from scipy.spatial.distance import cdist
 
 from explorer_lite.travel import travel_distances
 from planar import FREE, OccupancyGrid, Pose2
@@ -15,12 +16,16 @@ from planar.geometry.distance_field import distance_field
 ROOM_TO_STAND, ROOM_TO_PASS = 0.4, 0.35
 STATIONS = 16
 KEPT_GOALS = 4
+NOBODY = np.empty((0, 3))
 
 
 class Ground:
-    """``grid``: free is what can be reached from ``start``."""
+    """``grid``: free is what can be reached from ``start``; ``crowd`` (N, 3): x, y and radius of what moves.
 
-    def __init__(self, grid: OccupancyGrid, start: Pose2):
+    Nobody is put where something that moves begins.
+    """
+
+    def __init__(self, grid: OccupancyGrid, start: Pose2, crowd: np.ndarray = NOBODY):
         self.grid = grid
         self._map_in_grid = grid.origin.inverse()
         self._room = distance_field(grid.cells != FREE, grid.resolution)
@@ -28,7 +33,9 @@ class Ground:
         self._to_goals: OrderedDict[Pose2, np.ndarray] = OrderedDict()
         self._to_stations: Dict[int, np.ndarray] = {}
         self._ways: Dict[Tuple[int, int], np.ndarray] = {}
-        self._standing = np.argwhere((self._room > ROOM_TO_STAND) & np.isfinite(from_start))
+        standing = np.argwhere((self._room > ROOM_TO_STAND) & np.isfinite(from_start))
+        gaps = cdist(grid.points_of(standing), crowd[:, :2]) - crowd[:, 2]
+        self._standing = standing[(gaps > ROOM_TO_STAND).all(axis=1)]
 
     def place(
         self, rng: np.random.Generator, distances: Optional[np.ndarray] = None, least: float = 0.0

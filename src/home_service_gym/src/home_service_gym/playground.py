@@ -11,8 +11,13 @@ from laboratory.worlds.source import Arena
 from planar import Pose2, Scan, Twist2
 from sim_bridge import Observation, RobotProfile, Simulation, SimulationSettings
 from sim_bridge.courses import Course
+from sim_bridge.people.crowd import body_of
 from sim_bridge.sensors.lidar import LaserProfile
-from sim_bridge.views.true_map import true_map
+from sim_bridge.views.true_map import outlines_of, true_map
+from sim_bridge.world import World
+
+# Metres over the floor up to which a robot meets what moves.
+HEIGHT = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +58,8 @@ class Playground:
         """Where there is room, by the truth about the arena as it is at the beginning."""
         still = [body for body in self.arena.world.bodies if body.keeps_still]
         world = replace(self.arena.world, bodies=tuple(still))
-        return Ground(true_map(world, inside=(self.start.x, self.start.y)), self.start)
+        grid = true_map(world, inside=(self.start.x, self.start.y))
+        return Ground(grid, self.start, crowd_of(self.arena.world))
 
     def restart(self, seed: int, start: Pose2, courses: Sequence[Course] = ()) -> Moment:
         """Begins an episode with the noise of a seed, and ``courses`` beside those of the world."""
@@ -79,6 +85,19 @@ def _moment_of(seen: Observation, people: np.ndarray) -> Moment:
     told = seen.odometry
     pose, odom = seen.base_in_world, told.base_in_odom
     return Moment(seen.stamp, pose, odom, told.twist, seen.scan, seen.contacts, people)
+
+
+def crowd_of(world: World) -> np.ndarray:
+    """What does not keep still, as it begins: x, y and radius of each part of it, (N, 3)."""
+    begins = {course.link: course.at(0.0) for course in world.courses}
+    discs = [
+        (*begins.get(body.name, middle), float(np.hypot(*(outline - middle).T).max()))
+        for body in (*world.bodies, *map(body_of, world.walkers))
+        if not body.keeps_still
+        for middle in [body.pose_in_world[:2, 3].tolist()]
+        for outline in outlines_of(replace(world, bodies=(replace(body, is_on_course=False),)), 0.0, HEIGHT)
+    ]
+    return np.array(discs).reshape(-1, 3)
 
 
 def with_lidar_only(robot: RobotProfile) -> RobotProfile:

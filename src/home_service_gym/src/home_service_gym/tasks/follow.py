@@ -73,6 +73,6 @@ def _walk(ground: Ground, rng: np.random.Generator) -> np.ndarray:
         way_xy = ground.way_between(place, goal)
         if len(way_xy) > 1 and not (ways and _turns_back(ways[-1], way_xy) and rng.random() < STUBBORN):
             length += float(np.hypot(*np.diff(way_xy, axis=0).T).sum())
-            ways.append(way_xy if not ways else way_xy[1:])
+            ways.append(way_xy)
             place = goal
-    return np.concatenate(ways)
+    return np.concatenate([ways[0], *(way_xy[1:] for way_xy in ways[1:])])
