@@ -11,8 +11,11 @@ import pytest
 from gymnasium.utils.env_checker import check_env, data_equivalence
 
 import home_service_gym
+from home_service_gym.drawing import MOVING, Picture
 from home_service_gym.environments import Barn, Dynabarn, Explore, Follow, HomeService, PointGoal
 from home_service_gym.maps.discovery import Discovery
+from home_service_gym.playground import crowd_of
+from home_service_gym.task import Marks
 from home_service_gym.tasks.follow import _walk
 from home_service_gym.turtlebot3_stage import WALKS, TurtleBot3Stage
 from planar import FREE, OCCUPIED, Pose2, Scan, SettingsError, grid_from_picture
@@ -72,6 +75,16 @@ def test_a_picture_shows_the_episode_go_on(name):
         )
     assert first.dtype == np.uint8 and first.ndim == 3
     assert (env.render() != first).any()
+    env.close()
+
+
+def test_what_crosses_is_drawn_as_wide_as_it_is():
+    env = Dynabarn()
+    env.reset(seed=1, options={"seed": 1})
+    world, picture = env._playground.arena.world, Picture(env._playground)
+    pixels = crowd_of(world)[:, 2] * picture._scale
+    drawn = (picture.draw(env.moment, Marks(courses=world.courses)) == MOVING).all(axis=2).sum()
+    assert drawn == pytest.approx(math.pi * (pixels**2).sum(), rel=0.2)
     env.close()
 
 

@@ -6,7 +6,7 @@ from typing import List, Tuple
 import numpy as np
 from PIL import Image, ImageDraw
 
-from home_service_gym.playground import Moment, Playground
+from home_service_gym.playground import Moment, Playground, standing
 from home_service_gym.task import Marks
 from sim_bridge.views.true_map import outlines_of
 
@@ -40,7 +40,7 @@ class Picture:
             body.name: float(np.ptp(outline, axis=0).max()) / 2.0
             for body in world.bodies
             if not body.keeps_still
-            for outline in outlines_of(replace(world, bodies=(body,)), HEIGHT, HEIGHT)
+            for outline in outlines_of(standing(world, body), HEIGHT, HEIGHT)
         }
 
     def draw(self, moment: Moment, marks: Marks) -> np.ndarray:

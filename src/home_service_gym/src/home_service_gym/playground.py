@@ -14,7 +14,7 @@ from sim_bridge.courses import Course
 from sim_bridge.people.crowd import body_of
 from sim_bridge.sensors.lidar import LaserProfile
 from sim_bridge.views.true_map import outlines_of, true_map
-from sim_bridge.world import World
+from sim_bridge.world import Body, World
 
 # Metres over the floor up to which a robot meets what moves.
 HEIGHT = 0.5
@@ -95,9 +95,14 @@ def crowd_of(world: World) -> np.ndarray:
         for body in (*world.bodies, *map(body_of, world.walkers))
         if not body.keeps_still
         for middle in [body.pose_in_world[:2, 3].tolist()]
-        for outline in outlines_of(replace(world, bodies=(replace(body, is_on_course=False),)), 0.0, HEIGHT)
+        for outline in outlines_of(standing(world, body), 0.0, HEIGHT)
     ]
     return np.array(discs).reshape(-1, 3)
+
+
+def standing(world: World, body: Body) -> World:
+    """With this body alone, which stands where it is."""
+    return replace(world, bodies=(replace(body, is_on_course=False),))
 
 
 def with_lidar_only(robot: RobotProfile) -> RobotProfile:
