@@ -128,9 +128,10 @@ catkin_build() {
     ignored_packages | xargs -I{} touch {}/CATKIN_IGNORE
     export ROS_LANG_DISABLE=genlisp:geneus:gennodejs # bindings of the messages that nobody asks for
     # Without -j it would pass -l as well, and on a loaded machine make would wait for the load to sink.
-    # The Python of nodes goes by two names: catkin of Debian 13 knows the second one only.
+    # The Python of nodes goes by three names: catkin of Debian 13 knows the second one only, pluginlib the third.
     # A message that is new in a folder is seen by cmake alone.
-    catkin_make --force-cmake -j"$(nproc)" -D{PYTHON,Python}_EXECUTABLE="$root/.venv/bin/python3" -DCATKIN_ENABLE_TESTING=OFF
+    catkin_make --force-cmake -j"$(nproc)" -D{PYTHON,Python,Python3}_EXECUTABLE="$root/.venv/bin/python3" \
+        -DCATKIN_ENABLE_TESTING=OFF
 }
 
 # What is in these folders gives way to packages of the same name that the system or the user has.
@@ -179,9 +180,9 @@ check_names() { # catkin builds nothing where two packages have one name
 
 fault_in() { # LOG: which package does not build, and of what it says that it lacks
     local package lacks
-    package=$(sed -nE "s/^Error\(s\) in package '(.*)\/package.xml':.*/\1/p
+    package=$(without_warnings "$1" | sed -nE "s/^Error\(s\) in package '(.*)\/package.xml':.*/\1/p
         s/^(CMake Error at | +)([^/ ][^ :]*)\/CMakeLists\.txt:[0-9]+ \(.*/\2/p
-        s/^make\[[0-9]+\]: \*\*\* \[([^ ]*)\/CMakeFiles\/.*/\1/p" "$1" | head -n 1)
+        s/^make\[[0-9]+\]: \*\*\* \[([^ ]*)\/CMakeFiles\/.*/\1/p" | head -n 1)
     lacks=$(sed -nE 's/.*Could not find a package configuration file provided by "([^"]*)".*/\1/p' "$1" | head -n 1)
     if [[ -z $package ]]; then
         say "the catkin build failed"
@@ -189,6 +190,10 @@ fault_in() { # LOG: which package does not build, and of what it says that it la
         say "the package '$(basename "$package")' does not build${lacks:+: it needs $lacks, which is not installed" \
             "(./scripts/setup.sh --projects installs what most packages in C++ need)}"
     fi
+}
+
+without_warnings() { # LOG; they tell the files that led to them, as errors do
+    awk '/^CMake .*Warning/ { warns = 1 } /^(CMake Error|make|Error)/ { warns = 0 } !warns' "$1"
 }
 
 # -- the numerical kernels -----------------------------------------------------------------------------

@@ -89,7 +89,10 @@ def set_up_once(folder):
 FAILING = """
     catkin_build() {
         echo half >devel/setup.bash
-        printf '%s\\n' 'CMake Error at /usr/share/catkin/cmake/catkinConfig.cmake:83 (find_package):' \\
+        printf '%s\\n' 'CMake Warning at /usr/share/genmsg/cmake/genmsg-extras.cmake:49 (message):' \\
+            '  Unknown message generator' \\
+            'Call Stack (most recent call first):' '  other/CMakeLists.txt:5 (find_package)' \\
+            'CMake Error at /usr/share/catkin/cmake/catkinConfig.cmake:83 (find_package):' \\
             '  Could not find a package configuration file provided by "roscpp" with any of' \\
             'Call Stack (most recent call first):' '  mine/CMakeLists.txt:10 (find_package)'
         return 1
