@@ -9,6 +9,7 @@ from move_base_lite.check import rooms
 from move_base_lite.control import Plan
 from move_base_lite.control.mppi import MPPI
 from move_base_lite.control.mppi.samples import evasions
+from move_base_lite.errors import ControlError
 from planar import Pose2, Twist2
 
 HERE_XY = np.array([3.0, 1.75])
@@ -37,6 +38,33 @@ def test_a_robot_that_stands_drives_off_even_if_it_will_be_come_closer_to_before
 
 def test_a_robot_goes_back_from_who_comes_from_ahead():
     assert command(0.0).v < 0.0
+
+
+@pytest.mark.parametrize("heading", [0.0, 0.4, -0.7, 2.1])
+def test_a_robot_that_is_crowded_does_not_creep_into_the_wall_at_its_back(heading):
+    costmap = rooms.room_of("open").costmap
+    planner = MPPI.make(replace(MPPI.settings(), min_vel_x=-0.15), rooms.PERIOD)
+    pose, twist = Pose2(0.5 + rooms.RADIUS + 0.07, 1.3, heading), Twist2()
+    plan = Plan(np.linspace((pose.x, pose.y), (5.0, 1.25), 20), 4.0)
+    gap = 0.25
+    assert costmap.contacts(pose) == 0
+    for _ in range(20):
+        gap = max(gap - 0.03, 0.0)
+        crowd = [
+            (
+                pose.x + (rooms.RADIUS + MOVER_RADIUS + gap) * c,
+                pose.y + (rooms.RADIUS + MOVER_RADIUS + gap) * s,
+            )
+            for c, s in ((1.0, 0.0), (0.5, 0.87), (0.5, -0.87))
+        ]
+        movers = np.array([(x, y, 0.6 * (pose.x - x), 0.6 * (pose.y - y), MOVER_RADIUS) for x, y in crowd])
+        situation = replace(rooms.situation_of(costmap, pose, twist), movers=movers)
+        try:
+            twist = planner.follow(situation, plan, Twist2(0.5, 1.5)).command
+        except ControlError:
+            twist = Twist2()
+        pose = rooms.moved(pose, twist)
+        assert costmap.contacts(pose) == 0
 
 
 def test_evasions_are_of_two_different_arcs_each():

@@ -107,6 +107,11 @@ def drive(plugin: Plugin[Any], room: Room, seconds: float = 40.0) -> List[Pose2]
         if controller.is_goal_reached(pose, twist):
             return poses
         twist = controller.control(situation_of(room.costmap, pose, twist), ANYWHERE).command
-        half_turn, way = 0.5 * twist.omega * PERIOD, twist.v * PERIOD
-        pose = pose @ Pose2(way * math.cos(half_turn), way * math.sin(half_turn), 2.0 * half_turn)
+        pose = moved(pose, twist)
     raise CheckFailed(f"not at the goal after {seconds:g} s, but at ({pose.x:.2f}, {pose.y:.2f})")
+
+
+def moved(pose: Pose2, twist: Twist2) -> Pose2:
+    """Where a velocity has led after a period."""
+    half_turn, way = 0.5 * twist.omega * PERIOD, twist.v * PERIOD
+    return pose @ Pose2(way * math.cos(half_turn), way * math.sin(half_turn), 2.0 * half_turn)

@@ -8,9 +8,6 @@ import numpy as np
 
 from move_base_lite.control.mppi.scene import ARRAYS, Scene, room_at, room_beside_movers, value_at
 
-# Radians of a turn, and metres, after which the footprint is checked anew.
-CHECKED_ANGLE = 0.1
-CHECKED_DISTANCE = 0.05
 # Metres ahead at which the slope of the cost to go is felt.
 NOSE = 0.3
 # Cells between outline and obstacle, by the middle of the robot, with which no point of it is in one.
@@ -127,17 +124,14 @@ def drive(wanted, start, scene, limits, weights, poses, speeds):
     aside = max(weights.mover_distance, cell + _doubt(steps * dt))
     still_room = room_at(scene, x, y, c, s, enough)
     least_room, least_aside = min(cell, still_room), min(cell, room_beside_movers(scene, x, y, 0.0, aside))
-    cost, moved, turned, risk, seconds_to_stop = 0.0, 0.0, 0.0, 0.0, abs(v) / limits.acceleration
+    cost, risk, seconds_to_stop = 0.0, 0.0, abs(v) / limits.acceleration
     to_go = value_at(scene.to_go, scene, x, y)
     for step in range(steps):
         v, omega = _reached(v, omega, wanted[step], still_room, limits)
         ahead_c, ahead_s = _turned(c, s, 0.5 * omega * dt)
         x_next, y_next, yaw_next = x + v * dt * ahead_c, y + v * dt * ahead_s, yaw + omega * dt
         c, s = _turned(ahead_c, ahead_s, 0.5 * omega * dt)
-        moved, turned = moved + abs(v) * dt, turned + abs(omega) * dt
-        if moved > CHECKED_DISTANCE or turned > CHECKED_ANGLE or step == steps - 1:
-            moved, turned = 0.0, 0.0
-            still_room = room_at(scene, x_next, y_next, c, s, enough)
+        still_room = room_at(scene, x_next, y_next, c, s, enough)
         passing_room = room_beside_movers(scene, x_next, y_next, (step + 1) * dt, aside)
         left, risk_before = 1.0 - step / steps, risk
         risk = max(risk, _risk(passing_room - least_aside, (step + 1) * dt))
