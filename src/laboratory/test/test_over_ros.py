@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 from laboratory.over_ros import _play_of
-from laboratory.scenario import read_scenario
+from laboratory.scenario import OFFICIAL, read_scenario
 from laboratory.staging import stage
 from laboratory.suites import FOLDER, scenarios_of
 from pick_objects import load_mission
@@ -67,6 +67,12 @@ def test_the_official_move_base_plays_only_over_ros_and_only_where_it_is_install
     arguments = stage(scenario, 0, tmp_path)
     assert arguments["move_base_pkg"] == "move_base"
     assert "planner" not in arguments
+
+
+def test_the_way_is_as_long_whichever_planner_drives():
+    ours = read_scenario(ERRAND)
+    arena, official = ours.arena(0), replace(ours, planner=OFFICIAL, is_over_ros=True)
+    assert official.task.way(official, arena) == ours.task.way(ours, arena) > 5.0
 
 
 def test_a_file_that_asks_for_the_official_move_base_is_not_played_in_one_process(tmp_path):

@@ -40,9 +40,9 @@ class Deliveries:
         """Of the errand; in which order a mission is best carried out is not known here."""
         if self.mission is not None:
             return None
-        radius = _conditions(scenario).navigation(NAVIGATION_CONFIG).global_costmap.robot_radius
+        robot = Conditions(parameters=scenario.parameters).navigation(NAVIGATION_CONFIG)
         ends = tuple(place.pose for place in places_of_errand(self.zones))
-        return shortest_way(_grid_of(arena), (scenario.start, *ends), radius)
+        return shortest_way(_grid_of(arena), (scenario.start, *ends), robot.global_costmap.robot_radius)
 
     def files(self) -> Tuple[Path, ...]:
         return (self.zones,) if self.mission is None else (self.zones, self.mission)
