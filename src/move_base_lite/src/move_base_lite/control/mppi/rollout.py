@@ -1,4 +1,4 @@
-"""A way of driving followed ahead, and what it costs. Kernels."""
+"""Ways of driving followed ahead, and what they cost. Kernels."""
 
 import math
 from typing import Any, NamedTuple, Tuple
@@ -46,6 +46,29 @@ class Weights(NamedTuple):
     mover_distance: float
 
 
+class Outset(NamedTuple):
+    """What all ways have in common that start together: metres, seconds, periods.
+
+    ``enough``: room above which more makes no difference; ``aside``: room beside what moves from which on it
+    need not be told; with less than ``least_room`` and ``least_aside`` the robot touches something.
+    """
+
+    steps: int
+    enough: float
+    aside: float
+    least_room: float
+    least_aside: float
+    seconds_to_stop: float
+
+
+# Where a robot is on its way: pose and speeds, cosine and sine of its yaw, what the way has cost so far, how
+# likely something that moves was touched, room around it (see room_at), metres to go.
+MOTION = np.dtype([(name, float) for name in "x y yaw c s v omega cost risk room to_go".split()])
+
+# Of what every period of every way needs: left to itself, the compiler calls it with some 50 arguments.
+_in_place = numba.njit(cache=True, forceinline=True)
+
+
 @numba.njit(cache=True)
 def best_way(noise, mean, others, start, temperature, clearance, to_go, outline_xy, movers, numbers):
     """The mean of the ways tried, weighted by what each costs, or the best of them if that is better.
@@ -56,26 +79,22 @@ def best_way(noise, mean, others, start, temperature, clearance, to_go, outline_
     something. Takes arrays of a scene one by one, and all numbers in one: names take numba long to look at.
     """
     scene, limits, weights = _named(clearance, to_go, outline_xy, movers, numbers)
-    count, steps = len(noise) + len(others), len(mean)
-    poses, speeds, costs = np.empty((steps + 1, 3)), np.empty((steps, 2)), np.empty(count)
-    way, average, total = np.empty((steps, 2)), np.zeros((steps, 2)), 0.0
-    for i in range(count):
-        _take(i, noise, mean, others, way)
-        costs[i] = drive(way, start, scene, limits, weights, poses, speeds)
+    ways, problem = (noise, mean, others), (scene, limits, weights)
+    costs, average, total = costs_of(ways, start, problem), np.zeros(mean.shape), 0.0
     best = np.argmin(costs)
-    lowest = costs[best]
+    lowest, poses, speeds = costs[best], np.empty((len(mean) + 1, 3)), np.empty(mean.shape)
     if lowest < np.inf:
-        for i in range(count):
+        for i in range(len(costs)):
             weight = math.exp((lowest - costs[i]) / temperature)
             total += weight
             if weight > 0.0:
-                _take(i, noise, mean, others, way)
-                _add(average, weight, way)
+                _add(average, weight, i, ways)
         average /= total
-        lowest = drive(average, start, scene, limits, weights, poses, speeds)
+        lowest = drive(average, start, problem, poses, speeds)
         if not lowest <= costs[best] + temperature:
-            _take(best, noise, mean, others, average)
-            lowest = drive(average, start, scene, limits, weights, poses, speeds)
+            average[:] = 0.0
+            _add(average, 1.0, best, ways)
+            lowest = drive(average, start, problem, poses, speeds)
     return average, lowest, poses, speeds
 
 
@@ -92,61 +111,121 @@ def _named(clearance, to_go, outline_xy, movers, n):
     return scene, limits, Weights(n[13], n[14], n[15], n[16], n[17], n[18], n[19], n[20])
 
 
-@numba.njit(cache=True)
-def _take(i, noise, mean, others, way):
-    """Fills in the way (N, 2) number ``i`` of those that are tried."""
-    for step in range(mean.shape[0]):
-        for axis in range(2):
-            if i < len(noise):
-                way[step, axis] = noise[i, step, axis] + mean[step, axis]
-            else:
-                way[step, axis] = others[i - len(noise), step, axis]
+@_in_place
+def _wanted(i, step, ways):
+    """The speeds asked for in a step of the way number ``i`` of those that are tried."""
+    noise, mean, others = ways
+    if i < len(noise):
+        return noise[i, step, 0] + mean[step, 0], noise[i, step, 1] + mean[step, 1]
+    return others[i - len(noise), step, 0], others[i - len(noise), step, 1]
 
 
 @numba.njit(cache=True)
-def _add(average, weight, way):
+def _add(average, weight, i, ways):
     for step in range(average.shape[0]):
-        average[step, 0] += weight * way[step, 0]
-        average[step, 1] += weight * way[step, 1]
+        v, omega = _wanted(i, step, ways)
+        average[step, 0] += weight * v
+        average[step, 1] += weight * omega
 
 
 @numba.njit(cache=True)
-def drive(wanted, start, scene, limits, weights, poses, speeds):
+def costs_of(ways, start, problem):
+    """What each of the ways costs, as ``drive`` tells it of one.
+
+    They go on side by side, period by period: a processor is quicker at many that do not depend on each
+    other than at one after the other.
+    """
+    count = len(ways[0]) + len(ways[2])
+    motions = np.empty(count, MOTION)
+    outset = _outset(motions, len(ways[1]), start, problem)
+    costs, numbers = np.empty(count), np.arange(count)
+    under_way = count
+    for step in range(outset.steps):
+        i = 0
+        while i < under_way:
+            if _goes_on(motions[i], step, _wanted(numbers[i], step, ways), outset, problem):
+                i += 1
+                continue
+            costs[numbers[i]] = _cost_at_end(motions[i], problem)
+            under_way -= 1
+            motions[i], numbers[i] = motions[under_way], numbers[under_way]
+    for i in range(under_way):
+        costs[numbers[i]] = _cost_at_end(motions[i], problem)
+    return costs
+
+
+@numba.njit(cache=True)
+def drive(wanted, start, problem, poses, speeds):
     """The cost of a robot that is asked for the speeds ``wanted`` (N, 2), in metres left to drive.
 
     Fills in the poses (N + 1, 3) and speeds (N, 2), those it can reach, cut to what its clearance allows; it
     is inf if it hits what stays before it could have stopped. In touch it may move if no more points touch.
     """
-    steps, dt = wanted.shape[0], limits.period
-    x, y, yaw, v, omega = start
-    c, s, poses[0] = math.cos(yaw), math.sin(yaw), (x, y, yaw)
-    cell, enough = 1.0 / scene.cells_per_metre, _exact_below(scene, limits, weights)
-    aside = max(weights.mover_distance, cell + _doubt(steps * dt))
-    still_room = room_at(scene, x, y, c, s, enough)
-    least_room, least_aside = min(cell, still_room), min(cell, room_beside_movers(scene, x, y, 0.0, aside))
-    cost, risk, seconds_to_stop = 0.0, 0.0, abs(v) / limits.acceleration
-    to_go = value_at(scene.to_go, scene, x, y)
-    for step in range(steps):
-        v, omega = _reached(v, omega, wanted[step], still_room, limits)
-        ahead_c, ahead_s = _turned(c, s, 0.5 * omega * dt)
-        x_next, y_next, yaw_next = x + v * dt * ahead_c, y + v * dt * ahead_s, yaw + omega * dt
-        c, s = _turned(ahead_c, ahead_s, 0.5 * omega * dt)
-        still_room = room_at(scene, x_next, y_next, c, s, enough)
-        passing_room = room_beside_movers(scene, x_next, y_next, (step + 1) * dt, aside)
-        left, risk_before = 1.0 - step / steps, risk
-        risk = max(risk, _risk(passing_room - least_aside, (step + 1) * dt))
-        cost += left * weights.mover * (risk - risk_before)
-        if still_room < least_room or risk == 1.0:
-            if still_room < least_room and (step - 1) * dt < seconds_to_stop:
-                return np.inf
-            cost += left * (1.0 + weights.delay * steps * dt * to_go)
+    motions = np.empty(1, MOTION)
+    outset = _outset(motions, len(wanted), start, problem)
+    motion, poses[0] = motions[0], start[:3]
+    for step in range(outset.steps):
+        if not _goes_on(motion, step, (wanted[step, 0], wanted[step, 1]), outset, problem):
             poses[step + 1 :], speeds[step:] = poses[step], 0.0
             break
-        x, y, yaw = x_next, y_next, yaw_next
-        poses[step + 1], speeds[step] = (x, y, yaw), (v, omega)
-        to_go = value_at(scene.to_go, scene, x, y)
-        cost = _with_step(cost, v, omega, still_room, passing_room, to_go, limits, weights)
-    return cost + to_go + weights.heading * _slope(scene, x, y, yaw, to_go)
+        poses[step + 1] = motion.x, motion.y, motion.yaw
+        speeds[step] = motion.v, motion.omega
+    return _cost_at_end(motion, problem)
+
+
+@numba.njit(cache=True)
+def _outset(motions, steps, start, problem):
+    """What ways of so many periods have in common; sets motions to the start."""
+    scene, limits, weights = problem
+    x, y, yaw, v, omega = start
+    c, s, cell = math.cos(yaw), math.sin(yaw), 1.0 / scene.cells_per_metre
+    enough = _exact_below(scene, limits, weights)
+    aside = max(weights.mover_distance, cell + _doubt(steps * limits.period))
+    room = room_at(scene, x, y, c, s, enough)
+    least_aside = min(cell, room_beside_movers(scene, x, y, 0.0, aside))
+    to_go = value_at(scene.to_go, scene, x, y)
+    for motion in motions:
+        motion.x, motion.y, motion.yaw, motion.c, motion.s = x, y, yaw, c, s
+        motion.v, motion.omega, motion.cost, motion.risk = v, omega, 0.0, 0.0
+        motion.room, motion.to_go = room, to_go
+    return Outset(steps, enough, aside, min(cell, room), least_aside, abs(v) / limits.acceleration)
+
+
+@_in_place
+def _goes_on(motion, step, wanted, outset, problem):
+    """Whether the robot gets through the period in which it is asked for such speeds; it is moved on then.
+
+    If not it stays where it was, which costs the rest of the time; or all, if it could not have stopped.
+    """
+    scene, limits, weights = problem
+    dt, seconds = limits.period, (step + 1) * limits.period
+    v, omega = _reached(motion.v, motion.omega, wanted, motion.room, limits)
+    turn = _turn(0.5 * omega * dt)
+    ahead_c, ahead_s = _turned(motion.c, motion.s, turn)
+    c, s = _turned(ahead_c, ahead_s, turn)
+    x, y = motion.x + v * dt * ahead_c, motion.y + v * dt * ahead_s
+    room = room_at(scene, x, y, c, s, outset.enough)
+    passing_room = room_beside_movers(scene, x, y, seconds, outset.aside)
+    left = 1.0 - step / outset.steps
+    risk = max(motion.risk, _risk(passing_room - outset.least_aside, seconds))
+    cost = motion.cost + left * weights.mover * (risk - motion.risk)
+    if room < outset.least_room or risk == 1.0:
+        if room < outset.least_room and (step - 1) * dt < outset.seconds_to_stop:
+            cost = np.inf
+        motion.cost = cost + left * (1.0 + weights.delay * outset.steps * dt * motion.to_go)
+        return False
+    to_go = value_at(scene.to_go, scene, x, y)
+    motion.x, motion.y, motion.yaw, motion.c, motion.s = x, y, motion.yaw + omega * dt, c, s
+    motion.v, motion.omega, motion.risk, motion.room, motion.to_go = v, omega, risk, room, to_go
+    motion.cost = _with_step(cost, v, omega, room, passing_room, to_go, limits, weights)
+    return True
+
+
+@numba.njit(cache=True)
+def _cost_at_end(motion, problem):
+    scene, _, weights = problem
+    ahead_of_goal = _slope(scene, motion.x, motion.y, motion.yaw, motion.to_go)
+    return motion.cost + motion.to_go + weights.heading * ahead_of_goal
 
 
 @numba.njit(cache=True)
@@ -157,7 +236,7 @@ def _exact_below(scene, limits, weights):
     return max(weights.safe_distance, limits.highest_v * limits.approach_time, 1.0 / scene.cells_per_metre)
 
 
-@numba.njit(cache=True)
+@_in_place
 def _reached(v, omega, wanted, room, limits):
     """The speeds that a robot with so much ``room`` has after a period in which it is asked for others."""
     allowed_v = _highest_speed_in(room, limits)
@@ -167,19 +246,24 @@ def _reached(v, omega, wanted, room, limits):
     return v, min(max(omega, -limits.highest_omega), limits.highest_omega)
 
 
-@numba.njit(cache=True)
-def _turned(c, s, angle):
-    """Cosine and sine of a heading turned by an angle; small ones by their series, to the last bits."""
+@_in_place
+def _turn(angle):
+    """Cosine and sine of an angle; of small ones by their series, to the last bits."""
     if abs(angle) > SMALL_ANGLE:
-        by_c, by_s = math.cos(angle), math.sin(angle)
-    else:
-        square = angle * angle
-        by_c = 1.0 - square / 2.0 * (1.0 - square / 12.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0)))
-        by_s = angle * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0)))
+        return math.cos(angle), math.sin(angle)
+    square = angle * angle
+    c = 1.0 - square / 2.0 * (1.0 - square / 12.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0)))
+    return c, angle * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0)))
+
+
+@_in_place
+def _turned(c, s, turn):
+    """Cosine and sine of a heading turned by an angle that is told by the same of it."""
+    by_c, by_s = turn
     return c * by_c - s * by_s, s * by_c + c * by_s
 
 
-@numba.njit(cache=True)
+@_in_place
 def _with_step(cost, v, omega, still_room, passing_room, to_go, limits, weights):
     """The cost with that of one period: nearness to what stays and to what moves, delay, turning, backing."""
     dt = limits.period
@@ -193,7 +277,7 @@ def _with_step(cost, v, omega, still_room, passing_room, to_go, limits, weights)
     return cost + dt * (weights.delay * to_go + weights.turn * omega * omega - weights.backward * min(v, 0.0))
 
 
-@numba.njit(cache=True)
+@_in_place
 def _risk(room, seconds):
     """How likely what moves is touched, so many seconds from now, if it is expected ``room`` metres away."""
     return min(max(0.5 - 0.5 * room / _doubt(seconds), 0.0), 1.0)

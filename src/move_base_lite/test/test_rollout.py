@@ -1,0 +1,41 @@
+"""Ways of driving followed ahead."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from move_base_lite.check import rooms
+from move_base_lite.control import Plan
+from move_base_lite.control.mppi.rollout import Limits, Weights, costs_of, drive
+from move_base_lite.control.mppi.scene import scene_of
+from planar import Pose2, Twist2
+
+STEPS = 20
+
+
+def test_ways_followed_side_by_side_cost_what_each_costs_alone():
+    problem, start = problem_beside_a_wall_and_somebody()
+    rng = np.random.default_rng(4)
+    noise, others = (rng.normal(0.0, (0.3, 0.8), (count, STEPS, 2)) for count in (300, 40))
+    mean = np.tile((0.2, 0.1), (STEPS, 1))
+    costs = costs_of((noise, mean, others), start, problem)
+    poses, speeds = np.empty((STEPS + 1, 3)), np.empty((STEPS, 2))
+    alone, ended_early = [], 0
+    for way in (*(noise + mean), *others):
+        alone.append(drive(way, start, problem, poses, speeds))
+        ended_early += np.isfinite(alone[-1]) and (poses[-1] == poses[-2]).all()
+    assert 0 < ended_early < 340 and 0 < np.isinf(costs).sum() < 340
+    assert (costs == alone).all()
+
+
+def problem_beside_a_wall_and_somebody():
+    room = rooms.room_of("open")
+    pose, twist = Pose2(0.5 + rooms.RADIUS + 0.1, 1.3, 2.0), Twist2(0.3, 0.0)
+    situation = replace(
+        rooms.situation_of(room.costmap, pose, twist), movers=np.array([(2.0, 1.9, -0.3, -0.1, 0.25)])
+    )
+    plan = Plan(np.linspace((pose.x, pose.y), room.goal_xy, 20), 4.0)
+    scene = scene_of(situation, plan, heeds_remembered=False)
+    limits = Limits(rooms.PERIOD, -0.3, 0.5, 1.5, 0.5, 2.0, 0.25, 0.3)
+    weights = Weights(0.15, 2.0, 0.02, 1.0, 0.2, 0.5, 10.0, 0.15)
+    return (scene, limits, weights), np.array([*pose.as_array(), twist.v, twist.omega])
