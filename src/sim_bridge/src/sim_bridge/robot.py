@@ -192,9 +192,7 @@ class Robot:
         if step < self._next_step:
             return
         self._around.look_anew(stamp)
-        for mount in self._mounts.values():
-            mount.end_step(step, self._around)
-        self._next_step = min(mount.next_step(step) for mount in self._mounts.values())
+        self._next_step = min([mount.end_step(step, self._around) for mount in self._mounts.values()])
 
     def observe(self, stamp: float) -> Observation:
         """What has been measured since the last call."""

@@ -94,14 +94,14 @@ class SensorWatch:
         if not len(ranges):
             return "it has no beams"
         with np.errstate(invalid="ignore"):
-            shares = {
-                "NaN": np.isnan(ranges).mean(),
-                f"nearer than {range_min:g} m": (ranges < max(range_min, 1e-3)).mean(),
+            counts = {
+                "NaN": np.count_nonzero(np.isnan(ranges)),
+                f"nearer than {range_min:g} m": np.count_nonzero(ranges < max(range_min, 1e-3)),
             }
             seen = ranges[(ranges >= range_min) & (ranges < range_max)]
         looks_around = abs(span) > ALL_AROUND
-        for what, share in shares.items():
-            if share >= NEARLY_ALL and looks_around:
+        for what, count in counts.items():
+            if count / len(ranges) >= NEARLY_ALL and looks_around:
                 return f"nearly all of its beams are {what}"
         if len(seen) >= ENOUGH * len(ranges):
             self._view = _View(self._base, NOT_FAR if looks_around else self._room(seen, range_min))

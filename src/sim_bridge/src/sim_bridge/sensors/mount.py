@@ -33,16 +33,11 @@ class Mount:
         """There is nothing to do here but after a multiple of so many steps of physics."""
         return math.gcd(math.gcd(self._schedule.interval, self._schedule.offset), self._schedule.delay)
 
-    def next_step(self, step: int) -> int:
-        """The first step of physics after number ``step`` at which there is something to do here."""
-        interval, offset, _ = self._schedule
-        due = step + 1 + (offset - step - 1) % interval
-        return min(due, self._on_their_way[0][0]) if self._on_their_way else due
-
-    def end_step(self, step: int, around: Surroundings) -> None:
-        """After the step of physics number ``step``."""
+    def end_step(self, step: int, around: Surroundings) -> int:
+        """After the step of physics number ``step``; returns the next after which there is something to do."""
         interval, offset, delay = self._schedule
-        if self._is_wanted and step % interval == offset:
+        since_due = (step - offset) % interval
+        if self._is_wanted and not since_due:
             value = self._sensor.measure(around)
             if value is not None and not delay:
                 self._fresh = Reading(around.stamp, value)
@@ -50,6 +45,8 @@ class Mount:
                 self._on_their_way.append((step + delay, Reading(around.stamp, value)))
         while self._on_their_way and self._on_their_way[0][0] <= step:
             _, self._fresh = self._on_their_way.popleft()
+        due = step + interval - since_due
+        return min(due, self._on_their_way[0][0]) if self._on_their_way else due
 
     def take(self) -> Optional[Reading]:
         """The latest that has come since the last call, if any."""
