@@ -34,7 +34,7 @@ class Mount:
         return math.gcd(math.gcd(self._schedule.interval, self._schedule.offset), self._schedule.delay)
 
     def end_step(self, step: int, around: Surroundings) -> int:
-        """After the step of physics number ``step``; returns the next after which there is something to do."""
+        """After the step of physics number ``step``; returns the next at which there is something to do."""
         interval, offset, delay = self._schedule
         since_due = (step - offset) % interval
         if self._is_wanted and not since_due:
