@@ -10,3 +10,18 @@ sys.path[:0] = [str(ROOT / "tests/runner"), str(ROOT / "tests/repository")]
 sys.path[1:1] = [str(path) for path in sorted(ROOT.glob("src/*/test")) if path.is_dir()]
 # Hypothesis, for tests of histories, comes with the set-up for development alone.
 collect_ignore_glob = [] if find_spec("hypothesis") else ["src/*/test/test_*_histories.py"]
+
+
+def pytest_addoption(parser):
+    parser.addoption(
+        "--only", action="append", metavar="NAME", help="only files whose paths contain NAME, or another one"
+    )
+
+
+def pytest_ignore_collect(collection_path, config):
+    """Unlike a file that is named, one that is chosen may still be left out by the conftest.py beside it."""
+    names = config.getoption("only")
+    if not names or collection_path.is_dir():
+        return None
+    path = collection_path.relative_to(ROOT).as_posix()
+    return None if any(name in path for name in names) else True

@@ -51,9 +51,9 @@ def lacking(path: Path, is_there=is_installed) -> Optional[str]:
     return None
 
 
-def run_unit_tests(folder: Path, files: Sequence[Path]) -> Outcome:
+def run_unit_tests(folder: Path, names: Sequence[str]) -> Outcome:
     report = folder / "unit.xml"
-    command = [sys.executable, *PYTEST, f"--junitxml={report}", *map(str, files)]
+    command = [sys.executable, *PYTEST, f"--junitxml={report}", *(f"--only={name}" for name in names)]
     return run_kept(
         command, log_of(folder, "unit"), UNIT_SECONDS, lambda code: judge_unit_tests(report, code)
     )
@@ -152,8 +152,7 @@ def main() -> int:
     account = Account(folder)
     if unit:
         started = time.monotonic()
-        # A file that is named is collected even where its folder's conftest.py leaves it out.
-        outcome = run_unit_tests(folder, unit if options.names else [])
+        outcome = run_unit_tests(folder, options.names)
         account.note("unit", outcome, time.monotonic() - started)
     lacks = {path: lacking(path) for path in ros}
     RosTests(folder, account).run([path for path in ros if lacks[path] is None], options.jobs)

@@ -88,6 +88,11 @@ def test_a_garbled_report_is_a_failure(tmp_path):
     assert judge_unit_tests(tmp_path / "unit.xml", 0).failed == 1
 
 
+def test_that_pytest_has_no_test_is_a_failure_that_says_what_is_missing(tmp_path):
+    outcome = judge_unit_tests(write_report(tmp_path / "unit.xml", 0), 5)
+    assert outcome.failed == 1 and "setup.sh --dev" in outcome.reason
+
+
 def test_the_time_limits_of_a_file_are_read(tmp_path):
     path = tmp_path / "x.test"
     path.write_text(
@@ -119,6 +124,23 @@ def test_a_test_may_need_more_than_its_folder_does():
 
 def test_what_needs_something_is_there():
     assert all((ROOT / place).exists() for place in NEEDS)
+
+
+def chosen(names, missing):
+    """The files of unit tests that pytest takes for such names where a package is missing."""
+    script = (
+        "import importlib.util as util, sys, pytest; there = util.find_spec; missing, *names = sys.argv[1:];"
+        "util.find_spec = lambda name, *given: None if name == missing else there(name, *given);"
+        "pytest.main(['--collect-only', '-p', 'no:xdist', *names])"
+    )
+    command = [sys.executable, "-c", script, missing, *(f"--only={name}" for name in names)]
+    told = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, timeout=120)
+    return {line.partition("::")[0].rpartition("/")[2] for line in told.stdout.splitlines() if "::" in line}
+
+
+def test_unit_tests_that_are_named_are_left_out_where_what_they_need_is_missing():
+    names = ("laboratory/test/test_search", "runner/test_run")
+    assert chosen(names, missing="optuna") == {"test_run_tests.py"}
 
 
 def test_commands_and_packages_are_found():
