@@ -52,6 +52,11 @@ def test_planners_are_on_a_leaderboard(page):
     assert "success: cannot tell" in page
 
 
+def test_a_planner_alone_is_compared_to_none(page):
+    alone = page_html([evaluated(SCENARIO, [WON])], "v1.2")
+    assert "beside the first" in page and "beside the first" not in alone
+
+
 def test_a_heat_map_is_reddest_where_most_failed():
     elsewhere = replace(LOST, end_x=-2.0, end_y=1.0)
     drawn = heat_map(SCENARIO, [LOST, LOST, elsewhere])

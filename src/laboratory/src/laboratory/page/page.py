@@ -68,7 +68,9 @@ def _leaderboard(name: str, planners: Sequence[Any]) -> str:
         success, collisions = summary.figures["success"], summary.outcomes["collision"]
         rows.append((planner, summary.runs, success, collisions, *figures, beside))
     about = f"<p>{escape(planners[0].scenario.about)}</p>"
-    return f'<section class="card"><h2>{escape(name)}</h2>{about}{table(HEADS, rows)}</section>'
+    columns = len(HEADS) if len(planners) > 1 else len(HEADS) - 1
+    board = table(HEADS[:columns], [row[:columns] for row in rows])
+    return f'<section class="card"><h2>{escape(name)}</h2>{about}{board}</section>'
 
 
 def _failures(each: Any) -> str:
