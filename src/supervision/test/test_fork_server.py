@@ -34,9 +34,13 @@ def draw():
 """
 START = "from supervision.forked import live_forked; live_forked(*{!r}); print('alone')"
 STARTER = """
+import sys
 from supervision.fork_server import start_fork_server
+from supervision.interruption import leave, leave_when_interrupted
+leave_when_interrupted()
 print(start_fork_server([]).pid, flush=True)
-input()
+sys.stdin.read()
+leave(4)
 """
 
 
@@ -192,3 +196,14 @@ def test_the_server_ends_with_who_has_started_it(modules):
     server = psutil.Process(int(process.stdout.readline()))
     process.kill()
     wait_until(lambda: has_ended(server))
+
+
+@pytest.mark.parametrize("ask, code", [(subprocess.Popen.terminate, 130), (lambda it: it.stdin.close(), 4)])
+def test_when_who_has_started_it_has_left_it_has_ended_however_busy_it_was(modules, ask, code):
+    streams = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
+    process = subprocess.Popen([sys.executable, "-c", STARTER], text=True, **streams)
+    server = psutil.Process(int(process.stdout.readline()))
+    server.suspend()
+    ask(process)
+    assert process.wait(SECONDS) == code
+    assert has_ended(server)

@@ -26,7 +26,8 @@ from pathlib import Path
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from supervision.forked import ANSWER_SECONDS, FORK_SERVER, LARGEST_MESSAGE, STREAMS, user_of_peer
-from supervision.processes import ending_with_parent
+from supervision.interruption import before_leaving
+from supervision.processes import SIGTERM_SECONDS, ending_with_parent
 
 WAITING_CLIENTS = 64
 ORDER_SECONDS = 1.0
@@ -37,20 +38,31 @@ F_SETSIG = 10
 def start_fork_server(preparations: Sequence[str]) -> "subprocess.Popen[bytes]":
     """One that makes the preparations, named in the environment from now on.
 
-    Started by the main thread, with which it ends.
+    Started by the main thread, with which it ends; who leaves (``supervision.interruption``) sees it end.
     """
     name = f"home_service_{os.getpid()}_{secrets.token_hex(8)}"
     command = [sys.executable, "-m", "supervision.fork_server", name, *preparations]
     # Children have no use for threads of BLAS, which are not forked either.
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
     os.environ[FORK_SERVER] = name
-    return subprocess.Popen(
+    server = subprocess.Popen(
         command,
         env=environment,
         stdin=subprocess.DEVNULL,
         start_new_session=True,
         preexec_fn=ending_with_parent(signal.SIGTERM),
     )
+    before_leaving(lambda: _end(server))
+    return server
+
+
+def _end(server: "subprocess.Popen[bytes]") -> None:
+    server.terminate()
+    try:
+        server.wait(SIGTERM_SECONDS)
+    except subprocess.TimeoutExpired:
+        server.kill()
+        server.wait()
 
 
 def main() -> None:

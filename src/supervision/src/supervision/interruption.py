@@ -4,7 +4,7 @@ import os
 import signal
 import sys
 from contextlib import contextmanager
-from typing import Any, Callable, Iterator, NoReturn, Tuple
+from typing import Any, Callable, Iterator, List, NoReturn, Tuple
 
 INTERRUPTED = 130
 
@@ -19,6 +19,7 @@ def _signals() -> Tuple[signal.Signals, ...]:
 SIGNALS = _signals()
 
 _is_interrupted = False
+_last_acts: List[Callable[[], object]] = []
 
 
 class RunInterruptedError(KeyboardInterrupt):
@@ -67,15 +68,28 @@ def raise_if_interrupted() -> None:
         raise RunInterruptedError
 
 
+def before_leaving(do: Callable[[], object]) -> None:
+    """Calls it before this process ends of itself, or because it is asked to."""
+    _last_acts.append(do)
+
+
 def leave(code: int) -> NoReturn:
     """Ends the process without waiting for threads of ROS that still listen to a master that is gone."""
     sys.stdout.flush()
+    _end(code)
+
+
+def _end(code: int) -> NoReturn:
+    for do in _last_acts:
+        do()
     os._exit(code)
 
 
 def _leave(_number, _frame):
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
     os.write(sys.stderr.fileno(), b"error: interrupted\n")
-    os._exit(INTERRUPTED)
+    _end(INTERRUPTED)
 
 
 def _raise(_number, _frame):
