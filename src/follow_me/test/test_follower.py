@@ -63,3 +63,15 @@ def test_a_leader_that_turns_round_does_not_call_the_follower_upon_itself():
         leader = Pose2(2.0 - 0.1 * step, 0.0, math.pi)
         goal = guide.goal(leader, BEHIND)
         assert goal is None or goal.distance_to(leader) > 0.5 * GAP
+
+
+@pytest.mark.parametrize("step, ahead", [(0.05, 0.1), (0.1, 0.2), (0.3, 0.3 * GAP)])
+def test_behind_a_leader_that_goes_on_the_goal_is_where_the_gap_soon_will_be(step, ahead):
+    guide = follower()
+    for number in range(round(3.0 / step)):
+        leader = Pose2(step * number, 0.0, 0.0)
+        goal = guide.goal(leader, BEHIND)
+        if goal is not None and leader.x > 1.0:
+            assert GAP - ahead - 1e-9 <= leader.x - goal.x < GAP - ahead + step
+    stands = guide.goal(leader, BEHIND)
+    assert stands is None or GAP - 1e-9 <= leader.x - stands.x < GAP + step

@@ -10,9 +10,9 @@ from planar.config.parameters import Bounds, check_parameters, parameter
 class FollowSettings:
     """Metres, radians and seconds."""
 
-    gap: float = parameter(0.7, "how far behind the leader to stay, along its way", "m", Bounds(0.1))
+    gap: float = parameter(0.6, "how far behind the leader to stay, along its way", "m", Bounds(0.1))
     slack: float = parameter(
-        0.2, "how much farther a leader may go before one sets off after it", "m", Bounds(0.0)
+        0.1, "how much farther a leader may go before one sets off after it", "m", Bounds(0.0)
     )
     goal_shift: float = parameter(0.1, "a goal that has moved by this is sent anew", "m", Bounds(0.01))
     goal_turn: float = parameter(0.5, "a goal that has turned by this is sent anew", "rad", Bounds(0.05))

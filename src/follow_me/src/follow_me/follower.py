@@ -8,6 +8,8 @@ from planar import Pose2, wrap
 
 # Points of the leader's way are this far from each other, metres.
 _SPACING = 0.05
+# The leader is expected to go on as since the last call for so many more, by this share of the gap at most.
+_AHEAD, _MOST_AHEAD = 2.0, 0.3
 
 
 class Follower:
@@ -20,10 +22,14 @@ class Follower:
         self._settings = settings
         self._way: List[Pose2] = []
         self._goal: Optional[Pose2] = None
+        self._leader_in_map: Optional[Pose2] = None
+        self._leader_step = 0.0
         self._is_under_way = False
 
     def goal(self, leader_in_map: Pose2, follower_in_map: Pose2) -> Optional[Pose2]:
         """A new pose to go to; None while the last one will do, or the leader is near and in view."""
+        before, self._leader_in_map = self._leader_in_map or leader_in_map, leader_in_map
+        self._leader_step = before.distance_to(leader_in_map)
         if not self._way or self._way[-1].distance_to(leader_in_map) >= _SPACING:
             self._way.append(leader_in_map)
         self._set_off_or_stop(follower_in_map.distance_to(leader_in_map))
@@ -59,8 +65,9 @@ class Follower:
         return place
 
     def _place_behind(self, leader_in_map: Pose2) -> Optional[Pose2]:
-        """The place on the leader's way ``gap`` behind it, looking at it; forgets what lies before."""
-        left, after = self._settings.gap, leader_in_map
+        """On the leader's way, ``gap`` behind where it is soon, looking at it; forgets what lies before."""
+        gap = self._settings.gap
+        left, after = gap - min(_AHEAD * self._leader_step, _MOST_AHEAD * gap), leader_in_map
         for number in range(len(self._way) - 1, -1, -1):
             here = self._way[number]
             left -= here.distance_to(after)
