@@ -27,7 +27,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from supervision.forked import ANSWER_SECONDS, FORK_SERVER, LARGEST_MESSAGE, STREAMS, user_of_peer
 from supervision.interruption import before_leaving
-from supervision.processes import SIGTERM_SECONDS, ending_with_parent
+from supervision.processes import end_descendants, ending_with_parent
 
 WAITING_CLIENTS = 64
 ORDER_SECONDS = 1.0
@@ -45,24 +45,14 @@ def start_fork_server(preparations: Sequence[str]) -> "subprocess.Popen[bytes]":
     # Children have no use for threads of BLAS, which are not forked either.
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
     os.environ[FORK_SERVER] = name
-    server = subprocess.Popen(
+    before_leaving(end_descendants)
+    return subprocess.Popen(
         command,
         env=environment,
         stdin=subprocess.DEVNULL,
         start_new_session=True,
         preexec_fn=ending_with_parent(signal.SIGTERM),
     )
-    before_leaving(lambda: _end(server))
-    return server
-
-
-def _end(server: "subprocess.Popen[bytes]") -> None:
-    server.terminate()
-    try:
-        server.wait(SIGTERM_SECONDS)
-    except subprocess.TimeoutExpired:
-        server.kill()
-        server.wait()
 
 
 def main() -> None:

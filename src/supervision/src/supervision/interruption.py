@@ -86,15 +86,18 @@ def _end(code: int) -> NoReturn:
 
 
 def _leave(_number, _frame):
-    for number in SIGNALS:
-        signal.signal(number, signal.SIG_IGN)
+    _ignore_further_signals()
     os.write(sys.stderr.fileno(), b"error: interrupted\n")
     _end(INTERRUPTED)
 
 
 def _raise(_number, _frame):
     global _is_interrupted
-    for number in SIGNALS:
-        signal.signal(number, signal.SIG_IGN)
+    _ignore_further_signals()
     _is_interrupted = True
     raise RunInterruptedError
+
+
+def _ignore_further_signals() -> None:
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
