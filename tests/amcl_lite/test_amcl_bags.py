@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 import unittest
 from pathlib import Path
 
@@ -16,6 +17,7 @@ import rospy
 import rostest
 from bad_scans import BROKEN, break_scans
 from bag_stage import BagStage
+from rosgraph_msgs.msg import Log
 from waiting import wait_until
 
 from planar import FREE, UNKNOWN, OccupancyGrid, Pose2, save_map, wrap
@@ -135,6 +137,26 @@ class AmclBagsTest(unittest.TestCase):
         wait_until("scans", lambda: "/amcl" in nodes_at("/base_scan")[0])
         self.assertNotIn("/amcl", nodes_at("/base_scan")[1])
         running.join()
+
+    def test_it_warns_when_no_scan_has_come_for_15_s(self):
+        warnings = []
+
+        def hear(log):
+            if "No laser scan received" in log.msg:
+                warnings.append(log.msg)
+
+        listener = rospy.Subscriber("/rosout", Log, hear, queue_size=100)
+        self.node.start_node(self.grid, self.parameters)
+        self.node.play(self.bag)
+        self.assertEqual(warnings, [])
+        self.node.let_time_pass(14.0)
+        time.sleep(2.0)
+        self.assertEqual(warnings, [])
+        for count in (1, 2):
+            self.node.let_time_pass(16.0)
+            wait_until("a warning", lambda: len(warnings) == count)  # noqa: B023
+        self.assertIn("on the /scan topic", warnings[0])
+        listener.unregister()
 
     def test_a_bag_in_a_loop_is_followed_again_from_its_start(self):
         self.node.start_node(self.grid, self.parameters)

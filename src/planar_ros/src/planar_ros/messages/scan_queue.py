@@ -95,6 +95,8 @@ class ScanQueue:
             self._wake()
 
     def _wake(self):
+        if self._step.is_on and not self._is_ending:
+            return  # the moment has it looked after
         with self._has_news:
             self._news += 1
             self._has_news.notify_all()
