@@ -7,6 +7,8 @@ from dataclasses import replace
 
 import pytest
 
+from home_service.cli import parse
+from laboratory import commands
 from laboratory.campaign import Campaign, Mission, Workers, campaign
 from laboratory.campaign.progress import Told
 from laboratory.errors import ResultsError, WorkersError
@@ -16,6 +18,7 @@ from laboratory.results.result import Key
 from laboratory.results.store import Store
 from laboratory.scenario import read_scenario
 from laboratory.suites import FOLDER
+from planar import FileWriteError
 
 SEEDS = tuple(range(6))
 
@@ -109,6 +112,20 @@ def test_a_worker_of_another_version_refuses(scenario):
 
 def test_a_mission_has_a_key_of_scenario_seed_and_version(scenario):
     assert Mission(scenario, 3, "abc").key[:2] == ("abc", 3)
+
+
+def test_a_full_disk_is_told_of_the_file_that_it_kept_from_being_written_first(monkeypatch, tmp_path):
+    def fill_up(evaluation, workers):
+        raise ResultsError("results.sqlite: database or disk is full")
+
+    def write_none(*arguments):
+        raise FileWriteError("results.csv: cannot be written")
+
+    monkeypatch.setattr("supervision.interruption.raise_when_interrupted", lambda: None)
+    monkeypatch.setattr(Evaluation, "play", fill_up)
+    monkeypatch.setattr("laboratory.results.export.export", write_none)
+    with pytest.raises(ResultsError, match="database or disk is full"):
+        parse(["evaluate", "home_errand", "--output", str(tmp_path)], commands.FOLDER).run()
 
 
 def test_progress_tells_how_long_it_will_take():

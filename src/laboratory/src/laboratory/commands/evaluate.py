@@ -1,3 +1,4 @@
+from contextlib import closing, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Optional, Tuple
@@ -42,9 +43,9 @@ class Evaluate:
         from laboratory.statistics.requirement import requirement_from
         from laboratory.suites import scenarios_of
         from laboratory.telling import broken_rules, regressions
-        from planar import SettingsError
+        from planar import PlanarError, SettingsError
         from supervision.display import complain
-        from supervision.interruption import raise_when_interrupted
+        from supervision.interruption import RunInterruptedError, raise_when_interrupted
 
         rules = [requirement_from(text) for text in self.require or ()]
         seeds = None if self.seeds is None else seeds_of(self.seeds)
@@ -56,12 +57,15 @@ class Evaluate:
         evaluation = Evaluation(scenarios, seeds, self.output / "results.sqlite")
         earlier = evaluation.evaluated(evaluation.version_like(self.against)) if self.against else []
         raise_when_interrupted()
-        try:
-            evaluation.play(Workers(self.workers or 0, self.scheduler))
-        finally:
+        with closing(evaluation):
+            try:
+                evaluation.play(Workers(self.workers or 0, self.scheduler))
+            except (PlanarError, RunInterruptedError):
+                with suppress(PlanarError):  # what ended it counts, though a full disk may end this too
+                    self._tell(evaluation.evaluated())
+                raise
             evaluated = evaluation.evaluated()
             self._tell(evaluated)
-            evaluation.close()
         broken = broken_rules(evaluated, rules) + regressions(evaluated, earlier)
         for text in broken:
             print(text)
