@@ -57,6 +57,11 @@ def test_a_planner_alone_is_compared_to_none(page):
     assert "beside the first" in page and "beside the first" not in alone
 
 
+def test_a_figure_that_no_planner_has_is_no_column(page):
+    wayless = page_html([evaluated(SCENARIO, [replace(WON, way=None)])], "v1.2")
+    assert "<th>SPL</th>" in page and "<th>SPL</th>" not in wayless
+
+
 def test_a_heat_map_is_reddest_where_most_failed():
     elsewhere = replace(LOST, end_x=-2.0, end_y=1.0)
     drawn = heat_map(SCENARIO, [LOST, LOST, elsewhere])

@@ -68,8 +68,8 @@ def _leaderboard(name: str, planners: Sequence[Any]) -> str:
         success, collisions = summary.figures["success"], summary.outcomes["collision"]
         rows.append((planner, summary.runs, success, collisions, *figures, beside))
     about = f"<p>{escape(planners[0].scenario.about)}</p>"
-    heads = HEADS if len(planners) > 1 else HEADS[:-1]
-    board = table(heads, [row[: len(heads)] for row in rows])
+    filled = [(head, cells) for head, *cells in zip(HEADS, *rows) if any(map(str, cells))]
+    board = table([head for head, _ in filled], list(zip(*(cells for _, cells in filled))))
     return f'<section class="card"><h2>{escape(name)}</h2>{about}{board}</section>'
 
 
