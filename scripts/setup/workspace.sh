@@ -179,7 +179,7 @@ check_names() { # catkin builds nothing where two packages have one name
 }
 
 fault_in() { # LOG: which package does not build, and of what it says that it lacks
-    local package lacks
+    local package lacks remedy="./scripts/setup.sh --projects installs what most packages in C++ need"
     package=$(without_warnings "$1" | sed -nE "s/^Error\(s\) in package '(.*)\/package.xml':.*/\1/p
         s/^(CMake Error at | +)([^/ ][^ :]*)\/CMakeLists\.txt:[0-9]+ \(.*/\2/p
         s/^make\[[0-9]+\]: \*\*\* \[([^ ]*)\/CMakeFiles\/.*/\1/p" | head -n 1)
@@ -187,8 +187,8 @@ fault_in() { # LOG: which package does not build, and of what it says that it la
     if [[ -z $package ]]; then
         say "the catkin build failed"
     else
-        say "the package '$(basename "$package")' does not build${lacks:+: it needs $lacks, which is not installed" \
-            "(./scripts/setup.sh --projects installs what most packages in C++ need)}"
+        lacks=${lacks:+: it needs $lacks, which is not installed ($remedy)}
+        say "the package '$(basename "$package")' does not build$lacks"
     fi
 }
 

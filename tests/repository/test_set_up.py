@@ -111,7 +111,10 @@ def test_a_package_that_does_not_build_leaves_the_last_good_build_in_use(tmp_pat
         said = in_workspace(tmp_path, FAILING + "set_up; echo used")
         assert said.returncode == 0, said.stderr
         assert said.stdout.endswith("used\n")
-        assert "warning: the package 'mine' does not build: it needs roscpp" in said.stderr
+        assert (
+            "warning: the package 'mine' does not build: it needs roscpp, which is not installed "
+            "(./scripts/setup.sh --projects installs what most packages in C++ need)"
+        ) in said.stderr
         assert (tmp_path / "devel/setup.bash").read_text() == "good\n"
         assert (tmp_path / "build/cache").read_text() == "good\n"
     assert "Building" not in said.stdout
