@@ -12,7 +12,7 @@ from laboratory import commands
 from laboratory.campaign import Campaign, Mission, Workers, campaign
 from laboratory.campaign.progress import Told
 from laboratory.errors import ResultsError, WorkersError
-from laboratory.evaluation import Evaluation
+from laboratory.evaluation import Evaluated, Evaluation
 from laboratory.playing import play
 from laboratory.results.result import Key
 from laboratory.results.store import Store
@@ -114,7 +114,19 @@ def test_a_mission_has_a_key_of_scenario_seed_and_version(scenario):
     assert Mission(scenario, 3, "abc").key[:2] == ("abc", 3)
 
 
-def test_a_full_disk_is_told_of_the_file_that_it_kept_from_being_written_first(monkeypatch, tmp_path):
+def test_a_campaign_that_never_began_tells_nothing_but_why(monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr("supervision.interruption.raise_when_interrupted", lambda: None)
+    monkeypatch.setattr("laboratory.campaign.workers.SECONDS_TO_CONNECT", 1)
+    words = ["evaluate", "home_errand", "--output", str(tmp_path), "--scheduler", "tcp://127.0.0.1:9"]
+    with pytest.raises(WorkersError, match="no scheduler"):
+        parse(words, commands.FOLDER).run()
+    assert "0 runs" not in capsys.readouterr().out
+    assert [file.name for file in tmp_path.iterdir()] == ["results.sqlite"]
+
+
+def test_a_full_disk_is_told_of_the_file_that_it_kept_from_being_written_first(
+    monkeypatch, tmp_path, scenario, alone
+):
     def fill_up(evaluation, workers):
         raise ResultsError("results.sqlite: database or disk is full")
 
@@ -123,6 +135,7 @@ def test_a_full_disk_is_told_of_the_file_that_it_kept_from_being_written_first(m
 
     monkeypatch.setattr("supervision.interruption.raise_when_interrupted", lambda: None)
     monkeypatch.setattr(Evaluation, "play", fill_up)
+    monkeypatch.setattr(Evaluation, "evaluated", lambda evaluation: [Evaluated(scenario, "d", alone)])
     monkeypatch.setattr("laboratory.results.export.export", write_none)
     with pytest.raises(ResultsError, match="database or disk is full"):
         parse(["evaluate", "home_errand", "--output", str(tmp_path)], commands.FOLDER).run()

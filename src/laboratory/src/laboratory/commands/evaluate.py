@@ -62,7 +62,9 @@ class Evaluate:
                 evaluation.play(Workers(self.workers or 0, self.scheduler))
             except (PlanarError, RunInterruptedError):
                 with suppress(PlanarError):  # what ended it counts, though a full disk may end this too
-                    self._tell(evaluation.evaluated())
+                    evaluated = evaluation.evaluated()
+                    if any(each.results for each in evaluated):
+                        self._tell(evaluated)
                 raise
             evaluated = evaluation.evaluated()
             self._tell(evaluated)
