@@ -74,6 +74,12 @@ def test_the_command_names_a_file_that_is_not_of_the_project(tmp_path):
     assert command_of(elsewhere, 5) == f"./scripts/play.sh '{tmp_path}/my scenario.yaml' --seed 5"
 
 
+def test_a_run_of_the_graph_is_repeated_by_the_graph():
+    official = replace(SCENARIO.with_planner("official"), is_over_ros=True)
+    command = "./scripts/play.sh home_errand --seed 5 --planner official --over ros"
+    assert command_of(official, 5) == command
+
+
 def test_a_comparison_is_put_into_words():
     assert verdict(compare([WON], [replace(WON, seed=7)])) == "no seeds in common"
     assert verdict(compare([WON], [WON])) == "success: cannot tell (+0 −0, p 1)"

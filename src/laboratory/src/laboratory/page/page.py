@@ -52,7 +52,8 @@ def command_of(scenario: Scenario, seed: int) -> str:
     """What repeats a run."""
     is_given = scenario.file.parent == FOLDER
     words = ["./scripts/play.sh", scenario.name if is_given else str(scenario.file), "--seed", str(seed)]
-    return shlex.join(words + (["--planner", scenario.planner] if scenario.planner else []))
+    words += ["--planner", scenario.planner] if scenario.planner else []
+    return shlex.join(words + (["--over", "ros"] if scenario.is_over_ros else []))
 
 
 def _leaderboard(name: str, planners: Sequence[Any]) -> str:
