@@ -69,6 +69,10 @@ class CockpitDoorsTest(unittest.TestCase):
             rospy.ServiceProxy("/gazebo/delete_model", DeleteModel)("cup")
             wait_until("no cup", lambda: not is_shown())
 
+    def test_the_browser_takes_no_more_than_its_share_of_the_processor(self):
+        self.page.wait_for("View", "Drive", seconds=90.0)
+        self.assertGreaterEqual(min(self.browser.niceness()), 0)
+
     def open(self, hinge, percent):
         self.page.choose("Of", hinge)
         self.page.fill_in("Open, %", str(percent))

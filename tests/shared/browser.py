@@ -12,6 +12,7 @@ import urllib.request
 from contextlib import suppress
 from pathlib import Path
 
+import psutil
 from waiting import wait_until
 from websockets.sync.client import connect
 
@@ -39,6 +40,8 @@ OPTIONS = (
     "--enable-unsafe-swiftshader",
     "--remote-debugging-port=0",
 )
+# Where it may, which root may, it would draw before nodes get to work.
+NO_PRIORITY = ("setpriv", "--bounding-set", "-sys_nice") if os.geteuid() == 0 else ()
 
 
 def executable():
@@ -54,7 +57,7 @@ class Browser:
         self._folder = tempfile.mkdtemp()
         told = Path(self._folder) / "DevToolsActivePort"
         self._process = subprocess.Popen(
-            [executable(), *OPTIONS, f"--user-data-dir={self._folder}", "about:blank"],
+            [*NO_PRIORITY, executable(), *OPTIONS, f"--user-data-dir={self._folder}", "about:blank"],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
@@ -75,6 +78,10 @@ class Browser:
         with urllib.request.urlopen(request, timeout=ANSWER_SECONDS) as answer:
             address = json.load(answer)["webSocketDebuggerUrl"]
         return Tab(address, url, width, height)
+
+    def niceness(self):
+        """Of each of its processes."""
+        return [each.nice() for each in psutil.Process(self._process.pid).children(recursive=True)]
 
     def close(self):
         self._process.terminate()
