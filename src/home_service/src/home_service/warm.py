@@ -4,14 +4,23 @@ import explorer_lite.warming
 import slam_lite.warming
 from home_service.commands.rehearse import Rehearse
 from home_service.nursery import load_kernels
+from home_service.rehearsal import NAVIGATION_CONFIG, Conditions
+from move_base_lite.control import LOCAL_PLANNERS
+from move_base_lite.warming import warm_up as warm_up_navigator
 
 
 def main() -> int:
     """Does what each node does when it starts, then plays the mission."""
     load_kernels()
+    warm_up_local_planners()
     explorer_lite.warming.warm_up()
     slam_lite.warming.warm_up()
     return Rehearse().run()
+
+
+def warm_up_local_planners() -> None:
+    for name in LOCAL_PLANNERS.names:
+        warm_up_navigator(Conditions(name).navigation(NAVIGATION_CONFIG))
 
 
 if __name__ == "__main__":

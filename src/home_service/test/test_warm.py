@@ -1,0 +1,11 @@
+"""What the set-up compiles, so that no node does while a robot waits."""
+
+from home_service import warm
+from move_base_lite.control import LOCAL_PLANNERS
+
+
+def test_every_local_planner_is_compiled_for_who_takes_another_on_the_way(monkeypatch):
+    warmed = []
+    monkeypatch.setattr(warm, "warm_up_navigator", lambda settings: warmed.append(type(settings.controller)))
+    warm.warm_up_local_planners()
+    assert set(warmed) == {member.settings for member in LOCAL_PLANNERS.members}
