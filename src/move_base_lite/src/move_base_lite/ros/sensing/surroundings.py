@@ -56,6 +56,7 @@ class Surroundings:
         self._twist = Twist2()
         self._command = Twist2()
         self._watch = SensorWatch()
+        self._complaint: Optional[str] = None
         self._diagnostics = SensorDiagnostics()
         self._lock = threading.Lock()
         listen(odom_topic, Odometry, self._on_odometry, queue_size=1, tcp_nodelay=True)
@@ -91,12 +92,13 @@ class Surroundings:
         return View(odom_in_map @ base_in_odom, base_in_odom, self._twist, sightings)
 
     def note_command(self, command: Twist2) -> None:
-        """What the robot has just been told to do."""
-        self._command = command
+        """What the robot has just been told to do; one stopped for a sensor that lies is still told to go on."""
+        if self._complaint is None:
+            self._command = command
 
     def missing_transform(self, now: rospy.Time) -> Optional[str]:
         """Which transform is not known or too old, or which sensor lies, for people; None if all are well."""
-        complaint = self._watch.complaint(now.to_sec())
+        self._complaint = complaint = self._watch.complaint(now.to_sec())
         self._diagnostics.tell(complaint, now)
         if complaint is not None:
             return f"a trustworthy sensor ({complaint})"
