@@ -128,6 +128,7 @@ class Surroundings:
             sensor.forget()
         self._transforms.clear()
         self._watch.forget()
+        self._command, self._complaint = Twist2(), None
 
     def _on_odometry(self, message):
         self._twist = twist2_from_msg(message.twist.twist)
