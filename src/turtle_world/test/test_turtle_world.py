@@ -3,12 +3,13 @@
 import io
 import math
 
+import numpy as np
 import pytest
 from PIL import Image
 
 from planar import PlanarError
 from turtle_world import Command, Pen, TurtleError, TurtleWorld
-from turtle_world.canvas import BACKGROUND, SIDE
+from turtle_world.canvas import BACKGROUND, PIXELS_PER_METRE, SIDE, Canvas
 from turtle_world.physics import PERIOD
 
 MIDDLE = 0.5 * SIDE
@@ -21,6 +22,15 @@ def run(world, steps, name="turtle1", command=None):
             world.command(name, command)
         state = world.step()[name]
     return state
+
+
+def distance_from(points, x, y):
+    """Metres from a polyline."""
+    starts, ends = np.array(points[:-1]), np.array(points[1:])
+    along = ends - starts
+    share = ((np.array((x, y)) - starts) * along).sum(1) / (along**2).sum(1)
+    nearest = starts + np.clip(share, 0.0, 1.0)[:, None] * along
+    return np.hypot(*(nearest - (x, y)).T).min()
 
 
 def turtlesim(steps, command, x=MIDDLE, y=MIDDLE, theta=0.0):
@@ -142,8 +152,35 @@ def test_a_way_is_one_stroke_until_the_pen_changes():
     world.set_pen("turtle1", Pen((1, 2, 3)))
     run(world, 50, command=Command(1.0, 0.0, 1.0))
     first, second = world.canvas.strokes
-    assert len(first.points) == 51 and second.pen.color == (1, 2, 3)
+    assert first.points[0] == (MIDDLE, MIDDLE) and second.pen.color == (1, 2, 3)
     assert second.points[0] == first.points[-1]
+
+
+def test_a_straight_way_has_two_ends_and_another_for_each_turning_back():
+    world = TurtleWorld()
+    for speed in (1.0, -1.0, 1.0):
+        run(world, 50, command=Command(speed))
+    (stroke,) = world.canvas.strokes
+    assert len(stroke.points) == 4
+    assert max(x for x, _ in stroke.points) == pytest.approx(MIDDLE + 50 * PERIOD, abs=2 * PERIOD)
+
+
+def test_a_circle_keeps_its_shape_by_a_pixel_with_a_quarter_of_its_steps():
+    world, truth = TurtleWorld(), [(MIDDLE, MIDDLE)]
+    for _ in range(400):
+        truth.append(tuple(run(world, 1, command=Command(2.0, 0.0, 2.0)).place[:2]))
+    (stroke,) = world.canvas.strokes
+    assert len(stroke.points) < len(truth) / 4
+    assert max(distance_from(stroke.points, *point) for point in truth) < 1.0 / PIXELS_PER_METRE
+
+
+def test_what_is_shown_of_a_long_drawing_is_its_newest_part():
+    canvas = Canvas()
+    for x in range(10):
+        canvas.draw("turtle1", Pen(width=1 + x // 5), (x, x % 2), (x + 1.0, 1.0 - x % 2))
+    old, new = canvas.newest_strokes(9)
+    assert new == canvas.strokes[-1] and old.points == canvas.strokes[0].points[-3:]
+    assert canvas.newest_strokes(100) == canvas.strokes and canvas.newest_strokes(6) == [new]
 
 
 def test_killing_keeps_the_drawing_and_a_reset_leaves_one_turtle_on_an_empty_floor():

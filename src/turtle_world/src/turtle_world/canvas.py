@@ -2,7 +2,7 @@
 
 import io
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Iterable, List, Tuple, cast
 
 from PIL import Image, ImageDraw
@@ -27,13 +27,36 @@ class Pen:
     is_on: bool = True
 
 
-@dataclass(frozen=True)
+@dataclass
 class Stroke:
-    """A line drawn without lifting the pen; ``points``: metres, x to the right, y up."""
+    """A line drawn without lifting the pen; ``points``: its corners, metres, x to the right, y up."""
 
     turtle: str
     pen: Pen
     points: List[Point] = field(default_factory=list)
+    _heading: float = 0.0
+
+    def lengthen(self, end: Point) -> None:
+        """Goes on to ``end``: one that lies in a strip of a pixel along the last part lengthens that.
+
+        (The strip of Reumann and Witkam, 1974, so that a line has no more corners than can be seen.)
+        """
+        if len(self.points) > 1 and self._goes_straight_on_to(end):
+            self.points[-1] = end
+        else:
+            x, y = self.points[-1]
+            self._heading = math.atan2(end[1] - y, end[0] - x)
+            self.points.append(end)
+
+    def _goes_straight_on_to(self, end: Point) -> bool:
+        (before, _), (now, aside) = self._from_corner(self.points[-1]), self._from_corner(end)
+        return now >= before and abs(aside) <= 0.5 / PIXELS_PER_METRE
+
+    def _from_corner(self, point: Point) -> Point:
+        """Metres along the last part, and beside it."""
+        x, y = point[0] - self.points[-2][0], point[1] - self.points[-2][1]
+        c, s = math.cos(self._heading), math.sin(self._heading)
+        return c * x + s * y, c * y - s * x
 
 
 class Canvas:
@@ -56,7 +79,18 @@ class Canvas:
         if last is None or last.pen != pen or last.points[-1] != start:
             last = Stroke(turtle, pen, [start])
             self.strokes.append(last)
-        last.points.append(end)
+        last.lengthen(end)
+
+    def newest_strokes(self, most_points: int) -> List[Stroke]:
+        """Those drawn last, that have so many points together; of the oldest of them its end."""
+        shown: List[Stroke] = []
+        for stroke in reversed(self.strokes):
+            points = stroke.points[-most_points:] if most_points > 1 else []
+            if not points:
+                break
+            shown.insert(0, stroke if len(points) == len(stroke.points) else replace(stroke, points=points))
+            most_points -= len(points)
+        return shown
 
     def color_at(self, x: float, y: float) -> Color:
         """The colour under a place, metres."""

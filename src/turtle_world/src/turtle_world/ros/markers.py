@@ -16,6 +16,8 @@ BODY_COLOR: Color = (0x2E, 0x2E, 0x2E)
 # Strokes lie a little above the floor.
 STROKE_HEIGHT = 0.01
 FLOOR_THICKNESS = 0.02
+# Of all strokes, so that who draws for hours does not fill up the network; the picture has all.
+MOST_POINTS = 5000
 
 
 class Markers:
@@ -30,7 +32,9 @@ class Markers:
         everything = [Marker(action=Marker.DELETEALL), _floor(world.canvas.background)]
         for number, name in enumerate(world.names):
             everything += [_body(number, world.place_of(name)), _nose(number, world.place_of(name))]
-        everything += [_line(number, stroke) for number, stroke in enumerate(world.canvas.strokes)]
+        everything += [
+            _line(number, stroke) for number, stroke in enumerate(world.canvas.newest_strokes(MOST_POINTS))
+        ]
         self._publisher.publish(everything)
 
 
