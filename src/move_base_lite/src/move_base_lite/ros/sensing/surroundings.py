@@ -92,7 +92,7 @@ class Surroundings:
         return View(odom_in_map @ base_in_odom, base_in_odom, self._twist, sightings)
 
     def note_command(self, command: Twist2) -> None:
-        """What the robot has just been told to do; one stopped for a sensor that lies is still told to go on."""
+        """What the robot has just been told; one stopped for a sensor that lies is still told to go on."""
         if self._complaint is None:
             self._command = command
 
