@@ -23,6 +23,8 @@ STILL_SECONDS = 0.1
 # Of a keyboard, as desktops set it at first.
 REPEAT_DELAY_SECONDS, REPEAT_SECONDS = 0.5, 0.033
 START_SECONDS, ANSWER_SECONDS = 60.0, 60.0
+# Between two looks at a page: each has it laid out anew.
+LOOK_SECONDS = 0.2
 # It draws without a graphics card, and calls nobody.
 OPTIONS = (
     "--headless=new",
@@ -116,9 +118,14 @@ class Tab:
         """All that can be read on the page."""
         return self.evaluate("document.body ? document.body.innerText : ''") or ""
 
-    def wait_for(self, *texts, seconds=30.0):
+    def wait_for(self, *texts, seconds=90.0):
         """Until all of them are on the page."""
-        wait_until(f"{texts} on the page", lambda: all(text in self.text() for text in texts), seconds)
+
+        def are_there():
+            seen = self.text()
+            return all(text in seen for text in texts)
+
+        wait_until(f"{texts} on the page", are_there, seconds, LOOK_SECONDS)
 
     def click(self, text, seconds=20.0):
         """The innermost thing that has this text, or whose label it is."""
