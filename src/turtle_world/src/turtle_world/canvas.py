@@ -85,12 +85,11 @@ class Canvas:
         """Those drawn last, that have so many points together; of the oldest of them its end."""
         shown: List[Stroke] = []
         for stroke in reversed(self.strokes):
-            points = stroke.points[-most_points:] if most_points > 1 else []
-            if not points:
+            if most_points < 2:
                 break
-            shown.insert(0, stroke if len(points) == len(stroke.points) else replace(stroke, points=points))
-            most_points -= len(points)
-        return shown
+            shown.append(replace(stroke, points=stroke.points[-most_points:]))
+            most_points -= len(shown[-1].points)
+        return shown[::-1]
 
     def color_at(self, x: float, y: float) -> Color:
         """The colour under a place, metres."""
