@@ -118,7 +118,7 @@ class Tab:
         """All that can be read on the page."""
         return self.evaluate("document.body ? document.body.innerText : ''") or ""
 
-    def wait_for(self, *texts, seconds=90.0):
+    def wait_for(self, *texts, seconds=30.0):
         """Until all of them are on the page."""
 
         def are_there():
