@@ -184,7 +184,7 @@ class MoveBaseNode:
         if not self._goals.is_active:
             self._lost_since = now
             return
-        self._stop()
+        self._topics.command(Twist2())
         if (now - self._lost_since).to_sec() > self._settings.move_base.sensor_patience:
             lost = RobotLost(missing)
             self._refuse(navigator, with_reason(Trigger.CONTROLLING.value, lost), lost)
@@ -214,12 +214,8 @@ class MoveBaseNode:
         rospy.logerr(text)
         self._topics.outcome(Outcome(error.outcome, error.code, text))
         navigator.forget_goal()
-        self._stop()
-        self._goals.end(Status.ABORTED, text)
-
-    def _stop(self):
         self._topics.command(Twist2())
-        self._surroundings.note_command(Twist2())
+        self._goals.end(Status.ABORTED, text)
 
     def _act(self, now: rospy.Time, view: View, decision: Decision):
         mode = self._settings.planner.orientation_mode

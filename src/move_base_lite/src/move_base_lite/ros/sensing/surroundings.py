@@ -82,6 +82,7 @@ class Surroundings:
     def view(self, now: rospy.Time) -> Optional[View]:
         """The robot as far as it is known at ``now``; None if its transforms are missing or too old."""
         if self.missing_transform(now) is not None:
+            self.note_command(Twist2())  # who does not know where it is stands
             return None
         base_in_odom = self._transforms.lookup(self._local_frame, self._base_frame)
         odom_in_map = self._transforms.lookup(self._global_frame, self._local_frame)
