@@ -113,13 +113,15 @@ def test_a_run_folder_is_read_as_a_result(tmp_path, result, outcome):
     assert play.trajectory.tolist() == [[0.0, 0.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0]]
 
 
-def test_what_nodes_do_after_the_end_takes_no_time(tmp_path):
+def test_what_nodes_do_after_the_end_is_none_of_the_run(tmp_path):
     result = {"success": True, "reason": "said", "simulated_seconds": 2.0}
     (tmp_path / "result.json").write_text(json.dumps(result))
     poses = "".join(f"{stamp} {x} 0 0 0 0 0.0 1.0\n" for stamp, x in ((0.1, 0.0), (2.1, 1.0), (3.0, 1.0)))
     for name in ("true", "estimated"):
         (tmp_path / f"trajectory_{name}.tum").write_text(poses)
-    assert _play_of(tmp_path, 300.0).trajectory[:, 0].tolist() == [0.1, 2.1]
+    play = _play_of(tmp_path, 300.0)
+    assert play.trajectory[:, 0].tolist() == [0.1, 2.1]
+    assert play.localization_error.tolist() == [0.0, 0.0]
 
 
 def test_a_graph_that_never_ran_is_told_by_its_reason(tmp_path):

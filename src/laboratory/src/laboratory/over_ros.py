@@ -57,7 +57,8 @@ def _play_of(folder: Path, seconds: float) -> Play:
     if len(truth) < 2:
         raise SettingsError(f"over ROS: {result['reason']}")
     # What nodes take to end, which depends on the machine, is none of the run.
-    truth = truth[truth[:, 0] - truth[0, 0] <= result.get("simulated_seconds", np.inf)]
+    end = truth[0, 0] + result.get("simulated_seconds", np.inf)
+    truth, estimate = (poses[poses[:, 0] <= end] for poses in (truth, estimate))
     touched = result.get("collisions", ())
     return Play(
         _outcome(result, touched, seconds), result["reason"], truth, _errors(truth, estimate), touched
