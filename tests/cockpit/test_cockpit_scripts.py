@@ -61,11 +61,13 @@ class CockpitScriptsTest(unittest.TestCase):
         project = shutil.copytree(SAMPLE, self.folder / f"looked_at_{uuid.uuid4().hex}")
         self.addCleanup(remove_work_folder, project)
         script = ROOT / "scripts/run_project.sh"
-        with Command(script, project, "--web", "--output", self.folder / "runs") as run:
+        # Slow enough to be looked at by a browser that comes up on a busy machine.
+        looked_at = ("--web", "--speed", "0.5", "--output", self.folder / "runs")
+        with Command(script, project, *looked_at) as run:
             url = run.told(URL, 300.0)
-            page = self.browser.open(url, 1400, 900)
-            page.wait_for("/map", "/scan", "/visualization_marker", seconds=120.0)
             with PageClient(url) as client:
+                page = self.browser.open(url, 1400, 900)
+                page.wait_for("/map", "/scan", "/visualization_marker", seconds=120.0)
                 wait_until(
                     "its world", lambda: any("cupboard" in thing for thing in list(client.things)), 60.0
                 )
