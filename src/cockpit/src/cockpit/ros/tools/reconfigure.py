@@ -1,6 +1,6 @@
 """Reconfigure: every dynamic_reconfigure server, its parameters with their bounds (rqt_reconfigure)."""
 
-from typing import Any, Callable, Dict, List, Optional
+from typing import Any, Dict, List
 
 from dynamic_reconfigure.msg import BoolParameter, Config, DoubleParameter, IntParameter, StrParameter
 from dynamic_reconfigure.srv import Reconfigure as ReconfigureService
@@ -31,7 +31,6 @@ class Reconfigure:
         self._feeds: List[Feed] = []
         self._server = NONE
         self._controls: Dict[str, Control] = {}
-        self._wanted: Dict[str, Any] = {}
 
     def build(self) -> None:
         self._servers = self._desk.gui.add_dropdown("Server", (NONE,))
@@ -66,7 +65,6 @@ class Reconfigure:
         if server != self._server:
             self.pause()
             self._server = server
-            self._wanted.clear()
             self._clear()
 
     def _listen(self) -> None:
@@ -82,33 +80,25 @@ class Reconfigure:
             self._clear()
             with self._space:
                 for knob in knobs_of(description):
-                    self._controls[knob.name] = Control(self._desk.gui, knob, self._guarded_turn(knob))
+                    self._controls[knob.name] = Control(self._desk.gui, knob)
         if self._controls:
             for config in self._feeds[1].take():
                 self._show(values_of(config))
 
-    def _guarded_turn(self, knob: Knob) -> Callable[[Any], None]:
-        return self._desk.guarded(lambda _: self._turned(knob.name))
-
-    def _turned(self, name: str) -> None:
-        control = self._controls.get(name)
-        if control is not None and control.is_turned():
-            self._wanted[name] = control.value()
-
     def _send(self) -> None:
         """What was turned since the last answer, in one call."""
-        if not self._wanted or self._aside.is_busy:
+        turned = [control for control in self._controls.values() if control.is_turned()]
+        if not turned or self._aside.is_busy:
             return
         config, service = Config(), self._server + SERVICE
-        for name, value in self._wanted.items():
-            field, kind = LISTS[self._controls[name].knob.kind]
-            getattr(config, field).append(kind(name, value))
-        self._wanted.clear()
+        for control in turned:
+            field, kind = LISTS[control.knob.kind]
+            getattr(config, field).append(kind(control.knob.name, control.taken()))
         self._aside.start(lambda: call(service, ReconfigureService, config).config)
 
     def _show(self, values: Dict[str, Any]) -> None:
         for name, value in values.items():
-            if name in self._controls and name not in self._wanted:
+            if name in self._controls:
                 self._controls[name].show(value)
 
     def _clear(self) -> None:
@@ -120,30 +110,30 @@ class Reconfigure:
 class Control:
     """The control of one parameter: a slider between its bounds, a box, a list of choices."""
 
-    def __init__(self, gui: Any, knob: Knob, on_turn: Callable[[Any], None]):
+    def __init__(self, gui: Any, knob: Knob):
         self.knob = knob
         self._names = {value: name for name, value in knob.choices}
         self._values = dict(knob.choices)
-        self._known: Optional[Any] = knob.default
         self.handle = self._made(gui)
-        self.handle.on_update(on_turn)
-
-    def value(self) -> Any:
-        told = self.handle.value
-        if self._values:
-            return self._values[told]
-        return {"bool": bool, "int": int, "double": float, "str": str}[self.knob.kind](told)
+        self._shown = self.handle.value
 
     def is_turned(self) -> bool:
-        """Whether it says anything else than the server has said."""
-        return self.value() != self._known
+        """By a person, since it was taken or shown."""
+        return self.handle.value != self._shown
+
+    def taken(self) -> Any:
+        """What it was turned to."""
+        self._shown = self.handle.value
+        if self._values:
+            return self._values[self._shown]
+        return {"bool": bool, "int": int, "double": float, "str": str}[self.knob.kind](self._shown)
 
     def show(self, value: Any) -> None:
-        """What the server says."""
-        self._known = value
+        """What the server says, unless a person wants something else."""
         told = self._names.get(value, value) if self._values else value
-        if self.handle.value != told and not (self._values and told not in self._values):
-            self.handle.value = told
+        can_be_shown = told in self._values if self._values else told == told  # which NaN is not
+        if can_be_shown and not self.is_turned():
+            self._shown = self.handle.value = told
 
     def _made(self, gui: Any) -> Any:
         knob, hint = self.knob, self.knob.meaning or None

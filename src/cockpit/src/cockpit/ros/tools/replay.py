@@ -26,15 +26,14 @@ class Replay:
         self._feed: Optional[Feed] = None
         self._player = ""
         self._aside = Aside()
-        self._wanted: Optional[float] = None
+        self._shown = 0.0
 
     def build(self) -> None:
         gui, guarded = self._desk.gui, self._desk.guarded
-        self._position = gui.add_slider("Time, s", 0.0, 1.0, STEP_SECONDS, 0.0)
+        self._position = gui.add_slider("Time, s", 0.0, 1.0, STEP_SECONDS, self._shown)
         self._pace = gui.add_dropdown("Pace", PACES, initial_value="1 x")
         pause, go_on = gui.add_button("Pause"), gui.add_button("Go on")
         self._status = gui.add_markdown("No recording is played.")
-        self._position.on_update(guarded(self._turned))
         self._pace.on_update(guarded(self._paced))
         pause.on_click(guarded(lambda _: self._ask(PAUSE, SetBool, True)))
         go_on.on_click(guarded(lambda _: self._ask(PAUSE, SetBool, False)))
@@ -45,9 +44,9 @@ class Replay:
         for answer in self._aside.take():
             if not answer.success:
                 raise CockpitError(answer.message)
-        if self._wanted is not None and not self._aside.is_busy:
-            wanted, self._wanted = self._wanted, None
-            self._aside.start(self._calling(SEEK, Seek, wanted))
+        if self._is_turned() and not self._aside.is_busy:
+            self._shown = self._position.value
+            self._aside.start(self._calling(SEEK, Seek, self._shown))
         for playback in self._feed.take() if self._feed is not None else ():
             self._show(playback)
 
@@ -66,15 +65,14 @@ class Replay:
 
     def _show(self, playback) -> None:
         self._position.max = max(playback.length, STEP_SECONDS)
-        if self._wanted is None and not self._aside.is_busy:
-            self._position.value = min(playback.position, self._position.max)
+        if not self._is_turned() and not self._aside.is_busy:
+            self._shown = self._position.value = min(playback.position, self._position.max)
         state = "paused" if playback.is_paused else "playing"
         self._status.content = f"{state}: {playback.position:.1f} s of {playback.length:.1f} s"
 
-    def _turned(self, event) -> None:
-        """By a person; what the player has told is nobody's wish."""
-        if event.client is not None:
-            self._wanted = float(self._position.value)
+    def _is_turned(self) -> bool:
+        """By a person; its own word comes from another thread, after what the player tells next."""
+        return self._position.value != self._shown
 
     def _paced(self, event) -> None:
         if event.client is not None:
