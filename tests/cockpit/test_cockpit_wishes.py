@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """What a person turns is not lost when its old value is told at the same moment."""
 
+import math
 import unittest
 from contextlib import nullcontext
 from types import SimpleNamespace
@@ -14,6 +15,8 @@ from waiting import wait_until
 
 from cockpit.ros.tools.reconfigure import DESCRIPTION_TYPE, Reconfigure
 from cockpit.ros.tools.replay import Replay
+
+TOPICS = {"/base/parameter_descriptions": DESCRIPTION_TYPE}
 
 
 class WishesTest(unittest.TestCase):
@@ -37,7 +40,7 @@ class WishesTest(unittest.TestCase):
 
     def test_a_parameter_is_sent_though_the_server_tells_its_old_value(self):
         updates = Feed()
-        desk = Desk({"/base/parameter_descriptions": DESCRIPTION_TYPE}, [Feed(described(1.5)), updates])
+        desk = Desk(TOPICS, [Feed(described(1.5)), updates])
         with patch("cockpit.ros.tools.reconfigure.call") as called:
             called.return_value = SimpleNamespace(config=speed(1.5))
             tool = Reconfigure(desk)
@@ -54,6 +57,20 @@ class WishesTest(unittest.TestCase):
             self.assertEqual(called.call_args[0][2], speed(2.0))
             wait_until("the answer", lambda: tool.update(0.6) or slider.value == 1.5, 5.0)
         self.assertEqual(called.call_count, 1)
+
+    def test_a_parameter_that_is_no_number_is_nobodys_wish(self):
+        updates = Feed(speed(math.nan))
+        desk = Desk(TOPICS, [Feed(described(1.5)), updates])
+        with patch("cockpit.ros.tools.reconfigure.call") as called:
+            tool = Reconfigure(desk)
+            tool.build()
+            desk.gui.made["Server"].value = "/base"
+            for now in (0.0, 0.2):
+                tool.update(now)
+            self.assertTrue(math.isnan(desk.gui.made["speed"].value))
+            updates.told.append(speed(1.0))
+            tool.update(0.4)
+        self.assertEqual((desk.gui.made["speed"].value, called.called), (1.0, False))
 
 
 def speed(value):

@@ -118,8 +118,9 @@ class Control:
         self._shown = self.handle.value
 
     def is_turned(self) -> bool:
-        """By a person, since it was taken or shown."""
-        return self.handle.value != self._shown
+        """By a person, since it was taken or shown. Nobody turns it to NaN, which equals nothing."""
+        told = self.handle.value
+        return told == told and told != self._shown
 
     def taken(self) -> Any:
         """What it was turned to."""
@@ -131,8 +132,7 @@ class Control:
     def show(self, value: Any) -> None:
         """What the server says, unless a person wants something else."""
         told = self._names.get(value, value) if self._values else value
-        can_be_shown = told in self._values if self._values else told == told  # which NaN is not
-        if can_be_shown and not self.is_turned():
+        if not self.is_turned() and not (self._values and told not in self._values):
             self._shown = self.handle.value = told
 
     def _made(self, gui: Any) -> Any:
