@@ -9,12 +9,14 @@ import numpy as np
 import viser
 
 from cockpit.access import Access
+from cockpit.frames import wxyz_of
+from cockpit.page.drawer import LAID_DOWN
 from cockpit.page.gate import Gate, listen
 
 NAME = "Cockpit"
 BRAND = (38, 110, 160)
 FIELD_OF_VIEW = 0.8
-FLOOR_COLOUR, FACING_UP = (236, 238, 240), (0.0, 1.0, 0.0, 0.0)
+FLOOR_COLOUR = (236, 238, 240)
 CAMERA, LOOK_AT = np.array((-5.5, -12.5, 14.5)), np.array((1.2, -0.6, 0.0))
 
 
@@ -119,7 +121,7 @@ class Page:
             format="png",
             cast_shadow=False,
             receive_shadow=0.2,
-            wxyz=FACING_UP,
+            wxyz=wxyz_of(LAID_DOWN),
             position=(0.0, 0.0, -0.02),
         )
         self.scene.add_grid(

@@ -6,6 +6,7 @@ from dynamic_reconfigure.msg import BoolParameter, Config, DoubleParameter, IntP
 from dynamic_reconfigure.srv import Reconfigure as ReconfigureService
 
 from cockpit.models.knobs import Knob, knobs_of, values_of
+from cockpit.page.dial import Dial
 from cockpit.ros.aside import Aside
 from cockpit.ros.calls import call
 from cockpit.ros.graph import Feed
@@ -87,7 +88,7 @@ class Reconfigure:
 
     def _send(self) -> None:
         """What was turned since the last answer, in one call."""
-        turned = [control for control in self._controls.values() if control.is_turned()]
+        turned = [control for control in self._controls.values() if control.dial.is_turned()]
         if not turned or self._aside.is_busy:
             return
         config, service = Config(), self._server + SERVICE
@@ -103,7 +104,7 @@ class Reconfigure:
 
     def _clear(self) -> None:
         for control in self._controls.values():
-            control.handle.remove()
+            control.dial.handle.remove()
         self._controls.clear()
 
 
@@ -114,26 +115,20 @@ class Control:
         self.knob = knob
         self._names = {value: name for name, value in knob.choices}
         self._values = dict(knob.choices)
-        self.handle = self._made(gui)
-        self._shown = self.handle.value
-
-    def is_turned(self) -> bool:
-        """By a person, since it was taken or shown. Nobody turns it to NaN, which equals nothing."""
-        told = self.handle.value
-        return told == told and told != self._shown
+        self.dial = Dial(self._made(gui))
 
     def taken(self) -> Any:
         """What it was turned to."""
-        self._shown = self.handle.value
+        told = self.dial.taken()
         if self._values:
-            return self._values[self._shown]
-        return {"bool": bool, "int": int, "double": float, "str": str}[self.knob.kind](self._shown)
+            return self._values[told]
+        return {"bool": bool, "int": int, "double": float, "str": str}[self.knob.kind](told)
 
     def show(self, value: Any) -> None:
-        """What the server says, unless a person wants something else."""
+        """What the server says."""
         told = self._names.get(value, value) if self._values else value
-        if not self.is_turned() and not (self._values and told not in self._values):
-            self._shown = self.handle.value = told
+        if not (self._values and told not in self._values):
+            self.dial.show(told)
 
     def _made(self, gui: Any) -> Any:
         knob, hint = self.knob, self.knob.meaning or None

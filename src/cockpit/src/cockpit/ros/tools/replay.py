@@ -6,6 +6,7 @@ from home_service_msgs.srv import Seek, SetPlaybackSpeed
 from std_srvs.srv import SetBool
 
 from cockpit.errors import CockpitError
+from cockpit.page.dial import Dial
 from cockpit.ros.aside import Aside
 from cockpit.ros.calls import LONG_SECONDS, call
 from cockpit.ros.graph import Feed
@@ -26,11 +27,10 @@ class Replay:
         self._feed: Optional[Feed] = None
         self._player = ""
         self._aside = Aside()
-        self._shown = 0.0
 
     def build(self) -> None:
         gui, guarded = self._desk.gui, self._desk.guarded
-        self._position = gui.add_slider("Time, s", 0.0, 1.0, STEP_SECONDS, self._shown)
+        self._place = Dial(gui.add_slider("Time, s", 0.0, 1.0, STEP_SECONDS, 0.0))
         self._pace = gui.add_dropdown("Pace", PACES, initial_value="1 x")
         pause, go_on = gui.add_button("Pause"), gui.add_button("Go on")
         self._status = gui.add_markdown("No recording is played.")
@@ -44,9 +44,8 @@ class Replay:
         for answer in self._aside.take():
             if not answer.success:
                 raise CockpitError(answer.message)
-        if self._is_turned() and not self._aside.is_busy:
-            self._shown = self._position.value
-            self._aside.start(self._calling(SEEK, Seek, self._shown))
+        if self._place.is_turned() and not self._aside.is_busy:
+            self._aside.start(self._calling(SEEK, Seek, self._place.taken()))
         for playback in self._feed.take() if self._feed is not None else ():
             self._show(playback)
 
@@ -64,15 +63,11 @@ class Replay:
             self._feed = self._desk.graph.feed(found[0], KIND)
 
     def _show(self, playback) -> None:
-        self._position.max = max(playback.length, STEP_SECONDS)
-        if not self._is_turned() and not self._aside.is_busy:
-            self._shown = self._position.value = min(playback.position, self._position.max)
+        self._place.handle.max = max(playback.length, STEP_SECONDS)
+        if not self._aside.is_busy:
+            self._place.show(min(playback.position, self._place.handle.max))
         state = "paused" if playback.is_paused else "playing"
         self._status.content = f"{state}: {playback.position:.1f} s of {playback.length:.1f} s"
-
-    def _is_turned(self) -> bool:
-        """By a person; its own word comes from another thread, after what the player tells next."""
-        return self._position.value != self._shown
 
     def _paced(self, event) -> None:
         if event.client is not None:
