@@ -23,6 +23,7 @@ from outcome import Outcome, judge_unit_tests
 from ros_test import RosTest, log_of
 
 from home_service.options import count
+from supervision.interruption import on_signals
 
 PYTEST = ("-m", "pytest", "-n", "auto", "--dist", "worksteal")
 UNIT_SECONDS = 900.0  # of a machine that has other things to do; else a minute
@@ -163,7 +164,7 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    on_signals(signal.default_int_handler)
     try:
         sys.exit(main())
     except KeyboardInterrupt:

@@ -17,6 +17,7 @@ from typing import Any, Callable, List, NoReturn, Optional, Sequence
 from supervision.forked import end_as
 from supervision.interruption import SIGNALS
 from supervision.processes import adopt_orphans, end_descendants, end_when_orphaned, ending_with_parent
+from supervision.waking import wake_main_thread_on_signals
 
 SIGINT_SECONDS = 2.0
 
@@ -81,6 +82,7 @@ def _started(
 
     for number in signals:
         signal.signal(number, hear)
+    wake_main_thread_on_signals()
     process = subprocess.Popen(command, **options)
     if is_asked:
         ask_to_end(process)

@@ -6,6 +6,8 @@ import sys
 from contextlib import contextmanager
 from typing import Any, Callable, Iterator, List, NoReturn, Tuple
 
+from supervision.waking import wake_main_thread_on_signals
+
 INTERRUPTED = 130
 
 
@@ -29,13 +31,19 @@ class RunInterruptedError(KeyboardInterrupt):
         super().__init__("interrupted")
 
 
+def on_signals(handle: Callable[[int, Any], object]) -> None:
+    """From now on ``SIGNALS`` are handled by ``handle``, in the main thread, even while that waits."""
+    for number in SIGNALS:
+        signal.signal(number, handle)
+    wake_main_thread_on_signals()
+
+
 def leave_when_interrupted() -> None:
     """From now on SIGINT, SIGTERM or SIGHUP ends the process at once: nothing has to be taken down yet.
 
     Libraries that are being imported catch whatever is raised.
     """
-    for number in SIGNALS:
-        signal.signal(number, _leave)
+    on_signals(_leave)
 
 
 @contextmanager
@@ -48,7 +56,8 @@ def leaving_on_signals() -> Iterator[None]:
 @contextmanager
 def handling_signals(handle: Callable[[int, Any], object]) -> Iterator[None]:
     """``SIGNALS`` are handled by ``handle``, afterwards as they were before."""
-    before = {number: signal.signal(number, handle) for number in SIGNALS}
+    before = {number: signal.getsignal(number) for number in SIGNALS}
+    on_signals(handle)
     try:
         yield
     finally:
@@ -58,8 +67,7 @@ def handling_signals(handle: Callable[[int, Any], object]) -> Iterator[None]:
 
 def raise_when_interrupted() -> None:
     """From now on the first of ``SIGNALS`` raises RunInterruptedError, and further ones are ignored."""
-    for number in SIGNALS:
-        signal.signal(number, _raise)
+    on_signals(_raise)
 
 
 def raise_if_interrupted() -> None:

@@ -5,7 +5,6 @@ cockpit [--web-port [ADDRESS:]PORT] [--tool NAME]
 
 import faulthandler
 import os
-import signal
 import sys
 import threading
 import time
@@ -23,7 +22,7 @@ from cockpit.ros.tools import all_tools, names
 from cockpit.ros.world.looks import Reader
 from planar import PlanarError
 from supervision.command_line import option, parse
-from supervision.interruption import SIGNALS, leave
+from supervision.interruption import leave, on_signals
 from supervision.ros.node_api import is_master_online, node_names
 
 FREE_PORT = "127.0.0.1:0"
@@ -96,8 +95,7 @@ def _hear_signals() -> Callable[[], bool]:
         faulthandler.dump_traceback_later(CLOSE_SECONDS, exit=True)
         ending.set()
 
-    for number in SIGNALS:
-        signal.signal(number, end)
+    on_signals(end)
     return ending.is_set
 
 

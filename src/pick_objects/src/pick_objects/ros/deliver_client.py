@@ -1,7 +1,6 @@
 """The command ``deliver``: sends a mission file to the action of a running robot and follows it."""
 
 import argparse
-import signal
 import sys
 import threading
 import time
@@ -16,6 +15,7 @@ from home_service_msgs.msg import DeliverAction, DeliverGoal, DeliveryState
 
 from pick_objects.mission_file import NAME_OF_TEXT
 from planar_ros.calls.actions import goal_is_over, server_is_ready
+from supervision.interruption import on_signals
 
 POLL_SECONDS, TELL_SECONDS, CANCEL_SECONDS = 0.1, 2.0, 10.0
 SUCCESS, FAILURE, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
@@ -29,8 +29,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
     except (OSError, UnicodeDecodeError) as error:
         return _complain(f"{options.mission}: cannot be read ({getattr(error, 'strerror', None) or error})")
     interrupted = threading.Event()
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, lambda _number, _frame: interrupted.set())
+    on_signals(lambda _number, _frame: interrupted.set())
     if not rosgraph.is_master_online():  # rospy would wait for one, deaf to everything
         return _complain(f"no ROS master at {rosgraph.get_master_uri()}")
     rospy.init_node("deliver", anonymous=True, disable_signals=True)

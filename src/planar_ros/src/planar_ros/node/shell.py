@@ -4,7 +4,6 @@ import gc
 import logging
 import os
 import queue
-import signal
 import sys
 import threading
 from typing import Callable, List
@@ -15,7 +14,7 @@ from rosgraph import get_master_uri
 from planar import PlanarError
 from planar_ros.node.backlog import let_many_wait
 from planar_ros.node.blas import use_one_blas_thread
-from supervision.interruption import SIGNALS
+from supervision.interruption import on_signals
 from supervision.streams import drop_what_cannot_be_written
 
 # Longer than any node needs to end in order.
@@ -124,5 +123,4 @@ def _shut_down_on_signals() -> None:
         rospy.signal_shutdown(f"signal {number}")
 
     threading.Thread(target=shut_down, daemon=True).start()
-    for number in SIGNALS:
-        signal.signal(number, lambda number, _frame: received.put(number))
+    on_signals(lambda number, _frame: received.put(number))

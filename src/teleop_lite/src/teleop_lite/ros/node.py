@@ -17,6 +17,7 @@ from planar_ros.node.parameters import read_settings
 from planar_ros.node.progress import Progress
 from planar_ros.node.shell import run
 from planar_ros.node.waiting import Waiting
+from supervision.interruption import SIGNALS, on_signals
 from teleop_lite.config import TeleopSettings
 from teleop_lite.key_script import KEYS, KeyScript, parse
 from teleop_lite.teleop import TICK_SECONDS, Teleop
@@ -212,8 +213,7 @@ NO_KEYS = (
 
 
 def _drive(style, follow):
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, _end)
+    on_signals(_end)
     node = KeyboardTeleop(style)
     try:
         follow(node)
@@ -223,7 +223,7 @@ def _drive(style, follow):
 
 
 def _end(number, _frame):
-    for other in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for other in SIGNALS:
         signal.signal(other, signal.SIG_IGN)
     sys.exit(128 + number)
 

@@ -23,7 +23,7 @@ from gazebo_ros.ros.services import (
 )
 from gazebo_ros.spawn_options import parse
 from planar_ros.node.command_line import go_on_without
-from supervision.interruption import SIGNALS, handling_signals
+from supervision.interruption import handling_signals, on_signals
 
 PARAMETER_SECONDS = 30.0
 
@@ -126,8 +126,7 @@ def main() -> None:
     go_on_without("spawn_model", unknown)
     # rospy's own handler may wait for ever for a lock that is held by what it interrupts.
     rospy.init_node("spawn_model", anonymous=True, disable_signals=True)
-    for number in SIGNALS:
-        signal.signal(number, signal.default_int_handler)
+    on_signals(signal.default_int_handler)
     try:
         spawn(options)
     except KeyboardInterrupt:
