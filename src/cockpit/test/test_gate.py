@@ -117,8 +117,11 @@ def closing_code(socket_):
 
 
 def test_the_url_leads_to_the_page_by_way_of_a_cookie(page, port):
-    answer, _ = get(port, page.url.partition(str(port))[2])
-    assert (answer.status, answer.headers["Location"]) == (303, "/")
+    answer, content = get(port, page.url.partition(str(port))[2])
+    assert (answer.status, answer.headers["Content-Type"]) == (200, "text/html; charset=utf-8")
+    assert b"location.replace" in content
+    assert answer.headers["Cache-Control"] == "no-store"
+    assert answer.headers["Referrer-Policy"] == "no-referrer"
     cookie = answer.headers["Set-Cookie"].partition(";")[0]
     answer, content = get(port, Cookie=cookie)
     assert answer.status == 200

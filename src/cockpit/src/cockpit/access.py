@@ -8,12 +8,12 @@ from typing import Optional, Tuple
 from urllib.parse import parse_qs, urlsplit
 
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
-OK, SEE_OTHER, FORBIDDEN = 200, 303, 403
+OK, FORBIDDEN = 200, 403
 
 
 @dataclass(frozen=True)
 class Answer:
-    """``status``: 200, let it pass; 303, come again with ``cookie``; 403, and why."""
+    """``status``: 200, let it pass, or come again with ``cookie`` if there is one; 403, and why."""
 
     status: int
     reason: str = ""
@@ -45,7 +45,7 @@ class Access:
             return Answer(FORBIDDEN, "asked for by no page")
         told = parse_qs(target.partition("?")[2]).get("token", [""])[0]
         if not is_socket and self._is_token(told):
-            return Answer(SEE_OTHER, cookie=f"{self._cookie}={self.token}; HttpOnly; SameSite=Lax; Path=/")
+            return Answer(OK, cookie=f"{self._cookie}={self.token}; HttpOnly; SameSite=Lax; Path=/")
         if not self._is_token(self._kept(cookies)):
             return Answer(FORBIDDEN, "open the URL that the terminal prints: it has the token")
         return Answer(OK)

@@ -155,8 +155,6 @@ def _floor(scene, path: str, thing: Floor, _old):
         thing.width,
         thing.height,
         format="png",
-        cast_shadow=False,
-        receive_shadow=0.2,
         wxyz=wxyz_of(pose),
         position=pose[:3, 3],
     )

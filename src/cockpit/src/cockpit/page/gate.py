@@ -18,7 +18,7 @@ import websockets.asyncio.server as library
 from viser import _messages as forms
 from websockets.exceptions import ConnectionClosed
 
-from cockpit.access import OK, SEE_OTHER, Access
+from cockpit.access import OK, Access
 from cockpit.errors import PortError, RefusedError
 from cockpit.inbound import KINDS, LARGEST_MESSAGE, Allowance, check
 from cockpit.page.controls import can_have
@@ -34,6 +34,18 @@ POLICY = (
     "font-src 'self' data:; style-src 'self' 'unsafe-inline'; worker-src 'self' blob: data:; "
     "script-src 'self' 'unsafe-inline' 'unsafe-eval' 'wasm-unsafe-eval' blob: data:; frame-ancestors 'none'"
 )
+# Leads on to the page. Without a graphics card a quarter of the pixels is what a page can draw in time.
+START = """<!doctype html>
+<html lang="en">
+<title>Cockpit</title>
+<noscript>The cockpit needs JavaScript.</noscript>
+<script>
+    const gl = document.createElement("canvas").getContext("webgl2");
+    const named = gl && gl.getExtension("WEBGL_debug_renderer_info");
+    const renderer = named ? gl.getParameter(named.UNMASKED_RENDERER_WEBGL) : "";
+    location.replace(/swiftshader|llvmpipe|softpipe|software/i.test(renderer) ? "/?fixedDpr=0.5" : "/");
+</script>
+"""
 
 
 def listen(address: str, port: int) -> socket.socket:
@@ -101,13 +113,10 @@ class Gate:
             answer = self._access.judge(
                 request.path, headers.get("Host", ""), headers.get("Origin"), cookies, is_socket
             )
-            if answer.status == SEE_OTHER:
-                response = connection.respond(HTTPStatus.SEE_OTHER, "")
-                response.headers["Location"] = "/"
-                response.headers["Set-Cookie"] = answer.cookie
-                return response
             if answer.status != OK:
                 return connection.respond(HTTPStatus.FORBIDDEN, f"403: {answer.reason}\n")
+            if answer.cookie:
+                return _with_policy(_start(connection, answer.cookie))
             if is_socket and self._pages >= MOST_PAGES:
                 return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, "too many pages are open\n")
             return _with_policy(process_request(connection, request))
@@ -167,6 +176,15 @@ def _read(message: Any) -> Mapping[str, Any]:
     check(told)
     msgspec.convert(told, FORMS[told["type"]])
     return told
+
+
+def _start(connection, cookie: str):
+    response = connection.respond(HTTPStatus.OK, START)
+    del response.headers["Content-Type"]
+    response.headers["Content-Type"] = "text/html; charset=utf-8"
+    response.headers["Cache-Control"] = "no-store"
+    response.headers["Set-Cookie"] = cookie
+    return response
 
 
 def _with_policy(response):
