@@ -24,7 +24,8 @@ from supervision.errors import LaunchError
 from supervision.interruption import RunInterruptedError
 from supervision.processes import ending_with_parent
 
-SAVE_SECONDS = 30.0
+# For the map to come, and for all of it: on a machine that is busy a program takes long to start.
+MAP_SECONDS, SAVE_SECONDS = 30.0, 90.0
 # Has the robot driven until the map is made; why that failed, or None.
 Driver = Callable[[Run, Referee], Optional[str]]
 TELEOP = ["rosrun", "teleop_lite", "turtlebot_teleop_key", "turtlebot_teleop_keyboard/cmd_vel:=cmd_vel"]
@@ -100,15 +101,18 @@ def _check_place_to_save(stem: Optional[Path]) -> None:
 def save_map(folder: Path, stem: Optional[Path]) -> Path:
     """Saves the map that is published, into the ``folder`` if no ``stem`` is given; returns its YAML."""
     stem = (stem or folder / "map").resolve()
-    saver = subprocess.run(
-        ["rosrun", "map_lite", "map_saver", "-f", str(stem)],
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        timeout=SAVE_SECONDS,
-        text=True,
-        check=False,
-    )
+    try:
+        saver = subprocess.run(
+            ["rosrun", "map_lite", "map_saver", "-f", str(stem), "--timeout", str(MAP_SECONDS)],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            timeout=SAVE_SECONDS,
+            text=True,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        raise LaunchError(f"map_saver: not over after {SAVE_SECONDS:g} s") from None
     if saver.returncode != 0:
         raise LaunchError(f"map_saver: {' '.join(saver.stderr.split()) or 'failed'}")
     return stem.with_name(stem.name + ".yaml")
