@@ -67,8 +67,9 @@ class CockpitHomeTest(unittest.TestCase):
         self.assertEqual(self.page.errors, [])
 
     def test_1_without_a_graphics_card_it_draws_a_quarter_of_the_pixels(self):
-        drawn = "(() => { const canvas = document.querySelector('canvas[data-engine]'); %s })()"
-        share = self.page.evaluate(drawn % "return canvas.width / canvas.clientWidth")
+        share = self.page.evaluate(
+            "((canvas) => canvas.width / canvas.clientWidth)(document.querySelector('canvas[data-engine]'))"
+        )
         self.assertAlmostEqual(share, 0.5, delta=0.01)
 
     def test_2_a_goal_that_is_clicked_is_reached(self):

@@ -15,9 +15,8 @@ from threading import Timer
 from typing import Any, Callable, List, NoReturn, Optional, Sequence
 
 from supervision.forked import end_as
-from supervision.interruption import SIGNALS
+from supervision.interruption import SIGNALS, on_signals
 from supervision.processes import adopt_orphans, end_descendants, end_when_orphaned, ending_with_parent
-from supervision.waking import wake_main_thread_on_signals
 
 SIGINT_SECONDS = 2.0
 
@@ -80,9 +79,7 @@ def _started(
         if process is not None:
             ask_to_end(process)
 
-    for number in signals:
-        signal.signal(number, hear)
-    wake_main_thread_on_signals()
+    on_signals(hear, signals)
     process = subprocess.Popen(command, **options)
     if is_asked:
         ask_to_end(process)

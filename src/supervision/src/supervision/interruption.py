@@ -4,7 +4,7 @@ import os
 import signal
 import sys
 from contextlib import contextmanager
-from typing import Any, Callable, Iterator, List, NoReturn, Tuple
+from typing import Any, Callable, Iterable, Iterator, List, NoReturn, Tuple
 
 from supervision.waking import wake_main_thread_on_signals
 
@@ -31,9 +31,9 @@ class RunInterruptedError(KeyboardInterrupt):
         super().__init__("interrupted")
 
 
-def on_signals(handle: Callable[[int, Any], object]) -> None:
-    """From now on ``SIGNALS`` are handled by ``handle``, in the main thread, even while that waits."""
-    for number in SIGNALS:
+def on_signals(handle: Callable[[int, Any], object], signals: Iterable[int] = SIGNALS) -> None:
+    """From now on ``signals`` are handled by ``handle``, in the main thread, even while that waits."""
+    for number in signals:
         signal.signal(number, handle)
     wake_main_thread_on_signals()
 
@@ -94,18 +94,19 @@ def _end(code: int) -> NoReturn:
 
 
 def _leave(_number, _frame):
-    _ignore_further_signals()
+    ignore_further_signals()
     os.write(sys.stderr.fileno(), b"error: interrupted\n")
     _end(INTERRUPTED)
 
 
 def _raise(_number, _frame):
     global _is_interrupted
-    _ignore_further_signals()
+    ignore_further_signals()
     _is_interrupted = True
     raise RunInterruptedError
 
 
-def _ignore_further_signals() -> None:
+def ignore_further_signals() -> None:
+    """The first of ``SIGNALS`` is being followed: others do not disturb that."""
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)

@@ -1,7 +1,6 @@
 """The ROS node of the keyboard teleop: keys of a terminal or of a script become velocities."""
 
 import argparse
-import signal
 import sys
 import threading
 import time
@@ -17,7 +16,7 @@ from planar_ros.node.parameters import read_settings
 from planar_ros.node.progress import Progress
 from planar_ros.node.shell import run
 from planar_ros.node.waiting import Waiting
-from supervision.interruption import SIGNALS, on_signals
+from supervision.interruption import ignore_further_signals, on_signals
 from teleop_lite.config import TeleopSettings
 from teleop_lite.key_script import KEYS, KeyScript, parse
 from teleop_lite.teleop import TICK_SECONDS, Teleop
@@ -223,8 +222,7 @@ def _drive(style, follow):
 
 
 def _end(number, _frame):
-    for other in SIGNALS:
-        signal.signal(other, signal.SIG_IGN)
+    ignore_further_signals()
     sys.exit(128 + number)
 
 
