@@ -41,7 +41,8 @@ build_workspace() {
 tell_failure() { # LOG: in $failure; one that the sources are at fault for is kept, so that they are not built again
     failure=$(reason_in "$1")
     if [[ -z $failure ]]; then
-        tail -n 20 "$1" | sed 's/^/  | /' >&2
+        # What is made beside the part that fails goes on for a while.
+        sed '/^make\[.*\*\*\* \[/q' "$1" | tail -n 20 | sed 's/^/  | /' >&2
         failure="$(fault_in "$1") (see $1)"
         printf '%s\n' "$inputs" "$failure" >"$root/build/.failed"
     fi
@@ -123,6 +124,8 @@ catkin_build() {
         . "$noetic/setup.bash"
         set -u
     fi
+    # pip is at work in .venv meanwhile: a package that is there by half must not come before Debian's whole one.
+    export PYTHONPATH=${PYTHONPATH:+$PYTHONPATH:}/usr/lib/python3/dist-packages
     cd "$root" || return
     rm -f src/compat/*/CATKIN_IGNORE src/tutorials/*/CATKIN_IGNORE
     ignored_packages | xargs -I{} touch {}/CATKIN_IGNORE

@@ -288,6 +288,35 @@ def test_what_fails_beside_the_build_is_told_after_it(tmp_path, step, code, sent
     assert (tmp_path / "build/.set-up").exists()
 
 
+def test_the_build_does_not_see_what_pip_has_installed_by_half(tmp_path):
+    subprocess.check_call(["/usr/bin/python3", "-m", "venv", "--without-pip", tmp_path / ".venv"])
+    (site,) = (tmp_path / ".venv/lib").glob("python3.*/site-packages")
+    (site / "catkin_pkg").mkdir()
+    (site / "catkin_pkg/__init__.py").write_text("from .not_there_yet import name\n")
+    generating = """
+        mkdir src
+        sed -i s/false/true/ .venv/pyvenv.cfg
+        catkin_make() { .venv/bin/python3 -c 'import catkin_pkg; print(catkin_pkg.__file__)'; }
+        catkin_build
+    """
+    said = in_workspace(tmp_path, generating)
+    assert said.returncode == 0, said.stderr
+
+
+def test_the_reason_is_told_although_other_packages_are_built_after_it(tmp_path):
+    beside = """
+        catkin_build() {
+            echo 'ImportError: the reason'
+            echo 'make[2]: *** [mine/CMakeFiles/mine_py.dir/build.make:93: mine/_A.py] Error 1'
+            seq --format='[ %g%%] Built target other' 30
+            return 1
+        }
+        mkdir src; retry=''; look_for_missing; build_workspace
+    """
+    said = in_workspace(tmp_path, beside).stderr
+    assert "| ImportError: the reason\n" in said and "the package 'mine' does not build" in said
+
+
 def test_a_disk_that_is_full_is_told_even_if_no_log_could_say_so(tmp_path):
     no_room = "df() { printf 'Avail\\n7\\n'; }; : >log; give_up 'pip failed' log"
     assert in_workspace(tmp_path, no_room).stderr.startswith("error: the disk is full")
