@@ -179,6 +179,8 @@ def _deliver(ends: Sequence[str]) -> bool:
     from actionlib_msgs.msg import GoalStatus
     from home_service_msgs.msg import DeliverAction, DeliverGoal
 
+    from planar_ros.calls.actions import goal_is_over
+
     if not rospy.core.is_initialized():
         rospy.init_node("soak", disable_signals=True)
         _deliver.client = actionlib.SimpleActionClient("deliver", DeliverAction)  # type: ignore[attr-defined]
@@ -186,7 +188,7 @@ def _deliver(ends: Sequence[str]) -> bool:
     client = _deliver.client  # type: ignore[attr-defined]
     client.send_goal(DeliverGoal(mission=MISSION % tuple(ends)))
     deadline = time.monotonic() + RUN_SECONDS
-    while client.simple_state != actionlib.SimpleGoalState.DONE and time.monotonic() < deadline:
+    while not goal_is_over(client) and time.monotonic() < deadline:
         time.sleep(0.02)
     return bool(client.get_state() == GoalStatus.SUCCEEDED)
 

@@ -12,7 +12,7 @@ from move_base_client import START_SECONDS, pose_at
 from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseGoal
 from waiting import wait_until
 
-from planar_ros.calls.actions import server_is_ready
+from planar_ros.calls.actions import goal_is_over, server_is_ready
 
 GOALS = 24000
 MOST_TOLD = 40
@@ -36,7 +36,7 @@ class TestGoalStorm(unittest.TestCase):
                 cancels.publish(GoalID(id=f"storm {number}"))
         sent_at = time.monotonic()
         client.send_goal(MoveBaseGoal(pose_at(1.0, 0.0)))
-        wait_until("its end", lambda: client.simple_state == actionlib.SimpleGoalState.DONE, SECONDS)
+        wait_until("its end", lambda: goal_is_over(client), SECONDS)
         seconds = time.monotonic() - sent_at
         print(f"sent in {sent_at - began_at:.1f} s, at the goal {seconds:.1f} s later, {max(told)} told of")
         self.assertEqual(client.get_state(), GoalStatus.SUCCEEDED, client.get_goal_status_text())

@@ -84,5 +84,10 @@ def server_is_ready(client: actionlib.SimpleActionClient) -> bool:
 
 
 def goal_is_over(client: actionlib.SimpleActionClient) -> bool:
-    """Whether the last goal has ended and its result has come, which may be later than its state."""
-    return client.simple_state == actionlib.SimpleGoalState.DONE
+    """Whether the last goal has ended and its result has come, which may be later than its state.
+
+    Of a result that comes before ``send_goal`` has returned, only the handle of the goal takes note.
+    """
+    if client.simple_state == actionlib.SimpleGoalState.DONE:
+        return True
+    return client.gh is not None and client.gh.get_comm_state() == actionlib.CommState.DONE
