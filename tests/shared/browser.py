@@ -182,17 +182,18 @@ class Tab:
         wait_until(f"a list {label}", lambda: self._place_of_input(label) is not None)
         for _ in range(20):
             place = self._place_of_input(label)
-            if place is not None and not self.evaluate(HAS_OPTIONS):
+            if place is not None and not self._offered(label):
                 self.click_at(*place)
             with suppress(AssertionError):
-                wait_until(f"{option} in {label}", lambda: self._place_of_option(option) is not None, 1.0)
+                wait_until(f"{option} in {label}", lambda: option in self._offered(label), 1.0)
                 time.sleep(0.2)  # it moves while it opens
-                place = self._place_of_option(option)
+                place = self._place_of_option(label, option)
                 if place is not None:
                     self.click_at(*place)
                 wait_until(f"{option} chosen", lambda: self.value_of(label) == option, 1.0)
                 return
-        raise AssertionError(f"'{option}' could not be chosen of '{label}'")
+        offered = f"which offers {self._offered(label)}: {self.text()}"
+        raise AssertionError(f"'{option}' could not be chosen of '{label}', {offered}")
 
     def tick(self, label):
         """The box with this label, whether it is ticked or not."""
@@ -236,8 +237,13 @@ class Tab:
     def _place_of_input(self, label):
         return self.evaluate(f"({MIDDLE})(({FIND_INPUT})({json.dumps(label)}))")
 
-    def _place_of_option(self, option):
-        return self.evaluate(f"({MIDDLE})(({FIND_OPTION})({json.dumps(option)}))")
+    def _offered(self, label):
+        """The options of this list while it is open: a click that slipped may have opened another one."""
+        return self.evaluate(f"({OPTIONS_OF})({json.dumps(label)}).map((one) => one.innerText.trim())")
+
+    def _place_of_option(self, label, option):
+        of_that_name = f"(one) => one.innerText.trim() === {json.dumps(option)}"
+        return self.evaluate(f"({MIDDLE})(({OPTIONS_OF})({json.dumps(label)}).find({of_that_name}))")
 
     def _mouse(self, kind, x, y, **more):
         self._ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
@@ -294,9 +300,12 @@ FIND_INPUT = """(label) => {
     }
     return null;
 }"""
-HAS_OPTIONS = "[...document.querySelectorAll('[role=option]')].some((one) => one.getClientRects().length)"
-FIND_OPTION = """(text) => [...document.querySelectorAll('[role=option]')].find(
-    (one) => one.innerText.trim() === text && one.getClientRects().length) || null"""
+OPTIONS_OF = f"""(label) => {{
+    const input = ({FIND_INPUT})(label);
+    const list = input && document.getElementById(input.getAttribute('aria-controls'));
+    const options = list ? [...list.querySelectorAll('[role=option]')] : [];
+    return options.filter((one) => one.getClientRects().length);
+}}"""
 MIDDLE = """(one) => {
     if (!one) return null;
     one.scrollIntoView({block: 'nearest'});

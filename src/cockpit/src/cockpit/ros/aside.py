@@ -21,6 +21,10 @@ class Aside:
         """Raises CockpitError if the one before is not done yet."""
         if self.is_busy:
             raise CockpitError("the answer before is still awaited")
+        self.restart(do)
+
+    def restart(self, do: Callable[[], Any]) -> None:
+        """Instead of the one before: whatever comes of that is not taken any more."""
         done: List[Tuple[Optional[Exception], Any]] = []
         self._done = done
         self._thread = threading.Thread(target=_work, args=(do, done), daemon=True)

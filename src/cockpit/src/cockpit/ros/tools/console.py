@@ -24,7 +24,7 @@ class Console:
         self._desk = desk
         self._log = Log()
         self._feed: Optional[Feed] = None
-        self._aside = Aside()
+        self._asking, self._setting = Aside(), Aside()
 
     def build(self) -> None:
         gui, guarded = self._desk.gui, self._desk.guarded
@@ -32,12 +32,12 @@ class Console:
         self._node = gui.add_text("Node", "", hint="part of a node's name")
         self._text = gui.add_text("Message", "", hint="part of a message")
         gui.add_button("Clear", color="gray").on_click(guarded(lambda _: self._log.clear()))
-        self._lines = gui.add_html("")
         with gui.add_folder("How much a node says", expand_by_default=False):
             self._speaker = gui.add_dropdown("Of node", (NONE,))
             self._logger = gui.add_dropdown("Logger", (NONE,))
             self._level = gui.add_dropdown("Level", tuple(LEVELS.values()), initial_value="Info")
             gui.add_button("Set the level").on_click(guarded(self._set_level))
+        self._lines = gui.add_html("")  # below all that is clicked: it grows
         self._speaker.on_update(guarded(self._ask_loggers))
 
     def update(self, now: float) -> None:
@@ -52,8 +52,9 @@ class Console:
         speakers = sorted(name[: -len(LOGGERS)] for name in services if name.endswith(LOGGERS))
         if self._speaker.options != (NONE, *speakers):
             self._speaker.options = (NONE, *speakers)
-        for do in self._aside.take():
-            do()
+        for aside in (self._asking, self._setting):
+            for do in aside.take():
+                do()
 
     def _listening(self) -> Feed:
         """To the collector of all that is said or, where none runs, to each node itself."""
@@ -73,13 +74,11 @@ class Console:
 
     def _ask_loggers(self, _event) -> None:
         node = self._speaker.value
-        if node == NONE:
-            self._logger.options = (NONE,)
-        else:
-            self._aside.start(lambda: self._offering(node))
+        self._logger.options = (NONE,)
+        self._asking.restart(lambda: self._offering(node))
 
     def _offering(self, node: str):
-        told = call(node + LOGGERS, GetLoggers).loggers
+        told = call(node + LOGGERS, GetLoggers).loggers if node != NONE else ()
         levels = {logger.name: logger.level.capitalize() for logger in told}
 
         def offer() -> None:
@@ -99,7 +98,7 @@ class Console:
             call(node + SET_LEVEL, SetLoggerLevel, logger, level.lower())
             return lambda: self._desk.tell(f"{node}: {logger} is at {level}")
 
-        self._aside.start(ask)
+        self._setting.start(ask)
 
 
 TOOL = Console

@@ -63,7 +63,7 @@ class Services:
         name = self._chosen.value
         self._kind.content = self._fields.value = self._answer.content = ""
         if name != NONE:
-            self._asking.start(lambda: (name, _type_of(name)))
+            self._asking.restart(lambda: (name, _type_of(name)))
 
     def _show_request(self, name: str, kind: str) -> None:
         if name != self._chosen.value:
