@@ -20,7 +20,11 @@ def rosrun(tmp_path, monkeypatch):
 def test_a_map_saver_that_does_not_end_is_an_error_of_one_line(rosrun, tmp_path, monkeypatch):
     rosrun("exec sleep 60")
     monkeypatch.setattr(mapping, "SAVE_SECONDS", 0.2)
-    with pytest.raises(LaunchError, match="map_saver: not over after 0.2 s"):
+    with pytest.raises(LaunchError, match="map_saver: not over after 0.2 s$"):
+        mapping.save_map(tmp_path, None)
+    monkeypatch.setattr(mapping, "SAVE_SECONDS", 2.0)
+    rosrun("echo Waiting for the map; exec sleep 60")
+    with pytest.raises(LaunchError, match="map_saver: .*; its last words: Waiting for the map$"):
         mapping.save_map(tmp_path, None)
 
 

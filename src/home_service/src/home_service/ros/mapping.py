@@ -105,14 +105,16 @@ def save_map(folder: Path, stem: Optional[Path]) -> Path:
         saver = subprocess.run(
             ["rosrun", "map_lite", "map_saver", "-f", str(stem), "--timeout", str(MAP_SECONDS)],
             stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
+            capture_output=True,
+            env={**os.environ, "PYTHONUNBUFFERED": "1"},
             timeout=SAVE_SECONDS,
             text=True,
             check=False,
         )
-    except subprocess.TimeoutExpired:
-        raise LaunchError(f"map_saver: not over after {SAVE_SECONDS:g} s") from None
+    except subprocess.TimeoutExpired as error:
+        said = (error.stdout or b"").decode(errors="replace").splitlines()
+        last = f"; its last words: {said[-1]}" if said else ""
+        raise LaunchError(f"map_saver: not over after {SAVE_SECONDS:g} s{last}") from None
     if saver.returncode != 0:
         raise LaunchError(f"map_saver: {' '.join(saver.stderr.split()) or 'failed'}")
     return stem.with_name(stem.name + ".yaml")
