@@ -1,5 +1,6 @@
 """What tests of move_base share: a client of its action, and what is heard on topics."""
 
+import math
 import time
 import unittest
 
@@ -18,6 +19,8 @@ from planar_ros.calls.actions import goal_is_over, server_is_ready
 # Wall seconds: of a node that starts; of a message on its way, on a busy machine; of anything at all.
 START_SECONDS, HEARING_SECONDS, STANDSTILL_SECONDS = 60.0, 10.0, 120.0
 LEVEL = (0.0, 0.0, 0.0, 1.0)
+# In the home, metres.
+IN_ONE_ROOM, IN_THE_NEXT_ROOM = (1.0, 0.0), (2.0, 3.0)
 
 
 def pose_at(x, y, frame="map", quaternion=LEVEL):
@@ -114,6 +117,16 @@ class MoveBaseTestCase(unittest.TestCase):
     def end_of(self, pose):
         self.client.send_goal(MoveBaseGoal(pose))
         return self.result_of()
+
+    def robot_xy(self):
+        """Where the robot is by its odometry, metres."""
+        position = self.odometry.wait().pose.pose.position
+        return position.x, position.y
+
+    def far_goal(self):
+        """A goal in the other room: how far earlier tests have come, nobody knows."""
+        robot_xy = self.robot_xy()
+        return pose_at(*max(IN_ONE_ROOM, IN_THE_NEXT_ROOM, key=lambda place: math.dist(place, robot_xy)))
 
     def drive(self, pose):
         """Sends a goal and returns when the robot is under way."""

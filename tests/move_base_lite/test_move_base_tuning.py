@@ -76,7 +76,7 @@ class TestMoveBaseTuning(MoveBaseTestCase):
             self.assertLessEqual(official, known, name)
 
     def test_a_lower_speed_holds_at_once(self):
-        self.drive(pose_at(2.0, 3.0))
+        self.drive(self.far_goal())
         self.tune("move_base/MppiPlannerROS", max_vel_x=0.15)
         at = rospy.get_time()
 
@@ -92,7 +92,7 @@ class TestMoveBaseTuning(MoveBaseTestCase):
             Heard(f"move_base/DWAPlannerROS/{name}", PointCloud2)
             for name in ("cost_cloud", "trajectory_cloud")
         )
-        self.drive(pose_at(1.5, 0.3))
+        self.drive(self.far_goal())
         config = self.tune("move_base", base_local_planner="dwa_local_planner/DWAPlannerROS")
         self.assertEqual(config["base_local_planner"], "dwa_local_planner/DWAPlannerROS")
         fields = points_of(costs.wait())
