@@ -41,16 +41,19 @@ class Ticker:
 
     def _work(self, is_in_step, report) -> None:
         while not rospy.is_shutdown():
-            try:
-                now = sleep_until(self._due)
-            except rospy.ROSTimeMovedBackwardsException:
-                with self._lock:
-                    self._begin_afresh()
-                continue
             with self._lock:
-                if not is_in_step():
-                    self.look()
-                    report(now)
+                due, looked_at = self._due, self._looked_at
+            try:
+                now = sleep_until(due, looked_at)
+            except rospy.ROSTimeMovedBackwardsException:
+                now = None
+            with self._lock:
+                if not is_in_step():  # if it is, a moment looks
+                    if now is None:
+                        self._begin_afresh()
+                    else:
+                        self.look()
+                        report(now)
                     continue
             time.sleep(IN_STEP_SECONDS)
 

@@ -1,0 +1,81 @@
+"""Work that is due again and again, by a clock that a test sets."""
+
+import threading
+import time
+
+import pytest
+import rospy
+
+from planar_ros.step.ticker import Ticker
+
+PERIOD = 0.1
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    """Sets ROS time, in seconds, and wakes whoever waits for it."""
+    monkeypatch.setattr(rospy.rostime, "_rostime_initialized", True)
+    rospy.rostime._set_rostime(rospy.Time(0))
+
+    def set_to(seconds):
+        rospy.rostime._set_rostime(rospy.Time.from_sec(seconds))
+
+    yield set_to
+    rospy.rostime.switch_to_wallclock()
+
+
+class Node:
+    """Works by a ticker; ``in_first_tick`` is called then."""
+
+    def __init__(self, monkeypatch, in_first_tick=lambda: None, is_in_step=lambda: False):
+        self.ticks, self.afresh = [], 0
+        self._in_first_tick, self._has_ended = in_first_tick, threading.Event()
+        monkeypatch.setattr(rospy, "is_shutdown", self._has_ended.is_set)
+        self.ticker = Ticker(lambda: PERIOD, self._tick, self._begin)
+        before = set(threading.enumerate())
+        self.ticker.start(is_in_step, lambda now: None)
+        (self._thread,) = set(threading.enumerate()) - before
+
+    def _tick(self, now):
+        self.ticks.append(now.to_sec())
+        if len(self.ticks) == 1:
+            self._in_first_tick()
+
+    def _begin(self):
+        self.afresh += 1
+
+    def end(self):
+        self._has_ended.set()
+        rospy.rostime._set_rostime(rospy.Time(1000))
+        self._thread.join(10.0)
+
+
+def wait_until(is_so):
+    deadline = time.monotonic() + 10.0
+    while not is_so():
+        assert time.monotonic() < deadline
+        time.sleep(0.001)
+
+
+def test_a_jump_back_of_time_in_the_middle_of_a_tick_is_noticed(clock, monkeypatch):
+    node = Node(monkeypatch, in_first_tick=lambda: clock(80.0))
+    clock(100.0)
+    wait_until(lambda: node.afresh == 1 and node.ticks == [100.0, 80.0])
+    clock(80.0 + 1.5 * PERIOD)
+    wait_until(lambda: len(node.ticks) == 3)
+    assert node.afresh == 1
+    node.end()
+
+
+def test_in_step_a_jump_back_is_the_business_of_the_moment_alone(clock, monkeypatch):
+    is_in_step = threading.Event()
+    node = Node(monkeypatch, is_in_step=is_in_step.is_set)
+    clock(100.0)
+    wait_until(lambda: node.ticks == [100.0])
+    is_in_step.set()
+    clock(80.0)
+    node.ticker.look()
+    assert (node.ticks, node.afresh) == ([100.0, 80.0], 1)
+    time.sleep(0.3)
+    assert (node.ticks, node.afresh) == ([100.0, 80.0], 1)
+    node.end()
