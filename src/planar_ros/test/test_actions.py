@@ -1,12 +1,22 @@
 from types import SimpleNamespace
 
 import actionlib
+import pytest
 import rospy
 from actionlib.action_client import GoalManager
-from actionlib_msgs.msg import GoalStatus
-from move_base_msgs.msg import MoveBaseAction, MoveBaseActionResult, MoveBaseGoal
+from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
+from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseActionResult, MoveBaseGoal
 
-from planar_ros.calls.actions import MOST_ENDED, goal_is_over, server_is_ready, without_most_ended
+from planar_ros.calls.actions import (
+    MOST_ENDED,
+    ActionServer,
+    goal_is_lost,
+    goal_is_over,
+    server_is_ready,
+    server_of,
+    without_most_ended,
+)
+from planar_ros.step import Step
 
 
 def test_goals_that_have_ended_are_forgotten_but_for_the_last():
@@ -18,17 +28,17 @@ def test_goals_that_have_ended_are_forgotten_but_for_the_last():
     assert without_most_ended([]) == []
 
 
-def client(goals_heard_by):
+def client(goals_heard_by, results_come_from="/server"):
     def publisher(*listeners):
-        impl = SimpleNamespace(has_connection=lambda name: name in listeners)
-        return SimpleNamespace(impl=impl, get_num_connections=lambda: len(listeners))
+        return SimpleNamespace(impl=SimpleNamespace(has_connection=lambda name: name in listeners))
 
     told = SimpleNamespace(_connection_header={"callerid": "/server"})
+    connection = SimpleNamespace(callerid_pub=results_come_from)
     inner = SimpleNamespace(
         last_status_msg=told,
         pub_goal=publisher(*goals_heard_by),
         pub_cancel=publisher("/server"),
-        result_sub=publisher("/server"),
+        result_sub=SimpleNamespace(impl=SimpleNamespace(connections=[connection])),
     )
     return SimpleNamespace(action_client=inner)
 
@@ -38,20 +48,95 @@ def test_a_server_is_ready_when_it_hears_goals_and_not_when_somebody_else_does()
     assert server_is_ready(client(goals_heard_by=["/recorder", "/server"]))
 
 
-def test_a_goal_is_over_even_if_its_result_overtakes_the_return_of_its_sending(monkeypatch):
-    manager = GoalManager(MoveBaseAction)
+def test_a_server_is_not_ready_before_its_results_can_come():
+    assert not server_is_ready(client(goals_heard_by=["/server"], results_come_from="unknown"))
 
-    def refuse(goal):
+
+@pytest.fixture
+def sending(monkeypatch):
+    """Makes a client whose goals go to a function; returns the client and its manager of goals."""
+    monkeypatch.setattr(rospy.rostime, "_rostime_initialized", True)
+
+    def made(send):
+        manager = GoalManager(MoveBaseAction)
+        manager.register_send_goal_fn(lambda goal: send(goal, manager))
+        manager.register_cancel_fn(None)
+        client = actionlib.SimpleActionClient.__new__(actionlib.SimpleActionClient)
+        client.action_client = SimpleNamespace(send_goal=manager.init_goal, ns="a", last_status_msg=None)
+        client.simple_state, client.gh = actionlib.SimpleGoalState.DONE, None
+        return client, manager
+
+    return made
+
+
+def test_a_goal_is_over_even_if_its_result_overtakes_the_return_of_its_sending(sending):
+    def refuse(goal, manager):
         status = GoalStatus(goal_id=goal.goal_id, status=GoalStatus.ABORTED, text="no way")
         manager.update_results(MoveBaseActionResult(status=status))
 
-    manager.register_send_goal_fn(refuse)
-    manager.register_cancel_fn(None)
-    monkeypatch.setattr(rospy.rostime, "_rostime_initialized", True)
-    client = actionlib.SimpleActionClient.__new__(actionlib.SimpleActionClient)
-    client.action_client = SimpleNamespace(send_goal=manager.init_goal, ns="move_base")
-    client.simple_state, client.gh = actionlib.SimpleGoalState.DONE, None
+    client, _ = sending(refuse)
     assert goal_is_over(client)
     client.send_goal(MoveBaseGoal())
     assert goal_is_over(client)
     assert client.get_goal_status_text() == "no way"
+
+
+def test_a_goal_is_lost_when_its_server_was_started_anew_before_it_was_acknowledged(sending):
+    client, manager = sending(lambda goal, manager: None)
+
+    def hear(connection_header, after, *goal_ids):
+        told = GoalStatusArray(status_list=[GoalStatus(goal_id=goal_id) for goal_id in goal_ids])
+        told.header.stamp = rospy.Time.now() + rospy.Duration.from_sec(after)
+        told._connection_header = connection_header
+        client.action_client.last_status_msg = told
+        manager.update_statuses(told)
+
+    before, anew = {"callerid": "/server"}, {"callerid": "/server"}
+    hear(before, 0.0)
+    sent_to = server_of(client)
+    client.send_goal(MoveBaseGoal())
+    for header, after, is_lost in ((before, 2.0, False), (anew, 0.1, False), (anew, 2.0, True)):
+        hear(header, after)
+        assert goal_is_lost(client, sent_to) is is_lost
+    hear(anew, 2.0, client.gh.comm_state_machine.action_goal.goal_id)
+    assert not goal_is_lost(client, sent_to)
+
+
+@pytest.fixture
+def server(monkeypatch):
+    """A server of an action without a master; ``afresh`` is called when time has jumped back."""
+    nobody = SimpleNamespace(publish=lambda message: None, shutdown=lambda: None)
+    for name in ("Publisher", "Subscriber", "Timer"):
+        monkeypatch.setattr(rospy, name, lambda *_, **__: nobody)
+    monkeypatch.setattr(rospy, "get_param", lambda _, default=None: default)
+    monkeypatch.setattr(rospy, "has_param", lambda _: False)
+    monkeypatch.setattr(rospy, "search_param", lambda _: None)
+    monkeypatch.setattr(rospy, "get_name", lambda: "/server")
+    monkeypatch.setattr(rospy, "on_shutdown", lambda hook: None)
+    monkeypatch.setattr(rospy.rostime, "_rostime_initialized", True)
+    hooks = []
+    step = SimpleNamespace(is_on=False, every=lambda *given: hooks.append(given), soon=lambda do: do())
+    monkeypatch.setattr(Step, "of_node", lambda: step)
+    server = ActionServer("action", MoveBaseAction, auto_start=False)
+    server.start()
+    server.afresh = hooks[0][2]
+    yield server
+    rospy.rostime.switch_to_wallclock()
+
+
+def goal_at(seconds):
+    rospy.rostime._set_rostime(rospy.Time(seconds))
+    return MoveBaseActionGoal(goal_id=GoalID(rospy.Time(seconds), f"at {seconds}"))
+
+
+@pytest.mark.parametrize("is_over", (True, False))
+def test_after_time_was_set_back_goals_are_taken_whatever_the_last_one_was_stamped(server, is_over):
+    server.action_server.internal_goal_callback(goal_at(80))
+    server.accept_new_goal()
+    if is_over:
+        server.set_succeeded()
+    server.action_server.internal_cancel_callback(GoalID(stamp=rospy.Time(80), id="another"))
+    goal = goal_at(1)
+    server.afresh()
+    server.action_server.internal_goal_callback(goal)
+    assert server.is_new_goal_available()

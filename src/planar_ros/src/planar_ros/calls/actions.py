@@ -11,6 +11,8 @@ from planar_ros.step import Step
 # Goals that have ended are told of for a while, but of no more than so many, and no more than so many are
 # kept: each goal that comes is looked up among them.
 MOST_ENDED, MOST_KEPT = 20, 60
+# Of ROS time, in which a goal that is under way comes to be known.
+HEARING_TIME = rospy.Duration(1)
 KILLED_TEXT = "Aborting on the goal because the node has been killed"
 
 
@@ -19,6 +21,10 @@ class ActionServer(actionlib.SimpleActionServer):
 
     A client that sends goals without end does not slow it down, and none is left waiting when the node ends.
     """
+
+    def __init__(self, *arguments: Any, **named: Any):
+        super().__init__(*arguments, **named)
+        rospy.on_shutdown(self._abort_at_end)
 
     def start(self) -> None:
         server, step = self.action_server, Step.of_node()
@@ -30,8 +36,21 @@ class ActionServer(actionlib.SimpleActionServer):
         if server.status_timer is not None:
             server.status_timer.shutdown()
         period = 1.0 / server.status_frequency
-        step.every(lambda: period, lambda _now: self._tell(), lambda: None)
-        rospy.on_shutdown(self._abort_at_end)
+        step.every(lambda: period, lambda _now: self._tell(), self._forget_cancel)
+
+    def internal_goal_callback(self, goal: Any) -> None:
+        """A goal is not old for being stamped before the last one: time may have been set back."""
+        with self.lock:
+            now = rospy.Time.now()
+            for earlier in (self.current_goal, self.next_goal):
+                if earlier.get_goal() is not None and earlier.get_goal_id().stamp > now:
+                    earlier.get_goal_id().stamp = rospy.Time()
+        super().internal_goal_callback(goal)
+
+    def _forget_cancel(self) -> None:
+        """Nor is it cancelled by what was stamped later."""
+        with self.action_server.lock:
+            self.action_server.last_cancel = rospy.Time()
 
     def _tell_soon(self) -> None:
         """How all goals stand: once for all that have changed at a moment, which may be thousands."""
@@ -80,7 +99,8 @@ def server_is_ready(client: actionlib.SimpleActionClient) -> bool:
     server = inner.last_status_msg._connection_header["callerid"]
     publishers = (inner.pub_goal, inner.pub_cancel)
     hears = all(publisher.impl.has_connection(server) for publisher in publishers)
-    return hears and inner.result_sub.get_num_connections() > 0
+    # rospy counts a connection before it stands, and knows only then whose it is.
+    return hears and any(each.callerid_pub == server for each in inner.result_sub.impl.connections)
 
 
 def goal_is_over(client: actionlib.SimpleActionClient) -> bool:
@@ -91,3 +111,22 @@ def goal_is_over(client: actionlib.SimpleActionClient) -> bool:
     if client.simple_state == actionlib.SimpleGoalState.DONE:
         return True
     return client.gh is not None and client.gh.get_comm_state() == actionlib.CommState.DONE
+
+
+def server_of(client: actionlib.SimpleActionClient) -> Any:
+    """What stands for the server that was heard last, None before: another one after it was started anew."""
+    told = client.action_client.last_status_msg
+    return None if told is None else told._connection_header
+
+
+def goal_is_lost(client: actionlib.SimpleActionClient, sent_to: Any) -> bool:
+    """Whether the last goal went to a server (``server_of``) that is gone, and that since does not know it.
+
+    actionlib sees that only of goals that the server has acknowledged, and that have no result under way.
+    """
+    told = client.action_client.last_status_msg
+    if goal_is_over(client) or client.gh is None or told is None or server_of(client) is sent_to:
+        return False
+    goal_id = client.gh.comm_state_machine.action_goal.goal_id
+    is_known = any(status.goal_id.id == goal_id.id for status in told.status_list)
+    return not is_known and told.header.stamp > goal_id.stamp + HEARING_TIME

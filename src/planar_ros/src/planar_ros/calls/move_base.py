@@ -2,7 +2,7 @@
 
 import math
 import time
-from typing import Optional
+from typing import Any, Optional
 
 import actionlib
 import rospy
@@ -13,7 +13,7 @@ from nav_msgs.srv import GetPlan, GetPlanRequest
 
 from planar import Pose2
 from planar.driving import DriveOutcome
-from planar_ros.calls.actions import goal_is_over, server_is_ready
+from planar_ros.calls.actions import goal_is_lost, goal_is_over, server_is_ready, server_of
 from planar_ros.calls.services import call_service
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
 from planar_ros.node.last_words import wait_until_heard
@@ -32,6 +32,7 @@ class MoveBase:
         self.robot: Optional[Pose2] = None
         self._frame_id = frame_id
         self._is_driving = False
+        self._sent_to: Any = None
         self._lost_since: Optional[float] = None
         self._client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
 
@@ -48,15 +49,19 @@ class MoveBase:
         """Drives there instead of to any earlier goal. ``stamp``: of the goal, by default now."""
         message = MoveBaseGoal(target_pose=self._stamped(goal))
         message.target_pose.header.stamp = rospy.Time.now() if stamp is None else stamp
+        self._sent_to = server_of(self._client)
         self._client.send_goal(message, feedback_cb=self._keep_pose)
         self._is_driving, self._lost_since = True, None
 
     def outcome(self) -> Optional[DriveOutcome]:
         """What came of the last goal, told once; None while it is pursued."""
-        if not self._is_driving or not goal_is_over(self._client):
+        if not self._is_driving:
+            return None
+        is_lost = goal_is_lost(self._client, self._sent_to)
+        if not (is_lost or goal_is_over(self._client)):
             return None
         self._is_driving = False
-        status = GoalStatus.to_string(self._client.get_state())
+        status = "LOST" if is_lost else GoalStatus.to_string(self._client.get_state())
         if status == "LOST":  # the text is of when it was still known
             return DriveOutcome(status, f"{self.name} has forgotten the goal: it was started anew")
         return DriveOutcome(status, self._client.get_goal_status_text())
