@@ -22,6 +22,7 @@ from move_base_msgs.msg import (
 from nav_msgs.msg import OccupancyGrid, Odometry, Path
 from nav_msgs.srv import GetPlan
 from sensor_msgs.msg import PointCloud2
+from std_srvs.srv import Empty
 
 from planar_ros.calls.actions import server_is_ready
 
@@ -101,6 +102,17 @@ class TestMoveBaseContract(MoveBaseTestCase):
         self.wait_until(lambda: Twist() in self.commands.since(at))
         times = zip(self.commands.times, self.commands.messages)
         return min(time for time, message in times if time >= at and message == Twist()) - at
+
+    def test_a_goal_that_is_cancelled_before_it_is_taken_is_not_driven_to(self):
+        pause, go_on = (rospy.ServiceProxy(f"/gazebo/{name}_physics", Empty) for name in ("pause", "unpause"))
+        pause()
+        self.addCleanup(go_on)
+        self.client.send_goal(MoveBaseGoal(self.far_goal()))
+        rospy.rostime.wallsleep(1.0)  # what comes while time stands still is heard after half a second
+        self.client.cancel_goal()
+        rospy.rostime.wallsleep(1.0)
+        go_on()
+        self.assertEqual(self.result_of()[0], GoalStatus.PREEMPTED)
 
     def test_a_new_goal_preempts_the_old_one_without_stopping(self):
         other = actionlib.SimpleActionClient("move_base", MoveBaseAction)

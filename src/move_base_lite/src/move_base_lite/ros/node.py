@@ -64,12 +64,12 @@ class MoveBaseNode:
         self._global_topics = CostmapTopics("global_costmap")
         self._local_topics = CostmapTopics("local_costmap")
         self._transforms = Transforms()
+        rospy.on_shutdown(self._on_shutdown)  # before the goals end
         self._goals = GoalServer(self._map_frame, self._transforms, self._on_cancel)
         odom_topic = parameters.get("DWAPlannerROS", {}).get("odom_topic", "odom")
         self._surroundings = Surroundings(self._settings, self._transforms, odom_topic)
         self._tree = ParameterTree(parameters, self._change)
         self._await_inputs()
-        rospy.on_shutdown(self._on_shutdown)
         self._step.every(self._period, self._tick, self._start_afresh, reports=True)
         self._step.join(self._has_map)
 
@@ -116,10 +116,8 @@ class MoveBaseNode:
                 topics.forget_time()
             if self._navigator is not None:
                 self._navigator.forget()
-            if self._goals.is_active:
-                self._goals.end(Status.ABORTED, TIME_JUMP_TEXT)
+            if self._goals.give_up(TIME_JUMP_TEXT):
                 self._topics.command(Twist2())
-            self._goals.forget_time()
 
     def _tick(self, now: rospy.Time):
         with self._lock:
@@ -201,6 +199,7 @@ class MoveBaseNode:
             if goal is not None:
                 self._goal = goal
                 navigator.set_goal(goal)
+                self._on_cancel()  # actionlib tells of none that came before it was taken
 
     def _on_cancel(self):
         """Does not wait for the next tick."""
@@ -233,7 +232,7 @@ class MoveBaseNode:
         """The action ends by itself."""
         with self._lock:
             self._navigator = self._new_map = None
-            if self._goals.is_active:
+            if self._is_up and self._goals.is_active:
                 self._topics.stop_for_good()
 
 

@@ -3,7 +3,6 @@
 from typing import Callable, Optional
 
 import rospy
-from actionlib.action_server import ServerGoalHandle
 from geometry_msgs.msg import PoseStamped
 from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseFeedback
 
@@ -71,11 +70,15 @@ class GoalServer:
         else:
             self._server.set_aborted(text=text)
 
-    def forget_time(self) -> None:
-        """Time has jumped back: a goal is not old for being stamped before the last one."""
+    def give_up(self, text: str) -> bool:
+        """Aborts the goal under way, also one that has not been taken; whether there was any."""
         with self._server.action_server.lock, self._server.lock:
-            self._server.current_goal = self._server.next_goal = ServerGoalHandle()
-            self._server.new_goal = False
+            if self._server.is_new_goal_available():
+                self._server.accept_new_goal()
+            was_active = self._server.is_active()
+            if was_active:
+                self._server.set_aborted(text=text)
+        return bool(was_active)
 
     def _on_simple_goal(self, message):
         goal = MoveBaseActionGoal()
