@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """move_base that is ended while it drives: the robot stops, and who has sent the goal hears of it."""
 
+import math
+
 import rosnode
 import rospy
 import rostest
@@ -10,6 +12,8 @@ from move_base_client import MoveBaseTestCase, pose_at
 
 from planar_ros.calls.actions import KILLED_TEXT
 
+STOPPING_DISTANCE = 0.3
+
 
 class TestMoveBaseEnd(MoveBaseTestCase):
     def test_the_last_command_is_to_stop_and_the_goal_is_aborted(self):
@@ -18,6 +22,9 @@ class TestMoveBaseEnd(MoveBaseTestCase):
         self.assertEqual(self.result_of(), (GoalStatus.ABORTED, KILLED_TEXT))
         self.wait_until(lambda: "/move_base" not in rosnode.get_node_names())
         self.assertEqual(self.commands.messages[-1], Twist())
+        self.wait_until(lambda: abs(self.odometry.messages[-1].twist.twist.linear.x) < 0.01)
+        poses = [heard.pose.pose.position for heard in self.odometry.since(self.commands.times[-1])]
+        self.assertLess(math.hypot(poses[-1].x - poses[0].x, poses[-1].y - poses[0].y), STOPPING_DISTANCE)
 
     def tearDown(self):
         """Nobody is left to come to rest."""

@@ -134,6 +134,8 @@ class LockStep:
             self._inbox.members = CountedConnection.members = members
             CountedConnection.audience = self._loop.audience
             self._told.clear()
+            if not members:
+                self._inbox.release_all()  # the last words of the last one
         transport.flush()
         counts = {**self._conductor.effects(), **transport.sent(self._name)}
         news = {channel: count for channel, count in counts.items() if self._told.get(channel) != count}
