@@ -42,7 +42,6 @@ class Tuning:
         self._started_with = dict(values)
         self._is_up = False
         self._server = _Server(_description(tunables, values), self._on_call, namespace)
-        self._is_up = True
 
     def close(self) -> None:
         """Ends the service and its topics."""
@@ -51,7 +50,10 @@ class Tuning:
         self._server.update_topic.unregister()
 
     def _on_call(self, config, level):
-        if not self._is_up:  # the server's own first call, with what is on the parameter server
+        if (
+            not self._is_up
+        ):  # the server's own first call, before it serves any: what the parameter server says
+            self._is_up = True
             config.update(self._started_with)
             return config
         asked = {name: config[name] for name in self._started_with}
