@@ -145,7 +145,7 @@ class Step:
 
     def _ask(self, is_ready: Callable[[], bool]) -> None:
         """Again and again while the node is not in step; in it, minds strangers."""
-        while not rospy.is_shutdown():
+        while not rospy.core.is_shutdown_requested():
             if self.is_on:
                 self._mind_strangers()
             elif is_ready():
@@ -217,11 +217,14 @@ class Step:
 
     def _leave(self) -> None:
         """The simulation goes on without this node, which works out of step and asks to be back."""
-        rospy.logwarn("the simulation does not wait for this node any more")
+        if not rospy.core.is_shutdown_requested():
+            rospy.logwarn("the simulation does not wait for this node any more")
         CountedConnection.members = frozenset()
         transport.flush()
         self._inbox.release_all()
         self._turns.wake()
+        with self._working:
+            self._working.notify_all()
 
     def _await_answer(self, number: int) -> None:
         """Until the moment of this number has been answered."""

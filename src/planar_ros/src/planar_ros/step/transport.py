@@ -2,6 +2,7 @@
 
 import threading
 from collections import deque
+from contextlib import suppress
 from io import BytesIO
 from typing import Any, ClassVar, Deque, Dict, FrozenSet, Iterator, List, Optional, Tuple
 
@@ -60,8 +61,9 @@ class CountedConnection(PromptConnection):
     @classmethod
     def flush_all(cls) -> None:
         """Sends whatever has been kept back, first what was first."""
-        while cls._full:
-            cls._full.popleft().flush()
+        with suppress(IndexError):  # two threads may be at it
+            while True:
+                cls._full.popleft().flush()
 
     def flush(self) -> None:
         """Sends what was kept back; an error is left to the next message, where rospy expects it."""
