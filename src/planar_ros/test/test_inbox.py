@@ -1,9 +1,11 @@
 """Messages that wait for their moment."""
 
+import threading
 from io import BytesIO
 from types import SimpleNamespace
 
 import pytest
+import rospy
 from std_msgs.msg import String
 
 from planar_ros.step import inbox as inbox_module
@@ -77,3 +79,24 @@ def test_the_last_word_of_a_node_that_has_died_is_heard(inbox, heard):
     take(inbox, connection(), "going again")
     inbox.release({CHANNEL: 1})
     assert heard == ["going", "going again"]
+
+
+def test_what_is_handed_on_just_now_has_not_come_before_its_callback_is_over(inbox, monkeypatch):
+    inbox.members = frozenset()
+    has_begun, may_end, is_over = (threading.Event() for _ in range(3))
+
+    def call_back(*_):
+        has_begun.set()
+        may_end.wait(10.0)
+        is_over.set()
+
+    monkeypatch.setattr(inbox_module, "_receive", call_back)
+    monkeypatch.setitem(rospy.topics.get_topic_manager().subs, "/state", SUBSCRIBER)
+    taking = threading.Thread(target=take, args=(inbox, connection(), "going"))
+    taking.start()
+    assert has_begun.wait(10.0)
+    inbox.members = frozenset(("/pick_objects",))
+    threading.Timer(0.1, may_end.set).start()
+    assert inbox.release({CHANNEL: 1}) == []
+    assert is_over.is_set()
+    taking.join(10.0)

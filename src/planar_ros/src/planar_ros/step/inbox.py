@@ -122,13 +122,16 @@ class Inbox:
             if channel is None or not channel.is_of(connection):
                 channel = self._channels[topic, sender] = _Channel(subscriber, connection, channel)
             connection.latch = channel.latch  # rospy has put a frame there
-            channel.received += len(frames)
             if self._holds(topic, sender):
                 channel.waiting.extend(frames)
+                channel.received += len(frames)
                 self._changed.notify_all()
                 return
         if not (topic == CLOCK_TOPIC and self.members):
             _deliver(channel, frames)
+        with self._changed:  # only now: who waits for it may rely on it
+            channel.received += len(frames)
+            self._changed.notify_all()
 
     def _note_stranger(self, topic: str, sender: str) -> None:
         if (topic, sender) not in self._known and topic not in UNSUSPICIOUS:
