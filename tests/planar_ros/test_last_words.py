@@ -38,9 +38,11 @@ class LastWordsTest(unittest.TestCase):
             heard = []
             listener = rospy.Subscriber("farewell", String, lambda message: heard.append(message.data))  # noqa: B023
             with subprocess.Popen(["rosrun", "home_service_tests", "node_of_last_words.py"]) as node:
-                wait_until("the node", lambda: heard == ["here"])  # noqa: B023
+                wait_until("the node", lambda: "here" in heard)  # noqa: B023
                 node.send_signal(signal.SIGINT)
-            wait_until("its last word", lambda: heard == ["here", "gone"])  # noqa: B023
+            wait_until("its last word", lambda: "gone" in heard)  # noqa: B023
+            # What is latched may come once more to one who connects just then.
+            self.assertEqual(list(dict.fromkeys(heard)), ["here", "gone"])
             listener.unregister()
 
     def test_who_has_sent_a_goal_hears_every_time_that_its_node_ends(self):

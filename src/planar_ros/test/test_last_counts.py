@@ -1,6 +1,7 @@
 """What a node in step has sent before all hang up is told with the moment's answer."""
 
 import threading
+import time
 from types import SimpleNamespace
 
 import pytest
@@ -18,7 +19,7 @@ def publisher(monkeypatch):
     """A topic without anybody who listens to it yet; its node is in step with the receiver."""
     found = SimpleNamespace(
         resolved_name=TOPIC,
-        impl=SimpleNamespace(connections=[]),
+        impl=SimpleNamespace(connections=[], latch=None),
         get_num_connections=lambda: len(found.impl.connections),
     )
     monkeypatch.setattr(
@@ -78,3 +79,27 @@ def test_who_connects_anew_has_had_nothing(publisher, connect):
     assert transport.sent(SENDER) == {CHANNEL: 0}
     publisher.impl.connections.clear()
     assert transport.sent(SENDER) == {}
+
+
+def test_who_leaves_meanwhile_is_not_waited_for(publisher, monkeypatch):
+    listeners = iter((1, 1))
+    monkeypatch.setattr(last_words, "listeners_of", lambda topic: next(listeners, 0))
+    started = time.monotonic()
+    last_words.wait_until_heard(publisher)
+    assert time.monotonic() - started < last_words.PATIENCE_SECONDS / 2
+
+
+@pytest.mark.parametrize("is_in_step", (True, False))
+def test_a_latched_word_is_heard_by_who_has_come_just_now(publisher, connect, monkeypatch, is_in_step):
+    if not is_in_step:
+        monkeypatch.setattr(CountedConnection, "members", frozenset())
+    far, connection = connect()
+    publisher.impl.latch = b"latched"
+    rospy_sends_it = threading.Timer(0.1, lambda: connection.write_data(publisher.impl.latch))
+    rospy_sends_it.start()
+    heard = []
+    reading = threading.Thread(target=lambda: heard.extend(iter(lambda: far.recv(1024), b"")))
+    reading.start()
+    last_words.wait_until_heard(publisher, patience=1.0)
+    reading.join(10.0)
+    assert b"".join(heard) == b"latched"

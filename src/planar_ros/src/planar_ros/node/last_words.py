@@ -3,7 +3,7 @@
 import socket
 import time
 from contextlib import suppress
-from typing import List
+from typing import Any, List
 
 import genpy
 import rospy
@@ -25,8 +25,7 @@ def wait_until_heard(*publishers: rospy.Publisher, patience: float = PATIENCE_SE
     deadline = time.monotonic() + patience
     transport.flush()  # what a node in step keeps until the moment's answer
     for publisher in publishers:
-        expected = listeners_of(publisher.resolved_name)
-        while publisher.get_num_connections() < expected and time.monotonic() < deadline:
+        while not _is_heard_by_all(publisher) and time.monotonic() < deadline:
             time.sleep(POLL_SECONDS)
         transport.keep_counts(publisher.resolved_name)
     sockets = [each for publisher in publishers for each in _flushed(publisher, deadline)]
@@ -47,14 +46,27 @@ def say_at_end(publisher: rospy.Publisher, message: genpy.Message) -> None:
     rospy.on_shutdown(say)
 
 
+def _is_heard_by_all(publisher: rospy.Publisher) -> bool:
+    """Asked anew each time, as listeners leave, too, where a whole graph is ended."""
+    return publisher.get_num_connections() >= listeners_of(publisher.resolved_name)
+
+
 def _flushed(publisher: rospy.Publisher, deadline: float) -> List[socket.socket]:
     """The sockets of a publisher once rospy has handed them all that waited."""
     connections = [each for each in publisher.impl.connections if not each.done]
-    while any(getattr(each, "_queue", ()) for each in connections) and time.monotonic() < deadline:
+    is_latched = publisher.impl.latch is not None
+    while any(_is_at_work(each, is_latched) for each in connections) and time.monotonic() < deadline:
         time.sleep(POLL_SECONDS)
+        transport.flush()  # also what is latched, for who has come just now
     time.sleep(POLL_SECONDS)  # for what has been taken out of a queue just now
     sockets = [getattr(each, "socket", None) for each in connections]
     return [each for each in sockets if each is not None]
+
+
+def _is_at_work(connection: Any, is_latched: bool) -> bool:
+    """Whether something waits to be sent; rospy sends what is latched to a new one just after it is there."""
+    waiting = (getattr(connection, name, None) for name in ("_queue", "_rest", "_is_relaying", "_kept"))
+    return any(waiting) or (is_latched and connection.stat_num_msg == 0)
 
 
 def _wait_for_end(connection: socket.socket, deadline: float) -> None:
