@@ -2,7 +2,7 @@
 
 import threading
 import time
-from typing import Callable, List, Mapping, Optional
+from typing import Callable, ClassVar, Dict, List, Mapping, Optional
 
 import rosgraph
 import rospy
@@ -14,6 +14,26 @@ from planar_ros.step import Step
 TOPIC = "waiting_for"
 PATIENCE_SECONDS = 4.0
 POLL_SECONDS, HELD_UP_SECONDS = 0.2, 1.0
+
+
+class _Teller:
+    """Of what a node waits for, a part: all of them tell together, on one topic."""
+
+    _lacking: ClassVar[Dict["_Teller", List[str]]] = {}
+    _told: ClassVar[Optional[str]] = None
+    _lock: ClassVar[threading.Lock] = threading.Lock()
+
+    def __init__(self) -> None:
+        self._publisher = rospy.Publisher(f"~{TOPIC}", String, queue_size=1, latch=True)
+
+    def tell(self, lacking: List[str]) -> None:
+        """What this part lacks now."""
+        with self._lock:
+            self._lacking[self] = lacking
+            text = "\n".join(name for part in self._lacking.values() for name in part)
+            if text != _Teller._told:
+                _Teller._told = text
+                self._publisher.publish(text)
 
 
 class Waiting:
@@ -28,7 +48,7 @@ class Waiting:
     def __init__(self, conditions: Mapping[str, Callable[[], bool]]):
         self._conditions = conditions
         self._missing: Optional[List[str]] = None
-        self._publisher = rospy.Publisher(f"~{TOPIC}", String, queue_size=1, latch=True)
+        self._teller = _Teller()
         self._step = Step.present()
         if self._step is not None:
             self._step.at_moments(self._look)
@@ -55,7 +75,7 @@ class Waiting:
             missing = [name for name, is_met in self._conditions.items() if not is_met()]
             if missing != self._missing:
                 self._missing = missing
-                self._publisher.publish("\n".join(missing))
+                self._teller.tell(missing)
 
 
 class HoldUp:
@@ -65,7 +85,7 @@ class HoldUp:
         self._patience = patience
         self._since: Optional[float] = None
         self._told: List[str] = []
-        self._publisher = rospy.Publisher(f"~{TOPIC}", String, queue_size=1, latch=True)
+        self._teller = _Teller()
 
     def look(self, names: List[str]) -> None:
         """Those that are waited for now; to be called again and again."""
@@ -78,7 +98,7 @@ class HoldUp:
         to_tell = names if is_long else []
         if to_tell != self._told:
             self._told = to_tell
-            self._publisher.publish("\n".join(to_tell))
+            self._teller.tell(to_tell)
 
 
 class Readiness:
