@@ -79,3 +79,13 @@ def test_in_step_a_jump_back_is_the_business_of_the_moment_alone(clock, monkeypa
     time.sleep(0.3)
     assert (node.ticks, node.afresh) == ([100.0, 80.0], 1)
     node.end()
+
+
+def test_a_shorter_period_holds_at_once_and_is_no_jump_of_time(clock):
+    periods, ticks, jumps = [0.5], [], []
+    ticker = Ticker(lambda: periods[0], lambda now: ticks.append(now.to_sec()), lambda: jumps.append(True))
+    for seconds, period in ((1.0, 0.5), (1.0625, 0.125), (1.25, 0.125)):
+        clock(seconds)
+        periods[0] = period
+        ticker.look()
+    assert (ticks, jumps) == ([1.0, 1.25], [])

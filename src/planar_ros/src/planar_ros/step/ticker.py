@@ -32,9 +32,10 @@ class Ticker:
         """Works if it is due now."""
         with self._lock:
             now, period = rospy.Time.now(), rospy.Duration(self._period())
-            if now < self._looked_at or self._due - now > 2 * period:
+            if now < self._looked_at:
                 self._begin_afresh()
             self._looked_at = now
+            self._due = min(self._due, now + period)  # the period may have become shorter
             if now != rospy.Time(0) and now >= self._due:
                 self._due = max(self._due + period, now) if self._due != NEVER else now + period
                 self._tick(now)
