@@ -57,16 +57,18 @@ user_cache() { # prints a folder that is this user's alone
     return 1
 }
 
-copy_kernels() { # ROOT CACHE: the stamp comes last, so that a copy cut short is made again
-    local compiled own
-    rm -rf "$2"
+copy_kernels() { # ROOT CACHE: whole or not at all; others may be copying, too
+    local compiled own beside=$2.$$
+    rm -rf "$beside"
     find "$1/src" -name '*.nbi' -printf '%h\n' | sort -u | while IFS= read -r compiled; do
-        own=$2/$(numba_name "${compiled%/__pycache__}")
+        own=$beside/$(numba_name "${compiled%/__pycache__}")
         mkdir -p "$own"
         cp "$compiled"/*.nb[ic] "$own"
     done
-    mkdir -p "$2"
-    cp "$1/build/.kernels" "$2/.kernels"
+    mkdir -p "$beside"
+    cp "$1/build/.kernels" "$beside/.kernels"
+    cmp -s "$1/build/.kernels" "$2/.kernels" || rm -rf "$2" 2>/dev/null || true
+    mv -T "$beside" "$2" 2>/dev/null || rm -rf "$beside" # another script was faster
 }
 
 numba_name() { # FOLDER: as numba names the folder in its cache for the sources in this one

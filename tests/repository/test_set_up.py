@@ -496,6 +496,36 @@ def test_who_may_not_write_beside_the_kernels_has_current_copies_of_them(tmp_pat
     assert kernels_compiled(tmp_path, "use_own_kernels $PWD") == (0, "beside")
 
 
+@pytest.mark.parametrize(
+    "end, left", [pytest.param("command cp", 1, id="to the end"), pytest.param("exit 0;", 2, id="by half")]
+)
+def test_two_scripts_copy_the_kernels_at_one_time(tmp_path, monkeypatch, end, left):
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    for package in ("first", "second"):
+        compiled = tmp_path / "src" / package / "__pycache__"
+        compiled.mkdir(parents=True)
+        (compiled / "kernel.nbi").touch()
+    (tmp_path / "build").mkdir()
+    (tmp_path / "build/.kernels").write_text("1")
+    other = f'. "$1"; may_write() {{ false; }}; cp() {{ {end} "$@"; }}; use_own_kernels "$root"'
+    said = in_workspace(
+        tmp_path,
+        f"""
+        may_write() {{ false; }}
+        cp() {{
+            [[ $1 != */src/second/* ]] || bash -c '{other}' bash "$root/scripts/setup.sh"
+            command cp "$@"
+        }}
+        use_own_kernels "$root"
+        ls -A "$NUMBA_CACHE_DIR" "$NUMBA_CACHE_DIR"/second_*
+        """,
+    )
+    assert said.returncode == 0, said.stderr
+    assert {".kernels", "kernel.nbi"} < set(said.stdout.split())
+    assert len(list((tmp_path / "cache/home-service-robot/kernels").iterdir())) == left
+
+
 def test_who_has_no_home_has_a_cache_too(tmp_path, monkeypatch):
     monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
     said = in_workspace(tmp_path, "export HOME=/dev/null TMPDIR=$PWD; user_cache")
