@@ -72,6 +72,7 @@ restore_last_build() { # after one that failed or was cut short
     if [[ -e $last/whole ]]; then
         parts_of_build "$root/build" -exec rm -rf {} +
         rm -rf "$root/devel"
+        rm -f "$last/whole" # from here on nothing else is the build
     fi
     if [[ -e $last/build/.set-up ]]; then
         [[ ! -d $last/devel ]] || mv "$last/devel" "$root"

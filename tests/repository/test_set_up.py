@@ -174,6 +174,15 @@ def test_a_build_that_was_cut_short_is_undone_by_the_next(tmp_path):
     assert not (tmp_path / "devel/half").exists() and not (tmp_path / "build/.last").exists()
 
 
+def test_a_build_whose_restoring_was_cut_short_is_still_there(tmp_path):
+    set_up_once(tmp_path)
+    in_workspace(tmp_path, "clear_build")
+    in_workspace(tmp_path, 'mv() { command mv "$@"; kill -KILL $$; }; restore_last_build')
+    in_workspace(tmp_path, "restore_last_build")
+    assert (tmp_path / "devel/setup.bash").read_text() == "good\n"
+    assert (tmp_path / "build/cache").exists() and (tmp_path / "build/.set-up").exists()
+
+
 def test_a_build_that_was_cut_short_while_it_was_set_aside_is_whole_again(tmp_path):
     set_up_once(tmp_path)
     in_workspace(tmp_path, 'mkdir -p "$last/build"; mv build/cache build/.set-up "$last/build"')
