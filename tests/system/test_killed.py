@@ -9,20 +9,27 @@ from pathlib import Path
 import rostest
 from command import Command
 from processes import marked_environment, processes_of, processes_with
+from waiting import wait_until
 
 ROOT = Path(__file__).resolve().parents[2]
 NODE = "__name:=sim_bridge"
-END_SECONDS = 30.0
+START_SECONDS, END_SECONDS = 120.0, 30.0
 REASON = "sim_bridge: was ended by SIGKILL"
 
 
 class KilledTest(unittest.TestCase):
     def test_a_mission_whose_simulator_is_killed_ends_with_that_for_its_reason(self):
+        self._assert_told("home_service.sh", "pick_objects: driving to", f"FAILURE: {REASON}")
+
+    def test_a_map_that_nobody_draws_any_more_is_not_waited_for(self):
+        self._assert_told("map_home.sh", " x real time", f"error: {REASON}")
+
+    def _assert_told(self, script, progress, verdict):
         mark, environment = marked_environment()
-        command = [ROOT / "scripts/home_service.sh", "--speed", "4", "--output"]
+        command = [ROOT / "scripts" / script, "--speed", "4", "--output"]
         with tempfile.TemporaryDirectory() as parent:
             with Command(*command, parent, env=environment) as run:
-                run.told("pick_objects: driving to")
+                wait_until(progress, lambda: any(progress in line for line in run.lines), START_SECONDS)
                 for process, words in processes_of(mark):
                     if NODE in words:
                         process.kill()
@@ -31,7 +38,7 @@ class KilledTest(unittest.TestCase):
         last = "".join(run.lines[-3:])
         print(last)
         self.assertEqual(code, 1)
-        self.assertIn(f"FAILURE: {REASON}", last)
+        self.assertIn(verdict, last)
         self.assertFalse(result["success"])
         self.assertTrue(result["reason"].startswith(REASON), result["reason"])
         self.assertEqual(processes_with(mark), [])

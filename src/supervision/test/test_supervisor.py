@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from supervision import interruption
 from supervision.deaths import NodeFailure
 from supervision.errors import LaunchError
 from supervision.ros import supervisor
@@ -92,6 +93,15 @@ def test_how_roslaunch_was_killed_is_told(graph, tmp_path):
     graph.is_running, graph.how_it_ended = False, "was ended by SIGKILL"
     reason = supervised(tmp_path).watch(lambda: False, str)
     assert reason == f"roslaunch was ended by SIGKILL, see {tmp_path}"
+
+
+def test_why_nothing_runs_any_more_is_told_after_an_interrupt_too(graph, tmp_path, monkeypatch):
+    monkeypatch.setattr(interruption, "_is_interrupted", True)
+    watcher = supervised(tmp_path)
+    graph.deaths.failure = NodeFailure("sim_bridge: was ended by SIGKILL", is_bad_input=False)
+    assert watcher.end_of_graph is None
+    graph.is_running = False
+    assert watcher.end_of_graph == "sim_bridge: was ended by SIGKILL"
 
 
 def test_a_graph_whose_start_is_interrupted_ends_too(tmp_path):

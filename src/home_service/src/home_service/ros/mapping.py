@@ -2,6 +2,7 @@
 
 import os
 import subprocess
+import time
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -26,6 +27,7 @@ from supervision.processes import ending_with_parent
 
 # For the map to come, and for all of it: on a machine that is busy a program takes long to start.
 MAP_SECONDS, SAVE_SECONDS = 30.0, 90.0
+POLL_SECONDS = 0.05
 # Has the robot driven until the map is made; why that failed, or None.
 Driver = Callable[[Run, Referee], Optional[str]]
 TELEOP = ["rosrun", "teleop_lite", "turtlebot_teleop_key", "turtlebot_teleop_keyboard/cmd_vel:=cmd_vel"]
@@ -38,7 +40,7 @@ def make_map(options: MappingOptions, launch: LaunchPlan, drive: Driver) -> int:
     referee = Referee({}, display.say)
     with Run(options, launch, referee, RunRecorder({}), display) as run:
         failure = drive(run, referee)
-        path = save_map(run.folder, options.save)
+        path = save_map(run, options.save, failure)
         return run.conclude(Verdict(failure is None, failure or f"map saved in {path}"))
 
 
@@ -49,7 +51,7 @@ def make_scored_map(options: MappingOptions, launch: LaunchPlan, stage: Stage) -
     referee = Referee({}, display.say)
     with Run(options, launch, referee, RunRecorder({}), display) as run:
         failure = explore(run, referee)
-        path = save_map(run.folder, options.save)
+        path = save_map(run, options.save, failure)
         way_home = referee.distance_from(Pose2())
         score = score_against_world(load_map(path), stage.world, stage.robot)
         display.say(f"map saved in {path}")
@@ -98,23 +100,43 @@ def _check_place_to_save(stem: Optional[Path]) -> None:
         raise SettingsError(f"{stem.resolve().parent}: no such folder to save the map in")
 
 
-def save_map(folder: Path, stem: Optional[Path]) -> Path:
-    """Saves the map that is published, into the ``folder`` if no ``stem`` is given; returns its YAML."""
-    stem = (stem or folder / "map").resolve()
-    try:
-        saver = subprocess.run(
-            ["rosrun", "map_lite", "map_saver", "-f", str(stem), "--timeout", str(MAP_SECONDS)],
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            env={**os.environ, "PYTHONUNBUFFERED": "1"},
-            timeout=SAVE_SECONDS,
-            text=True,
-            check=False,
-        )
-    except subprocess.TimeoutExpired as error:
-        said = (error.stdout or b"").decode(errors="replace").splitlines()
-        last = f"; its last words: {said[-1]}" if said else ""
-        raise LaunchError(f"map_saver: not over after {SAVE_SECONDS:g} s{last}") from None
-    if saver.returncode != 0:
-        raise LaunchError(f"map_saver: {' '.join(saver.stderr.split()) or 'failed'}")
+def save_map(run: Run, stem: Optional[Path], failure: Optional[str] = None) -> Path:
+    """Saves the map that is published, into the run folder if no ``stem`` is given; returns its YAML.
+
+    Raises LaunchError, which first tells the ``failure`` that the run has come to before.
+    """
+    stem = (stem or run.folder / "map").resolve()
+    gap = _save(run, stem)
+    if gap is not None:
+        raise LaunchError("; ".join(filter(None, dict.fromkeys((failure, gap)))))
     return stem.with_name(stem.name + ".yaml")
+
+
+def _save(run: Run, stem: Path) -> Optional[str]:
+    """Why there is no map, or None. Without a master the saver would wait for ever."""
+    saver = subprocess.Popen(
+        ["rosrun", "map_lite", "map_saver", "-f", str(stem), "--timeout", str(MAP_SECONDS)],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        env={**os.environ, "PYTHONUNBUFFERED": "1"},
+        preexec_fn=ending_with_parent(),
+        text=True,
+        errors="replace",
+    )
+    deadline = time.monotonic() + SAVE_SECONDS
+    end_of_graph = None
+    try:
+        while saver.poll() is None and end_of_graph is None and time.monotonic() < deadline:
+            time.sleep(POLL_SECONDS)
+            end_of_graph = run.end_of_graph
+    finally:
+        is_late = saver.poll() is None
+        saver.kill()
+        said = saver.communicate()[0].split("\n")
+    if saver.returncode == 0:
+        return None
+    last = next((line.strip() for line in reversed(said) if line.strip()), "")
+    words = f"; its last words: {last}" if last else ""
+    failure = f"not over after {SAVE_SECONDS:g} s{words}" if is_late else last or "failed"
+    return end_of_graph or f"map_saver: {failure}"

@@ -38,7 +38,7 @@ def play(
         run.result.missing += recording.gaps
         failure = _play(run)
         if failure is None and saves_map:
-            display.say(f"map saved in {save_map(run.folder, stem)}")
+            display.say(f"map saved in {save_map(run, stem)}")
         verdict = Verdict(failure is None, failure or f"{recording.end - recording.start:.1f} s replayed")
         return run.conclude(verdict, bags=[str(path) for path in recording.paths])
 

@@ -102,6 +102,11 @@ class Run:
         standstill = self._standstill.reason
         return f"{failure}; {standstill}" if failure and standstill else failure
 
+    @property
+    def end_of_graph(self) -> Optional[str]:
+        """Why nothing runs any more, or None; also after Ctrl-C. Raises LaunchError as ``watch`` does."""
+        return self._supervisor.end_of_graph
+
     def _status(self) -> str:
         self._standstill.look()
         return self._judge.status()

@@ -68,6 +68,12 @@ class Supervisor:
             end_descendants()
 
     @property
+    def end_of_graph(self) -> Optional[str]:
+        """Why nothing runs any more, or None; also after Ctrl-C. Raises LaunchError as ``watch`` does."""
+        is_running = self._graph is not None and self._graph.is_running
+        return None if is_running else self._failure_of_graph()
+
+    @property
     def log_gap(self) -> Optional[str]:
         """What is missing of the graph's log, and why."""
         return None if self._graph is None else self._graph.log_gap
@@ -85,6 +91,9 @@ class Supervisor:
     def _failure(self, when: str = "") -> Optional[str]:
         """Why the graph cannot go on. Raises LaunchError if a node refused its input."""
         raise_if_interrupted()
+        return self._failure_of_graph(when)
+
+    def _failure_of_graph(self, when: str = "") -> Optional[str]:
         assert self._graph is not None, "start() comes first"
         self._tell_restarts()
         failure = self._graph.deaths.failure
