@@ -1,4 +1,5 @@
 import json
+from pathlib import Path
 
 import pytest
 
@@ -10,6 +11,13 @@ def test_two_runs_in_one_second_get_folders_of_their_own(tmp_path):
     folders = {create_run_folder(tmp_path / "runs", "errand") for _ in range(3)}
     assert len(folders) == 3
     assert all((folder / "log").is_dir() for folder in folders)
+
+
+def test_a_name_that_another_run_takes_at_the_same_moment_is_left_to_it(tmp_path, monkeypatch):
+    create_run_folder(tmp_path, "errand")
+    monkeypatch.setattr(Path, "exists", lambda _path: False)
+    folders = {create_run_folder(tmp_path, "errand") for _ in range(3)}
+    assert len(folders) == 3
 
 
 def test_a_place_where_no_folder_can_be_made_is_named(tmp_path):

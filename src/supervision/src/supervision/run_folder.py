@@ -1,5 +1,6 @@
 """The folder in which a run leaves its logs and its result."""
 
+import contextlib
 import itertools
 import json
 from datetime import datetime
@@ -14,18 +15,21 @@ def create_run_folder(parent: Path, name: str) -> Path:
     """A new folder ``parent``/<date>-<time>-<name> with a folder ``log`` in it. Raises SettingsError."""
     try:
         parent.mkdir(parents=True, exist_ok=True)
-        stem = f"{datetime.now():%Y%m%d-%H%M%S}-{name}"
-        folder = next(
-            folder for folder in (parent / (stem + suffix) for suffix in _suffixes()) if not folder.exists()
-        )
-        (folder / "log").mkdir(parents=True)
+        folder = _new_folder(parent / f"{datetime.now():%Y%m%d-%H%M%S}-{name}")
+        (folder / "log").mkdir()
     except OSError as error:
         raise SettingsError(f"{parent}: no run folder can be made there ({error.strerror})") from None
     return folder
 
 
-def _suffixes():
-    return itertools.chain([""], (f"-{number}" for number in itertools.count(2)))
+def _new_folder(stem: Path) -> Path:
+    """Another run may take a name at any moment."""
+    for number in itertools.count(1):
+        folder = stem if number == 1 else stem.with_name(f"{stem.name}-{number}")
+        with contextlib.suppress(FileExistsError):
+            folder.mkdir()
+            return folder
+    raise AssertionError("numbers do not end")
 
 
 def write_result(folder: Path, result: dict) -> Path:
