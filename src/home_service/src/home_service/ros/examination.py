@@ -52,15 +52,22 @@ def _examine(findings: Findings, uri: str, seconds: float) -> None:
     everybody = [
         name for part in (publishers, subscribers, services) for names in part.values() for name in names
     ]
-    findings.nodes = [
-        Node(name, is_alive=answers(master.lookupNode(name))) for name in sorted({*everybody} - {myself})
-    ]
+    addresses = {name: _address(master, name) for name in sorted({*everybody} - {myself})}
+    findings.nodes = [Node(name, is_alive=answers(uri)) for name, uri in addresses.items() if uri is not None]
     findings.topics = [
         Topic(name, sorted(publishers.get(name, [])), sorted({*subscribers.get(name, [])} - {myself}))
         for name in sorted({*publishers, *subscribers})
     ]
     Listener(findings).listen(seconds)
     rospy.signal_shutdown("examined")
+
+
+def _address(master: rosgraph.Master, node: str) -> Optional[str]:
+    """None if the node has gone since it was named."""
+    try:
+        return master.lookupNode(node)
+    except rosgraph.MasterError:
+        return None
 
 
 class Listener:
