@@ -15,7 +15,7 @@ from supervision.processes import ending_with_parent
 # Where a page is served if nobody says.
 FREE_PORT = "127.0.0.1:0"
 URL, ERROR = "cockpit: http", "error: "
-START_SECONDS, CLOSE_SECONDS, POLL_SECONDS = 30.0, 2.0, 0.02
+START_SECONDS, CLOSE_SECONDS, POLL_SECONDS = 120.0, 2.0, 0.02
 
 
 class CockpitProcess:
@@ -47,7 +47,8 @@ class CockpitProcess:
             start_new_session=True,
             preexec_fn=ending_with_parent(signal.SIGTERM),
         )
-        threading.Thread(target=self._read, daemon=True).start()
+        self._reading = threading.Thread(target=self._read, daemon=True)
+        self._reading.start()
         self.url = self._wait_for_url()
 
     def close(self) -> None:
@@ -62,12 +63,13 @@ class CockpitProcess:
     def _wait_for_url(self) -> str:
         deadline = time.monotonic() + START_SECONDS
         while time.monotonic() < deadline:
+            has_said_all = not self._reading.is_alive()
             for line in list(self._lines):
                 if line.startswith(URL):
                     return line.partition(": ")[2].strip()
                 if line.startswith(ERROR):
                     raise PortError(line.partition(": ")[2].strip())
-            if self._process.poll() is not None and not self._lines:
+            if has_said_all:
                 break
             time.sleep(POLL_SECONDS)
         self.close()
