@@ -20,7 +20,8 @@ PROFILES = {
 NODE = "bag_recorder"
 SPLIT_MEGABYTES = 128
 MOST_SPLITS = 8
-CLOSE_SECONDS = 5.0
+# For the index of a bag, on a disk that is busy.
+CLOSE_SECONDS = 60.0
 FULL_BYTES = 1 << 20
 PAUSED = "Disabling recording"
 """What the recorder says when the disk is nearly full."""
@@ -62,6 +63,7 @@ class RosbagProcess:
             self._process.wait(CLOSE_SECONDS)
         except subprocess.TimeoutExpired:
             self._process.kill()
+            self._process.wait()
         missing += [f"bag: {path.name} was not closed" for path in sorted(self._folder.glob("*.bag.active"))]
         if PAUSED in (self._folder / "record.log").read_text(encoding="utf-8", errors="replace"):
             missing.append("bag: there was too little space on the disk to record everything")
