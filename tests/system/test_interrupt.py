@@ -18,10 +18,10 @@ from waiting import wait_until
 
 SCRIPT = Path(__file__).resolve().parents[2] / "scripts/home_service.sh"
 MOMENTS = (0.1, 0.6, 1.5, 3.0, 6.0)
-START_SECONDS, EXIT_SECONDS = 60.0, 20.0
-# Killed by SIGKILL so often, so many seconds after roslaunch has begun, which starts the nodes in these; of
-# what is left then, nothing is after so many.
-STARTS, STARTING_SECONDS, LEFT_SECONDS = 12, (0.0, 2.5), 5.0
+# Those of an end are far from what it takes: they only tell it from none.
+START_SECONDS, EXIT_SECONDS, LEFT_SECONDS = 60.0, 30.0, 30.0
+# Killed by SIGKILL so often, so many seconds after roslaunch has begun, which starts the nodes in these.
+STARTS, STARTING_SECONDS = 12, (0.0, 2.5)
 ROSLAUNCH, MOVE_BASE = "/roslaunch --port", "__name:=move_base"
 # Interrupted so many seconds after the process has been started which looks after roslaunch.
 GUARD, GUARDING_SECONDS = "-m supervision.guard", (0.0, 0.03)

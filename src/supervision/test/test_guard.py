@@ -13,7 +13,9 @@ import psutil
 import pytest
 
 MARK = "GUARD_TEST"
-LEFT_SECONDS, START_SECONDS = 5.0, 10.0
+# Far from what an end takes: they only tell it from none.
+LEFT_SECONDS, START_SECONDS = 30.0, 30.0
+PATIENCE_SECONDS, LONG_PATIENCE_SECONDS = 3.0, 20.0
 STARTER = """
 import subprocess, sys, time
 from supervision.guard import guarded, ignore_ctrl_c
@@ -24,7 +26,8 @@ sys.exit(guard.wait())
 WAITER = """
 import sys
 from supervision.guard import run_guarded
-sys.exit(run_guarded(sys.argv[1:], 3.0))
+patience, *command = sys.argv[1:]
+sys.exit(run_guarded(command, float(patience)))
 """
 # As roslaunch while it starts a node: deaf, with children in sessions of their own, some of them stubborn.
 STUBBORN = "trap '' INT TERM; while true; do sleep 0.05; done"
@@ -43,6 +46,10 @@ def start(mark, *command, by=STARTER):
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), MARK: mark}
     starter = [sys.executable, "-c", by, *command]
     return subprocess.Popen(starter, env=environment, stdout=subprocess.PIPE, preexec_fn=hear_hang_up)
+
+
+def start_waiting(mark, patience, *command):
+    return start(mark, str(patience), *command, by=WAITER)
 
 
 def hear_hang_up():
@@ -113,7 +120,7 @@ def test_what_a_command_leaves_behind_is_ended(mark):
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])
 def test_who_runs_a_guarded_command_waits_for_its_end(mark, number):
     hearing = "trap 'sleep 2.5; exit 3' INT; trap '' HUP; echo ready; while true; do sleep 0.05; done"
-    starter = start(mark, "bash", "-c", hearing, by=WAITER)
+    starter = start_waiting(mark, LONG_PATIENCE_SECONDS, "bash", "-c", hearing)
     assert starter.stdout.readline() == b"ready\n"
     starter.send_signal(number)
     assert starter.wait(LEFT_SECONDS) == 3
@@ -123,8 +130,9 @@ def test_who_runs_a_guarded_command_waits_for_its_end(mark, number):
 def test_a_guarded_command_that_is_asked_to_end_as_it_starts_has_a_code_of_its_own(mark):
     moments = random.Random(2)
     codes = set()
+    hearing = "trap 'exit 3' INT; while true; do sleep 0.02; done"
     for _ in range(12):
-        starter = start(mark, "bash", "-c", "trap 'exit 3' INT; while true; do sleep 0.02; done", by=WAITER)
+        starter = start_waiting(mark, PATIENCE_SECONDS, "bash", "-c", hearing)
         seconds_until(lambda: psutil.Process(starter.pid).children(), START_SECONDS)  # noqa: B023
         time.sleep(moments.uniform(0.0, 0.15))
         starter.terminate()
@@ -136,9 +144,9 @@ def test_a_guarded_command_that_is_asked_to_end_as_it_starts_has_a_code_of_its_o
 
 def test_nothing_outlives_a_guarded_command_or_who_runs_it(mark):
     for place in (0, 1, 2):
-        starter = start(mark, "bash", "-c", f"echo ready; {DEAF_PARENT}", by=WAITER)
+        starter = start_waiting(mark, PATIENCE_SECONDS, "bash", "-c", f"echo ready; {DEAF_PARENT}")
         assert starter.stdout.readline() == b"ready\n"
         chain = [starter, *psutil.Process(starter.pid).children(recursive=True)]
         chain[place].kill()
-        starter.wait(2 * LEFT_SECONDS)
-        seconds_until(lambda: not processes_of(mark), 2 * LEFT_SECONDS)
+        starter.wait(LEFT_SECONDS)
+        seconds_until(lambda: not processes_of(mark), LEFT_SECONDS)
