@@ -1,5 +1,6 @@
 """A marker for each object of a mission: where it stands, or on the robot that carries it."""
 
+import threading
 from typing import Dict
 
 import rospy
@@ -26,6 +27,8 @@ class MissionMarkers:
         self._standing: Dict[str, Pose2] = {}
         self._shown: Dict[str, ObjectState] = {}
         self._frame_id = ""
+        # rospy has new subscribers met in a thread of its own, without the publisher's lock.
+        self._showing = threading.Lock()
         # Subscribers that come late get the latest marker of each object, not of one of them alone.
         self._publisher = rospy.Publisher(
             "visualization_marker", Marker, subscriber_listener=_Repeater(self), queue_size=50
@@ -35,13 +38,19 @@ class MissionMarkers:
         Waiting({f"a mission on {rospy.resolve_name(STATE_TOPIC)}": lambda: self._has_state})
 
     def repeat(self, publish) -> None:
-        for state in list(self._shown.values()):
-            publish(self._marker(state))
+        """The latest marker of each object, to one subscriber."""
+        with self._showing:
+            for state in self._shown.values():
+                publish(self._marker(state))
 
     def _follow(self, message: MissionState) -> None:
-        self._has_state, self._frame_id = True, message.header.frame_id
-        objects = {state.name: state for state in message.objects}
-        self._standing = self._bodies.follow(message.objects)
+        self._has_state = True
+        standing = dict(self._bodies.follow(message.objects))
+        with self._showing:
+            self._standing, self._frame_id = standing, message.header.frame_id
+            self._show({state.name: state for state in message.objects})
+
+    def _show(self, objects: Dict[str, ObjectState]) -> None:
         for name in [name for name in self._shown if name not in objects]:
             self._publisher.publish(Marker(ns=name, action=Marker.DELETE))
             del self._shown[name]

@@ -1,0 +1,98 @@
+"""Who subscribes while a marker changes gets whole markers, the latest last."""
+
+import io
+import struct
+import threading
+from types import SimpleNamespace
+
+import pytest
+from home_service_msgs.msg import MissionState, ObjectState
+from rospy.topics import _PublisherImpl
+from visualization_msgs.msg import Marker
+
+from add_markers import MarkerSettings
+from add_markers.ros import mission_markers
+from add_markers.ros.mission_markers import MissionMarkers
+
+GIVING_WAY_SECONDS, DEADLINE = 0.3, 5.0
+
+
+class Subscriber:
+    """The near end of a connection, which keeps what is written to it."""
+
+    endpoint_id, cleanup_cb = "/rviz", None
+
+    def __init__(self):
+        self._written = io.BytesIO()
+
+    def set_cleanup_callback(self, callback):
+        pass
+
+    def fileno(self):
+        return None
+
+    def write_data(self, data):
+        self._written.write(data)
+
+    def markers(self):
+        """What a subscriber would read."""
+        self._written.seek(0)
+        found = []
+        while head := self._written.read(4):
+            (size,) = struct.unpack("<I", head)
+            found.append(Marker().deserialize(self._written.read(size)))
+        return found
+
+
+class Publisher:
+    """rospy's, without a master."""
+
+    def __init__(self, name, kind, subscriber_listener, queue_size):
+        self.impl = _PublisherImpl(name, kind)
+        self.impl.add_subscriber_listener(subscriber_listener)
+
+    def publish(self, message):
+        self.impl.acquire()
+        try:
+            self.impl.publish(message)
+        finally:
+            self.impl.release()
+
+
+@pytest.fixture
+def markers(monkeypatch):
+    bodies = SimpleNamespace(follow=lambda objects: {})
+    monkeypatch.setattr(mission_markers, "MissionBodies", lambda settings: bodies)
+    monkeypatch.setattr(mission_markers, "Waiting", lambda conditions: None)
+    monkeypatch.setattr(mission_markers, "listen", lambda *_, **__: None)
+    monkeypatch.setattr(mission_markers.rospy, "Publisher", Publisher)
+    return MissionMarkers(MarkerSettings(zones_file="none"))
+
+
+def mission_with_cube_at(x):
+    message = MissionState(objects=[ObjectState(name="cube", size=0.2)])
+    message.objects[0].pose.position.x = x
+    message.objects[0].pose.orientation.w = 1.0
+    return message
+
+
+def test_a_marker_that_changes_while_it_is_repeated(markers, monkeypatch):
+    markers._follow(mission_with_cube_at(1.0))
+    late = Subscriber()
+    repeating = threading.Thread(target=markers._publisher.impl.add_connection, args=[late], daemon=True)
+    is_half_written, is_changed = threading.Event(), threading.Event()
+
+    class GivingWay(Marker):
+        def serialize(self, buff):
+            super().serialize(buff)
+            if threading.current_thread() is repeating:
+                is_half_written.set()
+                is_changed.wait(GIVING_WAY_SECONDS)
+
+    monkeypatch.setattr(mission_markers, "Marker", GivingWay)
+    repeating.start()
+    assert is_half_written.wait(DEADLINE)
+    markers._follow(mission_with_cube_at(2.0))
+    is_changed.set()
+    repeating.join(DEADLINE)
+    assert [marker.pose.position.x for marker in late.markers()] == [1.0, 2.0]
