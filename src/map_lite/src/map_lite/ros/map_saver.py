@@ -4,7 +4,7 @@
 
 Unlike the official one it names the image without a folder, so that the pair loads from anywhere, writes
 whole files or none, and ends with exit code 1 and a reason when there is no map in time, or nothing worth
-saving in it, or it cannot be written.
+saving in it, or it cannot be written; with 130 if it is interrupted before.
 """
 
 import argparse
@@ -17,8 +17,9 @@ from map_lite.config import SaverSettings
 from planar import UNKNOWN, PlanarError, SettingsError, save_map
 from planar.config.parameters import parameters_of
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg
-from planar_ros.node.shell import fail
+from planar_ros.node.shell import fail, shut_down_on_signals
 from planar_ros.node.waiting import Waiting
+from supervision.interruption import INTERRUPTED
 
 
 class NothingToSaveError(PlanarError):
@@ -32,13 +33,16 @@ def main():
         settings = SaverSettings(arguments.occupied_at, arguments.free_at)
     except SettingsError as error:
         parser.error(str(error))
-    rospy.init_node("map_saver")
+    shut_down_on_signals()
     try:
+        rospy.init_node("map_saver", disable_signals=True)
         path = _save(arguments, settings)
-    except rospy.ROSInterruptException:
-        sys.exit(1)
     except PlanarError as error:
         fail(str(error), exit_code=1)
+    except rospy.ROSException:
+        if not rospy.is_shutdown():
+            raise
+        sys.exit(INTERRUPTED)
     rospy.loginfo("Done: %s", path)
 
 

@@ -30,7 +30,7 @@ def run(node_name: str, start: Callable[[], object]) -> None:
 
     A PlanarError during the start is a user's mistake: one line on stderr, exit code 2.
     """
-    _shut_down_on_signals()
+    shut_down_on_signals()
     drop_what_cannot_be_written()
     use_one_blas_thread()
     let_many_wait()
@@ -61,6 +61,26 @@ def run(node_name: str, start: Callable[[], object]) -> None:
         gc.freeze()
     if failures:
         sys.exit(THREAD_DIED)
+
+
+def shut_down_on_signals(goes_on: bool = False) -> None:
+    """From now on signals shut the node down, in a thread; to be called before ``init_node``.
+
+    rospy would do it in the signal's handler, on top of whatever the main thread is at, and wait for ever for
+    a lock that this holds, as while it publishes. ``goes_on``: the process has more to do than to be a node,
+    and may take its time for that afterwards.
+    """
+    received: queue.SimpleQueue[int] = queue.SimpleQueue()
+
+    def shut_down():
+        number = received.get()
+        watchdog = _end_within(SHUTDOWN_SECONDS, 128 + number)
+        rospy.signal_shutdown(f"signal {number}")
+        if goes_on:
+            watchdog.cancel()
+
+    threading.Thread(target=shut_down, daemon=True).start()
+    on_signals(lambda number, _frame: received.put(number))
 
 
 def fail(text: str, exit_code: int = 2) -> None:
@@ -102,25 +122,9 @@ def _ending_the_node(
     return end
 
 
-def _end_within(seconds: float, exit_code: int) -> None:
+def _end_within(seconds: float, exit_code: int) -> threading.Timer:
     """rospy waits for ever if the master goes away while a topic is being registered."""
     watchdog = threading.Timer(seconds, os._exit, [exit_code])
     watchdog.daemon = True
     watchdog.start()
-
-
-def _shut_down_on_signals() -> None:
-    """Shuts down on signals, in a thread.
-
-    rospy would do it in the signal's handler, on top of whatever the main thread is at, and wait for ever for
-    a lock that this holds, as while it publishes.
-    """
-    received: queue.SimpleQueue[int] = queue.SimpleQueue()
-
-    def shut_down():
-        number = received.get()
-        _end_within(SHUTDOWN_SECONDS, 128 + number)
-        rospy.signal_shutdown(f"signal {number}")
-
-    threading.Thread(target=shut_down, daemon=True).start()
-    on_signals(lambda number, _frame: received.put(number))
+    return watchdog
