@@ -202,15 +202,10 @@ class Step:
         self._told.update(news)
         remarks, self._remarks = self._remarks, set()
         period = 0.0 if is_last else min((period() for period in self._periods), default=DEFAULT_PERIOD)
-        answer = Answer(
-            Header(stamp=stamp, frame_id=self._name),
-            self._number if self.is_on else 0,
-            rospy.Duration(period),
-            transport.topology(),
-            list(news),
-            list(news.values()),
-            sorted(remarks),
-        )
+        header = Header(stamp=stamp, frame_id=self._name)
+        number = self._number if self.is_on else 0
+        told = transport.topology(), list(news), list(news.values()), sorted(remarks)
+        answer = Answer(header, number, rospy.Duration(period), *told)
         with suppress(rospy.ROSException):  # rospy has closed the topic: the node is ending
             if self._answers is not None:
                 self._answers.publish(answer)
