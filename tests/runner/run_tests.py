@@ -74,7 +74,8 @@ class Account:
         if outcome.failed:
             log = log_of(self._folder, name)
             self._complaints.append(f"FAILED {name}: {outcome.reason or 'see the log'} -- {log}")
-            print(indented_tail(log), flush=True)
+            if log.exists():  # what was ended from outside may not have come to it
+                print(indented_tail(log), flush=True)
 
     def conclude(self) -> int:
         for complaint in self._complaints:

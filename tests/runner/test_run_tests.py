@@ -3,9 +3,9 @@ import sys
 from pathlib import Path
 
 import pytest
-from outcome import Outcome, judge_ros_test, judge_unit_tests, read_report
+from outcome import Outcome, failure, judge_ros_test, judge_unit_tests, read_report
 from ros_test import time_limits
-from run_tests import NEEDS, ROOT, is_installed, lacking
+from run_tests import NEEDS, ROOT, Account, is_installed, lacking
 
 
 def write_report(path, tests, failures=0, errors=0, skipped=0):
@@ -124,6 +124,13 @@ def test_a_test_may_need_more_than_its_folder_does():
 
 def test_what_needs_something_is_there():
     assert all((ROOT / place).exists() for place in NEEDS)
+
+
+def test_a_test_that_ended_before_it_had_a_log_is_told_and_no_more(tmp_path, capsys):
+    account = Account(tmp_path)
+    account.note("tests/system/mission", failure("was ended from outside"), 1.0)
+    assert account.conclude() == 1
+    assert "FAILED tests/system/mission: was ended from outside" in capsys.readouterr().out
 
 
 def chosen(names, missing):
