@@ -14,11 +14,13 @@ from supervision.processes import adopt_orphans, end_descendants
 
 ROOT = Path(__file__).resolve().parents[2]
 GRACE_SECONDS = 15.0
+# For what has been asked to end, or is just doing so, when its command is over.
+ENDING_SECONDS = 5.0
 
 
 def run_kept(command: Sequence[str], log: Path, limit: float, judge: Callable[[int], Outcome]) -> Outcome:
     """Runs it, with a ROS_HOME of its own beside its log; ``judge`` says what its exit code, and its reports,
-    mean. What it leaves running is a failure.
+    mean. What it leaves running, and not ending, is a failure.
 
     ``limit``: seconds. Nothing else may run below this process.
     """
@@ -38,6 +40,7 @@ def run_kept(command: Sequence[str], log: Path, limit: float, judge: Callable[[i
             )
             try:
                 outcome = judge(process.wait(limit))
+                psutil.wait_procs(psutil.Process().children(recursive=True), timeout=ENDING_SECONDS)
             except subprocess.TimeoutExpired:
                 outcome = failure(f"not done after its limit of {limit:.0f} s")
     finally:

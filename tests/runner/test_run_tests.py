@@ -176,6 +176,10 @@ def test_a_command_that_leaves_nothing_behind_is_judged_by_what_it_says(tmp_path
     assert kept(["true"], tmp_path / "x.log") == ""
 
 
+def test_what_is_just_ending_when_its_command_is_over_is_not_left_behind(tmp_path):
+    assert kept(["sh", "-c", "(sleep 0.5; sleep 0.5) &"], tmp_path / "x.log") == ""
+
+
 def test_what_outlives_its_command_is_ended_and_told(tmp_path):
     number = tmp_path / "number"
     named = "until grep -q sleep /proc/$!/comm; do :; done"  # until then it is a copy of the shell
