@@ -18,6 +18,7 @@ from home_service.ros.bags.rosbag_process import RosbagProcess
 from home_service.ros.run_trace import RunTrace
 from home_service.ros.standstill import Standstill
 from planar import PlanarError, SettingsError
+from planar_ros.step.step import AUDIENCE_PARAMETER
 from run_report import summary, write_report
 from supervision.command_line import words
 from supervision.display import Display
@@ -30,6 +31,8 @@ from supervision.run_folder import create_run_folder
 from supervision.streams import drop_what_cannot_be_written
 from supervision.versions import versions
 
+# The name of a run's own process as a node. The simulator is told of it before it is one, to wait for it.
+NODE = "referee"
 REPORT_SECONDS = 60.0
 # How long what is shown is left open after the verdict.
 VIEW_SECONDS = 8.0
@@ -124,8 +127,9 @@ class Run:
     def _bring_up(self) -> None:
         self.display.say(f"run folder {self.folder}")
         speed = {"speed": self._options.wanted_speed, "rviz": str(self._options.rviz).lower()}
-        arguments = {**self._launch.arguments, **speed}
         launch = self._launch
+        audience = {"audience": NODE} if launch.is_simulated else {}
+        arguments = {**launch.arguments, **speed, **audience}
         self._supervisor.start(launch.package, launch.file, arguments, launch.comes_back)
         if self._options.is_on_the_web:
             where = self._options.web_port or FREE_PORT
@@ -135,7 +139,7 @@ class Run:
             self.display.say(f"cockpit: {self._cockpit.url}")
         wait_for = self._supervisor.wait_for
         wait_for("the ROS master", is_master_online)
-        rospy.init_node("referee", disable_signals=True, anonymous=True, log_level=rospy.ERROR)
+        rospy.init_node(NODE, disable_signals=True, log_level=rospy.ERROR)
         if self._launch.bags is not None:
             wait_for("simulated time", lambda: rospy.has_param("/use_sim_time"))
             self._bags = RosbagProcess(self._launch.bags, self.folder / "bag")
@@ -144,6 +148,7 @@ class Run:
             self._standstill.start()
         self._judge.start()
         self._recorder.start()
+        rospy.set_param(AUDIENCE_PARAMETER, [rospy.get_name()])
         if self._launch.is_simulated:
             wait_for("ground truth from the simulator", self._judge.has_begun)
         if self._bags is not None:

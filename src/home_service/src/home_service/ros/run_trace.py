@@ -13,13 +13,12 @@ from visualization_msgs.msg import Marker
 from home_service.judging.trace import FILE, Entry, Trace, hash_of, write_trace
 from home_service.result import Result
 from home_service.ros.hearing import hear
-from planar_ros.step.step import AUDIENCE_PARAMETER
 
 ROBOTS = ("", "follower/")
 
 
 class RunTrace:
-    """Subscribes as soon as there is a master, so that the simulator waits for it to hear."""
+    """Subscribes as soon as there is a master."""
 
     def __init__(self):
         self._trace = Trace()
@@ -37,7 +36,6 @@ class RunTrace:
         self._follow("explore/result", ExploreActionResult, _result, self._trace.end)
         hear("visualization_marker", Marker, self._keep_marker)
         hear("/simulation/remarks", String, self._keep_remarks)
-        rospy.set_param(AUDIENCE_PARAMETER, [rospy.get_name()])
 
     def leave(self, result: Result) -> None:
         """Adds to a result what belongs there, and writes the trace beside it, if anything was driven."""

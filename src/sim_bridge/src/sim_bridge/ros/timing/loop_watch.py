@@ -9,6 +9,8 @@ import rospy
 from planar_ros.step.closure import Closure
 from planar_ros.step.step import audience
 
+# Names of nodes, by spaces: those of the audience that will come. The launch file knows them before they do.
+EXPECTED_AUDIENCE_PARAMETER = "/simulation/expected_audience"
 POLL_SECONDS = 0.02
 # Wall seconds: for nodes to come, for one that is there to show that it can be in step, for connections.
 COMING_SECONDS, STRANGE_SECONDS, CONNECTING_SECONDS = 30.0, 5.0, 5.0
@@ -17,7 +19,7 @@ COMING_SECONDS, STRANGE_SECONDS, CONNECTING_SECONDS = 30.0, 5.0, 5.0
 class LoopWatch:
     """The loop is closed when all ``expected`` nodes have joined and hear each other and the node ``me``.
 
-    They are connected to the ``static_publishers`` by then too.
+    They are connected to the ``static_publishers`` by then too, and who is to look on does.
     What does not come within its time is given up. ``audience``: who looks on, as far as it is known.
     """
 
@@ -27,6 +29,7 @@ class LoopWatch:
         self._me = me
         self._joined: Set[str] = set()
         self._absent = set(expected)
+        self._onlookers = frozenset(f"/{name}" for name in _expected_audience())
         self._static_publishers = static_publishers
         self._since: Dict[str, float] = {}
         self._given_up: Set[str] = set()
@@ -89,6 +92,8 @@ class LoopWatch:
             else:
                 gaps[f"the node {name}"] = COMING_SECONDS
         self.audience = audience()
+        for name in sorted(self._onlookers - self.audience):
+            gaps[f"the node {name}, which is to look on"] = COMING_SECONDS
         if not absent:
             for gap in self._closure.gaps(members, self.audience, self._static_publishers):
                 gaps[f"the connection of {gap}"] = CONNECTING_SECONDS
@@ -102,3 +107,7 @@ class LoopWatch:
                 self._given_up.add(gap)
                 self._untold.append(gap)
         return gap in self._given_up
+
+
+def _expected_audience() -> List[str]:
+    return rospy.get_param(EXPECTED_AUDIENCE_PARAMETER, "").split()
