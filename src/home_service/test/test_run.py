@@ -42,6 +42,7 @@ class Graph:
     log_gap = None
     restarts = ()
     is_ended = False
+    is_at_work = False
 
     def end(self):
         self.is_ended = True
@@ -111,6 +112,16 @@ def test_a_run_that_failed_anyhow_is_no_error_besides(run, monkeypatch):
     monkeypatch.setattr(run_folder, "write_atomically", full_disk)
     with pytest.raises(RuntimeError, match="a fault of ours"), run:
         raise RuntimeError("a fault of ours")
+    assert run._supervisor.is_ended
+
+
+def test_rospy_is_not_waited_for_while_it_waits_for_a_master_that_is_gone(run, monkeypatch):
+    reasons = []
+    monkeypatch.setattr(run_module.rospy, "signal_shutdown", reasons.append)
+    run._supervisor.is_at_work = True
+    with run:
+        run.conclude(DONE)
+    assert reasons == []
     assert run._supervisor.is_ended
 
 

@@ -1,5 +1,6 @@
 import subprocess
 import sys
+import threading
 from types import SimpleNamespace
 
 import pytest
@@ -87,6 +88,33 @@ def test_what_was_waited_for_when_the_graph_ended_is_named(graph, tmp_path):
         supervised(tmp_path).wait_for("the simulator", lambda: False)
     assert str(error.value) == f"roslaunch ended before the simulator was there, see {tmp_path}"
     assert supervised(tmp_path).watch(lambda: False, str) == f"roslaunch ended, see {tmp_path}"
+
+
+def test_work_that_waits_for_ever_ends_with_the_graph(graph, tmp_path):
+    supervised_graph, never = supervised(tmp_path), threading.Event()
+
+    def lose_the_master():
+        graph.is_running = False
+        never.wait()
+
+    with pytest.raises(LaunchError, match="roslaunch ended before the node was there"):
+        supervised_graph.carry_out("the node", lose_the_master)
+    assert supervised_graph.is_at_work
+    never.set()
+
+
+def test_a_refused_connection_is_the_end_of_the_graph(graph, tmp_path):
+    def be_refused():
+        graph.is_running = False
+        raise ConnectionRefusedError
+
+    with pytest.raises(LaunchError, match="roslaunch ended before the node was there"):
+        supervised(tmp_path).carry_out("the node", be_refused)
+
+
+def test_another_mistake_at_work_is_told(graph, tmp_path):
+    with pytest.raises(ZeroDivisionError):
+        supervised(tmp_path).carry_out("the node", lambda: 1 / 0)
 
 
 def test_how_roslaunch_was_killed_is_told(graph, tmp_path):

@@ -139,20 +139,24 @@ class Run:
             self.display.say(f"cockpit: {self._cockpit.url}")
         wait_for = self._supervisor.wait_for
         wait_for("the ROS master", is_master_online)
+        if launch.bags is not None:
+            wait_for("simulated time", _is_time_simulated)
+            self._bags = RosbagProcess(launch.bags, self.folder / "bag")
+        self._supervisor.carry_out("the run's own node", self._listen)
+        if self._launch.is_simulated:
+            wait_for("ground truth from the simulator", self._judge.has_begun)
+        if self._bags is not None:
+            wait_for("the recorder of bags", self._bags.is_ready)
+
+    def _listen(self) -> None:
+        """Makes this process a node that hears all it is to judge and to keep."""
         rospy.init_node(NODE, disable_signals=True, log_level=rospy.ERROR)
-        if self._launch.bags is not None:
-            wait_for("simulated time", lambda: rospy.has_param("/use_sim_time"))
-            self._bags = RosbagProcess(self._launch.bags, self.folder / "bag")
         self._trace.start()
         if self._launch.is_simulated:
             self._standstill.start()
         self._judge.start()
         self._recorder.start()
         rospy.set_param(AUDIENCE_PARAMETER, [rospy.get_name()])
-        if self._launch.is_simulated:
-            wait_for("ground truth from the simulator", self._judge.has_begun)
-        if self._bags is not None:
-            wait_for("the recorder of bags", self._bags.is_ready)
 
     def _finish(self, error: Optional[BaseException]) -> None:
         """All that is to be done before the nodes end."""
@@ -165,7 +169,8 @@ class Run:
             self._keep(Verdict(False, str(error)))
         if self._bags is not None:
             self.result.missing += self._bags.close()
-        rospy.signal_shutdown("the run is over")
+        if not self._supervisor.is_at_work:  # else rospy would wait for its locks
+            rospy.signal_shutdown("the run is over")
 
     def _linger(self) -> None:
         """Leaves the views open for those who have looked on; Ctrl-C ends it."""
@@ -193,3 +198,9 @@ class Run:
         self.result.add(**summary(record))
         self.result.missing = write_report(self.folder, self.result.content, record, self._options.gif)
         self.result.write()
+
+
+def _is_time_simulated() -> bool:
+    with suppress(OSError):
+        return rospy.has_param("/use_sim_time")
+    return False

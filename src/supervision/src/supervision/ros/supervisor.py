@@ -1,6 +1,8 @@
 """A graph under supervision: brought up, watched until its work is done, ended."""
 
+import threading
 import time
+from concurrent.futures import Future
 from pathlib import Path
 from typing import Callable, Collection, List, Mapping, Optional
 
@@ -25,6 +27,7 @@ class Supervisor:
         self._deadline = time.monotonic() + time_limit
         self._graph: Optional[RosGraph] = None
         self._told = 0
+        self._work: Optional[Future] = None
 
     def start(
         self,
@@ -47,6 +50,30 @@ class Supervisor:
                 raise LaunchError(failure)
             self._display.show(f"waiting for {what}")
             time.sleep(POLL_SECONDS)
+
+    def carry_out(self, what: str, work: Callable[[], object]) -> None:
+        """Does ``work`` in a thread, for which what asks the master may wait for ever once that is gone.
+
+        An OSError of it is the master's end. Raises LaunchError then.
+        """
+        working = self._work = Future()
+
+        def do():
+            try:
+                working.set_result(work())
+            except OSError:
+                pass  # what became of the graph says why
+            except Exception as error:
+                working.set_exception(error)
+
+        threading.Thread(target=do, daemon=True).start()
+        self.wait_for(what, working.done)
+        working.result()
+
+    @property
+    def is_at_work(self) -> bool:
+        """Whether something that was to be carried out is not, and will not be."""
+        return self._work is not None and not self._work.done()
 
     def watch(self, is_over: Callable[[], bool], status: Callable[[], str]) -> Optional[str]:
         """Shows how things stand until ``is_over``; returns why it cannot come to that, or None."""
