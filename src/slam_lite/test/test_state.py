@@ -17,8 +17,9 @@ def state(office):
     return mapper.state()
 
 
-def test_a_state_comes_back_as_it_was(state, tmp_path):
-    save_state(state, tmp_path / "map.npz")
+@pytest.mark.parametrize("is_compressed", (True, False))
+def test_a_state_comes_back_as_it_was(state, tmp_path, is_compressed):
+    save_state(state, tmp_path / "map.npz", is_compressed)
     back = load_state(tmp_path / "map.npz")
     assert np.array_equal(back.poses, state.poses)
     assert np.array_equal(back.edges.information, state.edges.information)

@@ -36,10 +36,14 @@ class MapState:
     sessions: np.ndarray
 
 
-def save_state(state: MapState, path) -> None:
-    """Writes a state, whole or not at all. Raises FileWriteError."""
+def save_state(state: MapState, path, is_compressed: bool = True) -> None:
+    """Writes a state, whole or not at all. Raises FileWriteError.
+
+    Not ``is_compressed``, it takes a tenth of the time, and a fifth more room.
+    """
     file = io.BytesIO()
-    np.savez_compressed(
+    save = np.savez_compressed if is_compressed else np.savez
+    save(
         file,
         format=FORMAT,
         version=VERSION,

@@ -14,7 +14,7 @@ from slam_lite.ros.mapping import Mapping
 from slam_lite.state import StateFileError, save_state
 
 # Seconds of scans from one time to the next, and the most of the node's time that it may take.
-KEEP_SECONDS, MOST_SHARE = 5.0, 0.05
+KEEP_SECONDS, MOST_SHARE = 2.0, 0.05
 
 
 class StateKeeper:
@@ -55,4 +55,4 @@ class StateKeeper:
     def _keep(self) -> None:
         state, odom_in_map = self._mapping.now()
         if len(state.poses) > 0:
-            self._kept_file.keep(partial(save_state, state), asdict(odom_in_map))
+            self._kept_file.keep(partial(save_state, state, is_compressed=False), asdict(odom_in_map))
