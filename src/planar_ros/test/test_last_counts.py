@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from planar_ros.node import last_words
+from planar_ros.node import last_words, listeners
 from planar_ros.step import transport
 from planar_ros.step.transport import CountedConnection
 
@@ -26,7 +26,7 @@ def publisher(monkeypatch):
         transport, "connections", lambda: ((RECEIVER, TOPIC, each) for each in found.impl.connections)
     )
     monkeypatch.setattr(transport, "_last_counts", {})
-    monkeypatch.setattr(last_words, "listeners_of", lambda topic: 1)
+    monkeypatch.setattr(listeners, "listeners_of", lambda topic: 1)
     monkeypatch.setattr(CountedConnection, "members", frozenset((SENDER, RECEIVER)))
     return found
 
@@ -82,8 +82,8 @@ def test_who_connects_anew_has_had_nothing(publisher, connect):
 
 
 def test_who_leaves_meanwhile_is_not_waited_for(publisher, monkeypatch):
-    listeners = iter((1, 1))
-    monkeypatch.setattr(last_words, "listeners_of", lambda topic: next(listeners, 0))
+    counts = iter((1, 1))
+    monkeypatch.setattr(listeners, "listeners_of", lambda topic: next(counts, 0))
     started = time.monotonic()
     last_words.wait_until_heard(publisher)
     assert time.monotonic() - started < last_words.PATIENCE_SECONDS / 2

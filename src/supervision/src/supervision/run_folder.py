@@ -1,7 +1,6 @@
 """The folder in which a run leaves its logs and its result."""
 
 import contextlib
-import itertools
 import json
 from datetime import datetime
 from pathlib import Path
@@ -24,12 +23,13 @@ def create_run_folder(parent: Path, name: str) -> Path:
 
 def _new_folder(stem: Path) -> Path:
     """Another run may take a name at any moment."""
-    for number in itertools.count(1):
-        folder = stem if number == 1 else stem.with_name(f"{stem.name}-{number}")
+    folder, number = stem, 1
+    while True:
         with contextlib.suppress(FileExistsError):
             folder.mkdir()
             return folder
-    raise AssertionError("numbers do not end")
+        number += 1
+        folder = stem.with_name(f"{stem.name}-{number}")
 
 
 def write_result(folder: Path, result: dict) -> Path:

@@ -8,7 +8,7 @@ from typing import Any, List
 import genpy
 import rospy
 
-from planar_ros.node.listeners import listeners_of
+from planar_ros.node.listeners import is_heard_by_all
 from planar_ros.step import transport
 
 PATIENCE_SECONDS = 3.0
@@ -25,7 +25,8 @@ def wait_until_heard(*publishers: rospy.Publisher, patience: float = PATIENCE_SE
     deadline = time.monotonic() + patience
     transport.flush()  # what a node in step keeps until the moment's answer
     for publisher in publishers:
-        while not _is_heard_by_all(publisher) and time.monotonic() < deadline:
+        # Asked anew each time, as listeners leave, too, where a whole graph is ended.
+        while not is_heard_by_all(publisher) and time.monotonic() < deadline:
             time.sleep(POLL_SECONDS)
         transport.keep_counts(publisher.resolved_name)
     sockets = [each for publisher in publishers for each in _flushed(publisher, deadline)]
@@ -44,11 +45,6 @@ def say_at_end(publisher: rospy.Publisher, message: genpy.Message) -> None:
         wait_until_heard(publisher)
 
     rospy.on_shutdown(say)
-
-
-def _is_heard_by_all(publisher: rospy.Publisher) -> bool:
-    """Asked anew each time, as listeners leave, too, where a whole graph is ended."""
-    return publisher.get_num_connections() >= listeners_of(publisher.resolved_name)
 
 
 def _flushed(publisher: rospy.Publisher, deadline: float) -> List[socket.socket]:

@@ -12,8 +12,12 @@ CONNECT_SECONDS = 0.5
 
 def is_heard(publisher: rospy.Publisher) -> bool:
     """Whether somebody hears what is published now, and nobody who listens would miss it."""
-    connections = publisher.get_num_connections()
-    return connections > 0 and connections >= listeners_of(publisher.resolved_name)
+    return publisher.get_num_connections() > 0 and is_heard_by_all(publisher)
+
+
+def is_heard_by_all(publisher: rospy.Publisher) -> bool:
+    """Whether all who listen now, if anybody does, are connected."""
+    return publisher.get_num_connections() >= listeners_of(publisher.resolved_name)
 
 
 def listeners_of(topic: str) -> int:
