@@ -23,6 +23,8 @@ STILL_SECONDS = 0.1
 # Of a keyboard, as desktops set it at first.
 REPEAT_DELAY_SECONDS, REPEAT_SECONDS = 0.5, 0.033
 START_SECONDS, ANSWER_SECONDS = 60.0, 60.0
+# Of the protocol: what was asked has gone, or does not yet stand.
+UNREACHED = -32000
 # Between two looks at a page: each has it laid out anew.
 LOOK_SECONDS = 0.2
 # It draws without a graphics card, and calls nobody.
@@ -95,6 +97,10 @@ class Browser:
         shutil.rmtree(self._folder, ignore_errors=True)
 
 
+class PageWentOnError(AssertionError):
+    """The page, to another one while it was asked something."""
+
+
 class Tab:
     """``errors``: what its page has complained of; ``requests``: the URLs that it has asked for."""
 
@@ -119,10 +125,13 @@ class Tab:
         return self.evaluate("document.body ? document.body.innerText : ''") or ""
 
     def wait_for(self, *texts, seconds=30.0):
-        """Until all of them are on the page."""
+        """Until all of them are on the page, or on the one that it goes on to, as the cockpit's gate does."""
 
         def are_there():
-            seen = self.text()
+            try:
+                seen = self.text()
+            except PageWentOnError:
+                return False
             return all(text in seen for text in texts)
 
         wait_until(f"{texts} on the page", are_there, seconds, LOOK_SECONDS)
@@ -268,7 +277,10 @@ class Tab:
         while True:
             told = json.loads(self._socket.recv(max(deadline - time.monotonic(), 0.01)))
             if told.get("id") == number:
-                assert "error" not in told, f"{method}: {told['error']}"
+                error = told.get("error", {})
+                if error.get("code") == UNREACHED:
+                    raise PageWentOnError(f"{method}: {error}")
+                assert not error, f"{method}: {error}"
                 return told["result"]
             self._note(told)
 
