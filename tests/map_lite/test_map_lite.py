@@ -7,6 +7,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import rosgraph
+import rosnode
 import rospy
 import rostest
 from nav_msgs.msg import MapMetaData, OccupancyGrid
@@ -146,6 +148,18 @@ class MapLiteTest(unittest.TestCase):
         code, output = outcome("map_saver", "-f", self.folder / "no/such/folder", "map:=room")
         self.assertEqual(code, 1)
         self.assertIn("cannot be written", output)
+
+    def test_who_has_ended_is_unknown_to_the_master(self):
+        """Else the next one of that name would have it shut down, and with it who has its port by then."""
+        server = self.start("map_server", self.yaml)
+        rospy.wait_for_message("map", OccupancyGrid, START_SECONDS)
+        code, output = outcome("map_saver", "-f", self.folder / "saved")
+        self.assertEqual(code, 0, output)
+        server.terminate()
+        server.wait(END_SECONDS)
+        master = rosgraph.Master("/test")
+        for node in ("/map_server", "/map_saver"):
+            self.assertIsNone(rosnode.get_api_uri(master, node), node)
 
     def test_wrong_thresholds_are_refused(self):
         for arguments in (("--occ", 20, "--free", 30), ("--occ", "many"), ("--occ", 101)):

@@ -17,7 +17,7 @@ from map_lite.config import SaverSettings
 from planar import UNKNOWN, PlanarError, SettingsError, save_map
 from planar.config.parameters import parameters_of
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg
-from planar_ros.node.shell import fail, shut_down_on_signals
+from planar_ros.node.shell import fail, init_node, shut_down_on_signals
 from planar_ros.node.waiting import Waiting
 from supervision.interruption import INTERRUPTED
 
@@ -35,7 +35,7 @@ def main():
         parser.error(str(error))
     shut_down_on_signals()
     try:
-        rospy.init_node("map_saver", disable_signals=True)
+        init_node("map_saver")
         path = _save(arguments, settings)
     except PlanarError as error:
         fail(str(error), exit_code=1)

@@ -10,6 +10,7 @@ from typing import Callable, List
 
 import rospy
 from rosgraph import get_master_uri
+from rospy.impl.paramserver import get_param_server_cache
 
 from planar import PlanarError
 from planar_ros.node.backlog import let_many_wait
@@ -21,6 +22,8 @@ from supervision.streams import drop_what_cannot_be_written
 SHUTDOWN_SECONDS = 5.0
 # The exit code of a node one of whose threads has died: EX_SOFTWARE of sysexits.h.
 THREAD_DIED = 70
+# Whether lines of the log leave out which topics the node has, by rospy.
+LOG_WITHOUT_TOPICS = "/rosout_disable_topics_generation"
 # What rospy raises where somebody publishes while it ends.
 CLOSED = ("publish() to a closed topic", "topic was closed during publish()")
 
@@ -35,7 +38,7 @@ def run(node_name: str, start: Callable[[], object]) -> None:
     use_one_blas_thread()
     let_many_wait()
     try:
-        rospy.init_node(node_name, disable_signals=True)
+        init_node(node_name)
     except OSError as error:
         print(f"[{node_name}] error: no ROS master at {get_master_uri()} ({error})", file=sys.stderr)
         sys.exit(2)
@@ -61,6 +64,16 @@ def run(node_name: str, start: Callable[[], object]) -> None:
         gc.freeze()
     if failures:
         sys.exit(THREAD_DIED)
+
+
+def init_node(name: str) -> None:
+    """Makes this process a node, of which the master knows nothing any more once it has ended.
+
+    rospy would subscribe to a parameter with each line of the log, and never unsubscribe: the master would
+    take the next node of that name for a second one, and shut down who has the first one's port by then.
+    """
+    rospy.init_node(name, disable_signals=True)
+    get_param_server_cache().set(LOG_WITHOUT_TOPICS, rospy.get_param(LOG_WITHOUT_TOPICS, False))
 
 
 def shut_down_on_signals(goes_on: bool = False) -> None:
