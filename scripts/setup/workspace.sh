@@ -1,5 +1,5 @@
 # shellcheck shell=bash disable=SC2154,SC2034 # variables of lib.sh and setup.sh
-# The catkin build. The last build that went well stays in use until the next one has.
+# The catkin build. The last one that went well comes back if the next one fails.
 
 readonly last=$root/build/.last # where the last good build waits while the next one is made
 
