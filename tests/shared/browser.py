@@ -277,10 +277,9 @@ class Tab:
         while True:
             told = json.loads(self._socket.recv(max(deadline - time.monotonic(), 0.01)))
             if told.get("id") == number:
-                error = told.get("error", {})
-                if error.get("code") == UNREACHED:
-                    raise PageWentOnError(f"{method}: {error}")
-                assert not error, f"{method}: {error}"
+                if told.get("error", {}).get("code") == UNREACHED:
+                    raise PageWentOnError(f"{method}: {told['error']}")
+                assert "error" not in told, f"{method}: {told['error']}"
                 return told["result"]
             self._note(told)
 
