@@ -27,13 +27,13 @@ class Master:
 @pytest.fixture(autouse=True)
 def graph(monkeypatch):
     rospy = SimpleNamespace(
-        init_node=lambda *_, **__: None,
         get_name=lambda: "/doctor",
         get_param=lambda *_: False,
         signal_shutdown=lambda _reason: None,
         FATAL=0,
     )
     monkeypatch.setattr(examination, "rospy", rospy)
+    monkeypatch.setattr(examination, "init_node", lambda *_, **__: None)
     monkeypatch.setattr(rosgraph, "Master", Master)
     monkeypatch.setattr(examination, "answers", lambda _uri: True)
     monkeypatch.setattr(examination.Listener, "listen", lambda *_: None)

@@ -13,6 +13,7 @@ from tf2_msgs.msg import TFMessage
 
 from home_service.doctor.diagnosis import Findings, Node, Topic
 from planar_ros.messages.conversion import frame_name
+from planar_ros.node.shell import init_node
 from planar_ros.node.waiting import TOPIC as WAITING_TOPIC
 from supervision.ros.node_api import answers
 from supervision.versions import versions
@@ -45,7 +46,7 @@ def running_masters() -> List[str]:
 
 def _examine(findings: Findings, uri: str, seconds: float) -> None:
     os.environ["ROS_MASTER_URI"] = uri
-    rospy.init_node("doctor", anonymous=True, disable_signals=True, log_level=rospy.FATAL)
+    init_node("doctor", anonymous=True, log_level=rospy.FATAL)
     myself, master = rospy.get_name(), rosgraph.Master(rospy.get_name(), uri)
     findings.uses_simulated_time = bool(rospy.get_param("/use_sim_time", False))
     publishers, subscribers, services = map(dict, master.getSystemState())

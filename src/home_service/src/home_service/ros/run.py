@@ -18,6 +18,7 @@ from home_service.ros.bags.rosbag_process import RosbagProcess
 from home_service.ros.run_trace import RunTrace
 from home_service.ros.standstill import Standstill
 from planar import PlanarError, SettingsError
+from planar_ros.node.shell import init_node
 from planar_ros.step.step import AUDIENCE_PARAMETER
 from run_report import summary, write_report
 from supervision.command_line import words
@@ -150,7 +151,7 @@ class Run:
 
     def _listen(self) -> None:
         """Makes this process a node that hears all it is to judge and to keep."""
-        rospy.init_node(NODE, disable_signals=True, log_level=rospy.ERROR)
+        init_node(NODE, log_level=rospy.ERROR)
         self._trace.start()
         if self._launch.is_simulated:
             self._standstill.start()

@@ -15,6 +15,7 @@ from home_service_msgs.msg import DeliverAction, DeliverGoal, DeliveryState
 
 from pick_objects.mission_file import NAME_OF_TEXT
 from planar_ros.calls.actions import goal_is_over, server_is_ready
+from planar_ros.node.shell import init_node
 from supervision.interruption import on_signals
 
 POLL_SECONDS, TELL_SECONDS, CANCEL_SECONDS = 0.1, 2.0, 10.0
@@ -32,7 +33,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
     on_signals(lambda _number, _frame: interrupted.set())
     if not rosgraph.is_master_online():  # rospy would wait for one, deaf to everything
         return _complain(f"no ROS master at {rosgraph.get_master_uri()}")
-    rospy.init_node("deliver", anonymous=True, disable_signals=True)
+    init_node("deliver", anonymous=True)
     client = actionlib.SimpleActionClient("deliver", DeliverAction)
     deadline = time.monotonic() + options.server_timeout
     while not server_is_ready(client):

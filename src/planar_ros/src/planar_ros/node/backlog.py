@@ -1,7 +1,9 @@
 """Connections of many at once, as when a graph starts."""
 
 import socket
+from typing import Sequence
 
+from rospy.impl.registration import RegManager
 from rospy.impl.tcpros_base import TCPServer
 
 WAITING = 128
@@ -21,4 +23,19 @@ def let_many_wait() -> None:
     TCPServer._create_server_sock = create
 
 
-_create = TCPServer._create_server_sock
+def miss_no_publisher() -> None:
+    """From now on the node connects to all publishers that it is told of; to be called before ``init_node``.
+
+    rospy's goes by the newest list of a topic's, as it comes. Who subscribes while another registers as its
+    publisher may hear the master's news first, and then the answer, from before: it would never connect.
+    """
+
+    def update(self: RegManager, topic: str, uris: Sequence[str]) -> None:
+        with self.cond:
+            waiting = [uri for name, earlier in self.updates if name == topic for uri in earlier]
+            _update(self, topic, list(dict.fromkeys((*waiting, *uris))))
+
+    RegManager.publisher_update = update
+
+
+_create, _update = TCPServer._create_server_sock, RegManager.publisher_update

@@ -6,14 +6,14 @@ import os
 import queue
 import sys
 import threading
-from typing import Callable, List
+from typing import Any, Callable, List
 
 import rospy
 from rosgraph import get_master_uri
 from rospy.impl.paramserver import get_param_server_cache
 
 from planar import PlanarError
-from planar_ros.node.backlog import let_many_wait
+from planar_ros.node.backlog import let_many_wait, miss_no_publisher
 from planar_ros.node.blas import use_one_blas_thread
 from supervision.interruption import on_signals
 from supervision.streams import drop_what_cannot_be_written
@@ -36,7 +36,6 @@ def run(node_name: str, start: Callable[[], object]) -> None:
     shut_down_on_signals()
     drop_what_cannot_be_written()
     use_one_blas_thread()
-    let_many_wait()
     try:
         init_node(node_name)
     except OSError as error:
@@ -66,13 +65,17 @@ def run(node_name: str, start: Callable[[], object]) -> None:
         sys.exit(THREAD_DIED)
 
 
-def init_node(name: str) -> None:
-    """Makes this process a node, of which the master knows nothing any more once it has ended.
+def init_node(name: str, **options: Any) -> None:
+    """Makes this process a node, which hears all publishers; the master forgets it once it has ended.
+
+    ``options``: rospy's; signals are left to the caller.
 
     rospy would subscribe to a parameter with each line of the log, and never unsubscribe: the master would
     take the next node of that name for a second one, and shut down who has the first one's port by then.
     """
-    rospy.init_node(name, disable_signals=True)
+    let_many_wait()
+    miss_no_publisher()
+    rospy.init_node(name, **{"disable_signals": True, **options})
     get_param_server_cache().set(LOG_WITHOUT_TOPICS, rospy.get_param(LOG_WITHOUT_TOPICS, False))
 
 

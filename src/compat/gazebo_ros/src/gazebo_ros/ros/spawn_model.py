@@ -23,6 +23,7 @@ from gazebo_ros.ros.services import (
 )
 from gazebo_ros.spawn_options import parse
 from planar_ros.node.command_line import go_on_without
+from planar_ros.node.shell import init_node
 from supervision.interruption import handling_signals, on_signals
 
 PARAMETER_SECONDS = 30.0
@@ -125,7 +126,7 @@ def main() -> None:
     options, unknown = parse(rospy.myargv()[1:], rospy.get_namespace())
     go_on_without("spawn_model", unknown)
     # rospy's own handler may wait for ever for a lock that is held by what it interrupts.
-    rospy.init_node("spawn_model", anonymous=True, disable_signals=True)
+    init_node("spawn_model", anonymous=True)
     on_signals(signal.default_int_handler)
     try:
         spawn(options)

@@ -5,6 +5,7 @@ import sys
 import actionlib
 import rospy
 
+from planar_ros.node.shell import init_node
 from turtlebot3_example.msg import Turtlebot3Action, Turtlebot3Goal
 from turtlebot3_example.ros.typed import typed_lines
 
@@ -29,7 +30,7 @@ SERVER_SECONDS = 30.0
 
 def main() -> None:
     """Exit code 0 if the last patrol went well or none was asked for, 1 if not, 2 on nonsense."""
-    rospy.init_node("turtlebot3_client")
+    init_node("turtlebot3_client", disable_signals=False)
     client = actionlib.SimpleActionClient("turtlebot3", Turtlebot3Action)
     is_done = True
     print(MESSAGE, flush=True)

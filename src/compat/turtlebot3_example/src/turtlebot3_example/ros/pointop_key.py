@@ -7,6 +7,7 @@ from contextlib import suppress
 import rospy
 
 from planar import Pose2
+from planar_ros.node.shell import init_node
 from turtlebot3_example.ros.robot import Robot
 from turtlebot3_example.ros.typed import typed_lines
 
@@ -25,7 +26,7 @@ If you want to close, insert 's'
 
 def main() -> None:
     """Exit code 0, 1 if there is no odometry, or 2 if what is typed is no place."""
-    rospy.init_node("turtlebot3_pointop_key")
+    init_node("turtlebot3_pointop_key", disable_signals=False)
     try:
         with suppress(rospy.ROSInterruptException):
             _go_where_is_typed(Robot())

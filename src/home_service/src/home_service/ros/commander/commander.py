@@ -31,7 +31,7 @@ from planar_ros.calls.services import call_service
 from planar_ros.messages.conversion import pose2_to_msg
 from planar_ros.messages.transforms import Transforms
 from planar_ros.node.listeners import is_heard
-from planar_ros.node.shell import shut_down_on_signals
+from planar_ros.node.shell import init_node, shut_down_on_signals
 
 POLL_SECONDS = 0.05
 # Variances of a pose given by hand: m^2, m^2, rad^2 (as rviz gives them).
@@ -57,7 +57,7 @@ class Commander:
     def __init__(self, name: str = "commander", frame_id: str = "map", base_frame_id: str = "base_footprint"):
         if not rospy.core.is_initialized():
             shut_down_on_signals(goes_on=True)
-            rospy.init_node(name, anonymous=True, disable_signals=True)
+            init_node(name, anonymous=True)
         self.waiting_for: List[str] = []
         self._frame_id, self._base_frame_id = frame_id, base_frame_id
         self._task: Optional[Task] = None
