@@ -100,15 +100,7 @@ class Graph:
 
         Raises CockpitError.
         """
-
-        def ask() -> Optional[str]:
-            try:
-                return self._master.lookupService(service)
-            except MasterError:  # nobody offers it
-                return None
-
-        with self._lock:
-            return _asking(ask)
+        return self._find(lambda: self._master.lookupService(service))
 
     def is_there(self) -> bool:
         """Whether the master answers."""
@@ -126,12 +118,24 @@ class Graph:
         return Feed(topic, kind, all_of_them)
 
     def parameter(self, name: str, default: Any = None) -> Any:
-        """Raises CockpitError."""
-        return _asking(lambda: rospy.get_param(name, default))
+        """Raises CockpitError. rospy would answer for "/" from its cache, once that holds anything."""
+        return self._find(lambda: self._master.getParam(rospy.resolve_name(name)), default)
 
     def parameter_names(self) -> List[str]:
         """Raises CockpitError."""
         return _asking(rospy.get_param_names)
+
+    def _find(self, ask: Callable[[], Any], default: Any = None) -> Any:
+        """What the master says, ``default`` if it knows of none."""
+
+        def find() -> Any:
+            try:
+                return ask()
+            except MasterError:
+                return default
+
+        with self._lock:
+            return _asking(find)
 
     def _ask(self) -> None:
         with self._lock:

@@ -21,6 +21,7 @@ from cockpit.ros.cockpit import Cockpit
 from cockpit.ros.tools import all_tools, names
 from cockpit.ros.world.looks import Reader
 from planar import PlanarError
+from planar_ros.node.shell import init_node
 from supervision.command_line import option, parse
 from supervision.interruption import leave, on_signals
 from supervision.ros.node_api import is_master_online, node_names
@@ -66,7 +67,7 @@ def serve(where: str, tool: Optional[str], words: Tuple[str, ...] = ()) -> int:
         time.sleep(MASTER_SECONDS)
     _wait_for_nodes()
     is_asked_to_end = _hear_signals()
-    rospy.init_node("cockpit", anonymous=True, log_level=rospy.WARN, disable_signals=True)
+    init_node("cockpit", anonymous=True, log_level=rospy.WARN)
     cockpit = Cockpit(page, reader)
     if tool is not None:
         cockpit.toolbox.open(tool, words)
