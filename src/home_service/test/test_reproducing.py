@@ -16,3 +16,12 @@ def test_a_run_of_another_packages_command_is_left_to_that(tmp_path):
         SettingsError, match="only its own command runs this again: ./scripts/play.sh 'home errand'"
     ):
         reproduce(tmp_path)
+
+
+def test_another_processor_is_told_before_the_run_is_made_again(tmp_path, capsys):
+    result = {"command": "play", "arguments": [], "hash": "0", "versions": {"processor": "486DX2"}}
+    (tmp_path / "result.json").write_text(json.dumps(result))
+    (tmp_path / "trace.txt").write_text("")
+    with pytest.raises(SettingsError):
+        reproduce(tmp_path)
+    assert ", was 486DX2" in capsys.readouterr().out

@@ -1,4 +1,4 @@
-"""Which software made a run."""
+"""Which software made a run, and on which processor."""
 
 import platform
 import subprocess
@@ -6,6 +6,17 @@ import xml.etree.ElementTree as ElementTree
 from importlib import metadata
 from pathlib import Path
 from typing import Dict
+
+CPUINFO = Path("/proc/cpuinfo")
+# What Linux tells of a processor on x86 and on ARM, and what we call it.
+KINDS = {
+    "model name": "",
+    "cpu family": "family ",
+    "model": "model ",
+    "CPU implementer": "implementer ",
+    "CPU part": "part ",
+}
+VECTOR_UNITS = ("avx512f", "avx2", "avx", "sve", "asimd")
 
 
 def versions() -> Dict[str, str]:
@@ -17,7 +28,21 @@ def versions() -> Dict[str, str]:
         ["rosversion", "-d"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=False
     )
     found["ros"] = distribution.stdout.strip() or "unknown"
+    found["processor"] = processor()
     return found
+
+
+def processor(cpuinfo: Path = CPUINFO) -> str:
+    """Kind of the first processor and its widest vector units, which numpy and numba compute with."""
+    try:
+        told = cpuinfo.read_text(encoding="utf-8", errors="replace").split("\n\n")[0]
+    except OSError:
+        return "unknown"
+    lines = [line.partition(":") for line in told.splitlines()]
+    facts = {key.strip(): value.strip() for key, _, value in lines}
+    units = facts.get("flags", facts.get("Features", "")).split()
+    kind = [before + facts[key] for key, before in KINDS.items() if facts.get(key)]
+    return " ".join([*kind, *[unit for unit in VECTOR_UNITS if unit in units][:1]]) or "unknown"
 
 
 def project_version() -> str:

@@ -1,0 +1,47 @@
+"""What a run folder tells of the software and the machine that made it."""
+
+import pytest
+
+from supervision.versions import processor, versions
+
+X86 = """processor\t: 0
+vendor_id\t: GenuineIntel
+cpu family\t: 6
+model\t\t: 85
+model name\t: Intel(R) Xeon(R) CPU @ 2.00GHz
+flags\t\t: fpu sse2 avx fma avx2 avx512f
+
+processor\t: 1
+cpu family\t: 6
+model\t\t: 85
+"""
+ARM = """processor\t: 0
+BogoMIPS\t: 243.75
+Features\t: fp asimd evtstrm aes
+CPU implementer\t: 0x41
+CPU part\t: 0xd0c
+"""
+
+
+@pytest.mark.parametrize(
+    "cpuinfo, told",
+    [
+        (X86, "Intel(R) Xeon(R) CPU @ 2.00GHz family 6 model 85 avx512f"),
+        (X86.replace(" avx512f", ""), "Intel(R) Xeon(R) CPU @ 2.00GHz family 6 model 85 avx2"),
+        (ARM, "implementer 0x41 part 0xd0c asimd"),
+    ],
+)
+def test_the_processor_is_told_with_the_vector_units_that_results_depend_on(tmp_path, cpuinfo, told):
+    (tmp_path / "cpuinfo").write_text(cpuinfo)
+    assert processor(tmp_path / "cpuinfo") == told
+
+
+@pytest.mark.parametrize("content", [None, "", "no colon here\n"])
+def test_a_machine_that_does_not_tell_its_processor_is_unknown(tmp_path, content):
+    if content is not None:
+        (tmp_path / "cpuinfo").write_text(content)
+    assert processor(tmp_path / "cpuinfo") == "unknown"
+
+
+def test_versions_name_the_processor():
+    assert versions()["processor"] == processor()
