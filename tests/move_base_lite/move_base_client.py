@@ -6,10 +6,10 @@ import unittest
 
 import actionlib
 import numpy as np
-import rosgraph
 import rospy
 from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from geometry_msgs.msg import PoseStamped, Quaternion, Twist
+from listening import hears_all
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import Odometry
 from waiting import wait_until
@@ -51,13 +51,8 @@ class Heard:
 
     def connected(self):
         """Itself, once all publishers send to it: what one of them publishes only once is not missed."""
-        wait_until("the publishers", self._hears_all)
+        wait_until("the publishers", lambda: hears_all(self._subscriber))
         return self
-
-    def _hears_all(self):
-        published = dict(rosgraph.Master(rospy.get_name()).getSystemState()[0])
-        publishers = published.get(self._subscriber.resolved_name, [])
-        return 0 < len(publishers) <= self._subscriber.get_num_connections()
 
     def close(self):
         self._subscriber.unregister()
