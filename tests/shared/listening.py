@@ -1,11 +1,11 @@
 """Hearing what the simulation says."""
 
 from typing import Any, List
-from xmlrpc.client import ServerProxy
 
-import rosgraph
 import rospy
 from waiting import wait_until
+
+from supervision.ros import node_api
 
 
 class Heard:
@@ -32,15 +32,9 @@ class Heard:
 
 
 def hears_all(subscriber):
-    """Whether there are publishers, and all send to it: what they publish only once is not missed."""
-    published = dict(rosgraph.Master(rospy.get_name()).getSystemState()[0])
-    publishers = published.get(subscriber.resolved_name, [])
-    return 0 < len(publishers) <= sum(map(_is_sent_to, list(subscriber.impl.connections)))
+    """Whether there are publishers, and all send to it: what they publish only once is not missed.
 
-
-def _is_sent_to(connection):
-    """A publisher begins to send on a connection some milliseconds after its subscriber has counted it."""
-    publisher: Any = ServerProxy(connection.endpoint_id)
-    _, _, connections = publisher.getBusInfo(rospy.get_name())
-    port = f":{connection.local_endpoint[1]} "
-    return any(direction == "o" and port in about for _, _, direction, _, _, _, about in connections)
+    A publisher begins to send some milliseconds after rospy's subscriber has counted the connection.
+    """
+    is_connected = subscriber.get_num_connections() > 0
+    return is_connected and node_api.hears_all(rospy.get_name(), [subscriber.resolved_name])
