@@ -1,11 +1,14 @@
 """Hearing what the simulation says."""
 
+import re
+import xmlrpc.client
 from typing import Any, List
 
+import rosgraph
 import rospy
 from waiting import wait_until
 
-from supervision.ros import node_api
+PORTS = re.compile(r"on port (\d+) to \[.*:(\d+) on socket")
 
 
 class Heard:
@@ -34,7 +37,23 @@ class Heard:
 def hears_all(subscriber):
     """Whether there are publishers, and all send to it: what they publish only once is not missed.
 
-    A publisher begins to send some milliseconds after rospy's subscriber has counted the connection.
+    A publisher begins to send some milliseconds after rospy's subscriber has counted the connection, and
+    until then it may still hold one that this node has closed: only the ports tell them apart.
     """
-    is_connected = subscriber.get_num_connections() > 0
-    return is_connected and node_api.hears_all(rospy.get_name(), [subscriber.resolved_name])
+    topic, master = subscriber.resolved_name, rosgraph.Master(rospy.get_name())
+    try:
+        published, *_ = master.getSystemState()
+        uris = [master.lookupNode(node) for name, nodes in published if name == topic for node in nodes]
+        ours = {own for own, _ in _ports(rospy.get_node_uri(), topic, "i")}
+        theirs = [{peer for _, peer in _ports(uri, topic, "o")} for uri in uris]
+    except (OSError, rosgraph.MasterException, xmlrpc.client.Error):
+        return False
+    return bool(uris) and all(ours & peers for peers in theirs)
+
+
+def _ports(uri, topic, direction):
+    """Of a node's connections for a topic: its own port and the other end's; none while it is made."""
+    node: Any = xmlrpc.client.ServerProxy(uri)
+    _code, _status, connections = node.getBusInfo(rospy.get_name())
+    ends = [text for _, _, way, _, name, _, text in connections if (name, way) == (topic, direction)]
+    return PORTS.findall("\n".join(ends))
