@@ -1,0 +1,22 @@
+"""Old public names resolve to their replacements and warn."""
+
+import pytest
+from planar.deprecation import deprecated_names
+
+
+def test_an_old_name_resolves_to_its_replacement_with_a_warning():
+    resolve = deprecated_names("planar", {"Position": "Pose2"})
+    with pytest.warns(DeprecationWarning, match="planar.Position is deprecated; use planar.Pose2"):
+        found = resolve("Position")
+    assert found.__name__ == "Pose2"
+
+
+def test_a_replacement_may_be_in_another_module():
+    resolve = deprecated_names("planar", {"Position": "planar.geometry.pose:Pose2"})
+    with pytest.warns(DeprecationWarning, match="use planar.geometry.pose.Pose2"):
+        assert resolve("Position").__name__ == "Pose2"
+
+
+def test_an_unknown_name_is_an_attribute_error():
+    with pytest.raises(AttributeError, match="has no attribute 'Pose7'"):
+        deprecated_names("planar", {})("Pose7")
