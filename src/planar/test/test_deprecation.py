@@ -1,6 +1,7 @@
 """Old public names resolve to their replacements and warn."""
 
 import pytest
+
 from planar.deprecation import deprecated_names
 
 
