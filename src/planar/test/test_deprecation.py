@@ -2,7 +2,7 @@
 
 import pytest
 
-from planar.deprecation import deprecated_names
+from planar.deprecation import deprecated_names, renamed_method
 
 
 def test_an_old_name_resolves_to_its_replacement_with_a_warning():
@@ -21,3 +21,14 @@ def test_a_replacement_may_be_in_another_module():
 def test_an_unknown_name_is_an_attribute_error():
     with pytest.raises(AttributeError, match="has no attribute 'Pose7'"):
         deprecated_names("planar", {})("Pose7")
+
+
+def test_an_old_method_calls_its_replacement_with_a_warning():
+    class Page:
+        old = renamed_method("old", "notify")
+
+        def notify(self, text, count=1):
+            return text * count
+
+    with pytest.warns(DeprecationWarning, match="Page.old is deprecated; use notify"):
+        assert Page().old("a", count=2) == "aa"

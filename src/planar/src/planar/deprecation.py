@@ -30,3 +30,18 @@ def deprecated_names(module: str, renamed: Dict[str, str]) -> Callable[[str], An
         return getattr(importlib.import_module(place), new)
 
     return resolve
+
+
+def renamed_method(old: str, new: str) -> Callable[..., Any]:
+    """Make a method that keeps an old name working: it emits a DeprecationWarning and calls the new one.
+
+    Use it in the body of a class as ``tell = renamed_method("tell", "notify")``.
+    """
+
+    def call(self: Any, *arguments: Any, **keywords: Any) -> Any:
+        warnings.warn(
+            f"{type(self).__name__}.{old} is deprecated; use {new}", DeprecationWarning, stacklevel=2
+        )
+        return getattr(self, new)(*arguments, **keywords)
+
+    return call
