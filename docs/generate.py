@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes src/*/config/*.yaml from the settings of packages, and listings of code into docs/examples/*.md.
+"""Write src/*/config/*.yaml from the settings of packages, and code into docs/how_to/examples/*.md.
 
 With --check only says which are stale.
 """
@@ -45,7 +45,7 @@ def is_written(path: Path, text: str) -> bool:
 def files() -> Dict[Path, str]:
     """Every file that is made, in whole or in part, and its text."""
     configs = {path: f"# {MADE_BY}\n{yaml_of(section)}" for path, section in declared_files().items()}
-    pages = {path: with_listings(path.read_text("utf-8")) for path in ROOT.glob("docs/examples/*.md")}
+    pages = {path: with_listings(path.read_text("utf-8")) for path in ROOT.glob("docs/how_to/examples/*.md")}
     return {**configs, **pages}
 
 

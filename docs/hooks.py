@@ -1,10 +1,17 @@
-"""For the site: what lies outside of docs/ is named, not linked, as it is not part of it."""
+"""For the site: a link to a file outside of docs/ becomes its name, as the site does not contain it."""
 
+import posixpath
 import re
 from typing import Any
 
-OUTSIDE = re.compile(r"(?<!!)\[([^\]]*)\]\((\.\./[^)\s]*)\)")
+LINK = re.compile(r"(?<!!)\[([^\]]*)\]\((\.\./[^)\s]*)\)")
 
 
-def on_page_markdown(markdown: str, **_: Any) -> str:
-    return OUTSIDE.sub(lambda link: f"{link[1]} ({link[2][3:].partition('#')[0]})", markdown)
+def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
+    folder = posixpath.dirname(page.file.src_uri)
+
+    def as_name(link: "re.Match[str]") -> str:
+        path = posixpath.normpath(posixpath.join(folder, link[2].partition("#")[0]))
+        return f"{link[1]} ({path.replace('../', '', 1)})" if path.startswith("../") else link[0]
+
+    return LINK.sub(as_name, markdown)

@@ -9,7 +9,7 @@
 #
 #   --web-port [ADDRESS:]PORT
 #                    where the page is served (default: a free port of 127.0.0.1)
-#   --tool NAME      open this tool at once (docs/cockpit.md lists them)
+#   --tool NAME      open this tool at once (docs/how_to/watch_in_the_browser.md lists them)
 #   --output FOLDER  where the run folder of a recording's show is made (default: ./runs)
 #   --help           this text
 

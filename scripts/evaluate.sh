@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Usage: ./scripts/evaluate.sh SUITE... [options]
 #
-# Plays scenarios (docs/laboratory.md) with many seeds over all cores, without ROS, and says what that proves:
+# Plays scenarios (docs/reference/scenarios.md) with many seeds over all cores, without ROS, and says what that proves:
 # success with its interval, times, collisions, clearance. SUITE is a file of a scenario, a folder of them, or a
 # name in scenarios/. Each result is kept at once; what has been played with the same software is not played
 # again, so that Ctrl-C loses nothing. Sets everything up first if need be, with Dask and statsmodels.

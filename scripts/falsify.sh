@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Usage: ./scripts/falsify.sh SCENARIO [options]
 #
-# Searches for what breaks the robot in a scenario (docs/laboratory.md): places of boxes, people and their ways,
+# Searches for what breaks the robot in a scenario (docs/reference/scenarios.md): places of boxes, people and their ways,
 # faults, noise, seeds, each case near to the hardest so far. The first that fails is shrunk to the least that
 # still fails, and written as a scenario of its own. Ctrl-C loses nothing; the next start goes on. Sets
 # everything up first if need be, with Optuna and Dask.

@@ -2,7 +2,7 @@
 # Usage: ./scripts/fuzz.sh [options]
 #
 # Gives every reader of files thousands of broken ones, and keeps those that it does not refuse in words, or not
-# within 5 s and 1 GB (docs/fuzzing.md). Sets everything up first if need be, with Atheris.
+# within 5 s and 1 GB (docs/how_to/fuzz.md). Sets everything up first if need be, with Atheris.
 # Exit code: 0 nothing was found, 1 something was, 2 bad input, 130 interrupted.
 #
 #   --minutes MINUTES  for all readers together (default: 5)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Usage: ./scripts/gymnasium.sh ENVIRONMENT [options]
 #
-# Plays episodes of a Gymnasium environment (docs/gymnasium.md), like PointGoal-v0, and says how they went.
+# Plays episodes of a Gymnasium environment (docs/how_to/train_a_policy.md), like PointGoal-v0, and says how they went.
 # Sets everything up first if need be, with gymnasium. Exit code: 0 success, 2 bad input, 130 interrupted.
 #
 #   --policy NAME    module/function: gets an observation, gives an action (default: actions by chance)

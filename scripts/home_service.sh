@@ -6,14 +6,14 @@
 # Sets everything up first if need be, names the run folder with the logs and result.json, prints a verdict.
 # Exit code: 0 success, and Ctrl-C with --serve; 1 failure or no result.json, 2 bad input, 130 interrupted.
 #
-#   --mission FILE   carry out the deliveries of this file instead (docs/missions.md; map/mission.yaml is one)
+#   --mission FILE   carry out the deliveries of this file instead (docs/reference/missions.md; map/mission.yaml is one)
 #   --serve          wait for missions sent to the action deliver, until Ctrl-C
-#   --faults FILE    YAML with a list of what goes wrong (docs/faults.md; default: that of the mission)
+#   --faults FILE    YAML with a list of what goes wrong (docs/reference/faults.md; default: that of the mission)
 #   --zones FILE     YAML of the zones (default: map/zones.yaml)
 #   --marker-source tf|amcl_pose|odom|state
 #                    what tells the marker where the robot is (default: tf)
 #   --rviz           show it in rviz, where there is a display
-#   --web            show it in the browser: prints the URL of the page (docs/cockpit.md)
+#   --web            show it in the browser: prints the URL of the page (docs/how_to/watch_in_the_browser.md)
 #   --web-port [ADDRESS:]PORT
 #                    where that page is served (default: a free port of 127.0.0.1); --web is implied
 #   --speed N        1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz or --web 1)
@@ -23,7 +23,7 @@
 #   --planner NAME   local planner: official or my_package.my_module/MyPlanner
 #   --seed N         seed of every noise and every particle (default: 0)
 #   --record inputs|all
-#                    record bags: scans, odometry and truth, or everything (docs/bags.md)
+#                    record bags: scans, odometry and truth, or everything (docs/how_to/record_and_replay.md)
 #   --timeout N      the run fails after N seconds of wall time (default: 900, with --serve never)
 #   --gif            also leave run.gif, the run as an animation
 #   --output FOLDER  where the run folder is made (default: ./runs)

@@ -4,10 +4,10 @@
 # Drives to the pick-up zone, waits there, and on to the drop-off zone. Sets everything up first if need be.
 # Exit code: 0 success, 1 failure or no result.json, 2 bad input, 130 interrupted.
 #
-#   --mission FILE   carry out the deliveries of this file instead (docs/missions.md)
+#   --mission FILE   carry out the deliveries of this file instead (docs/reference/missions.md)
 #   --zones FILE     YAML of the zones (default: map/zones.yaml)
 #   --rviz           show it in rviz, where there is a display
-#   --web            show it in the browser: prints the URL of the page (docs/cockpit.md)
+#   --web            show it in the browser: prints the URL of the page (docs/how_to/watch_in_the_browser.md)
 #   --web-port [ADDRESS:]PORT
 #                    where that page is served (default: a free port of 127.0.0.1); --web is implied
 #   --speed N        1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz or --web 1)
@@ -17,7 +17,7 @@
 #   --planner NAME   local planner: official or my_package.my_module/MyPlanner
 #   --seed N         seed of every noise and every particle (default: 0)
 #   --record inputs|all
-#                    record bags: scans, odometry and truth, or everything (docs/bags.md)
+#                    record bags: scans, odometry and truth, or everything (docs/how_to/record_and_replay.md)
 #   --timeout N      the run fails after N seconds of wall time (default: 900)
 #   --gif            also leave run.gif, the run as an animation
 #   --output FOLDER  where the run folder is made (default: ./runs)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Usage: ./scripts/play.sh SCENARIO [options]
 #
-# Plays one scenario with one seed (docs/laboratory.md), in one process, without ROS, and says how it went: one
+# Plays one scenario with one seed (docs/reference/scenarios.md), in one process, without ROS, and says how it went: one
 # run out of the thousands of evaluate.sh, the same to the last bit. SCENARIO is a file, or a name in scenarios/.
 # With --over ros the graph of nodes plays it, as home_service.sh its mission, and leaves a run folder.
 # Sets everything up first if need be. Exit code: 0 success, 1 failure, 2 bad input, 130 interrupted.

@@ -7,8 +7,8 @@
 # Exit code: 0 success, 1 failure, 2 bad input, 130 interrupted.
 #
 #   --runs N         how many runs, each with the next seed (default: 1)
-#   --mission FILE   carry out the deliveries of this file instead (docs/missions.md)
-#   --faults FILE    YAML with a list of what goes wrong (docs/faults.md; default: that of the mission)
+#   --mission FILE   carry out the deliveries of this file instead (docs/reference/missions.md)
+#   --faults FILE    YAML with a list of what goes wrong (docs/reference/faults.md; default: that of the mission)
 #   --each-fault FILE   with each kind of fault beside a clean twin instead; writes the table to this page
 #   --zones FILE     YAML of the zones (default: map/zones.yaml)
 #   --world FILE     SDF world (default: map/home.world)

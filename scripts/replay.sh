@@ -13,7 +13,7 @@
 #   --start X Y YAW  for amcl: where the robot starts in the map (default: 0 0 0)
 #   --save STEM      for slam: write STEM.pgm and STEM.yaml, not to the run folder
 #   --rviz           show it in rviz, where there is a display
-#   --web            show it in the browser: prints the URL of the page (docs/cockpit.md)
+#   --web            show it in the browser: prints the URL of the page (docs/how_to/watch_in_the_browser.md)
 #   --web-port [ADDRESS:]PORT
 #                    where that page is served (default: a free port of 127.0.0.1); --web is implied
 #   --speed N        1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz or --web 1)

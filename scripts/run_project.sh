@@ -5,7 +5,7 @@
 # checkout (a workspace, the content of src, or one package), SCRIPT its shell script (default: home_service.sh).
 # Works on a copy, with stand-ins for xterm, Gazebo and rviz; the checkout is only read.
 # Tells goals and markers as they happen, then a verdict; result.json and a log of each window are in the run folder.
-# Exit code: 0 all goals reached, 1 failure, 2 bad input, 130 interrupted. More in docs/projects.md.
+# Exit code: 0 all goals reached, 1 failure, 2 bad input, 130 interrupted. More in docs/how_to/run_a_project.md.
 #
 #   --speed N        1 real time, N times that, 0 as fast as the nodes keep up (default: 0, with --rviz or --web 1)
 #   --seed N         seed of every noise (default: 0)
@@ -14,7 +14,7 @@
 #   --type WINDOW=TEXT...
 #                    what to type into windows whose programs ask for something, as add_markers=0
 #   --rviz           show it in the real rviz, with the project's configuration
-#   --web            show it in the browser: prints the URL of the page (docs/cockpit.md)
+#   --web            show it in the browser: prints the URL of the page (docs/how_to/watch_in_the_browser.md)
 #   --web-port [ADDRESS:]PORT
 #                    where that page is served (default: a free port of 127.0.0.1); --web is implied
 #   --record         record a bag into the run folder

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Usage: ./scripts/train.sh [options]
 #
-# Trains the learned local planner of src/plugin_examples (docs/plugins.md) in generated homes, by an evolution
+# Trains the learned local planner of src/plugin_examples (docs/how_to/write_a_plugin.md) in generated homes, by an evolution
 # strategy on CPUs alone, and tells of each generation. Sets everything up first if need be, with gymnasium.
 # Exit code: 0 success, 2 bad input, 130 interrupted.
 #

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Usage: ./scripts/tune.sh SUITE... --prove SUITE... [options]
 #
-# Looks for parameters of move_base with which scenarios take less time and fail less (docs/laboratory.md), by
+# Looks for parameters of move_base with which scenarios take less time and fail less (docs/reference/scenarios.md), by
 # Optuna, and proves the gain on other suites by exact tests on the same seeds. The best go into tuned.yaml.
 # Ctrl-C loses nothing; the next start goes on, and comes to the same. Sets everything up first if need be.
 # Exit code: 0 a gain is proved, 1 none is, 2 bad input, 130 interrupted.

@@ -23,13 +23,13 @@ check_system() {
     # shellcheck source=/dev/null
     [[ ! -r $os_release ]] || . "$os_release"
     [[ -d $noetic || $ID-$VERSION_ID =~ ^(debian-1[123]|ubuntu-22\.04)$ ]] ||
-        fail "this is ${PRETTY_NAME:-$ID}: the workspace needs $supported; elsewhere, use the container (docs/container.md)"
+        fail "this is ${PRETTY_NAME:-$ID}: the workspace needs $supported; elsewhere, use the container (docs/how_to/container.md)"
     is_among "$(uname -m)" x86_64 aarch64 ||
         fail "this machine is $(uname -m): the Python packages are there for x86_64 and aarch64 only"
     local glibc
     glibc=$(getconf GNU_LIBC_VERSION 2>/dev/null || true)
     is_at_least 2.17 "${glibc#glibc }" ||
-        fail "the C library is ${glibc:-not glibc}: the Python packages need glibc 2.17 or newer; use the container (docs/container.md)"
+        fail "the C library is ${glibc:-not glibc}: the Python packages need glibc 2.17 or newer; use the container (docs/how_to/container.md)"
 }
 
 is_at_least() { printf '%s\n' "$1" "$2" | sort --version-sort --check=quiet; } # VERSION OTHER: is OTHER no older?

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Shows what becomes of a mission, or of a map, when each of the processes is killed by SIGKILL in turn.
 
-python3 tests/benchmarks/killed_nodes.py [--seed 61] [--only amcl ...] [--table docs/killed_nodes.md]
+python3 tests/benchmarks/killed_nodes.py [--seed 61] [--only amcl ...] [--table docs/reports/killed_nodes.md]
 """
 
 import argparse
@@ -43,7 +43,7 @@ What becomes of `./scripts/home_service.sh --mission map/mission.yaml --speed {s
 and explore of `./scripts/map_home.sh --speed {speed}`, when one of its processes is killed (`kill -9`)
 while the robot drives: wall seconds until the node is heard at work again, and until the run has ended; and
 what of the run is left then, processes, sockets, temporary files. Made by
-`python3 tests/benchmarks/killed_nodes.py --seed {seed} --table docs/killed_nodes.md`.
+`python3 tests/benchmarks/killed_nodes.py --seed {seed} --table docs/reports/killed_nodes.md`.
 
 | killed | at work again, s | ended after, s | exit code | what the run says | left |
 | --- | --- | --- | --- | --- | --- |

@@ -2,7 +2,7 @@
 """Shows what becomes of a mission when its processes stand still, its time does, or strangers meddle.
 
 python3 tests/benchmarks/troubled_graphs.py [--seed 61] [--only goal_storm ...]
-    [--table docs/troubled_graphs.md]
+    [--table docs/reports/troubled_graphs.md]
 """
 
 import argparse
@@ -39,7 +39,7 @@ PAGE = """# Troubled graphs
 What becomes of `./scripts/home_service.sh --mission map/mission.yaml --speed {speed}` when, while the robot
 drives, something befalls its processes, its time or its topics: wall seconds until the run has ended, and
 what is left of it then, processes, sockets, temporary files. Made by
-`python3 tests/benchmarks/troubled_graphs.py --seed {seed} --table docs/troubled_graphs.md`.
+`python3 tests/benchmarks/troubled_graphs.py --seed {seed} --table docs/reports/troubled_graphs.md`.
 
 | trouble | what befalls it | ended after, s | exit code | what the run says | left |
 | --- | --- | --- | --- | --- | --- |

@@ -1,4 +1,4 @@
-"""What docs/architecture.md says of adding a part is done in a copy of the tree, word for word, and works."""
+"""What docs/explanation/architecture.md says of adding a part is done in a copy of the tree, word for word, and works."""
 
 import os
 import re
@@ -11,7 +11,7 @@ from typing import List, NamedTuple
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGE = ROOT / "docs/architecture.md"
+PAGE = ROOT / "docs/explanation/architecture.md"
 EXAMPLE = re.compile(r"^### (How to add [^\n]*)\n(.*?)(?=^##|\Z)", re.MULTILINE | re.DOTALL)
 BLOCK = re.compile(r'^```(\w+)(?: title="([^"\n]*)")?\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 MOST_CHANGED = 2

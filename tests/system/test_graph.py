@@ -36,7 +36,7 @@ TOPICS = {
 }
 SERVICES = {"/static_map", "/global_localization", "/request_nomotion_update", "/set_map"}
 SERVICES |= {"/move_base/make_plan", "/move_base/clear_costmaps"}
-NAMES_PAGE = Path(__file__).resolve().parents[2] / "docs/names.md"
+NAMES_PAGE = Path(__file__).resolve().parents[2] / "docs/reference/topics.md"
 # Of every node, and of dynamic_reconfigure and actions; and what tests and tools bring along.
 UNSPOKEN = ("get_loggers", "set_logger_level", "waiting_for")
 UNSPOKEN += ("set_parameters", "parameter_descriptions", "parameter_updates")
@@ -74,7 +74,7 @@ class GraphTest(unittest.TestCase):
         mine = {rospy.get_name()}
         names = {name for name, nodes in [*publishers, *services] if set(nodes) - mine}
         unknown = {name for name in names if f"`{name}`" not in page and not name.endswith(UNSPOKEN)}
-        self.assertEqual(unknown, set(), "not in docs/names.md")
+        self.assertEqual(unknown, set(), "not in docs/reference/topics.md")
 
     def test_there_is_one_tree_of_frames_from_map_to_base_link_and_laser(self):
         buffer = tf2_ros.Buffer()

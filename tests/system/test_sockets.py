@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What a running home listens on: nothing that another host could reach, as docs/security.md tells."""
+"""What a running home listens on: nothing that another host could reach, as docs/explanation/security.md tells."""
 
 import ipaddress
 import signal

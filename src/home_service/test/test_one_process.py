@@ -1,4 +1,4 @@
-"""What docs/one_process.md tells people to type works as it is written."""
+"""What docs/how_to/use_without_ros.md tells people to type works as it is written."""
 
 import os
 import subprocess
@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
-PAGE = ROOT / "docs/one_process.md"
+PAGE = ROOT / "docs/how_to/use_without_ros.md"
 
 
 def test_the_page_drives_the_robot_to_its_goal():

@@ -74,5 +74,5 @@ def test_a_mission_is_repeated_bit_for_bit_with_a_place_that_is_served_from_its_
 
 
 def test_the_page_of_faults_ends_as_it_would_be_made_anew():
-    page = Path(__file__).parents[3] / "docs" / "faults.md"
+    page = Path(__file__).parents[3] / "docs" / "reports" / "faults.md"
     assert page.read_text("utf-8").endswith(TAIL)

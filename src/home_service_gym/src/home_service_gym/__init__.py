@@ -1,4 +1,4 @@
-"""The robot and its worlds as Gymnasium environments, without ROS: docs/gymnasium.md.
+"""The robot and its worlds as Gymnasium environments, without ROS: docs/how_to/train_a_policy.md.
 
 import gymnasium
 env = gymnasium.make("home_service_gym:PointGoal-v0")

@@ -1,4 +1,4 @@
-"""The environments with a task, by the names of their classes; docs/gymnasium.md describes each.
+"""The environments with a task, by the names of their classes; docs/how_to/train_a_policy.md describes each.
 
 ``told`` is of every TaskEnv: ``render_mode``, ``people``, ``has_map``.
 """

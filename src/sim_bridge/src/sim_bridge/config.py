@@ -66,7 +66,7 @@ class BridgeSettings(RunTimeSettings):
         "s",
         POSITIVE,
     )
-    faults_file: str = parameter("", "YAML with a list of faults, as docs/faults.md has it; empty: none")
+    faults_file: str = parameter("", "YAML with a list of faults (docs/reference/faults.md); empty: none")
     clock_rate: int = parameter(50, "/clock; must divide odometry_rate", "Hz", POSITIVE)
     joint_state_rate: int = parameter(10, "joint_states; must divide odometry_rate", "Hz", POSITIVE)
     strict: bool = parameter(
@@ -85,7 +85,7 @@ class RelaySettings:
 
     faults_file: str = parameter(
         "",
-        "YAML with a list of faults, as docs/faults.md has it, in seconds since the first clock; empty: none",
+        "YAML with a list of faults (docs/reference/faults.md), in seconds since the first clock; empty: none",
     )
     seed: int = parameter(0, "what is random about faults follows from it", bounds=NOT_NEGATIVE)
     publish_tf: bool = parameter(

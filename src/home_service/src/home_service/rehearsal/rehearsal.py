@@ -1,7 +1,7 @@
 """The whole mission in one process, without ROS: the same cores as in the nodes, stepped in lock-step.
 
 Bit-for-bit repeatable from a seed, and many times faster than real time. What takes effect when is as over
-ROS (docs/logical_time.md): what one part tells, the others know one control period later.
+ROS (docs/explanation/deterministic_runs.md): what one part tells, the others know one control period later.
 """
 
 import hashlib

@@ -14,7 +14,7 @@ HEAD = """# Faults
 
 What becomes of the errand when something goes wrong {start:g} s after the start and stays so: each kind of
 fault beside its clean twin of the same seed, in one process, over {seeds}. Made by
-`./scripts/rehearse.sh --seed {seed} --runs {runs} --timeout {timeout:g} --each-fault docs/faults.md`.
+`./scripts/rehearse.sh --seed {seed} --runs {runs} --timeout {timeout:g} --each-fault docs/reports/faults.md`.
 
 A verdict is false if the robot says that it has delivered and has not, or the other way round. *Lost* is the
 simulated time beyond the clean twin's. *Named* is the sensor that the robot did not trust, and why.
@@ -24,51 +24,7 @@ Where 0.0 s are lost to a thing in the way, it did not stand in the way of what 
 | --- | --- | --- | --- | --- | --- | --- | --- |
 """
 TAIL = """
-In a mission file, or a file of their own (`--faults FILE` of `rehearse.sh` and `home_service.sh`), faults
-are a list:
-
-```yaml
-faults:
-  - {kind: scan_frozen, start: 8.0, end: 12.0}
-  - {kind: scan_noisy, strength: 0.1, seed: 3}
-```
-
-`start` and `end` are simulated seconds (from the start, for ever), `strength` is in the unit of the table;
-`seed` changes what is random about a fault. While a simulation runs,
-`rosservice call /sim_bridge/add_fault scan_nan 5.0 0.0` has something go wrong for so many seconds (0: for
-ever), with that strength (0: the usual one); so does the tool *Faults* of the [cockpit](cockpit.md).
-A kind is a class in a file of its own in `sim_bridge/faults/` and a line of `registry.py` there, or one of
-your own, `kind: my_package.my_module/MyFault`: [plugins](plugins.md).
-
-## Between nodes of other people
-
-For a real robot, Gazebo, Stage or a bag, `fault_relay` puts faults between nodes that are not ours: it hears
-`scan`, `odom` and `cmd_vel` and tells on `scan_faulty`, `odom_faulty` and `cmd_vel_faulty` what the faults
-make of them.
-
-```sh
-rosrun sim_bridge fault_relay scan_faulty:=scan scan:=base_scan _faults_file:=$PWD/faults.yaml _seed:=3
-rosservice call /fault_relay/add_fault scan_nan 5.0 0.0
-```
-
-* What no fault touches is passed on to the last bit: messages of other topics, and of a message intensities,
-  covariances, height and tilt, the other axes of a command, frames and stamps.
-* `start` and `end` are seconds of ROS time since the first clock that the node saw. When the clock jumps
-  back, as with the loop of a bag, the faults of the file begin anew, and those asked for are over.
-* Kinds that change wheels or the home (`wheel_weak`, `wheel_stuck`, `wheels_blocked`, `kidnapped`,
-  `turned_round`, `object_in_way`, `way_closed`) are the simulator's alone, and refused in a sentence. A kind
-  of your own is relayed if it has `scan`, `odometry` or `command`; nobody calls its `begin` and `end` here.
-* The relay knows neither rates nor mountings: `gyro_biased` takes odometry to come 50 times a second,
-  `odometry_slipping` and `commands_late` count messages, and directions are those of the laser's own frame.
-* A message that means nothing (directions that are NaN, an infinite velocity) is left out with a warning if a
-  fault would have to change it.
-* It cannot take back a transform that somebody else sends: who looks up `odom -> base` sees no fault of
-  odometry. Have the driver or the simulator send none, and with `_publish_tf:=true` the relay sends what the
-  faulty odometry tells.
-* It is in step with nobody: through it the same seed gives the same faults, not the same run.
-
-The same over the whole graph of nodes: [faults over ROS](faults_over_ros.md). What becomes of a mission whose
-nodes die: [killed nodes](killed_nodes.md).
+Every key of a fault, and how to add a kind: [faults](../reference/faults.md).
 """
 
 
