@@ -26,9 +26,10 @@ RUN_SECONDS, SPARE_SECONDS = 240.0, 60.0
 CLEAN = "none"
 PAGE = """# Faults over ROS
 
-The kinds of [faults](faults.md), from {start:g} s on, in the whole graph of nodes:
+The kinds of [faults](../reference/faults.md), from {start:g} s on, in the whole graph of nodes:
 `./scripts/home_service.sh --faults FILE --timeout {limit:g}` over {runs} seeds from {seed}. Made by
-`python3 tests/benchmarks/faults_over_ros.py --seed {seed} --runs {runs} --table docs/reports/faults_over_ros.md`.
+`python3 tests/benchmarks/faults_over_ros.py --seed {seed} --runs {runs}
+--table docs/reports/faults_over_ros.md`.
 
 A verdict is false if the robot says that it has delivered and has not, or the other way round; a run hangs if
 the script has not ended by itself {spare:g} s after that. *Left* are processes, sockets and files.

@@ -1,4 +1,4 @@
-"""What docs/explanation/architecture.md says of adding a part is done in a copy of the tree, word for word, and works."""
+"""The worked examples of docs/explanation/architecture.md run, word for word, in a copy of the tree."""
 
 import os
 import re

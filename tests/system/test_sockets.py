@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What a running home listens on: nothing that another host could reach, as docs/explanation/security.md tells."""
+"""A running graph listens on no socket that another host can reach (docs/explanation/security.md)."""
 
 import ipaddress
 import signal

@@ -85,7 +85,7 @@ class RelaySettings:
 
     faults_file: str = parameter(
         "",
-        "YAML with a list of faults (docs/reference/faults.md), in seconds since the first clock; empty: none",
+        "YAML with a list of faults (docs/reference/faults.md); times since the first clock; empty: none",
     )
     seed: int = parameter(0, "what is random about faults follows from it", bounds=NOT_NEGATIVE)
     publish_tf: bool = parameter(

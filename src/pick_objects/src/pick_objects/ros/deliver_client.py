@@ -48,7 +48,9 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="deliver", description="Send a mission to a running robot and follow it; Ctrl-C cancels it."
     )
-    parser.add_argument("mission", type=Path, metavar="FILE", help="YAML of deliveries (docs/reference/missions.md)")
+    parser.add_argument(
+        "mission", type=Path, metavar="FILE", help="YAML of deliveries (docs/reference/missions.md)"
+    )
     parser.add_argument(
         "--server_timeout", type=float, default=10.0, help="wall-clock s to wait for the robot"
     )

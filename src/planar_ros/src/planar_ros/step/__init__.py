@@ -1,4 +1,4 @@
-"""Logical time: messages are taken in, and take effect, at moments (docs/explanation/deterministic_runs.md)."""
+"""Logical time: messages take effect at logical instants (docs/explanation/deterministic_runs.md)."""
 
 from planar_ros.step.step import Step, is_heard_in_step
 
