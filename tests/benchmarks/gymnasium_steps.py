@@ -24,7 +24,7 @@ import gymnasium
 
 import home_service_gym
 from sim_bridge import Simulation
-from sim_bridge.driving.base import BASE_RATE
+from sim_bridge.driving.drive import BASE_RATE
 from sim_bridge.simulation import ROBOT_NAME
 
 BLOCKS, PERIODS, RESETS = 15, 100, 30

@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from planar import PlanarError, Pose2, Twist2
-from sim_bridge import Observation, Simulation, SimulationSettings, load_world
-from sim_bridge.noise import NOISES, noise_named
+from sim_bridge import Simulation, SimulationSettings, StepResult, load_world
+from sim_bridge.noise import NOISE_PROFILES, noise_named
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -24,7 +24,9 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("world", nargs="?", metavar="WORLD", default=str(ROOT / "map" / "home.world"))
     parser.add_argument("--seconds", type=float, default=60.0, help="simulated time (default: 60)")
-    parser.add_argument("--noise", default="turtlebot", help=f"{', '.join(NOISES)} (default: turtlebot)")
+    parser.add_argument(
+        "--noise", default="turtlebot", help=f"{', '.join(NOISE_PROFILES)} (default: turtlebot)"
+    )
     parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2], help="default: 1 2")
     parser.add_argument("--runs", type=int, default=2, help="processes for each seed (default: 2)")
     parser.add_argument("--only", type=int, metavar="SEED", help="prints the hash of one run in this process")
@@ -68,7 +70,7 @@ def fingerprint(path: str, seed: int, noise: str, seconds: float) -> str:
     return digest.hexdigest()[:16]
 
 
-def feed(digest, seen: Observation) -> None:
+def feed(digest, seen: StepResult) -> None:
     base, odom, twist = seen.base_in_world, seen.odometry.base_in_odom, seen.odometry.twist
     numbers = (seen.stamp, base.x, base.y, base.yaw, odom.x, odom.y, odom.yaw, twist.v, twist.omega)
     digest.update(np.array([*numbers, *seen.wheel_angles, *seen.wheel_speeds, seen.tilt]).tobytes())

@@ -83,7 +83,7 @@ def test_what_crosses_is_drawn_as_wide_as_it_is():
     env.reset(seed=1, options={"seed": 1})
     world, picture = env._playground.arena.world, Picture(env._playground)
     pixels = crowd_of(world)[:, 2] * picture._scale
-    drawn = (picture.draw(env.moment, Marks(courses=world.courses)) == MOVING).all(axis=2).sum()
+    drawn = (picture.draw(env.moment, Marks(trajectories=world.trajectories)) == MOVING).all(axis=2).sum()
     assert drawn == pytest.approx(math.pi * (pixels**2).sum(), rel=0.2)
     env.close()
 
@@ -255,9 +255,9 @@ def test_the_first_goal_of_a_stage_is_reached_straight_ahead_and_another_follows
 
 
 def test_what_walks_in_stage_four_goes_as_far_as_its_keyframes():
-    courses = {course.link: course for course in TurtleBot3Stage(4)._playground.arena.world.courses}
+    trajectories = {course.link: course for course in TurtleBot3Stage(4)._playground.arena.world.trajectories}
     for name, walk in WALKS.items():
-        course = courses[f"{name}::link"]
+        course = trajectories[f"{name}::link"]
         there = np.array(course.at(walk[2][0])) - course.at(0.0)
         assert there == pytest.approx(walk[2][1:])
 

@@ -65,8 +65,8 @@ def test_what_moves_is_known_by_where_it_begins():
     fields.reset(seed=1, options={"seed": 1})
     world = fields._playground.arena.world
     crowd = crowd_of(world)
-    assert len(crowd) == len(world.courses) > 0
-    for disc, course in zip(crowd.tolist(), world.courses):
+    assert len(crowd) == len(world.trajectories) > 0
+    for disc, course in zip(crowd.tolist(), world.trajectories):
         assert disc[:2] == pytest.approx(course.at(0.0)) and 0.1 < disc[2] < 2.0
     fields.close()
 

@@ -45,16 +45,16 @@ def test_there_is_a_way_through_every_field():
 
 @pytest.mark.parametrize("legs", [1, 4])
 def test_crossings_go_there_and_back_without_a_leap(legs):
-    for course in Crossings(1.0, 1.0, legs=legs).arena(3).world.courses:
+    for course in Crossings(1.0, 1.0, legs=legs).arena(3).world.trajectories:
         places_xy = np.array([course.at(stamp) for stamp in np.arange(0.0, 100.0, 0.1)])
         speeds = np.hypot(*np.diff(places_xy, axis=0).T) / 0.1
         assert np.median(speeds) > 0.85 and speeds.max() < 1.15
 
 
 def test_crossings_are_as_many_and_turn_as_often_as_asked_for():
-    courses = Crossings(1.0, 1.0, fewest=20, most=22, legs=4).arena(3).world.courses
-    assert 20 <= len(courses) <= 22
-    assert {len(course.times) for course in courses} == {2 * 4 + 2}
+    trajectories = Crossings(1.0, 1.0, fewest=20, most=22, legs=4).arena(3).world.trajectories
+    assert 20 <= len(trajectories) <= 22
+    assert {len(course.times) for course in trajectories} == {2 * 4 + 2}
 
 
 @pytest.fixture
@@ -71,7 +71,7 @@ def test_dynabarns_worlds_are_taken_by_turns_and_move(folder):
     assert [source.arena(seed).title for seed in range(3)] == ["DynaBARN 0", "DynaBARN 5", "DynaBARN 10"]
     arena = source.arena(0)
     assert arena.way == 20.0
-    assert [course.at(5.0) for course in arena.world.courses] == [(3.0, 0.0)]
+    assert [course.at(5.0) for course in arena.world.trajectories] == [(3.0, 0.0)]
 
 
 def test_a_scenario_of_dynabarn_is_played(folder):

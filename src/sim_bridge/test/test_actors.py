@@ -38,7 +38,7 @@ def load(tmp_path):
 
 
 def places(world, *stamps):
-    return [world.courses[0].at(stamp)[0] for stamp in stamps]
+    return [world.trajectories[0].at(stamp)[0] for stamp in stamps]
 
 
 def test_an_actor_walks_from_waypoint_to_waypoint_and_begins_anew(load):
@@ -64,9 +64,9 @@ def test_a_laser_sees_it_where_it_is_and_the_map_does_not(load):
 
 def test_without_a_trajectory_it_stands_where_it_is(load):
     world = load(actor("<script><loop>true</loop></script>"))
-    assert world.courses == ()
+    assert world.trajectories == ()
     assert world.bodies[-1].pose_in_world[:2, 3] == pytest.approx([5.0, 1.0])
-    assert world.bodies[-1].keeps_still
+    assert world.bodies[-1].is_static
 
 
 def test_a_plugin_that_would_move_it_is_named(load):

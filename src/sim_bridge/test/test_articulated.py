@@ -8,8 +8,8 @@ import pytest
 from sim_bridge import Scene, SimulationSettings
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import pose3
-from sim_bridge.physics.forces import JointPush
-from sim_bridge.physics.motion import Motion
+from sim_bridge.physics.forces import JointEffort
+from sim_bridge.physics.kinematics import KinematicState
 from sim_bridge.sdf import read_model
 
 BOX = "<geometry><box><size>0.2 0.2 0.2</size></box></geometry>"
@@ -68,7 +68,7 @@ def test_links_start_where_they_are_placed_whatever_the_joint_frame():
         pose=pose3(1.0, 2.0, 0.0, yaw=0.7),
     )
     for body in world.bodies:
-        assert scene.models.link_motion(body.name).pose == pytest.approx(body.pose_in_world, abs=1e-5)
+        assert scene.models.link_state(body.name).pose == pytest.approx(body.pose_in_world, abs=1e-5)
 
 
 def test_limits_hold_a_door():
@@ -84,12 +84,12 @@ def test_limits_hold_a_door():
         ),
     )
     door = scene.models.links_of("m")[0]
-    before = scene.models.link_motion(door).pose
-    scene.forces.push_joint(JointPush("m::hinge", 5.0, 0.0, np.inf))
+    before = scene.models.link_state(door).pose
+    scene.forces.apply_joint_effort(JointEffort("m::hinge", 5.0, 0.0, np.inf))
     run(scene, 5.0)
     assert scene.joints.state("m::hinge").position == pytest.approx(1.0, abs=0.02)
     assert before[2, 3] == pytest.approx(
-        scene.models.link_motion(door).pose[2, 3], abs=1e-3
+        scene.models.link_state(door).pose[2, 3], abs=1e-3
     ), "it hangs, not falls"
 
 
@@ -99,7 +99,7 @@ def test_a_drawer_slides_along_its_axis():
         joint("prismatic", "world", "drawer", axis="1 0 0", limits="<lower>0</lower><upper>0.3</upper>"),
     )
     scene.joints.set_positions({"m::hinge": 0.2})
-    assert scene.models.link_motion("m::drawer").pose[:3, 3] == pytest.approx([0.2, 0.0, 1.0], abs=1e-6)
+    assert scene.models.link_state("m::drawer").pose[:3, 3] == pytest.approx([0.2, 0.0, 1.0], abs=1e-6)
 
 
 @pytest.mark.parametrize("bounds", [("-1.79769e+308", "1.79769e+308"), ("-inf", "inf"), ("-1e+16", "1e+16")])
@@ -113,7 +113,7 @@ def test_what_gazebo_writes_where_there_is_no_limit_bounds_nothing(bounds):
 def test_what_is_fixed_together_falls_together():
     scene, _ = scene_of(link("a", "0 0 9 0 0 0"), link("b", "1 0 9 0 0 0", 5.0), joint("fixed", "a", "b"))
     run(scene, 1.0)
-    a, b = (scene.models.link_motion(f"m::{name}").pose[:3, 3] for name in "ab")
+    a, b = (scene.models.link_state(f"m::{name}").pose[:3, 3] for name in "ab")
     assert a[2] == pytest.approx(9.0 - 4.9, abs=0.05)
     assert b - a == pytest.approx([1.0, 0.0, 0.0], abs=1e-3)
 
@@ -123,15 +123,15 @@ def test_what_has_no_weight_does_not_fall(content):
     weightless = link("a", "0 0 2 0 0 0").replace("<inertial>", content + "<inertial>")
     scene, _ = scene_of(weightless)
     run(scene, 1.0)
-    assert scene.models.link_motion("m::a").pose[2, 3] == pytest.approx(2.0, abs=1e-3)
+    assert scene.models.link_state("m::a").pose[2, 3] == pytest.approx(2.0, abs=1e-3)
 
 
 def test_a_whole_model_is_put_to_another_place():
     scene, _ = scene_of(link("a", "0 0 1 0 0 0"), link("b", "1 0 1 0 0 0"), joint("revolute", "a", "b"))
-    scene.set_model_motion("m", Motion(pose3(5.0, 0.0, 1.0), np.zeros(3), np.zeros(3)))
-    assert scene.models.link_motion("m::b").pose[:3, 3] == pytest.approx([6.0, 0.0, 2.0], abs=1e-6)
+    scene.set_model_state("m", KinematicState(pose3(5.0, 0.0, 1.0), np.zeros(3), np.zeros(3)))
+    assert scene.models.link_state("m::b").pose[:3, 3] == pytest.approx([6.0, 0.0, 2.0], abs=1e-6)
     scene.reset_poses()
-    assert scene.models.link_motion("m::b").pose[:3, 3] == pytest.approx([1.0, 0.0, 1.0], abs=1e-6)
+    assert scene.models.link_state("m::b").pose[:3, 3] == pytest.approx([1.0, 0.0, 1.0], abs=1e-6)
 
 
 def test_axes_before_sdf_1_5_are_those_of_the_model():

@@ -32,7 +32,7 @@ def played_world():
 def played(*faults, seed=0):
     """Observations of a robot that drives towards a wall."""
     going_wrong = Faults(faults, seed)
-    simulation = Simulation(played_world(), settings=EXACT, fitting=going_wrong.fitting)
+    simulation = Simulation(played_world(), settings=EXACT, wrappers=going_wrong.wrappers)
     seen = []
     for _ in range(round(SECONDS / simulation.step_seconds)):
         command = Twist2(0.3, math.sin(0.1 * len(seen)))
@@ -166,7 +166,7 @@ def test_a_mistake_is_told_with_file_line_and_key(tmp_path, entry, complaint):
 def test_a_fault_may_come_later():
     faults = Faults((), may_come=True)
     floor = Body("floor::l", np.eye(4), (Collision(Plane(), np.eye(4)),))
-    simulation = Simulation(World("w", (floor,)), settings=EXACT, fitting=faults.fitting)
+    simulation = Simulation(World("w", (floor,)), settings=EXACT, wrappers=faults.wrappers)
     while (seen := simulation.step(Twist2())).scan is None:
         pass
     assert not np.isnan(seen.scan.ranges).any()

@@ -8,7 +8,7 @@ import pytest
 
 from planar import Pose2
 from sim_bridge.geometry.pose3 import pose3
-from sim_bridge.noise import NOISES
+from sim_bridge.noise import NOISE_PROFILES
 from sim_bridge.robots import ROBOTS
 from sim_bridge.sensors.lidar import Lidar
 
@@ -21,7 +21,7 @@ NOTHING = np.empty((0, 4))
 
 def sweep(profile=LIDAR, seed=0, segments=ROOM, **noise):
     here = dataclasses.replace(profile, pose_in_base=np.eye(4))
-    lidar = Lidar(here, dataclasses.replace(NOISES["ideal"], **noise), np.random.default_rng(seed))
+    lidar = Lidar(here, dataclasses.replace(NOISE_PROFILES["ideal"], **noise), np.random.default_rng(seed))
     return lidar.sweep(1.5, segments, RETROS[: len(segments)], Pose2())
 
 
@@ -77,7 +77,7 @@ def test_the_same_seed_makes_the_same_errors():
 
 def test_a_laser_mounted_upside_down_sweeps_the_other_way_round():
     profile = dataclasses.replace(LIDAR, pose_in_base=pose3(roll=math.pi))
-    lidar = Lidar(profile, NOISES["ideal"], np.random.default_rng(0))
+    lidar = Lidar(profile, NOISE_PROFILES["ideal"], np.random.default_rng(0))
     wall_on_the_left = np.array([[-5.0, 2.0, 5.0, 2.0]])
     scan = lidar.sweep(0.0, wall_on_the_left, np.zeros(1), Pose2())
     assert scan.upside_down

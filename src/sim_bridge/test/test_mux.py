@@ -5,7 +5,7 @@ import math
 import pytest
 
 from planar import SettingsError, Twist2
-from sim_bridge.driving.mux import TURTLEBOT_INPUTS, Mux, Smoother, read_inputs
+from sim_bridge.driving.mux import TURTLEBOT_INPUTS, VelocityMux, VelocitySmoother, read_inputs
 
 STEP = 0.02
 SLOW, FAST = Twist2(0.1, 0.0), Twist2(0.5, 0.0)
@@ -13,7 +13,7 @@ SLOW, FAST = Twist2(0.1, 0.0), Twist2(0.5, 0.0)
 
 @pytest.fixture
 def mux():
-    return Mux(TURTLEBOT_INPUTS)
+    return VelocityMux(TURTLEBOT_INPUTS)
 
 
 def test_nobody_drives_when_all_are_silent(mux):
@@ -43,7 +43,7 @@ def test_inputs_are_read_from_a_file_of_the_official_format(tmp_path):
         "  - {name: B, topic: input/b, timeout: 0.2, priority: 2}\n"
         "publisher: output/cmd_vel\n"
     )
-    assert [(one.name, one.topic, one.timeout) for one in Mux(read_inputs(path)).inputs] == [
+    assert [(one.name, one.topic, one.timeout) for one in VelocityMux(read_inputs(path)).inputs] == [
         ("B", "input/b", 0.2),
         ("A", "input/a", 0.5),
     ]
@@ -58,31 +58,31 @@ def commanded(smoother, seconds, begins):
 
 
 def test_a_smoothed_command_grows_by_its_acceleration_and_brakes_faster():
-    smoother = Smoother()
-    smoother.hear(Twist2(0.5, 1.0), 0.0)
+    smoother = VelocitySmoother()
+    smoother.set_target(Twist2(0.5, 1.0), 0.0)
     smoother.command(0.0)
     assert commanded(smoother, 0.1, 0.0)[-1] == Twist2(pytest.approx(0.1), pytest.approx(0.2))
-    smoother.hear(Twist2(0.5, 1.0), 0.1)
+    smoother.set_target(Twist2(0.5, 1.0), 0.1)
     assert commanded(smoother, 0.4, 0.1)[-1] == Twist2(pytest.approx(0.5), pytest.approx(1.0))
-    smoother.hear(Twist2(), 0.5)
+    smoother.set_target(Twist2(), 0.5)
     assert commanded(smoother, 0.1, 0.5)[-1] == Twist2(pytest.approx(0.35), pytest.approx(0.7))
     for tenth in range(6, 20):
-        smoother.hear(Twist2(9.0, 0.0), 0.1 * tenth)
+        smoother.set_target(Twist2(9.0, 0.0), 0.1 * tenth)
         fast = commanded(smoother, 0.1, 0.1 * tenth)[-1]
     assert fast.v == pytest.approx(0.8)
 
 
 def test_after_a_pause_between_commands_no_velocity_jumps():
-    smoother, told = Smoother(), [Twist2()]
+    smoother, told = VelocitySmoother(), [Twist2()]
     for begins, pause in ((0.0, 0.1), (0.1, 0.44), (0.54, 0.1), (0.64, 0.7), (1.34, 0.3)):
-        smoother.hear(Twist2(0.0, 2.0), begins)
+        smoother.set_target(Twist2(0.0, 2.0), begins)
         told += commanded(smoother, pause, begins)
     assert max(after.omega - before.omega for before, after in zip(told, told[1:])) <= 2.0 * STEP + 1e-9
 
 
 def test_after_the_last_command_the_robot_is_led_to_rest_and_then_left_alone():
-    smoother = Smoother()
-    smoother.hear(Twist2(0.3, 0.0), 0.0)
+    smoother = VelocitySmoother()
+    smoother.set_target(Twist2(0.3, 0.0), 0.0)
     told = commanded(smoother, 2.0, 0.0)
     assert told[-1] is None
     spoken = [one.v for one in told if one is not None]
@@ -90,16 +90,16 @@ def test_after_the_last_command_the_robot_is_led_to_rest_and_then_left_alone():
 
 
 def test_time_that_begins_anew_begins_the_smoother_anew():
-    smoother = Smoother()
-    smoother.hear(Twist2(0.3, 0.0), 10.0)
+    smoother = VelocitySmoother()
+    smoother.set_target(Twist2(0.3, 0.0), 10.0)
     commanded(smoother, 0.4, 10.0)
-    smoother.hear(Twist2(0.3, 0.0), 0.0)
+    smoother.set_target(Twist2(0.3, 0.0), 0.0)
     assert smoother.command(0.0) == Twist2()
     assert smoother.command(STEP).v == pytest.approx(STEP)
 
 
 def test_a_command_that_is_not_finite_is_passed_on_to_be_refused():
-    smoother = Smoother()
-    smoother.hear(Twist2(math.nan, 0.0), 0.0)
+    smoother = VelocitySmoother()
+    smoother.set_target(Twist2(math.nan, 0.0), 0.0)
     assert not smoother.command(STEP).is_finite()
     assert smoother.command(2.0 * STEP) is None

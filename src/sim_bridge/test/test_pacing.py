@@ -50,9 +50,9 @@ def test_until_all_nodes_have_reported_time_passes_as_on_the_wall():
 def test_a_node_whose_scan_waits_for_slow_odometry_is_not_waited_for():
     pacer = Pacer(0.0, ["amcl"])
     reported(pacer, "amcl", 0.985, period=0.025)
-    assert pacer.behind(1.1) == ["amcl"]
+    assert pacer.lagging_nodes(1.1) == ["amcl"]
     pacer.odometry_delay = 0.08
-    assert pacer.behind(1.1) == []
+    assert pacer.lagging_nodes(1.1) == []
 
 
 def test_in_lock_step_the_slowest_node_sets_the_pace():
@@ -61,7 +61,7 @@ def test_in_lock_step_the_slowest_node_sets_the_pace():
     reported(pacer, "move_base", 1.0)
     assert pacer.delay(1.1, 0.0) == 0.0
     assert pacer.delay(1.12, 0.0) > 0.0
-    assert pacer.behind(1.12) == ["move_base"]
+    assert pacer.lagging_nodes(1.12) == ["move_base"]
     pacer.report("move_base", 1.1)
     assert pacer.delay(1.12, 0.0) == 0.0
 

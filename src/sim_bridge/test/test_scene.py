@@ -10,8 +10,8 @@ from sim_bridge import ROBOTS, Scene, SimulationSettings, WorldError
 from sim_bridge.errors import UnknownEntityError
 from sim_bridge.geometry.pose3 import pose3
 from sim_bridge.geometry.shapes import Box, Plane
-from sim_bridge.physics.forces import Push
-from sim_bridge.physics.motion import Motion
+from sim_bridge.physics.forces import LinkWrench
+from sim_bridge.physics.kinematics import KinematicState
 from sim_bridge.sdf import read_model
 from sim_bridge.world import Body, Collision, World
 
@@ -31,7 +31,7 @@ def box(name, x, y=0.0, mass=None):
 
 
 def at_rest(pose):
-    return Motion(pose, np.zeros(3), np.zeros(3))
+    return KinematicState(pose, np.zeros(3), np.zeros(3))
 
 
 @pytest.fixture
@@ -50,27 +50,27 @@ def drive(scene, seconds, commands={}):
 def test_a_models_pose_is_that_of_its_frame_not_of_its_first_link(scene):
     scene.add(read_model(BARBELL, "barbell", pose3(-2.0, 0.0, 0.2, yaw=math.pi / 2.0)).bodies)
     assert scene.models.links_of("barbell") == ["barbell::a", "barbell::b"]
-    assert scene.models.motion("barbell").pose == pytest.approx(pose3(-2.0, 0.0, 0.2, yaw=math.pi / 2.0))
-    scene.set_model_motion("barbell", at_rest(pose3(1.0, 1.0, 0.2)))
-    assert scene.models.motion("barbell").pose == pytest.approx(pose3(1.0, 1.0, 0.2))
-    assert scene.models.link_motion("barbell::b").pose == pytest.approx(pose3(1.0, 0.0, 0.2))
+    assert scene.models.state("barbell").pose == pytest.approx(pose3(-2.0, 0.0, 0.2, yaw=math.pi / 2.0))
+    scene.set_model_state("barbell", at_rest(pose3(1.0, 1.0, 0.2)))
+    assert scene.models.state("barbell").pose == pytest.approx(pose3(1.0, 1.0, 0.2))
+    assert scene.models.link_state("barbell::b").pose == pytest.approx(pose3(1.0, 0.0, 0.2))
 
 
 def test_a_model_in_motion_keeps_moving(scene):
-    moving = Motion(pose3(0.0, -3.0, 2.0), np.array([1.0, 0.0, 0.0]), np.zeros(3))
-    scene.set_model_motion("crate", moving)
+    moving = KinematicState(pose3(0.0, -3.0, 2.0), np.array([1.0, 0.0, 0.0]), np.zeros(3))
+    scene.set_model_state("crate", moving)
     drive(scene, 0.2)
-    assert scene.models.motion("crate").pose[0, 3] == pytest.approx(0.2, abs=0.01)
-    assert scene.models.motion("crate").linear[2] == pytest.approx(-9.8 * 0.2, rel=0.05)
+    assert scene.models.state("crate").pose[0, 3] == pytest.approx(0.2, abs=0.01)
+    assert scene.models.state("crate").linear[2] == pytest.approx(-9.8 * 0.2, rel=0.05)
 
 
 @pytest.mark.parametrize("mass", [0.0, -1.0, np.nan, np.inf, 1e300])
 @pytest.mark.parametrize("moment", [1.0, np.inf])
 def test_what_nothing_can_weigh_is_refused(scene, mass, moment):
     with pytest.raises(WorldError, match="must be positive"):
-        scene.models.set_mass("crate::link", mass, (1.0, 1.0, moment), has_weight=True)
+        scene.models.set_mass("crate::link", mass, (1.0, 1.0, moment), has_gravity=True)
     drive(scene, 0.1)
-    assert np.isfinite(scene.models.motion("crate").pose).all()
+    assert np.isfinite(scene.models.state("crate").pose).all()
 
 
 def test_bodies_of_one_name_are_refused_and_leave_nothing(scene):
@@ -112,29 +112,29 @@ def test_a_model_cannot_have_the_name_of_a_robot(scene):
 
 def test_gravity_can_be_switched_off(scene):
     scene.set_gravity(0.0)
-    scene.set_model_motion("crate", at_rest(pose3(0.0, -3.0, 2.0)))
+    scene.set_model_state("crate", at_rest(pose3(0.0, -3.0, 2.0)))
     drive(scene, 0.5)
-    assert scene.models.motion("crate").pose[2, 3] == pytest.approx(2.0)
+    assert scene.models.state("crate").pose[2, 3] == pytest.approx(2.0)
 
 
 def test_a_still_model_that_is_put_elsewhere_is_seen_there(scene):
     scene.add_robot("r", LIDAR)
-    scene.set_model_motion("wall", at_rest(pose3(2.0, 0.0, 0.25)))
+    scene.set_model_state("wall", at_rest(pose3(2.0, 0.0, 0.25)))
     assert drive(scene, 0.1)["r"].scan.ranges[180] == pytest.approx(1.75, abs=1e-3)
     scene.remove_model("wall")
     assert math.isinf(drive(scene, 0.1)["r"].scan.ranges[180])
     with pytest.raises(UnknownEntityError, match="no model named 'wall'"):
-        scene.models.motion("wall")
+        scene.models.state("wall")
 
 
 def test_a_still_model_that_is_put_elsewhere_before_anyone_looked_is_drawn_there(scene):
-    scene.set_model_motion("wall", at_rest(pose3(2.0, 0.0, 0.25)))
-    triangles, _ = scene.sight.triangles()
+    scene.set_model_state("wall", at_rest(pose3(2.0, 0.0, 0.25)))
+    triangles, _ = scene.view.triangles()
     assert triangles[..., 0][triangles[..., 2] > 0.4].min() == pytest.approx(1.75)
 
 
 def test_a_model_may_go_while_it_is_pushed(scene):
-    scene.forces.push(Push("crate::link", np.array([4.0, 0.0, 0.0]), np.zeros(3), 0.0, math.inf))
+    scene.forces.push(LinkWrench("crate::link", np.array([4.0, 0.0, 0.0]), np.zeros(3), 0.0, math.inf))
     scene.remove_model("crate")
     scene.step()
     assert "crate" not in scene.models.names()
@@ -144,21 +144,21 @@ def test_names_that_are_not_there_are_refused_with_the_nearest(scene):
     with pytest.raises(UnknownEntityError, match="no model named 'crat', did you mean crate"):
         scene.remove_model("crat")
     with pytest.raises(UnknownEntityError, match="did you mean crate::link"):
-        scene.models.link_motion("crate::lnk")
+        scene.models.link_state("crate::lnk")
     with pytest.raises(UnknownEntityError, match="no robot named 'r'"):
         scene.step({"r": Twist2()})
 
 
 def test_a_push_lasts_as_long_as_asked_and_can_be_stopped(scene):
     scene.set_gravity(0.0)
-    scene.set_model_motion("crate", at_rest(pose3(0.0, -3.0, 2.0)))
-    scene.forces.push(Push("crate::link", np.array([4.0, 0.0, 0.0]), np.zeros(3), 0.0, 0.5))
+    scene.set_model_state("crate", at_rest(pose3(0.0, -3.0, 2.0)))
+    scene.forces.push(LinkWrench("crate::link", np.array([4.0, 0.0, 0.0]), np.zeros(3), 0.0, 0.5))
     drive(scene, 1.0)
-    assert scene.models.motion("crate").linear[0] == pytest.approx(4.0 / 2.0 * 0.5, rel=0.05)
-    scene.forces.push(Push("crate::link", np.array([4.0, 0.0, 0.0]), np.zeros(3), 0.0, math.inf))
-    scene.forces.stop_pushing("crate::link")
+    assert scene.models.state("crate").linear[0] == pytest.approx(4.0 / 2.0 * 0.5, rel=0.05)
+    scene.forces.push(LinkWrench("crate::link", np.array([4.0, 0.0, 0.0]), np.zeros(3), 0.0, math.inf))
+    scene.forces.clear_link_wrenches("crate::link")
     drive(scene, 1.0)
-    assert scene.models.motion("crate").linear[0] == pytest.approx(1.0, rel=0.1)
+    assert scene.models.state("crate").linear[0] == pytest.approx(1.0, rel=0.1)
 
 
 def test_robots_see_and_do_not_pass_through_each_other(scene):
@@ -191,14 +191,14 @@ def test_a_robot_must_have_room_and_a_name_of_its_own(scene):
 
 def test_resetting_poses_puts_all_back_and_time_goes_on(scene):
     scene.add_robot("r", LIDAR, Pose2(1.0, 0.0))
-    scene.set_model_motion("crate", at_rest(pose3(0.0, -3.0, 0.25)))
+    scene.set_model_state("crate", at_rest(pose3(0.0, -3.0, 0.25)))
     before = drive(scene, 2.0, {"r": Twist2(0.4, 0.0)})["r"]
     scene.reset_poses()
     after = scene.step()["r"]
     assert after.stamp > before.stamp
     assert after.base_in_world.distance_to(Pose2(1.0, 0.0)) < 0.01
     assert after.odometry.base_in_odom.distance_to(before.odometry.base_in_odom) < 0.02, "it never jumps"
-    assert scene.models.motion("crate").pose == pytest.approx(pose3(3.0, 2.0, 0.25), abs=1e-2)
+    assert scene.models.state("crate").pose == pytest.approx(pose3(3.0, 2.0, 0.25), abs=1e-2)
 
 
 def walled(seed):
@@ -230,7 +230,7 @@ def test_a_scene_rewinds_to_its_mark_whatever_has_happened_since():
     for one in (scene, fresh):
         one.mark()
     trace(scene, Twist2(0.5, 0.1))  # into the crate
-    assert scene.models.motion("crate").pose[0, 3] > 1.0
+    assert scene.models.state("crate").pose[0, 3] > 1.0
     runs = []
     for one, seed in ((scene, 4), (scene, 5), (scene, 4), (fresh, 4)):
         one.rewind(seed, start)
@@ -250,54 +250,54 @@ def test_the_rate_of_physics_can_be_changed_and_time_goes_on(scene):
 
 @pytest.mark.parametrize("pair", [("wall::link", "crate::link"), ("crate::link", "wall::link")])
 def test_what_stands_holds_what_is_attached_to_it_and_takes_it_along(scene, pair):
-    scene.set_model_motion("crate", at_rest(pose3(5.0, 1.0, 1.5)))
+    scene.set_model_state("crate", at_rest(pose3(5.0, 1.0, 1.5)))
     scene.attach(*pair)
     drive(scene, 1.0)
-    np.testing.assert_allclose(scene.models.motion("crate").pose[:3, 3], (5.0, 1.0, 1.5), atol=0.01)
-    scene.set_model_motion("wall", at_rest(pose3(6.0, 0.0, 0.25)))
+    np.testing.assert_allclose(scene.models.state("crate").pose[:3, 3], (5.0, 1.0, 1.5), atol=0.01)
+    scene.set_model_state("wall", at_rest(pose3(6.0, 0.0, 0.25)))
     drive(scene, 2.0)
-    np.testing.assert_allclose(scene.models.motion("crate").pose[:3, 3], (6.0, 1.0, 1.5), atol=0.01)
+    np.testing.assert_allclose(scene.models.state("crate").pose[:3, 3], (6.0, 1.0, 1.5), atol=0.01)
     scene.detach(*pair)
     drive(scene, 2.0)
-    assert scene.models.motion("crate").pose[2, 3] == pytest.approx(0.25, abs=0.01)
-    assert scene.models.motion("wall").pose == pytest.approx(pose3(6.0, 0.0, 0.25))
+    assert scene.models.state("crate").pose[2, 3] == pytest.approx(0.25, abs=0.01)
+    assert scene.models.state("wall").pose == pytest.approx(pose3(6.0, 0.0, 0.25))
 
 
 def test_what_stands_can_be_attached_to_what_stands_and_let_go(scene):
     scene.attach("wall::link", "floor::link")
     drive(scene, 0.1)
     scene.detach("wall::link", "floor::link")
-    assert scene.models.motion("wall").pose == pytest.approx(pose3(5.0, 0.0, 0.25))
+    assert scene.models.state("wall").pose == pytest.approx(pose3(5.0, 0.0, 0.25))
 
 
-@pytest.mark.parametrize("has_weight", [True, False])
-def test_what_stands_stays_whatever_it_weighs_and_however_it_is_to_move(scene, has_weight):
+@pytest.mark.parametrize("has_gravity", [True, False])
+def test_what_stands_stays_whatever_it_weighs_and_however_it_is_to_move(scene, has_gravity):
     up = pose3(5.0, 0.0, 1.25)
-    scene.models.set_mass("wall::link", 3.0, (0.1, 0.2, 0.3), has_weight)
-    scene.set_model_motion("wall", Motion(up, np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])))
+    scene.models.set_mass("wall::link", 3.0, (0.1, 0.2, 0.3), has_gravity)
+    scene.set_model_state("wall", KinematicState(up, np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])))
     drive(scene, 1.0)
-    assert scene.models.motion("wall").pose == pytest.approx(up)
-    assert not scene.models.motion("wall").linear.any()
+    assert scene.models.state("wall").pose == pytest.approx(up)
+    assert not scene.models.state("wall").linear.any()
     told = scene.models.mass_properties("wall::link")
-    assert (told.mass, *told.moments, told.has_weight) == (3.0, 0.1, 0.2, 0.3, has_weight)
+    assert (told.mass, *told.moments, told.has_gravity) == (3.0, 0.1, 0.2, 0.3, has_gravity)
 
 
 def test_what_is_attached_to_a_robot_goes_with_it_until_it_is_let_go(scene):
     scene.add_robot("robot", LIDAR)
     scene.add([box("parcel", 0.0, mass=0.2)])
-    scene.set_model_motion("parcel", at_rest(pose3(z=0.7)))
+    scene.set_model_state("parcel", at_rest(pose3(z=0.7)))
     base = scene.models.links_of("robot")[0]
     scene.attach(base, "parcel::link")
     observation = drive(scene, 4.0, {"robot": Twist2(0.5, 0.4)})
     parcel_in_base = (
-        np.linalg.inv(scene.models.link_motion(base).pose) @ scene.models.link_motion("parcel::link").pose
+        np.linalg.inv(scene.models.link_state(base).pose) @ scene.models.link_state("parcel::link").pose
     )
     assert math.hypot(observation["robot"].base_in_world.x, observation["robot"].base_in_world.y) > 1.0
     np.testing.assert_allclose(parcel_in_base[:3, 3], (0.0, 0.0, 0.7), atol=0.01)
     assert observation["robot"].contacts == ()
     scene.detach(base, "parcel::link")
-    scene.set_model_motion("parcel", at_rest(pose3(3.0, -2.0, 1.0)))
+    scene.set_model_state("parcel", at_rest(pose3(3.0, -2.0, 1.0)))
     drive(scene, 1.0)
-    assert scene.models.motion("parcel").pose[2, 3] == pytest.approx(0.25, abs=0.01)
+    assert scene.models.state("parcel").pose[2, 3] == pytest.approx(0.25, abs=0.01)
     with pytest.raises(UnknownEntityError, match="parcel::link is not attached"):
         scene.detach(base, "parcel::link")

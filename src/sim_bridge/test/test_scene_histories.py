@@ -10,21 +10,21 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, ru
 
 from planar import PlanarError, Pose2, Twist2
 from sim_bridge import ROBOTS, Scene, SimulationSettings
-from sim_bridge.courses import Course
 from sim_bridge.doorway import Door
 from sim_bridge.errors import WorldError
 from sim_bridge.faults import KINDS, Fault, Faults, Stage, usual_strength
 from sim_bridge.geometry.pose3 import pose3
 from sim_bridge.geometry.shapes import Box, Plane
 from sim_bridge.people.walker import Walker
-from sim_bridge.physics.forces import Push
-from sim_bridge.physics.motion import at_rest
+from sim_bridge.physics.forces import LinkWrench
+from sim_bridge.physics.kinematics import at_rest
+from sim_bridge.scripted_trajectories import ScriptedTrajectory
 from sim_bridge.simulation import box_on_floor
 from sim_bridge.world import Body, Collision, World
 
 FLOOR = Body("floor::link", np.eye(4), (Collision(Plane(), np.eye(4)),))
 ACTOR = Body(
-    "actor::link", pose3(3.0, -3.0, 0.5), (Collision(Box((0.3, 0.3, 1.0)), np.eye(4)),), is_on_course=True
+    "actor::link", pose3(3.0, -3.0, 0.5), (Collision(Box((0.3, 0.3, 1.0)), np.eye(4)),), is_kinematic=True
 )
 WORLD = World(
     "w",
@@ -34,8 +34,10 @@ WORLD = World(
         box_on_floor("crate", (0.4, 0.4, 0.4), Pose2(2.0, 1.0), mass=2.0),
         ACTOR,
     ),
-    courses=(
-        Course("actor::link", np.array([0.0, 2.0, 4.0]), np.array([[3.0, -3.0], [1.0, -3.0], [3.0, -3.0]])),
+    trajectories=(
+        ScriptedTrajectory(
+            "actor::link", np.array([0.0, 2.0, 4.0]), np.array([[3.0, -3.0], [1.0, -3.0], [3.0, -3.0]])
+        ),
     ),
     walkers=(Walker("anna", np.array([[-2.0, 2.0], [2.0, 2.5]])),),
     doors=(Door("door", Pose2(-3.0, 0.0), 1.0, 0.5, 1.0),),
@@ -66,7 +68,7 @@ class SceneHistories(RuleBasedStateMachine):
     @initialize()
     def begin(self):
         self.faults = Faults((), may_come=True)
-        self.scene = Scene(WORLD, SETTINGS, fitting=self.faults.fitting)
+        self.scene = Scene(WORLD, SETTINGS, wrappers=self.faults.wrappers)
         self.scene.add_robot("robot", ROBOTS["turtlebot_lidar"])
         self.models, self.robots = set(self.scene.models.names()), {"robot"}
 
@@ -135,11 +137,11 @@ class SceneHistories(RuleBasedStateMachine):
     @rule(name=st.sampled_from(NAMES), place=st.sampled_from(PLACES), z=st.sampled_from((0.3, 2.0, -5.0)))
     def a_model_is_put_elsewhere(self, name, place, z):
         try:
-            self.scene.set_model_motion(name, at_rest(pose3(place.x, place.y, z, yaw=place.yaw)))
+            self.scene.set_model_state(name, at_rest(pose3(place.x, place.y, z, yaw=place.yaw)))
         except WorldError:
             assert name not in self.models
         else:
-            assert self.scene.models.motion(name).from_above.distance_to(place) < 1e-3 * max(1.0, place.x)
+            assert self.scene.models.state(name).pose2.distance_to(place) < 1e-3 * max(1.0, place.x)
 
     @rule(first=st.sampled_from(NAMES), second=st.sampled_from(NAMES), lets_go=st.booleans())
     def links_are_attached_or_let_go(self, first, second, lets_go):
@@ -161,7 +163,7 @@ class SceneHistories(RuleBasedStateMachine):
         start = self.scene.stamp
         try:
             self.scene.forces.push(
-                Push(link, np.array([force, 0.0, 0.0]), np.zeros(3), start, start + seconds)
+                LinkWrench(link, np.array([force, 0.0, 0.0]), np.zeros(3), start, start + seconds)
             )
         except WorldError:
             assert name not in self.models
@@ -169,7 +171,7 @@ class SceneHistories(RuleBasedStateMachine):
     @rule(mass=st.sampled_from((3.0, 1e-6, 0.0, -1.0, math.nan, math.inf)))
     def the_crate_is_of_another_mass(self, mass):
         try:
-            self.scene.models.set_mass("crate::link", mass, (0.1, 0.1, 0.1), has_weight=True)
+            self.scene.models.set_mass("crate::link", mass, (0.1, 0.1, 0.1), has_gravity=True)
         except WorldError:
             assert "crate" not in self.models or not 1e-6 <= mass < math.inf
 
@@ -215,7 +217,7 @@ class SceneHistories(RuleBasedStateMachine):
     @invariant()
     def all_is_somewhere(self):
         for name in self.models:
-            motion = self.scene.models.motion(name)
+            motion = self.scene.models.state(name)
             assert np.isfinite(motion.pose).all(), name
             assert np.isfinite(motion.linear).all(), name
             assert np.isfinite(motion.angular).all(), name

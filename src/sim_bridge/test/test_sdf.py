@@ -412,7 +412,7 @@ def test_colours_come_from_the_material_or_its_script(load):
 def test_what_is_emissive_glows(load):
     material = "<material><emissive>0.5 2 0 1</emissive></material>"
     world = load(model(f"<link name='l'><visual name='v'>{UNIT_BOX}{material}</visual></link>"))
-    assert world.bodies[0].visuals[0].glow == (0.5, 1.0, 0.0)
+    assert world.bodies[0].visuals[0].emissive == (0.5, 1.0, 0.0)
 
 
 def test_inertia_is_turned_to_its_principal_axes(load):

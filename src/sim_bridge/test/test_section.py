@@ -9,14 +9,14 @@ from planar import Pose2, grid_from_picture
 from planar.geometry.ray_casting import cast_rays
 from sim_bridge.geometry.pose3 import pose3
 from sim_bridge.geometry.shapes import Box, Cylinder, Sphere
-from sim_bridge.views.section import Section, cast_beams
+from sim_bridge.views.section import CrossSection, cast_beams
 from sim_bridge.world import Body, Collision
 
 SQUARE = np.array([[1, -1, 1, 1], [1, 1, -1, 1], [-1, 1, -1, -1], [-1, -1, 1, -1]], dtype=float)
 
 
-def body(shape, pose, mass=None, name="m::l", retro=0.0, **more):
-    return Body(name, pose, (Collision(shape, np.eye(4), retro=retro),), mass, **more)
+def body(shape, pose, mass=None, name="m::l", laser_retro=0.0, **more):
+    return Body(name, pose, (Collision(shape, np.eye(4), laser_retro=laser_retro),), mass, **more)
 
 
 def ranges_at(section, count=4, sight=10.0, pose_of=None):
@@ -43,7 +43,7 @@ def test_nothing_is_seen_beyond_sight():
 def test_beams_agree_with_those_cast_through_a_fine_grid():
     grid = grid_from_picture("#########\n#.......#\n#..##...#\n#.......#\n#########", 0.5)
     rows, cols = np.nonzero(grid.cells)
-    section = Section(height=0.3)
+    section = CrossSection(height=0.3)
     for index, (row, col) in enumerate(zip(rows, cols)):
         middle = pose3((col + 0.5) * 0.5, (row + 0.5) * 0.5, 0.5)
         section.add(body(Box((0.5, 0.5, 1.0)), middle, name=f"{index}::l"))
@@ -53,32 +53,32 @@ def test_beams_agree_with_those_cast_through_a_fine_grid():
 
 
 def test_round_things_are_met_within_a_millimetre():
-    section = Section(height=0.3)
+    section = CrossSection(height=0.3)
     section.add(body(Cylinder(0.2, 1.0), pose3(2.0, 0.0, 0.5)))
     section.add(body(Sphere(0.5), pose3(0.0, 2.0, 0.3), name="ball::l"))
     assert ranges_at(section) == pytest.approx([1.8, 1.5, math.inf, math.inf], abs=1e-3)
 
 
 def test_what_is_not_at_the_height_of_the_section_is_not_seen():
-    section = Section(height=0.3)
+    section = CrossSection(height=0.3)
     section.add(body(Box((1, 1, 0.2)), pose3(2.0, 0.0, 0.1)))
     section.add(body(Box((1, 1, 0.2)), pose3(2.0, 0.0, 1.0), name="lintel::l"))
     assert np.isinf(ranges_at(section)).all()
 
 
 def test_a_thing_that_moves_is_seen_where_it_is():
-    section = Section(height=0.3)
+    section = CrossSection(height=0.3)
     section.add(body(Box((1, 1, 1)), pose3(2.0, 0.0, 0.5), mass=1.0))
     assert ranges_at(section, pose_of=lambda name: pose3(2.0, 0.0, 0.5))[0] == pytest.approx(1.5)
     assert ranges_at(section, pose_of=lambda name: pose3(3.0, 0.0, 0.5))[0] == pytest.approx(2.5)
 
 
 def test_things_on_a_course_are_seen_where_they_are_and_as_bright_as_they_are():
-    section, places = Section(height=0.3), {"b::l": pose3(0.0, 4.0, 0.5), "c::l": pose3(-3.0, 0.0, 0.5)}
-    section.add(body(Box((1, 1, 1)), pose3(2.0, 0.0, 0.5), name="a::l", retro=1.0))
-    section.add(body(Box((1, 1, 1)), pose3(9.0, 9.0, 0.5), name="b::l", retro=2.0, is_on_course=True))
-    section.add(body(Box((1, 1, 1)), pose3(9.0, 0.0, 0.5), name="c::l", retro=3.0, is_on_course=True))
-    section.add(body(Box((1, 1, 1)), pose3(0.0, -5.0, 0.5), name="d::l", retro=4.0, mass=1.0))
+    section, places = CrossSection(height=0.3), {"b::l": pose3(0.0, 4.0, 0.5), "c::l": pose3(-3.0, 0.0, 0.5)}
+    section.add(body(Box((1, 1, 1)), pose3(2.0, 0.0, 0.5), name="a::l", laser_retro=1.0))
+    section.add(body(Box((1, 1, 1)), pose3(9.0, 9.0, 0.5), name="b::l", laser_retro=2.0, is_kinematic=True))
+    section.add(body(Box((1, 1, 1)), pose3(9.0, 0.0, 0.5), name="c::l", laser_retro=3.0, is_kinematic=True))
+    section.add(body(Box((1, 1, 1)), pose3(0.0, -5.0, 0.5), name="d::l", laser_retro=4.0, mass=1.0))
     places["d::l"] = pose3(0.0, -5.0, 0.5)
     ranges, nearest = cast_beams(section.segments(places.get), 0.0, 0.0, 0.0, math.pi / 2.0, 4, 10.0)
     assert ranges == pytest.approx([1.5, 3.5, 2.5, 4.5])

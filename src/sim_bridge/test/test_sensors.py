@@ -10,11 +10,11 @@ from sim_bridge import ROBOTS, Simulation, SimulationSettings
 from sim_bridge.geometry.pose3 import pose3, transform_points
 from sim_bridge.geometry.shapes import Box, Cylinder, MeshFile, Plane, Sphere
 from sim_bridge.noise import noise_named
-from sim_bridge.physics.motion import Motion
+from sim_bridge.physics.kinematics import KinematicState
 from sim_bridge.sensors.bumper import CENTRE, LEFT, RIGHT, pressed
 from sim_bridge.sensors.camera import Camera, CameraProfile, CameraSettings, DepthCameraSettings, points_of
 from sim_bridge.sensors.imu import Imu, ImuProfile, ImuSettings
-from sim_bridge.views.drawing import Drawing
+from sim_bridge.views.render_geometry import RenderGeometry
 from sim_bridge.world import Body, Collision, Visual, World
 
 SMALL = CameraSettings(width=160, height=120)
@@ -25,7 +25,7 @@ EXACT = SimulationSettings(**noise_named("ideal"))
 
 def drawing_of(*shapes):
     """Shapes with their poses and colours, drawn."""
-    drawing = Drawing()
+    drawing = RenderGeometry()
     for number, (shape, pose, colour) in enumerate(shapes):
         drawing.add(Body(f"m{number}::l", pose, (), visuals=(Visual(shape, np.eye(4), colour),)))
     return drawing.triangles(lambda name: np.eye(4))
@@ -52,8 +52,8 @@ def test_a_wall_ahead_is_as_deep_everywhere_as_it_is_far():
 
 
 def test_what_glows_is_as_bright_from_all_sides():
-    drawing = Drawing()
-    ball = Visual(Sphere(0.5), np.eye(4), (1.0, 1.0, 1.0), glow=(1.0, 1.0, 1.0))
+    drawing = RenderGeometry()
+    ball = Visual(Sphere(0.5), np.eye(4), (1.0, 1.0, 1.0), emissive=(1.0, 1.0, 1.0))
     drawing.add(Body("ball::link", pose3(3.0, 0.0, 1.0), (), visuals=(ball,)))
     seen = camera(SMALL).picture(*drawing.triangles(lambda name: np.eye(4)), pose3(z=1.0))
     assert (seen.rgb[np.isfinite(seen.depth)] == 255).all()
@@ -110,7 +110,7 @@ def test_depth_noise_grows_with_the_square_of_the_depth_and_follows_the_seed():
 
 
 def test_bodies_that_move_are_drawn_where_they_are_and_the_robot_itself_is_left_out():
-    drawing = Drawing()
+    drawing = RenderGeometry()
     part = Collision(Box((0.5, 0.5, 0.5)), np.eye(4))
     drawing.add(Body("ball::l", np.eye(4), (part,), mass=1.0))
     drawing.add(Body("robot::base", np.eye(4), (part,), mass=1.0))
@@ -123,7 +123,7 @@ def test_bodies_that_move_are_drawn_where_they_are_and_the_robot_itself_is_left_
 
 def test_a_mesh_that_cannot_be_read_is_named_and_the_rest_is_drawn(tmp_path):
     (tmp_path / "broken.obj").write_text("")
-    drawing = Drawing()
+    drawing = RenderGeometry()
     looks = (MeshFile(tmp_path / "broken.obj"), Box((1.0, 1.0, 1.0)))
     drawing.add(Body("m::l", np.eye(4), (), visuals=tuple(Visual(look, np.eye(4)) for look in looks)))
     assert len(drawing.triangles(lambda name: np.eye(4))[0]) == 12
@@ -146,7 +146,7 @@ def test_senseless_cameras_are_refused(values, named):
 
 
 def at_rest(pose):
-    return Motion(pose, np.zeros(3), np.zeros(3))
+    return KinematicState(pose, np.zeros(3), np.zeros(3))
 
 
 def test_an_imu_at_rest_feels_what_keeps_it_from_falling():
@@ -159,8 +159,8 @@ def test_an_imu_at_rest_feels_what_keeps_it_from_falling():
 def test_an_imu_feels_turning_and_speeding_up_in_its_own_frame():
     imu = Imu(ImuSettings(), np.random.default_rng(0), AT_BASE)
     turned = pose3(yaw=math.pi / 2.0)
-    imu.feel(Motion(turned, np.zeros(3), np.zeros(3)), 0.1, 9.8)
-    reading = imu.feel(Motion(turned, np.array([0.0, 0.2, 0.0]), np.array([0.0, 0.0, 0.7])), 0.1, 9.8)
+    imu.feel(KinematicState(turned, np.zeros(3), np.zeros(3)), 0.1, 9.8)
+    reading = imu.feel(KinematicState(turned, np.array([0.0, 0.2, 0.0]), np.array([0.0, 0.0, 0.7])), 0.1, 9.8)
     assert reading.acceleration == pytest.approx([2.0, 0.0, 9.8])
     assert reading.turn_rates == pytest.approx([0.0, 0.0, 0.7])
 
@@ -202,9 +202,9 @@ def test_the_depth_camera_and_the_laser_made_of_it_agree():
     robot = ROBOTS["turtlebot_kinect"]
     simulation = Simulation(room, robot, EXACT)
     scan = next(filter(None, (simulation.step().scan for _ in range(20))))
-    laser = simulation.scene.models.motion("mobile_base").pose @ robot.laser.pose_in_base
+    laser = simulation.scene.models.state("mobile_base").pose @ robot.laser.pose_in_base
     settings = DepthCameraSettings(min_depth=robot.laser.range_min, max_depth=robot.laser.sight)
-    seen = camera(settings).picture(*simulation.scene.sight.triangles("mobile_base"), laser)
+    seen = camera(settings).picture(*simulation.scene.view.triangles("mobile_base"), laser)
     middle = points_of(seen.depth, settings)[240]
     bearings, ranges = np.arctan2(-middle[:, 0], middle[:, 2]), np.hypot(middle[:, 0], middle[:, 2])
     at_bearings = np.interp(bearings[::-1], scan.angles, scan.ranges)[::-1]

@@ -9,7 +9,7 @@ import yaml
 from planar import SettingsError
 from sim_bridge.config import BridgeSettings, SimulationSettings
 from sim_bridge.errors import RobotError
-from sim_bridge.noise import NOISES, noise_named
+from sim_bridge.noise import NOISE_PROFILES, noise_named
 from sim_bridge.robots import ROBOTS, robot_named
 
 FOLDER = Path(__file__).resolve().parents[1] / "config"
@@ -20,14 +20,14 @@ ARGUMENTS = {"world", "seed", "speed", "wait_for", "static_publishers"}
 
 def test_the_shipped_configuration_holds_every_default():
     defaults = {**dataclasses.asdict(SimulationSettings()), **dataclasses.asdict(BridgeSettings(world="w"))}
-    left_out = ARGUMENTS | set(NOISES["ideal"].__dict__)
+    left_out = ARGUMENTS | set(NOISE_PROFILES["ideal"].__dict__)
     expected = {name: value for name, value in defaults.items() if name not in left_out}
     assert yaml.safe_load(CONFIG.read_text()) == expected
 
 
 def test_the_shipped_noise_profiles_are_those_of_the_code():
     shipped = yaml.safe_load((FOLDER / "noise.yaml").read_text())
-    assert shipped == {name: dataclasses.asdict(noise) for name, noise in NOISES.items()}
+    assert shipped == {name: dataclasses.asdict(noise) for name, noise in NOISE_PROFILES.items()}
 
 
 def test_the_default_noise_is_that_of_the_turtlebot():

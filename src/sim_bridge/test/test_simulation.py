@@ -11,11 +11,11 @@ from planar import Pose2, Twist2, wrap
 from sim_bridge import ROBOTS, Simulation, SimulationSettings, WorldError, load_world
 from sim_bridge.geometry.pose3 import pose3
 from sim_bridge.geometry.shapes import Box, Cylinder, Plane
-from sim_bridge.physics.motion import at_rest
+from sim_bridge.physics.kinematics import at_rest
 from sim_bridge.sensors.bumper import CENTRE
 from sim_bridge.sensors.kobuki import KobukiReading
 from sim_bridge.simulation import ROBOT_NAME
-from sim_bridge.views.section import Section, cast_beams
+from sim_bridge.views.section import CrossSection, cast_beams
 from sim_bridge.world import Body, Collision, World
 
 HOME = Path(__file__).resolve().parents[3] / "map" / "home.world"
@@ -126,11 +126,11 @@ def test_what_is_put_beside_something_feels_it_at_once():
     simulation = Simulation(World("post", (*FLOOR.bodies, post)))
     models = simulation.scene.models
     assert simulation.step().contacts == ()
-    models.set_link_motion(simulation.base, models.motion(ROBOT_NAME).at(pose3(2.8, 0.0, 0.0)))
+    models.set_link_state(simulation.base, models.state(ROBOT_NAME).at(pose3(2.8, 0.0, 0.0)))
     assert simulation.step().contacts == ("post::link",)
-    models.set_link_motion(simulation.base, models.motion(ROBOT_NAME).at(pose3()))
+    models.set_link_state(simulation.base, models.state(ROBOT_NAME).at(pose3()))
     assert simulation.step().contacts == ()
-    models.set_link_motion("post::link", at_rest(pose3(0.2, 0.0, 0.5)))
+    models.set_link_state("post::link", at_rest(pose3(0.2, 0.0, 0.5)))
     assert simulation.step().contacts == ("post::link",)
 
 
@@ -157,7 +157,7 @@ def test_odometry_starts_at_zero_and_drifts_continuously():
 @pytest.mark.parametrize("robot", ROBOTS.values(), ids=list(ROBOTS))
 def test_a_scan_equals_ray_casting_within_its_noise(robot):
     world = load_world(HOME)
-    section = Section(height=0.3)
+    section = CrossSection(height=0.3)
     for part in world.bodies:
         section.add(part)
     simulation = Simulation(world, robot, base_in_world=Pose2(0.0, 0.0, 0.5))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from planar import Twist2
-from sim_bridge import ROBOTS, Fitting, Simulation, SimulationSettings
+from sim_bridge import ROBOTS, RobotWrappers, Simulation, SimulationSettings
 from sim_bridge.geometry.shapes import Box, Plane
 from sim_bridge.noise import noise_named
 from sim_bridge.sensors.base import SensorWrapper
@@ -57,12 +57,12 @@ def observations():
     """Observations of so many seconds with a fitting and a speed."""
     simulations = []
 
-    def run(seconds, fitting=Fitting(), speed=0.0):
+    def run(seconds, wrappers=RobotWrappers(), speed=0.0):
         floor = Body("floor::l", np.eye(4), (Collision(Plane(), np.eye(4)),))
         at = np.eye(4)
         at[:3, 3] = (4.0, 0.0, 0.5)
         wall = Body("wall::l", at, (Collision(Box((0.2, 5.0, 1.0)), np.eye(4)),))
-        simulations.append(Simulation(World("w", (floor, wall)), settings=EXACT, fitting=fitting))
+        simulations.append(Simulation(World("w", (floor, wall)), settings=EXACT, wrappers=wrappers))
         steps = round(seconds / simulations[-1].step_seconds)
         return [simulations[-1].step(Twist2(speed, 0.0)) for _ in range(steps)]
 
@@ -73,7 +73,7 @@ def observations():
 
 def only(name, wrap):
     """Wraps the sensor of that name alone."""
-    return Fitting(sensor=lambda sensor: wrap(sensor) if sensor.name == name else sensor)
+    return RobotWrappers(sensor=lambda sensor: wrap(sensor) if sensor.name == name else sensor)
 
 
 def told(seen):
@@ -108,7 +108,9 @@ def test_odometry_that_drops_out_stays_what_it_was_last(observations):
 
 def test_what_stands_before_a_drive_changes_how_the_robot_moves(observations):
     whole = observations(3.0, speed=0.3)[-1].base_in_world.x
-    half = observations(3.0, Fitting(drive=lambda drive: Weak(drive, 0.5)), speed=0.3)[-1].base_in_world.x
+    half = observations(3.0, RobotWrappers(drive=lambda drive: Weak(drive, 0.5)), speed=0.3)[
+        -1
+    ].base_in_world.x
     assert math.isclose(half, 0.5 * whole, rel_tol=0.05)
 
 
@@ -131,8 +133,8 @@ def test_motors_are_set_fifty_times_a_second_and_commands_are_ramped_as_before()
     floor = World("floor", (Body("floor::link", np.eye(4), (Collision(Plane(), np.eye(4)),)),))
     for rate in (200, 1000):
         settings = SimulationSettings(**{**noise_named("ideal"), "physics_rate": rate})
-        fitting = Fitting(drive=lambda drive: Counting(drive, 1.0))
-        simulation = Simulation(floor, settings=settings, fitting=fitting)
+        wrappers = RobotWrappers(drive=lambda drive: Counting(drive, 1.0))
+        simulation = Simulation(floor, settings=settings, wrappers=wrappers)
         asked.clear()
         for _ in range(round(1.0 / simulation.step_seconds)):
             seen = simulation.step(Twist2(0.3, 0.0))

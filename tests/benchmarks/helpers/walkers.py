@@ -10,7 +10,7 @@ from planar import OccupancyGrid, Pose2
 from sim_bridge import Simulation
 from sim_bridge.geometry.pose3 import from_pose2
 from sim_bridge.geometry.shapes import Cylinder
-from sim_bridge.physics.motion import Motion
+from sim_bridge.physics.kinematics import KinematicState
 from sim_bridge.world import Body, Collision
 
 RADIUS, HEIGHT = 0.2, 1.6
@@ -55,7 +55,7 @@ class Walker:
             self._direction = -self._direction
         self._along = min(max(ahead, 0.0), float(self._travelled[-1]))
         still = np.zeros(3)
-        self._simulation.scene.set_model_motion(self.name, Motion(self._pose(), still, still))
+        self._simulation.scene.set_model_state(self.name, KinematicState(self._pose(), still, still))
 
     def _at(self, along: float):
         return tuple(np.interp(along, self._travelled, column) for column in self._path_xy.T)

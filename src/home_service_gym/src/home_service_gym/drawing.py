@@ -24,7 +24,7 @@ class Picture:
     def __init__(self, playground: Playground):
         self.playground = playground
         world = playground.arena.world
-        still = [body for body in world.bodies if body.keeps_still]
+        still = [body for body in world.bodies if body.is_static]
         outlines = outlines_of(replace(world, bodies=tuple(still)), HEIGHT, HEIGHT)
         start = playground.start
         corners = np.vstack([*outlines, [(start.x, start.y)]])
@@ -39,7 +39,7 @@ class Picture:
         self._sizes = {
             body.name: float(np.ptp(outline, axis=0).max()) / 2.0
             for body in world.bodies
-            if not body.keeps_still
+            if not body.is_static
             for outline in outlines_of(standing(world, body), HEIGHT, HEIGHT)
         }
 
@@ -52,7 +52,7 @@ class Picture:
         if marks.goal is not None:
             goal, radius = marks.goal
             self._disc(pen, (goal.x, goal.y), radius, GOAL)
-        for course in marks.courses:
+        for course in marks.trajectories:
             self._disc(pen, course.at(moment.stamp), self._sizes.get(course.link, ROBOT), MOVING)
         for x, y, _, _, radius in moment.people.tolist():
             self._disc(pen, (x, y), radius, MOVING)

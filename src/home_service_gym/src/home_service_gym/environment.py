@@ -85,7 +85,7 @@ class TaskEnv(gymnasium.Env):
         self._playground = self._playground_of(number)
         beginning = self._task.begin(self._playground, self.np_random)
         noise = int(self.np_random.integers(2**31))
-        self._moment = self._playground.restart(noise, beginning.start, beginning.courses)
+        self._moment = self._playground.restart(noise, beginning.start, beginning.trajectories)
         self._show_people()
         return self._observation(), {"world": self._playground.arena.title}
 

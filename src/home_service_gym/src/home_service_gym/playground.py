@@ -9,9 +9,9 @@ import numpy as np
 from home_service_gym.ground import Ground
 from laboratory.worlds.source import Arena
 from planar import Pose2, Scan, Twist2
-from sim_bridge import Observation, RobotProfile, Simulation, SimulationSettings
-from sim_bridge.courses import Course
+from sim_bridge import RobotProfile, Simulation, SimulationSettings, StepResult
 from sim_bridge.people.crowd import body_of
+from sim_bridge.scripted_trajectories import ScriptedTrajectory
 from sim_bridge.sensors.lidar import LaserProfile
 from sim_bridge.views.true_map import outlines_of, true_map
 from sim_bridge.world import Body, World
@@ -56,14 +56,17 @@ class Playground:
     @cached_property
     def ground(self) -> Ground:
         """Where there is room, by the truth about the arena as it is at the beginning."""
-        still = [body for body in self.arena.world.bodies if body.keeps_still]
+        still = [body for body in self.arena.world.bodies if body.is_static]
         world = replace(self.arena.world, bodies=tuple(still))
         grid = true_map(world, inside=(self.start.x, self.start.y))
         return Ground(grid, self.start, crowd_of(self.arena.world))
 
-    def restart(self, seed: int, start: Pose2, courses: Sequence[Course] = ()) -> Moment:
+    def restart(self, seed: int, start: Pose2, trajectories: Sequence[ScriptedTrajectory] = ()) -> Moment:
         """Begins an episode with the noise of a seed, and ``courses`` beside those of the world."""
-        self._simulation.scene.courses.each = (*self.arena.world.courses, *courses)
+        self._simulation.scene.trajectory_player.trajectories = (
+            *self.arena.world.trajectories,
+            *trajectories,
+        )
         self._simulation.rewind(seed, start)
         return self.advance(Twist2())
 
@@ -72,15 +75,15 @@ class Playground:
         seen = self._simulation.step(command)
         return _moment_of(seen, self._simulation.scene.crowd.rows)
 
-    def places_of(self, courses: Sequence[Course], stamp: float) -> np.ndarray:
+    def places_of(self, trajectories: Sequence[ScriptedTrajectory], stamp: float) -> np.ndarray:
         """Where what goes its own way then is, (N, 2)."""
-        return np.array([course.at(stamp) for course in courses]).reshape(-1, 2)
+        return np.array([course.at(stamp) for course in trajectories]).reshape(-1, 2)
 
     def close(self) -> None:
         self._simulation.close()
 
 
-def _moment_of(seen: Observation, people: np.ndarray) -> Moment:
+def _moment_of(seen: StepResult, people: np.ndarray) -> Moment:
     assert seen.scan is not None, "a lidar tells once a period"
     told = seen.odometry
     pose, odom = seen.base_in_world, told.base_in_odom
@@ -89,11 +92,11 @@ def _moment_of(seen: Observation, people: np.ndarray) -> Moment:
 
 def crowd_of(world: World) -> np.ndarray:
     """What does not keep still, as it begins: x, y and radius of each part of it, (N, 3)."""
-    begins = {course.link: course.at(0.0) for course in world.courses}
+    begins = {course.link: course.at(0.0) for course in world.trajectories}
     discs = [
         (*begins.get(body.name, middle), float(np.hypot(*(outline - middle).T).max()))
         for body in (*world.bodies, *map(body_of, world.walkers))
-        if not body.keeps_still
+        if not body.is_static
         for middle in [body.pose_in_world[:2, 3].tolist()]
         for outline in outlines_of(standing(world, body), 0.0, HEIGHT)
     ]
@@ -102,7 +105,7 @@ def crowd_of(world: World) -> np.ndarray:
 
 def standing(world: World, body: Body) -> World:
     """With this body alone, which stands where it is."""
-    return replace(world, bodies=(replace(body, is_on_course=False),))
+    return replace(world, bodies=(replace(body, is_kinematic=False),))
 
 
 def with_lidar_only(robot: RobotProfile) -> RobotProfile:

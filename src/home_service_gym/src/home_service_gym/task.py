@@ -9,7 +9,7 @@ from gymnasium import spaces
 
 from home_service_gym.playground import Moment, Playground
 from planar import Pose2
-from sim_bridge.courses import Course
+from sim_bridge.scripted_trajectories import ScriptedTrajectory
 from sim_bridge.world import Body
 
 # What the tasks here have in common: of a metre nearer to the goal, of a control period, of the ends.
@@ -21,7 +21,7 @@ class Beginning:
     """Where the robot starts, and the courses of bodies that the task has brought along."""
 
     start: Pose2
-    courses: Sequence[Course] = ()
+    trajectories: Sequence[ScriptedTrajectory] = ()
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Marks:
     """For pictures: a ``goal`` and its radius, ``courses`` of what moves, ``known`` cells of the ground."""
 
     goal: Optional[Tuple[Pose2, float]] = None
-    courses: Sequence[Course] = field(default_factory=tuple)
+    trajectories: Sequence[ScriptedTrajectory] = field(default_factory=tuple)
     known: Optional[np.ndarray] = None
 
 

@@ -16,7 +16,7 @@ from laboratory.suites import ROOT
 from laboratory.worlds.source import Arena
 from planar import Pose2, SettingsError, Twist2, wrap
 from sim_bridge import SimulationSettings, load_world, robot_named
-from sim_bridge.courses import Course
+from sim_bridge.scripted_trajectories import ScriptedTrajectory
 
 FOLDER = ROOT / "src/compat/turtlebot3_gazebo"
 # Control periods a second, beams that the network sees, and how fast the robot is driven, m/s and rad/s.
@@ -108,8 +108,8 @@ class TurtleBot3Stage(gymnasium.Env):
     def render(self) -> Optional[np.ndarray]:  # type: ignore[override]
         if self._moment is None:
             return None
-        courses = self._playground.arena.world.courses
-        return self._viewer.show(self._playground, self._moment, Marks((self._goal, ARRIVED), courses))
+        trajectories = self._playground.arena.world.trajectories
+        return self._viewer.show(self._playground, self._moment, Marks((self._goal, ARRIVED), trajectories))
 
     def close(self) -> None:
         self._viewer.close()
@@ -161,22 +161,26 @@ class TurtleBot3Stage(gymnasium.Env):
 def arena_of(stage: int) -> Arena:
     """The world of a stage, with what moves in it."""
     world = load_world(FOLDER / f"worlds/turtlebot3_stage_{stage}.world", [FOLDER / "models"])
-    courses = _courses_of(stage, {body.name: body.pose_in_world[:2, 3] for body in world.bodies})
-    moving = {course.link for course in courses}
-    bodies = tuple(replace(body, is_on_course=body.name in moving) for body in world.bodies)
-    return Arena(replace(world, bodies=bodies, courses=courses), None, f"stage {stage}")
+    trajectories = _courses_of(stage, {body.name: body.pose_in_world[:2, 3] for body in world.bodies})
+    moving = {course.link for course in trajectories}
+    bodies = tuple(replace(body, is_kinematic=body.name in moving) for body in world.bodies)
+    return Arena(replace(world, bodies=bodies, trajectories=trajectories), None, f"stage {stage}")
 
 
-def _courses_of(stage: int, places_xy: Dict[str, np.ndarray]) -> Tuple[Course, ...]:
+def _courses_of(stage: int, places_xy: Dict[str, np.ndarray]) -> Tuple[ScriptedTrajectory, ...]:
     if stage == 3:
         angles = np.linspace(0.0, 2.0 * math.pi, CORNERS + 1)
         turns = np.array([[np.cos(angles), np.sin(angles)], [-np.sin(angles), np.cos(angles)]])
         posts = {name: xy for name, xy in places_xy.items() if name.startswith("obstacle_")}
         times = np.linspace(0.0, ROUND, CORNERS + 1)
-        return tuple(Course(name, times, np.einsum("i,ijk->kj", xy, turns)) for name, xy in posts.items())
+        return tuple(
+            ScriptedTrajectory(name, times, np.einsum("i,ijk->kj", xy, turns)) for name, xy in posts.items()
+        )
     if stage == 4:
         return tuple(
-            Course(f"{name}::link", np.array(walk)[:, 0], places_xy[f"{name}::link"] + np.array(walk)[:, 1:])
+            ScriptedTrajectory(
+                f"{name}::link", np.array(walk)[:, 0], places_xy[f"{name}::link"] + np.array(walk)[:, 1:]
+            )
             for name, walk in WALKS.items()
         )
     return ()

@@ -76,7 +76,7 @@ class Window:
         base = moment.base_in_world
         self._frames.put(self._base, Transform(WORLD, _lifted(base), moment.stamp, is_static=False))
         poses = {body.name: body.pose_in_world for body in playground.arena.world.bodies}
-        for course in marks.courses:
+        for course in marks.trajectories:
             height = poses[course.link][2, 3]
             self._world.place(course.link, pose3(*course.at(moment.stamp), height, 0.0, 0.0, 0.0))
         for walker, (x, y, *_) in zip(playground.arena.world.walkers, moment.people.tolist()):

@@ -1,12 +1,14 @@
-"""A headless simulator of a wheeled robot in SDF worlds; only ``ros`` knows of ROS."""
+"""A headless simulator of wheeled robots in SDF worlds. Only ``sim_bridge.ros`` uses ROS."""
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from planar.deprecation import deprecated_names
+
 if TYPE_CHECKING:
     from sim_bridge.config import SimulationSettings
     from sim_bridge.errors import RobotError, WorldError
-    from sim_bridge.robot import Fitting, Observation
+    from sim_bridge.robot import RobotWrappers, StepResult
     from sim_bridge.robots import ROBOTS, RobotProfile, robot_named
     from sim_bridge.scene import Scene
     from sim_bridge.sdf import load_world
@@ -14,13 +16,13 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ROBOTS",
-    "Fitting",
-    "Observation",
     "RobotError",
     "RobotProfile",
+    "RobotWrappers",
     "Scene",
     "Simulation",
     "SimulationSettings",
+    "StepResult",
     "WorldError",
     "load_world",
     "robot_named",
@@ -29,17 +31,18 @@ __all__ = [
 _MODULES = {
     "config": ("SimulationSettings",),
     "errors": ("RobotError", "WorldError"),
-    "robot": ("Fitting", "Observation"),
+    "robot": ("RobotWrappers", "StepResult"),
     "robots": ("ROBOTS", "RobotProfile", "robot_named"),
     "scene": ("Scene",),
     "sdf": ("load_world",),
     "simulation": ("Simulation",),
 }
-_HOMES = {name: module for module, names in _MODULES.items() for name in names}
+_MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}
+_deprecated = deprecated_names(__name__, {"Fitting": "RobotWrappers", "Observation": "StepResult"})
 
 
 def __getattr__(name: str) -> Any:
-    """Imported when first asked for: who only wants to know a robot need not wait for the simulator."""
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__} has no attribute {name}")
-    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    """Import a public name when it is first used: a robot's profile alone does not load the simulator."""
+    if name not in _MODULE_OF:
+        return _deprecated(name)
+    return getattr(import_module(f"{__name__}.{_MODULE_OF[name]}"), name)

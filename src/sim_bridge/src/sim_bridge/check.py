@@ -61,7 +61,7 @@ def _run(kind: str) -> List[Tuple[str, bytes]]:
     faults = Faults([Fault(kind, BEGIN, END, kind_named(kind).strength[0], seed=1)])
     floor = Body("floor::link", np.eye(4), (Collision(Plane(), np.eye(4)),))
     world = World("room", (floor, box_on_floor("box", (0.5, 0.5, 1.0), Pose2(2.0, 0.3))))
-    simulation, told = Simulation(world, fitting=faults.fitting), []
+    simulation, told = Simulation(world, wrappers=faults.wrappers), []
     try:
         observation = simulation.step(SPEED)
         while observation.stamp < SECONDS:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from planar.config.listing import Section
 from planar.config.parameters import POSITIVE, Bounds, check_parameters, parameter, parameters_of
 from planar.config.settings import check
-from sim_bridge.noise import NOISES, NOT_NEGATIVE, NoiseSettings
+from sim_bridge.noise import NOISE_PROFILES, NOT_NEGATIVE, NoiseSettings
 
 # Hertz; with more, a single period of the odometry would take seconds.
 HIGHEST_PHYSICS_RATE = 100_000
@@ -74,8 +74,8 @@ class BridgeSettings(RunTimeSettings):
     )
     noise: str = parameter(
         "turtlebot",
-        f"how wrong the sensors are: {', '.join(NOISES)}; the values are those of noise.yaml, each of which "
-        "may also be set here by its name",
+        f"noise profile of the sensors: {', '.join(NOISE_PROFILES)}; noise.yaml lists their values, each of "
+        "which may also be set here by its name",
     )
 
 
@@ -121,7 +121,7 @@ CONFIG_FILES = {
     "fault_relay.yaml": Section("", *parameters_of(RelaySettings), about="Settings of fault_relay."),
     "noise.yaml": Section(
         "",
-        *(Section(name, noise) for name, noise in NOISES.items()),
+        *(Section(name, noise) for name, noise in NOISE_PROFILES.items()),
         about="The noise profiles of sim_bridge, to look up: its parameter noise names one of them.\n"
         "ideal: what the sensors say is true. turtlebot: a Kobuki with a Kinect or a small lidar.\n"
         "bad: what a localization should still bear.",

@@ -9,7 +9,8 @@ from planar import Pose2
 from sim_bridge.doorway import Door
 from sim_bridge.geometry.pose3 import from_pose2
 from sim_bridge.geometry.shapes import Box
-from sim_bridge.people.crowd import Movable, rows_of
+from sim_bridge.people.crowd import rows_of
+from sim_bridge.physics.kinematics import KinematicBodies
 from sim_bridge.robot import Robot
 from sim_bridge.world import Body, Collision
 
@@ -34,8 +35,14 @@ class Doors:
     def _begin(self) -> None:
         self._are_shut = [door.is_due(0.0) for door in self._each]
 
-    def follow(
-        self, engine: Movable, step: int, rate: int, stamp: float, robots: Iterable[Robot], people: np.ndarray
+    def update(
+        self,
+        engine: KinematicBodies,
+        step: int,
+        rate: int,
+        stamp: float,
+        robots: Iterable[Robot],
+        people: np.ndarray,
     ) -> None:
         """Before the step of physics number ``step``, of ``rate`` a second, which begins at ``stamp``.
 
@@ -51,7 +58,7 @@ class Doors:
             is_shut = door.is_due(stamp) and may_shut and not _is_near(door, people[:, :2])
             self._are_shut[number] = is_shut
             if engine.has_link(door.link):  # nobody has taken it away
-                engine.shift([(door.link, *_place(door, is_shut))])
+                engine.set_positions([(door.link, *_place(door, is_shut))])
 
 
 def _is_near(door: Door, others_xy: np.ndarray) -> bool:
@@ -69,4 +76,4 @@ def _place(door: Door, is_shut: bool) -> Tuple[float, float]:
 def _body_of(door: Door, is_shut: bool) -> Body:
     pose = from_pose2(Pose2(*_place(door, is_shut), door.pose.yaw), z=HEIGHT / 2.0)
     solid = Collision(Box((THICKNESS, door.width, HEIGHT)), np.eye(4))
-    return Body(door.link, pose, (solid,), is_on_course=True)
+    return Body(door.link, pose, (solid,), is_kinematic=True)

@@ -50,7 +50,7 @@ class NoiseSettings:
 
 
 # ``turtlebot``: a Kobuki with a Kinect or a small lidar; ``bad``: what a localization should still bear.
-NOISES: Dict[str, NoiseSettings] = {
+NOISE_PROFILES: Dict[str, NoiseSettings] = {
     "ideal": NoiseSettings(**{field.name: 0.0 for field in fields(NoiseSettings)}),
     "turtlebot": NoiseSettings(),
     "bad": NoiseSettings(
@@ -71,6 +71,8 @@ NOISES: Dict[str, NoiseSettings] = {
 
 def noise_named(name: str) -> Dict[str, Any]:
     """The values of a noise profile by their names. Raises SettingsError."""
-    if name not in NOISES:
-        raise SettingsError(f"noise must be one of {', '.join(NOISES)}, got {name!r}{hint(name, NOISES)}")
-    return asdict(NOISES[name])
+    if name not in NOISE_PROFILES:
+        raise SettingsError(
+            f"noise must be one of {', '.join(NOISE_PROFILES)}, got {name!r}{hint(name, NOISE_PROFILES)}"
+        )
+    return asdict(NOISE_PROFILES[name])

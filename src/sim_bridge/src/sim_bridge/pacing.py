@@ -33,7 +33,7 @@ class Pacer:
         self.wait_for = frozenset(wait_for)
         self.odometry_delay = 0.0
         # Nodes that are in step by moments, which are waited for there.
-        self.in_step: FrozenSet[str] = frozenset()
+        self.synchronised_nodes: FrozenSet[str] = frozenset()
         self._shortest_period = shortest_period
         self._patience = patience
         self._missing: Set[str] = set(self.wait_for)
@@ -58,7 +58,7 @@ class Pacer:
                 self._given_up.discard(name)
 
     def is_missing(self, name: str) -> bool:
-        return name in self._missing - self.in_step
+        return name in self._missing - self.synchronised_nodes
 
     def restart(self) -> None:
         """Time begins anew: what the nodes have reported is void."""
@@ -75,19 +75,20 @@ class Pacer:
         Unless ``is_limited``, only the nodes are waited for.
         """
         self._next_stamp = stamp
-        if self.behind(stamp):
+        if self.lagging_nodes(stamp):
             if self._blocked_since is None:
                 self._blocked_since = wall
             return RECHECK
         self._blocked_since = None
         return self._delay_of_speed(stamp, wall) if is_limited else 0.0
 
-    def behind(self, stamp: float) -> List[str]:
+    def lagging_nodes(self, stamp: float) -> List[str]:
         """The nodes that a step to ``stamp`` has to wait for."""
         return sorted(
             name
             for name, reached in self._reached.items()
-            if name not in self._missing | self.in_step and reached < stamp - self.period_of(name) - 1e-6
+            if name not in self._missing | self.synchronised_nodes
+            and reached < stamp - self.period_of(name) - 1e-6
         )
 
     def period_of(self, name: str) -> float:
@@ -98,7 +99,7 @@ class Pacer:
         """The nodes that have been waited for too long; from now on they are missing."""
         if self._blocked_since is None or wall - self._blocked_since < self._patience:
             return []
-        given_up = self.behind(stamp)
+        given_up = self.lagging_nodes(stamp)
         self._missing.update(given_up)
         self._given_up.update(given_up)
         for name in given_up:
@@ -108,7 +109,7 @@ class Pacer:
 
     def _delay_of_speed(self, stamp: float, wall: float) -> float:
         speed = self.speed
-        if self._missing - self.in_step and not 0.0 < speed < REAL_TIME:
+        if self._missing - self.synchronised_nodes and not 0.0 < speed < REAL_TIME:
             speed = REAL_TIME
         if speed == 0.0:
             self._anchor_speed = speed

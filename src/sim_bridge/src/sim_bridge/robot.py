@@ -8,11 +8,11 @@ from typing import Any, Callable, Dict, Iterator, Mapping, Optional, Sequence, T
 from typing import Counter as CounterOf
 
 from planar import Pose2, Scan, Twist2
+from planar.deprecation import deprecated_names
 from sim_bridge.config import SimulationSettings
 from sim_bridge.description import RobotProfile
 from sim_bridge.description.bodies import bodies_of
-from sim_bridge.driving.base import BASE_RATE, Drive
-from sim_bridge.driving.drive import RampedDrive
+from sim_bridge.driving.drive import BASE_RATE, RampedDrive, WheelDrive
 from sim_bridge.physics.engine import Engine
 from sim_bridge.physics.vehicle import Vehicle
 from sim_bridge.sensors.base import Mounting, Reading, Sensor, SensorSpec
@@ -21,19 +21,19 @@ from sim_bridge.sensors.mount import Mount
 from sim_bridge.sensors.odometry import Odometer, Odometry
 from sim_bridge.sensors.surroundings import RobotSurroundings
 from sim_bridge.sensors.truth import ContactList, GroundTruth, JointEncoders, Truth, WheelState
-from sim_bridge.views.sight import Sight
+from sim_bridge.views.scene_view import SceneView
 
 
 @dataclass(frozen=True)
-class Fitting:
+class RobotWrappers:
     """What is put before the sensors and the drive of a robot: each function gets one and gives one back."""
 
     sensor: Callable[[Sensor[Any]], Sensor[Any]] = lambda sensor: sensor
-    drive: Callable[[Drive], Drive] = lambda drive: drive
+    drive: Callable[[WheelDrive], WheelDrive] = lambda drive: drive
 
 
 @dataclass(frozen=True, eq=False)
-class Observation:
+class StepResult:
     """What there is to know after a step.
 
     ``stamp``: simulated seconds since the start. ``readings``: what each sensor has told since the last step,
@@ -98,20 +98,20 @@ class Robot:
     def __init__(
         self,
         engine: Engine,
-        sight: Sight,
+        view: SceneView,
         name: str,
         profile: RobotProfile,
         mounting: Mounting,
-        fitting: Fitting = Fitting(),
+        wrappers: RobotWrappers = RobotWrappers(),
     ):
         self.name = name
         self.profile = profile
-        self._fitting = fitting
+        self._wrappers = wrappers
         parts, drive = bodies_of(profile.model, name), profile.drive
         self.vehicle = Vehicle(
             engine, name, *parts, len(drive.left_joints), drive.torque, mounting.base_in_space
         )
-        self._around = RobotSurroundings(self.vehicle, sight)
+        self._surroundings = RobotSurroundings(self.vehicle, view)
         # What its description has, by the names that they tell by.
         self.specs: Dict[str, SensorSpec] = {}
         self.begin(mounting)
@@ -120,24 +120,24 @@ class Robot:
         """It stands where it starts: nothing has been commanded, driven or measured yet."""
         self._time(mounting.settings)
         drive, odometry = self.profile.drive, self.profile.odometry
-        self._drive = self._fitting.drive(RampedDrive(drive))
-        self._around.look_anew(0.0)
-        self._around.end_period()
+        self._drive = self._wrappers.drive(RampedDrive(drive))
+        self._surroundings.look_anew(0.0)
+        self._surroundings.end_period()
         truth, wheels, contacts = GroundTruth(), JointEncoders(), ContactList()
         self._odometer = Odometer(odometry, odometry.reckoning(drive, mounting))
         self._latest: Dict[str, Any] = {
-            truth.name: truth.measure(self._around),
+            truth.name: truth.measure(self._surroundings),
             self._odometer.name: Odometry(),
-            wheels.name: wheels.measure(self._around),
+            wheels.name: wheels.measure(self._surroundings),
             contacts.name: (),
         }
         self._mounts: Dict[str, Mount] = {}
         # Before this step of physics nothing is due.
         self._next_step = 0
         for sensor in (truth, self._odometer, wheels, contacts):
-            self._mount(self._fitting.sensor(sensor))
+            self._mount(self._wrappers.sensor(sensor))
         self.specs = {
-            self._mount(self._fitting.sensor(sensor)): spec
+            self._mount(self._wrappers.sensor(sensor)): spec
             for spec, sensor in _built(self.profile.sensors, mounting)
         }
         self._count_steps()
@@ -168,7 +168,7 @@ class Robot:
         """Motors are set, and bumps are felt, at each interval of so many steps of physics."""
         self._settings = settings
         self._interval = max(settings.physics_rate // BASE_RATE, 1)
-        self.vehicle.forget_speeds()
+        self.vehicle.invalidate_speeds()
 
     def _count_steps(self) -> None:
         # There is nothing to do here but after a multiple of so many steps of physics.
@@ -188,19 +188,19 @@ class Robot:
     def end_steps(self, step: int, stamp: float) -> None:
         """At the time ``stamp``, when ``step`` steps of physics are over: what is due measures."""
         if step % self._interval == 0:
-            self._around.feel()
+            self._surroundings.feel()
         if step < self._next_step:
             return
-        self._around.look_anew(stamp)
-        self._next_step = min([mount.end_step(step, self._around) for mount in self._mounts.values()])
+        self._surroundings.look_anew(stamp)
+        self._next_step = min([mount.end_step(step, self._surroundings) for mount in self._mounts.values()])
 
-    def observe(self, stamp: float) -> Observation:
+    def observe(self, stamp: float) -> StepResult:
         """What has been measured since the last call."""
-        self._around.end_period()
+        self._surroundings.end_period()
         told = {name: mount.take() for name, mount in self._mounts.items()}
         readings = {name: reading for name, reading in told.items() if reading is not None}
         self._latest.update({name: readings[name].value for name in self._latest if name in readings})
-        return Observation(
+        return StepResult(
             stamp,
             readings,
             truth=self._latest[GroundTruth.name],
@@ -226,3 +226,6 @@ def _built(specs: Sequence[SensorSpec], mounting: Mounting) -> Iterator[Tuple[Se
     for spec in specs:
         yield spec, spec.build(replace(mounting, number=counts[type(spec)]))
         counts[type(spec)] += 1
+
+
+__getattr__ = deprecated_names(__name__, {"Fitting": "RobotWrappers", "Observation": "StepResult"})

@@ -10,7 +10,6 @@ import numpy as np
 from planar import Pose2, Twist2
 from planar.config.hints import hint
 from sim_bridge.config import SimulationSettings
-from sim_bridge.courses import COURSE_RATE, Courses
 from sim_bridge.description import RobotProfile
 from sim_bridge.doors import DOOR_RATE, Doors
 from sim_bridge.errors import UnknownEntityError, WorldError
@@ -18,13 +17,14 @@ from sim_bridge.geometry.pose3 import from_pose2
 from sim_bridge.people.crowd import WALK_RATE, Crowd
 from sim_bridge.physics.engine import Engine
 from sim_bridge.physics.forces import Forces
+from sim_bridge.physics.kinematics import KinematicState, at_rest
 from sim_bridge.physics.model_joints import ModelJoints
 from sim_bridge.physics.models import Models
-from sim_bridge.physics.motion import Motion, at_rest
 from sim_bridge.physics.vehicle import Overlap
-from sim_bridge.robot import Fitting, Observation, Robot
+from sim_bridge.robot import Robot, RobotWrappers, StepResult
+from sim_bridge.scripted_trajectories import TRAJECTORY_RATE, TrajectoryPlayer
 from sim_bridge.sensors.base import Mounting
-from sim_bridge.views.sight import Sight
+from sim_bridge.views.scene_view import SceneView
 from sim_bridge.world import Body, Joint, World
 
 # Metres above a robot's start from which on a floor is looked for.
@@ -46,11 +46,11 @@ class Scene:
         world: World,
         settings: SimulationSettings = SimulationSettings(),
         seed: int = 0,
-        fitting: Fitting = Fitting(),
+        wrappers: RobotWrappers = RobotWrappers(),
     ):
         self.lights = {light.name: light for light in world.lights}
-        self.settings, self._seed, self._fitting = settings, seed, fitting
-        self.courses, self.doors = Courses(world.courses), Doors(world.doors)
+        self.settings, self._seed, self._wrappers = settings, seed, wrappers
+        self.trajectory_player, self.doors = TrajectoryPlayer(world.trajectories), Doors(world.doors)
         self.crowd = Crowd(world.walkers, world)
         self._begin(world.gravity)
         self.add([*world.bodies, *self.crowd.bodies, *self.doors.bodies], world.joints)
@@ -70,19 +70,19 @@ class Scene:
         """Downwards, m/s^2."""
         return self._engine.gravity
 
-    def step(self, commands: Mapping[str, Twist2] = {}) -> Dict[str, Observation]:
+    def step(self, commands: Mapping[str, Twist2] = {}) -> Dict[str, StepResult]:
         """What each robot has observed a period of the odometry later; a command holds until its time-out."""
         for name, command in commands.items():
             self.robot(name).command(command)
-        robots, stamp, is_pushed = self._robots.values(), self.stamp, self.forces.are_due
+        robots, stamp, is_pushed = self._robots.values(), self.stamp, self.forces.are_pending
         rate, steps = self.settings.physics_rate, 1 if is_pushed else _steps_at_once(self.settings, robots)
         for _ in range(rate // self.settings.odometry_rate // steps):
             moment = (self._physics_steps, rate, stamp)
-            if self.courses.each:
-                self.courses.follow(self._engine, *moment)
+            if self.trajectory_player.trajectories:
+                self.trajectory_player.update(self._engine, *moment)
             if self.crowd.links or self.doors.bodies:
-                self.crowd.follow(self._engine, *moment, robots)
-                self.doors.follow(self._engine, *moment, robots, self.crowd.rows)
+                self.crowd.update(self._engine, *moment, robots)
+                self.doors.update(self._engine, *moment, robots, self.crowd.rows)
             for robot in robots:
                 robot.begin_steps(self._physics_steps)
             if is_pushed:
@@ -109,7 +109,7 @@ class Scene:
         """
         self.models.check_free([name])
         where = f"({base_in_world.x:g}, {base_in_world.y:g})"
-        floor = self._engine.touch.floor_below(base_in_world.x, base_in_world.y, z + FLOOR_SEARCH)
+        floor = self._engine.collision_queries.floor_below(base_in_world.x, base_in_world.y, z + FLOOR_SEARCH)
         if floor is None:
             raise WorldError(f"the robot would start at {where}, where there is no floor")
         start, left = base_in_world, Overlap((), 0.0, 0.0)
@@ -138,15 +138,15 @@ class Scene:
 
     def remove_model(self, name: str) -> None:
         for link in self.models.remove(name):
-            self.forces.stop_pushing(link)
-        for joint in self.joints.forget_model(name):
-            self.forces.stop_pushing_joint(joint)
+            self.forces.clear_link_wrenches(link)
+        for joint in self.joints.remove_model(name):
+            self.forces.clear_joint_efforts(joint)
         self._robots.pop(name, None)
         self._starts.pop(name, None)
 
-    def set_model_motion(self, name: str, motion: Motion) -> None:
+    def set_model_state(self, name: str, motion: KinematicState) -> None:
         """Puts a model with all its links to another place, and sets its velocity; a robot halts."""
-        self.models.set_motion(name, motion)
+        self.models.set_state(name, motion)
         if name in self._robots:
             self._robots[name].halt()
 
@@ -178,10 +178,10 @@ class Scene:
     def reset_poses(self) -> None:
         """Puts every model and robot back to where it was first put, at rest. Time and odometry go on."""
         self._engine.attachments.detach_all()
-        self.joints.put_back()
-        self.models.put_back()
+        self.joints.reset_positions()
+        self.models.reset_poses()
         for name, (_, base_in_space) in self._starts.items():
-            self.models.set_link_motion(self._robots[name].vehicle.base, at_rest(base_in_space))
+            self.models.set_link_state(self._robots[name].vehicle.base, at_rest(base_in_space))
             self._robots[name].halt()
         self.forces.clear()
 
@@ -196,7 +196,7 @@ class Scene:
 
     def mark(self) -> None:
         """Keeps all as it is now, with its robots at rest, for ``rewind``."""
-        self._marked = self._engine.mark()
+        self._marked = self._engine.save_state()
 
     def rewind(self, seed: int, starts: Mapping[str, Pose2] = {}) -> None:
         """Starts again at time 0 from what was marked, to the noise of a seed; much faster than ``reset``.
@@ -204,25 +204,25 @@ class Scene:
         ``starts``: of robots that begin elsewhere on the same floor, where they must find room. No model may
         have come or gone since the mark. The same seed, starts and calls give the same results.
         """
-        self._engine.go_back(self._marked)
+        self._engine.restore_state(self._marked)
         self._seed, self._stamp_at_rate, self._physics_steps = seed, 0.0, 0
         self.forces.clear()
         for number, (name, robot) in enumerate(self._robots.items()):
             _, base_in_space = self._starts[name]
             if name in starts:
                 base_in_space = from_pose2(starts[name], z=float(base_in_space[2, 3]))
-                self.models.set_motion(name, at_rest(base_in_space))
+                self.models.set_state(name, at_rest(base_in_space))
             robot.begin(Mounting(base_in_space, self.settings, seed, number))
-        self.sight.redraw()
+        self.view.update()
 
     def _begin(self, gravity: float) -> None:
         """An empty world at time 0."""
         # The second: when the present rate of physics began.
         self._physics_steps, self._stamp_at_rate = 0, 0.0
         self._engine = Engine(self.settings.physics_rate, gravity)
-        self.sight = Sight(self._engine.pose_of)
+        self.view = SceneView(self._engine.pose_of)
         self.joints = ModelJoints(self._engine)
-        self.models = Models(self._engine, self.joints, self.sight)
+        self.models = Models(self._engine, self.joints, self.view)
         self.forces = Forces(self._engine, self.models, self.joints)
         self._robots: Dict[str, Robot] = {}
         self._starts: Dict[str, Tuple[RobotProfile, np.ndarray]] = {}
@@ -230,7 +230,7 @@ class Scene:
 
     def _add_robot(self, name: str, profile: RobotProfile, base_in_space: np.ndarray) -> None:
         mounting = Mounting(base_in_space, self.settings, self._seed, robot=len(self._robots))
-        robot = Robot(self._engine, self.sight, name, profile, mounting, self._fitting)
+        robot = Robot(self._engine, self.view, name, profile, mounting, self._wrappers)
         self._robots[name], self._starts[name] = robot, (profile, base_in_space)
         self.models.add_vehicle(robot.vehicle)
 
@@ -241,7 +241,7 @@ def _steps_at_once(settings: SimulationSettings, robots: Iterable[Robot]) -> int
     A power of two, by which Bullet divides time without rounding, or it would leave one out at times.
     """
     rate = settings.physics_rate
-    actions = [max(rate // times, 1) for times in (COURSE_RATE, WALK_RATE, DOOR_RATE)]
+    actions = [max(rate // times, 1) for times in (TRAJECTORY_RATE, WALK_RATE, DOOR_RATE)]
     most = reduce(
         math.gcd, [*actions, *(robot.steps_at_once for robot in robots)], rate // settings.odometry_rate
     )

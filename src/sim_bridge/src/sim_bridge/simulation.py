@@ -1,5 +1,6 @@
 """The facade: one robot in one world, stepped."""
 
+import warnings
 from typing import Optional, Tuple
 
 import numpy as np
@@ -10,7 +11,7 @@ from sim_bridge.config import SimulationSettings
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import from_pose2
 from sim_bridge.geometry.shapes import Box
-from sim_bridge.robot import Fitting, Observation
+from sim_bridge.robot import RobotWrappers, StepResult
 from sim_bridge.robots import ROBOTS, RobotProfile
 from sim_bridge.scene import Scene
 from sim_bridge.world import Body, Collision, World
@@ -32,9 +33,13 @@ class Simulation:
         settings: SimulationSettings = SimulationSettings(),
         seed: int = 0,
         base_in_world: Pose2 = Pose2(),
-        fitting: Fitting = Fitting(),
+        wrappers: RobotWrappers = RobotWrappers(),
+        fitting: Optional[RobotWrappers] = None,
     ):
-        self.scene = Scene(world, settings, seed, fitting)
+        if fitting is not None:
+            warnings.warn("fitting is deprecated; use wrappers", DeprecationWarning, stacklevel=2)
+            wrappers = fitting
+        self.scene = Scene(world, settings, seed, wrappers)
         self.scene.add_robot(ROBOT_NAME, robot, base_in_world)
 
     @property
@@ -47,7 +52,7 @@ class Simulation:
         """Simulated seconds that a step takes: the period of the odometry."""
         return self.scene.step_seconds
 
-    def step(self, command: Optional[Twist2] = None) -> Observation:
+    def step(self, command: Optional[Twist2] = None) -> StepResult:
         """Moves on by one period of the odometry; the last ``command`` holds until its time-out."""
         return self.scene.step({} if command is None else {ROBOT_NAME: command})[ROBOT_NAME]
 

@@ -5,11 +5,11 @@ from typing import Any, Optional, Tuple
 
 import numpy as np
 
-from sim_bridge.courses import Course
 from sim_bridge.doorway import Door
 from sim_bridge.geometry.pose3 import IDENTITY
-from sim_bridge.geometry.shapes import Look, Shape
+from sim_bridge.geometry.shapes import Shape, VisualShape
 from sim_bridge.people.walker import Walker
+from sim_bridge.scripted_trajectories import ScriptedTrajectory
 
 Colour = Tuple[float, float, float]
 DARK: Colour = (0.0, 0.0, 0.0)
@@ -21,7 +21,7 @@ class Collision:
 
     shape: Shape
     pose_in_body: np.ndarray
-    retro: float = 0.0
+    laser_retro: float = 0.0
     name: str = ""
 
 
@@ -32,10 +32,10 @@ class Visual:
     ``glow``: what it shows of itself, without any light.
     """
 
-    shape: Look
+    shape: VisualShape
     pose_in_body: np.ndarray
     colour: Optional[Colour] = None
-    glow: Colour = DARK
+    emissive: Colour = DARK
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +50,7 @@ class Inertia:
 
 
 @dataclass(frozen=True)
-class Surface:
+class SurfaceProperties:
     """Coulomb's coefficient of ``friction``, and of ``restitution``: how much a thing bounces."""
 
     friction: float = 1.0
@@ -71,22 +71,22 @@ class Body:
     pose_in_world: np.ndarray
     collisions: Tuple[Collision, ...]
     mass: Optional[float] = None
-    surface: Surface = Surface()
+    surface: SurfaceProperties = SurfaceProperties()
     pose_in_model: np.ndarray = field(default_factory=lambda: IDENTITY)
     visuals: Tuple[Visual, ...] = ()
     inertia: Inertia = field(default_factory=Inertia)
     damping: Tuple[float, float] = (0.0, 0.0)
-    has_weight: bool = True
-    is_on_course: bool = False
+    has_gravity: bool = True
+    is_kinematic: bool = False
 
     @property
     def model(self) -> str:
         return self.name.split("::", 1)[0]
 
     @property
-    def keeps_still(self) -> bool:
+    def is_static(self) -> bool:
         """Whether it stays where it is unless it is put elsewhere."""
-        return self.mass is None and not self.is_on_course
+        return self.mass is None and not self.is_kinematic
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,6 +148,6 @@ class World:
     joints: Tuple[Joint, ...] = ()
     robots: Tuple[DrivenModel, ...] = ()
     lights: Tuple[Light, ...] = ()
-    courses: Tuple[Course, ...] = ()
+    trajectories: Tuple[ScriptedTrajectory, ...] = ()
     walkers: Tuple[Walker, ...] = ()
     doors: Tuple[Door, ...] = ()

@@ -18,10 +18,10 @@ from sim_bridge.description import read_prop
 from sim_bridge.description.urdf import FindFile
 from sim_bridge.geometry.pose3 import IDENTITY, pose3, transform_points
 from sim_bridge.geometry.shapes import Box, Cylinder, MeshFile, Plane, Sphere
-from sim_bridge.geometry.shapes import Look as Shape
+from sim_bridge.geometry.shapes import VisualShape as Shape
 from sim_bridge.sdf import read_model
 from sim_bridge.sdf.element import Element, parse_text
-from sim_bridge.views.drawing import GREY, mesh_of, visible_parts
+from sim_bridge.views.render_geometry import GREY, mesh_of, visible_parts
 from sim_bridge.world import Joint, World
 
 # Colours of a mesh's triangles that differ by less are one, of 255: each is a surface of its own.

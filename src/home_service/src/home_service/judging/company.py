@@ -6,7 +6,7 @@ from typing import List, Sequence, Tuple
 import numpy as np
 
 from planar import Pose2, Twist2
-from sim_bridge import Observation, Simulation
+from sim_bridge import Simulation, StepResult
 
 # m/s towards a person below which a robot runs into nobody.
 STILL = 0.05
@@ -21,7 +21,7 @@ class Company:
         self._track: List[np.ndarray] = []
         self.ran_into_robot: List[str] = []
 
-    def contacts(self, observation: Observation) -> Sequence[str]:
+    def contacts(self, observation: StepResult) -> Sequence[str]:
         """What the robot has bumped into, without the people who ran into it."""
         people = [name for name in observation.contacts if name in self._crowd.links]
         theirs = {name for name in people if not self._is_robot_at_fault(name)}

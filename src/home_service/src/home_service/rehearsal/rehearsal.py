@@ -51,7 +51,7 @@ from pick_objects.arrival import Judged
 from pick_objects.errand import Order
 from planar import OccupancyGrid, Pose2, Scan, Twist2
 from planar.config.settings_file import settings_from_yaml
-from sim_bridge import Observation, RobotProfile, Simulation, SimulationSettings
+from sim_bridge import RobotProfile, Simulation, SimulationSettings, StepResult
 from sim_bridge.config import LATENCY
 from sim_bridge.faults import Fault, Faults, Stage
 from sim_bridge.sensors.lidar import LaserProfile
@@ -144,7 +144,12 @@ class Rehearsal:
         start = conditions.start
         self._faults = Faults(conditions.faults, seed)
         self._simulation = Simulation(
-            world, _with_what_it_uses(robot), conditions.simulation, seed, start, fitting=self._faults.fitting
+            world,
+            _with_what_it_uses(robot),
+            conditions.simulation,
+            seed,
+            start,
+            wrappers=self._faults.wrappers,
         )
         self._company = Company(self._simulation)
         self._localizer = _localizer(grid, seed, start)
@@ -236,7 +241,7 @@ class Rehearsal:
             self._bodies.follow(self._solids.popleft(), truth)
         return order
 
-    def _advance_simulation(self) -> Tuple[Observation, Optional[Scan]]:
+    def _advance_simulation(self) -> Tuple[StepResult, Optional[Scan]]:
         """Moves on by one control period; returns the last observation and the scan made on the way."""
         scan = None
         for step in range(self._steps_per_tick):
@@ -261,7 +266,7 @@ class Rehearsal:
             if self._localizer.quality is not None:
                 self._fit.take(self._localizer.quality.probability)
 
-    def _note(self, observation: Observation, base_in_map: Pose2) -> None:
+    def _note(self, observation: StepResult, base_in_map: Pose2) -> None:
         truth = observation.base_in_world
         self._trajectory.append((observation.stamp, truth.x, truth.y, truth.yaw))
         self._errors.append(truth.distance_to(base_in_map))

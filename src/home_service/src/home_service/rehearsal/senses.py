@@ -7,7 +7,7 @@ from typing import Deque, Optional, Tuple
 
 from move_base_lite.plausibility import SensorWatch
 from planar import Pose2, Scan, Twist2
-from sim_bridge import Observation
+from sim_bridge import StepResult
 from sim_bridge.sensors.odometry import Odometer
 
 # Steps of the simulation for which odometry is remembered, as tf does.
@@ -29,7 +29,7 @@ class Senses:
         self._wrong_since: Optional[float] = None
         self._told = Twist2()
 
-    def feel(self, observation: Observation, command: Twist2) -> None:
+    def feel(self, observation: StepResult, command: Twist2) -> None:
         """Takes in a step; a robot that is stopped for a sensor is still told to go on."""
         if self._wrong_since is None:
             self._told = command

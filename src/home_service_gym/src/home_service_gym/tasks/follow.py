@@ -10,7 +10,7 @@ from home_service_gym.playground import Moment, Playground
 from home_service_gym.task import COLLISION, Beginning, Judgement, Marks, goal_space, seen_from
 from laboratory.worlds.solids import post
 from planar import Pose2
-from sim_bridge.courses import Course
+from sim_bridge.scripted_trajectories import ScriptedTrajectory
 from sim_bridge.world import Body
 
 # Metres: the gap between the middles that is best, the one at which the leader is lost, the leader itself.
@@ -21,7 +21,7 @@ AWAY = 50.0
 WORTH, SECONDS, SPEED = 0.1, 120.0, 0.35
 # How surely the leader looks for another place to go to rather than turn back.
 STUBBORN = 0.95
-LEADER = post("leader", Pose2(AWAY, AWAY), RADIUS, HEIGHT, is_on_course=True)
+LEADER = post("leader", Pose2(AWAY, AWAY), RADIUS, HEIGHT, is_kinematic=True)
 
 
 class Follow:
@@ -38,7 +38,7 @@ class Follow:
         along = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(way_xy, axis=0).T))))
         ahead = int(np.searchsorted(along, GAP))
         times = (along[ahead:] - along[ahead]) / SPEED
-        self._course = Course(LEADER.name, times, way_xy[ahead:])
+        self._course = ScriptedTrajectory(LEADER.name, times, way_xy[ahead:])
         heading = np.arctan2(*(way_xy[ahead] - way_xy[0])[::-1])
         x, y = way_xy[0].tolist()
         return Beginning(Pose2(x, y, float(heading)), (self._course,))
@@ -53,7 +53,7 @@ class Follow:
         return Judgement(WORTH * max(1.0 - abs(gap - GAP) / GAP, -1.0))
 
     def marks(self) -> Marks:
-        return Marks(courses=(self._course,))
+        return Marks(trajectories=(self._course,))
 
     def _leader(self, moment: Moment) -> Pose2:
         return Pose2(*self._course.at(moment.stamp))

@@ -38,7 +38,7 @@ class Reach:
 
     def begin(self, playground: Playground, rng: np.random.Generator) -> Beginning:
         self._left = self._start.distance_to(self._goal)
-        self._courses = playground.arena.world.courses
+        self._trajectories = playground.arena.world.trajectories
         return Beginning(self._start)
 
     def observe(self, moment: Moment) -> Dict[str, np.ndarray]:
@@ -51,4 +51,4 @@ class Reach:
         return Judgement(reward + SUCCESS, "success") if left <= self._radius else Judgement(reward)
 
     def marks(self) -> Marks:
-        return Marks((self._goal, self._radius), self._courses)
+        return Marks((self._goal, self._radius), self._trajectories)

@@ -12,7 +12,7 @@ from laboratory.worlds.solids import FLOOR, post, wall
 from laboratory.worlds.source import Arena
 from planar import Pose2
 from planar.config.yaml_table import Table
-from sim_bridge.courses import Course
+from sim_bridge.scripted_trajectories import ScriptedTrajectory
 from sim_bridge.world import Body, World
 
 # Metres: half the place's side, its walls, a cylinder; DynaBARN's start is outside its open side.
@@ -51,13 +51,13 @@ def _arena(source: Crossings, seed: int) -> Arena:
     rng = np.random.default_rng([seed, _STREAM])
     speed = rng.uniform(source.slowest, source.fastest)
     bodies: List[Body] = [FLOOR, *_walls()]
-    courses = []
+    trajectories = []
     for number in range(rng.integers(source.fewest, source.most, endpoint=True)):
         way_xy = _way(source.legs, rng)
-        post_there = post(f"crossing_{number}", Pose2(*way_xy[0]), RADIUS, HEIGHT, is_on_course=True)
+        post_there = post(f"crossing_{number}", Pose2(*way_xy[0]), RADIUS, HEIGHT, is_kinematic=True)
         bodies.append(post_there)
-        courses.append(_course(post_there.name, way_xy, speed * rng.uniform(0.9, 1.1), rng))
-    world = World(f"crossings {seed}", tuple(bodies), courses=tuple(courses))
+        trajectories.append(_course(post_there.name, way_xy, speed * rng.uniform(0.9, 1.1), rng))
+    world = World(f"crossings {seed}", tuple(bodies), trajectories=tuple(trajectories))
     return Arena(world, None, f"crossings at {speed:.1f} m/s", GOAL_IN_ODOM.x)
 
 
@@ -79,7 +79,7 @@ def _way(legs: int, rng: np.random.Generator) -> np.ndarray:
     return np.vstack((ends_xy[:1], rng.uniform(-most, most, (legs - 1, 2)), ends_xy[1:]))
 
 
-def _course(link: str, way_xy: np.ndarray, speed: float, rng: np.random.Generator) -> Course:
+def _course(link: str, way_xy: np.ndarray, speed: float, rng: np.random.Generator) -> ScriptedTrajectory:
     """There and back for ever, begun anywhere on the way."""
     reached = np.concatenate(([0.0], np.linalg.norm(np.diff(way_xy, axis=0), axis=1).cumsum())) / speed
     round_trip = 2.0 * float(reached[-1])
@@ -89,7 +89,9 @@ def _course(link: str, way_xy: np.ndarray, speed: float, rng: np.random.Generato
     times = np.concatenate(([0.0], ahead[(ahead > 0.0) & (ahead < round_trip)], [round_trip]))
     on_way = (begun + times) % round_trip
     on_way = np.minimum(on_way, round_trip - on_way)
-    return Course(link, times, np.column_stack([np.interp(on_way, reached, xy) for xy in way_xy.T]))
+    return ScriptedTrajectory(
+        link, times, np.column_stack([np.interp(on_way, reached, xy) for xy in way_xy.T])
+    )
 
 
 def read_crossings(table: Table, folder: Path) -> Crossings:

@@ -16,7 +16,7 @@ from move_base_lite import Navigator, Status
 from planar import Pose2, Scan, SettingsError, Twist2
 from planar.config.yaml_table import Table
 from planar.maps.places import pose_from
-from sim_bridge import Observation, Simulation, robot_named
+from sim_bridge import Simulation, StepResult, robot_named
 from sim_bridge.faults import Faults, Stage
 from sim_bridge.simulation import ROBOT_NAME
 
@@ -79,7 +79,7 @@ class _Drive:
             scenario.simulation,
             seed,
             scenario.start,
-            self._faults.fitting,
+            self._faults.wrappers,
         )
         self.company = Company(self._simulation)
         self._steps = round(1.0 / settings.move_base.controller_frequency / self._simulation.step_seconds)
@@ -113,14 +113,14 @@ class _Drive:
     def close(self) -> None:
         self._simulation.close()
 
-    def _first_scan(self) -> Observation:
+    def _first_scan(self) -> StepResult:
         while True:
             observation = self._simulation.step()
             if observation.scan is not None:
                 self._note(observation, observation.stamp)
                 return observation
 
-    def _advance(self, command: Optional[Twist2]) -> Tuple[Observation, Optional[Scan]]:
+    def _advance(self, command: Optional[Twist2]) -> Tuple[StepResult, Optional[Scan]]:
         """Moves on by a control period; the last observation, and the scan made on the way."""
         scan = None
         for _ in range(self._steps):
@@ -131,7 +131,7 @@ class _Drive:
             self._faults.disturb(observation.stamp, place)
         return observation, scan
 
-    def _note(self, observation: Observation, began: float) -> None:
+    def _note(self, observation: StepResult, began: float) -> None:
         truth = observation.base_in_world
         self.trajectory.append((observation.stamp - began, truth.x, truth.y, truth.yaw))
         self.company.note()

@@ -13,7 +13,7 @@ from laboratory.worlds.solids import FLOOR, post, wall
 from laboratory.worlds.source import Arena
 from planar import Pose2, SettingsError
 from planar.config.yaml_table import Table, read_table
-from sim_bridge.courses import Course
+from sim_bridge.scripted_trajectories import ScriptedTrajectory
 from sim_bridge.world import Body, World
 
 
@@ -43,16 +43,16 @@ def _arena(file: Path) -> Arena:
     start, goal = table.numbers("start", "x, y, yaw"), table.numbers("goal", "x, y")
     walls = [wall(f"wall_{number}", *values) for number, values in enumerate(_rows(table, "walls", 4))]
     bodies: List[Body] = [FLOOR, *walls]
-    courses = []
+    trajectories = []
     for obstacle in table.tables("obstacles"):
         name, keyframes = obstacle.text("name"), _rows(obstacle, "keyframes", 3)
         body = post(
             name, Pose2(*keyframes[0, 1:]), obstacle.number("radius"), obstacle.number("height"), True
         )
         bodies.append(body)
-        courses.append(Course(body.name, keyframes[:, 0], keyframes[:, 1:]))
+        trajectories.append(ScriptedTrajectory(body.name, keyframes[:, 0], keyframes[:, 1:]))
     title = f"DynaBARN {file.stem.rpartition('_')[2]}"
-    world = World(title, tuple(bodies), courses=tuple(courses))
+    world = World(title, tuple(bodies), trajectories=tuple(trajectories))
     return Arena(world, None, title, math.dist(start[:2], goal))
 
 

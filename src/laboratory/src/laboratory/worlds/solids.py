@@ -17,7 +17,7 @@ def wall(name: str, x: float, y: float, width: float, depth: float) -> Body:
     return box_on_floor(name, (width, depth, WALL_HEIGHT), Pose2(x, y))
 
 
-def post(name: str, place: Pose2, radius: float, height: float, is_on_course: bool = False) -> Body:
+def post(name: str, place: Pose2, radius: float, height: float, is_kinematic: bool = False) -> Body:
     """A cylinder that stands on the floor."""
     solid = (Collision(Cylinder(radius, height), np.eye(4)),)
-    return Body(f"{name}::link", from_pose2(place, z=height / 2.0), solid, is_on_course=is_on_course)
+    return Body(f"{name}::link", from_pose2(place, z=height / 2.0), solid, is_kinematic=is_kinematic)

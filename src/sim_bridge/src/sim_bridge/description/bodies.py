@@ -6,10 +6,10 @@ import numpy as np
 
 from sim_bridge.description.structure import RobotModel
 from sim_bridge.geometry.pose3 import IDENTITY
-from sim_bridge.world import Body, Inertia, Joint, Surface
+from sim_bridge.world import Body, Inertia, Joint, SurfaceProperties
 
 # The base slides: its casters roll any way, and its sides must not climb walls.
-SLIDING, ROLLING = Surface(friction=0.0), Surface(friction=1.0)
+SLIDING, ROLLING = SurfaceProperties(friction=0.0), SurfaceProperties(friction=1.0)
 
 
 def bodies_of(model: RobotModel, name: str) -> Tuple[Tuple[Body, ...], Tuple[Joint, ...]]:

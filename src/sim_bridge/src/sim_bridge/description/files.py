@@ -1,7 +1,10 @@
 """Robots in files: URDF, or xacro that becomes URDF."""
 
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 from typing import Dict
+
+import defusedxml.ElementTree
 
 from planar.files.reading import is_file, read_text
 from sim_bridge.description.profile import RobotProfile
@@ -34,3 +37,15 @@ def _expanded(path: Path, arguments: Dict[str, str]) -> str:
         return xacro.process_file(str(path), mappings=dict(arguments)).toxml()
     except Exception as error:  # what xacro raises has no common class, and its text is of several lines
         raise RobotError(f"{path}: not readable xacro ({' '.join(str(error).split())})") from None
+
+
+def prefix_frames(name: str, urdf: str) -> str:
+    """A URDF whose links, and thereby frames, have ``name``/ before their names.
+
+    For a robot_state_publisher: Debian 11's (1.15.1) knows no ``tf_prefix``.
+    """
+    robot = defusedxml.ElementTree.fromstring(urdf, forbid_dtd=False)
+    for path, attribute in (("link", "name"), ("joint/parent", "link"), ("joint/child", "link")):
+        for element in robot.findall(path):
+            element.set(attribute, f"{name}/{element.get(attribute)}")
+    return ElementTree.tostring(robot, encoding="unicode")

@@ -6,14 +6,13 @@ from typing import Callable, Dict, List, Optional
 
 import numpy as np
 
-from sim_bridge.description.blocks import Blocks
 from sim_bridge.description.profile import JointStateProfile
-from sim_bridge.description.structure import Structure
-from sim_bridge.driving.profile import DriveProfile
+from sim_bridge.description.structure import GazeboElements, RobotStructure
+from sim_bridge.driving.drive import DriveProfile
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import IDENTITY
 from sim_bridge.sdf.element import Element
-from sim_bridge.sdf.plugins import plugin_name
+from sim_bridge.sdf.supported import plugin_name
 from sim_bridge.sdf.values import flag, length, number, text
 from sim_bridge.sensors.base import SensorSpec
 from sim_bridge.sensors.camera import CameraProfile, scan_of
@@ -27,7 +26,7 @@ from sim_bridge.sensors.registry import BODY_SENSORS, SENSORS
 ODOMETRY_SOURCES = ("encoder", "world", "gyro")
 DEFAULT_SOURCE = "world"
 # They tell Gazebo what is true here anyhow.
-NEEDLESS_PLUGINS = {"gazebo_ros_p3d"}
+REDUNDANT_PLUGINS = {"gazebo_ros_p3d"}
 # Variances of z, roll and pitch that odometry does not measure.
 UNMEASURED = (1e12, 1e12, 1e12)
 # What Kobuki's plugin says of orientation and turn rates, about x, y and z.
@@ -35,7 +34,7 @@ KOBUKI_IMU_VARIANCES = (1e6, 1e6, 0.05)
 
 
 @dataclass
-class Equipment:
+class PluginProfiles:
     """What the plugins of a robot add to its parts; ``namespace`` is that of the drive."""
 
     drive: Optional[DriveProfile] = None
@@ -46,12 +45,12 @@ class Equipment:
     warnings: List[str] = field(default_factory=list)
 
 
-def read_equipment(structure: Structure, blocks: Blocks) -> Equipment:
+def read_plugins(structure: RobotStructure, blocks: GazeboElements) -> PluginProfiles:
     """Drives first, as the namespace is theirs; a robot without a laser sees by its depth camera.
 
     Raises WorldError naming the element.
     """
-    equipment = Equipment()
+    equipment = PluginProfiles()
     left_out, not_driving = [], []
     for plugin in blocks.plugins:
         reader = _PLUGINS.get(plugin_name(plugin))
@@ -85,7 +84,7 @@ def read_equipment(structure: Structure, blocks: Blocks) -> Equipment:
     return equipment
 
 
-def _read_diff_drive(plugin: Element, structure: Structure, equipment: Equipment) -> None:
+def _read_diff_drive(plugin: Element, structure: RobotStructure, equipment: PluginProfiles) -> None:
     separation = length(plugin, "wheelSeparation", 0.34)
     acceleration = number(plugin, "wheelAcceleration", 0.0)
     joints = [text(plugin, "leftJoint", "left_joint"), text(plugin, "rightJoint", "right_joint")]
@@ -114,7 +113,7 @@ def _read_diff_drive(plugin: Element, structure: Structure, equipment: Equipment
         equipment.joint_states = JointStateProfile(equipment.drive.joints, equipment.odometry.rate)
 
 
-def _odometry_source(plugin: Element, equipment: Equipment) -> str:
+def _odometry_source(plugin: Element, equipment: PluginProfiles) -> str:
     """As Gazebo's plugin: what it does not know is the default."""
     source = text(plugin, "odometrySource", DEFAULT_SOURCE)
     if source in ODOMETRY_SOURCES:
@@ -126,7 +125,7 @@ def _odometry_source(plugin: Element, equipment: Equipment) -> str:
     return DEFAULT_SOURCE
 
 
-def _read_skid_steer(plugin: Element, structure: Structure, equipment: Equipment) -> None:
+def _read_skid_steer(plugin: Element, structure: RobotStructure, equipment: PluginProfiles) -> None:
     sides = ("leftFront", "leftRear", "rightFront", "rightRear")
     defaults = ("left_front", "left_rear", "right_front", "right_rear")
     equipment.namespace = namespace_of(plugin)
@@ -155,7 +154,7 @@ def _read_skid_steer(plugin: Element, structure: Structure, equipment: Equipment
     )
 
 
-def _read_kobuki(plugin: Element, structure: Structure, equipment: Equipment) -> None:
+def _read_kobuki(plugin: Element, structure: RobotStructure, equipment: PluginProfiles) -> None:
     joints = [plugin.required(f"{side}_wheel_joint_name").text for side in ("left", "right")]
     equipment.namespace = namespace_of(plugin)
     equipment.drive = _drive(
@@ -184,7 +183,7 @@ def _read_kobuki(plugin: Element, structure: Structure, equipment: Equipment) ->
     equipment.sensors.append(KobukiProfile(np.array(hubs), equipment.drive.wheel_radius, threshold))
 
 
-def _read_joint_states(plugin: Element, structure: Structure, equipment: Equipment) -> None:
+def _read_joint_states(plugin: Element, structure: RobotStructure, equipment: PluginProfiles) -> None:
     """Gazebo's plugin fails on a joint that is not there; so does this."""
     names = plugin.required("jointName").text.replace(",", " ").split()
     for name in names:
@@ -194,7 +193,7 @@ def _read_joint_states(plugin: Element, structure: Structure, equipment: Equipme
     equipment.joint_states = JointStateProfile(tuple(names), rate)
 
 
-def _read_body_sensor(plugin: Element, structure: Structure, equipment: Equipment) -> None:
+def _read_body_sensor(plugin: Element, structure: RobotStructure, equipment: PluginProfiles) -> None:
     """A plugin below the model that names its link."""
     link = plugin.required("bodyName").text
     if link not in structure.links:
@@ -204,27 +203,29 @@ def _read_body_sensor(plugin: Element, structure: Structure, equipment: Equipmen
     equipment.sensors.append(SENSORS[plugin_name(plugin)](found))
 
 
-def _found(plugin: Element, sensor: Element, link: str, structure: Structure, equipment: Equipment) -> Found:
+def _found(
+    plugin: Element, sensor: Element, link: str, structure: RobotStructure, equipment: PluginProfiles
+) -> Found:
     pose = sensor.raw_pose()
     in_base = structure.pose_in_base(link) @ (IDENTITY if pose is None else pose)
     return Found(plugin, sensor, link, in_base, equipment.namespace)
 
 
 # One that fails does not matter where another drives the robot.
-_DRIVES: Dict[str, Callable[[Element, Structure, Equipment], None]] = {
+_DRIVES: Dict[str, Callable[[Element, RobotStructure, PluginProfiles], None]] = {
     "gazebo_ros_diff_drive": _read_diff_drive,
     "gazebo_ros_skid_steer_drive": _read_skid_steer,
     "gazebo_ros_kobuki": _read_kobuki,
 }
-_PLUGINS: Dict[str, Callable[[Element, Structure, Equipment], None]] = {
+_PLUGINS: Dict[str, Callable[[Element, RobotStructure, PluginProfiles], None]] = {
     **_DRIVES,
     "gazebo_ros_joint_state_publisher": _read_joint_states,
     **{name: _read_body_sensor for name in BODY_SENSORS},
-    **{name: lambda *_: None for name in NEEDLESS_PLUGINS},
+    **{name: lambda *_: None for name in REDUNDANT_PLUGINS},
 }
 
 
-def _drive(plugin: Element, structure: Structure, joints: List[str], **values) -> DriveProfile:
+def _drive(plugin: Element, structure: RobotStructure, joints: List[str], **values) -> DriveProfile:
     """A drive; which wheel is on which side, its place says: names and ``legacyMode`` often say otherwise.
 
     What Gazebo's plugins cannot say, ours may: limits and a time-out.

@@ -5,7 +5,7 @@ from functools import cached_property
 from typing import Optional, Tuple, Type, TypeVar
 
 from sim_bridge.description.structure import RobotModel
-from sim_bridge.driving.profile import DriveProfile
+from sim_bridge.driving.drive import DriveProfile
 from sim_bridge.sensors.base import SensorSpec
 from sim_bridge.sensors.lidar import LaserProfile
 from sim_bridge.sensors.odometry import OdometryProfile

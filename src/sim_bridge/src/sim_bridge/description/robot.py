@@ -5,14 +5,13 @@ from typing import List, Tuple
 
 import numpy as np
 
-from sim_bridge.description.blocks import Blocks
-from sim_bridge.description.plugins import read_equipment
+from sim_bridge.description.plugins import read_plugins
 from sim_bridge.description.profile import RobotProfile
 from sim_bridge.description.sdf import read_sdf
-from sim_bridge.description.structure import Structure
+from sim_bridge.description.structure import GazeboElements, RobotStructure
 from sim_bridge.description.urdf import FindFile, no_file, read_urdf
 from sim_bridge.errors import NoDriveError, RobotError, WorldError
-from sim_bridge.sdf.plugins import DRIVES
+from sim_bridge.sdf.supported import DRIVES
 from sim_bridge.world import Body, DrivenModel, World
 
 
@@ -44,10 +43,10 @@ def read_prop(text: str, name: str, pose: np.ndarray, find_file: FindFile = no_f
 
 
 def _profile(
-    structure: Structure, blocks: Blocks, warnings: List[str], text: str, where: str
+    structure: RobotStructure, blocks: GazeboElements, warnings: List[str], text: str, where: str
 ) -> RobotProfile:
     try:
-        equipment = read_equipment(structure, blocks)
+        equipment = read_plugins(structure, blocks)
     except WorldError as error:
         raise RobotError(str(error)) from None
     if equipment.drive is None:

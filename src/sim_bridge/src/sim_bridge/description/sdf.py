@@ -4,25 +4,24 @@ from typing import List, Tuple
 
 import numpy as np
 
-from sim_bridge.description.blocks import Blocks
-from sim_bridge.description.structure import Joint, Link, Structure
+from sim_bridge.description.structure import GazeboElements, RobotJoint, RobotLink, RobotStructure
 from sim_bridge.geometry.pose3 import inverse, transform_points
 from sim_bridge.geometry.shapes import outline
 from sim_bridge.world import Body, DrivenModel
 
 
-def read_sdf(model: DrivenModel) -> Tuple[Structure, Blocks, np.ndarray]:
+def read_sdf(model: DrivenModel) -> Tuple[RobotStructure, GazeboElements, np.ndarray]:
     """The structure of a robot, its blocks, and where its root link stands in the world, (4, 4).
 
     Raises RobotError.
     """
-    blocks = Blocks()
+    blocks = GazeboElements()
     blocks.add(model.element, "")
     for link in model.element.children("link"):
         blocks.add(link, link.name)
     poses = {body.name: body.pose_in_world for body in model.bodies}
     joints = [
-        Joint(
+        RobotJoint(
             _inner(joint.name),
             _inner(joint.parent),
             _inner(joint.child),
@@ -32,7 +31,7 @@ def read_sdf(model: DrivenModel) -> Tuple[Structure, Blocks, np.ndarray]:
         for joint in model.joints
         if joint.parent
     ]
-    structure = Structure(model.name, [_link(body) for body in model.bodies], joints)
+    structure = RobotStructure(model.name, [_link(body) for body in model.bodies], joints)
     return structure, blocks, poses[f"{model.name}::{structure.root}"]
 
 
@@ -41,11 +40,11 @@ def _inner(name: str) -> str:
     return name.split("::", 1)[1]
 
 
-def _link(body: Body) -> Link:
+def _link(body: Body) -> RobotLink:
     pose, mass = body.inertia.pose_in_body, body.mass or 0.0
     moments = _moments_of_a_box(body, mass) if body.inertia.moments is None else body.inertia.moments
     inertia = pose[:3, :3] @ np.diag(moments) @ pose[:3, :3].T
-    return Link(_inner(body.name), mass, pose[:3, 3], inertia, body.collisions)
+    return RobotLink(_inner(body.name), mass, pose[:3, 3], inertia, body.collisions)
 
 
 def _moments_of_a_box(body: Body, mass: float) -> np.ndarray:

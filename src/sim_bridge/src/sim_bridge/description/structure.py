@@ -1,6 +1,6 @@
 """Links and joints, and the few rigid parts that physics needs of them: a base and its driven wheels."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Dict, Iterable, List, Sequence, Tuple
 
 import numpy as np
@@ -8,11 +8,12 @@ import numpy as np
 from sim_bridge.errors import RobotError
 from sim_bridge.geometry.pose3 import IDENTITY, transform_points
 from sim_bridge.geometry.shapes import outline
+from sim_bridge.sdf.element import Element
 from sim_bridge.world import Collision
 
 
 @dataclass(frozen=True, eq=False)
-class Link:
+class RobotLink:
     """``mass`` in kg, 0 if none is given; ``centre`` (3,) of it in the link's frame.
 
     ``inertia``: (3, 3), kg m^2, about the centre along the axes of the link's frame.
@@ -26,7 +27,7 @@ class Link:
 
 
 @dataclass(frozen=True, eq=False)
-class Joint:
+class RobotJoint:
     """``child_in_parent``: (4, 4) at the joint's zero; ``axis``: (3,), in the child's frame."""
 
     name: str
@@ -37,7 +38,7 @@ class Joint:
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class RigidPart:
     """Links that are fixed to each other; ``name``: of the first of them.
 
     ``mass`` in kg, ``centre_of_mass`` (3,) in the part's frame, ``inertia`` (3,) about it along the axes of
@@ -55,7 +56,7 @@ class Part:
 class Wheel:
     """A part that turns about ``axis`` (3,), mounted at ``origin_in_base`` (4, 4)."""
 
-    part: Part
+    part: RigidPart
     origin_in_base: np.ndarray
     axis: np.ndarray
 
@@ -64,7 +65,7 @@ class Wheel:
 class RobotModel:
     """The base in its root frame, and the driven wheels by the names of their joints."""
 
-    base: Part
+    base: RigidPart
     wheels: Dict[str, Wheel]
 
     @property
@@ -84,10 +85,10 @@ class RobotModel:
                 yield from transform_points(part_in_base @ collision.pose_in_body, outline(collision.shape))
 
 
-class Structure:
+class RobotStructure:
     """The tree of a robot's links. Raises RobotError if it is none; ``name`` of the robot is for errors."""
 
-    def __init__(self, name: str, links: Sequence[Link], joints: Sequence[Joint]):
+    def __init__(self, name: str, links: Sequence[RobotLink], joints: Sequence[RobotJoint]):
         self.name = name
         self.links = {link.name: link for link in links}
         self.joints = {joint.name: joint for joint in joints}
@@ -140,7 +141,7 @@ class Structure:
         }
         return RobotModel(self._part(self.root, wheel_joints), wheels)
 
-    def _joint(self, name: str) -> Joint:
+    def _joint(self, name: str) -> RobotJoint:
         if name not in self.joints:
             raise RobotError(
                 f"robot {self.name}: its drive names the joint {name!r}, which is not there "
@@ -148,16 +149,16 @@ class Structure:
             )
         return self.joints[name]
 
-    def _part(self, first: str, wheel_joints: Sequence[Joint]) -> Part:
+    def _part(self, first: str, wheel_joints: Sequence[RobotJoint]) -> RigidPart:
         """All links that hang on ``first`` without a driven wheel between."""
-        fixed: List[Tuple[Link, np.ndarray]] = [(self.links[first], IDENTITY)]
+        fixed: List[Tuple[RobotLink, np.ndarray]] = [(self.links[first], IDENTITY)]
         for link, link_in_part in fixed:
             for joint in self._from_child.values():
                 if joint.parent == link.name and joint not in wheel_joints:
                     fixed.append((self.links[joint.child], link_in_part @ joint.child_in_parent))
         return self._merged(fixed)
 
-    def _merged(self, links: Sequence[Tuple[Link, np.ndarray]]) -> Part:
+    def _merged(self, links: Sequence[Tuple[RobotLink, np.ndarray]]) -> RigidPart:
         """Masses add up, inertias by the parallel axis theorem."""
         name = links[0][0].name
         mass = sum(link.mass for link, _ in links)
@@ -175,4 +176,17 @@ class Structure:
             for link, pose in links
             for part in link.collisions
         )
-        return Part(name, mass, centre, total, collisions)
+        return RigidPart(name, mass, centre, total, collisions)
+
+
+@dataclass
+class GazeboElements:
+    """<plugin> elements of a model, and <sensor> elements, each with the link that it is fixed to."""
+
+    plugins: List[Element] = field(default_factory=list)
+    sensors: List[Tuple[str, Element]] = field(default_factory=list)
+
+    def add(self, parent: Element, link: str) -> None:
+        """Takes what is directly below an element: <gazebo> of URDF, <model> or <link> of SDF."""
+        self.plugins.extend(parent.children("plugin"))
+        self.sensors.extend((link, sensor) for sensor in parent.children("sensor"))

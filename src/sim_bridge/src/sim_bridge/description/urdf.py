@@ -8,8 +8,7 @@ import numpy as np
 from defusedxml.common import DefusedXmlException
 
 from planar.geometry.limits import FARTHEST, is_within
-from sim_bridge.description.blocks import Blocks
-from sim_bridge.description.structure import Joint, Link, Structure
+from sim_bridge.description.structure import GazeboElements, RobotJoint, RobotLink, RobotStructure
 from sim_bridge.errors import RobotError, WorldError
 from sim_bridge.geometry.meshes import load_mesh
 from sim_bridge.geometry.pose3 import IDENTITY, pose3
@@ -20,7 +19,7 @@ from sim_bridge.world import Collision
 FindFile = Callable[[str], Optional[Path]]
 
 
-def read_urdf(text: str, where: str, find_file: FindFile) -> Tuple[Structure, Blocks, List[str]]:
+def read_urdf(text: str, where: str, find_file: FindFile) -> Tuple[RobotStructure, GazeboElements, List[str]]:
     """The structure of a robot, its <gazebo> blocks, and in words what had to be left out.
 
     ``where`` names the text in errors; ``find_file`` finds the files of package:// and model:// names.
@@ -31,8 +30,8 @@ def read_urdf(text: str, where: str, find_file: FindFile) -> Tuple[Structure, Bl
     try:
         links = [reader.link(link) for link in robot.children("link")]
         joints = [_joint(joint) for joint in robot.children("joint")]
-        structure = Structure(robot.name or where, links, joints)
-        blocks = Blocks()
+        structure = RobotStructure(robot.name or where, links, joints)
+        blocks = GazeboElements()
         for gazebo in robot.children("gazebo"):
             blocks.add(gazebo, gazebo.attribute("reference"))
     except WorldError as error:
@@ -59,7 +58,7 @@ class _Reader:
         self.warnings: List[str] = []
         self._find_file = find_file
 
-    def link(self, link: Element) -> Link:
+    def link(self, link: Element) -> RobotLink:
         collisions = []
         for collision in link.children("collision"):
             shape = self._shape(collision.required("geometry"))
@@ -67,13 +66,13 @@ class _Reader:
                 collisions.append(Collision(shape, _origin(collision)))
         inertial = link.child("inertial")
         if inertial is None:
-            return Link(link.name, 0.0, np.zeros(3), np.zeros((3, 3)), tuple(collisions))
+            return RobotLink(link.name, 0.0, np.zeros(3), np.zeros((3, 3)), tuple(collisions))
         origin = _origin(inertial)
         inertia = origin[:3, :3] @ _inertia(inertial.required("inertia")) @ origin[:3, :3].T
         (mass,) = inertial.required("mass").attribute_numbers("value", 1)
         if mass < 0.0:
             raise inertial.error(f"a mass must not be negative, got {mass:g}")
-        return Link(link.name, mass, origin[:3, 3], inertia, tuple(collisions))
+        return RobotLink(link.name, mass, origin[:3, 3], inertia, tuple(collisions))
 
     def _shape(self, geometry: Element) -> Optional[Shape]:
         for kind in geometry.children():
@@ -99,8 +98,8 @@ class _Reader:
         return load_mesh(MeshFile(path, (x, y, z)))
 
 
-def _joint(joint: Element) -> Joint:
-    return Joint(
+def _joint(joint: Element) -> RobotJoint:
+    return RobotJoint(
         joint.name,
         joint.required("parent").attribute("link"),
         joint.required("child").attribute("link"),

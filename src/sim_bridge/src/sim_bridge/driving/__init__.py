@@ -1,1 +1,1 @@
-"""From commands to the speeds of wheels."""
+"""Velocity commands: the cmd_vel multiplexer, the smoother, and wheel drives."""

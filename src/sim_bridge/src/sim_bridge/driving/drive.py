@@ -1,9 +1,54 @@
-"""From commands to wheel speeds: limits, ramps and the time-out of a mobile base."""
+"""Wheel drives: the contract, and the base controller that turns velocity commands into wheel speeds."""
 
-from typing import Tuple
+import math
+from dataclasses import dataclass
+from typing import Protocol, Tuple
 
 from planar import Twist2
-from sim_bridge.driving.profile import DriveProfile
+
+# Times a second that a base sets its motors; Kobuki's tells its odometry as often.
+BASE_RATE = 50
+
+
+class WheelDrive(Protocol):
+    """A drive, or what stands before one: commanded now and then, asked each time that the motors are set."""
+
+    def command(self, twist: Twist2) -> None:
+        """Takes a new command; one that is not finite stops the robot."""
+
+    def switch(self, on: bool) -> None:
+        """Without power the motors brake and no command is heard."""
+
+    def halt(self) -> None:
+        """Forgets the command and stands still at once."""
+
+    def wheel_speeds(self, seconds: float) -> Tuple[float, float]:
+        """Speeds of the left and right wheels, rad/s, after ``seconds`` more."""
+
+
+@dataclass(frozen=True)
+class DriveProfile:
+    """Driven wheels on both sides: radius and separation in metres, torque in N m, limits in SI units.
+
+    The robot stops when no command has come for ``command_timeout`` seconds.
+    """
+
+    left_joints: Tuple[str, ...]
+    right_joints: Tuple[str, ...]
+    wheel_radius: float
+    wheel_separation: float
+    torque: float
+    command_topics: Tuple[str, ...] = ("cmd_vel",)
+    max_speed: float = math.inf
+    max_turn_rate: float = math.inf
+    max_acceleration: float = math.inf
+    max_turn_acceleration: float = math.inf
+    command_timeout: float = math.inf
+
+    @property
+    def joints(self) -> Tuple[str, ...]:
+        """Of all driven wheels, those on the left first."""
+        return self.left_joints + self.right_joints
 
 
 class RampedDrive:

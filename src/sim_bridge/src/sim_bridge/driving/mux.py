@@ -53,7 +53,7 @@ def _inputs_of(table: Table, source: str) -> Tuple[MuxInput, ...]:
     return inputs
 
 
-class Mux:
+class VelocityMux:
     """Passes on what the most important source says that is not silent."""
 
     def __init__(self, inputs: Sequence[MuxInput]):
@@ -75,7 +75,7 @@ class Mux:
 
 
 @dataclass(frozen=True)
-class SmootherLimits:
+class VelocityLimits:
     """Of speeds, m/s and rad/s, and accelerations; to brake, ``decel_factor`` times as much is allowed.
 
     The defaults are those of turtlebot_bringup.
@@ -88,19 +88,19 @@ class SmootherLimits:
     decel_factor: float = 1.5
 
 
-class Smoother:
+class VelocitySmoother:
     """Leads to the commands that it hears within limits, and to rest after the last (yocs_velocity_smoother).
 
     Asked at every step of time, so that also after a pause between two commands no velocity jumps.
     """
 
-    def __init__(self, limits: SmootherLimits = SmootherLimits()):
+    def __init__(self, limits: VelocityLimits = VelocityLimits()):
         self._limits = limits
         self._last = Twist2()
         self._target: Optional[Twist2] = None
         self._heard_at = self._now = math.inf
 
-    def hear(self, command: Twist2, now: float) -> None:
+    def set_target(self, command: Twist2, now: float) -> None:
         self._target, self._heard_at = command, now
 
     def command(self, now: float) -> Optional[Twist2]:

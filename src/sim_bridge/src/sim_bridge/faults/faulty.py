@@ -5,10 +5,10 @@ from typing import Any, Iterable, List, Optional, Sequence, Tuple, TypeVar
 import numpy as np
 
 from planar import Scan, Twist2
-from sim_bridge.driving.base import Drive
+from sim_bridge.driving.drive import WheelDrive
 from sim_bridge.faults.kind import Fault, FaultKind, Stage
 from sim_bridge.faults.registry import fault_named
-from sim_bridge.robot import Fitting
+from sim_bridge.robot import RobotWrappers
 from sim_bridge.sensors.base import Sensor, SensorWrapper, Surroundings
 from sim_bridge.sensors.odometry import Odometry
 
@@ -35,11 +35,11 @@ class Faults:
         self._pairs.append((fault, fault_named(fault.kind, fault.strength, rng)))
 
     @property
-    def fitting(self) -> Fitting:
+    def wrappers(self) -> RobotWrappers:
         """What stands before the sensors and the drive of the robot."""
         if not (self._pairs or self._may_come):
-            return Fitting()
-        return Fitting(
+            return RobotWrappers()
+        return RobotWrappers(
             sensor=lambda sensor: FaultySensor(sensor, self), drive=lambda drive: FaultyDrive(drive, self)
         )
 
@@ -90,7 +90,7 @@ class FaultySensor(SensorWrapper[Any]):
 class FaultyDrive:
     """Changes commands, and what the wheels make of them."""
 
-    def __init__(self, drive: Drive, faults: Faults):
+    def __init__(self, drive: WheelDrive, faults: Faults):
         self._drive, self._faults = drive, faults
         self._now = 0.0
         self.switch, self.halt = drive.switch, drive.halt

@@ -57,10 +57,10 @@ class MeshFile:
 
 
 Shape = Union[Box, Cylinder, Sphere, Plane, Mesh]
-Look = Union[Shape, MeshFile]
+VisualShape = Union[Shape, MeshFile]
 
 
-def scaled(shape: Look, scale: Tuple[float, float, float]) -> Look:
+def scaled(shape: VisualShape, scale: Tuple[float, float, float]) -> VisualShape:
     """A shape stretched along its axes as Gazebo does it: what is round stays round."""
     x, y, z = scale
     if isinstance(shape, Box):

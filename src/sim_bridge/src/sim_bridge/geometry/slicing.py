@@ -14,7 +14,7 @@ CIRCLE_DEVIATION = 5e-4
 UPRIGHT = 1.0 - 1e-12
 
 
-def cut(shape: Shape, pose: np.ndarray, bottom: float, top: float) -> Iterator[np.ndarray]:
+def slice_shape(shape: Shape, pose: np.ndarray, bottom: float, top: float) -> Iterator[np.ndarray]:
     """Convex outlines, seen from above, of what of a shape placed at ``pose`` lies between two heights.
 
     Each is an array (N, 2) of corners in order. Planes, which are floors, have none.

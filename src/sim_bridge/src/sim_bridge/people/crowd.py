@@ -1,7 +1,7 @@
 """All people of a scene, moved on together."""
 
 import math
-from typing import Iterable, Protocol, Sequence, Tuple
+from typing import Iterable, Sequence
 
 import numpy as np
 
@@ -9,8 +9,9 @@ from planar import Pose2
 from sim_bridge.geometry.pose3 import from_pose2
 from sim_bridge.geometry.shapes import Cylinder
 from sim_bridge.people.forces import advance, push
-from sim_bridge.people.ground import RESOLUTION, Ground
+from sim_bridge.people.walkable_area import RESOLUTION, WalkableArea
 from sim_bridge.people.walker import Walker
+from sim_bridge.physics.kinematics import KinematicBodies
 from sim_bridge.robot import Robot
 from sim_bridge.world import Body, Collision, World
 
@@ -22,16 +23,6 @@ ARRIVED, NEARER, PATIENCE = 0.35, 0.3, 4.0
 # Metres: of a robot to people, who keep more off it than it is wide.
 ROBOT_RADIUS = 0.25
 NOBODY = np.empty((0, 5))
-
-
-class Movable(Protocol):
-    """What holds the bodies: the engine."""
-
-    def has_link(self, name: str) -> bool:
-        """Whether it is there."""
-
-    def shift(self, places: Iterable[Tuple[str, float, float]]) -> None:
-        """Puts bodies, each told by name, x and y, to other places."""
 
 
 class Crowd:
@@ -48,11 +39,11 @@ class Crowd:
         self.rows = NOBODY
         if not walkers:
             return
-        self._ground = Ground(world, Pose2(*walkers[0].goals_xy[0].tolist()))
+        self._ground = WalkableArea(world, Pose2(*walkers[0].goals_xy[0].tolist()))
         goals = [len(walker.goals_xy) for walker in walkers]
         self._first_goals = np.concatenate(([0], np.cumsum(goals)[:-1])).astype(int)
         self._goals_xy = np.vstack([walker.goals_xy for walker in walkers])
-        self._ways = self._ground.ways_to(self._goals_xy)
+        self._ways = self._ground.distances_to(self._goals_xy)
         self._groups = np.array([walker.group for walker in walkers])
         self._begin()
 
@@ -66,7 +57,9 @@ class Crowd:
         self._nearest = [math.inf] * len(self._walkers)
         self._stuck_since = [0.0] * len(self._walkers)
 
-    def follow(self, engine: Movable, step: int, rate: int, stamp: float, robots: Iterable[Robot]) -> None:
+    def update(
+        self, engine: KinematicBodies, step: int, rate: int, stamp: float, robots: Iterable[Robot]
+    ) -> None:
         """Before the step of physics number ``step``, of ``rate`` a second, which begins at ``stamp``.
 
         At time 0 all begin anew.
@@ -93,7 +86,9 @@ class Crowd:
         )
         self.rows = seen + corner
         places = [(link, x, y) for link, (x, y, *_) in zip(self.links, self.rows.tolist())]
-        engine.shift(place for place in places if engine.has_link(place[0]))  # nobody has taken it away
+        engine.set_positions(
+            place for place in places if engine.has_link(place[0])
+        )  # nobody has taken it away
 
     def _choose(self, stamp: float) -> None:
         """Who has come to a goal rests and then goes to the next; so does who cannot get on."""
@@ -102,7 +97,7 @@ class Crowd:
             goal = self._first_goals[number] + self._turns[number]
             goal_x, goal_y = self._goals_xy[goal].tolist()
             is_there = math.hypot(goal_x - x, goal_y - y) < ARRIVED
-            left = self._ground.way_left(self._ways[goal], x, y)
+            left = self._ground.remaining_distance(self._ways[goal], x, y)
             if is_there or stamp < self._rests[number] or left < self._nearest[number] - NEARER:
                 self._nearest[number], self._stuck_since[number] = left, stamp
             if stamp < self._rests[number] or len(walker.goals_xy) == 1:
@@ -115,7 +110,7 @@ class Crowd:
 
 def rows_of(robots: Iterable[Robot]) -> np.ndarray:
     """Robots as people see them, (M, 5)."""
-    motions = [robot.vehicle.motion() for robot in robots]
+    motions = [robot.vehicle.state() for robot in robots]
     rows = [(*motion.pose[:2, 3], *motion.linear[:2], ROBOT_RADIUS) for motion in motions]
     return np.array(rows, dtype=float).reshape(-1, 5)
 
@@ -131,4 +126,4 @@ def body_of(walker: Walker) -> Body:
     """A cylinder, which is all that a laser sees of a person in a skirt."""
     place = from_pose2(Pose2(*walker.goals_xy[0].tolist()), z=walker.height / 2.0)
     solid = (Collision(Cylinder(walker.radius, walker.height), np.eye(4)),)
-    return Body(walker.link, place, solid, is_on_course=True)
+    return Body(walker.link, place, solid, is_kinematic=True)

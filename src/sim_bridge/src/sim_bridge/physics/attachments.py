@@ -5,8 +5,8 @@ from typing import Dict, Optional, Tuple
 
 from sim_bridge.geometry.pose3 import IDENTITY, inverse, position, quaternion
 from sim_bridge.physics.bullet import BulletClient, pybullet
-from sim_bridge.physics.frames import centre_of
-from sim_bridge.physics.register import Link, Register
+from sim_bridge.physics.frames import centre_of_mass_of
+from sim_bridge.physics.registry import BodyRegistry, BulletLink
 
 
 class Attachments:
@@ -16,36 +16,36 @@ class Attachments:
     world, where that is.
     """
 
-    def __init__(self, bullet: BulletClient, register: Register):
+    def __init__(self, bullet: BulletClient, register: BodyRegistry):
         self._bullet = bullet
         self._register = register
         self._constraints: Dict[Tuple[str, str], Optional[int]] = {}
         # What stands and holds something, by the number of the constraint.
-        self._anchors: Dict[int, Link] = {}
+        self._anchors: Dict[int, BulletLink] = {}
 
     def attach(self, first: str, second: str) -> None:
         """Holds two links together as they are now until they are detached; meanwhile they never collide."""
         if (first, second) in self._constraints:
             self.detach(first, second)
         one, other = self._register.links[first], self._register.links[second]
-        self._constraints[first, second] = self._hold(one, other)
-        self._let_collide(one, other, False)
+        self._constraints[first, second] = self._create_constraint(one, other)
+        self._set_collisions_enabled(one, other, False)
 
-    def follow(self) -> None:
+    def update(self) -> None:
         """What is held to something that stands is held to where that is now."""
         for number, anchor in self._anchors.items():
-            place = centre_of(self._bullet, anchor)
+            place = centre_of_mass_of(self._bullet, anchor)
             self._bullet.changeConstraint(number, position(place), quaternion(place))
 
-    def _hold(self, one: Link, other: Link) -> Optional[int]:
+    def _create_constraint(self, one: BulletLink, other: BulletLink) -> Optional[int]:
         """The number of a new constraint, None if both stand."""
-        if self._register.stands(one.number):
+        if self._register.is_static(one.number):
             one, other = other, one
-        if self._register.stands(one.number):
+        if self._register.is_static(one.number):
             return None
-        place = centre_of(self._bullet, other)
-        other_in_one = inverse(centre_of(self._bullet, one)) @ place
-        is_anchored = self._register.stands(other.number)
+        place = centre_of_mass_of(self._bullet, other)
+        other_in_one = inverse(centre_of_mass_of(self._bullet, one)) @ place
+        is_anchored = self._register.is_static(other.number)
         frame = place if is_anchored else IDENTITY
         number = self._bullet.createConstraint(
             one.number,
@@ -72,7 +72,7 @@ class Attachments:
         if number is not None:
             self._bullet.removeConstraint(number)
             self._anchors.pop(number, None)
-        self._let_collide(self._register.links[first], self._register.links[second], True)
+        self._set_collisions_enabled(self._register.links[first], self._register.links[second], True)
 
     def detach_all(self) -> None:
         for pair in list(self._constraints):
@@ -84,7 +84,7 @@ class Attachments:
             if number in (self._register.links[link].number for link in pair):
                 self.detach(*pair)
 
-    def _let_collide(self, one: Link, other: Link, may_collide: bool) -> None:
+    def _set_collisions_enabled(self, one: BulletLink, other: BulletLink, may_collide: bool) -> None:
         """All parts of the one with all parts of the other."""
         parts = [self._register.parts_of(link.number) for link in (one, other)]
         for first, second in itertools.product(*parts):

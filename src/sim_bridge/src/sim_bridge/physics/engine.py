@@ -9,14 +9,14 @@ import numpy as np
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import IDENTITY, cross, inverse, position, quaternion
 from sim_bridge.physics.attachments import Attachments
-from sim_bridge.physics.building import build
 from sim_bridge.physics.bullet import BulletClient, pybullet
-from sim_bridge.physics.frames import centre_of, link_at, root_of
+from sim_bridge.physics.collision_queries import CollisionQueries
+from sim_bridge.physics.frames import centre_of_mass_of, link_at, root_pose_of
 from sim_bridge.physics.joints import Joints
-from sim_bridge.physics.motion import Motion
-from sim_bridge.physics.multibody import grow
-from sim_bridge.physics.register import Register
-from sim_bridge.physics.touch import Touch
+from sim_bridge.physics.kinematics import KinematicState
+from sim_bridge.physics.multibody import kinematic_trees
+from sim_bridge.physics.multibody_builder import build_multibody
+from sim_bridge.physics.registry import BodyRegistry
 from sim_bridge.world import Body, Joint
 
 SOLVER_ITERATIONS = 50
@@ -32,7 +32,7 @@ class MassProperties:
     mass: float
     centre: np.ndarray
     moments: np.ndarray
-    has_weight: bool
+    has_gravity: bool
 
 
 @dataclass(eq=False)
@@ -57,7 +57,7 @@ class Engine:
 
     def __init__(self, rate: int, gravity: float):
         self._bullet = BulletClient()
-        self._register = Register()
+        self._register = BodyRegistry()
         self._bullet.setPhysicsEngineParameter(
             numSolverIterations=SOLVER_ITERATIONS, deterministicOverlappingPairs=1
         )
@@ -65,12 +65,12 @@ class Engine:
         # Links that are not drawn down, and their masses.
         self._weightless: Dict[str, float] = {}
         # What links that stand have been told to weigh: in Bullet they have no mass.
-        self._told: Dict[str, MassProperties] = {}
+        self._static_masses: Dict[str, MassProperties] = {}
         # What is shifted, as long as nobody puts it elsewhere.
         self._upright: Dict[str, _Upright] = {}
         self.joints = Joints(self._bullet, self._register)
         self.attachments = Attachments(self._bullet, self._register)
-        self.touch = Touch(self._bullet, self._register)
+        self.collision_queries = CollisionQueries(self._bullet, self._register)
         self.set_rate(rate)
 
     def close(self) -> None:
@@ -82,16 +82,16 @@ class Engine:
             self._time_steps(count)
         for name, mass in self._weightless.items():
             self.push(name, (0.0, 0.0, mass * self._gravity), (0.0, 0.0, 0.0))
-        self.attachments.follow()
+        self.attachments.update()
         self._bullet.stepSimulation()
 
-    def mark(self) -> int:
+    def save_state(self) -> int:
         """Keeps where everything is and how it moves; returns the number by which ``go_back`` finds it."""
         return int(self._bullet.saveState())
 
-    def go_back(self, mark: int) -> None:
+    def restore_state(self, state_id: int) -> None:
         """Everything is again as when it was kept; no body may have come or gone since."""
-        self._bullet.restoreState(mark)
+        self._bullet.restoreState(state_id)
         self._upright.clear()
 
     def set_rate(self, rate: int) -> None:
@@ -129,15 +129,15 @@ class Engine:
             if count > 1:
                 raise WorldError(f"{name} would be in the world {count} times")
         built: List[int] = []
-        for tree in grow(bodies, joints):
+        for tree in kinematic_trees(bodies, joints):
             try:
-                built.append(build(self._bullet, self._register, tree, placement))
+                built.append(build_multibody(self._bullet, self._register, tree, placement))
             except WorldError:
                 for number in built:
-                    self._take_out(number)
+                    self._remove_body(number)
                 raise
             for body in tree.bodies:
-                if not body.has_weight and body.mass is not None:
+                if not body.has_gravity and body.mass is not None:
                     self._weightless[body.name] = body.mass
 
     def remove(self, name: str) -> None:
@@ -145,18 +145,18 @@ class Engine:
         number = self._register.links[name].number
         self.attachments.detach_from(number)
         self._upright.pop(name, None)
-        self._take_out(number)
+        self._remove_body(number)
 
-    def _take_out(self, number: int) -> None:
+    def _remove_body(self, number: int) -> None:
         self._bullet.removeBody(number)
-        self._register.forget(number)
+        self._register.remove(number)
         self._weightless = {key: mass for key, mass in self._weightless.items() if self.has_link(key)}
-        self._told = {key: told for key, told in self._told.items() if self.has_link(key)}
+        self._static_masses = {key: told for key, told in self._static_masses.items() if self.has_link(key)}
 
     def has_link(self, name: str) -> bool:
         return name in self._register.links
 
-    def motion_of(self, name: str) -> Motion:
+    def state_of(self, name: str) -> KinematicState:
         link = self._register.links[name]
         if link.index < 0:
             point, turn = self._bullet.getBasePositionAndOrientation(link.number)
@@ -168,20 +168,20 @@ class Engine:
             (point, turn), (linear, angular) = state[:2], state[6:8]
         pose = link_at(link, point, turn)
         arm = [there - here for there, here in zip(position(pose), point)]
-        return Motion(pose, np.array(linear) + cross(angular, arm), np.array(angular))
+        return KinematicState(pose, np.array(linear) + cross(angular, arm), np.array(angular))
 
     def pose_of(self, name: str) -> np.ndarray:
         """Where a link is, (4, 4) in the world."""
         upright = self._upright.get(name)
         if upright is None:
             link = self._register.links[name]
-            return centre_of(self._bullet, link) @ link.from_centre
+            return centre_of_mass_of(self._bullet, link) @ link.from_centre
         pose = upright.link_above_origin.copy()
         pose[0, 3] += upright.x
         pose[1, 3] += upright.y
         return pose
 
-    def set_motion(self, name: str, motion: Motion) -> None:
+    def set_state(self, name: str, motion: KinematicState) -> None:
         """Puts a link to another place, with all that hangs together with it, and sets its velocity.
 
         What stands has none.
@@ -190,30 +190,32 @@ class Engine:
         self._upright.pop(name, None)
         centre = motion.pose @ link.centre
         if link.index >= 0:
-            centre = centre @ inverse(centre_of(self._bullet, link)) @ root_of(self._bullet, link)
+            centre = (
+                centre @ inverse(centre_of_mass_of(self._bullet, link)) @ root_pose_of(self._bullet, link)
+            )
         self._bullet.resetBasePositionAndOrientation(link.number, position(centre), quaternion(centre))
-        if not self._register.stands(link.number):
+        if not self._register.is_static(link.number):
             linear = motion.linear + cross(motion.angular, centre[:3, 3] - motion.pose[:3, 3])
             self._bullet.resetBaseVelocity(link.number, linear.tolist(), motion.angular.tolist())
 
-    def shift(self, places: Iterable[Tuple[str, float, float]]) -> None:
+    def set_positions(self, places: Iterable[Tuple[str, float, float]]) -> None:
         """Puts bodies that stand alone, by name, x and y, elsewhere, as high and turned as they are."""
         put = self._bullet.resetBasePositionAndOrientation
         for name, x, y in places:
             body = self._upright.get(name)
             if body is None:
-                self._shift_first(name, x, y)
+                self._set_first_position(name, x, y)
             else:
                 put(body.number, (x, y, body.z), body.turn)
                 body.x, body.y = x, y
 
-    def _shift_first(self, name: str, x: float, y: float) -> None:
+    def _set_first_position(self, name: str, x: float, y: float) -> None:
         number = self._register.links[name].number
         (_, _, z), turn = self._bullet.getBasePositionAndOrientation(number)
         self._bullet.resetBasePositionAndOrientation(number, (x, y, z), turn)
         (x, y, z_now), turn_now = self._bullet.getBasePositionAndOrientation(number)
         is_rounded = (z_now, turn_now) != (z, turn)
-        if not is_rounded and self._register.stands(number):
+        if not is_rounded and self._register.is_static(number):
             link_above_origin = self.pose_of(name)
             link_above_origin[:2, 3] -= x, y
             self._upright[name] = _Upright(number, x, y, z, turn, link_above_origin)
@@ -228,19 +230,19 @@ class Engine:
         self._bullet.applyExternalTorque(link.number, link.index, torque, pybullet.WORLD_FRAME)
 
     def mass_properties(self, name: str) -> MassProperties:
-        if name in self._told:
-            return self._told[name]
+        if name in self._static_masses:
+            return self._static_masses[name]
         link = self._register.links[name]
         mass, _, moments, *_ = self._bullet.getDynamicsInfo(link.number, link.index)
         return MassProperties(mass, link.centre, np.array(moments), name not in self._weightless)
 
-    def set_mass(self, name: str, mass: float, moments: Sequence[float], has_weight: bool) -> None:
+    def set_mass(self, name: str, mass: float, moments: Sequence[float], has_gravity: bool) -> None:
         """``mass`` in kg, ``moments`` (3,) about the principal axes, kg m^2."""
         link = self._register.links[name]
-        if self._register.stands(link.number):
-            self._told[name] = MassProperties(mass, link.centre, np.array(moments), has_weight)
+        if self._register.is_static(link.number):
+            self._static_masses[name] = MassProperties(mass, link.centre, np.array(moments), has_gravity)
             return
         self._bullet.changeDynamics(link.number, link.index, mass=mass, localInertiaDiagonal=list(moments))
         self._weightless.pop(name, None)
-        if not has_weight:
+        if not has_gravity:
             self._weightless[name] = mass

@@ -11,7 +11,7 @@ from sim_bridge.physics.models import Models
 
 
 @dataclass(frozen=True, eq=False)
-class Push:
+class LinkWrench:
     """A ``force``, N, at the centre of a link's mass, and a ``torque``, N m, from ``start`` to ``end``, s.
 
     Both (3,), along the axes of the world.
@@ -25,7 +25,7 @@ class Push:
 
 
 @dataclass(frozen=True)
-class JointPush:
+class JointEffort:
     """An ``effort``, N m or N, on a joint from ``start`` to ``end``, s."""
 
     joint: str
@@ -41,24 +41,24 @@ class Forces:
         self._engine = engine
         self._models = models
         self._joints = joints
-        self._pushes: List[Push] = []
-        self._joint_pushes: List[JointPush] = []
+        self._pushes: List[LinkWrench] = []
+        self._joint_pushes: List[JointEffort] = []
 
-    def push(self, push: Push) -> None:
+    def push(self, push: LinkWrench) -> None:
         """Raises UnknownEntityError."""
         self._models.check_link(push.link)
         self._pushes.append(push)
 
-    def push_joint(self, push: JointPush) -> None:
+    def apply_joint_effort(self, push: JointEffort) -> None:
         """Raises UnknownEntityError."""
         self._joints.get(push.joint)
         self._joint_pushes.append(push)
 
-    def stop_pushing(self, link: str) -> None:
+    def clear_link_wrenches(self, link: str) -> None:
         """Ends all pushes on a link."""
         self._pushes = [push for push in self._pushes if push.link != link]
 
-    def stop_pushing_joint(self, joint: str) -> None:
+    def clear_joint_efforts(self, joint: str) -> None:
         """Ends all efforts on a joint."""
         self._joint_pushes = [push for push in self._joint_pushes if push.joint != joint]
 
@@ -68,7 +68,7 @@ class Forces:
         self._joint_pushes.clear()
 
     @property
-    def are_due(self) -> bool:
+    def are_pending(self) -> bool:
         """Whether anything pushes, or will."""
         return bool(self._pushes or self._joint_pushes)
 

@@ -5,7 +5,7 @@ from typing import Sequence
 import numpy as np
 
 from sim_bridge.physics.bullet import BulletClient, pybullet
-from sim_bridge.physics.register import Link
+from sim_bridge.physics.registry import BulletLink
 
 
 def matrix_of(point: Sequence[float], orientation: Sequence[float]) -> np.ndarray:
@@ -14,7 +14,7 @@ def matrix_of(point: Sequence[float], orientation: Sequence[float]) -> np.ndarra
     return np.array((r[:3] + (x,), r[3:6] + (y,), r[6:] + (z,), (0.0, 0.0, 0.0, 1.0)))
 
 
-def link_at(link: Link, point: Sequence[float], orientation: Sequence[float]) -> np.ndarray:
+def link_at(link: BulletLink, point: Sequence[float], orientation: Sequence[float]) -> np.ndarray:
     """The pose (4, 4) of a link whose centre of mass is at a point, turned by a quaternion of Bullet's."""
     if link.offset is None:
         return matrix_of(point, orientation) @ link.from_centre
@@ -30,13 +30,13 @@ def link_at(link: Link, point: Sequence[float], orientation: Sequence[float]) ->
     )
 
 
-def root_of(bullet: BulletClient, link: Link) -> np.ndarray:
+def root_pose_of(bullet: BulletClient, link: BulletLink) -> np.ndarray:
     """Where the centre of mass of the root is that a link hangs on, (4, 4) in the world."""
     return matrix_of(*bullet.getBasePositionAndOrientation(link.number))
 
 
-def centre_of(bullet: BulletClient, link: Link) -> np.ndarray:
+def centre_of_mass_of(bullet: BulletClient, link: BulletLink) -> np.ndarray:
     """Where the centre of a link's mass is, with its principal axes, (4, 4) in the world."""
     if link.index < 0:
-        return root_of(bullet, link)
+        return root_pose_of(bullet, link)
     return matrix_of(*bullet.getLinkState(link.number, link.index, computeForwardKinematics=1)[:2])

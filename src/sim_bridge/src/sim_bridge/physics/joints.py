@@ -5,7 +5,7 @@ from typing import List, NamedTuple, Sequence, Tuple
 import numpy as np
 
 from sim_bridge.physics.bullet import BulletClient, pybullet
-from sim_bridge.physics.register import MovingJoint, Register
+from sim_bridge.physics.registry import BodyRegistry, BulletJoint
 
 # N m/rad or N/m of what holds a joint within its limits.
 LIMIT_FORCE = 1e4
@@ -21,7 +21,7 @@ class JointState(NamedTuple):
 class Joints:
     """Reads, moves, pushes and limits joints by their names."""
 
-    def __init__(self, bullet: BulletClient, register: Register):
+    def __init__(self, bullet: BulletClient, register: BodyRegistry):
         self._bullet = bullet
         self._register = register
 
@@ -56,12 +56,12 @@ class Joints:
 class Motors:
     """Turns some joints of one thing."""
 
-    def __init__(self, bullet: BulletClient, joints: Sequence[MovingJoint]):
+    def __init__(self, bullet: BulletClient, joints: Sequence[BulletJoint]):
         self._bullet = bullet
         self._number = joints[0].number
         self._indices: List[int] = [joint.index for joint in joints]
 
-    def drive(self, speeds: Sequence[float], efforts: Sequence[float]) -> None:
+    def set_velocities(self, speeds: Sequence[float], efforts: Sequence[float]) -> None:
         """The motors aim at ``speeds``, rad/s, with at most ``efforts``, N m."""
         self._bullet.setJointMotorControlArray(
             self._number, self._indices, pybullet.VELOCITY_CONTROL, targetVelocities=speeds, forces=efforts

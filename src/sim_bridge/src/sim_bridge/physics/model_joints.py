@@ -25,20 +25,20 @@ class ModelJoints:
         """Joints of bodies that are in the engine."""
         self._joints.update((joint.name, joint) for joint in joints)
 
-    def forget_model(self, model: str) -> List[str]:
+    def remove_model(self, model: str) -> List[str]:
         """A model is gone; returns the names of its joints."""
         gone = [joint.name for joint in self._joints.values() if joint.model == model]
         for name in gone:
             del self._joints[name]
         return gone
 
-    def moving_of(self, model: str) -> List[str]:
+    def movable_joints_of(self, model: str) -> List[str]:
         """The names of a model's joints that move, ``model::joint``."""
         return [
             joint.name for joint in self._joints.values() if joint.model == model and joint.kind != "fixed"
         ]
 
-    def unheld(self, links: Iterable[str]) -> List[str]:
+    def root_links(self, links: Iterable[str]) -> List[str]:
         """Those links that no joint holds to another: what hangs on them moves with them."""
         held: Set[str] = {joint.child for joint in self._joints.values() if joint.parent}
         return [link for link in links if link not in held]
@@ -65,7 +65,7 @@ class ModelJoints:
             if self.get(name).kind != "fixed":
                 self._engine.joints.set_state(name, JointState(position, 0.0))
 
-    def put_back(self) -> None:
+    def reset_positions(self) -> None:
         """Puts all joints to where they started."""
         self.set_positions({joint.name: joint.start for joint in self._joints.values()})
 

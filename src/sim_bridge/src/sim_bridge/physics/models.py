@@ -7,10 +7,10 @@ from planar.geometry.limits import FARTHEST
 from sim_bridge.errors import UnknownEntityError, WorldError
 from sim_bridge.geometry.pose3 import inverse
 from sim_bridge.physics.engine import Engine, MassProperties
+from sim_bridge.physics.kinematics import KinematicState, at_rest
 from sim_bridge.physics.model_joints import ModelJoints
-from sim_bridge.physics.motion import Motion, at_rest
 from sim_bridge.physics.vehicle import Vehicle
-from sim_bridge.views.sight import Sight
+from sim_bridge.views.scene_view import SceneView
 from sim_bridge.world import Body
 
 
@@ -20,10 +20,10 @@ class Models:
     What takes a name raises UnknownEntityError if there is nothing of that name.
     """
 
-    def __init__(self, engine: Engine, joints: ModelJoints, sight: Sight):
+    def __init__(self, engine: Engine, joints: ModelJoints, view: SceneView):
         self._engine = engine
         self._joints = joints
-        self._sight = sight
+        self._view = view
         self._bodies: Dict[str, Body] = {}
         self._vehicles: Dict[str, Vehicle] = {}
 
@@ -31,12 +31,12 @@ class Models:
         """Bodies that are in the engine."""
         for body in bodies:
             self._bodies[body.name] = body
-            self._sight.add(body)
+            self._view.add(body)
 
     def add_vehicle(self, vehicle: Vehicle) -> None:
         """A robot that is in the engine."""
         self._vehicles[vehicle.name] = vehicle
-        self._sight.add(vehicle.body())
+        self._view.add(vehicle.body())
 
     def remove(self, name: str) -> List[str]:
         """Takes a model out of the engine and out of sight; returns the names of its links."""
@@ -46,8 +46,8 @@ class Models:
             if self._engine.has_link(link):
                 self._engine.remove(link)
             self._bodies.pop(link, None)
-            self._sight.remove(link)
-        self._sight.forget_viewer(name)
+            self._view.remove(link)
+        self._view.remove_viewer(name)
         return links
 
     def bodies(self) -> List[Body]:
@@ -71,7 +71,7 @@ class Models:
             raise _unknown("model", model, self.names())
         return links
 
-    def solids_of(self, model: str) -> List[str]:
+    def collisions_of(self, model: str) -> List[str]:
         """The names of the collisions of a model."""
         bodies = (body for body in self._bodies.values() if body.model == model)
         return [part.name for body in bodies for part in body.collisions]
@@ -82,22 +82,22 @@ class Models:
             self._bodies[link].mass is None for link in self.links_of(model)
         )
 
-    def motion(self, name: str) -> Motion:
+    def state(self, name: str) -> KinematicState:
         """Where a model's frame is and how it moves."""
         link = self.links_of(name)[0]
-        motion = self._engine.motion_of(link)
+        motion = self._engine.state_of(link)
         return motion.of_frame(inverse(self._bodies[link].pose_in_model)) if link in self._bodies else motion
 
-    def set_motion(self, name: str, motion: Motion) -> None:
+    def set_state(self, name: str, motion: KinematicState) -> None:
         """Puts a model with all its links to another place, and sets its velocity."""
-        from_here = motion.pose @ inverse(self.motion(name).pose)
+        from_here = motion.pose @ inverse(self.state(name).pose)
         vehicle = self._vehicles.get(name)
-        for link in [vehicle.base] if vehicle else self._joints.unheld(self.links_of(name)):
+        for link in [vehicle.base] if vehicle else self._joints.root_links(self.links_of(name)):
             self._put(link, motion.at(from_here @ self._engine.pose_of(link)))
 
-    def put_back(self) -> None:
+    def reset_poses(self) -> None:
         """Puts all models but robots back to where they were put into the world, at rest."""
-        for name in self._joints.unheld(self._bodies):
+        for name in self._joints.root_links(self._bodies):
             self._put(name, at_rest(self._bodies[name].pose_in_world))
 
     def full_link_name(self, name: str) -> str:
@@ -114,11 +114,11 @@ class Models:
         if model not in self.names() or link not in self.links_of(model):
             raise _unknown("link", link, self._links())
 
-    def link_motion(self, link: str) -> Motion:
+    def link_state(self, link: str) -> KinematicState:
         self.check_link(link)
-        return self._engine.motion_of(link)
+        return self._engine.state_of(link)
 
-    def set_link_motion(self, link: str, motion: Motion) -> None:
+    def set_link_state(self, link: str, motion: KinematicState) -> None:
         self.check_link(link)
         self._put(link, motion)
 
@@ -126,7 +126,7 @@ class Models:
         self.check_link(link)
         return self._engine.mass_properties(link)
 
-    def set_mass(self, link: str, mass: float, moments: Sequence[float], has_weight: bool) -> None:
+    def set_mass(self, link: str, mass: float, moments: Sequence[float], has_gravity: bool) -> None:
         """``mass`` in kg, ``moments`` (3,) about the link's principal axes, kg m^2, and whether it falls.
 
         Raises WorldError for what nothing can weigh.
@@ -134,14 +134,14 @@ class Models:
         self.check_link(link)
         if not all(0.0 < value <= FARTHEST for value in (mass, *moments)):
             raise WorldError("mass and moments of inertia must be positive, and no larger than 1e6")
-        self._engine.set_mass(link, mass, moments, has_weight)
+        self._engine.set_mass(link, mass, moments, has_gravity)
 
     def _links(self) -> List[str]:
         return [link for model in self.names() for link in self.links_of(model)]
 
-    def _put(self, link: str, motion: Motion) -> None:
-        self._engine.set_motion(link, motion)
-        self._sight.move(link, motion.pose)
+    def _put(self, link: str, motion: KinematicState) -> None:
+        self._engine.set_state(link, motion)
+        self._view.move(link, motion.pose)
 
 
 def _unknown(kind: str, name: str, known: Iterable[str]) -> UnknownEntityError:

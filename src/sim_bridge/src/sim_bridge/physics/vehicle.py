@@ -5,9 +5,9 @@ from typing import List, NamedTuple, Optional, Sequence, Tuple
 import numpy as np
 
 from planar import Twist2
+from sim_bridge.physics.collision_queries import Contact
 from sim_bridge.physics.engine import Engine
-from sim_bridge.physics.motion import Motion
-from sim_bridge.physics.touch import Contact
+from sim_bridge.physics.kinematics import KinematicState
 from sim_bridge.world import Body, Joint
 
 # Metres that a robot at its start may reach into what it stands on.
@@ -47,7 +47,7 @@ class Vehicle:
         self.name = name
         self.links = tuple(body.name for body in bodies)
         self.base = self.links[0]
-        engine.touch.make_robot(self.base)
+        engine.collision_queries.set_robot_filter(self.base)
         self._collisions = bodies[0].collisions
         self._left_count, self._right_count = left_count, len(joints) - left_count
         self._efforts = [torque] * len(joints)
@@ -60,15 +60,15 @@ class Vehicle:
         if self._speeds != (left_speed, right_speed):
             self._speeds = (left_speed, right_speed)
             speeds = [left_speed] * self._left_count + [right_speed] * self._right_count
-            self._motors.drive(speeds, self._efforts)
+            self._motors.set_velocities(speeds, self._efforts)
 
-    def forget_speeds(self) -> None:
+    def invalidate_speeds(self) -> None:
         """The motors may have been set otherwise, or have to be as physics goes at another rate."""
         self._speeds = None
 
-    def motion(self) -> Motion:
+    def state(self) -> KinematicState:
         """Of the base frame."""
-        return self._engine.motion_of(self.base)
+        return self._engine.state_of(self.base)
 
     def wheels(self) -> Tuple[Tuple[float, ...], Tuple[float, ...]]:
         """Angles, rad, and speeds, rad/s, of the wheels, those on the left first."""
@@ -76,16 +76,16 @@ class Vehicle:
 
     def body(self) -> Body:
         """The robot as others see it: its base, where it is now."""
-        return Body(self.base, self.motion().pose, self._collisions, mass=1.0)
+        return Body(self.base, self.state().pose, self._collisions, mass=1.0)
 
-    def bumps(self) -> List[Contact]:
+    def collision_contacts(self) -> List[Contact]:
         """Where the robot touches things; what it stands on is not among them."""
-        contacts = self._engine.touch.contacts(self.base, steepest=SUPPORTING_NORMAL_Z)
+        contacts = self._engine.collision_queries.contacts(self.base, steepest=SUPPORTING_NORMAL_Z)
         return [contact for contact in contacts if contact.depth >= 0.0]
 
     def floors_below(self, points: Sequence[Sequence[float]]) -> List[float]:
         """The heights of what is below points in space, -inf where there is nothing."""
-        return self._engine.touch.floors_below(points)
+        return self._engine.collision_queries.floors_below(points)
 
     @property
     def gravity(self) -> float:
@@ -94,10 +94,10 @@ class Vehicle:
 
     def overlap(self) -> Optional[Overlap]:
         """What the robot stands in, None if in nothing."""
-        touch = self._engine.touch
-        touch.find_contacts()
-        sunk = [contact for contact in touch.contacts(self.base) if contact.depth > START_DEPTH]
-        met = sunk + self.bumps()
+        collision_queries = self._engine.collision_queries
+        collision_queries.detect_collisions()
+        sunk = [contact for contact in collision_queries.contacts(self.base) if contact.depth > START_DEPTH]
+        met = sunk + self.collision_contacts()
         if not met:
             return None
         deepest = max(met, key=lambda contact: contact.depth)
@@ -106,7 +106,7 @@ class Vehicle:
         return Overlap(links, deepest.normal[0] * way, deepest.normal[1] * way)
 
 
-def twist_in_base(motion: Motion) -> Twist2:
+def twist_in_base(motion: KinematicState) -> Twist2:
     """Velocity of the base frame's origin along its own x axis, and turn rate."""
     linear, pose = motion.linear, motion.pose
     ahead = linear.item(0) * pose.item(0, 0) + linear.item(1) * pose.item(1, 0)

@@ -9,7 +9,14 @@ from std_msgs.msg import String
 from planar import SettingsError, Twist2
 from planar.config.parameters import Tunable
 from planar_ros.node.reconfigure import Tuning
-from sim_bridge.driving.mux import TURTLEBOT_INPUTS, Mux, MuxInput, Smoother, parse_inputs, read_inputs
+from sim_bridge.driving.mux import (
+    TURTLEBOT_INPUTS,
+    MuxInput,
+    VelocityMux,
+    VelocitySmoother,
+    parse_inputs,
+    read_inputs,
+)
 
 MUX = "cmd_vel_mux"
 MUX_FILE, MUX_TEXT = "yaml_cfg_file", "yaml_cfg_data"
@@ -65,7 +72,7 @@ class MuxTopics(CommandTopics):
         super().__init__(robot, namespace, topics)
         self._where = where = rospy.names.ns_join(namespace, MUX)
         file = rospy.get_param(f"{where}/{MUX_FILE}", "")
-        self._smoother = Smoother()
+        self._smoother = VelocitySmoother()
         self._arrived: Dict[str, Twist2] = {}
         self._raw: Optional[Twist2] = None
         self._told = ""
@@ -86,7 +93,7 @@ class MuxTopics(CommandTopics):
         arrived, self._arrived = self._arrived, {}
         raw, self._raw = self._raw, None
         if raw is not None:
-            self._smoother.hear(raw, now)
+            self._smoother.set_target(raw, now)
         smoothed = self._smoother.command(now)
         if smoothed is not None and self._smoothed_name:
             arrived[self._smoothed_name] = smoothed
@@ -110,7 +117,7 @@ class MuxTopics(CommandTopics):
     def _listen_to(self, inputs: Sequence[MuxInput]) -> None:
         for one in self._inputs:
             one.unregister()
-        self._mux = Mux(inputs)
+        self._mux = VelocityMux(inputs)
         self._smoothed_name = next((one.name for one in inputs if one.topic == SMOOTHED_INPUT), "")
         self._inputs = [self._subscribed(self._where, one.topic, self._on_input, one.name) for one in inputs]
 

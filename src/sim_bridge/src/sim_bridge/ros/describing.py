@@ -9,7 +9,7 @@ from urllib.parse import unquote
 from rospkg import ResourceNotFound, RosPack
 
 from planar import PlanarError
-from sim_bridge.description.frames import with_frames_of
+from sim_bridge.description.files import prefix_frames
 from sim_bridge.robots import ROBOTS, robot_named
 from sim_bridge.sdf.includes import parts_of, resolve
 
@@ -44,4 +44,4 @@ def robot_description() -> None:
         urdf = robot_named(arguments.robot, find_file).description()
     except PlanarError as error:
         parser.exit(2, f"robot_description: error: {error}\n")
-    print(with_frames_of(arguments.frames, urdf) if arguments.frames else urdf)
+    print(prefix_frames(arguments.frames, urdf) if arguments.frames else urdf)

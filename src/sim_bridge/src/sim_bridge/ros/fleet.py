@@ -7,7 +7,7 @@ from tf2_msgs.msg import TFMessage
 
 from planar import Pose2
 from sim_bridge.description import RobotProfile
-from sim_bridge.robot import Observation
+from sim_bridge.robot import StepResult
 from sim_bridge.ros.motion_messages import TransformsMsg
 from sim_bridge.ros.orders import Orders
 from sim_bridge.ros.performance import CountingPublisher
@@ -58,7 +58,7 @@ class Fleet:
         """Of all robots, the most simulated seconds between two messages of odometry."""
         return max((topics.odometry_seconds for topics in self._robots.values()), default=0.0)
 
-    def step(self) -> Mapping[str, Observation]:
+    def step(self) -> Mapping[str, StepResult]:
         """Moves on by one period of the odometry; what each robot observes."""
         commands = {name: topics.take_command() for name, topics in self._robots.items()}
         seen = self._scene.step({name: command for name, command in commands.items() if command})

@@ -9,7 +9,7 @@ from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
 from planar.geometry.limits import FARTHEST, is_within
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import from_quaternion, position, quaternion
-from sim_bridge.physics.motion import Motion
+from sim_bridge.physics.kinematics import KinematicState
 
 # Below it a quaternion is as good as zero, which messages hold that nobody has filled in.
 SHORTEST_QUATERNION = 1e-6
@@ -33,18 +33,18 @@ def pose3_from_msg(message: Pose) -> np.ndarray:
     return pose
 
 
-def motion_to_msgs(motion: Motion) -> Tuple[Pose, Twist]:
+def state_to_msgs(motion: KinematicState) -> Tuple[Pose, Twist]:
     return pose3_to_msg(motion.pose), Twist(Vector3(*motion.linear), Vector3(*motion.angular))
 
 
-def motion_from_msgs(pose: Pose, twist: Twist) -> Motion:
+def state_from_msgs(pose: Pose, twist: Twist) -> KinematicState:
     """Raises WorldError if a number is not finite."""
     linear, angular = vector_from_msg(twist.linear), vector_from_msg(twist.angular)
     if not (np.isfinite(linear).all() and np.isfinite(angular).all()):
         raise WorldError("the twist is not finite")
     if not is_within(FARTHEST, *linear, *angular):
         raise WorldError("nothing is as fast as the twist")
-    return Motion(pose3_from_msg(pose), linear, angular)
+    return KinematicState(pose3_from_msg(pose), linear, angular)
 
 
 def vector_from_msg(message) -> np.ndarray:

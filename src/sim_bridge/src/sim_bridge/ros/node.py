@@ -57,7 +57,7 @@ class Bridge:
             rospy.logwarn("%s", warning)
         self._orders = Orders()
         self._faults = FaultControl(settings.faults_file, settings.seed, self._orders)
-        self._scene = Scene(world, simulation_settings, settings.seed, self._faults.fitting)
+        self._scene = Scene(world, simulation_settings, settings.seed, self._faults.wrappers)
         self._steps = 0
         wait_for, static_publishers = map(_names, (settings.wait_for, settings.static_publishers))
         pacer = Pacer(settings.speed, wait_for)

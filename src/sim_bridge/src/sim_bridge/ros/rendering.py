@@ -11,7 +11,7 @@ from PIL import Image
 from planar import PlanarError, save_map, write_atomically
 from sim_bridge.ros.describing import model_folders
 from sim_bridge.sdf import load_world
-from sim_bridge.views.picture import picture_from_above
+from sim_bridge.views.top_view import render_top_view
 from sim_bridge.views.true_map import true_map
 
 
@@ -46,7 +46,7 @@ def render_map() -> None:
         for warning in world.warnings:
             _warn(warning)
         if arguments.picture:
-            picture = picture_from_above(world, arguments.below, warn=_warn)
+            picture = render_top_view(world, arguments.below, warn=_warn)
             _save_picture(picture, Path(arguments.picture))
         grid = true_map(world, arguments.height, arguments.resolution, tuple(arguments.inside))
         print(f"{save_map(grid, arguments.stem)}: {grid.cols} x {grid.rows} cells of {grid.resolution:g} m")

@@ -10,7 +10,7 @@ from std_msgs.msg import String
 from planar import Twist2
 from planar_ros.messages.conversion import time_of
 from sim_bridge.description.profile import JointStateProfile
-from sim_bridge.robot import Observation
+from sim_bridge.robot import StepResult
 from sim_bridge.ros.command_topics import CommandTopics, MuxTopics
 from sim_bridge.ros.kobuki.commands import KobukiCommands
 from sim_bridge.ros.messages import covariance_of
@@ -73,7 +73,7 @@ class RobotTopics:
         self._sensors.ask()
         return self._commands.take(self._scene.stamp)
 
-    def publish(self, observation: Observation) -> List[TransformMsg]:
+    def publish(self, observation: StepResult) -> List[TransformMsg]:
         """Tells what was observed, but for the transforms, which it returns."""
         self._steps += 1
         stamp = time_of(observation.stamp)
@@ -84,7 +84,7 @@ class RobotTopics:
             self._contacts = observation.contacts
             self._touches.publish("\n".join(observation.contacts))
         self._sensors.publish(observation)
-        for text in self._scene.sight.warnings:
+        for text in self._scene.view.warnings:
             rospy.logwarn_once(text)
         if self._steps % self._odom_steps:
             return []
@@ -101,7 +101,7 @@ class RobotTopics:
         if self._kobuki is not None:
             self._kobuki.close()
 
-    def _publish_motion(self, observation: Observation, stamp: rospy.Time) -> List[TransformMsg]:
+    def _publish_motion(self, observation: StepResult, stamp: rospy.Time) -> List[TransformMsg]:
         transforms = self._publish_odometry(observation.readings.get(Odometer.name))
         if self._truth.get_num_connections():
             self._truth_msg.fill(observation.base_in_world, observation.twist, stamp)
@@ -128,7 +128,7 @@ class RobotTopics:
         return self._steps % self._joint_steps == 0 and self._joints.get_num_connections() > 0
 
     def _joint_state_msg(
-        self, profile: JointStateProfile, observation: Observation, stamp: rospy.Time
+        self, profile: JointStateProfile, observation: StepResult, stamp: rospy.Time
     ) -> JointState:
         """Joints that do not move are at zero."""
         driven = self._profile.drive.joints

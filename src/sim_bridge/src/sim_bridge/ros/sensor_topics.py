@@ -7,7 +7,7 @@ from sensor_msgs.msg import Imu
 
 from planar import Scan
 from planar_ros.messages.conversion import LaserScanArrays, time_of
-from sim_bridge.robot import Observation, Robot
+from sim_bridge.robot import Robot, StepResult
 from sim_bridge.ros.camera_topics import CameraTopics
 from sim_bridge.ros.kobuki.topics import KobukiTopics
 from sim_bridge.ros.outlet import Outlet
@@ -81,7 +81,7 @@ class RobotSensors:
         for name, topics in self._topics:
             self._robot.want(name, topics.are_wanted())
 
-    def publish(self, observation: Observation) -> None:
+    def publish(self, observation: StepResult) -> None:
         for name, topics in self._topics:
             reading = observation.readings.get(name)
             if reading is not None:

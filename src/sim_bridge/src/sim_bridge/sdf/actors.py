@@ -4,12 +4,12 @@ from typing import List, Optional, Tuple
 
 import numpy as np
 
-from sim_bridge.courses import Course
 from sim_bridge.geometry.pose3 import IDENTITY, pose3
 from sim_bridge.geometry.shapes import Cylinder
+from sim_bridge.scripted_trajectories import ScriptedTrajectory
 from sim_bridge.sdf.element import Element
-from sim_bridge.sdf.plugins import NEEDLESS, plugin_name
-from sim_bridge.sdf.warnings import Warnings
+from sim_bridge.sdf.supported import REDUNDANT_PLUGINS, plugin_name
+from sim_bridge.sdf.warnings import SkippedElements
 from sim_bridge.world import Body, Collision
 
 # Of a person who walks: metres, about the one of Gazebo's own skins.
@@ -18,22 +18,22 @@ RADIUS, HEIGHT = 0.25, 1.7
 FOR_EVER = 1e9
 
 
-def read_actor(actor: Element, warnings: Warnings) -> Tuple[Body, Optional[Course]]:
+def read_actor(actor: Element, warnings: SkippedElements) -> Tuple[Body, Optional[ScriptedTrajectory]]:
     """The body of an actor, and the way it goes; None if it stays. Raises WorldError."""
     warnings.check_children(actor)
     for plugin in actor.children("plugin"):
-        if plugin_name(plugin) not in NEEDLESS:
-            warnings.leave_out(plugin, "left out, it moves by its trajectory alone")
+        if plugin_name(plugin) not in REDUNDANT_PLUGINS:
+            warnings.skip(plugin, "left out, it moves by its trajectory alone")
     link = f"{actor.name}::link"
     course = _course(actor, link)
     stands = actor.raw_pose()
     x, y = course.at(0.0) if course else ((0.0, 0.0) if stands is None else stands[:2, 3])
     solid = Collision(Cylinder(RADIUS, HEIGHT), IDENTITY)
     place = pose3(x, y, HEIGHT / 2.0)
-    return Body(link, place, (solid,), is_on_course=course is not None), course
+    return Body(link, place, (solid,), is_kinematic=course is not None), course
 
 
-def _course(actor: Element, link: str) -> Optional[Course]:
+def _course(actor: Element, link: str) -> Optional[ScriptedTrajectory]:
     script, trajectory = actor.child("script"), actor.child("script", "trajectory")
     waypoints = [] if trajectory is None else list(trajectory.children("waypoint"))
     if script is None or not waypoints:
@@ -52,4 +52,4 @@ def _course(actor: Element, link: str) -> Optional[Course]:
     if len(keyframes) == 1 or not is_repeated:
         keyframes.append((keyframes[-1][0] + FOR_EVER, *keyframes[-1][1:]))
     times, *points = np.array(keyframes).T
-    return Course(link, times, np.column_stack(points))
+    return ScriptedTrajectory(link, times, np.column_stack(points))

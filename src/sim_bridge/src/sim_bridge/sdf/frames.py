@@ -10,14 +10,14 @@ from sim_bridge.sdf.element import Element
 ROOT_NAMES = ("", "__model__", "world")
 
 
-class Frames:
+class SdfFrames:
     """The named frames of a world, or of a model; poses are told in its own frame, the root.
 
     The pose of a link, nested model or <frame> is given in the root unless it names another frame, that of a
     joint in its child. ``frames_of`` finds the frames of a model nested here, for names like ``table::leg``.
     """
 
-    def __init__(self, frames_of: Callable[[str], Optional["Frames"]] = lambda _name: None):
+    def __init__(self, frames_of: Callable[[str], Optional["SdfFrames"]] = lambda _name: None):
         self._frames_of = frames_of
         self._declared: Dict[str, Tuple[Element, str, np.ndarray]] = {}
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from sim_bridge.errors import WorldError
 from sim_bridge.sdf.element import Element
-from sim_bridge.sdf.warnings import Warnings
+from sim_bridge.sdf.warnings import SkippedElements
 from sim_bridge.world import Inertia
 
 # SDF's own default, kg.
@@ -16,7 +16,7 @@ def read_mass(link: Element) -> float:
     return mass.lengths(1)[0] if mass is not None else DEFAULT_MASS
 
 
-def read_inertia(link: Element, warnings: Warnings) -> Inertia:
+def read_inertia(link: Element, warnings: SkippedElements) -> Inertia:
     """The centre of mass and the principal moments of a link.
 
     Moments that no body can have, as many worlds hold for what they never move, are left out with a warning.
@@ -33,10 +33,10 @@ def read_inertia(link: Element, warnings: Warnings) -> Inertia:
     try:
         moments, axes_xyz = np.linalg.eigh(_matrix(matrix))
     except WorldError as error:
-        warnings.leave_out(matrix, f"left out: {error}", kind="inertia")
+        warnings.skip(matrix, f"left out: {error}", kind="inertia")
         return Inertia(pose)
     if moments[0] <= 0.0:
-        warnings.leave_out(matrix, "left out: its moments are not positive", kind="inertia")
+        warnings.skip(matrix, "left out: its moments are not positive", kind="inertia")
         return Inertia(pose)
     turned = pose.copy()
     turned[:3, :3] = pose[:3, :3] @ (axes_xyz * np.sign(np.linalg.det(axes_xyz)))

@@ -7,16 +7,16 @@ import numpy as np
 
 from sim_bridge.geometry.pose3 import inverse
 from sim_bridge.sdf.element import Element
-from sim_bridge.sdf.frames import Frames
-from sim_bridge.sdf.models import Model
-from sim_bridge.sdf.warnings import Warnings
+from sim_bridge.sdf.frames import SdfFrames
+from sim_bridge.sdf.models import SdfModel
+from sim_bridge.sdf.warnings import SkippedElements
 from sim_bridge.world import Joint
 
 KINDS = ("fixed", "revolute", "prismatic")
 
 
 def read_joint(
-    joint: Element, model: Model, name: str, links: Dict[str, np.ndarray], warnings: Warnings
+    joint: Element, model: SdfModel, name: str, links: Dict[str, np.ndarray], warnings: SkippedElements
 ) -> Joint:
     """A joint of the model ``name``; ``links``: where each link is in the model by its name, (4, 4).
 
@@ -28,9 +28,7 @@ def read_joint(
     if not child:
         raise joint.error("the child must be a link of the model, not the world")
     if kind not in KINDS:
-        warnings.leave_out(
-            joint, f"a {kind or 'nameless kind of'} joint is held as it is", kind=("joint", kind)
-        )
+        warnings.skip(joint, f"a {kind or 'nameless kind of'} joint is held as it is", kind=("joint", kind))
         kind = "fixed"
     in_model = model.frames.pose_of(joint, child)
     full = _Scope(name)
@@ -74,7 +72,7 @@ def _link_named(joint: Element, end: str, links: Dict[str, np.ndarray]) -> str:
 
 
 def _moving(
-    fixed: Joint, kind: str, axis: Element, in_model: np.ndarray, frames: Frames, warnings: Warnings
+    fixed: Joint, kind: str, axis: Element, in_model: np.ndarray, frames: SdfFrames, warnings: SkippedElements
 ) -> Joint:
     warnings.check_children(axis)
     lower = axis.bound("limit", "lower", default=-np.inf)
@@ -97,7 +95,7 @@ def _moving(
     )
 
 
-def _direction(axis: Element, in_model: np.ndarray, frames: Frames) -> np.ndarray:
+def _direction(axis: Element, in_model: np.ndarray, frames: SdfFrames) -> np.ndarray:
     """The axis (3,) in the joint's frame; before SDF 1.5, or if it says so, it is given in the model's."""
     xyz = axis.child("xyz")
     direction = np.array(xyz.numbers(3) if xyz is not None else (0.0, 0.0, 1.0))

@@ -7,10 +7,10 @@ from typing import Dict, Iterator, List, Optional, Sequence
 import numpy as np
 
 from sim_bridge.sdf.element import Element, parse, parse_text
-from sim_bridge.sdf.frames import Frames
+from sim_bridge.sdf.frames import SdfFrames
 from sim_bridge.sdf.includes import has_model, model_file, resolve
-from sim_bridge.sdf.plugins import DRIVES, plugin_name
-from sim_bridge.sdf.warnings import Warnings
+from sim_bridge.sdf.supported import DRIVES, plugin_name
+from sim_bridge.sdf.warnings import SkippedElements
 
 MAX_INCLUDE_DEPTH = 20
 # Names of Gazebo's own models that need no folder.
@@ -22,7 +22,7 @@ _GROUND_PLANE_SDF = """<sdf version='1.6'><model name='ground_plane'><static>1</
 
 
 @dataclass
-class Model:
+class SdfModel:
     """A <model>, or what an <include> names.
 
     ``placed_by``: the element that says where it stands, the include if that has a pose. ``folder``: what
@@ -34,11 +34,11 @@ class Model:
     placed_by: Element
     folder: Path
     is_static: bool
-    nested: List["Model"] = field(default_factory=list)
+    nested: List["SdfModel"] = field(default_factory=list)
 
     def __post_init__(self):
-        self._by_name: Dict[str, Model] = {}
-        self.frames = Frames(self._frames_of_nested)
+        self._by_name: Dict[str, SdfModel] = {}
+        self.frames = SdfFrames(self._frames_of_nested)
         for joint in self.element.children("joint"):
             child = joint.child("child")
             self.frames.declare(joint.name, joint, child.text if child is not None else "")
@@ -54,7 +54,7 @@ class Model:
             plugin_name(plugin) in DRIVES for plugin in self.element.children("plugin")
         )
 
-    def add(self, model: "Model") -> None:
+    def add(self, model: "SdfModel") -> None:
         """``model`` is nested in this one."""
         self.nested.append(model)
         self._by_name[model.name] = model
@@ -66,11 +66,11 @@ class Model:
         name = placement.text if placement is not None else self.element.attribute("placement_frame")
         return self.frames.frame(name, self.element)
 
-    def _frames_of_nested(self, name: str) -> Optional[Frames]:
+    def _frames_of_nested(self, name: str) -> Optional[SdfFrames]:
         return self._by_name[name].frames if name in self._by_name else None
 
 
-def declare_frames(frames: Frames, parent: Element) -> None:
+def declare_frames(frames: SdfFrames, parent: Element) -> None:
     """Declares the <frame> elements of a world or model."""
     for frame in parent.children("frame"):
         frames.declare(frame.name, frame, frame.attribute("attached_to"))
@@ -79,14 +79,14 @@ def declare_frames(frames: Frames, parent: Element) -> None:
 class ModelReader:
     """Finds the models of a world, in ``model_folders`` those it includes; each file is read once."""
 
-    def __init__(self, model_folders: Sequence[Path], warnings: Warnings):
+    def __init__(self, model_folders: Sequence[Path], warnings: SkippedElements):
         self._model_folders = model_folders
         self._warnings = warnings
         self._files: Dict[Path, Element] = {}
 
     def models_in(
         self, parent: Element, folder: Path, static: bool = False, depth: int = 0
-    ) -> Iterator[Model]:
+    ) -> Iterator[SdfModel]:
         """The models that stand in a <world>, or in a <model>, then ``static`` if that is."""
         for element in parent.children("model"):
             yield self.model(element, element, folder, element.name, static, depth)
@@ -103,9 +103,9 @@ class ModelReader:
         name: str,
         static: bool = False,
         depth: int = 0,
-    ) -> Model:
+    ) -> SdfModel:
         static = static or element.flag("static")
-        model = Model(name, element, placed_by, folder, static)
+        model = SdfModel(name, element, placed_by, folder, static)
         if not model.is_driven:
             self._warnings.check_children(element)
         for nested in self.models_in(element, folder, static, depth):
@@ -114,7 +114,7 @@ class ModelReader:
 
     def included(
         self, include: Element, folder: Path, static: bool = False, depth: int = 0
-    ) -> Optional[Model]:
+    ) -> Optional[SdfModel]:
         """What an <include> names; its own <name>, <pose> and <static> win."""
         if depth >= MAX_INCLUDE_DEPTH:
             raise include.error("includes itself")

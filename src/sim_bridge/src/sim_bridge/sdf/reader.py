@@ -5,22 +5,32 @@ from typing import Iterator, List, Optional, Sequence, Tuple, cast
 
 import numpy as np
 
-from sim_bridge.courses import Course
 from sim_bridge.geometry.meshes import load_mesh
 from sim_bridge.geometry.pose3 import inverse
-from sim_bridge.geometry.shapes import Look, MeshFile, Plane, Shape, scaled
+from sim_bridge.geometry.shapes import MeshFile, Plane, Shape, VisualShape, scaled
+from sim_bridge.scripted_trajectories import ScriptedTrajectory
 from sim_bridge.sdf.actors import read_actor
 from sim_bridge.sdf.element import Element, parse, parse_text
-from sim_bridge.sdf.frames import Frames
+from sim_bridge.sdf.frames import SdfFrames
 from sim_bridge.sdf.inertia import read_inertia, read_mass
 from sim_bridge.sdf.joints import read_joint, started, trees_of
 from sim_bridge.sdf.lights import read_lights
-from sim_bridge.sdf.models import Model, ModelReader, declare_frames
+from sim_bridge.sdf.models import ModelReader, SdfModel, declare_frames
 from sim_bridge.sdf.shapes.colours import read_colour, read_glow
-from sim_bridge.sdf.shapes.geometry import LeftOutError, MissingError, read_shape
+from sim_bridge.sdf.shapes.geometry import MissingMeshError, UnsupportedGeometryError, read_shape
 from sim_bridge.sdf.state import ModelState, read_states
-from sim_bridge.sdf.warnings import Warnings
-from sim_bridge.world import Body, Collision, DrivenModel, Inertia, Joint, Light, Surface, Visual, World
+from sim_bridge.sdf.warnings import SkippedElements
+from sim_bridge.world import (
+    Body,
+    Collision,
+    DrivenModel,
+    Inertia,
+    Joint,
+    Light,
+    SurfaceProperties,
+    Visual,
+    World,
+)
 
 DEFAULT_GRAVITY = 9.8
 
@@ -33,7 +43,7 @@ def load_world(path, model_folders: Sequence[Path] = (), strict: bool = False) -
     """
     path = Path(path)
     world = parse(path).required("world")
-    reader = _Reader(tuple(Path(folder) for folder in model_folders), Warnings(strict))
+    reader = _Reader(tuple(Path(folder) for folder in model_folders), SkippedElements(strict))
     reader.read_world(world, path.parent)
     return reader.world(world.name, _gravity(world))
 
@@ -45,7 +55,7 @@ def read_model(
 
     Instead of a model the text may hold a world that includes it.
     """
-    reader = _Reader(tuple(model_folders), Warnings(strict))
+    reader = _Reader(tuple(model_folders), SkippedElements(strict))
     root = parse_text(xml, name)
     include = root.child("world", "include")
     if include is not None:
@@ -58,12 +68,12 @@ def read_model(
 class _Reader:
     """Collects the bodies and joints of models, and what was left out."""
 
-    def __init__(self, model_folders: Tuple[Path, ...], warnings: Warnings):
+    def __init__(self, model_folders: Tuple[Path, ...], warnings: SkippedElements):
         self._bodies: List[Body] = []
         self._joints: List[Joint] = []
         self._robots: List[DrivenModel] = []
         self._lights: List[Light] = []
-        self._courses: List[Course] = []
+        self._trajectories: List[ScriptedTrajectory] = []
         self._model_folders = model_folders
         self._warnings = warnings
         self._models = ModelReader(model_folders, warnings)
@@ -78,7 +88,7 @@ class _Reader:
             tuple(self._joints),
             tuple(self._robots),
             tuple(self._lights),
-            tuple(self._courses),
+            tuple(self._trajectories),
         )
 
     def read_world(self, world: Element, folder: Path) -> None:
@@ -94,7 +104,7 @@ class _Reader:
         overrides = read_states(states)
         parts = [world, *insertions]
         models = [model for part in parts for model in self._models.models_in(part, folder)]
-        frames = Frames({model.name: model.frames for model in models}.get)
+        frames = SdfFrames({model.name: model.frames for model in models}.get)
         declare_frames(frames, world)
         for model in models:
             frames.declare(model.name, model.placed_by, inside=model.placement())
@@ -104,7 +114,7 @@ class _Reader:
         for actor in world.children("actor"):
             body, course = read_actor(actor, self._warnings)
             self._bodies.append(body)
-            self._courses += [course] if course else []
+            self._trajectories += [course] if course else []
 
     def read_model(self, element: Element, name: str, pose: np.ndarray) -> None:
         self._put(self._models.model(element, element, Path(), name), pose, None)
@@ -115,7 +125,7 @@ class _Reader:
             model.name = name
             self._put(model, pose, None)
 
-    def _put(self, model: Model, in_world: np.ndarray, state: Optional[ModelState]) -> None:
+    def _put(self, model: SdfModel, in_world: np.ndarray, state: Optional[ModelState]) -> None:
         """Adds a model of the world, if it is driven as a robot."""
         bodies, joints = len(self._bodies), len(self._joints)
         self._place(model, in_world, state)
@@ -128,7 +138,7 @@ class _Reader:
 
     def _place(
         self,
-        model: Model,
+        model: SdfModel,
         in_world: np.ndarray,
         state: Optional[ModelState],
         scope: str = "",
@@ -151,17 +161,17 @@ class _Reader:
         if not model.is_static:
             self._add_joints(model, full_name)
 
-    def _add_joints(self, model: Model, name: str) -> None:
+    def _add_joints(self, model: SdfModel, name: str) -> None:
         links = dict(_links_of(model))
         elements = {joint.name: joint for joint in model.element.children("joint")}
         joints = [read_joint(joint, model, name, links, self._warnings) for joint in elements.values()]
 
-        def leave_out(joint: Joint) -> None:
-            self._warnings.leave_out(elements[joint.name[len(name) + 2 :]], "closes a loop, left out")
+        def skip(joint: Joint) -> None:
+            self._warnings.skip(elements[joint.name[len(name) + 2 :]], "closes a loop, left out")
 
         placed = {body.name: body.pose_in_world for body in self._bodies}
         in_model = {f"{name}::{link}": pose for link, pose in links.items()}
-        for joint in trees_of(joints, leave_out):
+        for joint in trees_of(joints, skip):
             if joint.kind != "fixed" and joint.parent:
                 before, now = (
                     inverse(poses[joint.parent]) @ poses[joint.child] for poses in (in_model, placed)
@@ -172,7 +182,7 @@ class _Reader:
     def _body(
         self,
         link: Element,
-        model: Model,
+        model: SdfModel,
         name: str,
         in_world: np.ndarray,
         outermost: np.ndarray,
@@ -200,17 +210,17 @@ class _Reader:
         )
 
     def _collisions(
-        self, link: Element, model: Model, in_model: np.ndarray, state: ModelState
+        self, link: Element, model: SdfModel, in_model: np.ndarray, state: ModelState
     ) -> Iterator[Collision]:
         for part in link.children("collision"):
             self._warnings.check_children(part)
             shape = self._solid(part, model, state)
             if shape is not None:
-                retro = part.number("laser_retro", default=0.0)
-                yield Collision(shape, _pose_in_link(part, link, model, in_model), retro, part.name)
+                laser_retro = part.number("laser_retro", default=0.0)
+                yield Collision(shape, _pose_in_link(part, link, model, in_model), laser_retro, part.name)
 
     def _visuals(
-        self, link: Element, model: Model, in_model: np.ndarray, state: ModelState
+        self, link: Element, model: SdfModel, in_model: np.ndarray, state: ModelState
     ) -> Iterator[Visual]:
         for part in link.children("visual"):
             self._warnings.check_children(part)
@@ -219,36 +229,36 @@ class _Reader:
                 placed = _pose_in_link(part, link, model, in_model)
                 yield Visual(look, placed, read_colour(part), read_glow(part))
 
-    def _look(self, part: Element, model: Model, state: ModelState) -> Optional[Look]:
+    def _look(self, part: Element, model: SdfModel, state: ModelState) -> Optional[VisualShape]:
         try:
             shape = read_shape(part.required("geometry"), model.folder, self._model_folders)
-        except MissingError as missing:
+        except MissingMeshError as missing:
             shape = missing.instead
             self._warnings.missing(
                 part, str(missing), "left out" if shape is None else "only its footprint is here"
             )
-        except LeftOutError as left_out:
-            self._warnings.leave_out(part, f"{left_out}, left out", kind=("geometry", str(left_out)))
+        except UnsupportedGeometryError as left_out:
+            self._warnings.skip(part, f"{left_out}, left out", kind=("geometry", str(left_out)))
             return None
         x, y, z = state.scale
         return None if shape is None else scaled(shape, (x, y, z))
 
-    def _solid(self, part: Element, model: Model, state: ModelState) -> Optional[Shape]:
+    def _solid(self, part: Element, model: SdfModel, state: ModelState) -> Optional[Shape]:
         look = self._look(part, model, state)
         return load_mesh(look) if isinstance(look, MeshFile) else cast(Optional[Shape], look)
 
-    def _surface(self, link: Element) -> Surface:
+    def _surface(self, link: Element) -> SurfaceProperties:
         """Of the link's first collision; friction at most 1: Gazebo's worlds say 100 for "grips"."""
         surface = link.child("collision", "surface")
         if surface is None:
-            return Surface()
+            return SurfaceProperties()
         self._warnings.check_children(surface)
         mu = surface.number("friction", "ode", "mu", default=1.0)
         bounce = surface.number("bounce", "restitution_coefficient", default=0.0)
-        return Surface(min(max(mu, 0.0), 1.0), min(max(bounce, 0.0), 1.0))
+        return SurfaceProperties(min(max(mu, 0.0), 1.0), min(max(bounce, 0.0), 1.0))
 
 
-def _links_of(model: Model, scope: str = "") -> List[Tuple[str, np.ndarray]]:
+def _links_of(model: SdfModel, scope: str = "") -> List[Tuple[str, np.ndarray]]:
     """The links of a model and of those nested in it by their names there, with their poses (4, 4) in it."""
     links = [
         (scope + link.name, model.frames.frame(link.name, link)) for link in model.element.children("link")
@@ -259,7 +269,7 @@ def _links_of(model: Model, scope: str = "") -> List[Tuple[str, np.ndarray]]:
     return links
 
 
-def _pose_in_link(part: Element, link: Element, model: Model, link_in_model: np.ndarray) -> np.ndarray:
+def _pose_in_link(part: Element, link: Element, model: SdfModel, link_in_model: np.ndarray) -> np.ndarray:
     return inverse(link_in_model) @ model.frames.pose_of(part, link.name)
 
 

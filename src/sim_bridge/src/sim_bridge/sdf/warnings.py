@@ -3,18 +3,17 @@
 from typing import Dict, Hashable, List, Tuple
 
 from sim_bridge.sdf.element import Element
-from sim_bridge.sdf.known import HONOURED, WITHOUT_BEARING
-from sim_bridge.sdf.plugins import NEEDLESS, plugin_name
+from sim_bridge.sdf.supported import IGNORED, REDUNDANT_PLUGINS, SUPPORTED, plugin_name
 
 
-class Warnings:
+class SkippedElements:
     """One line for each kind of thing left out, with how often. ``strict``: what is missing is an error."""
 
     def __init__(self, strict: bool = False):
         self._strict = strict
         self._lines: Dict[Hashable, Tuple[str, int]] = {}
 
-    def leave_out(self, element: Element, why: str = "left out", kind: Hashable = None) -> None:
+    def skip(self, element: Element, why: str = "left out", kind: Hashable = None) -> None:
         """``kind``: things with the same one are told once; by default those of this tag and library."""
         library = element.attribute("filename")
         text = f"{element.file}: {element.place}{f' ({library})' if library else ''}: {why}"
@@ -26,14 +25,16 @@ class Warnings:
         """A file that is not there. Raises WorldError if this is strict."""
         if self._strict:
             raise element.error(what)
-        self.leave_out(element, f"{what}, {so}", kind=what)
+        self.skip(element, f"{what}, {so}", kind=what)
 
     def check_children(self, element: Element) -> None:
         """Names the children of an element that are neither honoured nor without bearing."""
-        known = HONOURED[element.tag] | WITHOUT_BEARING.get(element.tag, frozenset())
+        known = SUPPORTED[element.tag] | IGNORED.get(element.tag, frozenset())
         for child in element.children():
-            if child.tag not in known and not (child.tag == "plugin" and plugin_name(child) in NEEDLESS):
-                self.leave_out(child, kind=(element.tag, child.tag, child.attribute("filename")))
+            if child.tag not in known and not (
+                child.tag == "plugin" and plugin_name(child) in REDUNDANT_PLUGINS
+            ):
+                self.skip(child, kind=(element.tag, child.tag, child.attribute("filename")))
 
     def lines(self) -> List[str]:
         return [

@@ -13,8 +13,8 @@ import numpy as np
 
 from planar import Twist2
 from sim_bridge.config import SimulationSettings
-from sim_bridge.physics.motion import Motion
-from sim_bridge.physics.touch import Contact
+from sim_bridge.physics.collision_queries import Contact
+from sim_bridge.physics.kinematics import KinematicState
 
 Value = TypeVar("Value")
 Told = TypeVar("Told", covariant=True)
@@ -48,7 +48,7 @@ class Surroundings(Protocol):
         """Simulated seconds since the start."""
 
     @property
-    def base(self) -> Motion:
+    def base(self) -> KinematicState:
         """How the robot's base frame moves in the world."""
 
     @property

@@ -14,7 +14,7 @@ from sim_bridge.sdf.values import number, text
 from sim_bridge.sensors.base import Mounting, Schedule, Surroundings, every
 from sim_bridge.sensors.found import Found
 from sim_bridge.sensors.lidar import LaserProfile
-from sim_bridge.views.rasterizer import Projection, draw
+from sim_bridge.views.rasterizer import Projection, rasterize
 
 STREAM = 100
 # Of a side.
@@ -136,10 +136,10 @@ class Camera:
         return self.picture(*around.triangles(), around.base.pose @ self._profile.pose_in_base)
 
     def picture(self, triangles_xyz: np.ndarray, shades: np.ndarray, camera_in_world: np.ndarray) -> Picture:
-        """What is seen from ``camera_in_world``, (4, 4), along its x axis (see sim_bridge.views.drawing)."""
+        """What is seen from ``camera_in_world``, (4, 4), along its x axis (see views.render_geometry)."""
         world_in_optical = inverse(camera_in_world @ OPTICAL_IN_CAMERA)
         seen = triangles_xyz @ world_in_optical[:3, :3].T + world_in_optical[:3, 3]
-        rgb, depth = draw(seen, shades, self._settings.projection())
+        rgb, depth = rasterize(seen, shades, self._settings.projection())
         if self._settings.noise > 0.0:
             noisy = rgb + 255.0 * self._rng.normal(0.0, self._settings.noise, rgb.shape)
             rgb = np.clip(np.rint(noisy), 0, 255).astype(np.uint8)

@@ -8,7 +8,7 @@ import numpy as np
 
 from planar.config.settings import check
 from sim_bridge.config import SimulationSettings
-from sim_bridge.physics.motion import Motion
+from sim_bridge.physics.kinematics import KinematicState
 from sim_bridge.sdf.values import number, text
 from sim_bridge.sensors.base import Mounting, Schedule, Surroundings, every
 from sim_bridge.sensors.found import Found
@@ -97,7 +97,7 @@ class Imu:
         sensor = around.base.of_frame(self._profile.pose_in_base)
         return self.feel(sensor, self._seconds, around.gravity)
 
-    def feel(self, sensor: Motion, seconds: float, gravity: float) -> ImuReading:
+    def feel(self, sensor: KinematicState, seconds: float, gravity: float) -> ImuReading:
         """``sensor``: its motion in the world; ``seconds`` since the last reading; ``gravity``: downwards."""
         before = sensor.linear if self._velocity is None else self._velocity
         self._velocity = sensor.linear

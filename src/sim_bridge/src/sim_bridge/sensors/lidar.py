@@ -75,7 +75,7 @@ class Lidar:
         return Schedule(max(round(settings.physics_rate / rate), 1))
 
     def measure(self, around: Surroundings) -> Scan:
-        return self.sweep(around.stamp, *around.section(self._height), around.base.from_above)
+        return self.sweep(around.stamp, *around.section(self._height), around.base.pose2)
 
     def sweep(self, stamp: float, segments: np.ndarray, retros: np.ndarray, base_in_world: Pose2) -> Scan:
         """All beams at one moment.
@@ -113,11 +113,11 @@ class Lidar:
 
     def _told(self, true_ranges: np.ndarray) -> np.ndarray:
         """What it tells of true ranges, float32 (N,): with noise, and some beams fail."""
-        from sim_bridge.views.kernels import tell  # late: it brings numba
+        from sim_bridge.views.kernels import measure_ranges  # late: it brings numba
 
         profile, noise, count = self._profile, self._noise, len(true_ranges)
         fail = (noise.range_dropouts, noise.range_max_readings)
-        return tell(
+        return measure_ranges(
             true_ranges,
             noise.range_noise,
             self._rng.standard_normal(count),

@@ -8,7 +8,7 @@ import numpy as np
 
 from planar import Pose2, Twist2
 from sim_bridge.config import SimulationSettings
-from sim_bridge.driving.profile import DriveProfile
+from sim_bridge.driving.drive import DriveProfile
 from sim_bridge.sensors.base import Mounting, Schedule, Surroundings, every
 
 STREAM = 0
@@ -87,7 +87,7 @@ class Odometer:
 
     def measure(self, around: Surroundings) -> Odometry:
         angles, _ = around.wheels
-        return self._reckoning.update(Moved(around.base.from_above, around.twist, angles, self._seconds))
+        return self._reckoning.update(Moved(around.base.pose2, around.twist, angles, self._seconds))
 
 
 class TrueOdometry:

@@ -5,10 +5,10 @@ from typing import Dict, List, Optional, Sequence, Tuple
 import numpy as np
 
 from planar import Twist2
-from sim_bridge.physics.motion import Motion
-from sim_bridge.physics.touch import Contact
+from sim_bridge.physics.collision_queries import Contact
+from sim_bridge.physics.kinematics import KinematicState
 from sim_bridge.physics.vehicle import Vehicle, twist_in_base
-from sim_bridge.views.sight import Sight
+from sim_bridge.views.scene_view import SceneView
 
 Wheels = Tuple[Tuple[float, ...], Tuple[float, ...]]
 
@@ -16,18 +16,18 @@ Wheels = Tuple[Tuple[float, ...], Tuple[float, ...]]
 class RobotSurroundings:
     """Surroundings of a vehicle; what several sensors ask for is asked of physics once a moment."""
 
-    def __init__(self, vehicle: Vehicle, sight: Sight):
+    def __init__(self, vehicle: Vehicle, view: SceneView):
         self.stamp = 0.0
         self._vehicle = vehicle
-        self._sight = sight
-        self._base: Optional[Motion] = None
+        self._view = view
+        self._base: Optional[KinematicState] = None
         self._twist: Optional[Twist2] = None
         self._wheels: Optional[Wheels] = None
         self._bumps: Dict[str, Contact] = {}
 
     def feel(self) -> None:
         """Notes what is touched after a step of physics."""
-        for bump in self._vehicle.bumps():
+        for bump in self._vehicle.collision_contacts():
             self._bumps[bump.link] = bump
 
     def look_anew(self, stamp: float) -> None:
@@ -44,9 +44,9 @@ class RobotSurroundings:
         return self._vehicle.gravity
 
     @property
-    def base(self) -> Motion:
+    def base(self) -> KinematicState:
         if self._base is None:
-            self._base = self._vehicle.motion()
+            self._base = self._vehicle.state()
         return self._base
 
     @property
@@ -69,7 +69,7 @@ class RobotSurroundings:
         return self._vehicle.floors_below(points)
 
     def section(self, height: float) -> Tuple[np.ndarray, np.ndarray]:
-        return self._sight.section(self._vehicle.name, height)
+        return self._view.section(self._vehicle.name, height)
 
     def triangles(self) -> Tuple[np.ndarray, np.ndarray]:
-        return self._sight.triangles(self._vehicle.name)
+        return self._view.triangles(self._vehicle.name)

@@ -36,7 +36,7 @@ class GroundTruth:
 
     def measure(self, around: Surroundings) -> Truth:
         base = around.base
-        return Truth(base.from_above, around.twist, math.acos(min(base.pose.item(2, 2), 1.0)))
+        return Truth(base.pose2, around.twist, math.acos(min(base.pose.item(2, 2), 1.0)))
 
 
 class JointEncoders:

@@ -7,7 +7,7 @@ import numpy as np
 
 
 @numba.njit(cache=True)
-def cast(segments, x, y, first, increment, count, sight):
+def cast_rays(segments, x, y, first, increment, count, sight):
     """Walks through the segments and gives each to the beams between the bearings of its two ends."""
     turn = 2.0 * math.pi
     first = (first + math.pi) % turn - math.pi
@@ -48,7 +48,7 @@ def cast(segments, x, y, first, increment, count, sight):
 
 
 @numba.njit(cache=True)
-def tell(
+def measure_ranges(
     true_ranges, sigma, draws, chance, dropouts, max_readings, too_near, no_return, nearest, sight, farthest
 ):
     """What a range finder tells of each true range, float32; by chance some beams fail."""
@@ -68,7 +68,7 @@ def tell(
 
 
 @numba.njit(cache=True)
-def draw(triangles, colours, scale, centre_x, centre_y, near, far, perspective, picture, depth):
+def rasterize(triangles, colours, scale, centre_x, centre_y, near, far, perspective, picture, depth):
     """Cuts each triangle off at the near plane and fills what is left of it, as a fan."""
     corners = np.empty((4, 3))
     for t in range(triangles.shape[0]):

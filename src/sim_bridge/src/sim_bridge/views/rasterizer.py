@@ -29,7 +29,7 @@ class Projection:
     perspective: bool = True
 
 
-def shades(triangles_xyz: np.ndarray, colours: np.ndarray, glows: np.ndarray) -> np.ndarray:
+def shade(triangles_xyz: np.ndarray, colours: np.ndarray, glows: np.ndarray) -> np.ndarray:
     """What triangles (T, 3, 3) in the world show of their ``colours`` (T, 3), 0 to 1, in the light: uint8.
 
     ``glows``, (T, 3), 0 to 1: what they add to that by themselves.
@@ -42,7 +42,7 @@ def shades(triangles_xyz: np.ndarray, colours: np.ndarray, glows: np.ndarray) ->
     return np.rint(255.0 * np.minimum(lit + glows, 1.0)).astype(np.uint8)
 
 
-def draw(
+def rasterize(
     triangles_xyz: np.ndarray, colours: np.ndarray, projection: Projection
 ) -> Tuple[np.ndarray, np.ndarray]:
     """Picture (H, W, 3), uint8, and depth along z (H, W), float32, infinite where there is nothing.
@@ -54,7 +54,7 @@ def draw(
     picture = np.empty((projection.height, projection.width, 3), dtype=np.uint8)
     picture[:] = SKY
     depth = np.full((projection.height, projection.width), np.inf, dtype=np.float32)
-    kernels.draw(
+    kernels.rasterize(
         np.ascontiguousarray(triangles_xyz, dtype=np.float64),
         np.ascontiguousarray(colours),
         projection.scale,

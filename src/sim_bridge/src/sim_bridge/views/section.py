@@ -5,7 +5,7 @@ from typing import Callable, Dict, Optional, Sequence, Tuple
 
 import numpy as np
 
-from sim_bridge.geometry.slicing import cut
+from sim_bridge.geometry.slicing import slice_shape
 from sim_bridge.world import Body
 
 # Metres or radians of movement below which an outline is not drawn anew: bodies at rest tremble, and meshes
@@ -23,7 +23,7 @@ class _Outline:
     retros: np.ndarray
 
 
-class Section:
+class CrossSection:
     """A level cut through the bodies of a world that follows those that move."""
 
     def __init__(self, height: float):
@@ -47,7 +47,7 @@ class Section:
             outlines.pop(name, None)
         self._stacked = None
 
-    def redraw(self, pose_of: Callable[[str], np.ndarray]) -> None:
+    def update(self, pose_of: Callable[[str], np.ndarray]) -> None:
         """Draws what moves where it now is, to the last bit."""
         for name, outline in list(self._moving.items()):
             self._place(outline.body, pose_of(name))
@@ -81,18 +81,18 @@ class Section:
         if body.mass is not None:
             self._moving[body.name] = outline
             return
-        (self._shifted if body.is_on_course else self._still)[body.name] = outline
+        (self._shifted if body.is_kinematic else self._still)[body.name] = outline
         self._stacked = None
 
     def _cut(self, body: Body, pose: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
         """Sides (N, 4) of a body's outlines, and how brightly each reflects, (N,)."""
         cuts = [
-            (outline, part.retro)
+            (outline, part.laser_retro)
             for part in body.collisions
-            for outline in cut(part.shape, pose @ part.pose_in_body, self._height, self._height)
+            for outline in slice_shape(part.shape, pose @ part.pose_in_body, self._height, self._height)
         ]
         sides = [np.hstack((outline, np.roll(outline, -1, axis=0))) for outline, _ in cuts]
-        retros = [np.full(len(outline), retro) for outline, retro in cuts]
+        retros = [np.full(len(outline), laser_retro) for outline, laser_retro in cuts]
         return np.vstack([np.empty((0, 4)), *sides]), np.concatenate([np.empty(0), *retros])
 
 
@@ -138,9 +138,9 @@ def cast_beams(
     ``segments``: (N, 4) as x, y, x, y. Beam i points along ``first + i * increment``, radians, increment
     positive. Returns (count,) infinite and (count,) -1 where nothing lies within ``sight`` metres.
     """
-    from sim_bridge.views.kernels import cast  # late: it brings numba
+    from sim_bridge.views.kernels import cast_rays  # late: it brings numba
 
-    return cast(np.ascontiguousarray(segments), x, y, first, increment, count, sight)
+    return cast_rays(np.ascontiguousarray(segments), x, y, first, increment, count, sight)
 
 
 def warm_up() -> None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from planar import FREE, OCCUPIED, UNKNOWN, OccupancyGrid, Pose2
 from sim_bridge.errors import WorldError
-from sim_bridge.geometry.slicing import cut
+from sim_bridge.geometry.slicing import slice_shape
 from sim_bridge.world import World
 
 # A solid that reaches less far than this, in cells, into a cell only touches it (1.5708 is not quite pi/2).
@@ -59,9 +59,9 @@ def outlines_of(world: World, bottom: float, top: float) -> List[np.ndarray]:
     return [
         outline
         for body in world.bodies
-        if not body.is_on_course
+        if not body.is_kinematic
         for part in body.collisions
-        for outline in cut(part.shape, body.pose_in_world @ part.pose_in_body, bottom, top)
+        for outline in slice_shape(part.shape, body.pose_in_world @ part.pose_in_body, bottom, top)
     ]
 
 

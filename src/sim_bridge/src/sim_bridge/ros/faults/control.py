@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Mapping
 
 from sim_bridge.faults import Fault, Faults, Stage, load_faults
-from sim_bridge.robot import Fitting, Observation
+from sim_bridge.robot import RobotWrappers, StepResult
 from sim_bridge.ros.faults.asking import offer_faults
 from sim_bridge.ros.orders import Orders
 from sim_bridge.scene import Scene
@@ -18,10 +18,10 @@ class FaultControl:
         """``path``: a YAML file; empty for none. Raises SettingsError."""
         self._faults = Faults(load_faults(Path(path)) if path else (), seed, may_come=True)
         self._now = 0.0
-        self.fitting: Fitting = self._faults.fitting
+        self.wrappers: RobotWrappers = self._faults.wrappers
         offer_faults(lambda *asked: orders.ask(lambda: self._add(*asked)))
 
-    def disturb(self, scene: Scene, seen: Mapping[str, Observation]) -> None:
+    def disturb(self, scene: Scene, seen: Mapping[str, StepResult]) -> None:
         """After each step, with what robots observed; a home goes wrong where the first of them is."""
         self._now = scene.stamp
         for name, observation in islice(seen.items(), 1):

@@ -7,7 +7,7 @@ import numpy as np
 
 from sim_bridge.errors import UnknownEntityError
 from sim_bridge.geometry.pose3 import cross
-from sim_bridge.physics.forces import JointPush, Push
+from sim_bridge.physics.forces import JointEffort, LinkWrench
 from sim_bridge.ros.gazebo.server import WORLD_NAMES, Server, frame_named
 from sim_bridge.ros.messages import vector_from_msg
 from sim_bridge.scene import Scene
@@ -30,7 +30,7 @@ class ForceServices:
         frame = frame_named(self._scene, request.reference_frame)
         if frame is None:
             return answer(False, "ApplyBodyWrench: reference_frame not found")
-        link, turned = self._scene.models.link_motion(name), frame.pose[:3, :3]
+        link, turned = self._scene.models.link_state(name), frame.pose[:3, :3]
         force = turned @ vector_from_msg(request.wrench.force)
         torque = turned @ vector_from_msg(request.wrench.torque)
         if request.reference_frame in WORLD_NAMES:
@@ -41,11 +41,11 @@ class ForceServices:
         if not np.isfinite(np.concatenate((force, torque, arm))).all():
             return answer(False, "ApplyBodyWrench: the wrench is not finite")
         span = self._span(request)
-        self._scene.forces.push(Push(name, force, torque + cross(arm, force), *span))
+        self._scene.forces.push(LinkWrench(name, force, torque + cross(arm, force), *span))
         return answer(True, "")
 
     def _on_clear_wrenches(self, request):
-        self._scene.forces.stop_pushing(request.body_name)
+        self._scene.forces.clear_link_wrenches(request.body_name)
         return srv.BodyRequestResponse()
 
     def _on_apply_effort(self, request):
@@ -56,13 +56,13 @@ class ForceServices:
             return answer(False, "ApplyJointEffort: joint not found")
         if not np.isfinite(request.effort):
             return answer(False, "ApplyJointEffort: the effort is not finite")
-        self._scene.forces.push_joint(JointPush(name, request.effort, *self._span(request)))
+        self._scene.forces.apply_joint_effort(JointEffort(name, request.effort, *self._span(request)))
         return answer(True, "ApplyJointEffort: effort set")
 
     def _on_clear_efforts(self, request):
         # The service has no way to tell that there is no such joint.
         with contextlib.suppress(UnknownEntityError):
-            self._scene.forces.stop_pushing_joint(self._scene.joints.full_name(request.joint_name))
+            self._scene.forces.clear_joint_efforts(self._scene.joints.full_name(request.joint_name))
         return srv.JointRequestResponse()
 
     def _span(self, request):

@@ -65,7 +65,7 @@ class JointServices:
         if not np.isfinite(request.joint_positions).all():
             return answer(False, "SetModelConfiguration: a position is not finite")
         names = [name if "::" in name else f"{model}::{name}" for name in request.joint_names]
-        known = scene.joints.moving_of(model)
+        known = scene.joints.movable_joints_of(model)
         positions = dict(zip(names, request.joint_positions))
         scene.joints.set_positions({name: positions[name] for name in names if name in known})
         return answer(True, "SetModelConfiguration: success")

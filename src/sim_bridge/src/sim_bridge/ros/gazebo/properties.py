@@ -31,8 +31,8 @@ class PropertyServices:
         return srv.GetModelPropertiesResponse(
             canonical_body_name=links[0],
             body_names=[link for link in links if "::" not in link],
-            geom_names=scene.models.solids_of(model),
-            joint_names=[_inside(model, joint) for joint in scene.joints.moving_of(model)],
+            geom_names=scene.models.collisions_of(model),
+            joint_names=[_inside(model, joint) for joint in scene.joints.movable_joints_of(model)],
             child_model_names=sorted({link.split("::", 1)[0] for link in links if "::" in link}),
             is_static=scene.models.is_static(model),
             success=True,
@@ -50,7 +50,7 @@ class PropertyServices:
         inertia = axes @ np.diag(mass.moments) @ axes.T
         return srv.GetLinkPropertiesResponse(
             com=Pose(Point(*position(mass.centre)), Quaternion(w=1.0)),
-            gravity_mode=mass.has_weight,
+            gravity_mode=mass.has_gravity,
             mass=mass.mass,
             ixx=inertia[0, 0],
             ixy=inertia[0, 1],

@@ -7,7 +7,7 @@ import rospy
 
 from sim_bridge.errors import UnknownEntityError
 from sim_bridge.geometry.pose3 import inverse
-from sim_bridge.physics.motion import Motion
+from sim_bridge.physics.kinematics import KinematicState
 from sim_bridge.ros.orders import Orders
 from sim_bridge.scene import Scene
 
@@ -50,32 +50,32 @@ class Server:
         rospy.Subscriber(NAMESPACE + name, kind, on_message, queue_size=10)
 
 
-def frame_named(scene: Scene, name: str) -> Optional[Motion]:
+def frame_named(scene: Scene, name: str) -> Optional[KinematicState]:
     """The motion of the model or link of that name, or of the world; None if there is none."""
     if name in WORLD_NAMES:
-        return Motion(np.eye(4), np.zeros(3), np.zeros(3))
+        return KinematicState(np.eye(4), np.zeros(3), np.zeros(3))
     try:
         if name in scene.models.names():
-            return scene.models.motion(name)
-        return scene.models.link_motion(scene.models.full_link_name(name))
+            return scene.models.state(name)
+        return scene.models.link_state(scene.models.full_link_name(name))
     except UnknownEntityError:
         return None
 
 
-def relative(motion: Motion, frame: Motion) -> Motion:
+def relative(motion: KinematicState, frame: KinematicState) -> KinematicState:
     """A motion in the world as seen from a frame."""
     turned_back = frame.pose[:3, :3].T
-    return Motion(
+    return KinematicState(
         inverse(frame.pose) @ motion.pose,
         turned_back @ (motion.linear - frame.linear),
         turned_back @ (motion.angular - frame.angular),
     )
 
 
-def absolute(motion: Motion, frame: Motion) -> Motion:
+def absolute(motion: KinematicState, frame: KinematicState) -> KinematicState:
     """A motion given in a frame as seen from the world; only the axes of its velocities are the frame's."""
     turned = frame.pose[:3, :3]
-    return Motion(frame.pose @ motion.pose, turned @ motion.linear, turned @ motion.angular)
+    return KinematicState(frame.pose @ motion.pose, turned @ motion.linear, turned @ motion.angular)
 
 
 def _tell_failure(success: bool, text: str) -> None:

@@ -11,7 +11,7 @@ from planar import PlanarError
 from sim_bridge.description import RobotProfile, read_prop, read_sdf_robot, read_urdf_robot
 from sim_bridge.errors import NoDriveError, UnknownEntityError, WorldError
 from sim_bridge.geometry.pose3 import to_pose2
-from sim_bridge.physics.motion import Motion
+from sim_bridge.physics.kinematics import KinematicState
 from sim_bridge.ros.describing import find_file
 from sim_bridge.ros.fleet import Fleet
 from sim_bridge.ros.gazebo.server import SCOPE_HINT, Server, frame_named
@@ -55,7 +55,7 @@ class SpawnServices:
             return srv.SpawnModelResponse(False, f"SpawnModel: Failure - {error}")
         return srv.SpawnModelResponse(True, "SpawnModel: Successfully spawned entity")
 
-    def _frame_of(self, request) -> Motion:
+    def _frame_of(self, request) -> KinematicState:
         self._check_name(request)
         frame = frame_named(self._scene, request.reference_frame)
         if frame is None:

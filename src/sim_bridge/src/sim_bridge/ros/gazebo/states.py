@@ -8,7 +8,7 @@ from gazebo_msgs.msg import LinkState, LinkStates, ModelState, ModelStates
 
 from sim_bridge.errors import UnknownEntityError, WorldError
 from sim_bridge.ros.gazebo.server import NAMESPACE, SCOPE_HINT, Server, absolute, frame_named, relative
-from sim_bridge.ros.messages import motion_from_msgs, motion_to_msgs
+from sim_bridge.ros.messages import state_from_msgs, state_to_msgs
 from sim_bridge.scene import Scene
 
 
@@ -38,13 +38,13 @@ class StateServices:
         scene = self._scene
         if self._models.get_num_connections():
             message = ModelStates(name=scene.models.names())
-            _fill(message, [scene.models.motion(name) for name in message.name])
+            _fill(message, [scene.models.state(name) for name in message.name])
             self._models.publish(message)
         if self._links.get_num_connections():
             message = LinkStates(
                 name=[link for model in scene.models.names() for link in scene.models.links_of(model)]
             )
-            _fill(message, [scene.models.link_motion(name) for name in message.name])
+            _fill(message, [scene.models.link_state(name) for name in message.name])
             self._links.publish(message)
 
     def _on_get_model(self, request):
@@ -52,7 +52,7 @@ class StateServices:
         response.header.stamp = rospy.Time.from_sec(self._scene.stamp)
         response.header.frame_id = request.relative_entity_name
         try:
-            motion = self._scene.models.motion(request.model_name)
+            motion = self._scene.models.state(request.model_name)
         except UnknownEntityError:
             response.status_message = "GetModelState: model does not exist"
             return response
@@ -65,7 +65,7 @@ class StateServices:
                 "did you forget to scope the body by model name?"
             )
             return response
-        response.pose, response.twist = motion_to_msgs(relative(motion, frame))
+        response.pose, response.twist = state_to_msgs(relative(motion, frame))
         response.success, response.status_message = True, "GetModelState: got properties"
         return response
 
@@ -74,7 +74,7 @@ class StateServices:
         response.link_state.link_name = request.link_name
         response.link_state.reference_frame = request.reference_frame
         try:
-            motion = self._scene.models.link_motion(self._scene.models.full_link_name(request.link_name))
+            motion = self._scene.models.link_state(self._scene.models.full_link_name(request.link_name))
         except UnknownEntityError:
             response.status_message = f"GetLinkState: link not found, {SCOPE_HINT}"
             return response
@@ -82,7 +82,7 @@ class StateServices:
         if frame is None:
             response.status_message = f"GetLinkState: reference reference_frame not found, {SCOPE_HINT}"
             return response
-        response.link_state.pose, response.link_state.twist = motion_to_msgs(relative(motion, frame))
+        response.link_state.pose, response.link_state.twist = state_to_msgs(relative(motion, frame))
         response.success, response.status_message = True, "GetLinkState: got state"
         return response
 
@@ -93,8 +93,8 @@ class StateServices:
         if frame is None:
             return answer(False, "SetModelState: specified reference frame entity does not exist")
         try:
-            motion = absolute(motion_from_msgs(state.pose, state.twist), frame)
-            self._scene.set_model_motion(state.model_name, motion)
+            motion = absolute(state_from_msgs(state.pose, state.twist), frame)
+            self._scene.set_model_state(state.model_name, motion)
         except WorldError as error:
             return answer(False, f"SetModelState: {error}")
         return answer(True, "SetModelState: set model state done")
@@ -108,9 +108,7 @@ class StateServices:
         if frame is None:
             return answer(False, "SetLinkState: failed")
         try:
-            self._scene.models.set_link_motion(
-                link, absolute(motion_from_msgs(state.pose, state.twist), frame)
-            )
+            self._scene.models.set_link_state(link, absolute(state_from_msgs(state.pose, state.twist), frame))
         except WorldError as error:
             return answer(False, f"SetLinkState: {error}")
         return answer(True, "SetLinkState: success")
@@ -118,6 +116,6 @@ class StateServices:
 
 def _fill(message, motions) -> None:
     for motion in motions:
-        pose, twist = motion_to_msgs(motion)
+        pose, twist = state_to_msgs(motion)
         message.pose.append(pose)
         message.twist.append(twist)

@@ -13,7 +13,7 @@ from planar_ros.step.calls import await_before_answering
 from planar_ros.step.inbox import Inbox
 from planar_ros.step.step import STATIC_PUBLISHERS_PARAMETER, WAIT_FOR_PARAMETER
 from planar_ros.step.transport import ANSWER_TOPIC, MOMENT_TOPIC, CountedConnection
-from sim_bridge.conducting import Conductor
+from sim_bridge.coordination import LockStepCoordinator
 from sim_bridge.ros.orders import Orders
 from sim_bridge.ros.timing.loop_watch import LoopWatch
 
@@ -38,7 +38,7 @@ class LockStep:
         rospy.set_param(WAIT_FOR_PARAMETER, sorted(self._wait_for))
         static = sorted(f"/{name}" for name in static_publishers)
         rospy.set_param(STATIC_PUBLISHERS_PARAMETER, static)
-        self._conductor = Conductor(latency)
+        self._conductor = LockStepCoordinator(latency)
         self._inbox = Inbox(False, self._on_stranger)
         self._inbox.install()
         self._joining: Dict[str, float] = {}
@@ -67,7 +67,7 @@ class LockStep:
     @property
     def awaited(self) -> Sequence[str]:
         """The nodes that time stands still for."""
-        return self._conductor.awaited() if self._blocked_since is not None else ()
+        return self._conductor.pending_nodes() if self._blocked_since is not None else ()
 
     def waits_for(self) -> List[str]:
         """What time stands still for, for people."""
@@ -75,16 +75,16 @@ class LockStep:
 
     def may_pass(self, stamp: float) -> bool:
         """Whether time may pass ``stamp``; what is due then happens."""
-        if self._conductor.is_over(stamp):
+        if self._conductor.is_complete(stamp):
             self._watch_topology(self._name, transport.topology())
         if not self._loop.is_closed:
             for gap in self._loop.given_up():
                 self.remark(f"time went on without {gap}")
             return False
-        if not self._is_applied and self._conductor.is_over(stamp) and not self._take_effect(stamp):
+        if not self._is_applied and self._conductor.is_complete(stamp) and not self._take_effect(stamp):
             return False
         while self._joining:
-            self._conductor.admit(*self._joining.popitem())
+            self._conductor.add_node(*self._joining.popitem())
         self._begin_moment(stamp)
         return True
 
@@ -102,7 +102,7 @@ class LockStep:
 
     def _take_effect(self, stamp: float) -> bool:
         """What the nodes have sent at the latest moment; False if one of them has not finished."""
-        awaited = self._conductor.awaited()
+        awaited = self._conductor.pending_nodes()
         if awaited:
             wall = time.monotonic()
             there = {connection.callerid_pub for connection in self._answers.impl.connections}
@@ -116,7 +116,7 @@ class LockStep:
             return False
         self._blocked_since, self._is_applied = None, True
         required: Dict[Tuple[str, str], int] = {}
-        for channel, count in self._conductor.effects().items():
+        for channel, count in self._conductor.effective_counts().items():
             sender, receiver, topic = channel.split(" ")
             if receiver == self._name:
                 required[topic, sender] = count
@@ -125,7 +125,7 @@ class LockStep:
         return True
 
     def _begin_moment(self, stamp: float) -> None:
-        begun = self._conductor.begin_moment(stamp)
+        begun = self._conductor.begin_tick(stamp)
         if begun is None:
             return
         number, has_new_members = begun
@@ -137,7 +137,7 @@ class LockStep:
             if not members:
                 self._inbox.release_all()  # the last words of the last one
         transport.flush()
-        counts = {**self._conductor.effects(), **transport.sent(self._name)}
+        counts = {**self._conductor.effective_counts(), **transport.sent(self._name)}
         news = {channel: count for channel, count in counts.items() if self._told.get(channel) != count}
         self._told.update(news)
         header, latency = Header(stamp=time_of(stamp)), rospy.Duration(self._conductor.latency)
@@ -146,13 +146,13 @@ class LockStep:
         )
         self._is_applied = not members
         while self._leaving:
-            self._conductor.dismiss(self._leaving.pop())
+            self._conductor.remove_node(self._leaving.pop())
 
     def _give_up(self, names: Sequence[str], why: str) -> None:
         for name in names:
             rospy.logwarn("no progress of %s: the simulation goes on without it in real time", name[1:])
             self.remark(f"{name} {why}")
-            self._conductor.dismiss(name)
+            self._conductor.remove_node(name)
         self._blocked_since = None
 
     def _on_stranger(self, text: str) -> None:
@@ -167,7 +167,7 @@ class LockStep:
             return
         if message.number:
             sent = dict(zip(message.channels, message.counts))
-            self._conductor.answer(name, message.number, sent)
+            self._conductor.acknowledge(name, message.number, sent)
             if not message.period:
                 self._leaving.append(name)
         elif name not in self.members and name not in self._joining:

@@ -76,7 +76,7 @@ class TimeControl:
             return self._wait(LONGEST_WAIT_SECONDS)
         if self._orders.are_waiting:  # what has just taken effect
             return self._wait(0.0)
-        self._pacer.in_step = self._step.names
+        self._pacer.synchronised_nodes = self._step.names
         wall, stamp = time.monotonic(), self._scene.stamp + self._scene.step_seconds
         delay = self._pacer.delay(stamp, wall, is_limited=not self.is_paused)
         if delay <= 0.0:
@@ -94,7 +94,10 @@ class TimeControl:
     def _waits_for(self) -> List[str]:
         if self.is_paused and not self._grants:
             return []
-        return [*self._step.waits_for(), *self._pacer.behind(self._scene.stamp + self._scene.step_seconds)]
+        return [
+            *self._step.waits_for(),
+            *self._pacer.lagging_nodes(self._scene.stamp + self._scene.step_seconds),
+        ]
 
     def count_step(self) -> None:
         """A step has been taken."""

@@ -5,7 +5,7 @@ from typing import Callable, Dict, List, Optional, Sequence
 
 import numpy as np
 
-from sim_bridge.geometry.shapes import Box, Cylinder, Look, Mesh, MeshFile, Plane, Sphere
+from sim_bridge.geometry.shapes import Box, Cylinder, Mesh, MeshFile, Plane, Sphere, VisualShape
 from sim_bridge.sdf.element import Element
 from sim_bridge.sdf.includes import resolve
 from sim_bridge.sdf.shapes.footprints import footprint_of
@@ -15,11 +15,11 @@ from sim_bridge.sdf.shapes.prism import prism
 POLYLINE_HEIGHT = 1.0
 
 
-class LeftOutError(Exception):
+class UnsupportedGeometryError(Exception):
     """A geometry that the rest of the world can do without; the text says why."""
 
 
-class MissingError(LeftOutError):
+class MissingMeshError(UnsupportedGeometryError):
     """A mesh whose file is not there; ``instead``: what is known of it all the same."""
 
     def __init__(self, text: str, instead: Optional[Mesh] = None):
@@ -27,7 +27,7 @@ class MissingError(LeftOutError):
         self.instead = instead
 
 
-def read_shape(geometry: Element, folder: Path, model_folders: Sequence[Path]) -> Optional[Look]:
+def read_shape(geometry: Element, folder: Path, model_folders: Sequence[Path]) -> Optional[VisualShape]:
     """The shape of a <geometry>, None if it is empty; a mesh is only found, not read.
 
     Raises WorldError, or LeftOutError for what is missing or not supported.
@@ -44,7 +44,7 @@ def read_shape(geometry: Element, folder: Path, model_folders: Sequence[Path]) -
     if polylines:
         return _extrude(polylines)
     tags = ", ".join(f"<{child.tag}>" for child in geometry.children()) or "no shape"
-    raise LeftOutError(f"{tags} is not supported")
+    raise UnsupportedGeometryError(f"{tags} is not supported")
 
 
 def _read_box(box: Element) -> Box:
@@ -79,7 +79,7 @@ def _find_mesh(mesh: Element, folder: Path, model_folders: Sequence[Path]) -> Me
     if 0.0 in (x, y, z):
         raise mesh.error("a scale must not be 0")
     if path is None:
-        raise MissingError(f"mesh {uri} not found", footprint_of(uri, (x, y, z)))
+        raise MissingMeshError(f"mesh {uri} not found", footprint_of(uri, (x, y, z)))
     return MeshFile(
         path,
         (x, y, z),
@@ -102,7 +102,7 @@ def _extrude(polylines: Sequence[Element]) -> Mesh:
     return prism(rings, 0.0, height.lengths(1)[0] if height is not None else POLYLINE_HEIGHT)
 
 
-_READERS: Dict[str, Callable[[Element], Look]] = {
+_READERS: Dict[str, Callable[[Element], VisualShape]] = {
     "box": _read_box,
     "cylinder": _read_cylinder,
     "sphere": _read_sphere,

@@ -17,7 +17,7 @@ class _Member:
     sent: Dict[str, int] = field(default_factory=dict)
 
 
-class Conductor:
+class LockStepCoordinator:
     """Tells when a moment is due, and who must have answered before time may pass.
 
     What a node sends at a moment takes effect ``latency`` simulated seconds later, or at the next moment if
@@ -42,12 +42,12 @@ class Conductor:
         """In force: seconds from a moment until what is sent then takes effect."""
         return min(self._latency, self.period)
 
-    def admit(self, name: str, period: float) -> None:
+    def add_node(self, name: str, period: float) -> None:
         """A node is in step from the next moment on."""
         self._members[name] = _Member(period, self._number)
         self.members, self._has_news = frozenset(self._members), True
 
-    def dismiss(self, name: str) -> None:
+    def remove_node(self, name: str) -> None:
         """A node is in step no more; the next of its name has had nothing of what was sent to it."""
         self._members.pop(name, None)
         for member in self._members.values():
@@ -61,26 +61,26 @@ class Conductor:
         self._moment = NEVER
         self._has_news = True
 
-    def answer(self, name: str, number: int, sent: Mapping[str, int]) -> None:
+    def acknowledge(self, name: str, number: int, sent: Mapping[str, int]) -> None:
         """A node has done what it had to do at the moment ``number``; ``sent``: what counts are new."""
         member = self._members.get(name)
         if member is not None:
             member.answered = number
             member.sent.update(sent)
 
-    def is_over(self, stamp: float) -> bool:
+    def is_complete(self, stamp: float) -> bool:
         """Whether what was sent at the latest moment takes effect at ``stamp``."""
         return self._is_due(stamp) or stamp >= self._moment + self.latency - SAME
 
-    def awaited(self) -> List[str]:
+    def pending_nodes(self) -> List[str]:
         """The nodes that have not answered the latest moment."""
         return sorted(name for name, member in self._members.items() if member.answered < self._number)
 
-    def effects(self) -> Dict[str, int]:
+    def effective_counts(self) -> Dict[str, int]:
         """By channel, how many messages take effect when the moment is over and nobody awaited."""
         return {channel: count for member in self._members.values() for channel, count in member.sent.items()}
 
-    def begin_moment(self, stamp: float) -> Optional[Tuple[int, bool]]:
+    def begin_tick(self, stamp: float) -> Optional[Tuple[int, bool]]:
         """The number of the moment at ``stamp``, and whether the members are others; None if none is due."""
         if not self._is_due(stamp):
             return None

@@ -5,9 +5,9 @@ import pytest
 
 from planar import Pose2
 from sim_bridge import Simulation, SimulationSettings, WorldError
-from sim_bridge.courses import Course
 from sim_bridge.geometry.pose3 import pose3
 from sim_bridge.geometry.shapes import Cylinder, Plane
+from sim_bridge.scripted_trajectories import ScriptedTrajectory
 from sim_bridge.world import Body, Collision, World
 
 TIMES, POINTS = np.array([0.0, 2.0, 4.0]), np.array([(3.0, 0.0), (1.0, 0.0), (3.0, 0.0)])
@@ -17,8 +17,8 @@ EXACT = SimulationSettings(range_noise=0.0, wheel_slip=0.0)
 def world(points_xy=POINTS):
     floor = Body("floor::link", np.eye(4), (Collision(Plane(), np.eye(4)),))
     post = (Collision(Cylinder(0.2, 1.0), np.eye(4)),)
-    walker = Body("walker::link", pose3(3.0, 0.0, 0.5), post, is_on_course=True)
-    return World("w", (floor, walker), courses=(Course("walker::link", TIMES, points_xy),))
+    walker = Body("walker::link", pose3(3.0, 0.0, 0.5), post, is_kinematic=True)
+    return World("w", (floor, walker), trajectories=(ScriptedTrajectory("walker::link", TIMES, points_xy),))
 
 
 def straight_ahead(observation):
@@ -43,7 +43,7 @@ def test_it_stops_for_nobody_and_what_it_touches_is_told():
     seen = run(simulation, 2.0)
     assert any("walker::link" in one.contacts for one in seen)
     assert seen[-1].base_in_world.x < -0.05, "the robot is pushed away"
-    assert simulation.scene.models.motion("walker").pose[0, 3] == pytest.approx(0.0, abs=0.05)
+    assert simulation.scene.models.state("walker").pose[0, 3] == pytest.approx(0.0, abs=0.05)
 
 
 def test_after_a_rewind_it_goes_the_same_way():
@@ -64,4 +64,4 @@ def test_the_world_goes_on_when_one_has_been_taken_away():
 
 def test_times_that_do_not_rise_are_no_course():
     with pytest.raises(WorldError, match="walker::link: a course needs times that rise"):
-        Course("walker::link", np.array([0.0, 2.0, 2.0]), POINTS)
+        ScriptedTrajectory("walker::link", np.array([0.0, 2.0, 2.0]), POINTS)

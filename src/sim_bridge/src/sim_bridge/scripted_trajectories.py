@@ -3,18 +3,19 @@
 from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Iterable, List, Protocol, Tuple
+from typing import List, Tuple
 
 import numpy as np
 
 from sim_bridge.errors import WorldError
+from sim_bridge.physics.kinematics import KinematicBodies
 
 # Times a second that bodies on a course are put to where they then are.
-COURSE_RATE = 50
+TRAJECTORY_RATE = 50
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class ScriptedTrajectory:
     """The way of the body ``link``: at ``times`` (N,), s, from 0, it is at ``points_xy`` (N, 2), then anew.
 
     In between it goes straight. Raises WorldError if that is no way.
@@ -48,25 +49,15 @@ class Course:
         return starts[:, 0].tolist(), np.hstack((starts, self.points_xy[:-1], speeds)).tolist()
 
 
-class Movable(Protocol):
-    """What holds the bodies: the engine."""
-
-    def has_link(self, name: str) -> bool:
-        """Whether it is there."""
-
-    def shift(self, places: Iterable[Tuple[str, float, float]]) -> None:
-        """Puts bodies, each told by name, x and y, to other places."""
-
-
-class Courses:
+class TrajectoryPlayer:
     """All courses of a scene; ``each`` may be changed at any time."""
 
-    def __init__(self, each: Tuple[Course, ...]):
-        self.each = each
+    def __init__(self, trajectories: Tuple[ScriptedTrajectory, ...]):
+        self.trajectories = trajectories
 
-    def follow(self, engine: Movable, step: int, rate: int, stamp: float) -> None:
+    def update(self, engine: KinematicBodies, step: int, rate: int, stamp: float) -> None:
         """Before the step of physics number ``step``, of ``rate`` a second, which begins at ``stamp``."""
-        if self.each and step % max(rate // COURSE_RATE, 1) == 0:
+        if self.trajectories and step % max(rate // TRAJECTORY_RATE, 1) == 0:
             # Somebody may have taken one away.
-            there = (course for course in self.each if engine.has_link(course.link))
-            engine.shift((course.link, *course.at(stamp)) for course in there)
+            there = (course for course in self.trajectories if engine.has_link(course.link))
+            engine.set_positions((course.link, *course.at(stamp)) for course in there)

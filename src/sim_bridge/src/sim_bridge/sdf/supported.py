@@ -5,12 +5,14 @@ What is in neither table is named in a warning.
 
 from typing import Dict, FrozenSet
 
+from sim_bridge.sdf.element import Element
+
 
 def _tags(text: str) -> FrozenSet[str]:
     return frozenset(text.split())
 
 
-HONOURED: Dict[str, FrozenSet[str]] = {
+SUPPORTED: Dict[str, FrozenSet[str]] = {
     "world": _tags("model actor include frame state gravity physics"),
     "insertions": _tags("model include"),
     "physics": _tags("gravity"),
@@ -27,7 +29,7 @@ HONOURED: Dict[str, FrozenSet[str]] = {
 }
 
 # Light and other scenery, settings of Gazebo's own solver and editor, and a visual's finer looks.
-WITHOUT_BEARING: Dict[str, FrozenSet[str]] = {
+IGNORED: Dict[str, FrozenSet[str]] = {
     "world": _tags("light scene gui spherical_coordinates magnetic_field atmosphere audio wind"),
     "insertions": _tags("light"),
     "physics": _tags(
@@ -42,3 +44,18 @@ WITHOUT_BEARING: Dict[str, FrozenSet[str]] = {
     "joint": _tags("physics"),
     "axis": _tags("initial_position"),
 }
+
+DRIVES = ("gazebo_ros_diff_drive", "gazebo_ros_skid_steer_drive", "gazebo_ros_kobuki")
+
+# Plugins of worlds whose work is done here without them: ROS's interface, colliding actors, a gripper.
+REDUNDANT_PLUGINS = frozenset(
+    "gazebo_ros_init gazebo_ros_factory gazebo_ros_api_plugin gazebo_ros_paths_plugin gazebo_ros_state "
+    "gazebo_ros_properties gazebo_ros_force_system actor_collisions ActorCollisionsPlugin GrabPlugin".split()
+)
+
+
+def plugin_name(plugin: Element) -> str:
+    """What a <plugin> loads, without what differs between systems: ``gazebo_ros_laser``."""
+    name = plugin.attribute("filename").rsplit("/", 1)[-1]
+    name = name[3:] if name.startswith("lib") else name
+    return name[:-3] if name.endswith(".so") else name

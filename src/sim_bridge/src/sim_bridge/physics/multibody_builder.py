@@ -9,8 +9,8 @@ from sim_bridge.geometry.pose3 import IDENTITY, inverse, position, quaternion
 from sim_bridge.physics.bullet import BulletClient, pybullet
 from sim_bridge.physics.colliders import make_colliders
 from sim_bridge.physics.joints import limit_joint
-from sim_bridge.physics.multibody import Tree
-from sim_bridge.physics.register import Link, MovingJoint, Register
+from sim_bridge.physics.multibody import KinematicTree
+from sim_bridge.physics.registry import BodyRegistry, BulletJoint, BulletLink
 from sim_bridge.world import Body, Joint
 
 # Of which one of Bullet's multibodies is made: its root and its links.
@@ -18,7 +18,9 @@ MOST_PARTS = 128
 _KINDS = {"revolute": pybullet.JOINT_REVOLUTE, "prismatic": pybullet.JOINT_PRISMATIC}
 
 
-def build(bullet: BulletClient, register: Register, tree: Tree, placement: np.ndarray) -> int:
+def build_multibody(
+    bullet: BulletClient, register: BodyRegistry, tree: KinematicTree, placement: np.ndarray
+) -> int:
     """Puts a tree, whose poses are seen from ``placement`` (4, 4), into Bullet; returns its number.
 
     Each body is a link on its parent's; the shapes that do not fit into one are fixed links on it. Raises
@@ -31,7 +33,7 @@ def build(bullet: BulletClient, register: Register, tree: Tree, placement: np.nd
     links += [_link(shape, IDENTITY, 0) for shape in more]
     if len(links) >= MOST_PARTS:
         raise WorldError(f"{root.name}: {len(links) + 1} parts hang together, {MOST_PARTS} is the most")
-    stands = all(body.mass is None for body in tree.bodies)
+    is_static = all(body.mass is None for body in tree.bodies)
     placed = placement @ root.pose_in_world @ centre
     number = bullet.createMultiBody(
         baseMass=root.mass or 0.0,
@@ -39,25 +41,25 @@ def build(bullet: BulletClient, register: Register, tree: Tree, placement: np.nd
         basePosition=position(placed),
         baseOrientation=quaternion(placed),
         # What Bullet calls a rigid body costs next to nothing in each step; it cannot have links.
-        useMaximalCoordinates=int(stands and not links),
+        useMaximalCoordinates=int(is_static and not links),
         **{key: [link[key] for link in links] for key in (links[0] if links else {})},
     )
-    if not stands:
-        register.movers.add(number)
+    if not is_static:
+        register.dynamic_bodies.add(number)
     for index, body in _owners(tree, indices, links).items():
-        register.own(number, index, body.name)
+        register.assign_link(number, index, body.name)
         _finish_part(bullet, number, index, body)
     for index, body, joint in zip(indices, tree.bodies, tree.joints):
-        register.links[body.name] = Link(number, index, body.inertia.pose_in_body)
+        register.links[body.name] = BulletLink(number, index, body.inertia.pose_in_body)
         if body.inertia.moments is not None and body.mass is not None:
             bullet.changeDynamics(number, index, localInertiaDiagonal=body.inertia.moments.tolist())
         if joint is not None and joint.kind != "fixed":
-            register.joints[joint.name] = MovingJoint(number, index, joint)
+            register.joints[joint.name] = BulletJoint(number, index, joint)
             _loosen(bullet, number, index, joint)
     return number
 
 
-def _hanging_links(bullet: BulletClient, tree: Tree) -> Tuple[List[Dict[str, Any]], List[int]]:
+def _hanging_links(bullet: BulletClient, tree: KinematicTree) -> Tuple[List[Dict[str, Any]], List[int]]:
     """Links of all bodies but the root, and the index of each body, the root's first."""
     links: List[Dict[str, Any]] = []
     indices = [-1]
@@ -75,7 +77,7 @@ def _hanging_links(bullet: BulletClient, tree: Tree) -> Tuple[List[Dict[str, Any
     return links, indices
 
 
-def _owners(tree: Tree, indices: List[int], links: List[Dict[str, Any]]) -> Dict[int, Body]:
+def _owners(tree: KinematicTree, indices: List[int], links: List[Dict[str, Any]]) -> Dict[int, Body]:
     """Whose each link is; those of the same body hang on its first."""
     owners = dict(zip(indices, tree.bodies))
     for index, link in enumerate(links):

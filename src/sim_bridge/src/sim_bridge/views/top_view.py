@@ -6,8 +6,8 @@ import numpy as np
 
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.shapes import Plane
-from sim_bridge.views.drawing import Drawing, visible_parts
-from sim_bridge.views.rasterizer import Projection, draw
+from sim_bridge.views.rasterizer import Projection, rasterize
+from sim_bridge.views.render_geometry import RenderGeometry, visible_parts
 from sim_bridge.views.true_map import outlines_of
 from sim_bridge.world import World
 
@@ -16,7 +16,7 @@ SIZE, MARGIN = 1200, 0.5
 CUT = 70
 
 
-def picture_from_above(
+def render_top_view(
     world: World, below: float = 2.0, size: int = SIZE, warn: Callable[[str], None] = lambda text: None
 ) -> np.ndarray:
     """The world seen from above without perspective, y upwards, without what is higher than ``below``.
@@ -34,7 +34,7 @@ def picture_from_above(
     projection = Projection(
         width, height, scale, (-low[0] * scale, high[1] * scale), near=-1e-6, far=np.inf, perspective=False
     )
-    picture, _ = draw(triangles * (1.0, -1.0, -1.0) + (0.0, 0.0, below), shades, projection)
+    picture, _ = rasterize(triangles * (1.0, -1.0, -1.0) + (0.0, 0.0, below), shades, projection)
     return picture
 
 
@@ -62,7 +62,7 @@ def _drawn(
     world: World, planes: bool, warn: Callable[[str], None] = lambda text: None
 ) -> Tuple[np.ndarray, np.ndarray]:
     poses = {body.name: body.pose_in_world for body in world.bodies}
-    drawing = Drawing()
+    drawing = RenderGeometry()
     for body in world.bodies:
         if planes or not any(isinstance(part.shape, Plane) for part in visible_parts(body)):
             drawing.add(body)

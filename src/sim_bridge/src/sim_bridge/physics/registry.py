@@ -10,7 +10,7 @@ from sim_bridge.world import Joint
 
 
 @dataclass(frozen=True, eq=False)
-class Link:
+class BulletLink:
     """A link in Bullet's numbers; ``centre`` (4, 4): of its mass and principal axes in its own frame.
 
     ``index`` is -1 for the root of what hangs together; ``offset``: from the centre to the link's origin if
@@ -31,7 +31,7 @@ class Link:
 
 
 @dataclass(frozen=True, eq=False)
-class MovingJoint:
+class BulletJoint:
     """A joint that is not fixed, in Bullet's numbers."""
 
     number: int
@@ -39,27 +39,27 @@ class MovingJoint:
     joint: Joint
 
 
-class Register:
+class BodyRegistry:
     """Links and moving joints by their names, and whose each of Bullet's parts is.
 
     ``movers``: numbers of what physics moves.
     """
 
     def __init__(self):
-        self.links: Dict[str, Link] = {}
-        self.joints: Dict[str, MovingJoint] = {}
-        self.movers: Set[int] = set()
+        self.links: Dict[str, BulletLink] = {}
+        self.joints: Dict[str, BulletJoint] = {}
+        self.dynamic_bodies: Set[int] = set()
         self._owners: Dict[Tuple[int, int], str] = {}
 
-    def stands(self, number: int) -> bool:
+    def is_static(self, number: int) -> bool:
         """Whether physics moves nothing of what hangs together under a number."""
-        return number not in self.movers
+        return number not in self.dynamic_bodies
 
-    def own(self, number: int, index: int, link: str) -> None:
+    def assign_link(self, number: int, index: int, link: str) -> None:
         """A part of Bullet's belongs to a link; a large one has several."""
         self._owners[number, index] = link
 
-    def owner(self, number: int, index: int) -> str:
+    def link_of(self, number: int, index: int) -> str:
         """The name of the link that a part of Bullet's belongs to."""
         return self._owners[number, index]
 
@@ -67,9 +67,9 @@ class Register:
         """The indices of all that hangs together under a number."""
         return [index for owned, index in self._owners if owned == number]
 
-    def forget(self, number: int) -> None:
+    def remove(self, number: int) -> None:
         """All that hangs together under a number is gone."""
         self.links = {name: link for name, link in self.links.items() if link.number != number}
         self.joints = {name: joint for name, joint in self.joints.items() if joint.number != number}
         self._owners = {part: link for part, link in self._owners.items() if part[0] != number}
-        self.movers.discard(number)
+        self.dynamic_bodies.discard(number)

@@ -9,8 +9,8 @@ import numpy as np
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.meshes import load_mesh
 from sim_bridge.geometry.pose3 import transform_points
-from sim_bridge.geometry.shapes import Box, Cylinder, Look, Mesh, MeshFile, Plane, Sphere
-from sim_bridge.views.rasterizer import shades
+from sim_bridge.geometry.shapes import Box, Cylinder, Mesh, MeshFile, Plane, Sphere, VisualShape
+from sim_bridge.views.rasterizer import shade
 from sim_bridge.world import Body, Colour, Visual
 
 GREY: Colour = (0.7, 0.7, 0.7)
@@ -32,7 +32,7 @@ class _Drawn:
     colours: np.ndarray
 
 
-class Drawing:
+class RenderGeometry:
     """The triangles of all bodies, where those that move are. A body without visuals shows its solids."""
 
     def __init__(self):
@@ -52,7 +52,7 @@ class Drawing:
         triangles = np.concatenate([np.empty((0, 3, 3)), *(triangles for triangles, _, _ in parts)])
         colours = np.concatenate([np.empty((0, 3)), *(colours for _, colours, _ in parts)])
         glows = np.concatenate([np.empty((0, 3)), *(glows for _, _, glows in parts)])
-        self._place(body.name, body.keeps_still, (triangles, colours, glows), body.pose_in_world)
+        self._place(body.name, body.is_static, (triangles, colours, glows), body.pose_in_world)
 
     def move(self, name: str, pose: np.ndarray) -> None:
         """A body that otherwise keeps still has been put to another place."""
@@ -86,7 +86,7 @@ class Drawing:
     def _place(self, name: str, still: bool, looks: _Looks, pose) -> None:
         in_body, own_colours, glows = looks
         triangles = transform_points(pose, in_body.reshape(-1, 3)).reshape(-1, 3, 3)
-        drawn = _Drawn(looks, pose, triangles, shades(triangles, own_colours, glows))
+        drawn = _Drawn(looks, pose, triangles, shade(triangles, own_colours, glows))
         if still:
             self._still[name] = drawn
             self._all_still = None
@@ -105,10 +105,10 @@ def _looks_of(visual: Visual) -> _Looks:
     count = len(triangles)
     if visual.colour is None and mesh.colours is not None:
         return triangles, mesh.colours, np.zeros((count, 3))
-    return triangles, np.tile(visual.colour or GREY, (count, 1)), np.tile(visual.glow, (count, 1))
+    return triangles, np.tile(visual.colour or GREY, (count, 1)), np.tile(visual.emissive, (count, 1))
 
 
-def mesh_of(shape: Look) -> Mesh:
+def mesh_of(shape: VisualShape) -> Mesh:
     """Any shape as triangles; of an endless plane a large square."""
     if isinstance(shape, Mesh):
         return shape

@@ -4,7 +4,7 @@ import math
 from typing import List, NamedTuple, Optional, Sequence, Tuple
 
 from sim_bridge.physics.bullet import BulletClient
-from sim_bridge.physics.register import Register
+from sim_bridge.physics.registry import BodyRegistry
 
 # Bits of Bullet's collision groups: it puts what moves into 1 and what does not into 2.
 WORLD_GROUPS = 1 | 2
@@ -22,22 +22,22 @@ class Contact(NamedTuple):
     depth: float
 
 
-class Touch:
+class CollisionQueries:
     """Contacts, and rays cast downwards."""
 
-    def __init__(self, bullet: BulletClient, register: Register):
+    def __init__(self, bullet: BulletClient, register: BodyRegistry):
         self._bullet = bullet
         self._register = register
 
     def contacts(self, base: str, steepest: float = math.inf) -> List[Contact]:
         """What a robot touches, or nearly does (negative depth); abs(normal[2]) is below ``steepest``."""
         return [
-            Contact(self._register.owner(told[2], told[4]), told[6], told[7], -told[8])
+            Contact(self._register.link_of(told[2], told[4]), told[6], told[7], -told[8])
             for told in self._bullet.getContactPoints(bodyA=self._register.links[base].number)
             if abs(told[7][2]) < steepest
         ]
 
-    def find_contacts(self) -> None:
+    def detect_collisions(self) -> None:
         """Looks for contacts without a step."""
         self._bullet.performCollisionDetection()
 
@@ -52,7 +52,7 @@ class Touch:
         hits = self._bullet.rayTestBatch(points, ends, collisionFilterMask=WORLD_GROUPS)
         return [point[2] if number >= 0 else -math.inf for number, _, _, point, _ in hits]
 
-    def make_robot(self, base: str) -> None:
+    def set_robot_filter(self, base: str) -> None:
         """Of what hangs together with a link: it feels the world and other robots, but is no floor."""
         number = self._register.links[base].number
         for index in self._register.parts_of(number):

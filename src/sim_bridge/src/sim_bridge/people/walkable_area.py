@@ -14,7 +14,7 @@ from sim_bridge.world import World
 RESOLUTION, ROOM, UNREACHABLE = 0.1, 0.25, 1e6
 
 
-class Ground:
+class WalkableArea:
     """The free ground of a world around a place; ``walls`` (rows, cols): metres to what is solid."""
 
     def __init__(self, world: World, inside: Pose2):
@@ -25,7 +25,7 @@ class Ground:
         self._graph = graph_of(self._is_open, RESOLUTION)
         self._world, self._grid = world.name, grid
 
-    def ways_to(self, goals_xy: np.ndarray) -> np.ndarray:
+    def distances_to(self, goals_xy: np.ndarray) -> np.ndarray:
         """Metres to each of the goals (N, 2) from each cell, (N, rows, cols). Raises WorldError."""
         from scipy.sparse.csgraph import dijkstra  # late: few worlds have people
 
@@ -33,7 +33,7 @@ class Ground:
         ways[~np.isfinite(ways)] = UNREACHABLE
         return ways.reshape(-1, *self.walls.shape)
 
-    def way_left(self, ways: np.ndarray, x: float, y: float) -> float:
+    def remaining_distance(self, ways: np.ndarray, x: float, y: float) -> float:
         """Metres from a place to the goal that ``ways`` (rows, cols) lead to."""
         ((row, col),) = self._grid.cells_of([[x, y]])
         return float(ways[row, col])

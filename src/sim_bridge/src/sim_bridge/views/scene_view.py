@@ -5,12 +5,12 @@ from typing import Callable, Dict, List, Tuple, Union
 
 import numpy as np
 
-from sim_bridge.views.drawing import Drawing
-from sim_bridge.views.section import Section
+from sim_bridge.views.render_geometry import RenderGeometry
+from sim_bridge.views.section import CrossSection
 from sim_bridge.world import Body
 
 
-class Sight:
+class SceneView:
     """Level sections for range finders and a drawing for cameras; ``pose_of`` says where a body is, (4, 4).
 
     A viewer is a model; it does not see itself.
@@ -19,9 +19,9 @@ class Sight:
     def __init__(self, pose_of: Callable[[str], np.ndarray]):
         self._pose_of = pose_of
         self._bodies: Dict[str, Body] = {}
-        self._sections: Dict[Tuple[str, float], Section] = {}
+        self._sections: Dict[Tuple[str, float], CrossSection] = {}
         # Meshes may take seconds.
-        self._drawings: List[Drawing] = []
+        self._drawings: List[RenderGeometry] = []
 
     @property
     def warnings(self) -> Tuple[str, ...]:
@@ -43,17 +43,17 @@ class Sight:
 
     def move(self, name: str, pose: np.ndarray) -> None:
         """A body has been put to another place, (4, 4)."""
-        if name in self._bodies and self._bodies[name].keeps_still:
+        if name in self._bodies and self._bodies[name].is_static:
             self._bodies[name] = replace(self._bodies[name], pose_in_world=pose)
             for view in self._views():
                 view.move(name, pose)
 
-    def redraw(self) -> None:
+    def update(self) -> None:
         """Everything may be elsewhere; no trace is left of where it was."""
         for section in self._sections.values():
-            section.redraw(self._pose_of)
+            section.update(self._pose_of)
 
-    def forget_viewer(self, viewer: str) -> None:
+    def remove_viewer(self, viewer: str) -> None:
         """A viewer is gone."""
         self._sections = {key: section for key, section in self._sections.items() if key[0] != viewer}
 
@@ -61,7 +61,7 @@ class Sight:
         """Sides (N, 4) of what there is at a height, as x, y, x, y, and how brightly each reflects, (N,)."""
         section = self._sections.get((viewer, height))
         if section is None:
-            section = self._sections[viewer, height] = Section(height)
+            section = self._sections[viewer, height] = CrossSection(height)
             for body in self._bodies.values():
                 if body.model != viewer:
                     section.add(body)
@@ -70,10 +70,10 @@ class Sight:
     def triangles(self, viewer: str = "") -> Tuple[np.ndarray, np.ndarray]:
         """What cameras see: triangles (T, 3, 3) and their shades (T, 3), uint8."""
         if not self._drawings:
-            self._drawings.append(Drawing())
+            self._drawings.append(RenderGeometry())
             for body in self._bodies.values():
                 self._drawings[0].add(body)
         return self._drawings[0].triangles(self._pose_of, but=viewer)
 
-    def _views(self) -> List[Union[Drawing, Section]]:
+    def _views(self) -> List[Union[RenderGeometry, CrossSection]]:
         return [*self._drawings, *self._sections.values()]
