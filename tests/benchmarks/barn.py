@@ -23,7 +23,7 @@ import numpy as np
 
 from laboratory.worlds.barn import GOAL_IN_ODOM, START, BarnFolder, reference_length, score
 from move_base_lite import Navigator, NavigatorSettings, Status, load_settings
-from move_base_lite.warming import warm_up
+from move_base_lite.warmup import warm_up
 from planar import SettingsError
 from sim_bridge import ROBOTS, Simulation, SimulationSettings, load_world
 

@@ -21,7 +21,7 @@ from helpers.walkers import MOVING, Walker, add_walkers
 from amcl_lite import Localizer, LocalizerSettings
 from amcl_lite.config import InitialPose
 from move_base_lite import Navigator, NavigatorSettings, Status, load_settings
-from move_base_lite.warming import warm_up
+from move_base_lite.warmup import warm_up
 from planar import OccupancyGrid, Pose2, load_map, wrap
 from planar.config.settings_file import settings_from_yaml
 from sim_bridge import ROBOTS, Simulation, load_world

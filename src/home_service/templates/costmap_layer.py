@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from move_base_lite import Layer, LayerSettings, Site, Window
+from move_base_lite import CostmapWindow, Layer, LayerContext, LayerSettings
 from planar.config.parameters import Bounds, parameter
 
 
@@ -20,10 +20,10 @@ class CLASS(Layer):
 
     Settings = Settings
 
-    def __init__(self, settings: Settings, site: Site):
+    def __init__(self, settings: Settings, site: LayerContext):
         self._least = settings.least
 
-    def apply(self, costs: np.ndarray, window: Window, bounds) -> None:
+    def apply(self, costs: np.ndarray, window: CostmapWindow, bounds) -> None:
         """See move_base_lite.Layer."""
         block = costs[bounds.slices]
         np.maximum(block, self._least, out=block)

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import dijkstra
 
-from move_base_lite import GoalBlocked, NoPath, OutOfMap, PlannerSettings, Window
+from move_base_lite import CostmapWindow, GoalBlocked, NoPath, OutOfMap, PlannerSettings
 from planar.config.parameters import at_least, parameter
 
 # From this cost on the robot touches something.
@@ -34,7 +34,7 @@ class CLASS:
     def plan(
         self,
         costs: np.ndarray,
-        window: Window,
+        window: CostmapWindow,
         start_xy: Tuple[float, float],
         goal_xy: Tuple[float, float],
         tolerance: float = 0.0,

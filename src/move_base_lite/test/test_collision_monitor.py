@@ -13,8 +13,8 @@ from move_base_lite.collision_monitor import (
     SLOWED,
     STOPPED,
     CollisionMonitor,
+    LimitedCommand,
     MonitorSettings,
-    Verdict,
 )
 from planar import Pose2, SettingsError, Twist2
 
@@ -27,47 +27,47 @@ def wall(x):
     return np.column_stack((np.full(41, x), np.linspace(-1.0, 1.0, 41)))
 
 
-def judge(command, points_xy, settings=SETTINGS):
-    return CollisionMonitor(settings).judge(command, points_xy)
+def limit_command(command, points_xy, settings=SETTINGS):
+    return CollisionMonitor(settings).limit_command(command, points_xy)
 
 
 def test_a_command_passes_where_nothing_is_near():
     for points_xy in (NOTHING, wall(2.0)):
         command = Twist2(0.5, 0.3)
-        assert judge(command, points_xy) == Verdict(command, CLEAR)
+        assert limit_command(command, points_xy) == LimitedCommand(command, CLEAR)
 
 
 def test_a_command_towards_a_wall_is_slowed_and_stopped_at_the_distance():
-    verdict = judge(Twist2(0.5), wall(0.55))
+    verdict = limit_command(Twist2(0.5), wall(0.55))
     assert verdict.reason == SLOWED
     # 0.3 m of way are left at 0.5 m/s, and a collision is to be a second off.
     assert verdict.command.v == pytest.approx(0.3, abs=0.03)
-    assert judge(Twist2(0.5), wall(0.26)) == Verdict(Twist2(), STOPPED)
+    assert limit_command(Twist2(0.5), wall(0.26)) == LimitedCommand(Twist2(), STOPPED)
 
 
 def test_an_arc_keeps_its_shape_when_it_is_slowed():
-    verdict = judge(Twist2(0.6, 0.3), wall(0.6))
+    verdict = limit_command(Twist2(0.6, 0.3), wall(0.6))
     assert verdict.reason == SLOWED
     assert verdict.command.omega / verdict.command.v == pytest.approx(0.5)
 
 
 def test_a_robot_that_touches_may_leave_but_not_go_on():
     touching = wall(0.2)
-    assert judge(Twist2(-0.2), touching).reason == CLEAR
-    assert judge(Twist2(0.2), touching).reason == STOPPED
-    assert judge(Twist2(0.0, 0.5), touching).reason == CLEAR
+    assert limit_command(Twist2(-0.2), touching).reason == CLEAR
+    assert limit_command(Twist2(0.2), touching).reason == STOPPED
+    assert limit_command(Twist2(0.0, 0.5), touching).reason == CLEAR
 
 
 def test_a_long_robot_does_not_turn_into_a_wall_beside_it():
     box = ((-0.4, -0.15), (0.4, -0.15), (0.4, 0.15), (-0.4, 0.15))
     settings = MonitorSettings(footprint=box, stop_distance=0.02)
     beside = np.column_stack((np.linspace(-1.0, 1.0, 41), np.full(41, 0.2)))
-    assert judge(Twist2(0.5), beside, settings).reason == CLEAR
-    assert judge(Twist2(0.0, 1.0), beside, settings).reason != CLEAR
+    assert limit_command(Twist2(0.5), beside, settings).reason == CLEAR
+    assert limit_command(Twist2(0.0, 1.0), beside, settings).reason != CLEAR
 
 
 def test_what_lies_well_inside_the_outline_is_the_robot_itself():
-    assert judge(Twist2(0.5), np.array([[0.1, 0.0]])).reason == CLEAR
+    assert limit_command(Twist2(0.5), np.array([[0.1, 0.0]])).reason == CLEAR
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -81,7 +81,7 @@ def test_nothing_is_ever_touched_whatever_is_commanded(seed):
     for tick in range(600):
         if tick % 10 == 0:
             command = Twist2(rng.uniform(-0.7, 0.7), rng.uniform(-2.0, 2.0))
-        passed = monitor.judge(command, base.inverse().transform_points(posts_xy)).command
+        passed = monitor.limit_command(command, base.inverse().transform_points(posts_xy)).command
         angle = 0.1 * passed.omega
         base = base @ Pose2(0.1 * passed.v * math.cos(angle / 2), 0.1 * passed.v * math.sin(angle / 2), angle)
         moved += abs(0.1 * passed.v)

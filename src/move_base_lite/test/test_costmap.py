@@ -13,9 +13,9 @@ from move_base_lite.costmap import (
     UNKNOWN,
     CostmapSettings,
     LayeredCostmap,
+    observation_from_points,
+    observation_from_scan,
     occupancy_of,
-    sighting_of_points,
-    sighting_of_scan,
 )
 from move_base_lite.costmap.layers.inflation import InflationSettings
 from move_base_lite.costmap.layers.obstacles import ObstacleSettings, SourceSettings
@@ -43,7 +43,7 @@ def scan_of(*ranges, angle_min=0.0, angle_increment=0.1):
 
 def see(costmap, base, scan):
     """Takes in a scan made at a pose."""
-    costmap.note(sighting_of_scan("scan", scan), base)
+    costmap.add_observation(observation_from_scan("scan", scan), base)
     costmap.update(base)
 
 
@@ -122,7 +122,7 @@ def test_updating_what_a_scan_touches_equals_computing_everything():
         ranges = np.where(rng.random(90) < 0.2, np.inf, rng.uniform(0.2, 5.0, 90))
         see(costmap, base, scan_of(*ranges, angle_increment=2 * math.pi / 90))
         part_by_part = costmap.costs.copy()
-        costmap.refresh(costmap.window.everything)
+        costmap.recompute(costmap.window.everything)
         np.testing.assert_array_equal(part_by_part, costmap.costs)
 
 
@@ -142,11 +142,11 @@ def test_a_costmap_keeps_the_size_of_a_map_that_is_switched_off_and_on():
     settings = CostmapSettings(static=StaticSettings(), robot_radius=0.2, obstacles=OBSTACLES)
     costmap = LayeredCostmap(settings, grid)
     see(costmap, Pose2(0.5, 0.5), scan_of(2.0))
-    without_map = costmap.changed_to(replace(settings, static=StaticSettings(enabled=False)))
-    without_map = without_map.changed_to(replace(without_map.settings, height=7.0))
+    without_map = costmap.with_settings(replace(settings, static=StaticSettings(enabled=False)))
+    without_map = without_map.with_settings(replace(without_map.settings, height=7.0))
     assert without_map.window == costmap.window
     assert (cost_at(without_map, 2.5, 0.5), cost_at(without_map, 0.5, 2.5)) == (LETHAL, FREE)
-    np.testing.assert_array_equal(without_map.changed_to(settings).costs, costmap.costs)
+    np.testing.assert_array_equal(without_map.with_settings(settings).costs, costmap.costs)
 
 
 def test_clearing_outside_a_square_keeps_what_is_near():
@@ -204,7 +204,9 @@ def test_each_sensor_marks_what_lies_within_its_heights():
     costmap = LayeredCostmap(replace(ROLLING, obstacles=ObstacleSettings(sources=sources)))
     points_xyz = np.array([[1.0, 0.0, 0.1], [1.0, 0.5, 1.0], [1.0, -0.5, 2.5], [1.0, -1.0, np.nan]])
     for topic, marked in [("unheard", []), ("low", [0]), ("high", [0, 1])]:
-        costmap.note(sighting_of_points(topic, 0.0, Pose2(0.1, 0.2, 0.3), points_xyz), Pose2())
+        costmap.add_observation(
+            observation_from_points(topic, 0.0, Pose2(0.1, 0.2, 0.3), points_xyz), Pose2()
+        )
         costmap.update(Pose2())
         is_marked = [cost_at(costmap, x, y) == LETHAL for x, y, _ in points_xyz]
         assert np.flatnonzero(is_marked).tolist() == marked
@@ -212,7 +214,7 @@ def test_each_sensor_marks_what_lies_within_its_heights():
 
 def test_a_scan_at_a_height_where_the_source_does_not_look_is_ignored():
     costmap = LayeredCostmap(replace(ROLLING, obstacles=laser(min_obstacle_height=0.25)))
-    costmap.note(sighting_of_scan("scan", scan_of(1.0), height=0.1), Pose2())
+    costmap.add_observation(observation_from_scan("scan", scan_of(1.0), height=0.1), Pose2())
     costmap.update(Pose2())
     assert not costmap.costs.any()
 
@@ -248,9 +250,9 @@ def test_a_rolling_window_shows_the_map_as_it_lies_in_its_frame():
 
 def test_only_the_block_that_changed_is_told():
     costmap = LayeredCostmap(CostmapSettings(width=20.0, height=20.0, obstacles=OBSTACLES))
-    assert costmap.take_changed() == costmap.window.everything
+    assert costmap.pop_changed_bounds() == costmap.window.everything
     see(costmap, Pose2(10.0, 10.0), scan_of(1.0))
-    block = costmap.take_changed()
+    block = costmap.pop_changed_bounds()
     assert (block.row_max - block.row_min) * 0.05 < 10.0
     assert cost_at(costmap, 11.01, 10.01) == LETHAL
-    assert costmap.take_changed() == (0, 0, 0, 0)
+    assert costmap.pop_changed_bounds() == (0, 0, 0, 0)

@@ -2,12 +2,23 @@
 
 from dataclasses import dataclass
 
+import numpy as np
 import pytest
 
+from move_base_lite import costmap
 from move_base_lite.check import KITS
-from move_base_lite.costmap import LAYERS, LETHAL, CostmapSettings, Layer, LayeredCostmap, LayerSettings
-from move_base_lite.costmap.guarded import GuardedLayer
+from move_base_lite.costmap import (
+    LAYERS,
+    LETHAL,
+    CostmapSettings,
+    Layer,
+    LayeredCostmap,
+    LayerSettings,
+    observation_from_points,
+)
+from move_base_lite.costmap.registry import GuardedLayer
 from move_base_lite.plugin import Plugin, Registry
+from planar import Pose2
 from planar.config.parameters import parameter
 
 
@@ -36,6 +47,37 @@ def test_a_layer_of_ones_own_lies_below_inflation(monkeypatch):
     line = Plugin("mine::LineLayer", LineSettings, LineLayer)
     layers = Registry(*LAYERS.members, line, contract=LAYERS.contract, guarded=GuardedLayer)
     monkeypatch.setattr("move_base_lite.costmap.costmap.LAYERS", layers)
-    costmap = LayeredCostmap(CostmapSettings(width=1.0, height=1.0, own_layers=(LineSettings(col=4),)))
+    costmap = LayeredCostmap(CostmapSettings(width=1.0, height=1.0, plugin_layers=(LineSettings(col=4),)))
     assert (costmap.costs[:, 4] == LETHAL).all()
     assert (costmap.costs[:, [3, 5]] > 0).all()
+
+
+def layer_written_before_the_rename(*bases):
+    """A class of layers that names the method for observations ``note``, as contracts did before."""
+
+    def note(self, observation, base_in_frame):
+        self.topics.append(observation.topic)
+
+    inherited = ("update", "apply", "clear_outside", "clear_inside", "take_over")
+    methods = {} if bases else {name: getattr(Layer, name) for name in inherited}
+    constructor = {"__init__": lambda self, settings, context: setattr(self, "topics", [])}
+    return type("OldLayer", bases, {"note": note, **constructor, **methods})
+
+
+@pytest.mark.parametrize("bases", [(Layer,), ()])
+def test_a_layer_that_names_its_method_note_still_works(bases):
+    with pytest.warns(DeprecationWarning, match="OldLayer.note is deprecated; name it add_observation"):
+        kind = layer_written_before_the_rename(*bases)
+        assert LAYERS.contract.missing(kind) == []
+    layer = kind(None, None)
+    layer.add_observation(observation_from_points("cloud", 0.0, Pose2(), np.empty((0, 3))), Pose2())
+    assert layer.topics == ["cloud"]
+    Layer.note(None, Pose2())
+
+
+@pytest.mark.parametrize(
+    "old, new", [("Sighting", "Observation"), ("Site", "LayerContext"), ("Window", "CostmapWindow")]
+)
+def test_old_names_of_the_contract_can_still_be_imported(old, new):
+    with pytest.warns(DeprecationWarning, match=f"costmap.{old} is deprecated"):
+        assert getattr(costmap, old) is getattr(costmap, new)

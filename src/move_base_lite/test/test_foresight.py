@@ -4,18 +4,18 @@ import math
 
 import pytest
 
-from move_base_lite.navigator.foresight import motion_ahead
+from move_base_lite.navigator.motion_prediction import predict_motion
 from planar import Pose2, Twist2
 
 BRISK = Twist2(1.5, 4.0)
 
 
 def test_without_latency_nothing_is_ahead():
-    assert motion_ahead(Twist2(0.5, 1.0), Twist2(), 0.0, BRISK) == (Pose2(), Twist2(0.5, 1.0))
+    assert predict_motion(Twist2(0.5, 1.0), Twist2(), 0.0, BRISK) == (Pose2(), Twist2(0.5, 1.0))
 
 
 def test_at_a_steady_speed_the_robot_moves_on_along_its_arc():
-    moved, twist = motion_ahead(Twist2(0.5, 1.0), Twist2(0.5, 1.0), 0.1, BRISK)
+    moved, twist = predict_motion(Twist2(0.5, 1.0), Twist2(0.5, 1.0), 0.1, BRISK)
     assert twist == Twist2(0.5, 1.0)
     assert moved.yaw == pytest.approx(0.1)
     radius = 0.5
@@ -24,7 +24,7 @@ def test_at_a_steady_speed_the_robot_moves_on_along_its_arc():
 
 
 def test_a_command_is_reached_as_fast_as_the_robot_can():
-    moved, twist = motion_ahead(Twist2(), Twist2(0.6, 0.0), 0.1, BRISK)
+    moved, twist = predict_motion(Twist2(), Twist2(0.6, 0.0), 0.1, BRISK)
     assert twist.v == pytest.approx(0.15)
     assert moved.x == pytest.approx(0.5 * 1.5 * 0.1**2)
-    assert motion_ahead(Twist2(0.1, 0.0), Twist2(), 0.1, BRISK)[1].v == pytest.approx(0.0)
+    assert predict_motion(Twist2(0.1, 0.0), Twist2(), 0.1, BRISK)[1].v == pytest.approx(0.0)

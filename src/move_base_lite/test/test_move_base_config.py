@@ -15,7 +15,7 @@ from move_base_lite.costmap.layers.obstacles import ObstacleSettings, SourceSett
 from move_base_lite.costmap.layers.static import StaticSettings
 from move_base_lite.parameters import merged
 from move_base_lite.planning import NavfnSettings
-from move_base_lite.recovery import RotateSettings, SlowSettings
+from move_base_lite.recovery import MoveSlowSettings, RotateSettings
 from planar import Pose2, SettingsError, grid_from_picture
 
 DWA = {"base_local_planner": "dwa_local_planner/DWAPlannerROS"}
@@ -31,11 +31,11 @@ DOCUMENTED = yaml.safe_load((CONFIG / "move_base_lite.yaml").read_text())
         (DwaSettings, ["DWAPlannerROS"], set()),
         (MppiSettings, ["MppiPlannerROS"], set()),
         (RotateSettings, ["TrajectoryPlannerROS"], set()),
-        (CostmapSettings, ["global_costmap"], {"static", "obstacles", "own_layers", "inflation"}),
+        (CostmapSettings, ["global_costmap"], {"static", "obstacles", "plugin_layers", "inflation"}),
         (StaticSettings, ["global_costmap", "static_layer"], set()),
         (ObstacleSettings, ["global_costmap", "obstacle_layer"], {"sources"}),
         (SourceSettings, ["global_costmap", "obstacle_layer", "scan"], {"topic"}),
-        (SlowSettings, ["move_slow"], set()),
+        (MoveSlowSettings, ["move_slow"], set()),
         (InflationSettings, ["global_costmap", "inflation_layer"], set()),
     ],
 )
@@ -196,7 +196,7 @@ def test_move_slow_and_clear_is_read():
     listed = [{"name": "slow", "type": "move_slow_and_clear/MoveSlowAndClear"}]
     slow = {"limited_trans_speed": 0.1, "max_trans_param_name": "max_vel_trans"}
     settings, warnings = settings_from_parameters({"recovery_behaviors": listed, "slow": slow})
-    assert settings.recoveries[0].settings == SlowSettings(limited_trans_speed=0.1)
+    assert settings.recoveries[0].settings == MoveSlowSettings(limited_trans_speed=0.1)
     assert warnings == []
 
 

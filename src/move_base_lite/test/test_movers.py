@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from robot_in_picture import PERSON_RADIUS, room, scan_with_people, two_rooms, with_block
 
-from move_base_lite.costmap import sighting_of_scan
+from move_base_lite.costmap import observation_from_scan
 from move_base_lite.people import Lookout, Movers
 from planar import Pose2
 from planar.geometry.ray_casting import cast_rays
@@ -24,7 +24,7 @@ def watch(grid, base_at, person_at, seconds, seed=0, radius=PERSON_RADIUS, looko
         base, person = base_at(stamp), person_at(stamp)
         people = person if isinstance(person, list) else [person] if person else []
         scan = scan_with_people(grid, base, stamp, people, rng, radius)
-        movers.look(base, sighting_of_scan("scan", scan), lookout)
+        movers.look(base, observation_from_scan("scan", scan), lookout)
         found.append((stamp, movers.at(stamp)))
     return found
 
@@ -173,11 +173,11 @@ def test_a_jump_back_of_time_forgets_everybody():
         scan = scan_with_people(
             room(8.0, 4.0), Pose2(1.0, 2.0), step * PERIOD, [(3.0, 1.0 + 0.06 * step)], rng
         )
-        movers.look(Pose2(1.0, 2.0), sighting_of_scan("scan", scan))
+        movers.look(Pose2(1.0, 2.0), observation_from_scan("scan", scan))
     assert len(movers.at(2.0)) == 1
     movers.look(
         Pose2(1.0, 2.0),
-        sighting_of_scan("scan", scan_with_people(room(8.0, 4.0), Pose2(1.0, 2.0), 0.0, [], rng)),
+        observation_from_scan("scan", scan_with_people(room(8.0, 4.0), Pose2(1.0, 2.0), 0.0, [], rng)),
     )
     assert len(movers.at(0.0)) == 0
 
@@ -186,9 +186,13 @@ def test_who_walks_or_has_just_stopped_is_left_out_of_what_lasts():
     movers, rng, grid, base = Movers(), np.random.default_rng(0), room(8.0, 4.0), Pose2(1.0, 2.0)
     for step in range(80):
         person_xy = (3.0, 1.0 + 0.06 * min(step, 20))
-        sighting = sighting_of_scan("scan", scan_with_people(grid, base, step * PERIOD, [person_xy], rng))
-        gone = np.isnan(movers.look(base, sighting).ranges)
-        on_person = sighting.ranges < cast_rays(grid, base, sighting.angles, sighting.range_max) - 0.1
+        observation = observation_from_scan(
+            "scan", scan_with_people(grid, base, step * PERIOD, [person_xy], rng)
+        )
+        gone = np.isnan(movers.look(base, observation).ranges)
+        on_person = (
+            observation.ranges < cast_rays(grid, base, observation.angles, observation.range_max) - 0.1
+        )
         if 15 <= step < 55:
             assert (gone == on_person).all()
     assert not gone.any()

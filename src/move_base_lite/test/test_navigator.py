@@ -20,7 +20,7 @@ from robot_in_picture import (
 
 from move_base_lite import Navigator, Status, settings_from_parameters
 from move_base_lite.costmap import INSCRIBED
-from move_base_lite.recovery import NamedRecovery, SlowSettings
+from move_base_lite.recovery import MoveSlowSettings, NamedRecovery
 from planar import Pose2, Twist2, wrap
 
 LOCAL_PLANNERS = ("dwa_local_planner/DWAPlannerROS", "move_base_lite/MppiPlannerROS")
@@ -297,7 +297,7 @@ def test_a_robot_that_does_not_move_is_given_up_with_that_reason(settings):
 
 
 def test_after_move_slow_and_clear_the_robot_is_slow_until_it_has_moved_on(settings):
-    slow = SlowSettings(limited_trans_speed=0.2, limited_distance=0.5)
+    slow = MoveSlowSettings(limited_trans_speed=0.2, limited_distance=0.5)
     recovery = NamedRecovery("slow", slow)
     navigator = Navigator(replace(settings, recoveries=(recovery,)), room(6.0, 4.0))
     robot = Robot(with_block(room(6.0, 4.0), 1.4, 0.0, 1.5, 4.0), Pose2(0.8, 2.0))

@@ -81,7 +81,7 @@ class NavigatorHistories(RuleBasedStateMachine):
     def settings_change(self):
         now = self.navigator.settings
         slower = replace(now.controller, max_vel_x=0.7 - now.controller.max_vel_x)
-        self.navigator.change(replace(now, controller=slower))
+        self.navigator.update_settings(replace(now, controller=slower))
 
     @rule()
     def somebody_clears(self):
@@ -101,7 +101,7 @@ class NavigatorHistories(RuleBasedStateMachine):
     def the_clock_is_set_back(self):
         """The node has the Navigator forget then."""
         self.robot.now -= 5.0
-        self.navigator.forget()
+        self.navigator.reset()
         self.goal = None
 
     @invariant()

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from move_base_lite import own_time
+from move_base_lite import thread_time
 from move_base_lite.errors import PluginFailed
-from move_base_lite.guarding import LONGEST, Guard
-from move_base_lite.own_time import FRESH, Stopwatch
+from move_base_lite.plugin_guard import MAX_CALL_SECONDS, PluginGuard
+from move_base_lite.thread_time import FRESH, Stopwatch
 
 SPINNING = "while True: pass"
 
@@ -38,21 +38,21 @@ def work(seconds):
 
 
 def test_a_plugin_that_has_to_wait_for_a_processor_is_not_blamed(crowded):
-    guard = Guard("busy/Planner", lambda: work, PluginFailed)
+    guard = PluginGuard("busy/Planner", lambda: work, PluginFailed)
     began = time.perf_counter()
     for seconds in (0.0, 0.5):
         with guard.watch() as plugin:
             plugin(seconds)
-    assert time.perf_counter() - began > LONGEST, "it was kept waiting"
+    assert time.perf_counter() - began > MAX_CALL_SECONDS, "it was kept waiting"
 
 
 def test_one_that_sleeps_is():
-    guard = Guard("idle/Planner", lambda: time.sleep, PluginFailed)
+    guard = PluginGuard("idle/Planner", lambda: time.sleep, PluginFailed)
     with guard.watch() as plugin:
         plugin(0.0)
     told = r"idle/Planner took 1\.\d s for an answer"
     with pytest.raises(PluginFailed, match=told), guard.watch() as plugin:
-        plugin(LONGEST + 0.1)
+        plugin(MAX_CALL_SECONDS + 0.1)
 
 
 def test_each_thread_has_its_own_time(crowded):
@@ -87,8 +87,8 @@ def test_a_forked_process_has_its_own_time(crowded):
 
 
 def test_where_the_system_tells_nothing_of_it_time_passes_all_the_same(monkeypatch):
-    monkeypatch.setattr(own_time, "STATISTICS", Path("/nowhere/schedstat"))
-    monkeypatch.setattr(own_time, "_thread", own_time._Thread())
+    monkeypatch.setattr(thread_time, "STATISTICS", Path("/nowhere/schedstat"))
+    monkeypatch.setattr(thread_time, "_thread", thread_time._Thread())
     watch = Stopwatch()
     time.sleep(2.0 * FRESH)
     assert watch.seconds() >= 2.0 * FRESH

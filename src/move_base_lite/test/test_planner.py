@@ -6,7 +6,7 @@ from scipy.ndimage import label
 
 from move_base_lite import GoalBlocked, NoPath, OutOfMap, StartBlocked
 from move_base_lite.check import KITS
-from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, Window
+from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, CostmapWindow
 from move_base_lite.planning import GLOBAL_PLANNERS, Navfn, NavfnSettings, path_cost
 from move_base_lite.planning.wavefront import FACTOR, IMPASSABLE, NEUTRAL, descend, spread, traversal_costs
 
@@ -71,7 +71,7 @@ def costs_of(picture):
 
 
 def window_of(costs):
-    return Window(*costs.shape, resolution=0.5, origin_x=-1.0, origin_y=2.0)
+    return CostmapWindow(*costs.shape, resolution=0.5, origin_x=-1.0, origin_y=2.0)
 
 
 def centre(window, cell):
@@ -116,7 +116,7 @@ def test_each_free_cell_is_reached_from_each_that_is_connected_to_it(name, how):
 def test_a_plan_is_neither_longer_nor_dearer_than_the_bare_gradient():
     rng = np.random.default_rng(5)
     costs = rng.choice([0, 0, 30, 90, 200], (60, 60)).astype(np.uint8)
-    window, start, goal = Window(60, 60, 1.0), (5, 4), (50, 56)
+    window, start, goal = CostmapWindow(60, 60, 1.0), (5, 4), (50, 56)
     potential = spread(traversal_costs(costs, True, NEUTRAL, FACTOR, IMPASSABLE - 1), *start, *goal, False)
     bare = descend(potential, *start, *goal, 0.5)
     plan = Navfn(NavfnSettings()).plan(costs, window, centre(window, start), centre(window, goal))
@@ -148,7 +148,7 @@ def test_a_path_over_open_ground_is_nearly_straight(use_astar, excess):
     costs = np.zeros((200, 200), dtype=np.uint8)
     planner = Navfn(NavfnSettings(use_astar=use_astar))
     for goal in [(180.5, 20.5), (180.5, 100.5), (150.5, 190.5)]:
-        path_xy = planner.plan(costs, Window(200, 200, 1.0), (20.5, 10.5), goal)
+        path_xy = planner.plan(costs, CostmapWindow(200, 200, 1.0), (20.5, 10.5), goal)
         straight = np.hypot(goal[0] - 20.5, goal[1] - 10.5)
         assert np.linalg.norm(np.diff(path_xy, axis=0), axis=1).sum() < excess * straight
 
@@ -158,7 +158,7 @@ def test_at_any_angle_a_path_is_shorter_and_as_cheap():
     costs = np.zeros((120, 120), dtype=np.uint8)
     for row, col in rng.integers(10, 105, (25, 2)):
         costs[row : row + 6, col : col + 6] = LETHAL
-    window, ends = Window(120, 120, 0.1), ((0.55, 0.55), (11.45, 10.95))
+    window, ends = CostmapWindow(120, 120, 0.1), ((0.55, 0.55), (11.45, 10.95))
     plain, any_angle = (
         Navfn(NavfnSettings(any_angle=how)).plan(costs, window, *ends) for how in (False, True)
     )

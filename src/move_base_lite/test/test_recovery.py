@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 
 from move_base_lite.check import KITS
-from move_base_lite.costmap import LETHAL, sighting_of_points
+from move_base_lite.costmap import LETHAL, observation_from_points
 from move_base_lite.costmap.costmap import LayeredCostmap
 from move_base_lite.costmap.layers.obstacles import ObstacleSettings, SourceSettings
 from move_base_lite.costmap.settings import CostmapSettings
 from move_base_lite.recovery import (
     RECOVERIES,
     ClearCostmapSettings,
+    MoveSlowSettings,
     RecoveryContext,
     RotateSettings,
-    SlowSettings,
 )
 from planar import Pose2, SettingsError, Twist2, wrap
 
@@ -40,7 +40,7 @@ class Bench:
         self.costmaps = [LayeredCostmap(settings) for _ in range(2)]
         points_xyz = np.array([(*NEAR_XY, 0.1), (*FAR_XY, 0.1)]) - (5.0, 5.0, 0.0)
         for costmap in self.costmaps:
-            costmap.note(sighting_of_points("cloud", 0.0, Pose2(), points_xyz), HERE)
+            costmap.add_observation(observation_from_points("cloud", 0.0, Pose2(), points_xyz), HERE)
             costmap.update(pose)
 
     def run(self, settings, seconds=30.0):
@@ -122,7 +122,7 @@ def test_a_long_robot_that_would_touch_something_stops_turning():
 
 def test_going_on_slowly_forgets_what_is_near_and_limits_the_speed():
     bench = Bench()
-    settings = SlowSettings(clearing_distance=1.0, limited_trans_speed=0.1, limited_distance=0.4)
+    settings = MoveSlowSettings(clearing_distance=1.0, limited_trans_speed=0.1, limited_distance=0.4)
     assert bench.run(settings) == []
     assert (bench.marked(NEAR_XY), bench.marked(FAR_XY)) == ((False, False), (True, True))
     (limit,) = bench.limits
@@ -134,7 +134,7 @@ def test_going_on_slowly_forgets_what_is_near_and_limits_the_speed():
     [
         (ClearCostmapSettings, {"affected_maps": "none"}, "affected_maps must be local, global or both"),
         (RotateSettings, {"max_vel_theta": 0.0}, "max_vel_theta must be positive"),
-        (SlowSettings, {"limited_distance": -1.0}, "limited_distance must be at least 0"),
+        (MoveSlowSettings, {"limited_distance": -1.0}, "limited_distance must be at least 0"),
     ],
 )
 def test_senseless_settings_are_refused(kind, values, reason):

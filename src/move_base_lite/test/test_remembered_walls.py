@@ -74,7 +74,9 @@ def test_unless_asked_to_a_robot_goes_by_what_its_sensors_see(walled):
 
 def test_it_is_dear_close_to_a_wall_that_only_the_plan_knows(walled):
     settings = walled.costmap.settings
-    bare = walled.costmap.changed_to(replace(settings, inflation=replace(settings.inflation, enabled=False)))
+    bare = walled.costmap.with_settings(
+        replace(settings, inflation=replace(settings.inflation, enabled=False))
+    )
     past_corner_xy = (3.25, 0.9)
     lethal_alone = metres_to_go(walled, bare, Pose2(), past_corner_xy)
     assert metres_to_go(walled, walled.costmap, Pose2(), past_corner_xy) > lethal_alone + 0.3

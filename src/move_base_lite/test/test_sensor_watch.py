@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from move_base_lite.plausibility import SensorWatch
+from move_base_lite.plausibility import SensorMonitor
 from planar import Pose2, Twist2
 
 MIN, MAX, BEAMS, PERIOD = 0.1, 8.0, 100, 0.1
@@ -16,7 +16,7 @@ class Drive:
     """A robot that drives ahead in a room, and what its watch hears."""
 
     def __init__(self):
-        self.watch, self.now, self.x = SensorWatch(), 0.0, 0.0
+        self.watch, self.now, self.x = SensorMonitor(), 0.0, 0.0
         self._rng = np.random.default_rng(0)
 
     def go(self, seconds, scan=lambda ranges: ranges, odometry=lambda pose: pose, v=0.5):
@@ -25,12 +25,12 @@ class Drive:
             self.now, self.x = self.now + PERIOD, self.x + v * PERIOD
             ranges = scan(self.truth())
             if ranges is not None:
-                self.watch.see_scan(ranges, MIN, MAX, 2.0 * math.pi)
+                self.watch.add_scan(ranges, MIN, MAX, 2.0 * math.pi)
             pose = odometry(Pose2(self.x, 0.0))
             if pose is not None:
-                self.watch.see_odometry(self.now, pose, Twist2(v, 0.0))
-            if self.watch.complaint(self.now):
-                return self.watch.complaint(self.now)
+                self.watch.add_odometry(self.now, pose, Twist2(v, 0.0))
+            if self.watch.fault(self.now):
+                return self.watch.fault(self.now)
         return None
 
     def truth(self):
@@ -62,14 +62,14 @@ def filled(value):
     ],
 )
 def test_a_scan_that_shows_nothing_is_named_within_half_a_second(drive, value, why):
-    complaint = drive.go(0.5, scan=filled(value))
-    assert complaint.startswith("scan: ") and why in complaint
+    fault = drive.go(0.5, scan=filled(value))
+    assert fault.startswith("scan: ") and why in fault
 
 
 def test_a_frozen_scan_is_named_as_soon_as_the_robot_has_moved(drive):
     frozen = drive.truth()
-    complaint = drive.go(1.0, scan=lambda _: frozen)
-    assert complaint == "scan: it stays the same to the last bit while the robot moves"
+    fault = drive.go(1.0, scan=lambda _: frozen)
+    assert fault == "scan: it stays the same to the last bit while the robot moves"
 
 
 def test_a_scan_that_stays_the_same_while_the_robot_stands_is_well(drive):
@@ -116,8 +116,8 @@ def test_a_robot_that_drives_out_into_the_open_is_trusted(drive):
 
 def test_all_is_forgotten_when_time_jumps(drive):
     assert drive.go(0.5, scan=filled(math.nan))
-    drive.watch.forget()
-    assert drive.watch.complaint(drive.now + 100.0) is None
+    drive.watch.reset()
+    assert drive.watch.fault(drive.now + 100.0) is None
 
 
 class Camera:
@@ -126,21 +126,21 @@ class Camera:
     NEAREST, FARTHEST, SPAN = 0.45, 5.0, math.radians(58.0)
 
     def __init__(self):
-        self.watch = SensorWatch()
+        self.watch = SensorMonitor()
 
     def see(self, distance, yaw=0.0, wall=3.0):
-        self.watch.see_odometry(0.0, Pose2(wall - distance, 0.0, yaw), AHEAD)
+        self.watch.add_odometry(0.0, Pose2(wall - distance, 0.0, yaw), AHEAD)
         self.show(distance / np.cos(np.linspace(-self.SPAN / 2.0, self.SPAN / 2.0, BEAMS)))
-        return self.watch.complaint(0.0)
+        return self.watch.fault(0.0)
 
     def show(self, ranges):
         is_seen = (ranges >= self.NEAREST) & (ranges <= self.FARTHEST)
         told = np.where(is_seen, ranges, math.nan).astype(np.float32)
-        self.watch.see_scan(told, self.NEAREST, 10.0, self.SPAN)
+        self.watch.add_scan(told, self.NEAREST, 10.0, self.SPAN)
 
     def blank(self):
         self.show(np.full(BEAMS, math.nan))
-        return self.watch.complaint(0.0)
+        return self.watch.fault(0.0)
 
 
 def test_a_depth_camera_before_a_wall_that_is_too_near_is_trusted():

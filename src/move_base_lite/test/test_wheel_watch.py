@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from move_base_lite.plausibility.wheel_watch import REST, WheelWatch
+from move_base_lite.plausibility.wheel_monitor import REST, WheelMonitor
 from planar import Pose2, Twist2
 
 TRACK, PERIOD = 0.23, 0.02
@@ -17,7 +17,7 @@ class Drive:
     """A differential drive whose wheels turn by shares of what they are told."""
 
     def __init__(self, left=1.0, right=1.0, seed=1):
-        self.watch, self._shares, self._rng = WheelWatch(), (left, right), np.random.default_rng(seed)
+        self.watch, self._shares, self._rng = WheelMonitor(), (left, right), np.random.default_rng(seed)
         self.now, self._pose, self._wheels = 0.0, Pose2(), np.zeros(2)
 
     def go(self, seconds, command):
@@ -29,9 +29,9 @@ class Drive:
             self._wheels += PERIOD / LAG * (self._shares * wanted - self._wheels)
             left, right = self._wheels + self._rng.normal(0.0, 0.005, 2) * (self._wheels != 0.0)
             self._pose @= Pose2(0.5 * (left + right) * PERIOD, 0.0, (right - left) / TRACK * PERIOD)
-            self.watch.see_odometry(self.now, self._pose, told)
-            if self.watch.complaint():
-                return self.watch.complaint()
+            self.watch.add_odometry(self.now, self._pose, told)
+            if self.watch.fault():
+                return self.watch.fault()
         return None
 
 
@@ -80,6 +80,6 @@ def test_it_is_tried_again_after_a_rest():
     drive = Drive(0.0, 1.0)
     assert drive.go(15.0, ahead)
     drive._shares = (1.0, 1.0)
-    drive.watch.see_odometry(drive.now + REST + 1.0, drive._pose, Twist2())
+    drive.watch.add_odometry(drive.now + REST + 1.0, drive._pose, Twist2())
     drive.now += REST + 1.0
     assert drive.go(15.0, ahead) is None

@@ -6,11 +6,11 @@ import pytest
 from robot_in_picture import SETTINGS, Robot, assert_arrived, drive_to_end, room
 
 from move_base_lite import Navigator, Status
-from move_base_lite.navigator.zones import Zone, Zones, load_zones
+from move_base_lite.navigator.zones import NavigationZone, Zones, load_zones
 from planar import Pose2, SettingsError
 
-MIDDLE = Zone("middle", "keep_out", ((2.4, 0.0), (3.6, 0.0), (3.6, 2.6), (2.4, 2.6)))
-SLOW = Zone("slow", "speed", ((2.0, 0.0), (4.0, 0.0), (4.0, 4.0), (2.0, 4.0)), max_speed=0.2)
+MIDDLE = NavigationZone("middle", "keep_out", ((2.4, 0.0), (3.6, 0.0), (3.6, 2.6), (2.4, 2.6)))
+SLOW = NavigationZone("slow", "speed", ((2.0, 0.0), (4.0, 0.0), (4.0, 4.0), (2.0, 4.0)), max_speed=0.2)
 
 
 def drive(zones, start, goal):
@@ -47,7 +47,7 @@ def test_a_robot_inside_a_keep_out_zone_gets_out_of_it():
     goal = Pose2(5.4, 1.5)
     robot, decision, poses, _ = drive(Zones([MIDDLE]), Pose2(3.2, 1.0, math.pi), goal)
     assert_arrived(robot, [decision], goal)
-    is_inside = [MIDDLE.holds(pose.x, pose.y) for pose in poses]
+    is_inside = [MIDDLE.contains(pose.x, pose.y) for pose in poses]
     assert is_inside == sorted(is_inside, reverse=True), "once it is out, it stays out"
     assert not is_inside[-1]
 

@@ -3,11 +3,17 @@
 import numpy as np
 import pytest
 
-from move_base_lite.costmap import Placement, Site, Window, footprint_from, sighting_of_scan
+from move_base_lite.costmap import (
+    CostmapPlacement,
+    CostmapWindow,
+    LayerContext,
+    footprint_from,
+    observation_from_scan,
+)
 from planar import Pose2, Scan
 from plugin_examples.social_distance import SocialDistance, SocialDistanceSettings
 
-WINDOW = Window(80, 80, 0.1, -4.0, -4.0)
+WINDOW = CostmapWindow(80, 80, 0.1, -4.0, -4.0)
 SPEED, START, RADIUS, WALL = 0.8, -1.6, 0.2, 3.8
 ANGLES = np.linspace(-np.pi, np.pi, 360, endpoint=False)
 
@@ -24,11 +30,11 @@ def scan_of(stamp, walks=True):
 
 
 def costs_after(seconds, walks=True):
-    layer = SocialDistance(SocialDistanceSettings(), Site(WINDOW, True, footprint_from((), 0.2, 0.0)))
+    layer = SocialDistance(SocialDistanceSettings(), LayerContext(WINDOW, True, footprint_from((), 0.2, 0.0)))
     costs = np.zeros((WINDOW.rows, WINDOW.cols), np.uint8)
     for number in range(round(10 * seconds)):
-        layer.note(sighting_of_scan("scan", scan_of(0.1 * number, walks)), Pose2())
-        bounds = layer.update(Placement(WINDOW, 0, 0, Pose2(), Pose2()))
+        layer.add_observation(observation_from_scan("scan", scan_of(0.1 * number, walks)), Pose2())
+        bounds = layer.update(CostmapPlacement(WINDOW, 0, 0, Pose2(), Pose2()))
         costs[bounds.slices] = 0
         layer.apply(costs, WINDOW, bounds)
     return costs
@@ -59,9 +65,9 @@ def test_who_stands_costs_nothing():
 @pytest.mark.parametrize("topic", ["scan", "other"])
 def test_only_its_own_laser_counts(topic):
     layer = SocialDistance(
-        SocialDistanceSettings(topic=topic), Site(WINDOW, True, footprint_from((), 0.2, 0.0))
+        SocialDistanceSettings(topic=topic), LayerContext(WINDOW, True, footprint_from((), 0.2, 0.0))
     )
     for number in range(25):
-        layer.note(sighting_of_scan("scan", scan_of(0.1 * number)), Pose2())
-    bounds = layer.update(Placement(WINDOW, 0, 0, Pose2(), Pose2()))
+        layer.add_observation(observation_from_scan("scan", scan_of(0.1 * number)), Pose2())
+    bounds = layer.update(CostmapPlacement(WINDOW, 0, 0, Pose2(), Pose2()))
     assert (bounds.row_max > bounds.row_min) is (topic == "scan")

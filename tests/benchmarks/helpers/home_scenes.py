@@ -18,7 +18,7 @@ def places(settings: NavigatorSettings, grid: OccupancyGrid, rng, count: int) ->
     costmap = LayeredCostmap(settings.global_costmap, grid)
     navigator = Navigator(settings, grid)
     places: List[Pose2] = []
-    free = np.argwhere((costmap.costs_of_map < 128) & (grid.cells == FREE))
+    free = np.argwhere((costmap.map_costs < 128) & (grid.cells == FREE))
     while len(places) < count:
         x, y = grid.points_of(free[rng.integers(len(free), size=1)])[0]
         place = Pose2(float(x), float(y), float(rng.uniform(-math.pi, math.pi)))
@@ -37,7 +37,7 @@ def _is_connected(navigator: Navigator, place: Pose2) -> bool:
 def add_box(simulation, name, settings, grid, rng, keep_free) -> None:
     """Puts a box that the map does not show somewhere off the ends of the way and off narrow places."""
     costmap = LayeredCostmap(settings.global_costmap, grid)
-    open_cells = np.argwhere(costmap.costs_of_map == 0)
+    open_cells = np.argwhere(costmap.map_costs == 0)
     while True:
         x, y = grid.points_of(open_cells[rng.integers(len(open_cells), size=1)])[0]
         box = Pose2(float(x), float(y), float(rng.uniform(-math.pi, math.pi)))

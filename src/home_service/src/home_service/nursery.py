@@ -23,7 +23,7 @@ def load_kernels() -> None:
     from amcl_lite.localizer import warm_up as warm_up_localizer
     from home_service.rehearsal import LOCALIZATION_CONFIG, NAVIGATION_CONFIG
     from move_base_lite import load_settings
-    from move_base_lite.warming import warm_up as warm_up_navigator
+    from move_base_lite.warmup import warm_up as warm_up_navigator
     from planar.config.settings_file import settings_from_yaml
 
     warm_up_localizer(settings_from_yaml(LocalizerSettings, LOCALIZATION_CONFIG)[0])

@@ -6,7 +6,7 @@ from home_service.commands.rehearse import Rehearse
 from home_service.nursery import load_kernels
 from home_service.rehearsal import NAVIGATION_CONFIG, Conditions
 from move_base_lite.control import LOCAL_PLANNERS
-from move_base_lite.warming import warm_up as warm_up_navigator
+from move_base_lite.warmup import warm_up as warm_up_navigator
 
 
 def main() -> int:

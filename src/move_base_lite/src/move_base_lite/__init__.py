@@ -5,7 +5,7 @@ Also what plugins of one's own are made of: the contracts of the seams and what 
 
 from move_base_lite.config import NavigatorSettings
 from move_base_lite.control import ControllerSettings, LocalPlanner, Plan, Situation, Trajectory
-from move_base_lite.costmap import Layer, LayerSettings, Placement, Site, Window
+from move_base_lite.costmap import CostmapPlacement, CostmapWindow, Layer, LayerContext, LayerSettings
 from move_base_lite.errors import (
     ControlError,
     GoalBlocked,
@@ -20,6 +20,7 @@ from move_base_lite.navigator import Decision, Navigator, Status
 from move_base_lite.parameters import load_settings, settings_from_parameters
 from move_base_lite.planning import GlobalPlanner, PlannerSettings
 from move_base_lite.recovery import RecoveryBehavior, RecoveryContext, RecoverySettings
+from planar.deprecation import deprecated_names
 
 __all__ = [
     "ControlError",
@@ -35,7 +36,7 @@ __all__ = [
     "NavigatorSettings",
     "NoPath",
     "OutOfMap",
-    "Placement",
+    "CostmapPlacement",
     "Plan",
     "PlannerSettings",
     "PlanningError",
@@ -43,12 +44,16 @@ __all__ = [
     "RecoveryBehavior",
     "RecoveryContext",
     "RecoverySettings",
-    "Site",
+    "LayerContext",
     "Situation",
     "StartBlocked",
     "Status",
     "Trajectory",
-    "Window",
+    "CostmapWindow",
     "load_settings",
     "settings_from_parameters",
 ]
+
+__getattr__ = deprecated_names(
+    __name__, {"Placement": "CostmapPlacement", "Site": "LayerContext", "Window": "CostmapWindow"}
+)

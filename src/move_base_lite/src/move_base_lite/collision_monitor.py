@@ -49,7 +49,7 @@ class MonitorSettings:
 
 
 @dataclass(frozen=True)
-class Verdict:
+class LimitedCommand:
     """The command that may pass, and why: clear, slowed or stopped."""
 
     command: Twist2
@@ -64,14 +64,14 @@ class CollisionMonitor:
         outline: Footprint = footprint_from(settings.footprint, settings.robot_radius, 0.0)
         self._corners_xy = outline.corners_xy
 
-    def judge(self, command: Twist2, points_xy: np.ndarray) -> Verdict:
+    def limit_command(self, command: Twist2, points_xy: np.ndarray) -> LimitedCommand:
         """What of a command may pass; ``points_xy``: (N, 2), obstacles in the base frame, metres.
 
         The robot is followed along the command's arc. A point that is within the stop distance already does
         not count as long as the robot moves away from it.
         """
         if command == Twist2():
-            return Verdict(command, CLEAR)
+            return LimitedCommand(command, CLEAR)
         settings = self._settings
         seconds = _free_seconds(
             self._corners_xy,
@@ -83,10 +83,10 @@ class CollisionMonitor:
         )
         share = seconds / settings.time_to_collision
         if share >= 1.0:
-            return Verdict(command, CLEAR)
+            return LimitedCommand(command, CLEAR)
         if share <= 1.0 / STEPS:
-            return Verdict(Twist2(), STOPPED)
-        return Verdict(Twist2(share * command.v, share * command.omega), SLOWED)
+            return LimitedCommand(Twist2(), STOPPED)
+        return LimitedCommand(Twist2(share * command.v, share * command.omega), SLOWED)
 
 
 @numba.njit(cache=True)

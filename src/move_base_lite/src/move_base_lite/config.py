@@ -14,7 +14,7 @@ from move_base_lite.costmap.layers.static import STATIC, StaticSettings
 from move_base_lite.planning import GLOBAL_PLANNERS, NavfnSettings, PlannerSettings
 from move_base_lite.planning.navfn import GLOBAL_PLANNER, NAVFN
 from move_base_lite.plugin import Plugin
-from move_base_lite.recovery import NamedRecovery, RotateSettings, SlowSettings
+from move_base_lite.recovery import MoveSlowSettings, NamedRecovery, RotateSettings
 from move_base_lite.recovery.move_slow import MOVE_SLOW
 from planar.config.listing import ConfigFiles, Section
 from planar.config.parameters import POSITIVE, Parameter, at_least, check_parameters, parameter
@@ -131,7 +131,9 @@ CONFIG_FILES: ConfigFiles = {
         MoveBaseSettings,
         *_PLANNERS,
         Section(TRAJECTORY.short_name, RotateSettings, about="read by rotate_recovery, as in move_base"),
-        Section("move_slow", SlowSettings, about=f"read by a recovery of that name, type {MOVE_SLOW.name}"),
+        Section(
+            "move_slow", MoveSlowSettings, about=f"read by a recovery of that name, type {MOVE_SLOW.name}"
+        ),
         _COSTMAP,
         Section("local_costmap", same_as="global_costmap"),
         about="Every parameter of move_base_lite with its default, that of move_base and its plugins.\n"

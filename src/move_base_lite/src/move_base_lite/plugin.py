@@ -40,7 +40,7 @@ class Plugin(Generic[T]):
     make: Callable[..., T]
     deprecated: Mapping[str, str] = field(default_factory=dict)
     synonyms: Mapping[str, str] = field(default_factory=dict)
-    translated: Callable[[Dict[str, Any]], Dict[str, Any]] = _as_they_are
+    translate: Callable[[Dict[str, Any]], Dict[str, Any]] = _as_they_are
     without_effect: Tuple[Tunable, ...] = ()
     ignored: FrozenSet[str] = frozenset()
 

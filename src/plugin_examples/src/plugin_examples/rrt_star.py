@@ -6,7 +6,7 @@ from typing import Optional, Tuple
 import numba
 import numpy as np
 
-from move_base_lite import GoalBlocked, NoPath, OutOfMap, PlannerSettings, StartBlocked, Window
+from move_base_lite import CostmapWindow, GoalBlocked, NoPath, OutOfMap, PlannerSettings, StartBlocked
 from move_base_lite.costmap import INSCRIBED
 from planar.config.parameters import POSITIVE, Bounds, parameter
 
@@ -29,7 +29,7 @@ class RrtStar:
     def plan(
         self,
         costs: np.ndarray,
-        window: Window,
+        window: CostmapWindow,
         start_xy: Tuple[float, float],
         goal_xy: Tuple[float, float],
         tolerance: float = 0.0,
@@ -60,7 +60,7 @@ class RrtStar:
             indices.append(parents[indices[-1]])
         return np.vstack([nodes[indices[::-1]], goal])
 
-    def _cell(self, xy: Tuple[float, float], window: Window) -> Tuple[float, float]:
+    def _cell(self, xy: Tuple[float, float], window: CostmapWindow) -> Tuple[float, float]:
         """In cells: row and column, with what is behind the point."""
         if not window.contains(*xy):
             raise OutOfMap(f"({xy[0]:g}, {xy[1]:g}) is outside of the map")

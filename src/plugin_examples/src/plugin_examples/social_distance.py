@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from move_base_lite import Layer, LayerSettings
-from move_base_lite.costmap import INSCRIBED, Placement, Sighting, Site
-from move_base_lite.costmap.window import NO_CELLS, Bounds, Window, union
+from move_base_lite.costmap import INSCRIBED, CostmapPlacement, LayerContext, Observation
+from move_base_lite.costmap.window import NO_CELLS, CellBounds, CostmapWindow, union
 from move_base_lite.people import NO_MOVERS, Movers
 from planar import Pose2
 from planar.config.parameters import POSITIVE, at_least, parameter
@@ -32,17 +32,17 @@ class SocialDistanceSettings(LayerSettings):
 class SocialDistance(Layer):
     Settings = SocialDistanceSettings
 
-    def __init__(self, settings: SocialDistanceSettings, site: Site):
+    def __init__(self, settings: SocialDistanceSettings, site: LayerContext):
         self._settings = settings
         self._movers, self._seen_at = Movers(), 0.0
         self._people, self._bounds = NO_MOVERS, NO_CELLS
 
-    def note(self, sighting: Sighting, base_in_frame: Pose2) -> None:
-        if sighting.topic == self._settings.topic:
-            self._movers.look(base_in_frame, sighting)
-            self._seen_at = sighting.stamp
+    def add_observation(self, observation: Observation, base_in_frame: Pose2) -> None:
+        if observation.topic == self._settings.topic:
+            self._movers.look(base_in_frame, observation)
+            self._seen_at = observation.stamp
 
-    def update(self, placement: Placement) -> Bounds:
+    def update(self, placement: CostmapPlacement) -> CellBounds:
         before, self._people, self._bounds = self._bounds, self._movers.at(self._seen_at), NO_CELLS
         for x, y, along_x, along_y, _ in self._people:
             reach = REACH * self._ahead(math.hypot(along_x, along_y))
@@ -51,7 +51,7 @@ class SocialDistance(Layer):
             )
         return union(before, self._bounds)
 
-    def apply(self, costs: np.ndarray, window: Window, bounds: Bounds) -> None:
+    def apply(self, costs: np.ndarray, window: CostmapWindow, bounds: CellBounds) -> None:
         rows, cols = np.mgrid[bounds.slices]
         if not rows.size:
             return
@@ -62,7 +62,7 @@ class SocialDistance(Layer):
             added = (HIGHEST * self._share(person, x, y)).astype(np.uint8)
             np.maximum(block, added, out=block, where=block < added)
 
-    def clear_outside(self, bounds: Bounds, window: Window) -> Bounds:
+    def clear_outside(self, bounds: CellBounds, window: CostmapWindow) -> CellBounds:
         before = self._bounds
         self._movers, self._people, self._bounds = Movers(), NO_MOVERS, NO_CELLS
         return before

@@ -223,7 +223,7 @@ class Rehearsal:
         self._event = self._arrival.judge(_event_of(decision), base_in_map, self._fit.least, self._now)
         if complaint is not None and self._senses.is_out_of_patience(self._now):
             # As move_base does with a sensor that it cannot trust.
-            self._navigator.forget_goal()
+            self._navigator.clear_goal()
             self._event = GoalRefused(f"waiting for a trustworthy sensor ({complaint})")
         return order if isinstance(order, Finish) else None
 

@@ -5,7 +5,7 @@ from collections import deque
 from dataclasses import replace
 from typing import Deque, Optional, Tuple
 
-from move_base_lite.plausibility import SensorWatch
+from move_base_lite.plausibility import SensorMonitor
 from planar import Pose2, Scan, Twist2
 from sim_bridge import StepResult
 from sim_bridge.sensors.odometry import Odometer
@@ -24,7 +24,7 @@ class Senses:
     def __init__(self, patience: float):
         self.diagnosis = ""
         self._patience = patience
-        self._watch = SensorWatch()
+        self._watch = SensorMonitor()
         self._odometry: Deque[Tuple[float, Pose2]] = deque(maxlen=REMEMBERED)
         self._wrong_since: Optional[float] = None
         self._told = Twist2()
@@ -35,11 +35,11 @@ class Senses:
             self._told = command
         if Odometer.name in observation.readings or not self._odometry:
             self._odometry.append((observation.stamp, observation.odometry.base_in_odom))
-            self._watch.see_odometry(observation.stamp, observation.odometry.base_in_odom, self._told)
+            self._watch.add_odometry(observation.stamp, observation.odometry.base_in_odom, self._told)
         if observation.scan is not None:
             scan = observation.scan
             span = scan.angle_increment * (len(scan.ranges) - 1)
-            self._watch.see_scan(scan.ranges, scan.range_min, scan.range_max, span)
+            self._watch.add_scan(scan.ranges, scan.range_min, scan.range_max, span)
 
     def base_at(self, stamp: float) -> Pose2:
         """Where odometry had the robot at a time, or as near to it as is remembered."""
@@ -59,7 +59,7 @@ class Senses:
 
     def complaint(self, now: float) -> Optional[str]:
         """Which sensor cannot be trusted; None if all can."""
-        complaint = self._watch.complaint(now)
+        complaint = self._watch.fault(now)
         if complaint is None:
             self._wrong_since = None
         elif self._wrong_since is None:

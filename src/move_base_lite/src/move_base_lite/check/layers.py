@@ -6,22 +6,22 @@ import numpy as np
 
 from move_base_lite.costmap import (
     LETHAL,
+    CostmapPlacement,
+    CostmapWindow,
     Footprint,
     Layer,
-    Placement,
-    Site,
-    Window,
+    LayerContext,
     footprint_from,
-    sighting_of_points,
+    observation_from_points,
 )
 from move_base_lite.costmap.layers.obstacles import SourceSettings
-from move_base_lite.costmap.window import Bounds
+from move_base_lite.costmap.window import CellBounds
 from move_base_lite.plugin import Plugin
 from planar import Pose2, grid_from_picture
 from planar.contract_check import expect
 
 GRID = grid_from_picture("#....\n.....\n..#..", 0.2)
-WINDOW = Window(GRID.rows, GRID.cols, GRID.resolution)
+WINDOW = CostmapWindow(GRID.rows, GRID.cols, GRID.resolution)
 FOOTPRINT: Footprint = footprint_from((), 0.05, 0.0)
 HERE = Pose2(0.5, 0.3)
 
@@ -64,14 +64,14 @@ def _made(plugin: Plugin[Any], is_rolling: bool = False) -> Layer:
     """With the defaults, and a sensor if the layer has any."""
     has_sources = hasattr(plugin.settings(), "sources")
     settings = plugin.settings(sources=(SourceSettings(topic="cloud"),)) if has_sources else plugin.settings()
-    return plugin.make(settings, Site(WINDOW, is_rolling, FOOTPRINT, GRID))
+    return plugin.make(settings, LayerContext(WINDOW, is_rolling, FOOTPRINT, GRID))
 
 
-def _shown(plugin: Plugin[Any], is_rolling: bool = False) -> Tuple[Layer, Bounds]:
+def _shown(plugin: Plugin[Any], is_rolling: bool = False) -> Tuple[Layer, CellBounds]:
     """A layer that has been shown something beside the robot, and what it said to have changed."""
     layer = _made(plugin, is_rolling)
-    layer.note(sighting_of_points("cloud", 0.0, Pose2(), np.array([[0.2, 0.0, 0.1]])), HERE)
-    return layer, layer.update(Placement(WINDOW, 0, 0, HERE, Pose2()))
+    layer.add_observation(observation_from_points("cloud", 0.0, Pose2(), np.array([[0.2, 0.0, 0.1]])), HERE)
+    return layer, layer.update(CostmapPlacement(WINDOW, 0, 0, HERE, Pose2()))
 
 
 def _ground() -> np.ndarray:
@@ -80,7 +80,7 @@ def _ground() -> np.ndarray:
     return costs
 
 
-def _applied(layer: Layer, bounds: Optional[Bounds] = None) -> np.ndarray:
+def _applied(layer: Layer, bounds: Optional[CellBounds] = None) -> np.ndarray:
     costs = _ground()
     layer.apply(costs, WINDOW, bounds or WINDOW.everything)
     return costs

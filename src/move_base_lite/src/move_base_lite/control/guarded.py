@@ -6,7 +6,7 @@ import numpy as np
 
 from move_base_lite.control.local_planner import LocalPlanner, Plan, Situation, Trajectory
 from move_base_lite.errors import ControlPluginFailed
-from move_base_lite.guarding import Guard
+from move_base_lite.plugin_guard import PluginGuard
 from planar import Twist2
 
 # Of a limit of speed, by which rounding may exceed it.
@@ -17,7 +17,7 @@ class GuardedLocalPlanner:
     """A LocalPlanner; see there."""
 
     def __init__(self, name: str, make: Callable[[], LocalPlanner]):
-        self._guard = Guard(name, make, ControlPluginFailed)
+        self._guard = PluginGuard(name, make, ControlPluginFailed)
 
     def follow(self, situation: Situation, plan: Plan, limits: Twist2) -> Trajectory:
         with self._guard.watch(situation.costmap.costs, situation.movers, plan.path_xy) as planner:

@@ -6,12 +6,13 @@
 from move_base_lite.costmap.costmap import LayeredCostmap
 from move_base_lite.costmap.costs import FREE, INSCRIBED, LETHAL, UNKNOWN, occupancy_of
 from move_base_lite.costmap.footprint import Footprint, footprint_from
-from move_base_lite.costmap.layer import Layer, LayerSettings, Placement, Site
+from move_base_lite.costmap.layer import CostmapPlacement, Layer, LayerContext, LayerSettings
+from move_base_lite.costmap.observation import Observation, observation_from_points, observation_from_scan
 from move_base_lite.costmap.polygon import Polygon
 from move_base_lite.costmap.registry import LAYERS
 from move_base_lite.costmap.settings import CostmapSettings
-from move_base_lite.costmap.sighting import Sighting, sighting_of_points, sighting_of_scan
-from move_base_lite.costmap.window import Bounds, Window
+from move_base_lite.costmap.window import CellBounds, CostmapWindow
+from planar.deprecation import deprecated_names
 
 __all__ = [
     "FREE",
@@ -19,19 +20,32 @@ __all__ = [
     "LAYERS",
     "LETHAL",
     "UNKNOWN",
-    "Bounds",
+    "CellBounds",
     "CostmapSettings",
     "Footprint",
     "Layer",
     "LayerSettings",
     "LayeredCostmap",
-    "Placement",
+    "CostmapPlacement",
     "Polygon",
-    "Sighting",
-    "Site",
-    "Window",
+    "Observation",
+    "LayerContext",
+    "CostmapWindow",
     "footprint_from",
     "occupancy_of",
-    "sighting_of_points",
-    "sighting_of_scan",
+    "observation_from_points",
+    "observation_from_scan",
 ]
+
+__getattr__ = deprecated_names(
+    __name__,
+    {
+        "Bounds": "CellBounds",
+        "Placement": "CostmapPlacement",
+        "Sighting": "Observation",
+        "Site": "LayerContext",
+        "Window": "CostmapWindow",
+        "sighting_of_points": "observation_from_points",
+        "sighting_of_scan": "observation_from_scan",
+    },
+)

@@ -7,13 +7,13 @@ import numpy as np
 
 from move_base_lite.costmap.costs import FREE, UNKNOWN
 from move_base_lite.costmap.footprint import Footprint, collides, contacts, footprint_from
-from move_base_lite.costmap.layer import Layer, LayerSettings, Placement, Site
+from move_base_lite.costmap.layer import CostmapPlacement, Layer, LayerContext, LayerSettings
 from move_base_lite.costmap.layers.zones import ZoneLayer
+from move_base_lite.costmap.observation import Observation
 from move_base_lite.costmap.polygon import Polygon
 from move_base_lite.costmap.registry import LAYERS
 from move_base_lite.costmap.settings import CostmapSettings
-from move_base_lite.costmap.sighting import Sighting
-from move_base_lite.costmap.window import NO_CELLS, Bounds, Window, union
+from move_base_lite.costmap.window import NO_CELLS, CellBounds, CostmapWindow, union
 from planar import OccupancyGrid, Pose2
 
 # Radians between the headings at which a turn on the spot is checked.
@@ -30,7 +30,7 @@ class LayeredCostmap:
         self,
         settings: CostmapSettings,
         grid: Optional[OccupancyGrid] = None,
-        map_window: Optional[Window] = None,
+        map_window: Optional[CostmapWindow] = None,
     ):
         """``map_window``: a size to keep, that of a map whose layer has been switched off since."""
         self.settings = settings
@@ -39,25 +39,25 @@ class LayeredCostmap:
         )
         self._map = grid
         self._map_window = map_window or _window_of_map(settings, grid)
-        self.window: Window = self._map_window or _window_of(settings)
+        self.window: CostmapWindow = self._map_window or _window_of(settings)
         self.outline_xy = self.footprint.outline_xy(0.8 * self.window.resolution)
-        site = Site(self.window, settings.rolling_window, self.footprint, grid)
-        self._zones = ZoneLayer(LayerSettings(), site)
-        obstacles, own = _made([settings.obstacles], site), _made(settings.own_layers, site)
-        ground, inflation = _made([settings.static], site), _made([settings.inflation], site)
+        context = LayerContext(self.window, settings.rolling_window, self.footprint, grid)
+        self._zones = ZoneLayer(LayerSettings(), context)
+        obstacles, own = _made([settings.obstacles], context), _made(settings.plugin_layers, context)
+        ground, inflation = _made([settings.static], context), _made([settings.inflation], context)
         self._layers = [*ground, *obstacles, self._zones, *own, *inflation]
         self._remembering = [*obstacles, *own]
         self._reach_cells = sum(layer.reach_cells for layer in self._layers)
         self._unseen = UNKNOWN if settings.track_unknown_space else FREE
         self._changed = NO_CELLS
         self.costs = np.empty((self.window.rows, self.window.cols), dtype=np.uint8)
-        self.refresh(self.window.everything)
-        self.costs_of_map: np.ndarray = self.costs.copy()
+        self.recompute(self.window.everything)
+        self.map_costs: np.ndarray = self.costs.copy()
 
-    def note(self, sighting: Sighting, base_in_frame: Pose2) -> None:
+    def add_observation(self, observation: Observation, base_in_frame: Pose2) -> None:
         """Keeps what a sensor saw from there for the next update."""
         for layer in self._layers:
-            layer.note(sighting, base_in_frame)
+            layer.add_observation(observation, base_in_frame)
 
     def update(self, base_in_frame: Pose2, map_in_frame: Pose2 = Pose2()) -> None:
         """Follows the robot and takes in what has been noted."""
@@ -65,9 +65,9 @@ class LayeredCostmap:
         changed = self.window.everything if self.settings.rolling_window else NO_CELLS
         for layer in self._layers:
             changed = union(changed, layer.update(placement))
-        self.refresh(changed)
+        self.recompute(changed)
 
-    def refresh(self, changed: Bounds) -> None:
+    def recompute(self, changed: CellBounds) -> None:
         """Stacks the layers anew where they have changed."""
         bounds = self.window.grown(changed, self._reach_cells)
         self.costs[bounds.slices] = self._unseen
@@ -75,11 +75,11 @@ class LayeredCostmap:
             layer.apply(self.costs, self.window, bounds)
         self._changed = union(self._changed, bounds)
 
-    def keep_out(self, barred: Sequence[Polygon], disliked: Sequence[Polygon]) -> None:
+    def set_keep_out(self, barred: Sequence[Polygon], disliked: Sequence[Polygon]) -> None:
         """From the next update on, polygons of the map are obstacles, others are only dear to be in."""
         self._zones.set(barred, disliked)
 
-    def changed_to(self, settings: CostmapSettings) -> "LayeredCostmap":
+    def with_settings(self, settings: CostmapSettings) -> "LayeredCostmap":
         """This costmap with other settings; it keeps what was seen unless its cells are others."""
         if settings == self.settings:
             return self
@@ -97,9 +97,9 @@ class LayeredCostmap:
             layer.take_over(same)
         if pairs:
             self.window = before.window
-            self.refresh(self.window.everything)
+            self.recompute(self.window.everything)
 
-    def take_changed(self) -> Bounds:
+    def pop_changed_bounds(self) -> CellBounds:
         """The block of cells that may have changed since this was asked last."""
         changed, self._changed = self._changed, NO_CELLS
         return changed
@@ -138,33 +138,33 @@ class LayeredCostmap:
         """Forgets all that was seen; the map stays."""
         self._refresh_changed([layer.clear_outside(NO_CELLS, self.window) for layer in self._layers])
 
-    def _refresh_changed(self, blocks: Sequence[Bounds]) -> None:
+    def _refresh_changed(self, blocks: Sequence[CellBounds]) -> None:
         changed = NO_CELLS
         for block in blocks:
             changed = union(changed, block)
         if changed != NO_CELLS:
-            self.refresh(changed)
+            self.recompute(changed)
 
-    def _follow(self, base_in_frame: Pose2, map_in_frame: Pose2) -> Placement:
+    def _follow(self, base_in_frame: Pose2, map_in_frame: Pose2) -> CostmapPlacement:
         """Moves the window, if it rolls."""
         if not self.settings.rolling_window:
-            return Placement(self.window, 0, 0, base_in_frame, map_in_frame)
+            return CostmapPlacement(self.window, 0, 0, base_in_frame, map_in_frame)
         before, self.window = self.window, self.window.centred_on(base_in_frame.x, base_in_frame.y)
         cols = round((self.window.origin_x - before.origin_x) / self.window.resolution)
         rows = round((self.window.origin_y - before.origin_y) / self.window.resolution)
-        return Placement(self.window, rows, cols, base_in_frame, map_in_frame)
+        return CostmapPlacement(self.window, rows, cols, base_in_frame, map_in_frame)
 
 
-def _made(settings: Sequence[LayerSettings], site: Site) -> List[Layer]:
-    return [LAYERS.make(each, site) for each in settings if each.enabled]
+def _made(settings: Sequence[LayerSettings], context: LayerContext) -> List[Layer]:
+    return [LAYERS.make(each, context) for each in settings if each.enabled]
 
 
-def _window_of_map(settings: CostmapSettings, grid: Optional[OccupancyGrid]) -> Optional[Window]:
+def _window_of_map(settings: CostmapSettings, grid: Optional[OccupancyGrid]) -> Optional[CostmapWindow]:
     if not settings.static.enabled or grid is None or settings.rolling_window:
         return None
-    return Window(grid.rows, grid.cols, grid.resolution, grid.origin.x, grid.origin.y)
+    return CostmapWindow(grid.rows, grid.cols, grid.resolution, grid.origin.x, grid.origin.y)
 
 
-def _window_of(settings: CostmapSettings) -> Window:
+def _window_of(settings: CostmapSettings) -> CostmapWindow:
     rows, cols = round(settings.height / settings.resolution), round(settings.width / settings.resolution)
-    return Window(rows, cols, settings.resolution, settings.origin_x, settings.origin_y)
+    return CostmapWindow(rows, cols, settings.resolution, settings.origin_x, settings.origin_y)

@@ -9,7 +9,7 @@ import numba
 import numpy as np
 
 from move_base_lite.costmap.costs import INSCRIBED, LETHAL
-from move_base_lite.costmap.window import Window
+from move_base_lite.costmap.window import CostmapWindow
 from planar import Pose2
 
 CIRCLE_CORNERS = 16
@@ -56,7 +56,7 @@ def footprint_from(corners: Sequence[Tuple[float, float]], robot_radius: float, 
     return Footprint(corners_xy + padding * np.sign(np.where(np.abs(corners_xy) < 1e-9, 0.0, corners_xy)))
 
 
-def collides(costs: np.ndarray, window: Window, outline_xy: np.ndarray, pose: Pose2) -> bool:
+def collides(costs: np.ndarray, window: CostmapWindow, outline_xy: np.ndarray, pose: Pose2) -> bool:
     """Whether the outline (M, 2), put at ``pose``, touches an obstacle or leaves the costmap."""
     cost = footprint_cost(
         costs, window.origin_x, window.origin_y, window.resolution, outline_xy, pose.x, pose.y, pose.yaw
@@ -64,7 +64,7 @@ def collides(costs: np.ndarray, window: Window, outline_xy: np.ndarray, pose: Po
     return bool(cost == COLLISION)
 
 
-def contacts(costs: np.ndarray, window: Window, outline_xy: np.ndarray, pose: Pose2) -> int:
+def contacts(costs: np.ndarray, window: CostmapWindow, outline_xy: np.ndarray, pose: Pose2) -> int:
     """At how many of its points the outline (M, 2), put at ``pose``, touches an obstacle or the edge."""
     return count_contacts(
         costs, window.origin_x, window.origin_y, window.resolution, outline_xy, pose.x, pose.y, pose.yaw

@@ -1,56 +1,71 @@
-"""The contract of a costmap's layers: what each adds to the costs.
+"""Contract of costmap layers: what each layer adds to the costs (costmap_2d: Layer).
 
-Life cycle. A layer is made with its settings for a Site whenever the costmap is: at the start, for another
-map and when settings change; then it may take over what the one before knew. It is told of what sensors see
-as they speak (:meth:`~Layer.note`). At each update of the costmap it follows the window and says which cells
-may have changed (:meth:`~Layer.update`); then each layer in turn puts its costs over those below, in the
-cells that changed for any of them (:meth:`~Layer.apply`). From below: the map, obstacles, zones, own
-layers, inflation.
+Life cycle:
 
-To add one: a file with settings (a subclass of LayerSettings), a class and its Plugin, and a line in
-``costmap/registry.py``. ``test/test_costmap_layers.py`` holds it to what is said here.
+1. A layer is constructed with its settings and a LayerContext whenever the costmap is: at start-up, for a new
+   map and when settings change. :meth:`Layer.take_over` may then copy the state of the layer it replaces.
+2. :meth:`Layer.add_observation` receives sensor data as it arrives.
+3. At each update, :meth:`Layer.update` follows the window and returns the cells that may have changed.
+4. :meth:`Layer.apply` writes the layer's costs over those of the layers below, in the cells that changed in
+   any layer.
+
+Order, from below: static map, obstacles, zones, plugin layers, inflation.
+
+To add a layer to this package, write a module with settings (a subclass of LayerSettings), a class and its
+Plugin, and add it to ``costmap/registry.py``. ``test/test_costmap_layers.py`` checks the contract.
 """
 
+import warnings
 from dataclasses import dataclass
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
 
 from move_base_lite.costmap.footprint import Footprint
-from move_base_lite.costmap.sighting import Sighting
-from move_base_lite.costmap.window import NO_CELLS, Bounds, Window
+from move_base_lite.costmap.observation import Observation
+from move_base_lite.costmap.window import NO_CELLS, CellBounds, CostmapWindow
 from planar import OccupancyGrid, Pose2
 from planar.config.parameters import parameter
+from planar.deprecation import deprecated_names
 
 
 @dataclass(frozen=True)
 class LayerSettings:
-    """What every layer can be told."""
+    """Parameters that every layer has."""
 
-    enabled: bool = parameter(True, "whether the layer counts", dynamic=True)
+    enabled: bool = parameter(True, "whether the layer adds costs", dynamic=True)
 
 
 @dataclass(frozen=True, eq=False)
-class Site:
-    """What a layer is made for.
+class LayerContext:
+    """What a layer is constructed for.
 
-    ``window``: the costmap's cells; it moves if ``is_rolling``. ``grid``: the map, if there is one.
+    Attributes:
+        window: Cells of the costmap; it moves if ``is_rolling``.
+        is_rolling: Whether the window follows the robot.
+        footprint: Outline of the robot.
+        grid: Static map, if there is one.
     """
 
-    window: Window
+    window: CostmapWindow
     is_rolling: bool
     footprint: Footprint
     grid: Optional[OccupancyGrid] = None
 
 
 @dataclass(frozen=True)
-class Placement:
-    """Where the costmap lies at an update, and the robot in its frame.
+class CostmapPlacement:
+    """Position of the costmap and of the robot at an update.
 
-    The window has moved by ``rows`` and ``cols`` since the last one.
+    Attributes:
+        window: Cells of the costmap now.
+        rows: Rows by which the window has moved since the last update.
+        cols: Columns by which the window has moved since the last update.
+        base_in_frame: Robot in the costmap's frame.
+        map_in_frame: Map in the costmap's frame.
     """
 
-    window: Window
+    window: CostmapWindow
     rows: int
     cols: int
     base_in_frame: Pose2
@@ -58,36 +73,84 @@ class Placement:
 
 
 class Layer:
-    """Made by ``make(settings, site)``. An heir says what is otherwise than here, where nothing is known.
+    """Base class of layers; constructed as ``Layer(settings, context)``, a LayerSettings and a LayerContext.
 
-    All costs are uint8 (rows, cols) with the meaning of ``costs.py``; bounds are blocks of cells.
+    The defaults are those of a layer without sensor data; a subclass overrides what differs. Costs are uint8
+    (rows, cols) with the values of ``costs.py``; bounds are blocks of cells.
+
+    Attributes:
+        reach_cells: Distance in cells within which one changed cell changes others through this layer.
     """
 
-    reach_cells: int = 0  # how far from a cell that changes others change through this layer
+    reach_cells: int = 0
+    # The name of add_observation before 1.0. Subclasses may still call it as super().note(...).
+    note: Any = staticmethod(lambda observation, base_in_frame: None)
+
+    def __init_subclass__(cls, **keywords: Any) -> None:
+        super().__init_subclass__(**keywords)
+        accept_note(cls)
 
     @property
     def kind(self) -> type:
-        """Whose knowledge it may take over: that of a layer of the same kind."""
+        """Type of the layers whose state this layer can take over."""
         return type(self)
 
-    def note(self, sighting: Sighting, base_in_frame: Pose2) -> None:
-        """Keeps what a sensor saw from there for the next update."""
+    def add_observation(self, observation: Observation, base_in_frame: Pose2) -> None:
+        """Store sensor data for the next update.
 
-    def update(self, placement: Placement) -> Bounds:
-        """Follows the window and takes in what was noted; returns the block that may have changed."""
+        Args:
+            observation: Beams of one sensor.
+            base_in_frame: Robot in the costmap's frame when they were measured.
+        """
+
+    def update(self, placement: CostmapPlacement) -> CellBounds:
+        """Follow the window and integrate the stored observations.
+
+        Returns:
+            Block of cells whose costs may have changed.
+        """
         return NO_CELLS
 
-    def apply(self, costs: np.ndarray, window: Window, bounds: Bounds) -> None:
-        """Puts its costs over those below, in place and in the cells of ``bounds`` only."""
+    def apply(self, costs: np.ndarray, window: CostmapWindow, bounds: CellBounds) -> None:
+        """Write this layer's costs over those of the layers below.
+
+        Args:
+            costs: Costs of the layers below, uint8 (rows, cols); changed in place.
+            window: Position of the cells.
+            bounds: Block of cells to change; all others stay.
+        """
         raise NotImplementedError
 
-    def clear_outside(self, bounds: Bounds, window: Window) -> Bounds:
-        """Forgets what was seen but in a block; returns what may have changed."""
+    def clear_outside(self, bounds: CellBounds, window: CostmapWindow) -> CellBounds:
+        """Clear sensor data outside a block of cells.
+
+        Returns:
+            Block of cells whose costs may have changed.
+        """
         return NO_CELLS
 
-    def clear_inside(self, bounds: Bounds) -> Bounds:
-        """Forgets what was seen in a block; returns what may have changed."""
+    def clear_inside(self, bounds: CellBounds) -> CellBounds:
+        """Clear sensor data inside a block of cells.
+
+        Returns:
+            Block of cells whose costs may have changed.
+        """
         return NO_CELLS
 
     def take_over(self, before: "Layer") -> None:
-        """Goes on with what the same layer knew under other settings, in a window of the same size."""
+        """Copy the state of the layer that this one replaces; its window has the same size."""
+
+
+def accept_note(layer: type) -> None:
+    """Use a class's ``note`` as ``add_observation`` if it has only that; emit a DeprecationWarning."""
+    own = vars(layer)
+    if "note" in own and "add_observation" not in own:
+        warnings.warn(
+            f"{layer.__module__}.{layer.__name__}.note is deprecated; name it add_observation",
+            DeprecationWarning,
+            stacklevel=3,
+        )
+        layer.add_observation = own["note"]  # type: ignore[attr-defined]
+
+
+__getattr__ = deprecated_names(__name__, {"Placement": "CostmapPlacement", "Site": "LayerContext"})

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numba
 import numpy as np
 
-from move_base_lite.costmap.window import Bounds, Window
+from move_base_lite.costmap.window import CellBounds, CostmapWindow
 from planar import Pose2
 
 
@@ -15,20 +15,20 @@ class Polygon:
 
     corners_xy: np.ndarray
 
-    def holds(self, x: float, y: float) -> bool:
+    def contains(self, x: float, y: float) -> bool:
         """Whether a point lies inside."""
         return bool(_holds(self.corners_xy, x, y))
 
-    def seen_from(self, map_in_frame: Pose2) -> "Polygon":
+    def in_frame(self, map_in_frame: Pose2) -> "Polygon":
         """This polygon of the map in another frame."""
         return Polygon(map_in_frame.transform_points(self.corners_xy))
 
-    def fill(self, costs: np.ndarray, window: Window, cost: int) -> Bounds:
+    def fill(self, costs: np.ndarray, window: CostmapWindow, cost: int) -> CellBounds:
         """Gives a cost to the cells (rows, cols) whose centre lies inside; returns the block they lie in."""
         corners = (self.corners_xy - (window.origin_x, window.origin_y)) / window.resolution
         col_min, row_min = map(int, np.floor(corners.min(axis=0)))
         col_max, row_max = map(int, np.ceil(corners.max(axis=0)))
-        bounds = window.cut(Bounds(row_min, row_max, col_min, col_max))
+        bounds = window.cut(CellBounds(row_min, row_max, col_min, col_max))
         _fill(costs, corners, bounds, cost)
         return bounds
 

@@ -40,7 +40,7 @@ class CostmapSettings:
     always_send_full_costmap: bool = parameter(False, "whole costmaps instead of the part that has changed")
     static: StaticSettings = field(default_factory=lambda: StaticSettings(enabled=False))
     obstacles: ObstacleSettings = field(default_factory=ObstacleSettings)
-    own_layers: Tuple[LayerSettings, ...] = ()
+    plugin_layers: Tuple[LayerSettings, ...] = ()
     inflation: InflationSettings = field(default_factory=InflationSettings)
 
     def __post_init__(self):

@@ -4,9 +4,9 @@ import math
 from typing import Dict, List, Optional, Sequence, Tuple
 
 from move_base_lite.config import NavigatorSettings
-from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, LayeredCostmap, Polygon, Sighting
+from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, LayeredCostmap, Observation, Polygon
 from move_base_lite.errors import GoalBlocked, OutOfMap
-from move_base_lite.navigator.zones import Zone, Zones
+from move_base_lite.navigator.zones import NavigationZone, Zones
 from planar import OccupancyGrid, Pose2
 
 TIME_TOLERANCE = 1e-6
@@ -18,30 +18,30 @@ class Costmaps:
     def __init__(self, settings: NavigatorSettings, grid: Optional[OccupancyGrid], zones: Zones):
         self._settings = settings
         self._zones = zones
-        self._zones_drawn: Tuple[List[Zone], List[Zone]] = ([], [])
+        self._zones_drawn: Tuple[List[NavigationZone], List[NavigationZone]] = ([], [])
         self._next_updates = [-math.inf, -math.inf]
         self._last_seen: Dict[str, float] = {}
-        self.whole = LayeredCostmap(settings.global_costmap, grid)
-        self.near = LayeredCostmap(settings.local_costmap, grid)
+        self.global_costmap = LayeredCostmap(settings.global_costmap, grid)
+        self.local_costmap = LayeredCostmap(settings.local_costmap, grid)
 
-    def change(self, settings: NavigatorSettings) -> None:
+    def update_settings(self, settings: NavigatorSettings) -> None:
         """Goes on with other settings; what was seen stays where it can."""
         self._settings = settings
-        self.whole = self.whole.changed_to(settings.global_costmap)
-        self.near = self.near.changed_to(settings.local_costmap)
+        self.global_costmap = self.global_costmap.with_settings(settings.global_costmap)
+        self.local_costmap = self.local_costmap.with_settings(settings.local_costmap)
 
     def clear(self) -> None:
         """Forgets all obstacles that are not in the map."""
-        self.near.reset()
-        self.whole.reset()
+        self.local_costmap.reset()
+        self.global_costmap.reset()
 
-    def look(
+    def update(
         self,
         now: float,
         base_in_map: Pose2,
         base_in_odom: Pose2,
-        sightings: Sequence[Sighting],
-        lasting: Sequence[Sighting],
+        observations: Sequence[Observation],
+        lasting: Sequence[Observation],
     ) -> None:
         """Has the costmaps note what is seen, and brings those up to date that are due.
 
@@ -49,29 +49,29 @@ class Costmaps:
         """
         map_in_odom = base_in_odom @ base_in_map.inverse()
         self._draw_zones(base_in_map)
-        for sighting in sightings:
-            self._last_seen[sighting.topic] = sighting.stamp
+        for observation in observations:
+            self._last_seen[observation.topic] = observation.stamp
         views = (
-            (self.near, base_in_odom, map_in_odom, sightings),
-            (self.whole, base_in_map, Pose2(), lasting),
+            (self.local_costmap, base_in_odom, map_in_odom, observations),
+            (self.global_costmap, base_in_map, Pose2(), lasting),
         )
         for number, (costmap, base_in_frame, map_in_frame, seen) in enumerate(views):
-            for sighting in seen:
-                costmap.note(sighting, base_in_frame)
+            for observation in seen:
+                costmap.add_observation(observation, base_in_frame)
             if now >= self._next_updates[number] - TIME_TOLERANCE:
                 costmap.update(base_in_frame, map_in_frame)
                 frequency = costmap.settings.update_frequency
                 self._next_updates[number] = now + (1.0 / frequency if frequency > 0.0 else math.inf)
 
-    def last_seen(self, topic: str) -> float:
+    def last_stamp(self, topic: str) -> float:
         """When the newest data of a sensor were taken, seconds; -inf if there were none."""
         return self._last_seen.get(topic, -math.inf)
 
-    def silent_source(self, now: float) -> Optional[str]:
+    def stale_source(self, now: float) -> Optional[str]:
         """The topic of a sensor whose newest data are older than a costmap allows, if there is one."""
         for costmap in (self._settings.local_costmap, self._settings.global_costmap):
             for source in costmap.obstacles.sources if costmap.obstacles.enabled else ():
-                if 0.0 < source.expected_update_rate < now - self.last_seen(source.topic):
+                if 0.0 < source.expected_update_rate < now - self.last_stamp(source.topic):
                     return source.topic
         return None
 
@@ -80,7 +80,7 @@ class Costmaps:
 
         Raises OutOfMap or GoalBlocked.
         """
-        costmap, where = self.whole, f"the goal at ({goal.x:.2f}, {goal.y:.2f})"
+        costmap, where = self.global_costmap, f"the goal at ({goal.x:.2f}, {goal.y:.2f})"
         if not costmap.window.contains(goal.x, goal.y):
             raise OutOfMap(f"{where} is outside the map")
         planner = self._settings.planner
@@ -88,7 +88,7 @@ class Costmaps:
             return
         for zone in self._zones.keep_out_at(goal.x, goal.y):
             raise GoalBlocked(f"{where} is in the keep-out zone {zone.name}")
-        cost = costmap.costs_of_map[costmap.window.cell_of(goal.x, goal.y)]
+        cost = costmap.map_costs[costmap.window.cell_of(goal.x, goal.y)]
         if cost == LETHAL:
             raise GoalBlocked(f"{where} is in an obstacle of the map")
         if cost == INSCRIBED:
@@ -102,9 +102,9 @@ class Costmaps:
         if (barred, inside) == self._zones_drawn:
             return
         self._zones_drawn = (barred, inside)
-        for costmap in (self.whole, self.near):
-            costmap.keep_out(_polygons(barred), _polygons(inside))
+        for costmap in (self.global_costmap, self.local_costmap):
+            costmap.set_keep_out(_polygons(barred), _polygons(inside))
 
 
-def _polygons(zones: List[Zone]) -> List[Polygon]:
+def _polygons(zones: List[NavigationZone]) -> List[Polygon]:
     return [zone.polygon for zone in zones]

@@ -27,7 +27,7 @@ class Status(Enum):
         return self in (Status.SUCCEEDED, Status.ABORTED, Status.CANCELLED)
 
 
-class Trigger(Enum):
+class RecoveryTrigger(Enum):
     """What made recovery necessary, with move_base's text of giving up for it."""
 
     PLANNING = "Failed to find a valid plan. Even after executing recovery behaviors."
@@ -49,7 +49,7 @@ CANCELLED_OUTCOME = 11
 
 
 @dataclass(frozen=True)
-class Progress:
+class GoalProgress:
     """How the pursuit of a goal stands: seconds and metres driven so far, recoveries used, and what is left.
 
     ``seconds_left`` is an estimate from the speed so far.
@@ -63,7 +63,7 @@ class Progress:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class GoalOutcome:
     """How a goal ended. ``code``: the number move_base_flex has for it; ``reason``: the same as a word.
 
     ``distance_to_goal`` in metres, ``angle_to_goal`` in radians, of the robot at the end.
@@ -107,5 +107,5 @@ class Decision:
     followed_xy: Optional[np.ndarray] = None
     exploration: Optional[Exploration] = None
     recovery: Optional[RecoveryStart] = None
-    progress: Optional[Progress] = None
-    outcome: Optional[Outcome] = None
+    progress: Optional[GoalProgress] = None
+    outcome: Optional[GoalOutcome] = None

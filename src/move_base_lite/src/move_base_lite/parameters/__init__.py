@@ -5,7 +5,7 @@ from typing import Any, Dict, List, Mapping, Tuple
 from move_base_lite.config import MoveBaseSettings, NavigatorSettings
 from move_base_lite.parameters.costmaps import costmap_settings
 from move_base_lite.parameters.planners import controller_settings, planner_settings
-from move_base_lite.parameters.reader import Reader, below
+from move_base_lite.parameters.reader import ParameterReader, subtree
 from move_base_lite.parameters.recoveries import recovery_settings
 from planar.config.yaml_table import read_table
 
@@ -29,9 +29,9 @@ def load_settings(*paths, **chosen: Any) -> NavigatorSettings:
     return settings_from_parameters(merged(parameters, chosen), f"{paths[-1]}: ")[0]
 
 
-def merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> Dict[str, Any]:
+def merged(subtree: Mapping[str, Any], above: Mapping[str, Any]) -> Dict[str, Any]:
     """Nested tables, one over the other."""
-    both = dict(below)
+    both = dict(subtree)
     for key, value in above.items():
         has_tables = isinstance(value, Mapping) and isinstance(both.get(key), Mapping)
         both[key] = merged(both[key], value) if has_tables else value
@@ -46,10 +46,10 @@ def settings_from_parameters(
     Raises SettingsError with the full name of the parameter, ``where`` put before it; if ``is_lenient``, a
     value of a wrong type counts as not set, as in roscpp, and is warned of.
     """
-    reader = Reader(where, is_lenient)
+    reader = ParameterReader(where, is_lenient)
     move_base = reader.read(MoveBaseSettings, parameters, "", _MOVE_BASE_IGNORED)
     costmaps = {
-        name: costmap_settings(reader, below(parameters, name), name, parameters)
+        name: costmap_settings(reader, subtree(parameters, name), name, parameters)
         for name in ("global_costmap", "local_costmap")
     }
     settings = NavigatorSettings(

@@ -9,7 +9,7 @@ from move_base_lite.costmap import LAYERS, CostmapSettings, Layer, LayerSettings
 from move_base_lite.costmap.layers.inflation import INFLATION, InflationSettings
 from move_base_lite.costmap.layers.obstacles import OBSTACLES, VOXEL, ObstacleSettings, SourceSettings
 from move_base_lite.costmap.layers.static import STATIC, StaticSettings
-from move_base_lite.parameters.reader import Reader, Tree, below, names_of
+from move_base_lite.parameters.reader import ParameterReader, Tree, parameter_names, subtree
 from move_base_lite.plugin import Plugin
 from planar import SettingsError
 
@@ -22,21 +22,21 @@ _COSTMAP_IGNORED = {
 }  # fmt: skip
 
 
-def costmap_settings(reader: Reader, values: Tree, name: str, parameters: Tree) -> CostmapSettings:
+def costmap_settings(reader: ParameterReader, values: Tree, name: str, parameters: Tree) -> CostmapSettings:
     """One costmap and its layers."""
-    values = with_plugins(values, f"{reader.where}{name}/")
+    values = with_plugin_list(values, f"{reader.where}{name}/")
     for inherited in INHERITED:
         if inherited in parameters:
             values.setdefault(inherited, parameters[inherited])
     if "footprint" in values:
-        values["footprint"] = corners_of(values["footprint"], f"{reader.where}{name}/footprint")
+        values["footprint"] = parse_footprint(values["footprint"], f"{reader.where}{name}/footprint")
     settings = reader.read(CostmapSettings, values, name + "/", _COSTMAP_IGNORED)
     static = StaticSettings(enabled=False)
     obstacles = ObstacleSettings(enabled=False)
     inflation = InflationSettings(enabled=False)
-    own_layers: List[LayerSettings] = []
-    for layer, kind in layers_of(reader, values, name).items():
-        tree, where = below(values, layer), f"{name}/{layer}/"
+    plugin_layers: List[LayerSettings] = []
+    for layer, kind in layer_plugins(reader, values, name).items():
+        tree, where = subtree(values, layer), f"{name}/{layer}/"
         if kind in (OBSTACLES, VOXEL):
             tree = {"track_unknown_space": settings.track_unknown_space, **tree}
             earlier = obstacles.sources
@@ -47,13 +47,13 @@ def costmap_settings(reader: Reader, values: Tree, name: str, parameters: Tree) 
         elif kind is INFLATION:
             inflation = reader.read_plugin(kind, tree, where)
         else:
-            own_layers.append(reader.read_plugin(kind, tree, where))
+            plugin_layers.append(reader.read_plugin(kind, tree, where))
     return replace(
-        settings, static=static, obstacles=obstacles, own_layers=tuple(own_layers), inflation=inflation
+        settings, static=static, obstacles=obstacles, plugin_layers=tuple(plugin_layers), inflation=inflation
     )
 
 
-def with_plugins(values: Mapping[str, Any], where: str) -> Dict[str, Any]:
+def with_plugin_list(values: Mapping[str, Any], where: str) -> Dict[str, Any]:
     """A costmap's parameters with a list of plugins, made as costmap_2d does if they are older than that.
 
     ``where`` they stand, for people. Raises SettingsError if a layer is no table.
@@ -82,10 +82,10 @@ def with_plugins(values: Mapping[str, Any], where: str) -> Dict[str, Any]:
 
 def _keys_of(kind: Plugin[Layer]) -> Set[str]:
     """What belongs to a layer; it stood in the costmap's own namespace before there were plugins."""
-    return {*names_of(kind.settings), *kind.meaningless} - {"enabled"}
+    return {*parameter_names(kind.settings), *kind.meaningless} - {"enabled"}
 
 
-def layers_of(reader: Reader, values: Tree, name: str) -> Dict[str, Plugin[Layer]]:
+def layer_plugins(reader: ParameterReader, values: Tree, name: str) -> Dict[str, Plugin[Layer]]:
     """The kind of each layer that there is here, by its name, in order."""
     layers = {}
     plugins = values["plugins"]
@@ -105,13 +105,13 @@ def layers_of(reader: Reader, values: Tree, name: str) -> Dict[str, Plugin[Layer
 
 
 def _obstacle_settings(
-    reader: Reader, kind: Plugin[Layer], tree: Tree, where: str, outer: List[Tree]
+    reader: ParameterReader, kind: Plugin[Layer], tree: Tree, where: str, outer: List[Tree]
 ) -> ObstacleSettings:
     """A layer with its sources; their ranges are searched for in the namespaces around them too."""
     layer = reader.read_plugin(kind, tree, where)
     sources = []
     for name in str(tree.get("observation_sources", "")).split():
-        own = {"topic": name, **below(tree, name)}
+        own = {"topic": name, **subtree(tree, name)}
         for key in ("obstacle_range", "raytrace_range"):
             for around in (tree, *outer):
                 if key in around:
@@ -120,7 +120,7 @@ def _obstacle_settings(
     return replace(layer, sources=tuple(sources))
 
 
-def corners_of(value: Any, name: str) -> Tuple[Tuple[float, float], ...]:
+def parse_footprint(value: Any, name: str) -> Tuple[Tuple[float, float], ...]:
     """A footprint, which may be written as text, too; ``name`` of the parameter. Raises SettingsError."""
     try:
         points = yaml.safe_load(value) if isinstance(value, str) else value

@@ -14,7 +14,7 @@ T = TypeVar("T")
 LEFT_BY_RECONFIGURE = "restore_defaults"
 
 
-class Reader:
+class ParameterReader:
     """Reads dataclasses out of nested dictionaries and collects what is odd."""
 
     def __init__(self, where: str, is_lenient: bool = False):
@@ -32,7 +32,7 @@ class Reader:
         said = parameters_of(kind)
         names = {**{each.field: each.field for each in said}, **{each.name: each.field for each in said}}
         settings, unknown = settings_from(kind, flat, names, self.where + prefix, self._complain)
-        self.report_unknown(unknown, prefix, [*names_of(kind), *ignore])
+        self.report_unknown(unknown, prefix, [*parameter_names(kind), *ignore])
         return settings
 
     def read_plugin(self, plugin: Plugin, values: Tree, prefix: str) -> Any:
@@ -42,7 +42,7 @@ class Reader:
             if old in present:
                 self.warnings.append(f"parameter {self.where}{prefix}{old} is deprecated, use {new} instead")
                 present.setdefault(new, present.pop(old))
-        present = plugin.translated(renamed(present, plugin.synonyms))
+        present = plugin.translate(renamed(present, plugin.synonyms))
         return self.read(plugin.settings, present, prefix, plugin.meaningless)
 
     def find(
@@ -65,7 +65,7 @@ class Reader:
             self.warnings.append(f"unknown parameter {self.where}{prefix}{name}{hint(name, known)}")
 
 
-def below(parameters: Tree, name: str) -> Tree:
+def subtree(parameters: Tree, name: str) -> Tree:
     value = parameters.get(name, {})
     return value if isinstance(value, dict) else {}
 
@@ -74,6 +74,6 @@ def renamed(values: Tree, names: Mapping[str, str]) -> Dict[str, Any]:
     return {names.get(name, name): value for name, value in values.items()}
 
 
-def names_of(kind: type) -> List[str]:
+def parameter_names(kind: type) -> List[str]:
     """The official names of the parameters of a settings dataclass."""
     return [each.name for each in parameters_of(kind)]

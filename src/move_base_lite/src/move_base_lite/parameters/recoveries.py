@@ -4,8 +4,8 @@ from typing import Any, Dict, List, Tuple
 
 from move_base_lite.config import MoveBaseSettings
 from move_base_lite.costmap import CostmapSettings, footprint_from
-from move_base_lite.parameters.costmaps import layers_of, with_plugins
-from move_base_lite.parameters.reader import Reader, Tree, below, names_of, renamed
+from move_base_lite.parameters.costmaps import layer_plugins, with_plugin_list
+from move_base_lite.parameters.reader import ParameterReader, Tree, parameter_names, renamed, subtree
 from move_base_lite.plugin import Plugin
 from move_base_lite.recovery import RECOVERIES, NamedRecovery, RecoveryBehavior
 from move_base_lite.recovery.clear_costmap import CLEAR_COSTMAP
@@ -14,7 +14,7 @@ from planar import SettingsError
 
 
 def recovery_settings(
-    reader: Reader, parameters: Tree, move_base: MoveBaseSettings, local: CostmapSettings
+    reader: ParameterReader, parameters: Tree, move_base: MoveBaseSettings, local: CostmapSettings
 ) -> Tuple[NamedRecovery, ...]:
     """The behaviours to try, in order."""
     footprint = footprint_from(local.footprint, local.robot_radius, local.footprint_padding)
@@ -28,14 +28,14 @@ def recovery_settings(
         behavior = reader.find(RECOVERIES, kind, "recovery_behaviors", is_package_needed=False)
         if behavior is None:
             raise SettingsError(f"recovery_behaviors: {name} has an unknown type {kind!r}")
-        values = dict(below(parameters, name))
+        values = dict(subtree(parameters, name))
         if behavior is CLEAR_COSTMAP and name in distances:
             values.setdefault("reset_distance", distances[name])
         recoveries.append(NamedRecovery(name, _settings_of(reader, parameters, name, behavior, values)))
     return tuple(recoveries)
 
 
-def _listed(reader: Reader, parameters: Tree, rotation_allowed: bool) -> List[Dict[str, Any]]:
+def _listed(reader: ParameterReader, parameters: Tree, rotation_allowed: bool) -> List[Dict[str, Any]]:
     listed = parameters.get("recovery_behaviors")
     if listed is None:
         return _default_recoveries(rotation_allowed)
@@ -52,7 +52,7 @@ def _listed(reader: Reader, parameters: Tree, rotation_allowed: bool) -> List[Di
 
 
 def _settings_of(
-    reader: Reader, parameters: Tree, name: str, behavior: Plugin[RecoveryBehavior], values: Tree
+    reader: ParameterReader, parameters: Tree, name: str, behavior: Plugin[RecoveryBehavior], values: Tree
 ) -> Any:
     if behavior is ROTATE:
         return _rotate_settings(reader, parameters, name, values)
@@ -62,24 +62,24 @@ def _settings_of(
     return settings
 
 
-def _rotate_settings(reader: Reader, parameters: Tree, name: str, values: Tree) -> Any:
+def _rotate_settings(reader: ParameterReader, parameters: Tree, name: str, values: Tree) -> Any:
     """Of its own namespace nothing counts; those of TrajectoryPlannerROS do, as far as they are its own."""
     reader.report_unknown(set(values) - ROTATE.ignored, f"{name}/", ROTATE.ignored)
-    rotating = renamed(below(parameters, "TrajectoryPlannerROS"), ROTATE.synonyms)
-    own = {key: value for key, value in rotating.items() if key in names_of(ROTATE.settings)}
+    rotating = renamed(subtree(parameters, "TrajectoryPlannerROS"), ROTATE.synonyms)
+    own = {key: value for key, value in rotating.items() if key in parameter_names(ROTATE.settings)}
     return reader.read_plugin(ROTATE, own, "TrajectoryPlannerROS/")
 
 
-def _check_layers(reader: Reader, parameters: Tree, name: str, named: Any) -> None:
+def _check_layers(reader: ParameterReader, parameters: Tree, name: str, named: Any) -> None:
     """All obstacles are cleared, whatever the name of their layer; one that is not there is a slip."""
     if named is None:
         return
     there = {
         layer
         for costmap in ("global_costmap", "local_costmap")
-        for layer in layers_of(
-            Reader(reader.where),
-            with_plugins(below(parameters, costmap), f"{reader.where}{costmap}/"),
+        for layer in layer_plugins(
+            ParameterReader(reader.where),
+            with_plugin_list(subtree(parameters, costmap), f"{reader.where}{costmap}/"),
             costmap,
         )
     }

@@ -8,7 +8,7 @@ from typing import Deque, List, NamedTuple, Optional
 import numpy as np
 from numpy.typing import NDArray
 
-from move_base_lite.costmap import Sighting
+from move_base_lite.costmap import Observation
 from move_base_lite.people.track import FAST, Track
 from move_base_lite.people.views import Thing, View, things_in
 from planar import Pose2
@@ -43,12 +43,14 @@ class Movers:
         self._past: Deque[View] = deque()
         self._tracks: List[Track] = []
 
-    def look(self, base_in_odom: Pose2, sighting: Sighting, lookout: Lookout = Lookout()) -> Sighting:
+    def look(
+        self, base_in_odom: Pose2, observation: Observation, lookout: Lookout = Lookout()
+    ) -> Observation:
         """Takes in the newest scan, made from there; returns it without what has moved lately."""
-        if self._past and sighting.stamp < self._past[-1].stamp:
+        if self._past and observation.stamp < self._past[-1].stamp:
             self._past.clear()
             self._tracks.clear()
-        view = View(base_in_odom @ sighting.sensor_in_base, sighting, lookout.reach)
+        view = View(base_in_odom @ observation.sensor_in_base, observation, lookout.reach)
         things = things_in(view)
         before, shortly = self._view_before(view.stamp), self._view_at(view.stamp - BLIND)
         lately = self._view_at(view.stamp - GLANCE)
@@ -68,7 +70,7 @@ class Movers:
             track for track in self._tracks if track.may_still_be(view, GONE, HIDDEN) and not track.stands
         ]
         self._past.append(view)
-        return replace(sighting, ranges=self._lasting(view, sighting.ranges))
+        return replace(observation, ranges=self._lasting(view, observation.ranges))
 
     def at(self, now: float) -> NDArray[np.float64]:
         """What moves: rows (N, 5) of x, y, its velocity by x and y, and radius; metres, m/s, in odom."""

@@ -6,7 +6,7 @@ from typing import List, NamedTuple
 import numba
 import numpy as np
 
-from move_base_lite.costmap import Sighting
+from move_base_lite.costmap import Observation
 from planar import Pose2
 
 # Metres between beams of two things, and from corner to corner of what a laser sees of one: a person, a cart,
@@ -27,12 +27,14 @@ LEAST_SINE, ROUND = 0.2, 0.5
 class View:
     """A sighting from where it was made: its ends within ``reach``, m, by angle, and how far it was free."""
 
-    def __init__(self, sensor_in_odom: Pose2, sighting: Sighting, reach: float):
-        self.sensor_in_odom, self.stamp = sensor_in_odom, sighting.stamp
+    def __init__(self, sensor_in_odom: Pose2, observation: Observation, reach: float):
+        self.sensor_in_odom, self.stamp = sensor_in_odom, observation.stamp
         self.things: List[Thing] = []
-        at, ranges = sensor_in_odom, np.asarray(sighting.ranges, dtype=float)
-        limits = (sighting.range_min, sighting.range_max, reach)
-        self.beams, self.points_xy, self._free = _seen(sighting.angles, ranges, limits, (at.x, at.y, at.yaw))
+        at, ranges = sensor_in_odom, np.asarray(observation.ranges, dtype=float)
+        limits = (observation.range_min, observation.range_max, reach)
+        self.beams, self.points_xy, self._free = _seen(
+            observation.angles, ranges, limits, (at.x, at.y, at.yaw)
+        )
 
     def share_seen_through(self, points_xy: np.ndarray) -> float:
         """Which share of points (N, 2) lay in the free then."""

@@ -13,7 +13,7 @@ from typing import Any, Optional, Protocol, Tuple
 
 import numpy as np
 
-from move_base_lite.costmap import Window
+from move_base_lite.costmap import CostmapWindow
 from planar.config.parameters import Bounds, at_least, check_parameters, parameter
 
 ORIENTATIONS = (
@@ -52,7 +52,7 @@ class Potential:
     """
 
     values: np.ndarray
-    window: Window
+    window: CostmapWindow
     at_goal: float
 
 
@@ -69,7 +69,7 @@ class GlobalPlanner(Protocol):
     def plan(
         self,
         costs: np.ndarray,
-        window: Window,
+        window: CostmapWindow,
         start_xy: Tuple[float, float],
         goal_xy: Tuple[float, float],
         tolerance: float = 0.0,

@@ -4,23 +4,23 @@ from typing import Callable, Optional, Tuple
 
 import numpy as np
 
-from move_base_lite.costmap import Window
+from move_base_lite.costmap import CostmapWindow
 from move_base_lite.errors import PlanningPluginFailed
-from move_base_lite.guarding import Guard
 from move_base_lite.planning.global_planner import GlobalPlanner, Potential
+from move_base_lite.plugin_guard import PluginGuard
 
 
 class GuardedGlobalPlanner:
     """A GlobalPlanner; see there."""
 
     def __init__(self, name: str, make: Callable[[], GlobalPlanner]):
-        self._guard = Guard(name, make, PlanningPluginFailed)
+        self._guard = PluginGuard(name, make, PlanningPluginFailed)
         self.potential: Optional[Potential] = None
 
     def plan(
         self,
         costs: np.ndarray,
-        window: Window,
+        window: CostmapWindow,
         start_xy: Tuple[float, float],
         goal_xy: Tuple[float, float],
         tolerance: float = 0.0,

@@ -5,7 +5,7 @@ from typing import Any, Dict, Optional, Tuple
 
 import numpy as np
 
-from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, Window
+from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, CostmapWindow
 from move_base_lite.errors import GoalBlocked, NoPath, OutOfMap, StartBlocked
 from move_base_lite.planning.global_planner import (
     ORIENTATIONS,
@@ -78,7 +78,7 @@ class Navfn:
     def plan(
         self,
         costs: np.ndarray,
-        window: Window,
+        window: CostmapWindow,
         start_xy: Tuple[float, float],
         goal_xy: Tuple[float, float],
         tolerance: float = 0.0,
@@ -107,7 +107,9 @@ class Navfn:
         ends.append(np.array([goal_xy]) if free_goal == goal else path_xy[-1:])
         return np.concatenate(ends)
 
-    def _path_cells(self, traversal: np.ndarray, window: Window, start: Cell, goal: Cell) -> np.ndarray:
+    def _path_cells(
+        self, traversal: np.ndarray, window: CostmapWindow, start: Cell, goal: Cell
+    ) -> np.ndarray:
         """The path (N, 2) as (col, row), empty if nothing leads there; keeps the wave if it is to be seen."""
         settings = self._settings
         potential = spread(traversal, *start, *goal, settings.use_astar)
@@ -119,7 +121,7 @@ class Navfn:
         return path_cells
 
 
-def _cell_in_map(window: Window, point_xy: Tuple[float, float], what: str) -> Cell:
+def _cell_in_map(window: CostmapWindow, point_xy: Tuple[float, float], what: str) -> Cell:
     if not window.contains(*point_xy):
         raise OutOfMap(f"{_named(what, point_xy)} is outside the map")
     return window.cell_of(*point_xy)
@@ -137,7 +139,7 @@ def _why(cost: int) -> str:
     return "too close to an obstacle" if cost == INSCRIBED else "on the edge of the map"
 
 
-def _centre(window: Window, cell: Tuple[int, int]) -> Tuple[float, float]:
+def _centre(window: CostmapWindow, cell: Tuple[int, int]) -> Tuple[float, float]:
     row, col = cell
     return (
         window.origin_x + (col + 0.5) * window.resolution,
@@ -167,14 +169,14 @@ NAVFN: Plugin[GlobalPlanner] = Plugin(
     "navfn/NavfnROS",
     NavfnSettings,
     Navfn,
-    translated=_with_astar,
+    translate=_with_astar,
     ignored=IGNORED | {"publish_potential"},
 )
 GLOBAL_PLANNER: Plugin[GlobalPlanner] = Plugin(
     "global_planner/GlobalPlanner",
     GlobalPlannerSettings,
     Navfn,
-    translated=_with_astar,
+    translate=_with_astar,
     without_effect=(
         Tunable("orientation_window_size", 1, "(no effect)", 1, 255),
         Tunable("outline_map", True, "(no effect: the rim is always barred)"),

@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 
-from move_base_lite.costmap import INSCRIBED, Window
+from move_base_lite.costmap import INSCRIBED, CostmapWindow
 from move_base_lite.planning.wavefront import FACTOR, NEUTRAL
 
 
-def path_cost(costs: np.ndarray, window: Window, path_xy: np.ndarray) -> float:
+def path_cost(costs: np.ndarray, window: CostmapWindow, path_xy: np.ndarray) -> float:
     """What navfn would pay for a path (N, 2), in neutral metres; inf where it cannot be driven."""
     cells = np.floor((path_xy - (window.origin_x, window.origin_y)) / window.resolution).astype(np.int64)
     below = costs[cells[1:, 1], cells[1:, 0]].astype(float)

@@ -1,5 +1,5 @@
 """Whether what the sensors tell can be so."""
 
-from move_base_lite.plausibility.sensor_watch import SensorWatch
+from move_base_lite.plausibility.sensor_monitor import SensorMonitor
 
-__all__ = ["SensorWatch"]
+__all__ = ["SensorMonitor"]

@@ -10,22 +10,22 @@ from move_base_lite.recovery.behavior import (
     RecoverySettings,
     SpeedLimit,
 )
-from move_base_lite.recovery.clear_costmap import ClearCostmap, ClearCostmapSettings
-from move_base_lite.recovery.move_slow import MoveSlow, SlowSettings
+from move_base_lite.recovery.clear_costmap import ClearCostmapRecovery, ClearCostmapSettings
+from move_base_lite.recovery.move_slow import MoveSlowRecovery, MoveSlowSettings
 from move_base_lite.recovery.registry import RECOVERIES
-from move_base_lite.recovery.rotate import Rotate, RotateSettings
+from move_base_lite.recovery.rotate import RotateRecovery, RotateSettings
 
 __all__ = [
     "RECOVERIES",
-    "ClearCostmap",
+    "ClearCostmapRecovery",
     "ClearCostmapSettings",
-    "MoveSlow",
+    "MoveSlowRecovery",
     "NamedRecovery",
     "RecoveryBehavior",
     "RecoveryContext",
     "RecoverySettings",
-    "Rotate",
+    "RotateRecovery",
     "RotateSettings",
-    "SlowSettings",
+    "MoveSlowSettings",
     "SpeedLimit",
 ]

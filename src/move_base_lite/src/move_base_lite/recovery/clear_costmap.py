@@ -31,7 +31,7 @@ class ClearCostmapSettings:
         check(maps in (LOCAL, GLOBAL, BOTH), "affected_maps", "local, global or both", maps)
 
 
-class ClearCostmap(RecoveryBehavior):
+class ClearCostmapRecovery(RecoveryBehavior):
     """Forgets obstacles outside a square round the robot, or inside it; what is still seen comes back."""
 
     def __init__(self, settings: ClearCostmapSettings):
@@ -53,6 +53,6 @@ class ClearCostmap(RecoveryBehavior):
 CLEAR_COSTMAP: Plugin[RecoveryBehavior] = Plugin(
     "clear_costmap_recovery/ClearCostmapRecovery",
     ClearCostmapSettings,
-    ClearCostmap,
+    ClearCostmapRecovery,
     ignored=frozenset({"layer_names", "force_updating"}),
 )

@@ -3,7 +3,7 @@
 from typing import Callable, Optional
 
 from move_base_lite.errors import PluginFailed
-from move_base_lite.guarding import Guard
+from move_base_lite.plugin_guard import PluginGuard
 from move_base_lite.recovery.behavior import RecoveryBehavior, RecoveryContext
 from planar import Twist2
 
@@ -12,7 +12,7 @@ class GuardedRecovery:
     """A RecoveryBehavior; see there."""
 
     def __init__(self, name: str, make: Callable[[], RecoveryBehavior]):
-        self._guard = Guard(name, make, PluginFailed)
+        self._guard = PluginGuard(name, make, PluginFailed)
 
     def step(self, context: RecoveryContext) -> Optional[Twist2]:
         with self._guard.watch() as behavior:

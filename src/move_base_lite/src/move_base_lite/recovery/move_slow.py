@@ -10,7 +10,7 @@ from planar.config.parameters import POSITIVE, at_least, check_parameters, param
 
 
 @dataclass(frozen=True)
-class SlowSettings:
+class MoveSlowSettings:
     """What is cleared around the robot, and how fast it may go until it has moved on."""
 
     clearing_distance: float = parameter(0.5, "around the robot that is forgotten", "m", at_least(0.0))
@@ -22,10 +22,10 @@ class SlowSettings:
         check_parameters(self)
 
 
-class MoveSlow(RecoveryBehavior):
+class MoveSlowRecovery(RecoveryBehavior):
     """Forgets obstacles near the robot and has it go on slowly."""
 
-    def __init__(self, settings: SlowSettings):
+    def __init__(self, settings: MoveSlowSettings):
         self._settings = settings
 
     def step(self, context: RecoveryContext) -> Optional[Twist2]:
@@ -39,7 +39,7 @@ class MoveSlow(RecoveryBehavior):
 
 MOVE_SLOW: Plugin[RecoveryBehavior] = Plugin(
     "move_slow_and_clear/MoveSlowAndClear",
-    SlowSettings,
-    MoveSlow,
+    MoveSlowSettings,
+    MoveSlowRecovery,
     ignored=frozenset({"max_trans_param_name", "max_rot_param_name", "planner_namespace"}),
 )

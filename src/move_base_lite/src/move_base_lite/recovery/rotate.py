@@ -27,7 +27,7 @@ class RotateSettings:
         check_parameters(self)
 
 
-class Rotate(RecoveryBehavior):
+class RotateRecovery(RecoveryBehavior):
     """One full turn to the left to look around.
 
     Ends early if the footprint would touch something, or if the robot does not turn: the official one then
@@ -70,7 +70,7 @@ class Rotate(RecoveryBehavior):
 ROTATE: Plugin[RecoveryBehavior] = Plugin(
     "rotate_recovery/RotateRecovery",
     RotateSettings,
-    Rotate,
+    RotateRecovery,
     synonyms={
         "acc_lim_th": "acc_lim_theta",
         "max_rotational_vel": "max_vel_theta",

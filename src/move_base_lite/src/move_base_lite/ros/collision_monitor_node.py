@@ -8,8 +8,8 @@ import rospy
 from geometry_msgs.msg import Twist
 from std_msgs.msg import String
 
-from move_base_lite.collision_monitor import STOPPED, CollisionMonitor, MonitorSettings, Verdict
-from move_base_lite.parameters.costmaps import corners_of
+from move_base_lite.collision_monitor import STOPPED, CollisionMonitor, LimitedCommand, MonitorSettings
+from move_base_lite.parameters.costmaps import parse_footprint
 from planar import Twist2
 from planar.config.settings import settings_from
 from planar_ros.messages.border import listen
@@ -31,7 +31,7 @@ class CollisionMonitorNode:
         self._base_frame = frame_name(parameters.pop("base_frame", "base_footprint"))
         self._settings = _settings_from(parameters)
         self._monitor = CollisionMonitor(self._settings)
-        self._monitor.judge(Twist2(0.1), np.zeros((1, 2)))  # compiled before it matters
+        self._monitor.limit_command(Twist2(0.1), np.zeros((1, 2)))  # compiled before it matters
         self._transforms = Transforms()
         self._lock = threading.Lock()
         self._points_xy: Optional[np.ndarray] = None
@@ -63,14 +63,14 @@ class CollisionMonitorNode:
             self._told_at = rospy.Time.now()
             self._pass(self._verdict())
 
-    def _verdict(self) -> Verdict:
+    def _verdict(self) -> LimitedCommand:
         if self._points_xy is None or (rospy.Time.now() - self._seen).to_sec() > self._settings.scan_timeout:
-            return Verdict(Twist2(), SILENT)
+            return LimitedCommand(Twist2(), SILENT)
         if not self._command.is_finite():
-            return Verdict(Twist2(), STOPPED)
-        return self._monitor.judge(self._command, self._points_xy)
+            return LimitedCommand(Twist2(), STOPPED)
+        return self._monitor.limit_command(self._command, self._points_xy)
 
-    def _pass(self, verdict: Verdict):
+    def _pass(self, verdict: LimitedCommand):
         self._passed = verdict.command
         message = Twist()
         message.linear.x, message.angular.z = verdict.command.v, verdict.command.omega
@@ -86,7 +86,7 @@ class CollisionMonitorNode:
 def _settings_from(parameters) -> MonitorSettings:
     where = rospy.get_name() + "/"
     if "footprint" in parameters:
-        parameters["footprint"] = corners_of(parameters["footprint"], f"{where}footprint")
+        parameters["footprint"] = parse_footprint(parameters["footprint"], f"{where}footprint")
     settings, unknown = settings_from(MonitorSettings, parameters, where=where)
     for name in unknown:
         rospy.logwarn("unknown parameter %s", where + name)

@@ -9,19 +9,19 @@ import rospy
 from move_base_lite.config import NavigatorSettings
 from move_base_lite.errors import NavigationError, RobotLost
 from move_base_lite.navigator import Navigator
-from move_base_lite.navigator.decision import Decision, Outcome, Status, Trigger, with_reason
+from move_base_lite.navigator.decision import Decision, GoalOutcome, RecoveryTrigger, Status, with_reason
 from move_base_lite.navigator.zones import Zones, load_zones
 from move_base_lite.parameters import settings_from_parameters
 from move_base_lite.ros.goals.messages import InvalidGoal
 from move_base_lite.ros.goals.plan_services import PlanServices
 from move_base_lite.ros.goals.server import GoalServer
-from move_base_lite.ros.sensing.surroundings import Surroundings, View
+from move_base_lite.ros.reconfigure import ReconfigureServers
+from move_base_lite.ros.sensing.sensor_bridge import NavigatorInputs, SensorBridge
 from move_base_lite.ros.topics.costmaps import CostmapTopics
 from move_base_lite.ros.topics.decisions import DecisionTopics
 from move_base_lite.ros.topics.potential import PotentialTopic
 from move_base_lite.ros.topics.zones import ZoneTopics
-from move_base_lite.ros.tuning import ParameterTree
-from move_base_lite.warming import warm_up
+from move_base_lite.warmup import warm_up
 from planar import OccupancyGrid, Pose2, SettingsError, Twist2
 from planar_ros.messages.border import listen
 from planar_ros.messages.conversion import OccupancyGridArrays, frame_name, grid_from_msg
@@ -55,7 +55,7 @@ class MoveBaseNode:
         self._lock = threading.RLock()
         self._new_map: Optional[OccupancyGrid] = None
         self._navigator: Optional[Navigator] = None
-        self._view: Optional[View] = None
+        self._inputs: Optional[NavigatorInputs] = None
         self._goal = Pose2()
         self._lost_since = rospy.Time(0)
         self._is_up = False
@@ -67,19 +67,19 @@ class MoveBaseNode:
         rospy.on_shutdown(self._on_shutdown)  # before the goals end
         self._goals = GoalServer(self._map_frame, self._transforms, self._on_cancel)
         odom_topic = parameters.get("DWAPlannerROS", {}).get("odom_topic", "odom")
-        self._surroundings = Surroundings(self._settings, self._transforms, odom_topic)
-        self._tree = ParameterTree(parameters, self._change)
+        self._sensors = SensorBridge(self._settings, self._transforms, odom_topic)
+        self._tree = ReconfigureServers(parameters, self._change)
         self._await_inputs()
-        self._step.every(self._period, self._tick, self._start_afresh, reports=True)
+        self._step.every(self._period, self._tick, self._on_time_jump, reports=True)
         self._step.join(self._has_map)
 
     def _await_inputs(self):
         local = self._settings.local_costmap
         frames = [self._map_frame, *map(frame_name, (local.global_frame, local.robot_base_frame))]
         transforms = f"the transforms {' -> '.join(frames)}"
-        conditions: Dict[str, Callable[[], bool]] = {transforms: lambda: self._view is not None}
-        for topic in self._surroundings.topics:
-            conditions[f"a message on {topic}"] = partial(self._surroundings.has_heard, topic)
+        conditions: Dict[str, Callable[[], bool]] = {transforms: lambda: self._inputs is not None}
+        for topic in self._sensors.topics:
+            conditions[f"a message on {topic}"] = partial(self._sensors.has_message, topic)
         static = self._settings.global_costmap.static
         if static.enabled:
             conditions[f"a map on {rospy.resolve_name(static.map_topic)}"] = (
@@ -96,9 +96,9 @@ class MoveBaseNode:
     def _change(self, settings: NavigatorSettings):
         with self._lock:
             self._settings = settings
-            self._surroundings.change(settings)
+            self._sensors.update_settings(settings)
             if self._navigator is not None:
-                self._navigator.change(settings)
+                self._navigator.update_settings(settings)
 
     def _has_map(self) -> bool:
         """Whether there is a map, or it is yet to be made."""
@@ -108,45 +108,45 @@ class MoveBaseNode:
     def _period(self) -> float:
         return 1.0 / self._settings.move_base.controller_frequency
 
-    def _start_afresh(self):
+    def _on_time_jump(self):
         rospy.logwarn("time has jumped back: forgetting goal, obstacles and transforms")
         with self._lock:
-            self._surroundings.forget()
+            self._sensors.reset()
             for topics in (self._topics, self._global_topics, self._local_topics):
-                topics.forget_time()
+                topics.reset_time()
             if self._navigator is not None:
-                self._navigator.forget()
-            if self._goals.give_up(TIME_JUMP_TEXT):
+                self._navigator.reset()
+            if self._goals.abort(TIME_JUMP_TEXT):
                 self._topics.command(Twist2())
 
     def _tick(self, now: rospy.Time):
         with self._lock:
-            self._take_map()
+            self._apply_new_map()
             if self._navigator is None:
                 return
-            view = self._surroundings.view(now)
-            if view is None:
-                self._stand_still(self._navigator, now)
+            inputs = self._sensors.inputs(now)
+            if inputs is None:
+                self._wait_for_transforms(self._navigator, now)
                 return
-            self._view, self._lost_since = view, now
+            self._inputs, self._lost_since = inputs, now
             if not self._is_up:
-                self._come_up(self._navigator)
-            self._take_goal(self._navigator, now)
+                self._start_services(self._navigator)
+            self._accept_goal(self._navigator, now)
             decision = self._navigator.tick(
                 now.to_sec(),
-                view.base_in_map,
-                view.base_in_odom,
-                view.twist,
+                inputs.base_in_map,
+                inputs.base_in_odom,
+                inputs.twist,
                 None,
-                view.sightings,
+                inputs.observations,
                 self._step.latency,
             )
-            self._act(now, view, decision)
+            self._publish_decision(now, inputs, decision)
             self._potential.publish(now, self._navigator.potential, self._settings.planner.publish_scale)
-            self._global_topics.publish(now, self._navigator.global_costmap, view.base_in_map)
-            self._local_topics.publish(now, self._navigator.local_costmap, view.base_in_odom)
+            self._global_topics.publish(now, self._navigator.global_costmap, inputs.base_in_map)
+            self._local_topics.publish(now, self._navigator.local_costmap, inputs.base_in_odom)
 
-    def _take_map(self):
+    def _apply_new_map(self):
         grid, self._new_map = self._new_map, None
         if grid is None:
             return
@@ -155,14 +155,14 @@ class MoveBaseNode:
         else:
             self._navigator.set_map(grid)
 
-    def _come_up(self, navigator: Navigator):
+    def _start_services(self, navigator: Navigator):
         self._is_up = True
         PlanServices(
             navigator,
             self._lock,
             self._transforms,
             lambda: self._goals.is_active,
-            self._where,
+            self._base_in_map,
             self._global_planner,
         )
         ZoneTopics(self._zones, self._map_frame)
@@ -171,30 +171,30 @@ class MoveBaseNode:
         threading.Thread(target=self._tree.serve, daemon=True).start()
         rospy.loginfo("odom received, map received: ready for goals")
 
-    def _where(self) -> Optional[Pose2]:
-        return self._view.base_in_map if self._view else None
+    def _base_in_map(self) -> Optional[Pose2]:
+        return self._inputs.base_in_map if self._inputs else None
 
-    def _stand_still(self, navigator: Navigator, now: rospy.Time):
+    def _wait_for_transforms(self, navigator: Navigator, now: rospy.Time):
         """Without transforms nothing is safe but standing; goals still come, are cancelled and given up."""
-        missing = f"waiting for {self._surroundings.missing_transform(now)}"
+        missing = f"waiting for {self._sensors.missing_transform(now)}"
         rospy.logwarn_throttle(WARN_SECONDS, missing)
-        self._take_goal(navigator, now)
+        self._accept_goal(navigator, now)
         if not self._goals.is_active:
             self._lost_since = now
             return
         self._topics.command(Twist2())
         if (now - self._lost_since).to_sec() > self._settings.move_base.sensor_patience:
             lost = RobotLost(missing)
-            self._refuse(navigator, with_reason(Trigger.CONTROLLING.value, lost), lost)
+            self._abort_goal(navigator, with_reason(RecoveryTrigger.CONTROLLING.value, lost), lost)
 
-    def _take_goal(self, navigator: Navigator, now: rospy.Time):
+    def _accept_goal(self, navigator: Navigator, now: rospy.Time):
         """Accepts a new goal, if one has come."""
         try:
-            goal = self._goals.take(now)
+            goal = self._goals.accept_goal(now)
         except InvalidGoal as error:
-            self._refuse(navigator, str(error), error)
+            self._abort_goal(navigator, str(error), error)
         except NavigationError as error:
-            self._refuse(navigator, with_reason(Trigger.PLANNING.value, error), error)
+            self._abort_goal(navigator, with_reason(RecoveryTrigger.PLANNING.value, error), error)
         else:
             if goal is not None:
                 self._goal = goal
@@ -206,25 +206,25 @@ class MoveBaseNode:
         with self._lock:
             if self._navigator is not None and self._goals.is_cancelled:
                 decision = self._navigator.cancel(rospy.get_time())
-                self._topics.tell_end(decision)
-                self._goals.end(decision.status, decision.text)
+                self._topics.publish_end(decision)
+                self._goals.finish(decision.status, decision.text)
 
-    def _refuse(self, navigator: Navigator, text: str, error: NavigationError):
+    def _abort_goal(self, navigator: Navigator, text: str, error: NavigationError):
         rospy.logerr(text)
-        self._topics.outcome(Outcome(error.outcome, error.code, text))
-        navigator.forget_goal()
+        self._topics.outcome(GoalOutcome(error.outcome, error.code, text))
+        navigator.clear_goal()
         self._topics.command(Twist2())
-        self._goals.end(Status.ABORTED, text)
+        self._goals.finish(Status.ABORTED, text)
 
-    def _act(self, now: rospy.Time, view: View, decision: Decision):
+    def _publish_decision(self, now: rospy.Time, inputs: NavigatorInputs, decision: Decision):
         mode = self._settings.planner.orientation_mode
-        self._topics.publish(now, decision, view.base_in_map, self._goal, mode)
-        self._surroundings.note_command(decision.command or Twist2())
-        self._goals.tell_pose(view.base_in_map, now)
+        self._topics.publish(now, decision, inputs.base_in_map, self._goal, mode)
+        self._sensors.set_command(decision.command or Twist2())
+        self._goals.publish_feedback(inputs.base_in_map, now)
         if decision.status.is_final:
             if decision.status is Status.ABORTED:
                 rospy.logerr(decision.text)
-            self._goals.end(decision.status, decision.text)
+            self._goals.finish(decision.status, decision.text)
         elif decision.text:
             rospy.logwarn_throttle(WARN_SECONDS, decision.text)
 
@@ -233,7 +233,7 @@ class MoveBaseNode:
         with self._lock:
             self._navigator = self._new_map = None
             if self._is_up and self._goals.is_active:
-                self._topics.stop_for_good()
+                self._topics.publish_final_stop()
 
 
 def _checked_settings(parameters) -> NavigatorSettings:

@@ -9,7 +9,7 @@ from move_base_lite.control.dwa.critics import Scene, Ways
 from move_base_lite.control.dwa.map_grid import UNREACHABLE
 from move_base_lite.control.dwa.settings import DwaSettings
 from move_base_lite.control.local_planner import Trajectory
-from move_base_lite.costmap import INSCRIBED, Window
+from move_base_lite.costmap import INSCRIBED, CostmapWindow
 from move_base_lite.errors import ControlError
 from planar import Twist2
 
@@ -25,7 +25,7 @@ class Attempts:
     ways: Ways
     velocities: np.ndarray
     scores: np.ndarray
-    window: Window
+    window: CostmapWindow
     scene: Scene
 
     @property

@@ -5,13 +5,13 @@ import math
 import numba
 import numpy as np
 
-from move_base_lite.costmap import INSCRIBED, Window
+from move_base_lite.costmap import INSCRIBED, CostmapWindow
 
 UNREACHABLE = 1e6
 DIAGONAL = math.sqrt(2.0)
 
 
-def distances_to(costs: np.ndarray, window: Window, targets_xy: np.ndarray) -> np.ndarray:
+def distances_to(costs: np.ndarray, window: CostmapWindow, targets_xy: np.ndarray) -> np.ndarray:
     """Cells, float32 (rows, cols), from each free cell to the nearest of the targets (N, 2) in the window.
 
     Paths may turn by 45 degrees and do not pass cells nearer to an obstacle than the inscribed radius.

@@ -4,7 +4,7 @@ import numpy as np
 
 from move_base_lite.control.local_planner import Situation
 from move_base_lite.costmap import INSCRIBED, LETHAL
-from move_base_lite.costmap.reframed import reframed
+from move_base_lite.costmap.resampling import resample_costs
 from planar import Pose2
 
 # Of what can be entered.
@@ -19,7 +19,7 @@ def costs_with_remembered(situation: Situation) -> np.ndarray:
     near, whole = situation.costmap, situation.whole.window
     local_in_map = situation.base_in_map @ situation.base_in_local.inverse()
     origin = Pose2(whole.origin_x, whole.origin_y)
-    known = reframed(near.window, local_in_map, situation.whole.costs, origin, whole.resolution)
+    known = resample_costs(near.window, local_in_map, situation.whole.costs, origin, whole.resolution)
     both = np.where(known < LETHAL, np.maximum(near.costs, np.minimum(known, DEAREST)), near.costs)
     both[known == LETHAL] = LETHAL
     return both

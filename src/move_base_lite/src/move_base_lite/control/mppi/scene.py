@@ -8,7 +8,7 @@ import numpy as np
 
 from move_base_lite.control.local_planner import Plan, Situation
 from move_base_lite.control.mppi.remembered import costs_with_remembered
-from move_base_lite.costmap import LETHAL, Window
+from move_base_lite.costmap import LETHAL, CostmapWindow
 from move_base_lite.errors import ControlError
 from move_base_lite.planning.wavefront import NEUTRAL, cost_to_go
 from planar.geometry.distance_field import distance_field
@@ -57,7 +57,7 @@ def scene_of(situation: Situation, plan: Plan, heeds_remembered: bool) -> Scene:
     )
 
 
-def _cost_to_go(costs: np.ndarray, window: Window, path_xy: np.ndarray) -> np.ndarray:
+def _cost_to_go(costs: np.ndarray, window: CostmapWindow, path_xy: np.ndarray) -> np.ndarray:
     """Metres, float32 (rows, cols), to the path's last point in the window that is free."""
     cells = np.floor((path_xy - (window.origin_x, window.origin_y)) / window.resolution)
     field = cost_to_go(costs, cells[:, ::-1].astype(np.int64))
@@ -66,7 +66,7 @@ def _cost_to_go(costs: np.ndarray, window: Window, path_xy: np.ndarray) -> np.nd
     return field * np.float32(window.resolution / NEUTRAL)
 
 
-def _standing(costs: np.ndarray, window: Window, movers: np.ndarray) -> np.ndarray:
+def _standing(costs: np.ndarray, window: CostmapWindow, movers: np.ndarray) -> np.ndarray:
     """Which cells (rows, cols) are obstacles that stay: those that movers are seen in will have gone."""
     obstacles = costs >= LETHAL
     for x, y, _, _, radius in movers:

@@ -7,8 +7,8 @@ import numba
 import numpy as np
 
 from move_base_lite.costmap.costs import FREE, INSCRIBED, LETHAL, UNKNOWN
-from move_base_lite.costmap.layer import Layer, LayerSettings, Site
-from move_base_lite.costmap.window import Bounds, Window
+from move_base_lite.costmap.layer import Layer, LayerContext, LayerSettings
+from move_base_lite.costmap.window import CellBounds, CostmapWindow
 from move_base_lite.plugin import Plugin
 from planar.config.parameters import at_least, check_parameters, parameter
 
@@ -43,8 +43,8 @@ def cost_at(distance: float, inscribed_radius: float, settings: InflationSetting
 class InflationLayer(Layer):
     """Raises the costs around lethal cells, within any block of a costmap."""
 
-    def __init__(self, settings: InflationSettings, site: Site):
-        resolution, inscribed_radius = site.window.resolution, site.footprint.inscribed_radius
+    def __init__(self, settings: InflationSettings, context: LayerContext):
+        resolution, inscribed_radius = context.window.resolution, context.footprint.inscribed_radius
         self._inflate_unknown = settings.inflate_unknown
         self.reach_cells = math.ceil(settings.inflation_radius / resolution)
         squares = np.arange(self.reach_cells**2 + 1)
@@ -53,7 +53,7 @@ class InflationLayer(Layer):
             dtype=np.uint8,
         )
 
-    def apply(self, costs: np.ndarray, window: Window, bounds: Bounds) -> None:
+    def apply(self, costs: np.ndarray, window: CostmapWindow, bounds: CellBounds) -> None:
         """Inflates the cells of ``bounds``; obstacles in reach outside of it count too."""
         if self.reach_cells:
             seen = window.grown(bounds, self.reach_cells)

@@ -8,10 +8,10 @@ import numba
 import numpy as np
 
 from move_base_lite.costmap.costs import FREE, LETHAL, UNKNOWN
-from move_base_lite.costmap.layer import Layer, LayerSettings, Placement, Site
+from move_base_lite.costmap.layer import CostmapPlacement, Layer, LayerContext, LayerSettings
+from move_base_lite.costmap.observation import Observation
 from move_base_lite.costmap.polygon import Polygon
-from move_base_lite.costmap.sighting import Sighting
-from move_base_lite.costmap.window import NO_CELLS, Bounds, Window, union
+from move_base_lite.costmap.window import NO_CELLS, CellBounds, CostmapWindow, union
 from move_base_lite.plugin import Plugin
 from planar import Pose2
 from planar.config.parameters import POSITIVE, Tunable, at_least, check_parameters, parameter
@@ -78,29 +78,31 @@ class ObstacleSettings(LayerSettings):
 
 
 @dataclass(frozen=True, eq=False)
-class _Observation:
+class _LocatedObservation:
     """A sighting from where it was made, in the costmap's frame."""
 
-    sighting: Sighting
+    observation: Observation
     sensor_in_frame: Pose2
 
 
 class ObstacleLayer(Layer):
     """Cells that sensors have shown to be occupied or free, aligned with the costmap's window."""
 
-    def __init__(self, settings: ObstacleSettings, site: Site):
-        self._settings, self._footprint = settings, site.footprint
+    def __init__(self, settings: ObstacleSettings, context: LayerContext):
+        self._settings, self._footprint = settings, context.footprint
         self._default = UNKNOWN if settings.track_unknown_space else FREE
-        self._kept: Dict[str, List[_Observation]] = {source.topic: [] for source in settings.sources}
-        self._new: Dict[str, _Observation] = {}
-        self._costs = np.full((site.window.rows, site.window.cols), self._default, dtype=np.uint8)
+        self._kept: Dict[str, List[_LocatedObservation]] = {source.topic: [] for source in settings.sources}
+        self._new: Dict[str, _LocatedObservation] = {}
+        self._costs = np.full((context.window.rows, context.window.cols), self._default, dtype=np.uint8)
 
-    def note(self, sighting: Sighting, base_in_frame: Pose2) -> None:
+    def add_observation(self, observation: Observation, base_in_frame: Pose2) -> None:
         """Keeps a sighting until the next update; the newest of a sensor counts."""
-        if sighting.topic in self._kept:
-            self._new[sighting.topic] = _Observation(sighting, base_in_frame @ sighting.sensor_in_base)
+        if observation.topic in self._kept:
+            self._new[observation.topic] = _LocatedObservation(
+                observation, base_in_frame @ observation.sensor_in_base
+            )
 
-    def update(self, placement: Placement) -> Bounds:
+    def update(self, placement: CostmapPlacement) -> CellBounds:
         """Clears for all sensors, then marks; where the robot stands there is no obstacle."""
         window = placement.window
         self._roll(placement.rows, placement.cols)
@@ -110,7 +112,7 @@ class ObstacleLayer(Layer):
             changed = union(changed, Polygon(outline_xy).fill(self._costs, window, FREE))
         return changed
 
-    def _take_in(self, window: Window) -> Bounds:
+    def _take_in(self, window: CostmapWindow) -> CellBounds:
         changed = NO_CELLS
         heard = [
             (source, self._new[source.topic])
@@ -123,32 +125,32 @@ class ObstacleLayer(Layer):
             seen = window.bounds_around(new.sensor_in_frame.x, new.sensor_in_frame.y, reach)
             changed = union(changed, seen)
         for source, new in heard:
-            for observation in self._persisting(source, new):
-                self._integrate(window, source, observation, source.obstacle_range * source.marking, 0.0)
+            for located in self._persisting(source, new):
+                self._integrate(window, source, located, source.obstacle_range * source.marking, 0.0)
         self._new.clear()
         return changed
 
-    def _persisting(self, source: SourceSettings, new: _Observation) -> List[_Observation]:
+    def _persisting(self, source: SourceSettings, new: _LocatedObservation) -> List[_LocatedObservation]:
         """The observations that mark now: the new one, and older ones that still count."""
-        oldest = new.sighting.stamp - source.observation_persistence
-        kept = [one for one in self._kept[source.topic] if one.sighting.stamp >= oldest]
+        oldest = new.observation.stamp - source.observation_persistence
+        kept = [one for one in self._kept[source.topic] if one.observation.stamp >= oldest]
         self._kept[source.topic] = [*kept, new] if source.observation_persistence > 0.0 else []
         return [*kept, new]
 
-    def _integrate(self, window, source, observation, mark_range: float, clear_range: float) -> None:
-        sighting, sensor = observation.sighting, observation.sensor_in_frame
+    def _integrate(self, window, source, located, mark_range: float, clear_range: float) -> None:
+        observation, sensor = located.observation, located.sensor_in_frame
         highest = min(source.max_obstacle_height, self._settings.max_obstacle_height)
-        at_height = (source.min_obstacle_height <= sighting.heights) & (sighting.heights <= highest)
+        at_height = (source.min_obstacle_height <= observation.heights) & (observation.heights <= highest)
         if np.ndim(at_height) == 0:  # all of the beams, or none
             at_height = slice(None) if at_height else slice(0)
         _integrate(
             self._costs,
             (sensor.x - window.origin_x) / window.resolution,
             (sensor.y - window.origin_y) / window.resolution,
-            sensor.yaw + sighting.angles[at_height],
-            sighting.ranges[at_height],
-            sighting.range_min,
-            sighting.range_max,
+            sensor.yaw + observation.angles[at_height],
+            observation.ranges[at_height],
+            observation.range_min,
+            observation.range_max,
             window.resolution,
             mark_range,
             clear_range,
@@ -166,11 +168,11 @@ class ObstacleLayer(Layer):
             moved[max(-rows, 0) : height + min(-rows, 0), max(-cols, 0) : width + min(-cols, 0)] = kept
         self._costs = moved
 
-    def apply(self, costs: np.ndarray, window: Window, bounds: Bounds) -> None:
+    def apply(self, costs: np.ndarray, window: CostmapWindow, bounds: CellBounds) -> None:
         if self._settings.combination_method != NOTHING:
             _stack(costs, self._costs, bounds, self._settings.combination_method == OVERWRITE)
 
-    def clear_outside(self, bounds: Bounds, window: Window) -> Bounds:
+    def clear_outside(self, bounds: CellBounds, window: CostmapWindow) -> CellBounds:
         rows, cols = bounds.slices
         kept = self._costs[rows, cols].copy()
         self._costs.fill(self._default)
@@ -179,7 +181,7 @@ class ObstacleLayer(Layer):
         self._costs[rows, cols] = kept
         return window.everything
 
-    def clear_inside(self, bounds: Bounds) -> Bounds:
+    def clear_inside(self, bounds: CellBounds) -> CellBounds:
         self._costs[bounds.slices] = self._default
         return bounds
 

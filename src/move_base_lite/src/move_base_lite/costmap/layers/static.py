@@ -6,11 +6,11 @@ from typing import Optional
 import numpy as np
 
 from move_base_lite.costmap.costs import FREE, LETHAL, UNKNOWN
-from move_base_lite.costmap.layer import Layer, LayerSettings, Placement, Site
-from move_base_lite.costmap.reframed import reframed
-from move_base_lite.costmap.window import NO_CELLS, Bounds, Window
+from move_base_lite.costmap.layer import CostmapPlacement, Layer, LayerContext, LayerSettings
+from move_base_lite.costmap.resampling import resample_costs
+from move_base_lite.costmap.window import NO_CELLS, CellBounds, CostmapWindow
 from move_base_lite.plugin import Plugin
-from planar.config.parameters import Bounds as Values
+from planar.config.parameters import Bounds as ParameterBounds
 from planar.config.parameters import check_parameters, parameter
 
 
@@ -23,7 +23,7 @@ class StaticSettings(LayerSettings):
         True, "whether the map's unknown cells are unknown rather than free"
     )
     lethal_cost_threshold: int = parameter(
-        100, "occupancy from which on a cell is an obstacle", bounds=Values(1, 100, "1 to 100")
+        100, "occupancy from which on a cell is an obstacle", bounds=ParameterBounds(1, 100, "1 to 100")
     )
     unknown_cost_value: int = parameter(-1, "occupancy that means a cell of which nothing is known")
     trinary_costmap: bool = parameter(True, "obstacle, free or unknown, nothing in between")
@@ -35,22 +35,22 @@ class StaticSettings(LayerSettings):
 class StaticLayer(Layer):
     """The map, as it lies in a fixed costmap or as it is seen through a rolling window."""
 
-    def __init__(self, settings: StaticSettings, site: Site):
-        self._grid, self._is_rolling = site.grid, site.is_rolling
+    def __init__(self, settings: StaticSettings, context: LayerContext):
+        self._grid, self._is_rolling = context.grid, context.is_rolling
         self._costs: Optional[np.ndarray] = None
-        if site.grid is not None:
-            self._map_costs = static_costs(site.grid.cells, settings)
-            if not site.is_rolling:
+        if context.grid is not None:
+            self._map_costs = static_costs(context.grid.cells, settings)
+            if not context.is_rolling:
                 self._costs = self._map_costs
 
-    def update(self, placement: Placement) -> Bounds:
+    def update(self, placement: CostmapPlacement) -> CellBounds:
         if self._grid is None or not self._is_rolling:
             return NO_CELLS
         window, frame_in_map, grid = placement.window, placement.map_in_frame.inverse(), self._grid
-        self._costs = reframed(window, frame_in_map, self._map_costs, grid.origin, grid.resolution)
+        self._costs = resample_costs(window, frame_in_map, self._map_costs, grid.origin, grid.resolution)
         return window.everything
 
-    def apply(self, costs: np.ndarray, window: Window, bounds: Bounds) -> None:
+    def apply(self, costs: np.ndarray, window: CostmapWindow, bounds: CellBounds) -> None:
         if self._costs is not None:
             rows, cols = bounds.slices
             costs[rows, cols] = self._costs[rows, cols]

@@ -5,9 +5,9 @@ from typing import Sequence
 import numpy as np
 
 from move_base_lite.costmap.costs import INSCRIBED, LETHAL
-from move_base_lite.costmap.layer import Layer, LayerSettings, Placement, Site
+from move_base_lite.costmap.layer import CostmapPlacement, Layer, LayerContext, LayerSettings
 from move_base_lite.costmap.polygon import Polygon
-from move_base_lite.costmap.window import NO_CELLS, Bounds, Window
+from move_base_lite.costmap.window import NO_CELLS, CellBounds, CostmapWindow
 
 # Cost of a cell that the robot can cross but is to get out of.
 DISLIKED = INSCRIBED - 1
@@ -16,8 +16,8 @@ DISLIKED = INSCRIBED - 1
 class ZoneLayer(Layer):
     """Raises the costs of the cells of polygons, which are given in the map; it is in every costmap."""
 
-    def __init__(self, settings: LayerSettings, site: Site):
-        self._is_rolling = site.is_rolling
+    def __init__(self, settings: LayerSettings, context: LayerContext):
+        self._is_rolling = context.is_rolling
         self._barred: Sequence[Polygon] = ()
         self._disliked: Sequence[Polygon] = ()
         self._is_new = False
@@ -32,7 +32,7 @@ class ZoneLayer(Layer):
         assert isinstance(before, ZoneLayer)
         self.set(before._barred, before._disliked)
 
-    def update(self, placement: Placement) -> Bounds:
+    def update(self, placement: CostmapPlacement) -> CellBounds:
         """Draws the polygons anew if they or the window may have changed."""
         is_anywhere = bool(self._barred or self._disliked)
         if not (self._is_new or (self._is_rolling and is_anywhere)):
@@ -42,10 +42,10 @@ class ZoneLayer(Layer):
         self._costs = np.zeros((window.rows, window.cols), np.uint8)
         for polygons, cost in ((self._disliked, DISLIKED), (self._barred, LETHAL)):
             for polygon in polygons:
-                polygon.seen_from(placement.map_in_frame).fill(self._costs, window, cost)
+                polygon.in_frame(placement.map_in_frame).fill(self._costs, window, cost)
         return window.everything
 
-    def apply(self, costs: np.ndarray, window: Window, bounds: Bounds) -> None:
+    def apply(self, costs: np.ndarray, window: CostmapWindow, bounds: CellBounds) -> None:
         """Raises the costs; the unknown stays so where it is only disliked."""
         if self._costs.size:
             rows, cols = bounds.slices

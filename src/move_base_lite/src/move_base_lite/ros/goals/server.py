@@ -43,7 +43,7 @@ class GoalServer:
         server = self._server
         return server.is_active() and server.is_preempt_requested() and not server.is_new_goal_available()
 
-    def take(self, now: rospy.Time) -> Optional[Pose2]:
+    def accept_goal(self, now: rospy.Time) -> Optional[Pose2]:
         """A goal that has come, in the map; it is accepted, and the old one preempted. None if there is none.
 
         Raises NavigationError for a goal that means nothing; it has been accepted all the same.
@@ -56,12 +56,12 @@ class GoalServer:
         self._current_goal.publish(pose_msg(goal, now, self._map_frame))
         return goal
 
-    def tell_pose(self, base_in_map: Pose2, now: rospy.Time) -> None:
+    def publish_feedback(self, base_in_map: Pose2, now: rospy.Time) -> None:
         """Feedback: where the robot is."""
         if self._server.is_active():
             self._server.publish_feedback(MoveBaseFeedback(pose_msg(base_in_map, now, self._map_frame)))
 
-    def end(self, status: Status, text: str) -> None:
+    def finish(self, status: Status, text: str) -> None:
         """The goal under way has ended so."""
         if status is Status.SUCCEEDED:
             self._server.set_succeeded(text=text)
@@ -70,7 +70,7 @@ class GoalServer:
         else:
             self._server.set_aborted(text=text)
 
-    def give_up(self, text: str) -> bool:
+    def abort(self, text: str) -> bool:
         """Aborts the goal under way, also one that has not been taken; whether there was any."""
         with self._server.action_server.lock, self._server.lock:
             if self._server.is_new_goal_available():

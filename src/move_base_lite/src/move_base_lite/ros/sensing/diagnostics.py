@@ -17,15 +17,15 @@ class SensorDiagnostics:
         self._told: Optional[str] = None
         self._told_at = rospy.Time(0)
 
-    def tell(self, complaint: Optional[str], now: rospy.Time) -> None:
+    def tell(self, fault: Optional[str], now: rospy.Time) -> None:
         """``complaint``: which sensor cannot be trusted and why; None if all can."""
         is_old = abs((now - self._told_at).to_sec()) >= PERIOD
-        if complaint == self._told and not is_old:
+        if fault == self._told and not is_old:
             return
-        self._told, self._told_at = complaint, now
-        level = DiagnosticStatus.OK if complaint is None else DiagnosticStatus.ERROR
-        name, sensor = rospy.get_name().lstrip("/"), (complaint or "").partition(":")[0]
-        status = DiagnosticStatus(level, f"{name}: sensors", complaint or WELL, sensor, [])
+        self._told, self._told_at = fault, now
+        level = DiagnosticStatus.OK if fault is None else DiagnosticStatus.ERROR
+        name, sensor = rospy.get_name().lstrip("/"), (fault or "").partition(":")[0]
+        status = DiagnosticStatus(level, f"{name}: sensors", fault or WELL, sensor, [])
         message = DiagnosticArray(status=[status])
         message.header.stamp = now
         self._publisher.publish(message)

@@ -30,7 +30,7 @@ class CostmapTopics(rospy.SubscribeListener):
     def peer_subscribe(self, topic_name, topic_publish, peer_publish):
         self._is_whole_wanted = True
 
-    def forget_time(self) -> None:
+    def reset_time(self) -> None:
         """Time has jumped back: the next occasion is now."""
         self._next = rospy.Time(0)
 
@@ -56,13 +56,13 @@ class CostmapTopics(rospy.SubscribeListener):
     def _publish_whole(self, now, costmap, frame):
         self._is_whole_wanted = False
         self._last_window = window = costmap.window
-        costmap.take_changed()
+        costmap.pop_changed_bounds()
         origin = Pose2(window.origin_x, window.origin_y)
         grid = OccupancyGrid(occupancy_of(costmap.costs), window.resolution, origin)
         self._costmap.publish(grid_to_msg(grid, now, frame))
 
     def _publish_update(self, now, costmap, frame):
-        block = costmap.take_changed()
+        block = costmap.pop_changed_bounds()
         rows, cols = slice(block.row_min, block.row_max), slice(block.col_min, block.col_max)
         update = OccupancyGridUpdateArrays(x=block.col_min, y=block.row_min)
         update.width, update.height = block.col_max - block.col_min, block.row_max - block.row_min

@@ -9,8 +9,8 @@ from geometry_msgs.msg import Twist
 from move_base_msgs.msg import RecoveryStatus
 from nav_msgs.msg import Path
 
-from move_base_lite.navigator.decision import Decision, Outcome, RecoveryStart
-from move_base_lite.ros.topics.exploration import ExplorationTopics
+from move_base_lite.navigator.decision import Decision, GoalOutcome, RecoveryStart
+from move_base_lite.ros.topics.dwa_clouds import DwaCloudTopics
 from move_base_lite.ros.topics.plan_messages import path_msg, plan_msg, pose_msg, trajectory_msg
 from move_base_lite.ros.topics.status_messages import outcome_msg, progress_msg
 from planar import Pose2, Twist2
@@ -36,29 +36,29 @@ class DecisionTopics:
         self._plan = rospy.Publisher(f"~{global_planner}/plan", Path, queue_size=1)
         self._global_plan = rospy.Publisher(f"~{local}/global_plan", Path, queue_size=1)
         self._local_plan = rospy.Publisher(f"~{local}/local_plan", Path, queue_size=1)
-        self._exploration = ExplorationTopics(local, odom_frame)
+        self._exploration = DwaCloudTopics(local, odom_frame)
 
     def command(self, command: Twist2) -> None:
         message = Twist()
         message.linear.x, message.angular.z = command.v, command.omega
         self._command.publish(message)
 
-    def stop_for_good(self) -> None:
+    def publish_final_stop(self) -> None:
         """The last command of all, which is heard."""
         self.command(Twist2())
         wait_until_heard(self._command)
 
-    def tell_end(self, decision: Decision) -> None:
+    def publish_end(self, decision: Decision) -> None:
         """The last command for a goal, and how it ended."""
         if decision.command is not None:
             self.command(decision.command)
         if decision.outcome is not None:
             self.outcome(decision.outcome)
 
-    def outcome(self, outcome: Outcome) -> None:
+    def outcome(self, outcome: GoalOutcome) -> None:
         self._outcome.publish(outcome_msg(outcome))
 
-    def forget_time(self) -> None:
+    def reset_time(self) -> None:
         """Time has jumped back: the next occasion is now."""
         self._next_feedback = rospy.Time(0)
 
@@ -66,7 +66,7 @@ class DecisionTopics:
         self, now: rospy.Time, decision: Decision, base_in_map: Pose2, goal: Pose2, orientation_mode: int
     ) -> None:
         """All of a decision but the end of the action."""
-        self.tell_end(decision)
+        self.publish_end(decision)
         if decision.plan_xy is not None and self._plan.get_num_connections():
             plan = plan_msg(
                 decision.plan_xy, now, self._map_frame, orientation_mode, base_in_map.yaw, goal.yaw
@@ -78,7 +78,7 @@ class DecisionTopics:
         if decision.exploration is not None:
             self._exploration.publish(now, decision.exploration)
         if decision.recovery is not None:
-            self._tell_recovery(now, decision.recovery, base_in_map)
+            self._publish_recovery(now, decision.recovery, base_in_map)
         if decision.progress is not None and now >= self._next_feedback:
             self._next_feedback = now + FEEDBACK_PERIOD
             self._feedback.publish(progress_msg(decision, decision.progress))
@@ -88,7 +88,7 @@ class DecisionTopics:
             level = np.zeros(len(path_xy))
             self._global_plan.publish(path_msg(path_xy, now, self._odom_frame, level))
 
-    def _tell_recovery(self, now: rospy.Time, recovery: RecoveryStart, base_in_map: Pose2):
+    def _publish_recovery(self, now: rospy.Time, recovery: RecoveryStart, base_in_map: Pose2):
         rospy.logwarn("recovery behavior %s (%d of %d)", recovery.name, recovery.index + 1, recovery.total)
         pose = pose_msg(base_in_map, now, self._map_frame)
         self._recovery.publish(RecoveryStatus(pose, recovery.index, recovery.total, recovery.name))

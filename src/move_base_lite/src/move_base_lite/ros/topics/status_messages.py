@@ -2,10 +2,10 @@
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
-from move_base_lite.navigator.decision import SUCCEEDED_OUTCOME, Decision, Outcome, Progress
+from move_base_lite.navigator.decision import SUCCEEDED_OUTCOME, Decision, GoalOutcome, GoalProgress
 
 
-def outcome_msg(outcome: Outcome) -> DiagnosticStatus:
+def outcome_msg(outcome: GoalOutcome) -> DiagnosticStatus:
     """The end of a goal; ``outcome`` is the number move_base_flex has for it (mbf_msgs/MoveBaseResult)."""
     level = DiagnosticStatus.OK if outcome.code == SUCCEEDED_OUTCOME else DiagnosticStatus.ERROR
     return _status(
@@ -20,7 +20,7 @@ def outcome_msg(outcome: Outcome) -> DiagnosticStatus:
     )
 
 
-def progress_msg(decision: Decision, progress: Progress) -> DiagnosticStatus:
+def progress_msg(decision: Decision, progress: GoalProgress) -> DiagnosticStatus:
     """What the robot does for its goal, and what is left: metres, seconds."""
     return _status(
         DiagnosticStatus.WARN if decision.text else DiagnosticStatus.OK,

@@ -6,7 +6,7 @@ from std_msgs.msg import ColorRGBA
 from std_srvs.srv import SetBool, SetBoolResponse
 from visualization_msgs.msg import Marker, MarkerArray
 
-from move_base_lite.navigator.zones import KEEP_OUT, Zone, Zones
+from move_base_lite.navigator.zones import KEEP_OUT, NavigationZone, Zones
 
 RED, YELLOW, GREY = (0.9, 0.1, 0.1), (0.9, 0.8, 0.1), (0.5, 0.5, 0.5)
 LINE_WIDTH = 0.05
@@ -25,7 +25,7 @@ class ZoneTopics:
         if zones.all:
             self._publish()
 
-    def _on_switch(self, zone: Zone, request):
+    def _on_switch(self, zone: NavigationZone, request):
         self._zones.enable(zone.name, request.data)
         self._publish()
         text = f"zone {zone.name} ({zone.kind}) is {'on' if request.data else 'off'}"
@@ -36,7 +36,7 @@ class ZoneTopics:
         markers = [self._marker(number, zone) for number, zone in enumerate(self._zones.all)]
         self._markers.publish(MarkerArray(markers))
 
-    def _marker(self, number: int, zone: Zone) -> Marker:
+    def _marker(self, number: int, zone: NavigationZone) -> Marker:
         marker = Marker(ns="zones", id=number, type=Marker.LINE_STRIP, action=Marker.ADD)
         marker.header.frame_id = self._map_frame
         marker.pose.orientation.w = 1.0

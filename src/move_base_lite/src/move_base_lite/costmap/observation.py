@@ -9,7 +9,7 @@ from planar import Pose2, Scan
 
 
 @dataclass(frozen=True, eq=False)
-class Sighting:
+class Observation:
     """Beams from a sensor: of a laser scan, or to the points of a cloud.
 
     ``topic``: where it came from. ``sensor_in_base``: pose of the beams' origin in the base frame.
@@ -27,9 +27,9 @@ class Sighting:
     heights: Union[float, np.ndarray] = 0.0
 
 
-def sighting_of_scan(topic: str, scan: Scan, height: float = 0.0) -> Sighting:
+def observation_from_scan(topic: str, scan: Scan, height: float = 0.0) -> Observation:
     """A laser scan, ``height`` metres above the floor."""
-    return Sighting(
+    return Observation(
         topic,
         scan.stamp,
         scan.laser_in_base,
@@ -41,11 +41,13 @@ def sighting_of_scan(topic: str, scan: Scan, height: float = 0.0) -> Sighting:
     )
 
 
-def sighting_of_points(topic: str, stamp: float, sensor_in_base: Pose2, points_xyz: np.ndarray) -> Sighting:
+def observation_from_points(
+    topic: str, stamp: float, sensor_in_base: Pose2, points_xyz: np.ndarray
+) -> Observation:
     """A cloud of points (N, 3) in the base frame, z above the floor; those not finite are left out."""
     points_xyz = points_xyz[np.isfinite(points_xyz).all(axis=1)]
     offsets_xy = sensor_in_base.inverse().transform_points(points_xyz[:, :2])
-    return Sighting(
+    return Observation(
         topic,
         stamp,
         sensor_in_base,

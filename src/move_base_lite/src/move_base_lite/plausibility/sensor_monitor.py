@@ -6,7 +6,7 @@ from typing import Optional
 
 import numpy as np
 
-from move_base_lite.plausibility.wheel_watch import WheelWatch
+from move_base_lite.plausibility.wheel_monitor import WheelMonitor
 from planar import Pose2, Twist2
 
 # Of the beams of a scan: so many of a kind are no chance.
@@ -39,7 +39,7 @@ class _View:
     room: float
 
 
-class SensorWatch:
+class SensorMonitor:
     """Told what scans, odometry and commands say, it says which sensor cannot be trusted now.
 
     Scans are held against themselves, against the scans before, and against odometry; odometry against
@@ -57,19 +57,19 @@ class SensorWatch:
         self._view: Optional[_View] = None
         self._farthest = 0.0
         self._blindness = self._sameness = ""
-        self._wheels = WheelWatch()
+        self._wheels = WheelMonitor()
 
-    def forget(self) -> None:
+    def reset(self) -> None:
         """Time has jumped: what was heard is worthless."""
         self.__init__()  # type: ignore[misc]
 
-    def see_scan(self, ranges: np.ndarray, range_min: float, range_max: float, span: float) -> None:
+    def add_scan(self, ranges: np.ndarray, range_min: float, range_max: float, span: float) -> None:
         """A scan has come; ``ranges``: (N,), metres; ``span``: the angle between its outer beams, radians."""
         self._blindness = self._why_blind(ranges, range_min, range_max, span)
         self._sameness = self._why_frozen(ranges)
         self._ranges = ranges
 
-    def see_odometry(self, now: float, base_in_odom: Pose2, command: Twist2) -> None:
+    def add_odometry(self, now: float, base_in_odom: Pose2, command: Twist2) -> None:
         """Where odometry believes the robot to be, and what the robot has been told to do."""
         is_told_to_move = abs(command.v) > FAST or abs(command.omega) > FAST
         if base_in_odom != self._base or not is_told_to_move:
@@ -77,9 +77,9 @@ class SensorWatch:
         elif self._still_since is None:
             self._still_since, self._scan_when_still = now, self._ranges
         self._base, self._odometry_at = base_in_odom, now
-        self._wheels.see_odometry(now, base_in_odom, command)
+        self._wheels.add_odometry(now, base_in_odom, command)
 
-    def complaint(self, now: float) -> Optional[str]:
+    def fault(self, now: float) -> Optional[str]:
         """What cannot be trusted, and why, for people: "scan: all of its beams are NaN"; None if all can."""
         if self._odometry_at is not None and now - self._odometry_at > SILENCE:
             return f"odometry: none for {now - self._odometry_at:.1f} s"
@@ -88,7 +88,7 @@ class SensorWatch:
                 return f"scan: {reason}"
         if self._odometry_is_stuck(now):
             return "odometry: it stands still while the robot is told to move and its scans change"
-        return self._wheels.complaint()
+        return self._wheels.fault()
 
     def _why_blind(self, ranges: np.ndarray, range_min: float, range_max: float, span: float) -> str:
         if not len(ranges):

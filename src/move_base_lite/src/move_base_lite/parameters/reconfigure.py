@@ -6,9 +6,9 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from move_base_lite.config import MoveBaseSettings
 from move_base_lite.costmap import CostmapSettings
-from move_base_lite.parameters.costmaps import INHERITED, layers_of, with_plugins
+from move_base_lite.parameters.costmaps import INHERITED, layer_plugins, with_plugin_list
 from move_base_lite.parameters.planners import PLANNERS
-from move_base_lite.parameters.reader import Reader, Tree, below
+from move_base_lite.parameters.reader import ParameterReader, Tree, subtree
 from move_base_lite.plugin import Plugin
 from planar.config.parameters import Tunable, tunables_of
 
@@ -17,7 +17,7 @@ COSTMAPS = ("global_costmap", "local_costmap")
 _FROM_ABOVE = (*INHERITED, "latch_xy_goal_tolerance")
 
 
-def servers(parameters: Tree) -> Dict[str, List[Tuple[Tunable, Any]]]:
+def reconfigure_servers(parameters: Tree) -> Dict[str, List[Tuple[Tunable, Any]]]:
     """By namespace below move_base: what may be changed there, with the values in force."""
     chosen = [
         Tunable(key, registry.names[0], key.replace("_", " ")[5:]) for key, registry in PLANNERS.items()
@@ -25,8 +25,8 @@ def servers(parameters: Tree) -> Dict[str, List[Tuple[Tunable, Any]]]:
     found = {"": _offered(parameters, "", [*chosen, *tunables_of(MoveBaseSettings)])}
     for costmap in COSTMAPS:
         found[costmap] = _offered(parameters, costmap, tunables_of(CostmapSettings))
-        values = with_plugins(below(parameters, costmap), f"{costmap}/")
-        for layer, kind in layers_of(Reader(""), values, costmap).items():
+        values = with_plugin_list(subtree(parameters, costmap), f"{costmap}/")
+        for layer, kind in layer_plugins(ParameterReader(""), values, costmap).items():
             found[f"{costmap}/{layer}"] = _offered(parameters, f"{costmap}/{layer}", kind.tunables, kind)
     for key, registry in PLANNERS.items():
         planner = registry.find(str(parameters.get(key, registry.names[0])), is_package_needed=False)
@@ -36,15 +36,15 @@ def servers(parameters: Tree) -> Dict[str, List[Tuple[Tunable, Any]]]:
     return found
 
 
-def changed(parameters: Tree, namespace: str, values: Tree) -> Dict[str, Any]:
+def with_changes(parameters: Tree, namespace: str, values: Tree) -> Dict[str, Any]:
     """The parameters with other values in a namespace below move_base."""
     name, _, rest = namespace.partition("/")
     if not name:
         return {**parameters, **values}
-    tree = below(parameters, name)
+    tree = subtree(parameters, name)
     if name in COSTMAPS:
-        tree = with_plugins(tree, f"{name}/")
-    return {**parameters, name: changed(tree, rest, values)}
+        tree = with_plugin_list(tree, f"{name}/")
+    return {**parameters, name: with_changes(tree, rest, values)}
 
 
 def _offered(
@@ -53,8 +53,8 @@ def _offered(
     """The tunables with their values in force, also if these are inherited or have an old name."""
     tree = parameters
     for name in filter(None, namespace.split("/")):
-        tree = below(tree, name)
-        tree = with_plugins(tree, f"{name}/") if name in COSTMAPS else tree
+        tree = subtree(tree, name)
+        tree = with_plugin_list(tree, f"{name}/") if name in COSTMAPS else tree
     offered = []
     for tunable in map(_in_a_message, tunables):
         names = (tunable.name, *(kind.old_names(tunable.name) if kind else ()))

@@ -10,13 +10,13 @@ from geometry_msgs.msg import Polygon
 
 from move_base_lite.config import NavigatorSettings
 from move_base_lite.parameters import settings_from_parameters
-from move_base_lite.parameters.dynamic import changed, servers
 from move_base_lite.parameters.planners import PLANNERS
+from move_base_lite.parameters.reconfigure import reconfigure_servers, with_changes
 from planar import SettingsError
 from planar_ros.node.reconfigure import Tuning
 
 
-class ParameterTree:
+class ReconfigureServers:
     """The parameters in force; ``apply(settings)`` is called when they have changed."""
 
     def __init__(self, parameters: Dict[str, Any], apply: Callable[[NavigatorSettings], None]):
@@ -30,7 +30,7 @@ class ParameterTree:
     def serve(self) -> None:
         """Starts those servers that are not there yet."""
         with self._serving:
-            for namespace, tunables in servers(self._parameters).items():
+            for namespace, tunables in reconfigure_servers(self._parameters).items():
                 if namespace not in self._servers:
                     self._servers[namespace] = Tuning(
                         [tunable for tunable, _ in tunables],
@@ -48,11 +48,13 @@ class ParameterTree:
                     if key in asked and registry.find(asked[key]) is None:
                         known = ", ".join(registry.names)
                         raise SettingsError(f"{where}{key} must be one of {known}, got {asked[key]}")
-                parameters = changed(self._parameters, namespace, asked)
+                parameters = with_changes(self._parameters, namespace, asked)
                 settings, _ = settings_from_parameters(parameters, where, is_lenient=True)
             except SettingsError as error:
                 rospy.logerr("%s; nothing is changed", error)
-                return {tunable.name: value for tunable, value in servers(self._parameters)[namespace]}
+                return {
+                    tunable.name: value for tunable, value in reconfigure_servers(self._parameters)[namespace]
+                }
             self._parameters = parameters
             self._apply(settings)
         if set(PLANNERS) & set(asked):

@@ -6,17 +6,17 @@ import numpy as np
 
 from move_base_lite.config import NavigatorSettings
 from move_base_lite.control import LOCAL_PLANNERS, Controller, Situation
-from move_base_lite.costmap import Sighting
+from move_base_lite.costmap import Observation
 from move_base_lite.navigator.costmaps import Costmaps
-from move_base_lite.navigator.foresight import motion_ahead
-from move_base_lite.navigator.pursuit import Moment
+from move_base_lite.navigator.goal_execution import RobotState
+from move_base_lite.navigator.motion_prediction import predict_motion
 from move_base_lite.navigator.zones import Zones
 from move_base_lite.people import Movers
 from move_base_lite.planning import GLOBAL_PLANNERS
 from planar import OccupancyGrid, Pose2, Twist2
 
 
-class Crew:
+class NavigatorComponents:
     """Made from settings, and changed with them; ``zones`` may be switched by others.
 
     ``latency``: seconds until a command takes effect; ``in_force``: the one that the robot obeys meanwhile.
@@ -24,65 +24,65 @@ class Crew:
 
     def __init__(self, settings: NavigatorSettings, grid: Optional[OccupancyGrid], zones: Zones):
         self.settings, self.zones = settings, zones
-        self.latency, self.in_force = 0.0, Twist2()
+        self.latency, self.active_command = 0.0, Twist2()
         self.planner = GLOBAL_PLANNERS.make(settings.planner)
         self.set_map(grid)
-        self.begin_anew()
+        self.reset_controller()
 
     def set_map(self, grid: Optional[OccupancyGrid]) -> None:
         """Another map, and nothing has been seen yet."""
         self.costmaps = Costmaps(self.settings, grid, self.zones)
         self._movers = Movers()
 
-    def begin_anew(self) -> None:
+    def reset_controller(self) -> None:
         """Forgets how the last goal was pursued."""
         settings = self.settings.controller
         self.controller = Controller(settings, self.period, LOCAL_PLANNERS.make(settings, self.period))
 
-    def change(self, settings: NavigatorSettings) -> None:
+    def update_settings(self, settings: NavigatorSettings) -> None:
         """Goes on with other settings, plan included."""
         before, self.settings = (self.settings.controller, self.period), settings
         self.planner = GLOBAL_PLANNERS.make(settings.planner)
         if (settings.controller, self.period) != before:
             planner = LOCAL_PLANNERS.make(settings.controller, self.period)
             self.controller.change(settings.controller, self.period, planner)
-        self.costmaps.change(settings)
+        self.costmaps.update_settings(settings)
 
     @property
     def period(self) -> float:
         """Of control, seconds."""
         return 1.0 / self.settings.move_base.controller_frequency
 
-    def look(self, moment: Moment, sightings: Sequence[Sighting]) -> None:
+    def update_costmaps(self, state: RobotState, observations: Sequence[Observation]) -> None:
         """Takes in what is seen; a plan does not have to lead around people who walk."""
-        lasting = [self._lasting(moment.base_in_odom, sighting) for sighting in sightings]
-        self.costmaps.look(moment.now, moment.base_in_map, moment.base_in_odom, sightings, lasting)
+        lasting = [self._lasting(state.base_in_odom, observation) for observation in observations]
+        self.costmaps.update(state.now, state.base_in_map, state.base_in_odom, observations, lasting)
 
-    def _lasting(self, base_in_odom: Pose2, sighting: Sighting) -> Sighting:
+    def _lasting(self, base_in_odom: Pose2, observation: Observation) -> Observation:
         """What is seen without what moves."""
         lookout = self.settings.controller.lookout
-        if lookout is None or sighting.topic != self.settings.scan_topic:
-            return sighting
-        return self._movers.look(base_in_odom, sighting, lookout)
+        if lookout is None or observation.topic != self.settings.scan_topic:
+            return observation
+        return self._movers.look(base_in_odom, observation, lookout)
 
     def plan(self, start_in_map: Pose2, goal_in_map: Pose2, tolerance: float = 0.0) -> np.ndarray:
         """Path (N, 2) in the map between any two places. Raises PlanningError."""
-        costmap = self.costmaps.whole
+        costmap = self.costmaps.global_costmap
         start_xy: Tuple[float, float] = (start_in_map.x, start_in_map.y)
         return self.planner.plan(
             costmap.costs, costmap.window, start_xy, (goal_in_map.x, goal_in_map.y), tolerance
         )
 
-    def situation(self, moment: Moment) -> Situation:
+    def situation(self, state: RobotState) -> Situation:
         """What a velocity is to be chosen from: how things will stand when it takes effect."""
         controller = self.settings.controller
         acceleration = Twist2(controller.acc_lim_x, controller.acc_lim_theta)
-        moved, twist = motion_ahead(moment.twist, self.in_force, self.latency, acceleration)
+        moved, twist = predict_motion(state.twist, self.active_command, self.latency, acceleration)
         return Situation(
-            moment.base_in_map @ moved,
-            moment.base_in_odom @ moved,
+            state.base_in_map @ moved,
+            state.base_in_odom @ moved,
             twist,
-            self.costmaps.near,
-            self._movers.at(moment.now + self.latency),
-            self.costmaps.whole,
+            self.costmaps.local_costmap,
+            self._movers.at(state.now + self.latency),
+            self.costmaps.global_costmap,
         )

@@ -11,7 +11,7 @@ TRAJECTORY_FIELDS = ("x", "y", "z", "theta", "cost")
 COST_FIELDS = ("x", "y", "z", "path_cost", "goal_cost", "occ_cost", "total_cost")
 
 
-class ExplorationTopics:
+class DwaCloudTopics:
     """``~<planner>/trajectory_cloud`` and ``~<planner>/cost_cloud``, made while somebody listens."""
 
     def __init__(self, local_planner: str, odom_frame: str):

@@ -11,9 +11,9 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import PointCloud, PointCloud2
 
 from move_base_lite.config import NavigatorSettings
-from move_base_lite.costmap import Sighting, sighting_of_points, sighting_of_scan
+from move_base_lite.costmap import Observation, observation_from_points, observation_from_scan
 from move_base_lite.costmap.layers.obstacles import SourceSettings
-from move_base_lite.plausibility import SensorWatch
+from move_base_lite.plausibility import SensorMonitor
 from move_base_lite.ros.sensing.checks import check_message
 from move_base_lite.ros.sensing.clouds import points_of
 from move_base_lite.ros.sensing.diagnostics import SensorDiagnostics
@@ -35,16 +35,16 @@ MESSAGES = {"LaserScan": LaserScanArrays, "PointCloud": PointCloud, "PointCloud2
 
 
 @dataclass(frozen=True)
-class View:
+class NavigatorInputs:
     """The robot now; ``sightings``: those not given before, as seen from the present pose."""
 
     base_in_map: Pose2
     base_in_odom: Pose2
     twist: Twist2
-    sightings: Tuple[Sighting, ...]
+    observations: Tuple[Observation, ...]
 
 
-class Surroundings:
+class SensorBridge:
     """Callbacks store; :meth:`view` puts together what there is."""
 
     def __init__(self, settings: NavigatorSettings, transforms: Transforms, odom_topic: str):
@@ -52,10 +52,10 @@ class Surroundings:
         self._global_frame = frame_name(settings.global_costmap.global_frame)
         self._local_frame = frame_name(settings.local_costmap.global_frame)
         self._base_frame = frame_name(settings.local_costmap.robot_base_frame)
-        self.change(settings)
+        self.update_settings(settings)
         self._twist = Twist2()
         self._command = Twist2()
-        self._watch = SensorWatch()
+        self._watch = SensorMonitor()
         self._complaint: Optional[str] = None
         self._diagnostics = SensorDiagnostics()
         self._lock = threading.Lock()
@@ -65,44 +65,44 @@ class Surroundings:
             for source in _sources_of(settings).values()
         ]
 
-    def change(self, settings: NavigatorSettings) -> None:
+    def update_settings(self, settings: NavigatorSettings) -> None:
         """Transforms may be as old as other settings say."""
         costmaps = (settings.global_costmap, settings.local_costmap)
         self._tolerances = tuple(costmap.transform_tolerance for costmap in costmaps)
 
-    def has_heard(self, topic: str) -> bool:
+    def has_message(self, topic: str) -> bool:
         """Whether all that is awaited on a sensor's topic has spoken."""
-        return all(sensor.has_spoken for sensor in self._sensors if sensor.topic == topic)
+        return all(sensor.has_message for sensor in self._sensors if sensor.topic == topic)
 
     @property
     def topics(self) -> List[str]:
         """Topics of all sensors."""
         return [sensor.topic for sensor in self._sensors]
 
-    def view(self, now: rospy.Time) -> Optional[View]:
+    def inputs(self, now: rospy.Time) -> Optional[NavigatorInputs]:
         """The robot as far as it is known at ``now``; None if its transforms are missing or too old."""
         if self.missing_transform(now) is not None:
-            self.note_command(Twist2())  # who does not know where it is stands
+            self.set_command(Twist2())  # who does not know where it is stands
             return None
         base_in_odom = self._transforms.lookup(self._local_frame, self._base_frame)
         odom_in_map = self._transforms.lookup(self._global_frame, self._local_frame)
         if base_in_odom is None or odom_in_map is None:
             return None
         newest = (sensor.newest(base_in_odom) for sensor in self._sensors)
-        sightings = tuple(sighting for sighting in newest if sighting is not None)
-        return View(odom_in_map @ base_in_odom, base_in_odom, self._twist, sightings)
+        observations = tuple(observation for observation in newest if observation is not None)
+        return NavigatorInputs(odom_in_map @ base_in_odom, base_in_odom, self._twist, observations)
 
-    def note_command(self, command: Twist2) -> None:
+    def set_command(self, command: Twist2) -> None:
         """What the robot has just been told; one stopped for a sensor that lies is still told to go on."""
         if self._complaint is None:
             self._command = command
 
     def missing_transform(self, now: rospy.Time) -> Optional[str]:
         """Which transform is not known or too old, or which sensor lies, for people; None if all are well."""
-        self._complaint = complaint = self._watch.complaint(now.to_sec())
-        self._diagnostics.tell(complaint, now)
-        if complaint is not None:
-            return f"a trustworthy sensor ({complaint})"
+        self._complaint = fault = self._watch.fault(now.to_sec())
+        self._diagnostics.tell(fault, now)
+        if fault is not None:
+            return f"a trustworthy sensor ({fault})"
         # Odometry first: without it nobody can localize either, and that would be named.
         links = [(self._global_frame, self._local_frame), (self._local_frame, self._base_frame)]
         for (parent, child), tolerance in reversed(list(zip(links, self._tolerances))):
@@ -118,27 +118,30 @@ class Surroundings:
     def _silence_since(self, moment: rospy.Time, now: rospy.Time) -> str:
         """Which sensor fell silent when localization did, if one did."""
         for sensor in self._sensors:
-            silent, apart = (now - sensor.heard_at).to_sec(), abs((moment - sensor.heard_at).to_sec())
-            if sensor.has_spoken and silent > SILENT_SECONDS > apart:
+            silent, apart = (
+                (now - sensor.last_message_at).to_sec(),
+                abs((moment - sensor.last_message_at).to_sec()),
+            )
+            if sensor.has_message and silent > SILENT_SECONDS > apart:
                 return f"; nothing on {sensor.topic} for {silent:.1f} s"
         return ""
 
-    def forget(self) -> None:
+    def reset(self) -> None:
         """Time has jumped back: what was heard is worthless."""
         for sensor in self._sensors:
-            sensor.forget()
+            sensor.reset()
         self._transforms.clear()
-        self._watch.forget()
+        self._watch.reset()
         self._command, self._complaint = Twist2(), None
 
     def _on_odometry(self, message):
         self._twist = twist2_from_msg(message.twist.twist)
         pose = pose2_from_msg(message.pose.pose)
-        self._watch.see_odometry(rospy.get_time(), pose, self._command)
+        self._watch.add_odometry(rospy.get_time(), pose, self._command)
 
     def _on_scan(self, message):
         span = message.angle_increment * (len(message.ranges) - 1)
-        self._watch.see_scan(message.ranges, message.range_min, message.range_max, span)
+        self._watch.add_scan(message.ranges, message.range_min, message.range_max, span)
 
 
 class _Sensor:
@@ -159,29 +162,29 @@ class _Sensor:
         self._messages: Deque = deque(maxlen=KEPT)
         self._lock = threading.Lock()
         self._mountings: Dict[str, np.ndarray] = {}
-        self.has_spoken, self.heard_at = False, rospy.Time(0)
+        self.has_message, self.last_message_at = False, rospy.Time(0)
         listen(source.topic, MESSAGES[source.data_type], self._on_message, queue_size=KEPT, tcp_nodelay=True)
 
     @property
     def topic(self) -> str:
         return rospy.resolve_name(self._source.topic)
 
-    def newest(self, base_in_odom: Pose2) -> Optional[Sighting]:
+    def newest(self, base_in_odom: Pose2) -> Optional[Observation]:
         """The newest message not given before, as if taken from the present pose; None if there is none."""
         with self._lock:
             waiting = list(self._messages)
         for message in reversed(waiting):
-            sighting = self._seen_from(base_in_odom, message)
-            if sighting is None:
+            observation = self._seen_from(base_in_odom, message)
+            if observation is None:
                 self._complain_of(message)
             else:
                 with self._lock:
                     while self._messages and self._messages[0].header.stamp <= message.header.stamp:
                         self._messages.popleft()
-                return sighting
+                return observation
         return None
 
-    def forget(self) -> None:
+    def reset(self) -> None:
         with self._lock:
             self._messages.clear()
 
@@ -195,13 +198,13 @@ class _Sensor:
 
     def _on_message(self, message):
         check_message(message)
-        self.has_spoken, self.heard_at = True, rospy.Time.now()
+        self.has_message, self.last_message_at = True, rospy.Time.now()
         if self._source.data_type == "LaserScan" and self._source.marking:
             self._watch(message)
         with self._lock:
             self._messages.append(message)
 
-    def _seen_from(self, base_in_odom: Pose2, message) -> Optional[Sighting]:
+    def _seen_from(self, base_in_odom: Pose2, message) -> Optional[Observation]:
         """None as long as it is not known where the message was taken."""
         frame = frame_name(self._source.sensor_frame or message.header.frame_id)
         base_then = self._transforms.lookup(self._local_frame, self._base_frame, message.header.stamp)
@@ -213,19 +216,19 @@ class _Sensor:
         if base_then is None:
             return None
         sensor_in_base = self._mountings[frame]
-        sighting = self._sighting(message, sensor_in_base)
+        observation = self._sighting(message, sensor_in_base)
         moved = base_in_odom.inverse() @ base_then
-        return replace(sighting, sensor_in_base=moved @ sighting.sensor_in_base)
+        return replace(observation, sensor_in_base=moved @ observation.sensor_in_base)
 
-    def _sighting(self, message, sensor_in_base: np.ndarray) -> Sighting:
+    def _sighting(self, message, sensor_in_base: np.ndarray) -> Observation:
         x, y, height = sensor_in_base[:3, 3]
         yaw = float(np.arctan2(sensor_in_base[1, 0], sensor_in_base[0, 0]))
         if self._source.data_type == "LaserScan":
             upside_down = bool(sensor_in_base[2, 2] < 0.0)
             scan = scan_from_msg(message, Pose2(float(x), float(y), yaw), upside_down)
-            return sighting_of_scan(self._source.topic, scan, float(height))
+            return observation_from_scan(self._source.topic, scan, float(height))
         points = points_of(message) @ sensor_in_base[:3, :3].T + sensor_in_base[:3, 3]
-        return sighting_of_points(
+        return observation_from_points(
             self._source.topic, message.header.stamp.to_sec(), Pose2(float(x), float(y)), points
         )
 

@@ -25,13 +25,13 @@ class _Thread(threading.local):
 _thread = _Thread()
 
 
-def _forget() -> None:
+def _reset() -> None:
     """A forked process has threads of its own, which have waited for nothing yet."""
     global _thread
     _thread = _Thread()
 
 
-os.register_at_fork(after_in_child=_forget)
+os.register_at_fork(after_in_child=_reset)
 
 
 class Stopwatch:

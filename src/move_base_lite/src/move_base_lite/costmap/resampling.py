@@ -6,12 +6,12 @@ import numba
 import numpy as np
 
 from move_base_lite.costmap.costs import UNKNOWN
-from move_base_lite.costmap.window import Window
+from move_base_lite.costmap.window import CostmapWindow
 from planar import Pose2
 
 
-def reframed(
-    window: Window, frame_in_other: Pose2, costs: np.ndarray, origin: Pose2, resolution: float
+def resample_costs(
+    window: CostmapWindow, frame_in_other: Pose2, costs: np.ndarray, origin: Pose2, resolution: float
 ) -> np.ndarray:
     """What a window shows of ``costs``, uint8 (rows, cols), UNKNOWN beyond them.
 

@@ -7,15 +7,15 @@ from typing import Callable, Generic, Iterator, Optional, Type, TypeVar
 import numpy as np
 
 from move_base_lite.errors import NavigationError, PluginFailed
-from move_base_lite.own_time import Stopwatch
+from move_base_lite.thread_time import Stopwatch
 from planar import Twist2
 
 T = TypeVar("T")
 # Seconds of its own that an answer may take; the first may take longer, as kernels are compiled in it.
-LONGEST = 1.0
+MAX_CALL_SECONDS = 1.0
 
 
-class Guard(Generic[T]):
+class PluginGuard(Generic[T]):
     """Watches what ``make()`` gives, of the plugin ``name``; raises ``failure`` for all that goes wrong."""
 
     def __init__(self, name: str, make: Callable[[], T], failure: Type[PluginFailed]):
@@ -50,7 +50,7 @@ class Guard(Generic[T]):
         took, self._has_answered, is_first = watch.seconds(), True, not self._has_answered
         if is_changed:
             raise self.fail("changed what it was given to read")
-        if took > LONGEST and not is_first:
+        if took > MAX_CALL_SECONDS and not is_first:
             raise self.fail(f"took {took:.1f} s for an answer")
 
     def check_velocity(self, twist: Twist2) -> None:

@@ -7,13 +7,13 @@ from typing import Optional
 from move_base_lite.errors import PlanningError
 
 # Share of the way that was left when plans failed, below which the robot has got on since.
-GAIN = 0.5
+PROGRESS_FRACTION = 0.5
 # How often the length of such a plan is driven before it is known to lead nowhere.
-ENOUGH = 2.0
+TRAVEL_BUDGET = 2.0
 
 
 @dataclass
-class Hope:
+class RecoveryProgressChecker:
     """A plan alone does not overcome that there was none: what was forgotten may be in the way still.
 
     ``tried_in_vain``: how many behaviours have led to no more than such plans; ``reason``: why plans failed.
@@ -21,32 +21,32 @@ class Hope:
     when plans failed last. ``ends_at``: metres travelled by which the plan should have led on.
     """
 
-    tried_in_vain: int = 0
+    behaviors_tried: int = 0
     reason: Optional[PlanningError] = None
-    least_left: float = math.inf
-    left_in_trouble: float = math.inf
-    ends_at: float = math.inf
+    min_remaining: float = math.inf
+    remaining_at_failure: float = math.inf
+    travel_limit: float = math.inf
 
-    def is_over(self, travelled: float) -> bool:
+    def budget_exceeded(self, travelled: float) -> bool:
         """Whether the plan under way should have led on by now."""
-        return travelled > self.ends_at
+        return travelled > self.travel_limit
 
-    def lose(self) -> None:
+    def on_planning_failed(self) -> None:
         """There is no plan, and recovery begins."""
-        self.left_in_trouble, self.ends_at = self.least_left, math.inf
+        self.remaining_at_failure, self.travel_limit = self.min_remaining, math.inf
 
-    def try_behavior(self, number: int) -> None:
+    def on_behavior_finished(self, number: int) -> None:
         """So many behaviours have been tried; what comes of it has to be seen."""
-        self.tried_in_vain, self.ends_at = number, math.inf
+        self.behaviors_tried, self.travel_limit = number, math.inf
 
-    def drive(self, travelled: float, distance_left: float) -> None:
+    def on_control_succeeded(self, travelled: float, distance_left: float) -> None:
         """The robot drives a plan of which so much is left."""
-        self.least_left = min(self.least_left, distance_left)
-        if not self.tried_in_vain:
+        self.min_remaining = min(self.min_remaining, distance_left)
+        if not self.behaviors_tried:
             return
-        if math.isinf(self.left_in_trouble):
-            self.left_in_trouble = distance_left
-        if math.isinf(self.ends_at):
-            self.ends_at = travelled + ENOUGH * distance_left
-        if self.least_left < GAIN * self.left_in_trouble:
-            self.tried_in_vain, self.ends_at = 0, math.inf
+        if math.isinf(self.remaining_at_failure):
+            self.remaining_at_failure = distance_left
+        if math.isinf(self.travel_limit):
+            self.travel_limit = travelled + TRAVEL_BUDGET * distance_left
+        if self.min_remaining < PROGRESS_FRACTION * self.remaining_at_failure:
+            self.behaviors_tried, self.travel_limit = 0, math.inf

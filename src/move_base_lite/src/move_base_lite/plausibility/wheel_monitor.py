@@ -20,7 +20,7 @@ PRIOR = 1e-3
 REST = 30.0
 
 
-class WheelWatch:
+class WheelMonitor:
     """Held against commands, odometry tells how much the robot turns with each metre and each radian told.
 
     Linear regression of the turn driven on the velocities told, by least squares with exponential forgetting.
@@ -30,15 +30,15 @@ class WheelWatch:
     def __init__(self) -> None:
         self._base, self._at = Pose2(), -math.inf
         self._stuck_at: Optional[float] = None
-        self._forget()
+        self._reset()
 
-    def see_odometry(self, now: float, base_in_odom: Pose2, command: Twist2) -> None:
+    def add_odometry(self, now: float, base_in_odom: Pose2, command: Twist2) -> None:
         """Where odometry believes the robot to be, and what the robot has been told to do."""
         moved, seconds = self._base.inverse() @ base_in_odom, now - self._at
         self._base, self._at = base_in_odom, now
         if self._stuck_at is not None and now - self._stuck_at > REST:
             self._stuck_at = None
-            self._forget()
+            self._reset()
         if not 0.0 < seconds < LONGEST_STEP:
             return
         turned = moved.yaw / seconds
@@ -48,7 +48,7 @@ class WheelWatch:
         if self._stuck_at is None and self._way > ENOUGH and abs(self._turn_per_metre()) > UNASKED:
             self._stuck_at = now
 
-    def complaint(self) -> Optional[str]:
+    def fault(self) -> Optional[str]:
         """Which wheel does not do what it is told, for people; None if both do."""
         if self._stuck_at is None:
             return None
@@ -56,7 +56,7 @@ class WheelWatch:
         side = "left" if turn > 0.0 else "right"
         return f"drive: {abs(turn):.1f} rad turned with each metre told: does the {side} wheel turn?"
 
-    def _forget(self) -> None:
+    def _reset(self) -> None:
         self._way = self._vv = self._vw = self._ww = self._vt = self._wt = 0.0
 
     def _learn(self, told: Twist2, turned: float, seconds: float) -> None:
