@@ -14,7 +14,7 @@ from typing import Dict
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(path) for path in ROOT.glob("src/*/src")]
 
-from planar.config.listing import Section, yaml_of  # noqa: E402
+from planar.config.listing import Section, render_yaml  # noqa: E402
 
 MADE_BY = "Made by docs/generate.py; do not edit."
 # A comment that names a module, on a line of its own, and the listing behind it, once there is one.
@@ -44,7 +44,7 @@ def is_written(path: Path, text: str) -> bool:
 
 def files() -> Dict[Path, str]:
     """Every file that is made, in whole or in part, and its text."""
-    configs = {path: f"# {MADE_BY}\n{yaml_of(section)}" for path, section in declared_files().items()}
+    configs = {path: f"# {MADE_BY}\n{render_yaml(section)}" for path, section in declared_files().items()}
     pages = {path: with_listings(path.read_text("utf-8")) for path in ROOT.glob("docs/how_to/examples/*.md")}
     return {**configs, **pages}
 

@@ -20,7 +20,7 @@ from typing import List, Optional
 import numpy as np
 from helpers.command_line import seeds
 
-from explorer_lite import Explorer, ExplorerSettings, Finish, GoalReached, GoalRefused, GoTo
+from explorer_lite import Explorer, ExplorerSettings, FinishTask, GoalFailed, GoalReached, GoTo
 from home_service.judging.map_truth import LEAST_PRECISION, LEAST_RECALL, score_against_world
 from home_service.judging.verdict import ARRIVAL_TOLERANCE
 from home_service.rehearsal import NAVIGATION_CONFIG, Rehearsal
@@ -84,7 +84,7 @@ class MappingRun:
         self.base_in_world = Pose2()
         self.now = 0.0
 
-    def run(self) -> Finish:
+    def run(self) -> FinishTask:
         """Explores to the end and returns how it ended."""
         command, event, outcome = Twist2(), None, None
         try:
@@ -100,10 +100,10 @@ class MappingRun:
                     self.now, base_in_map, odometry.base_in_odom, odometry.twist, scan
                 )
                 command, event = decision.command or Twist2(), _event_of(decision)
-                if isinstance(order, Finish):
+                if isinstance(order, FinishTask):
                     outcome = order
                 elif self.now > LONGEST_SECONDS:
-                    outcome = Finish(False, f"not done within {LONGEST_SECONDS:g} simulated seconds")
+                    outcome = FinishTask(False, f"not done within {LONGEST_SECONDS:g} simulated seconds")
         finally:
             self._simulation.close()
         return outcome
@@ -142,10 +142,10 @@ class MappingRun:
 def _event_of(decision: Decision):
     if decision.status is Status.SUCCEEDED:
         return GoalReached()
-    return GoalRefused(decision.text) if decision.status is Status.ABORTED else None
+    return GoalFailed(decision.text) if decision.status is Status.ABORTED else None
 
 
-def judge(run: MappingRun, end: Finish, score: MapScore, seed: int, cpu: float, mission) -> Mapped:
+def judge(run: MappingRun, end: FinishTask, score: MapScore, seed: int, cpu: float, mission) -> Mapped:
     way_home = run.base_in_world.distance_to(Pose2())
     estimated = run.mapper.key_poses
     errors = np.hypot(*(estimated[:, :2] - np.array(run.true_keys)[:, :2]).T)

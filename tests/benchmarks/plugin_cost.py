@@ -23,7 +23,7 @@ from move_base_lite import Navigator, load_settings
 from move_base_lite.control.guarded import GuardedLocalPlanner
 from move_base_lite.warmup import warm_up
 from planar import Pose2, load_map
-from planar.plugins import find
+from planar.plugins import load_object
 from sim_bridge import Simulation, load_world
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -70,7 +70,7 @@ def measure(name: str) -> Measurement:
     load_settings(CONFIG)
     load_ms -= 1e3 * (time.perf_counter() - begun)
     warm_up(settings)
-    kind, spent = find(name), Spent()
+    kind, spent = load_object(name), Spent()
     with patch.object(kind, "follow", spent.timed("planner", kind.follow)), patch.object(
         GuardedLocalPlanner, "follow", spent.timed("guarded", GuardedLocalPlanner.follow)
     ), patch.object(Navigator, "tick", spent.timed("tick", Navigator.tick)):

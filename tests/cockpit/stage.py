@@ -12,7 +12,7 @@ from std_srvs.srv import SetBool, SetBoolResponse
 from tf2_msgs.msg import TFMessage
 
 from planar.config.parameters import POSITIVE, parameter
-from planar_ros.node.reconfigure import Reconfiguration
+from planar_ros.node.reconfigure import SettingsReconfigureServer
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Stage:
         self._told = rospy.Publisher("/told", String, queue_size=5, latch=True)
         rospy.Subscriber("/words", String, lambda message: self._told.publish(f"heard {message.data}"))
         rospy.Service("/switch", SetBool, self._switch)
-        Reconfiguration(self.settings, self._tune)
+        SettingsReconfigureServer(self.settings, self._tune)
 
     def run(self):
         for turn in range(10**9):

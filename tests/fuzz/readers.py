@@ -66,7 +66,7 @@ def _map_image(path: Path) -> object:
     """With a lower limit of pixels: a file of a few bytes with a hundred million takes a second."""
     from planar.maps import map_file
 
-    with patch.object(map_file, "MOST_PIXELS", 1_000_000):
+    with patch.object(map_file, "MAX_PIXELS", 1_000_000):
         return map_file.cells_from_image(path)
 
 
@@ -315,9 +315,9 @@ RESULT = json.dumps(
 
 
 def _bag(path: Path) -> object:
-    from planar_ros.bags.bag import Bag
+    from planar_ros.bags.bag import BagReader
 
-    bag = Bag(path)
+    bag = BagReader(path)
     return [played for topic in bag.types for played in bag.messages([topic])]
 
 

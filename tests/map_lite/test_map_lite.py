@@ -15,7 +15,7 @@ from nav_msgs.msg import MapMetaData, OccupancyGrid
 from nav_msgs.srv import GetMap
 
 from planar import UNKNOWN, Pose2, grid_from_picture, load_map, save_map
-from planar_ros.calls.load_map import LoadMap, LoadResult
+from planar_ros.calls.load_map import LoadMap, LoadMapResult
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg, grid_to_msg
 
 HOME = grid_from_picture("####\n#..#\n#?.#\n####", resolution=0.5, origin=Pose2(-1.0, -2.0, 0.5))
@@ -80,20 +80,20 @@ class MapLiteTest(unittest.TestCase):
         change_map = rospy.ServiceProxy("change_map", LoadMap)
         other = save_map(OTHER, self.folder / "other")
         response = change_map(f"file://{other}")
-        self.assertEqual(response.result, LoadResult.SUCCESS)
+        self.assertEqual(response.result, LoadMapResult.SUCCESS)
         self.assert_same(response.map, OTHER)
         self.assert_same(rospy.wait_for_message("map", OccupancyGrid, 5.0), OTHER)
 
         nowhere = change_map(str(self.folder / "nowhere.yaml"))
-        self.assertEqual(nowhere.result, LoadResult.MAP_DOES_NOT_EXIST)
+        self.assertEqual(nowhere.result, LoadMapResult.MAP_DOES_NOT_EXIST)
         nobody = change_map("package://no_such_package/a.yaml")
-        self.assertEqual(nobody.result, LoadResult.MAP_DOES_NOT_EXIST)
+        self.assertEqual(nobody.result, LoadMapResult.MAP_DOES_NOT_EXIST)
         (self.folder / "home.pgm").unlink()
         imageless = change_map(str(self.yaml))
-        self.assertEqual(imageless.result, LoadResult.INVALID_MAP_DATA)
+        self.assertEqual(imageless.result, LoadMapResult.INVALID_MAP_DATA)
         self.yaml.write_text("image: home.pgm\n")
         incomplete = change_map(str(self.yaml))
-        self.assertEqual(incomplete.result, LoadResult.INVALID_MAP_METADATA)
+        self.assertEqual(incomplete.result, LoadMapResult.INVALID_MAP_METADATA)
         self.assert_same(rospy.ServiceProxy("static_map", GetMap)().map, OTHER)
 
     def test_an_image_with_a_resolution_is_a_map_too(self):

@@ -4,7 +4,7 @@
 import rospy
 from std_msgs.msg import String
 
-from planar_ros.node.last_words import wait_until_heard
+from planar_ros.node.last_words import flush_and_close
 from planar_ros.node.shell import run
 
 
@@ -12,7 +12,7 @@ def start():
     words = rospy.Publisher("words", String, queue_size=10, latch=True)
     words.publish("nearly")
     words.publish(f"delivered {rospy.get_param('~number')}")
-    wait_until_heard(words)
+    flush_and_close(words)
     rospy.signal_shutdown("all is said")
 
 

@@ -4,14 +4,14 @@
 import rospy
 from std_msgs.msg import String
 
-from planar_ros.node.last_words import say_at_end
+from planar_ros.node.last_words import publish_on_shutdown
 from planar_ros.node.shell import run
 
 
 def start():
     words = rospy.Publisher("farewell", String, queue_size=10, latch=True)
     words.publish("here")
-    say_at_end(words, String("gone"))
+    publish_on_shutdown(words, String("gone"))
     return words
 
 

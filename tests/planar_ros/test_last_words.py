@@ -15,7 +15,7 @@ from std_msgs.msg import String
 from waiting import wait_until
 
 from planar_ros.calls.actions import KILLED_TEXT, goal_is_over, server_is_ready
-from planar_ros.node.last_words import PATIENCE_SECONDS, wait_until_heard
+from planar_ros.node.last_words import PATIENCE_SECONDS, flush_and_close
 
 TIMES = 10
 
@@ -71,7 +71,7 @@ class LastWordsTest(unittest.TestCase):
             listener.kill()
         wait_until("its end", lambda: not publisher.get_num_connections())
         started = time.monotonic()
-        wait_until_heard(publisher)
+        flush_and_close(publisher)
         self.assertLess(time.monotonic() - started, PATIENCE_SECONDS / 2)
 
 

@@ -13,7 +13,7 @@ from std_msgs.msg import String
 from tf2_msgs.msg import TFMessage
 from waiting import wait_until
 
-from planar_ros.step import Step
+from planar_ros.step import LockstepClient
 
 # Wall seconds, longer than an answer may take.
 HELD_UP = 8.0
@@ -22,7 +22,7 @@ HELD_UP = 8.0
 class TestFirstWords(unittest.TestCase):
     def test_static_transforms_are_there_at_the_first_moment_however_late_their_node_starts(self):
         frames, moments = set(), []
-        step = Step.of_node()
+        step = LockstepClient.of_node()
 
         def keep(message):
             frames.update(each.child_frame_id for each in message.transforms)

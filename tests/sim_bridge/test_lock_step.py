@@ -12,14 +12,14 @@ from std_msgs.msg import Float64
 from waiting import wait_until
 
 from planar_ros.messages.conversion import LaserScanArrays
-from planar_ros.node.progress import Progress
+from planar_ros.node.progress import ProgressPublisher
 
 PERIOD = 0.1
 
 
 class TestLockStep(unittest.TestCase):
     def test_a_slow_node_loses_no_scan_and_a_silent_one_is_not_waited_for_for_ever(self):
-        progress, stamps, factors, ahead = Progress(), [], [], []
+        progress, stamps, factors, ahead = ProgressPublisher(), [], [], []
         working = True
 
         def work(scan):

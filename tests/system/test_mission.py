@@ -9,7 +9,7 @@ import rostest
 
 from home_service.judging.verdict import ERRAND, MARKERS, judge
 from home_service.ros.referee import Referee
-from planar.maps.places import places_of_errand
+from planar.maps.places import load_pickup_and_dropoff
 
 SIMULATED_DEADLINE = 240.0
 WALL_DEADLINE = 240.0
@@ -18,7 +18,7 @@ EXPECTED = {ERRAND, MARKERS}
 
 class MissionTest(unittest.TestCase):
     def test_the_object_is_fetched_and_delivered(self):
-        places = {place.name: place for place in places_of_errand(rospy.get_param("~zones_file"))}
+        places = {place.name: place for place in load_pickup_and_dropoff(rospy.get_param("~zones_file"))}
         referee = Referee(places, print)
         referee.start()
         wall_deadline = time.monotonic() + WALL_DEADLINE

@@ -21,7 +21,7 @@ from waiting import PATIENCE_SECONDS, wait_until
 from planar import Pose2
 from planar_ros.calls.actions import server_is_ready
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
-from planar_ros.node.listeners import is_heard
+from planar_ros.node.listeners import has_all_subscribers
 
 BRING_UP_SECONDS, EXIT_SECONDS = 90.0, 10.0
 START, GOAL = Pose2(-2.0, -0.5), Pose2(0.55, -1.8)
@@ -90,7 +90,7 @@ class TurtleBot3Test(unittest.TestCase):
         drawn.header.frame_id = marker.header.frame_id
         told = []
         rospy.Subscriber("cmd_vel", Twist, lambda twist: told.append((twist.linear.x, twist.angular.z)))
-        wait_until("somebody to hear of it", lambda: is_heard(feedback), PATIENCE_SECONDS)
+        wait_until("somebody to hear of it", lambda: has_all_subscribers(feedback), PATIENCE_SECONDS)
         before = self._truth()
 
         def has_gone():

@@ -63,8 +63,8 @@ class Publisher:
 def markers(monkeypatch):
     bodies = SimpleNamespace(follow=lambda objects: {})
     monkeypatch.setattr(mission_markers, "MissionBodies", lambda settings: bodies)
-    monkeypatch.setattr(mission_markers, "Waiting", lambda conditions: None)
-    monkeypatch.setattr(mission_markers, "listen", lambda *_, **__: None)
+    monkeypatch.setattr(mission_markers, "ReadinessMonitor", lambda conditions: None)
+    monkeypatch.setattr(mission_markers, "subscribe", lambda *_, **__: None)
     monkeypatch.setattr(mission_markers.rospy, "Publisher", Publisher)
     return MissionMarkers(MarkerSettings(zones_file="none"))
 

@@ -2,9 +2,9 @@ import pytest
 
 from add_markers import CarriedParcel, MarkerSettings, TimedParcel
 from planar import Pose2, SettingsError
-from planar.maps.places import Place
+from planar.maps.places import NamedPlace
 
-PICKUP, DROPOFF = Place("pickup", Pose2(2.0, 3.0), 0.4), Place("dropoff", Pose2(-2.0, 1.0), 0.4)
+PICKUP, DROPOFF = NamedPlace("pickup", Pose2(2.0, 3.0), 0.4), NamedPlace("dropoff", Pose2(-2.0, 1.0), 0.4)
 ELSEWHERE = Pose2(0.0, 0.0)
 
 

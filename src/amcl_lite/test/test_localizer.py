@@ -10,7 +10,7 @@ from amcl_lite.filter.particle_filter import ParticleFilter
 from amcl_lite.filter.particles import equally_weighted
 from amcl_lite.localizer import can_start_from
 from planar import OccupancyGrid, Pose2, Scan, grid_from_picture, wrap
-from planar.geometry.limits import FARTHEST
+from planar.geometry.limits import MAX_COORDINATE
 from planar.geometry.ray_casting import cast_rays
 
 HOME = """
@@ -287,10 +287,10 @@ def test_odometry_that_jumps_beyond_all_measure_leaves_the_robot_within_reach():
     localizer = started(toy)
     toy.base_in_odom = Pose2(-9e5, 9e5, 0.8)
     estimate = localizer.update(toy.base_in_odom, toy.scan())
-    assert np.abs(localizer.particles.poses[:, :2]).max() <= FARTHEST
+    assert np.abs(localizer.particles.poses[:, :2]).max() <= MAX_COORDINATE
     assert not can_start_from(estimate.base_in_map, estimate.covariance)
     localizer.reconfigure(replace(TURTLEBOT, max_particles=1000))
-    assert np.abs(localizer.particles.poses[:, :2]).max() <= FARTHEST
+    assert np.abs(localizer.particles.poses[:, :2]).max() <= MAX_COORDINATE
     localizer.set_pose(toy.base_in_map, np.diag((0.04, 0.04, 0.02)))
     assert tracking_errors(toy, localizer, THROUGH_ALL_ROOMS[:20])[:, 0].max() < 0.15
 

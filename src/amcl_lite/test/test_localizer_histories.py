@@ -13,7 +13,7 @@ from amcl_lite import LocalizationError, Localizer, LocalizerSettings
 from amcl_lite.config import InitialPose
 from amcl_lite.localizer import can_start_from
 from planar import OccupancyGrid, Pose2, Scan, grid_from_picture
-from planar.geometry.limits import FARTHEST
+from planar.geometry.limits import MAX_COORDINATE
 from planar.geometry.ray_casting import cast_rays
 
 ROOM_PICTURE = """
@@ -53,7 +53,7 @@ COVARIANCES = {
     "a line": np.array(((1.0, 1.0, 0.0), (1.0, 1.0, 0.0), (0.0, 0.0, 0.01))),
     "lopsided": np.array(((0.1, 5.0, 0.0), (0.0, 0.1, 0.0), (0.0, 0.0, 0.1))),
     "negative": -np.eye(3),
-    "huge": np.diag((FARTHEST, FARTHEST, FARTHEST)),
+    "huge": np.diag((MAX_COORDINATE, MAX_COORDINATE, MAX_COORDINATE)),
     "not a number": np.full((3, 3), math.nan),
     "without end": np.diag((math.inf, 1.0, 1.0)),
 }

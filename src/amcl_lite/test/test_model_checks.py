@@ -9,7 +9,7 @@ import pytest
 from amcl_lite import LocalizerSettings
 from amcl_lite.check import KITS, MOTION_CHECKS, SENSOR_CHECKS
 from amcl_lite.config import MOTION_MODELS, SENSOR_MODELS
-from planar.contract_check import run
+from planar.contract_check import run_checks
 
 
 class Indifferent:
@@ -76,10 +76,10 @@ def test_a_motion_model_of_amcl_passes(model, check):
     ],
 )
 def test_what_a_model_does_not_do_is_said(model, said, capsys):
-    assert run("amcl_lite", KITS, [f"own.erring/{model}"]) == 1
+    assert run_checks("amcl_lite", KITS, [f"own.erring/{model}"]) == 1
     assert said in capsys.readouterr().out
 
 
 def test_what_is_neither_model_is_refused_with_what_it_lacks(capsys):
-    assert run("amcl_lite", KITS, ["own.erring/Indefinite"]) == 2
+    assert run_checks("amcl_lite", KITS, ["own.erring/Indefinite"]) == 2
     assert "there is no Indefinite in" in capsys.readouterr().err

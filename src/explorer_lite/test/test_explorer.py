@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from explorer_lite import Explorer, ExplorerSettings, ExplorerState, Finish, GoalReached, GoalRefused, GoTo
+from explorer_lite import Explorer, ExplorerSettings, ExplorerState, FinishTask, GoalFailed, GoalReached, GoTo
 from planar import Pose2, SettingsError, grid_from_picture
 
 SETTINGS = ExplorerSettings(
@@ -57,7 +57,7 @@ def test_the_robot_is_sent_to_the_frontier_and_home_when_all_is_known():
     assert task.advance(5.0, grid(CLOSED), Pose2(3.0, 1.25)) == GoTo(ROBOT)
     assert task.state is ExplorerState.RETURNING
     end = task.advance(20.0, None, ROBOT, GoalReached())
-    assert end == Finish(True, "explored 6.0 m2")
+    assert end == FinishTask(True, "explored 6.0 m2")
     assert task.state is ExplorerState.DONE
     assert task.advance(21.0, None, ROBOT) is None
 
@@ -74,7 +74,7 @@ def test_a_sensor_that_sees_little_at_once_is_turned_before_the_robot_drives():
 
 
 def test_without_a_way_home_asked_for_it_ends_where_all_is_known():
-    assert explorer(return_to_start=False).advance(0.0, grid(CLOSED), ROBOT) == Finish(
+    assert explorer(return_to_start=False).advance(0.0, grid(CLOSED), ROBOT) == FinishTask(
         True, "explored 6.0 m2"
     )
 
@@ -107,7 +107,7 @@ def test_a_frontier_that_stays_is_tried_from_elsewhere_and_then_given_up():
     assert second.pose.distance_to(first.pose) > SETTINGS.blacklist_radius
     assert task.advance(20.0, None, second.pose, GoalReached()) is None
     end = task.advance(22.0, room, second.pose)
-    assert end == Finish(True, "explored 4.5 m2, 1 unreachable frontier left")
+    assert end == FinishTask(True, "explored 4.5 m2, 1 unreachable frontier left")
     assert len(task.unreachable) == 1
 
 
@@ -123,7 +123,7 @@ def test_at_a_goal_a_map_is_waited_for_but_not_for_ever():
 def test_a_refused_goal_is_followed_by_another_at_once():
     task = explorer()
     first = task.advance(0.0, grid(OPEN_TO_THE_RIGHT), ROBOT)
-    second = task.advance(5.0, None, ROBOT, GoalRefused("Failed to find a valid plan."))
+    second = task.advance(5.0, None, ROBOT, GoalFailed("Failed to find a valid plan."))
     assert second.pose.distance_to(first.pose) > SETTINGS.blacklist_radius
 
 
@@ -140,8 +140,8 @@ def test_a_goal_that_comes_no_nearer_is_given_up():
 def test_a_robot_that_does_not_get_away_ends_the_exploration():
     task = explorer(attempts=100, blacklist_radius=0.1)
     task.advance(0.0, grid(OPEN_TO_THE_RIGHT), ROBOT)
-    orders = [task.advance(1.0 + i, None, ROBOT, GoalRefused("blocked")) for i in range(8)]
-    assert orders[-1] == Finish(False, "the robot does not get away from here: blocked")
+    orders = [task.advance(1.0 + i, None, ROBOT, GoalFailed("blocked")) for i in range(8)]
+    assert orders[-1] == FinishTask(False, "the robot does not get away from here: blocked")
 
 
 def test_a_frontier_that_opens_on_the_way_home_is_explored_too():
@@ -155,10 +155,10 @@ def test_a_frontier_that_opens_on_the_way_home_is_explored_too():
 def test_the_way_home_is_tried_again_before_it_fails():
     task = explorer(attempts=2)
     task.advance(0.0, grid(CLOSED), ROBOT)
-    assert task.advance(1.0, None, ROBOT, GoalRefused("blocked")) == GoTo(ROBOT)
-    assert task.advance(2.0, None, ROBOT, GoalRefused("blocked")) == GoTo(ROBOT)
-    end = task.advance(3.0, None, ROBOT, GoalRefused("blocked"))
-    assert end == Finish(False, "explored 6.0 m2, but there is no way back to the start: blocked")
+    assert task.advance(1.0, None, ROBOT, GoalFailed("blocked")) == GoTo(ROBOT)
+    assert task.advance(2.0, None, ROBOT, GoalFailed("blocked")) == GoTo(ROBOT)
+    end = task.advance(3.0, None, ROBOT, GoalFailed("blocked"))
+    assert end == FinishTask(False, "explored 6.0 m2, but there is no way back to the start: blocked")
 
 
 def test_a_robot_in_no_free_space_waits_for_a_better_map_but_not_for_ever():
@@ -167,7 +167,7 @@ def test_a_robot_in_no_free_space_waits_for_a_better_map_but_not_for_ever():
     assert task.advance(0.0, unknown, Pose2(10.0, 10.0)) is None
     assert task.advance(19.0, unknown, Pose2(10.0, 10.0)) is None
     end = task.advance(21.0, unknown, Pose2(10.0, 10.0))
-    assert end == Finish(False, "the map shows no free space around the robot")
+    assert end == FinishTask(False, "the map shows no free space around the robot")
 
 
 def test_a_robot_that_took_long_to_arrive_may_look_about_there():

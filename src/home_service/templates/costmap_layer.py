@@ -5,14 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from move_base_lite import CostmapWindow, Layer, LayerContext, LayerSettings
-from planar.config.parameters import Bounds, parameter
+from planar.config.parameters import Interval, parameter
 
 
 @dataclass(frozen=True)
 class Settings(LayerSettings):
     """Parameters of its own; in the namespace that plugins names."""
 
-    least: int = parameter(30, "cost of any cell", bounds=Bounds(0, 252, "0 to 252"))
+    least: int = parameter(30, "cost of any cell", bounds=Interval(0, 252, "0 to 252"))
 
 
 class CLASS(Layer):

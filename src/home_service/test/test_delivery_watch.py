@@ -1,10 +1,10 @@
 from home_service.judging.delivery_watch import DeliveryWatch
 from pick_objects import Delivery, Stage
 from planar import Pose2
-from planar.maps.places import Place
+from planar.maps.places import NamedPlace
 
-KITCHEN = Place("kitchen", Pose2(0.0, 0.0))
-DESK = Place("desk", Pose2(5.0, 0.0), approaches=(Pose2(5.0, 1.0),))
+KITCHEN = NamedPlace("kitchen", Pose2(0.0, 0.0))
+DESK = NamedPlace("desk", Pose2(5.0, 0.0), approaches=(Pose2(5.0, 1.0),))
 TEA = Delivery("tea", "cup", "kitchen", "desk")
 
 

@@ -8,9 +8,9 @@ from home_service.judging.verdict import ERRAND, OBJECTS
 from home_service.ros.referee import Referee
 from pick_objects import Stage
 from planar import Pose2
-from planar.maps.places import Place
+from planar.maps.places import NamedPlace
 
-PLACES = {name: Place(name, Pose2(x, 0.0)) for name, x in (("hall", 2.0), ("door", 5.0))}
+PLACES = {name: NamedPlace(name, Pose2(x, 0.0)) for name, x in (("hall", 2.0), ("door", 5.0))}
 
 
 @pytest.fixture

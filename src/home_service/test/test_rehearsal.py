@@ -6,7 +6,7 @@ from home_service.rehearsal import Conditions, Rehearsal
 from home_service.rehearsal.twins import TAIL
 from pick_objects import errand_mission, parse_mission
 from planar import load_map
-from planar.maps.places import places_of_errand
+from planar.maps.places import load_pickup_and_dropoff
 from sim_bridge import load_world, robot_named
 from sim_bridge.faults import Fault
 
@@ -14,7 +14,7 @@ MAP = Path(__file__).resolve().parents[3] / "map"
 
 
 def rehearsed(seed, *faults):
-    errand = errand_mission(*places_of_errand(MAP / "zones.yaml"))
+    errand = errand_mission(*load_pickup_and_dropoff(MAP / "zones.yaml"))
     world, grid = load_world(MAP / "home.world"), load_map(MAP / "home.yaml")
     stage = (world, robot_named("turtlebot_lidar"), grid, errand)
     return Rehearsal(*stage, seed=seed, conditions=Conditions(faults=faults)).run(240.0)
@@ -46,7 +46,7 @@ def test_a_robot_that_is_carried_away_before_it_arrives_claims_nothing_that_is_n
 
 
 def test_a_mission_that_takes_too_long_fails_and_says_so():
-    errand = errand_mission(*places_of_errand(MAP / "zones.yaml"))
+    errand = errand_mission(*load_pickup_and_dropoff(MAP / "zones.yaml"))
     world, grid = load_world(MAP / "home.world"), load_map(MAP / "home.yaml")
     run = Rehearsal(world, robot_named("turtlebot_lidar"), grid, errand, seed=7).run(simulated_timeout=2.0)
     assert not run.verdict.success

@@ -13,7 +13,7 @@ from home_service.result import Result, in_few_words
 from home_service.ros.following import FollowWatch
 from home_service.ros.referee import Referee
 from planar import FileWriteError, Pose2
-from planar.maps.places import Place
+from planar.maps.places import NamedPlace
 from run_report import RunRecord, summary
 from supervision import run_folder
 
@@ -29,7 +29,7 @@ VERDICT = {
 @pytest.fixture
 def referee(monkeypatch):
     monkeypatch.setattr("rospy.Subscriber", lambda *_, **__: None)
-    referee = Referee({"hall": Place("hall", Pose2())}, say=lambda line: None)
+    referee = Referee({"hall": NamedPlace("hall", Pose2())}, say=lambda line: None)
     referee.start()
     referee.ledger.deliveries.append(DeliveryRecord("post", "letter", "hall", "door", pickup_error=0.12345))
     return referee

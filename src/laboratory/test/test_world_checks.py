@@ -14,8 +14,8 @@ from laboratory.generators.homes import Homes
 from laboratory.worlds.solids import FLOOR, wall
 from laboratory.worlds.source import Arena
 from planar import OccupancyGrid, Pose2
-from planar.contract_check import run
-from planar.maps.places import Place
+from planar.contract_check import run_checks
+from planar.maps.places import NamedPlace
 from sim_bridge.world import World
 
 
@@ -36,7 +36,7 @@ class ByChance:
 class InTheWall:
     def arena(self, seed: int) -> Arena:
         grid = OccupancyGrid(np.full((20, 20), 100, np.int8), 0.1)
-        return Arena(World("room", (FLOOR,)), grid, places=(Place("desk", Pose2(1.0, 1.0)),))
+        return Arena(World("room", (FLOOR,)), grid, places=(NamedPlace("desk", Pose2(1.0, 1.0)),))
 
 
 @dataclass(frozen=True)
@@ -66,10 +66,10 @@ def test_a_generator_of_the_project_passes(source, check):
     ],
 )
 def test_what_a_generator_does_not_do_is_said(generator, said, capsys):
-    assert run("laboratory", KITS, [f"own.erring/{generator}"]) == 1
+    assert run_checks("laboratory", KITS, [f"own.erring/{generator}"]) == 1
     assert said in capsys.readouterr().out
 
 
 def test_a_generator_without_values_of_its_own_cannot_be_tried(capsys):
-    assert run("laboratory", KITS, ["own.erring/Needs"]) == 2
+    assert run_checks("laboratory", KITS, ["own.erring/Needs"]) == 2
     assert "own.erring/Needs cannot be tried: " in capsys.readouterr().err

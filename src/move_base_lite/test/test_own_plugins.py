@@ -7,7 +7,7 @@ from robot_in_picture import PRESET, Robot, drive_to_end, two_rooms
 from move_base_lite import Navigator, Status, settings_from_parameters
 from move_base_lite.check import KITS
 from planar import Pose2, SettingsError
-from planar.contract_check import run
+from planar.contract_check import run_checks
 
 GRID = two_rooms(door=0.9)
 
@@ -110,12 +110,12 @@ def test_no_goal_is_pursued_while_a_layer_fails_and_the_robot_stands():
 
 
 def test_the_check_says_what_a_plugin_does_not_do(capsys):
-    assert run("move_base_lite", KITS, ["own.faulty/Rushes"]) == 1
+    assert run_checks("move_base_lite", KITS, ["own.faulty/Rushes"]) == 1
     printed = capsys.readouterr().out
     assert "FAIL  It reaches the goal and stops there without a collision" in printed
     assert "own.faulty/Rushes: 0 of 6 checks passed" in printed
 
 
 def test_the_check_refuses_what_is_no_plugin(capsys):
-    assert run("move_base_lite", KITS, ["own.faulty/NoFollow"]) == 2
+    assert run_checks("move_base_lite", KITS, ["own.faulty/NoFollow"]) == 2
     assert "is no local planner: it has no follow(situation, plan, limits)" in capsys.readouterr().err

@@ -1,6 +1,6 @@
 """A robot does not claim to have arrived where it is not, and does not despair where it is."""
 
-from pick_objects import Arrival, Fit, GoalLeft, GoalReached, GoalRefused, SendAgain
+from pick_objects import Arrival, Fit, GoalFailed, GoalReached, RobotDisplaced, SendAgain
 from planar import Pose2
 
 GOOD, BAD = 0.9, 0.05
@@ -26,7 +26,7 @@ def test_a_robot_that_has_arrived_and_then_sees_something_else_has_left():
     assert [arrival.judge(None, NEAR, fit, 1.0) for fit in (None, GOOD, BAD, BAD)] == [
         None,
         None,
-        GoalLeft(),
+        RobotDisplaced(),
         None,
     ]
 
@@ -38,7 +38,7 @@ def test_a_robot_that_has_never_been_sure_of_having_arrived_has_not_left():
 
 
 def test_what_has_not_been_reached_is_as_it_was_told():
-    refused, arrival = GoalRefused("blocked"), Arrival(GOAL)
+    refused, arrival = GoalFailed("blocked"), Arrival(GOAL)
     assert arrival.judge(None, NEAR, BAD, 0.0) is None
     assert arrival.judge(refused, NEAR, BAD, 0.1) is refused
 
@@ -54,7 +54,7 @@ def in_doubt(standing=GOOD, found=NEAR):
 
 
 def has_not_arrived(told):
-    return isinstance(told, GoalRefused) and "does not fit the map" in told.reason
+    return isinstance(told, GoalFailed) and "does not fit the map" in told.reason
 
 
 def test_in_doubt_the_robot_stands_and_is_sent_there_again():

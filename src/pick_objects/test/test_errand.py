@@ -5,22 +5,22 @@ from pick_objects import (
     Errand,
     ErrandSettings,
     ErrandState,
-    Finish,
-    GoalLeft,
+    FinishTask,
+    GoalFailed,
     GoalReached,
-    GoalRefused,
     GoTo,
     MeasureWays,
     Mission,
     MissionError,
+    RobotDisplaced,
     Stage,
     WaysMeasured,
     errand_mission,
 )
 from planar import Pose2, SettingsError
-from planar.maps.places import Place
+from planar.maps.places import NamedPlace
 
-PICKUP, DROPOFF = Place("pickup", Pose2(2.0, 3.0)), Place("dropoff", Pose2(-2.0, 1.0))
+PICKUP, DROPOFF = NamedPlace("pickup", Pose2(2.0, 3.0)), NamedPlace("dropoff", Pose2(-2.0, 1.0))
 
 
 def errand(**settings):
@@ -35,7 +35,7 @@ def test_the_robot_is_sent_to_pickup_and_after_five_seconds_there_to_dropoff():
     assert task.state is ErrandState.PICKING_UP
     assert task.advance(24.9) is None
     assert task.advance(25.0) == GoTo(DROPOFF, 1)
-    assert task.advance(40.0, GoalReached()) == Finish(True, "delivered at place dropoff")
+    assert task.advance(40.0, GoalReached()) == FinishTask(True, "delivered at place dropoff")
     assert task.state is ErrandState.DELIVERED
     assert task.advance(41.0) is None
 
@@ -44,7 +44,7 @@ def test_a_robot_that_is_carried_away_while_it_picks_up_goes_back():
     task = errand(attempts=2)
     task.advance(0.0)
     task.advance(20.0, GoalReached())
-    assert task.advance(24.0, GoalLeft()) == GoTo(PICKUP, 1)
+    assert task.advance(24.0, RobotDisplaced()) == GoTo(PICKUP, 1)
     assert task.state is ErrandState.GOING_TO_PICKUP
     assert task.advance(25.0) is None
     assert task.advance(26.0, GoalReached()) is None
@@ -57,14 +57,14 @@ def test_who_is_carried_away_again_and_again_gives_up():
     task.advance(0.0)
     for now in (10.0, 20.0):
         task.advance(now, GoalReached())
-        order = task.advance(now + 1.0, GoalLeft())
-    assert order == Finish(False, "place pickup: carried away, or in doubt of it, 2 times")
+        order = task.advance(now + 1.0, RobotDisplaced())
+    assert order == FinishTask(False, "place pickup: carried away, or in doubt of it, 2 times")
 
 
 def test_a_refused_goal_is_tried_again_after_a_pause():
     task = errand(attempts=2, retry_seconds=1.0)
     task.advance(0.0)
-    assert task.advance(5.0, GoalRefused("blocked")) is None
+    assert task.advance(5.0, GoalFailed("blocked")) is None
     assert task.advance(5.9) is None
     assert task.advance(6.0) == GoTo(PICKUP, 2)
 
@@ -72,12 +72,14 @@ def test_a_refused_goal_is_tried_again_after_a_pause():
 def test_the_last_refusal_ends_the_errand_with_place_and_reason():
     task = errand(attempts=1)
     task.advance(0.0)
-    order = task.advance(5.0, GoalRefused("Failed to find a valid plan."))
-    assert order == Finish(False, "place pickup not reached after 1 attempt: Failed to find a valid plan.")
+    order = task.advance(5.0, GoalFailed("Failed to find a valid plan."))
+    assert order == FinishTask(
+        False, "place pickup not reached after 1 attempt: Failed to find a valid plan."
+    )
     assert task.state is ErrandState.FAILED
 
 
-TAKEN_OVER = GoalRefused("another goal was received", is_taken_over=True)
+TAKEN_OVER = GoalFailed("another goal was received", is_preempted=True)
 
 
 def test_goals_that_others_take_over_are_sent_again_and_are_no_attempts():
@@ -108,7 +110,7 @@ def test_a_goal_that_takes_too_long_counts_as_refused():
 def test_attempts_are_counted_for_each_place_anew():
     task = errand(attempts=2, retry_seconds=0.0, pickup_seconds=0.0)
     task.advance(0.0)
-    task.advance(1.0, GoalRefused("x"))
+    task.advance(1.0, GoalFailed("x"))
     assert task.advance(1.0) == GoTo(PICKUP, 2)
     task.advance(2.0, GoalReached())
     assert task.advance(2.0) == GoTo(DROPOFF, 1)
@@ -119,7 +121,7 @@ def test_senseless_patience_is_refused():
         errand(attempts=0)
 
 
-KITCHEN = Place("kitchen", Pose2(0.0, 0.0), approaches=(Pose2(0.0, 1.0), Pose2(1.0, 0.0)))
+KITCHEN = NamedPlace("kitchen", Pose2(0.0, 0.0), approaches=(Pose2(0.0, 1.0), Pose2(1.0, 0.0)))
 PLACES = {place.name: place for place in (KITCHEN, PICKUP, DROPOFF)}
 TEA = Delivery("tea", "cup", "kitchen", "pickup")
 POST = Delivery("post", "letter", "dropoff", "kitchen")
@@ -139,10 +141,10 @@ def play(task, blocked=(), event=None, limit=100):
         event = None
         if order is not None:
             orders.append(order)
-        if isinstance(order, Finish):
+        if isinstance(order, FinishTask):
             return orders
         if isinstance(order, GoTo):
-            event = GoalRefused("blocked") if order.pose in blocked else GoalReached()
+            event = GoalFailed("blocked") if order.pose in blocked else GoalReached()
     raise AssertionError(f"not finished: {orders}")
 
 
@@ -154,7 +156,7 @@ def test_deliveries_are_made_one_after_the_other():
     task = mission(TEA, POST)
     orders = play(task)
     assert [order.place.name for order in orders[:-1]] == ["kitchen", "pickup", "dropoff", "kitchen"]
-    assert orders[-1] == Finish(True, "2 of 2 delivered")
+    assert orders[-1] == FinishTask(True, "2 of 2 delivered")
     assert task.whereabouts["cup"].place == "pickup"
     assert task.progress == 1.0
 
@@ -213,7 +215,7 @@ def test_a_cancelled_delivery_is_left_out_and_the_rest_is_made():
     task.cancel("tea")
     assert task.advance(3.0) == GoTo(DROPOFF, 1)
     assert not task.whereabouts["cup"].is_carried
-    assert play(task, event=GoalReached())[-1] == Finish(True, "1 of 2 delivered, 1 cancelled")
+    assert play(task, event=GoalReached())[-1] == FinishTask(True, "1 of 2 delivered, 1 cancelled")
 
 
 @pytest.mark.parametrize("steps", range(8))
@@ -224,7 +226,7 @@ def test_a_mission_can_be_cancelled_in_every_state(steps):
         task.advance(float(now), event)
     task.cancel()
     order = task.advance(float(steps))
-    assert isinstance(order, Finish)
+    assert isinstance(order, FinishTask)
     assert not order.success
     assert task.state is ErrandState.CANCELLED
     assert not any(where.is_carried for where in task.whereabouts.values())
@@ -246,7 +248,7 @@ def test_a_delivery_can_be_added_and_senseless_ones_are_refused():
             task.add(wrong)
     with pytest.raises(MissionError, match="there is no delivery milk"):
         task.cancel("milk")
-    assert play(task, event=GoalReached())[-1] == Finish(True, "2 of 2 delivered")
+    assert play(task, event=GoalReached())[-1] == FinishTask(True, "2 of 2 delivered")
 
 
 def test_a_delivery_has_its_own_time_out():

@@ -12,9 +12,9 @@ from pick_objects import (
     Errand,
     ErrandSettings,
     ErrandState,
-    Finish,
+    FinishTask,
+    GoalFailed,
     GoalReached,
-    GoalRefused,
     GoTo,
     MeasureWays,
     Mission,
@@ -26,9 +26,9 @@ from pick_objects import (
 )
 from pick_objects.job import ENDED
 from planar import Pose2
-from planar.maps.places import Place
+from planar.maps.places import NamedPlace
 
-PLACES = {name: Place(name, Pose2(x, 0.0)) for x, name in enumerate(("kitchen", "hall", "bath", "bed"))}
+PLACES = {name: NamedPlace(name, Pose2(x, 0.0)) for x, name in enumerate(("kitchen", "hall", "bath", "bed"))}
 DELIVERIES = (
     Delivery("tea", "cup", "kitchen", "hall"),
     Delivery("post", "letter", "bath", "kitchen", goal_timeout=20.0),
@@ -62,7 +62,7 @@ class ErrandHistories(RuleBasedStateMachine):
         assert order is None or not is_over, "an errand that is over gives no more orders"
         if order is not None:
             self.goal = order
-        if isinstance(order, Finish):
+        if isinstance(order, FinishTask):
             self.goal, self.end = None, order
             assert order.success is (self.errand.state is ErrandState.DELIVERED)
 
@@ -86,7 +86,7 @@ class ErrandHistories(RuleBasedStateMachine):
     @precondition(lambda self: isinstance(self.goal, GoTo))
     @rule(
         event=st.sampled_from(
-            (GoalReached(), GoalReached(), GoalRefused("blocked"), GoalRefused("taken", True))
+            (GoalReached(), GoalReached(), GoalFailed("blocked"), GoalFailed("taken", True))
         )
     )
     def the_goal_ends(self, event):

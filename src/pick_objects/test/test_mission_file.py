@@ -2,7 +2,7 @@ import pytest
 
 from pick_objects import Delivery, ErrandSettings, load_mission, parse_mission
 from planar import Pose2, SettingsError, grid_from_picture
-from planar.maps.places import Place
+from planar.maps.places import NamedPlace
 
 GOOD = """\
 name: evening
@@ -22,7 +22,7 @@ deliveries:
   - {name: post, object: letter, from: desk, to: door, after: tea, goal_timeout: 30}
   - {name: back, object: cup, from: desk, to: kitchen}
 """
-DOOR = Place("door", Pose2(0.0, 2.0))
+DOOR = NamedPlace("door", Pose2(0.0, 2.0))
 
 
 def parse(text=GOOD, **known):

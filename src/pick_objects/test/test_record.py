@@ -7,7 +7,7 @@ import pytest
 from pick_objects import (
     Delivery,
     Errand,
-    Finish,
+    FinishTask,
     GoalReached,
     GoTo,
     Mission,
@@ -17,9 +17,9 @@ from pick_objects import (
     resumed,
 )
 from planar import Pose2
-from planar.maps.places import Place
+from planar.maps.places import NamedPlace
 
-A, B, C = (Place(name, Pose2(x, 0.0)) for name, x in (("a", 1.0), ("b", 2.0), ("c", 3.0)))
+A, B, C = (NamedPlace(name, Pose2(x, 0.0)) for name, x in (("a", 1.0), ("b", 2.0), ("c", 3.0)))
 PLACES = {place.name: place for place in (A, B, C)}
 FIRST, SECOND = Delivery("first", "cup", "a", "b"), Delivery("second", "book", "b", "c", after=("first",))
 MISSION = Mission("tidy up", PLACES, (FIRST, SECOND))
@@ -64,7 +64,7 @@ def test_what_has_been_delivered_stays_so_to_the_end():
     errand.advance(30.0)
     again = taken_up(errand)
     carry(again, 40.0)
-    assert again.advance(60.0, GoalReached()) == Finish(True, "2 of 2 delivered")
+    assert again.advance(60.0, GoalReached()) == FinishTask(True, "2 of 2 delivered")
 
 
 def test_a_delivery_that_was_added_is_not_forgotten():

@@ -1,14 +1,14 @@
 import pytest
 
-from planar.driving import DriveOutcome, DriveResult, GoalReached, GoalRefused
+from planar.driving import DriveOutcome, DriveResult, GoalFailed, GoalReached
 
 
 @pytest.mark.parametrize(
     "status, result",
     [
         ("SUCCEEDED", DriveResult.REACHED),
-        ("PREEMPTED", DriveResult.REPLACED),
-        ("RECALLED", DriveResult.REPLACED),
+        ("PREEMPTED", DriveResult.PREEMPTED),
+        ("RECALLED", DriveResult.PREEMPTED),
         ("ABORTED", DriveResult.FAILED),
         ("REJECTED", DriveResult.FAILED),
         ("LOST", DriveResult.FAILED),
@@ -20,6 +20,6 @@ def test_the_last_status_of_a_goal_says_how_the_drive_ended(status, result):
 
 def test_a_drive_that_did_not_arrive_is_refused_for_the_reason_told():
     assert DriveOutcome("SUCCEEDED", "Goal reached.").event == GoalReached()
-    assert DriveOutcome("ABORTED", "no way").event == GoalRefused("no way")
-    assert DriveOutcome("ABORTED", "").event == GoalRefused("ABORTED")
-    assert DriveOutcome("PREEMPTED", "").event == GoalRefused("PREEMPTED", is_taken_over=True)
+    assert DriveOutcome("ABORTED", "no way").event == GoalFailed("no way")
+    assert DriveOutcome("ABORTED", "").event == GoalFailed("ABORTED")
+    assert DriveOutcome("PREEMPTED", "").event == GoalFailed("PREEMPTED", is_preempted=True)

@@ -2,7 +2,7 @@ from dataclasses import dataclass
 
 import yaml
 
-from planar.config.listing import Section, yaml_of
+from planar.config.listing import Section, render_yaml
 from planar.config.parameters import POSITIVE, Parameter, check_parameters, parameter
 
 
@@ -26,7 +26,7 @@ FILE = Section("", Tea, about="Tea.")
 
 
 def test_a_file_tells_name_default_unit_and_meaning():
-    assert yaml_of(FILE) == (
+    assert render_yaml(FILE) == (
         "# Tea.\n"
         "draw_time: 3.0  # [min] how long it draws\n"
         "kind: green     # what is brewed: green, black\n"
@@ -38,7 +38,7 @@ def test_a_file_tells_name_default_unit_and_meaning():
 
 
 def test_an_heir_gives_another_default_and_keeps_the_rest():
-    assert "\nkind: black     # what is brewed: green, black\n" in yaml_of(Section("", BlackTea))
+    assert "\nkind: black     # what is brewed: green, black\n" in render_yaml(Section("", BlackTea))
 
 
 def test_sections_nest_repeat_each_other_and_take_the_values_of_objects():
@@ -47,9 +47,9 @@ def test_sections_nest_repeat_each_other_and_take_the_values_of_objects():
     house = Section("", hut, Section("shed", same_as="hut"))
     hut_in_file = {"stove": {"draw_time": 9.0, "kind": "black", "milk": False}}
     hut_in_file["cups"] = [{"size": 0.2}, {"size": 1e-5}]
-    assert yaml.safe_load(yaml_of(house)) == {"hut": hut_in_file, "shed": hut_in_file}
+    assert yaml.safe_load(render_yaml(house)) == {"hut": hut_in_file, "shed": hut_in_file}
 
 
 def test_a_long_meaning_goes_on_below():
-    lines = yaml_of(Section("", Parameter("cup", 1, "word " * 40))).splitlines()
+    lines = render_yaml(Section("", Parameter("cup", 1, "word " * 40))).splitlines()
     assert len(lines) == 2 and lines[1].startswith("        # word") and len(lines[0]) <= 110

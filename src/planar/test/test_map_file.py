@@ -15,7 +15,7 @@ from planar import (
     load_map,
     save_map,
 )
-from planar.geometry.grid import GridInBands
+from planar.geometry.grid import BandedGrid
 from planar.maps.map_file import cells_from_image
 
 GOOD = """image: a.pgm
@@ -46,7 +46,7 @@ def test_a_map_in_bands_is_saved_as_the_whole_one(tmp_path):
     whole = grid_from_picture("#.?\n..#\n??.\n.#.", resolution=0.1, origin=Pose2(-1.0, 2.0, 0.25))
     bands = iter([whole.cells[3:], whole.cells[1:3], whole.cells[:1]])
     save_map(whole, tmp_path / "whole")
-    save_map(GridInBands(whole.rows, whole.cols, whole.resolution, whole.origin, bands), tmp_path / "bands")
+    save_map(BandedGrid(whole.rows, whole.cols, whole.resolution, whole.origin, bands), tmp_path / "bands")
     assert (tmp_path / "bands.pgm").read_bytes() == (tmp_path / "whole.pgm").read_bytes()
     assert load_map(tmp_path / "bands.yaml").cells.tolist() == whole.cells.tolist()
 
@@ -60,7 +60,7 @@ def test_bands_that_fail_leave_the_old_map_alone(tmp_path):
     save_map(whole, tmp_path / "home")
     old = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
     with pytest.raises(KeyboardInterrupt):
-        save_map(GridInBands(2, 2, 1.0, Pose2(), bands()), tmp_path / "home")
+        save_map(BandedGrid(2, 2, 1.0, Pose2(), bands()), tmp_path / "home")
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == old
 
 

@@ -1,7 +1,7 @@
 import pytest
 
 from planar import Pose2, SettingsError, grid_from_picture
-from planar.maps.places import Place, load_places, places_of_errand, why_unreachable
+from planar.maps.places import NamedPlace, load_pickup_and_dropoff, load_places, unreachable_reason
 
 
 def write(folder, text):
@@ -12,7 +12,7 @@ def write(folder, text):
 
 def test_places_are_read_with_defaults(tmp_path):
     places = load_places(write(tmp_path, "a: {x: 1, y: 2.5}\nb: {x: 0, y: 0, yaw: 1.5, radius: 0.2}"))
-    assert places == {"a": Place("a", Pose2(1.0, 2.5)), "b": Place("b", Pose2(0.0, 0.0, 1.5), 0.2)}
+    assert places == {"a": NamedPlace("a", Pose2(1.0, 2.5)), "b": NamedPlace("b", Pose2(0.0, 0.0, 1.5), 0.2)}
 
 
 @pytest.mark.parametrize(
@@ -40,32 +40,32 @@ def test_a_missing_file_or_place_is_named(tmp_path):
     with pytest.raises(SettingsError, match="none.yaml: no such file"):
         load_places(tmp_path / "none.yaml")
     with pytest.raises(SettingsError, match="places.yaml: place dropoff is missing"):
-        places_of_errand(write(tmp_path, "pickup: {x: 1, y: 2}"))
+        load_pickup_and_dropoff(write(tmp_path, "pickup: {x: 1, y: 2}"))
 
 
 @pytest.mark.parametrize(
     "x, reason", [(0.5, "obstacle"), (1.5, None), (2.5, "knows nothing"), (7.0, "outside the map")]
 )
 def test_places_that_no_robot_can_reach_are_told_from_free_ones(x, reason):
-    answer = why_unreachable(Place("shelf", Pose2(x, 0.5)), grid_from_picture("#.?"))
+    answer = unreachable_reason(NamedPlace("shelf", Pose2(x, 0.5)), grid_from_picture("#.?"))
     assert answer is None if reason is None else ("place shelf" in answer and reason in answer)
 
 
 def test_a_robot_within_the_radius_is_there():
-    place = Place("a", Pose2(1.0, 1.0), 0.5)
+    place = NamedPlace("a", Pose2(1.0, 1.0), 0.5)
     assert place.holds(Pose2(1.3, 1.3, 2.0))
     assert not place.holds(Pose2(1.4, 1.4, 0.0))
 
 
 def test_each_pose_of_a_place_serves():
-    place = Place("a", Pose2(1.0, 1.0), 0.5, (Pose2(3.0, 1.0),))
+    place = NamedPlace("a", Pose2(1.0, 1.0), 0.5, (Pose2(3.0, 1.0),))
     assert place.holds(Pose2(3.2, 1.0))
     assert not place.holds(Pose2(2.0, 1.0))
 
 
 def test_an_approach_in_an_obstacle_is_found():
-    place = Place("shelf", Pose2(1.5, 0.5), approaches=(Pose2(0.5, 0.5),))
+    place = NamedPlace("shelf", Pose2(1.5, 0.5), approaches=(Pose2(0.5, 0.5),))
     assert (
-        why_unreachable(place, grid_from_picture("#.?"))
+        unreachable_reason(place, grid_from_picture("#.?"))
         == "place shelf (0.5, 0.5) lies in an obstacle of the map"
     )

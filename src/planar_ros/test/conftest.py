@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from planar_ros.step.transport import CountedConnection
+from planar_ros.step.transport import LockstepConnection
 
 
 @pytest.fixture
@@ -26,7 +26,7 @@ def connected():
             set_cleanup_callback=lambda callback: None,
             write_data=near.sendall,
         )
-        return far, CountedConnection(plain, 50)
+        return far, LockstepConnection(plain, 50)
 
     yield connected
     for end in ends:

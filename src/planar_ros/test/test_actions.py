@@ -8,24 +8,24 @@ from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseActionResult, MoveBaseGoal
 
 from planar_ros.calls.actions import (
-    MOST_ENDED,
+    MAX_ENDED_GOALS,
     ActionServer,
     goal_is_lost,
     goal_is_over,
+    prune_ended,
+    server_connection,
     server_is_ready,
-    server_of,
-    without_most_ended,
 )
-from planar_ros.step import Step
+from planar_ros.step import LockstepClient
 
 
 def test_goals_that_have_ended_are_forgotten_but_for_the_last():
-    times = map(rospy.Time, range(1, 3 * MOST_ENDED))
+    times = map(rospy.Time, range(1, 3 * MAX_ENDED_GOALS))
     ended = [SimpleNamespace(handle_destruction_time=time) for time in times]
     pursued = SimpleNamespace(handle_destruction_time=rospy.Time())
-    assert without_most_ended([pursued, *ended]) == [pursued, *ended[-MOST_ENDED:]]
-    assert without_most_ended([*ended[:2], pursued]) == [*ended[:2], pursued]
-    assert without_most_ended([]) == []
+    assert prune_ended([pursued, *ended]) == [pursued, *ended[-MAX_ENDED_GOALS:]]
+    assert prune_ended([*ended[:2], pursued]) == [*ended[:2], pursued]
+    assert prune_ended([]) == []
 
 
 def client(goals_heard_by, results_come_from="/server"):
@@ -93,7 +93,7 @@ def test_a_goal_is_lost_when_its_server_was_started_anew_before_it_was_acknowled
 
     before, anew = {"callerid": "/server"}, {"callerid": "/server"}
     hear(before, 0.0)
-    sent_to = server_of(client)
+    sent_to = server_connection(client)
     client.send_goal(MoveBaseGoal())
     for header, after, is_lost in ((before, 2.0, False), (anew, 0.1, False), (anew, 2.0, True)):
         hear(header, after)
@@ -116,7 +116,7 @@ def server(monkeypatch):
     monkeypatch.setattr(rospy.rostime, "_rostime_initialized", True)
     hooks = []
     step = SimpleNamespace(is_on=False, every=lambda *given: hooks.append(given), soon=lambda do: do())
-    monkeypatch.setattr(Step, "of_node", lambda: step)
+    monkeypatch.setattr(LockstepClient, "of_node", lambda: step)
     server = ActionServer("action", MoveBaseAction, auto_start=False)
     server.start()
     server.afresh = hooks[0][2]

@@ -10,7 +10,7 @@ from rospy.impl import tcpros_base
 from rospy.impl.registration import RegManager
 from rospy.impl.tcpros_base import TCPServer
 
-from planar_ros.node.backlog import let_many_wait, miss_no_publisher
+from planar_ros.node.backlog import extend_listen_backlog, merge_publisher_updates
 
 # TCP tries again after 1 s.
 SECONDS = 0.5
@@ -19,7 +19,7 @@ SECONDS = 0.5
 @pytest.fixture
 def server(monkeypatch):
     monkeypatch.setattr(tcpros_base.TCPServer, "_create_server_sock", TCPServer._create_server_sock)
-    let_many_wait()
+    extend_listen_backlog()
     server = TCPServer(lambda connection, address: None)
     yield server
     server.shutdown()
@@ -36,7 +36,7 @@ def test_who_connects_to_a_node_that_is_busy_need_not_try_again(server):
 def told(monkeypatch):
     """The publishers that a node connects to, as it is told of ``updates``."""
     monkeypatch.setattr(RegManager, "publisher_update", RegManager.publisher_update)
-    miss_no_publisher()
+    merge_publisher_updates()
 
     def connected(number, *updates):
         asked, enough = [], threading.Event()

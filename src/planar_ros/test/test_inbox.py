@@ -9,8 +9,8 @@ import rospy
 from std_msgs.msg import String
 
 from planar_ros.step import inbox as inbox_module
-from planar_ros.step.inbox import Inbox
-from planar_ros.step.transport import Frame
+from planar_ros.step.inbox import MessageBuffer
+from planar_ros.step.transport import SerializedMessage
 
 CHANNEL = ("/state", "/pick_objects")
 
@@ -27,7 +27,7 @@ def heard(monkeypatch):
 
 @pytest.fixture
 def inbox():
-    inbox = Inbox(True, lambda text: None)
+    inbox = MessageBuffer(True, lambda text: None)
     inbox.members = frozenset(("/pick_objects",))
     return inbox
 
@@ -50,7 +50,7 @@ def take(inbox, by, *words):
     for word in words:
         content = BytesIO()
         String(word).serialize(content)
-        inbox._take(SUBSCRIBER, [Frame(content.getvalue())], by)
+        inbox._take(SUBSCRIBER, [SerializedMessage(content.getvalue())], by)
 
 
 def test_what_waits_is_handed_on_when_its_moment_has_come(inbox, heard):

@@ -8,7 +8,7 @@ import pytest
 
 from planar_ros.node import last_words, listeners
 from planar_ros.step import transport
-from planar_ros.step.transport import CountedConnection
+from planar_ros.step.transport import LockstepConnection
 
 SENDER, RECEIVER, TOPIC = "/pick_objects", "/add_markers", "/pick_objects/mission_state"
 CHANNEL = f"{SENDER} {RECEIVER} {TOPIC}"
@@ -26,8 +26,8 @@ def publisher(monkeypatch):
         transport, "connections", lambda: ((RECEIVER, TOPIC, each) for each in found.impl.connections)
     )
     monkeypatch.setattr(transport, "_last_counts", {})
-    monkeypatch.setattr(listeners, "listeners_of", lambda topic: 1)
-    monkeypatch.setattr(CountedConnection, "members", frozenset((SENDER, RECEIVER)))
+    monkeypatch.setattr(listeners, "count_subscribers", lambda topic: 1)
+    monkeypatch.setattr(LockstepConnection, "members", frozenset((SENDER, RECEIVER)))
     return found
 
 
@@ -63,7 +63,7 @@ def test_last_words_are_counted_though_their_connection_has_been_removed(publish
     assert transport.sent(SENDER) == {CHANNEL: 1}
     connection.write_data(b"delivered")
     reading = hang_up_after_reading(far, publisher)
-    last_words.wait_until_heard(publisher)
+    last_words.flush_and_close(publisher)
     reading.join(5.0)
     assert publisher.impl.connections == []
     assert transport.sent(SENDER) == {CHANNEL: 2}
@@ -73,7 +73,7 @@ def test_who_connects_anew_has_had_nothing(publisher, connect):
     far, connection = connect()
     connection.write_data(b"delivered")
     reading = hang_up_after_reading(far, publisher)
-    last_words.wait_until_heard(publisher)
+    last_words.flush_and_close(publisher)
     reading.join(5.0)
     connect()
     assert transport.sent(SENDER) == {CHANNEL: 0}
@@ -83,16 +83,16 @@ def test_who_connects_anew_has_had_nothing(publisher, connect):
 
 def test_who_leaves_meanwhile_is_not_waited_for(publisher, monkeypatch):
     counts = iter((1, 1))
-    monkeypatch.setattr(listeners, "listeners_of", lambda topic: next(counts, 0))
+    monkeypatch.setattr(listeners, "count_subscribers", lambda topic: next(counts, 0))
     started = time.monotonic()
-    last_words.wait_until_heard(publisher)
+    last_words.flush_and_close(publisher)
     assert time.monotonic() - started < last_words.PATIENCE_SECONDS / 2
 
 
 @pytest.mark.parametrize("is_in_step", (True, False))
 def test_a_latched_word_is_heard_by_who_has_come_just_now(publisher, connect, monkeypatch, is_in_step):
     if not is_in_step:
-        monkeypatch.setattr(CountedConnection, "members", frozenset())
+        monkeypatch.setattr(LockstepConnection, "members", frozenset())
     far, connection = connect()
     publisher.impl.latch = b"latched"
     rospy_sends_it = threading.Timer(0.1, lambda: connection.write_data(publisher.impl.latch))
@@ -100,6 +100,6 @@ def test_a_latched_word_is_heard_by_who_has_come_just_now(publisher, connect, mo
     heard = []
     reading = threading.Thread(target=lambda: heard.extend(iter(lambda: far.recv(1024), b"")))
     reading.start()
-    last_words.wait_until_heard(publisher, patience=1.0)
+    last_words.flush_and_close(publisher, patience=1.0)
     reading.join(10.0)
     assert b"".join(heard) == b"latched"

@@ -6,7 +6,7 @@ import time
 import pytest
 import rospy
 
-from planar_ros.step import Step
+from planar_ros.step import LockstepClient
 
 
 @pytest.fixture
@@ -14,7 +14,7 @@ def step(monkeypatch):
     """That of a node which is ready; ``said``: its answers."""
     monkeypatch.setattr(rospy, "get_name", lambda: "/amcl")
     monkeypatch.setattr(rospy, "get_param", lambda _, default=None: default)
-    step = Step()
+    step = LockstepClient()
     step.said = []
     monkeypatch.setattr(step, "_answer", step.said.append)
     return step

@@ -9,7 +9,7 @@ from nav_msgs.msg import OccupancyGrid  # noqa: E402
 from sensor_msgs.msg import LaserScan  # noqa: E402
 
 from planar import PlanarError, Pose2, grid_from_picture  # noqa: E402
-from planar.geometry.limits import FARTHEST  # noqa: E402
+from planar.geometry.limits import MAX_COORDINATE  # noqa: E402
 from planar_ros.messages import conversion as messages  # noqa: E402
 
 
@@ -51,7 +51,7 @@ def test_a_scan_message_of_senseless_numbers_is_refused(name, value):
 
 
 def test_a_laser_without_end_sees_as_far_as_any():
-    assert messages.scan_from_msg(laser_scan(range_max=math.inf), Pose2()).range_max == FARTHEST
+    assert messages.scan_from_msg(laser_scan(range_max=math.inf), Pose2()).range_max == MAX_COORDINATE
 
 
 @pytest.mark.parametrize("size", [(3, 2), (0, 5), (2**32 - 1, 2**32 - 1)])

@@ -10,13 +10,13 @@ from std_msgs.msg import Float64
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker
 
-from planar_ros.bags.playhead import Playhead
+from planar_ros.bags.playhead import PlaybackClock
 from planar_ros.bags.recording import Recording
-from planar_ros.bags.standing import standing_at
+from planar_ros.bags.standing import snapshot_at
 
 
 def test_it_moves_at_its_pace():
-    head = Playhead(start=100.0, end=160.0, speed=2.0, wall=5.0)
+    head = PlaybackClock(start=100.0, end=160.0, speed=2.0, wall=5.0)
     assert head.delay(104.0, wall=5.0) == pytest.approx(2.0)
     assert head.delay(104.0, wall=7.0) == pytest.approx(0.0)
     head.reach(104.0)
@@ -27,7 +27,7 @@ def test_it_moves_at_its_pace():
 
 
 def test_a_pause_costs_nothing_of_what_comes_after():
-    head = Playhead(start=100.0, end=160.0, speed=1.0, wall=0.0)
+    head = PlaybackClock(start=100.0, end=160.0, speed=1.0, wall=0.0)
     head.reach(103.0)
     head.pause(True, wall=3.0)
     assert head.delay(103.5, wall=50.0) == math.inf
@@ -37,14 +37,14 @@ def test_a_pause_costs_nothing_of_what_comes_after():
 
 @pytest.mark.parametrize(("wanted", "found"), [(20.0, 120.0), (-3.0, 100.0), (1000.0, 160.0)])
 def test_one_jumps_to_places_that_there_are(wanted, found):
-    head = Playhead(start=100.0, end=160.0, speed=1.0, wall=0.0)
+    head = PlaybackClock(start=100.0, end=160.0, speed=1.0, wall=0.0)
     head.seek(wanted, wall=9.0)
     assert head.position == found
     assert head.delay(found + 1.0, wall=9.0) == pytest.approx(1.0)
 
 
 def test_delays_are_not_made_up_for_in_a_burst():
-    head = Playhead(start=0.0, end=60.0, speed=1.0, wall=0.0)
+    head = PlaybackClock(start=0.0, end=60.0, speed=1.0, wall=0.0)
     assert head.delay(1.0, wall=11.0) == 0.0
     assert head.delay(2.0, wall=11.0) == pytest.approx(1.0)
 
@@ -67,7 +67,7 @@ def _recording(tmp_path):
 
 
 def test_what_stands_is_the_newest_of_each_and_all_markers(recording):
-    standing = standing_at(recording, ["/number", "/once", "/tf", "/marker"], 172.5)
+    standing = snapshot_at(recording, ["/number", "/once", "/tf", "/marker"], 172.5)
     assert [each.message.data for each in standing if each.topic == "/number"] == [72.0]
     assert [each.message.data for each in standing if each.topic == "/once"] == [-1.0]
     assert [each.message.id for each in standing if each.topic == "/marker"] == [0, 20, 40, 60]

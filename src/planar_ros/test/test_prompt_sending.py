@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from planar_ros.node.prompt_sending import PromptConnection
+from planar_ros.node.prompt_sending import ImmediateConnection
 
 
 class Transport:
@@ -42,7 +42,7 @@ def read(end, count):
 
 def test_what_fits_is_sent_by_the_caller(ends):
     transport, far = ends
-    connection = PromptConnection(transport, 10)
+    connection = ImmediateConnection(transport, 10)
     for number in range(100):
         connection.write_data(b"%03d" % number)
     assert read(far, 300) == b"".join(b"%03d" % number for number in range(100))
@@ -52,7 +52,7 @@ def test_what_fits_is_sent_by_the_caller(ends):
 
 def test_a_slow_subscriber_holds_up_nobody_and_gets_whole_messages_in_order(ends):
     transport, far = ends
-    connection = PromptConnection(transport, 3)
+    connection = ImmediateConnection(transport, 3)
     size = 50_000
     start = time.monotonic()
     for number in range(50):
@@ -71,7 +71,7 @@ def test_a_slow_subscriber_holds_up_nobody_and_gets_whole_messages_in_order(ends
 
 def test_an_error_is_told_by_the_next_message(ends):
     transport, far = ends
-    connection = PromptConnection(transport, 3)
+    connection = ImmediateConnection(transport, 3)
     far.close()
     with pytest.raises(OSError):
         for _ in range(100):

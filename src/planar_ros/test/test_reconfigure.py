@@ -3,7 +3,7 @@ from types import SimpleNamespace
 import rospy
 from dynamic_reconfigure.encoding import encode_config
 
-from planar.config.parameters import Tunable
+from planar.config.parameters import DynamicParameter
 from planar_ros.node import reconfigure
 
 
@@ -19,6 +19,8 @@ def test_a_call_that_comes_while_the_server_is_made_is_not_taken_for_its_own(mon
     monkeypatch.setattr(rospy, "Service", service)
     monkeypatch.setattr(rospy, "get_name", lambda: "/node")
     monkeypatch.setattr(reconfigure._Server, "_copy_to_parameter_server", lambda _: None)
-    tunable = Tunable("gain", 1.0, "what is multiplied by", 0.0, 10.0)
-    reconfigure.Tuning([tunable], {"gain": 2.0}, lambda values: asked.append(dict(values)) or values)
+    tunable = DynamicParameter("gain", 1.0, "what is multiplied by", 0.0, 10.0)
+    reconfigure.ReconfigureServer(
+        [tunable], {"gain": 2.0}, lambda values: asked.append(dict(values)) or values
+    )
     assert asked == [{"gain": 5.0}]

@@ -7,7 +7,7 @@ import time
 import pytest
 
 from planar_ros.step import transport
-from planar_ros.step.transport import CLOCK_TOPIC, MOST_TOGETHER, CountedConnection
+from planar_ros.step.transport import CLOCK_TOPIC, MAX_BATCH, LockstepConnection
 
 REFEREE, TOPIC = "/referee", "/base_pose_ground_truth"
 BROKEN_SECONDS = 5.0
@@ -16,9 +16,9 @@ BROKEN_SECONDS = 5.0
 @pytest.fixture
 def connect(monkeypatch, connected):
     """Connects a node to a topic, by default one that looks on; this thread saves its sends."""
-    monkeypatch.setattr(CountedConnection, "members", frozenset(("/sim_bridge", "/amcl")))
-    monkeypatch.setattr(CountedConnection, "audience", frozenset((REFEREE,)))
-    monkeypatch.setattr(CountedConnection, "saver", threading.get_ident())
+    monkeypatch.setattr(LockstepConnection, "members", frozenset(("/sim_bridge", "/amcl")))
+    monkeypatch.setattr(LockstepConnection, "audience", frozenset((REFEREE,)))
+    monkeypatch.setattr(LockstepConnection, "saver", threading.get_ident())
 
     def connect(node=REFEREE, topic=TOPIC):
         far, connection = connected(node, topic)
@@ -64,9 +64,9 @@ def test_another_thread_sends_at_once_and_in_order(connect):
 
 def test_no_more_than_so_many_wait_though_nobody_flushes(connect):
     far, connection = connect()
-    for _ in range(MOST_TOGETHER + 1):
+    for _ in range(MAX_BATCH + 1):
         connection.write_data(b".")
-    assert len(heard(far)) >= MOST_TOGETHER
+    assert len(heard(far)) >= MAX_BATCH
 
 
 def test_a_peer_that_has_gone_is_left_to_the_next_message(connect):

@@ -10,7 +10,7 @@ import tf2_ros  # noqa: E402
 
 from planar import Pose2  # noqa: E402
 from planar_ros.messages.conversion import transform_msg  # noqa: E402
-from planar_ros.messages.transforms import Intake  # noqa: E402
+from planar_ros.messages.transforms import TransformFilter  # noqa: E402
 
 
 @pytest.fixture
@@ -20,7 +20,7 @@ def buffer():
 
 @pytest.fixture
 def intake(buffer):
-    return Intake(buffer)
+    return TransformFilter(buffer)
 
 
 def tell(intake, parent, child, second, x=0.0, by="simulator"):

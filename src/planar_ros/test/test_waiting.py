@@ -3,7 +3,7 @@
 import pytest
 
 from planar_ros.node import waiting
-from planar_ros.node.waiting import HoldUp, Waiting
+from planar_ros.node.waiting import ReadinessMonitor, StallReporter
 
 
 @pytest.fixture
@@ -18,8 +18,8 @@ def told(monkeypatch):
             said.append(text)
 
     monkeypatch.setattr(waiting.rospy, "Publisher", Publisher)
-    monkeypatch.setattr(waiting._Teller, "_lacking", {})
-    monkeypatch.setattr(waiting._Teller, "_told", None)
+    monkeypatch.setattr(waiting._WaitingForPublisher, "_lacking", {})
+    monkeypatch.setattr(waiting._WaitingForPublisher, "_told", None)
     return said
 
 
@@ -31,7 +31,7 @@ def look(hold_up, monkeypatch, *moments):
 
 def test_a_short_wait_is_nothing_to_tell(told, monkeypatch):
     look(
-        HoldUp(1.0),
+        StallReporter(1.0),
         monkeypatch,
         (0.0, ["amcl"]),
         (0.9, ["amcl"]),
@@ -45,7 +45,14 @@ def test_a_short_wait_is_nothing_to_tell(told, monkeypatch):
 def test_a_long_wait_is_told_once_and_taken_back(told, monkeypatch):
     both = ["amcl", "move_base"]
     look(
-        HoldUp(1.0), monkeypatch, (0.0, both), (1.1, both), (1.2, both), (1.3, ["amcl"]), (1.4, []), (1.5, [])
+        StallReporter(1.0),
+        monkeypatch,
+        (0.0, both),
+        (1.1, both),
+        (1.2, both),
+        (1.3, ["amcl"]),
+        (1.4, []),
+        (1.5, []),
     )
     assert told == ["amcl\nmove_base", "amcl", ""]
 
@@ -53,7 +60,10 @@ def test_a_long_wait_is_told_once_and_taken_back(told, monkeypatch):
 def test_who_has_all_that_it_waits_for_does_not_hide_what_another_one_lacks(told, monkeypatch):
     monkeypatch.setattr(waiting.threading.Thread, "start", lambda _: None)
     is_warm, has_map = [], []
-    kernels, inputs = Waiting({"kernels": lambda: is_warm}), Waiting({"a map": lambda: has_map})
+    kernels, inputs = (
+        ReadinessMonitor({"kernels": lambda: is_warm}),
+        ReadinessMonitor({"a map": lambda: has_map}),
+    )
     kernels._look()
     inputs._look()
     is_warm.append(True)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from planar import Pose2
-from planar.contract_check import run
+from planar.contract_check import run_checks
 from sim_bridge.check import CHECKS, KITS
 from sim_bridge.faults import KINDS
 from sim_bridge.faults.kind import FaultKind
@@ -70,5 +70,5 @@ def test_a_kind_of_the_project_passes(kind, check):
     ],
 )
 def test_what_a_kind_does_not_do_is_said(kind, said, capsys):
-    assert run("sim_bridge", KITS, [f"own.erring/{kind}"]) == 1
+    assert run_checks("sim_bridge", KITS, [f"own.erring/{kind}"]) == 1
     assert said in capsys.readouterr().out

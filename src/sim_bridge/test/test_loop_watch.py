@@ -11,7 +11,7 @@ DEADLINE, LATE_SECONDS = 5.0, 0.3
 GAP = "the node /referee, which is to look on"
 
 
-class Closure:
+class FakeConnectionCheck:
     """All are there and connected."""
 
     def known(self):
@@ -26,7 +26,7 @@ def parameters(monkeypatch):
     """Those of the master, which a test may change."""
     found = {EXPECTED_AUDIENCE_PARAMETER: "referee"}
     over = []
-    monkeypatch.setattr(loop_watch, "Closure", Closure)
+    monkeypatch.setattr(loop_watch, "ConnectionCheck", FakeConnectionCheck)
     monkeypatch.setattr(loop_watch.rospy, "get_param", found.get)
     monkeypatch.setattr(loop_watch.rospy, "is_shutdown", lambda: bool(over))
     monkeypatch.setattr(loop_watch.rospy, "logwarn", lambda *_: None)

@@ -4,8 +4,8 @@ import enum
 from typing import Optional
 
 from planar import Pose2
-from planar.elapsed import Elapsed
-from planar.maps.places import Place
+from planar.elapsed import ElapsedTime
+from planar.maps.places import NamedPlace
 
 
 class Stage(enum.Enum):
@@ -22,12 +22,14 @@ class CarriedParcel:
     ``stage``: how far it has come.
     """
 
-    def __init__(self, pickup: Place, dropoff: Place, pickup_seconds: float, stage: Stage = Stage.WAITING):
+    def __init__(
+        self, pickup: NamedPlace, dropoff: NamedPlace, pickup_seconds: float, stage: Stage = Stage.WAITING
+    ):
         self.stage = stage
         self._pickup = pickup
         self._dropoff = dropoff
         self._pickup_seconds = pickup_seconds
-        self._elapsed = Elapsed()
+        self._elapsed = ElapsedTime()
         self._arrived_at: Optional[float] = None
 
     def update(self, now: float, robot: Optional[Pose2]) -> Optional[Pose2]:
@@ -51,12 +53,12 @@ class CarriedParcel:
 class TimedParcel:
     """An object shown at pick-up, hidden, and shown at drop-off, by the clock alone."""
 
-    def __init__(self, pickup: Place, dropoff: Place, show_seconds: float, hide_seconds: float):
+    def __init__(self, pickup: NamedPlace, dropoff: NamedPlace, show_seconds: float, hide_seconds: float):
         self._pickup = pickup
         self._dropoff = dropoff
         self._hide_after = show_seconds
         self._show_after = show_seconds + hide_seconds
-        self._elapsed = Elapsed()
+        self._elapsed = ElapsedTime()
 
     def update(self, now: float, robot: Optional[Pose2] = None) -> Optional[Pose2]:
         """Where the object is shown, or None while it is hidden; the clock starts with the first call."""

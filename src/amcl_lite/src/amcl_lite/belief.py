@@ -9,7 +9,7 @@ from amcl_lite.errors import LocalizationError
 from amcl_lite.filter.particles import ParticleSet
 from planar import Pose2, write_atomically
 from planar.files.reading import read_array
-from planar.geometry.limits import FARTHEST
+from planar.geometry.limits import MAX_COORDINATE
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +42,7 @@ def load_particles(path) -> ParticleSet:
         raise LocalizationError(f"{path}: no particles")
     poses, weights = np.ascontiguousarray(table[:, :3]), table[:, 3].copy()
     is_sound = (
-        (np.abs(poses) <= FARTHEST).all() and (weights >= 0.0).all() and abs(weights.sum() - 1.0) < 1e-6
+        (np.abs(poses) <= MAX_COORDINATE).all() and (weights >= 0.0).all() and abs(weights.sum() - 1.0) < 1e-6
     )
     if not is_sound:
         raise LocalizationError(f"{path}: particles that mean nothing")

@@ -14,7 +14,7 @@ from amcl_lite.sensor.beams import Beams, evenly_spaced_beams
 from amcl_lite.sensor.own_model import CONTRACT as SENSOR
 from amcl_lite.sensor.scan_likelihood import ScanLikelihood
 from planar import OccupancyGrid, Pose2, Scan, grid_from_picture, wrap
-from planar.contract_check import Kit, expect, of_own, run
+from planar.contract_check import CheckSuite, expect, plugin_finder, run_checks
 from planar.geometry.ray_casting import cast_rays
 
 ROOM = grid_from_picture("##########\n#........#\n#........#\n#....#...#\n#....#####\n##########", 0.5)
@@ -101,10 +101,14 @@ def _told(settings: LocalizerSettings, poses: np.ndarray, beams: Beams) -> np.nd
 SENSOR_CHECKS = (says_how_likely, knows_where_it_is, answers_alike, changes_nothing)
 MOTION_CHECKS = (follows_odometry, draws_alike)
 KITS = {
-    "sensor_model": Kit(of_own(SENSOR, lambda name: LocalizerSettings(sensor_plugin=name)), SENSOR_CHECKS),
-    "motion_model": Kit(of_own(MOTION, lambda name: LocalizerSettings(motion_plugin=name)), MOTION_CHECKS),
+    "sensor_model": CheckSuite(
+        plugin_finder(SENSOR, lambda name: LocalizerSettings(sensor_plugin=name)), SENSOR_CHECKS
+    ),
+    "motion_model": CheckSuite(
+        plugin_finder(MOTION, lambda name: LocalizerSettings(motion_plugin=name)), MOTION_CHECKS
+    ),
 }
 
 
 if __name__ == "__main__":
-    sys.exit(run("amcl_lite", KITS))
+    sys.exit(run_checks("amcl_lite", KITS))

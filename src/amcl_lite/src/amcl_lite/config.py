@@ -12,9 +12,9 @@ import numpy as np
 
 from planar import Pose2
 from planar.config.listing import Section
-from planar.config.parameters import Bounds, check_parameters, parameter
+from planar.config.parameters import Interval, check_parameters, parameter
 from planar.config.settings import check
-from planar.plugins import check_name
+from planar.plugins import check_plugin_name
 
 MOTION_MODELS = ("diff", "omni", "diff-corrected", "omni-corrected")
 SENSOR_MODELS = ("likelihood_field", "likelihood_field_prob", "beam")
@@ -33,9 +33,9 @@ def _check_plugins(settings: "LocalizerSettings") -> None:
     from amcl_lite.sensor.own_model import CONTRACT as SENSOR
 
     if settings.motion_plugin:
-        check_name("motion_plugin", settings.motion_plugin, MOTION)
+        check_plugin_name("motion_plugin", settings.motion_plugin, MOTION)
     if settings.sensor_plugin:
-        check_name("sensor_plugin", settings.sensor_plugin, SENSOR)
+        check_plugin_name("sensor_plugin", settings.sensor_plugin, SENSOR)
 
 
 @dataclass(frozen=True)
@@ -43,22 +43,22 @@ class LocalizerSettings:
     """What the particle filter works with; metres and radians."""
 
     min_particles: int = parameter(
-        100, "fewest particles (KLD-sampling's floor)", bounds=Bounds(1), dynamic=1000
+        100, "fewest particles (KLD-sampling's floor)", bounds=Interval(1), dynamic=1000
     )
     max_particles: int = parameter(
-        5000, "most particles, and how many a new start is made of", bounds=Bounds(1), dynamic=10000
+        5000, "most particles, and how many a new start is made of", bounds=Interval(1), dynamic=10000
     )
     kld_error: float = parameter(
         0.01,
         "largest error between the true and the sampled distribution",
-        bounds=Bounds(1e-6, 1.0),
+        bounds=Interval(1e-6, 1.0),
         name="kld_err",
         dynamic=1.0,
     )
     kld_z: float = parameter(
         0.99,
         "probability of an error below kld_err; from 1 on: its normal quantile",
-        bounds=Bounds(0.0),
+        bounds=Interval(0.0),
         dynamic=1.0,
     )
     motion_model: str = parameter(
@@ -66,31 +66,31 @@ class LocalizerSettings:
     )
     motion_plugin: str = parameter("", "your own model, package.module/Model, for odom_model_type")
     rotation_from_rotation: float = parameter(
-        0.2, "rotation noise caused by rotation", bounds=Bounds(0.0), name="odom_alpha1", dynamic=10.0
+        0.2, "rotation noise caused by rotation", bounds=Interval(0.0), name="odom_alpha1", dynamic=10.0
     )
     rotation_from_translation: float = parameter(
         0.2,
         "rotation noise caused by translation",
         "rad per m",
-        Bounds(0.0),
+        Interval(0.0),
         name="odom_alpha2",
         dynamic=10.0,
     )
     translation_from_translation: float = parameter(
-        0.2, "translation noise caused by translation", bounds=Bounds(0.0), name="odom_alpha3", dynamic=10.0
+        0.2, "translation noise caused by translation", bounds=Interval(0.0), name="odom_alpha3", dynamic=10.0
     )
     translation_from_rotation: float = parameter(
         0.2,
         "translation noise caused by rotation",
         "m per rad",
-        Bounds(0.0),
+        Interval(0.0),
         name="odom_alpha4",
         dynamic=10.0,
     )
     strafe_from_translation: float = parameter(
         0.2,
         "sideways noise caused by translation (omni models only)",
-        bounds=Bounds(0.0),
+        bounds=Interval(0.0),
         name="odom_alpha5",
         dynamic=10.0,
     )
@@ -105,48 +105,52 @@ class LocalizerSettings:
     beams: int = parameter(
         30,
         "evenly spaced beams used of each scan; fewer than 2 disables the sensor",
-        bounds=Bounds(0),
+        bounds=Interval(0),
         name="laser_max_beams",
         dynamic=250,
     )
     laser_min_range: float = parameter(
-        -1.0, "readings up to this are ignored; -1: the scan's own limit", "m", Bounds(-1.0), dynamic=1000.0
+        -1.0, "readings up to this are ignored; -1: the scan's own limit", "m", Interval(-1.0), dynamic=1000.0
     )
     laser_max_range: float = parameter(
-        -1.0, "readings from this on are ignored; -1: the scan's own limit", "m", Bounds(-1.0), dynamic=1000.0
+        -1.0,
+        "readings from this on are ignored; -1: the scan's own limit",
+        "m",
+        Interval(-1.0),
+        dynamic=1000.0,
     )
     z_hit: float = parameter(
         0.95,
         "share of beams that meet what the map shows",
-        bounds=Bounds(0.0, 1.0),
+        bounds=Interval(0.0, 1.0),
         name="laser_z_hit",
         dynamic=1.0,
     )
     z_short: float = parameter(
         0.1,
         "share of beams that are cut short (beam model)",
-        bounds=Bounds(0.0, 1.0),
+        bounds=Interval(0.0, 1.0),
         name="laser_z_short",
         dynamic=1.0,
     )
     z_max: float = parameter(
         0.05,
         "share of beams without return (beam model)",
-        bounds=Bounds(0.0, 1.0),
+        bounds=Interval(0.0, 1.0),
         name="laser_z_max",
         dynamic=1.0,
     )
     z_rand: float = parameter(
-        0.05, "share of random readings", bounds=Bounds(0.0, 1.0), name="laser_z_rand", dynamic=1.0
+        0.05, "share of random readings", bounds=Interval(0.0, 1.0), name="laser_z_rand", dynamic=1.0
     )
     sigma_hit: float = parameter(
-        0.2, "standard deviation of a hit", "m", Bounds(1e-3), name="laser_sigma_hit", dynamic=10.0
+        0.2, "standard deviation of a hit", "m", Interval(1e-3), name="laser_sigma_hit", dynamic=10.0
     )
     lambda_short: float = parameter(
         0.1,
         "decay of short readings (beam model)",
         "1/m",
-        Bounds(0.0),
+        Interval(0.0),
         name="laser_lambda_short",
         dynamic=10.0,
     )
@@ -154,7 +158,7 @@ class LocalizerSettings:
         2.0,
         "largest distance to an obstacle that is told apart",
         "m",
-        Bounds(0.0),
+        Interval(0.0),
         name="laser_likelihood_max_dist",
         dynamic=20.0,
     )
@@ -165,22 +169,22 @@ class LocalizerSettings:
         dynamic=True,
     )
     beam_skip_distance: float = parameter(
-        0.5, "a beam that ends nearer than this to an obstacle is explained", "m", Bounds(0.0), dynamic=2.0
+        0.5, "a beam that ends nearer than this to an obstacle is explained", "m", Interval(0.0), dynamic=2.0
     )
     beam_skip_threshold: float = parameter(
         0.3,
         "share of particles that must explain a beam for it to be used",
-        bounds=Bounds(0.0, 1.0),
+        bounds=Interval(0.0, 1.0),
         dynamic=1.0,
     )
     beam_skip_error_threshold: float = parameter(
-        0.9, "if this share of beams would be left out, all are used", bounds=Bounds(0.0, 1.0)
+        0.9, "if this share of beams would be left out, all are used", bounds=Interval(0.0, 1.0)
     )
     update_min_distance: float = parameter(
         0.2,
         "motion along x or along y of the odometry frame that causes an update",
         "m",
-        Bounds(0.0),
+        Interval(0.0),
         name="update_min_d",
         dynamic=5.0,
     )
@@ -188,19 +192,19 @@ class LocalizerSettings:
         math.pi / 6.0,
         "rotation that causes an update",
         "rad",
-        Bounds(0.0),
+        Interval(0.0),
         name="update_min_a",
         dynamic=2.0 * math.pi,
     )
-    resample_interval: int = parameter(2, "filter updates per resampling", bounds=Bounds(1), dynamic=20)
+    resample_interval: int = parameter(2, "filter updates per resampling", bounds=Interval(1), dynamic=20)
     selective_resampling: bool = parameter(
         False, "resample only if fewer than half the particles are effective"
     )
     recovery_alpha_slow: float = parameter(
-        0.001, "decay of the slow average of weights; 0: no recovery", bounds=Bounds(0.0, 1.0), dynamic=0.5
+        0.001, "decay of the slow average of weights; 0: no recovery", bounds=Interval(0.0, 1.0), dynamic=0.5
     )
     recovery_alpha_fast: float = parameter(
-        0.1, "decay of the fast average of weights; 0: no recovery", bounds=Bounds(0.0, 1.0), dynamic=1.0
+        0.1, "decay of the fast average of weights; 0: no recovery", bounds=Interval(0.0, 1.0), dynamic=1.0
     )
 
     resample_method: str = parameter(
@@ -212,7 +216,7 @@ class LocalizerSettings:
         0.0,
         "how often a robot that does not move is localized nevertheless; 0: never",
         "Hz",
-        Bounds(0.0),
+        Interval(0.0),
         dynamic=10.0,
     )
     strict_compat: bool = parameter(
@@ -252,17 +256,17 @@ class NodeSettings(LocalizerSettings):
     )
     first_map_only: bool = parameter(False, "ignore all but the first map on the topic", dynamic=True)
     gui_publish_rate: float = parameter(
-        -1.0, "accepted, without effect (as in amcl)", bounds=Bounds(-1.0), dynamic=100.0
+        -1.0, "accepted, without effect (as in amcl)", bounds=Interval(-1.0), dynamic=100.0
     )
     save_pose_rate: float = parameter(
         0.5,
         "how often the pose goes to the parameter server; 0 or less: never",
         "Hz",
-        Bounds(-1.0),
+        Interval(-1.0),
         dynamic=10.0,
     )
     transform_tolerance: float = parameter(
-        0.1, "how far map->odom is post-dated", "s", Bounds(0.0), dynamic=2.0
+        0.1, "how far map->odom is post-dated", "s", Interval(0.0), dynamic=2.0
     )
     tf_broadcast: bool = parameter(True, "publish map->odom", dynamic=True)
     force_update_after_initialpose: bool = parameter(
@@ -271,12 +275,12 @@ class NodeSettings(LocalizerSettings):
     force_update_after_set_map: bool = parameter(
         False, "update without motion after a call of set_map", dynamic=True
     )
-    std_warn_level_x: float = parameter(0.2, "diagnostics warn above this", "m", Bounds(0.0))
-    std_warn_level_y: float = parameter(0.2, "diagnostics warn above this", "m", Bounds(0.0))
-    std_warn_level_yaw: float = parameter(0.1, "diagnostics warn above this", "rad", Bounds(0.0))
+    std_warn_level_x: float = parameter(0.2, "diagnostics warn above this", "m", Interval(0.0))
+    std_warn_level_y: float = parameter(0.2, "diagnostics warn above this", "m", Interval(0.0))
+    std_warn_level_yaw: float = parameter(0.1, "diagnostics warn above this", "rad", Interval(0.0))
     bag_scan_period: float = parameter(-1.0, "pause between scans with --run-from-bag; -1: none", "s")
     seed: int = parameter(
-        0, "of all chance; the same seed gives the same draws; -1: from the system", bounds=Bounds(-1)
+        0, "of all chance; the same seed gives the same draws; -1: from the system", bounds=Interval(-1)
     )
 
 
@@ -288,16 +292,16 @@ class InitialPose:
     y: float = parameter(0.0, "where the filter starts, y", "m", name="initial_pose_y")
     yaw: float = parameter(0.0, "where the filter starts, yaw", "rad", name="initial_pose_a")
     covariance_xx: float = parameter(
-        0.25, "how unsure that is, variance of x", "m^2", Bounds(0.0), name="initial_cov_xx"
+        0.25, "how unsure that is, variance of x", "m^2", Interval(0.0), name="initial_cov_xx"
     )
     covariance_yy: float = parameter(
-        0.25, "how unsure that is, variance of y", "m^2", Bounds(0.0), name="initial_cov_yy"
+        0.25, "how unsure that is, variance of y", "m^2", Interval(0.0), name="initial_cov_yy"
     )
     covariance_aa: float = parameter(
         (math.pi / 12.0) ** 2,
         "how unsure that is, variance of yaw",
         "rad^2",
-        Bounds(0.0),
+        Interval(0.0),
         name="initial_cov_aa",
     )
 

@@ -27,7 +27,7 @@ from amcl_lite.sensor.beams import Beams, all_beams, evenly_spaced_beams
 from amcl_lite.sensor.scan_likelihood import ScanLikelihood
 from amcl_lite.sensor.scan_matching import matched
 from planar import OccupancyGrid, Pose2, Scan, grid_from_picture
-from planar.geometry.limits import FARTHEST, is_within
+from planar.geometry.limits import MAX_COORDINATE, is_within
 
 # Of the particles of a lost robot, this share is put where the scan fits the map.
 _RECOVERY_SHARE = 0.3
@@ -251,7 +251,7 @@ class Localizer:
 
 def can_start_from(base_in_map: Pose2, covariance: np.ndarray) -> bool:
     """Whether a Localizer takes this pose, with its covariance (3, 3), to start from."""
-    return base_in_map.is_in_range() and is_within(FARTHEST, *np.ravel(covariance))
+    return base_in_map.is_in_range() and is_within(MAX_COORDINATE, *np.ravel(covariance))
 
 
 def warm_up(settings: LocalizerSettings) -> None:

@@ -6,22 +6,22 @@ from typing import Any, Tuple
 import numpy as np
 
 from amcl_lite.errors import LocalizationError
-from planar.plugins import Contract, blamed, load
+from planar.plugins import PluginContract, errors_raised_as, load_plugin
 
 
 class OwnModel:
     """What it gives is checked, what goes wrong in it is its fault."""
 
-    def __init__(self, name: str, contract: Contract, *given: Any):
+    def __init__(self, name: str, contract: PluginContract, *given: Any):
         """Raises SettingsError with what it lacks, LocalizationError if it cannot be made."""
         self._name = name
-        make: Any = load(name, contract)
-        with blamed(name, LocalizationError):
+        make: Any = load_plugin(name, contract)
+        with errors_raised_as(name, LocalizationError):
             self._model = make(*given)
 
     def ask(self, method: str, shape: Tuple[int, ...], *given: Any, most: float = math.inf) -> np.ndarray:
         """Its answer, finite numbers of that shape, none larger than ``most``. Raises LocalizationError."""
-        with blamed(self._name, LocalizationError):
+        with errors_raised_as(self._name, LocalizationError):
             told = np.array(getattr(self._model, method)(*given), dtype=float)
         if told.shape != shape or not (np.isfinite(told) & (np.abs(told) <= most)).all():
             up_to = f" up to {most:g}" if most < math.inf else ""

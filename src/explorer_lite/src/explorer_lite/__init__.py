@@ -1,17 +1,17 @@
 """Frontier exploration: drives a robot until the map has no reachable unknown left; pure but for node.py."""
 
 from explorer_lite.config import ExplorerSettings
-from explorer_lite.explorer import Explorer, ExplorerState, Finish, GoalReached, GoalRefused, GoTo
+from explorer_lite.explorer import Explorer, ExplorerState, FinishTask, GoalFailed, GoalReached, GoTo
 from explorer_lite.frontiers import Frontier, find_frontiers
 
 __all__ = [
     "Explorer",
     "ExplorerSettings",
     "ExplorerState",
-    "Finish",
+    "FinishTask",
     "Frontier",
     "GoTo",
     "GoalReached",
-    "GoalRefused",
+    "GoalFailed",
     "find_frontiers",
 ]

@@ -12,8 +12,8 @@ from explorer_lite.frontiers import Frontier, known_part
 from explorer_lite.progress import ProgressWatch
 from explorer_lite.targets import Reach, Target, TargetFinder, reach_of
 from planar import FREE, OccupancyGrid, Pose2
-from planar.driving import Finish, GoalReached, GoalRefused
-from planar.elapsed import Elapsed
+from planar.driving import FinishTask, GoalFailed, GoalReached
+from planar.elapsed import ElapsedTime
 
 RESEND_DISTANCE = 0.5
 SETTLE_SECONDS = 1.0
@@ -37,8 +37,8 @@ class GoTo:
     pose: Pose2
 
 
-Order = Union[GoTo, Finish]
-Event = Union[GoalReached, GoalRefused]
+Order = Union[GoTo, FinishTask]
+Event = Union[GoalReached, GoalFailed]
 
 
 class Explorer:
@@ -57,7 +57,7 @@ class Explorer:
         """``start``: where to return to, in the map; by default where the robot is at first."""
         self._settings = settings
         self._return_to_start = return_to_start
-        self._elapsed = Elapsed()
+        self._elapsed = ElapsedTime()
         self._grid: Optional[OccupancyGrid] = None
         self._grid_time = 0.0
         self._start = start
@@ -110,7 +110,7 @@ class Explorer:
             self.state = ExplorerState.EXPLORING
         if self.state is ExplorerState.RETURNING and event is not None:
             return self._end_return(now, event)
-        if isinstance(event, GoalRefused):
+        if isinstance(event, GoalFailed):
             self._refuse_target()
             self._progress.note_refusal(robot)
             if self._progress.is_stranded:
@@ -142,7 +142,7 @@ class Explorer:
         assert goal is not None
         if self._progress.is_stuck(now, reach.distance_to(goal)):
             if self.state is ExplorerState.RETURNING:
-                return self._end_return(now, GoalRefused("no progress"))
+                return self._end_return(now, GoalFailed("no progress"))
             if self._target is None:
                 return self._finish(False, "the map shows no free space around the robot")
             self._refuse_target()
@@ -203,9 +203,9 @@ class Explorer:
             return self._set_out_for_start(now)
         return self._finish(False, f"{self._praise()}, but there is no way back to the start: {event.reason}")
 
-    def _finish(self, success: bool, reason: str) -> Finish:
+    def _finish(self, success: bool, reason: str) -> FinishTask:
         self.state = ExplorerState.DONE if success else ExplorerState.FAILED
-        return Finish(success, reason)
+        return FinishTask(success, reason)
 
     def _praise(self) -> str:
         text = f"explored {self.explored_area:.1f} m2"

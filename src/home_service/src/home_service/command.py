@@ -5,7 +5,7 @@ import pkgutil
 from dataclasses import is_dataclass
 from typing import Iterable, List, Protocol, Type
 
-from planar.plugins import Contract, PluginError, load
+from planar.plugins import PluginContract, PluginError, load_plugin
 
 
 class Command(Protocol):
@@ -31,7 +31,7 @@ class Command(Protocol):
         """
 
 
-CONTRACT = Contract("command", Command, None, "home_service.commands")
+CONTRACT = PluginContract("command", Command, None, "home_service.commands")
 
 
 class CommandFolder:
@@ -56,7 +56,7 @@ class CommandFolder:
 
 
 def _of_other_people(name: str) -> Type[Command]:
-    found = load(name, CONTRACT)
+    found = load_plugin(name, CONTRACT)
     if found is None:
         raise PluginError(f"{name} is the dotted name of no command: my_package.my_module/MyCommand is one")
     has_options = is_dataclass(found)

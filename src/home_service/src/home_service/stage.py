@@ -6,7 +6,7 @@ from typing import Iterable, Mapping
 from home_service.options import ErrandOptions, HomeOptions, MissionOptions, WorldOptions
 from pick_objects import Mission, errand_mission, load_mission
 from planar import OccupancyGrid, Pose2, SettingsError, load_map
-from planar.maps.places import Place, load_places, places_of_errand, why_unreachable
+from planar.maps.places import NamedPlace, load_pickup_and_dropoff, load_places, unreachable_reason
 from sim_bridge import RobotProfile, load_world, robot_named
 from sim_bridge.world import World
 
@@ -31,7 +31,7 @@ class MissionHome(Home):
     """A home, what is to be done in it, and every place that has a name."""
 
     mission: Mission
-    places: Mapping[str, Place]
+    places: Mapping[str, NamedPlace]
 
 
 def read_stage(options: WorldOptions) -> Stage:
@@ -56,9 +56,9 @@ def read_goals(options: HomeOptions, goals: Iterable[Pose2]) -> Home:
 def read_errand(options: ErrandOptions) -> MissionHome:
     """The errand between the zones, which the robot must be able to stand in."""
     home, zones = read_home(options), load_places(options.zones)
-    ends = places_of_errand(options.zones)
+    ends = load_pickup_and_dropoff(options.zones)
     for place in ends:
-        problem = why_unreachable(place, home.grid)
+        problem = unreachable_reason(place, home.grid)
         if problem:
             raise SettingsError(f"{options.zones}: {problem}")
     errand = errand_mission(*ends)

@@ -16,7 +16,7 @@ from laboratory.tasks.reach import Reach
 from laboratory.worlds.barn import BarnFolder
 from laboratory.worlds.dynabarn import DynabarnFolder
 from planar import SettingsError
-from planar.maps.places import places_of_errand
+from planar.maps.places import load_pickup_and_dropoff
 
 
 class PointGoal(TaskEnv):
@@ -33,7 +33,7 @@ class HomeService(TaskEnv):
         played = scenario_of(scenario)
         if not isinstance(played.task, Deliveries) or played.task.mission is not None:
             raise SettingsError(f"{played.file}: task must be an errand")
-        pickup, dropoff = places_of_errand(played.task.zones)
+        pickup, dropoff = load_pickup_and_dropoff(played.task.zones)
         task = errand.Errand(played.start, pickup.pose, dropoff.pose, pickup_seconds, RATE)
         super().__init__(played, task, **told)
 

@@ -11,7 +11,7 @@ from home_service_gym import NAMES
 from planar import PlanarError, SettingsError
 from planar.config.hints import hint
 from planar.config.yaml_table import parse_table
-from planar.plugins import find
+from planar.plugins import load_object
 
 Policy = Callable[[Any], Any]
 # Control periods between two pictures of an animation.
@@ -36,7 +36,7 @@ def environment_of(name: str, arguments: str) -> gymnasium.Env[Any, Any]:
 def policy_of(name: str, env: gymnasium.Env[Any, Any], seed: int) -> Policy:
     """That of a dotted name, or one that acts by chance. Raises SettingsError."""
     if name:
-        return find(name)
+        return load_object(name)
     env.action_space.seed(seed)
     return lambda observation: env.action_space.sample()
 

@@ -11,7 +11,7 @@ import numpy as np
 from laboratory.worlds.own import CONTRACT, OwnWorlds, kind_named
 from laboratory.worlds.source import Arena, WorldSource
 from planar import FREE
-from planar.contract_check import Kit, expect, of_own, run
+from planar.contract_check import CheckSuite, expect, plugin_finder, run_checks
 from planar.plugins import PluginError
 from sim_bridge import Simulation
 
@@ -69,8 +69,8 @@ def _source(name: str) -> OwnWorlds:
 
 
 CHECKS = (gives_a_world_for_each_seed, repeats_itself, shows_its_places)
-KITS = {"world_generator": Kit(of_own(CONTRACT, _source), CHECKS)}
+KITS = {"world_generator": CheckSuite(plugin_finder(CONTRACT, _source), CHECKS)}
 
 
 if __name__ == "__main__":
-    sys.exit(run("laboratory", KITS))
+    sys.exit(run_checks("laboratory", KITS))

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from planar.config.listing import Section
-from planar.config.parameters import Bounds, check_parameters, parameter
+from planar.config.parameters import Interval, check_parameters, parameter
 from planar.config.settings import check
 
 
@@ -15,7 +15,7 @@ class ServerSettings:
     negate: int = parameter(
         0,
         "1: white means occupied",
-        bounds=Bounds(0, 1, words="0 or 1"),
+        bounds=Interval(0, 1, words="0 or 1"),
         heading="Of an image given without YAML (deprecated).",
     )
     occupied_thresh: float = parameter(0.65, "share of black from which on a cell is occupied")

@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, Callable, Dict, FrozenSet, Generic, Mapping, Optional, Tuple, TypeVar
 
-from planar.config.parameters import Tunable, tunables_of
-from planar.plugins import Contract, load
+from planar.config.parameters import DynamicParameter, dynamic_parameters_of
+from planar.plugins import PluginContract, load_plugin
 
 T = TypeVar("T")
 
@@ -41,7 +41,7 @@ class Plugin(Generic[T]):
     deprecated: Mapping[str, str] = field(default_factory=dict)
     synonyms: Mapping[str, str] = field(default_factory=dict)
     translate: Callable[[Dict[str, Any]], Dict[str, Any]] = _as_they_are
-    without_effect: Tuple[Tunable, ...] = ()
+    without_effect: Tuple[DynamicParameter, ...] = ()
     ignored: FrozenSet[str] = frozenset()
 
     @property
@@ -50,9 +50,9 @@ class Plugin(Generic[T]):
         return short_name(self.name)
 
     @property
-    def tunables(self) -> Tuple[Tunable, ...]:
+    def tunables(self) -> Tuple[DynamicParameter, ...]:
         """What dynamic_reconfigure offers of it."""
-        return (*tunables_of(self.settings), *self.without_effect)
+        return (*dynamic_parameters_of(self.settings), *self.without_effect)
 
     @property
     def meaningless(self) -> FrozenSet[str]:
@@ -71,7 +71,9 @@ class Registry(Generic[T]):
     ``make()`` gives, an object of theirs.
     """
 
-    def __init__(self, *members: Plugin[T], contract: Contract, guarded: Callable[[str, Callable[[], T]], T]):
+    def __init__(
+        self, *members: Plugin[T], contract: PluginContract, guarded: Callable[[str, Callable[[], T]], T]
+    ):
         self.members = members
         self.contract = contract
         self._guarded = guarded
@@ -99,7 +101,7 @@ class Registry(Generic[T]):
         return member.make(settings, *given)
 
     def _load(self, name: str) -> Optional[Plugin[T]]:
-        found = load(name, self.contract)
+        found = load_plugin(name, self.contract)
         if found is None:
             return None
 

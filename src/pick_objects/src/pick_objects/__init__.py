@@ -8,7 +8,7 @@ from pick_objects.job import ErrandState, Job, Stage, Whereabouts
 from pick_objects.mission import Delivery, Mission, MissionError, Thing, errand_mission
 from pick_objects.mission_file import load_mission, parse_mission
 from pick_objects.record import record_of, resumed
-from planar.driving import Finish, GoalLeft, GoalReached, GoalRefused
+from planar.driving import FinishTask, GoalFailed, GoalReached, RobotDisplaced
 
 __all__ = [
     "Arrival",
@@ -16,12 +16,12 @@ __all__ = [
     "Errand",
     "ErrandSettings",
     "ErrandState",
-    "Finish",
+    "FinishTask",
     "Fit",
     "GoTo",
-    "GoalLeft",
+    "RobotDisplaced",
     "GoalReached",
-    "GoalRefused",
+    "GoalFailed",
     "Job",
     "MeasureWays",
     "Mission",

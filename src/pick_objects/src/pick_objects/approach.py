@@ -5,15 +5,15 @@ from typing import Optional, Union
 
 from pick_objects.config import ErrandSettings
 from planar import Pose2
-from planar.driving import GoalReached, GoalRefused
-from planar.maps.places import Place
+from planar.driving import GoalFailed, GoalReached
+from planar.maps.places import NamedPlace
 
 
 @dataclass(frozen=True)
 class GoTo:
     """Order: drive to this place. It takes the place of any earlier order."""
 
-    place: Place
+    place: NamedPlace
     attempt: int
 
     @property
@@ -37,7 +37,7 @@ class GivenUp:
 class Approach:
     """Answers, told the time and what came of the last goal, what to do to get to ``place``."""
 
-    def __init__(self, place: Place, settings: ErrandSettings, goal_timeout: Optional[float] = None):
+    def __init__(self, place: NamedPlace, settings: ErrandSettings, goal_timeout: Optional[float] = None):
         self.place = place
         self.attempt = 0
         self._settings = settings
@@ -57,13 +57,13 @@ class Approach:
         return GoTo(self.place, self.attempt)
 
     def advance(
-        self, now: float, event: Union[None, GoalReached, GoalRefused]
+        self, now: float, event: Union[None, GoalReached, GoalFailed]
     ) -> Union[None, GoTo, Arrived, GivenUp]:
         """What has come of it, the next goal, or None to carry on. ``now``: seconds."""
         if isinstance(event, GoalReached):
             return Arrived()
-        if isinstance(event, GoalRefused):
-            if event.is_taken_over and 0.0 <= now - self._begun_at <= self._timeout:
+        if isinstance(event, GoalFailed):
+            if event.is_preempted and 0.0 <= now - self._begun_at <= self._timeout:
                 self._is_taken_over, self._retry_at = True, now + self._settings.retry_seconds
                 return None
             return self._give_up_or_pause(now, event.reason)

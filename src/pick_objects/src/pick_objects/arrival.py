@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import Deque, Optional, Union
 
 from planar import Pose2
-from planar.driving import GoalLeft, GoalReached, GoalRefused
-from planar.elapsed import Elapsed
+from planar.driving import GoalFailed, GoalReached, RobotDisplaced
+from planar.elapsed import ElapsedTime
 
 # Below, the scan of the moment speaks against the robot's pose. As amcl_lite tells it: the probability that
 # the pose is right to half a metre.
@@ -40,8 +40,8 @@ class SendAgain:
     """The goal is to be pursued once more: the robot may be elsewhere, or not."""
 
 
-Outcome = Union[None, GoalReached, GoalRefused]
-Judged = Union[Outcome, SendAgain, GoalLeft]
+Outcome = Union[None, GoalReached, GoalFailed]
+Judged = Union[Outcome, SendAgain, RobotDisplaced]
 
 
 class Arrival:
@@ -53,7 +53,7 @@ class Arrival:
 
     def __init__(self, goal: Pose2):
         self._goal = goal
-        self._standing: Optional[Elapsed] = None
+        self._standing: Optional[ElapsedTime] = None
         self._is_sent_again = self._was_found = self._has_arrived = self._is_sure = False
         self._way = 0.0
 
@@ -73,8 +73,8 @@ class Arrival:
             self._has_arrived = isinstance(told, GoalReached)
             return told
         if self._is_sent_again:
-            return GoalRefused("the robot may be elsewhere: what the laser sees does not fit the map there")
-        self._standing = Elapsed()
+            return GoalFailed("the robot may be elsewhere: what the laser sees does not fit the map there")
+        self._standing = ElapsedTime()
         return self._stand(fit, now)
 
     @property
@@ -82,9 +82,9 @@ class Arrival:
         """From where it was found, standing, it has come too short a way to be lost again."""
         return self._was_found and self._way < SHORT_WAY
 
-    def _watch(self, fit: Optional[float]) -> Optional[GoalLeft]:
+    def _watch(self, fit: Optional[float]) -> Optional[RobotDisplaced]:
         was_sure, self._is_sure = self._is_sure, fit is not None and not _speaks_against(fit)
-        return GoalLeft() if was_sure and _speaks_against(fit) else None
+        return RobotDisplaced() if was_sure and _speaks_against(fit) else None
 
     def _stand(self, fit: Optional[float], now: float) -> Optional[SendAgain]:
         if self._standing is None or self._standing.at(now) < STANDING_SECONDS:

@@ -6,7 +6,7 @@ from pick_objects.approach import Approach, Arrived, GivenUp, GoTo
 from pick_objects.forecast import Forecast
 from pick_objects.job import Job, Stage, Whereabouts
 from pick_objects.mission import Mission
-from planar.driving import GoalLeft, GoalReached, GoalRefused
+from planar.driving import GoalFailed, GoalReached, RobotDisplaced
 
 
 class Carrier:
@@ -38,12 +38,14 @@ class Carrier:
             return None
         return self._go(now, Stage.FETCHING)
 
-    def advance(self, now: float, event: Union[None, GoalReached, GoalRefused, GoalLeft]) -> Optional[GoTo]:
+    def advance(
+        self, now: float, event: Union[None, GoalReached, GoalFailed, RobotDisplaced]
+    ) -> Optional[GoTo]:
         """The next order, or None to carry on, or if the delivery has ended."""
         if self.job.stage in (Stage.PICKING_UP, Stage.SETTING_DOWN):
-            return self._go_back(now) if isinstance(event, GoalLeft) else self._handle(now)
+            return self._go_back(now) if isinstance(event, RobotDisplaced) else self._handle(now)
         assert self.approach is not None
-        answer = self.approach.advance(now, None if isinstance(event, GoalLeft) else event)
+        answer = self.approach.advance(now, None if isinstance(event, RobotDisplaced) else event)
         if isinstance(answer, GoTo):
             self.job.attempts += 1
             return answer

@@ -10,9 +10,9 @@ from pick_objects.job import ENDED, ON_ROBOT, STATE_OF_STAGE, ErrandState, Job, 
 from pick_objects.mission import Delivery, Mission, MissionError
 from pick_objects.schedule import Schedule
 from planar import Pose2
-from planar.driving import Finish, GoalLeft, GoalReached, GoalRefused
-from planar.elapsed import Elapsed
-from planar.maps.places import Place
+from planar.driving import FinishTask, GoalFailed, GoalReached, RobotDisplaced
+from planar.elapsed import ElapsedTime
+from planar.maps.places import NamedPlace
 
 
 @dataclass(frozen=True)
@@ -29,8 +29,8 @@ class WaysMeasured:
     lengths: Tuple[Optional[float], ...]
 
 
-Order = Union[GoTo, MeasureWays, Finish]
-Event = Union[GoalReached, GoalRefused, GoalLeft, WaysMeasured]
+Order = Union[GoTo, MeasureWays, FinishTask]
+Event = Union[GoalReached, GoalFailed, RobotDisplaced, WaysMeasured]
 
 
 class Errand:
@@ -48,7 +48,7 @@ class Errand:
         self._carrier: Optional[Carrier] = None
         self.is_cancelled = self._is_measuring = self._is_over = False
         self._forecast = Forecast()
-        self._elapsed = Elapsed()
+        self._elapsed = ElapsedTime()
 
     def advance(self, now: float, event: Optional[Event] = None) -> Optional[Order]:
         """The next order, or None to carry on. ``now``: seconds; ``event``: what came of the last order."""
@@ -120,7 +120,7 @@ class Errand:
         return self._carrier.job if self._carrier else None
 
     @property
-    def place(self) -> Optional[Place]:
+    def place(self) -> Optional[NamedPlace]:
         """The place that the robot is at or on its way to."""
         return self._carrier.approach.place if self._carrier and self._carrier.approach else None
 
@@ -187,7 +187,7 @@ class Errand:
             raise MissionError(f"delivery {name} is {job.stage.name.lower()} already")
         return job
 
-    def _conclude(self) -> Finish:
+    def _conclude(self) -> FinishTask:
         failed = [job for job in self.jobs if job.stage is Stage.FAILED]
         if failed:
             first = failed[0]
@@ -198,9 +198,9 @@ class Errand:
             return self._end("cancelled")
         return self._end(f"delivered at place {self.jobs[-1].delivery.destination}")
 
-    def _end(self, reason: str) -> Finish:
+    def _end(self, reason: str) -> FinishTask:
         self._is_over, self.reason = True, self._summary(reason)
-        return Finish(self.state is ErrandState.DELIVERED, self.reason)
+        return FinishTask(self.state is ErrandState.DELIVERED, self.reason)
 
     @property
     def _final_state(self) -> ErrandState:

@@ -6,7 +6,7 @@ from typing import Mapping, Optional, Tuple
 
 from pick_objects.config import ErrandSettings
 from planar import PlanarError
-from planar.maps.places import Place
+from planar.maps.places import NamedPlace
 
 ORANGE = (0.9, 0.4, 0.1)
 
@@ -48,7 +48,7 @@ class Mission:
     """Deliveries between places that it knows by name."""
 
     name: str
-    places: Mapping[str, Place]
+    places: Mapping[str, NamedPlace]
     deliveries: Tuple[Delivery, ...]
     things: Mapping[str, Thing] = field(default_factory=dict)
     settings: ErrandSettings = ErrandSettings()
@@ -76,7 +76,9 @@ class Mission:
         return replace(self, deliveries=(*self.deliveries, named))
 
 
-def errand_mission(pickup: Place, dropoff: Place, settings: ErrandSettings = ErrandSettings()) -> Mission:
+def errand_mission(
+    pickup: NamedPlace, dropoff: NamedPlace, settings: ErrandSettings = ErrandSettings()
+) -> Mission:
     """The mission of a single delivery: the object at the pick-up zone is wanted at the drop-off zone."""
     places = {pickup.name: pickup, dropoff.name: dropoff}
     delivery = Delivery("errand", "parcel", pickup.name, dropoff.name)

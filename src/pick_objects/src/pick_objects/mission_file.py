@@ -6,13 +6,13 @@ from typing import Dict, List, Mapping, Optional, Set, Tuple
 
 from pick_objects.config import ErrandSettings
 from pick_objects.mission import ORANGE, Delivery, Mission, Thing
-from planar.config.hints import hint_or_all
+from planar.config.hints import hint_or_choices
 from planar.config.settings import settings_from
 from planar.config.yaml_table import Table, parse_table, read_table
 from planar.geometry.grid import OccupancyGrid
-from planar.maps.places import Place, obstruction_at, place_from
+from planar.maps.places import NamedPlace, obstruction_at, parse_place
 
-Places = Mapping[str, Place]
+Places = Mapping[str, NamedPlace]
 WIDEST_SOLID = 0.25
 NAME_OF_TEXT = "mission"  # that stands where else the name of the file does
 
@@ -58,18 +58,18 @@ def _mission(
     return Mission(name, places, deliveries, things, settings)
 
 
-def _places(table: Table, grid: Optional[OccupancyGrid]) -> Dict[str, Place]:
+def _places(table: Table, grid: Optional[OccupancyGrid]) -> Dict[str, NamedPlace]:
     if "places" not in table:
         return {}
     places_table = table.table("places")
-    places = {name: place_from(places_table, name) for name in places_table}
+    places = {name: parse_place(places_table, name) for name in places_table}
     if grid is not None:
         for place in places.values():
             _check_free(place, places_table.table(place.name), grid)
     return places
 
 
-def _check_free(place: Place, entry: Table, grid: OccupancyGrid) -> None:
+def _check_free(place: NamedPlace, entry: Table, grid: OccupancyGrid) -> None:
     for part, pose in zip([entry, *entry.tables("approaches")], place.poses):
         obstruction = obstruction_at(pose, grid)
         if obstruction:
@@ -139,7 +139,7 @@ def _delivery(entry: Table, number: int, places: Places, things: Mapping[str, Th
 def _check_name(entry: Table, key: str, names, known, kind: str) -> None:
     for name in names:
         if name not in known:
-            raise entry.complaint(key, f"names no {kind}: {name}{hint_or_all(name, known)}")
+            raise entry.complaint(key, f"names no {kind}: {name}{hint_or_choices(name, known)}")
 
 
 def _check_cycles(deliveries: List[Delivery], lines: Mapping[str, Table]) -> None:

@@ -6,7 +6,7 @@ from pick_objects.job import ENDED, Job, Stage
 from pick_objects.mission import Delivery, Mission
 from pick_objects.ordering import shortest_order
 from planar import Pose2
-from planar.maps.places import Place
+from planar.maps.places import NamedPlace
 
 NO_WAY = 1e6
 """Metres that a way counts which no planner has found: it is left for last."""
@@ -56,7 +56,7 @@ class Schedule:
             if lost and job.stage is Stage.WAITING:
                 job.fail(f"{lost[0]} was not delivered")
 
-    def ways(self, places: Mapping[str, Place]) -> Tuple[Tuple[Optional[Pose2], Pose2], ...]:
+    def ways(self, places: Mapping[str, NamedPlace]) -> Tuple[Tuple[Optional[Pose2], Pose2], ...]:
         """Of those that wait: from the robot to each source, then from each destination to each source."""
         waiting = self.waiting
         sources = [places[job.delivery.source].pose for job in waiting]

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, Callable, Iterator, List, Mapping, Optional, Sequence, Tuple, Type
 
 from planar.errors import PlanarError
-from planar.plugins import Contract, PluginError, load
+from planar.plugins import PluginContract, PluginError, load_plugin
 
 Check = Callable[[Any], None]
 
@@ -21,7 +21,7 @@ class CheckFailed(Exception):  # noqa: N818  -- it is the plugin that has erred
 
 
 @dataclass(frozen=True)
-class Kit:
+class CheckSuite:
     """A kind of plugin and what each of it has to do.
 
     ``find``: gives what the checks are made with for a name, None if there is no such plugin of this kind;
@@ -32,9 +32,9 @@ class Kit:
     checks: Tuple[Check, ...]
 
 
-def of_own(contract: Contract, made_of: Callable[[str], Any]) -> Callable[[str], Any]:
-    """A Kit's ``find`` for classes of other people: what ``made_of`` makes of the name, if it is one's."""
-    return lambda name: None if load(name, contract) is None else made_of(name)
+def plugin_finder(contract: PluginContract, made_of: Callable[[str], Any]) -> Callable[[str], Any]:
+    """Make a CheckSuite's ``find`` for custom classes: ``made_of`` makes what to check of a name."""
+    return lambda name: None if load_plugin(name, contract) is None else made_of(name)
 
 
 def expect(is_so: bool, text: str) -> None:
@@ -43,7 +43,7 @@ def expect(is_so: bool, text: str) -> None:
 
 
 @contextmanager
-def expect_refusal(kind: Type[Exception], text: str) -> Iterator[None]:
+def expect_error(kind: Type[Exception], text: str) -> Iterator[None]:
     """What is inside has to raise ``kind``."""
     try:
         yield
@@ -52,7 +52,9 @@ def expect_refusal(kind: Type[Exception], text: str) -> Iterator[None]:
     raise CheckFailed(text)
 
 
-def run(package: str, kits: Mapping[str, Kit], arguments: Optional[Sequence[str]] = None) -> int:
+def run_checks(
+    package: str, kits: Mapping[str, CheckSuite], arguments: Optional[Sequence[str]] = None
+) -> int:
     """Returns 0 if the plugin does all that is asked, 1 if not, 2 if there is no such plugin."""
     parser = argparse.ArgumentParser(
         prog=f"python3 -m {package}.check",
@@ -71,7 +73,7 @@ def run(package: str, kits: Mapping[str, Kit], arguments: Optional[Sequence[str]
     return 1 if failed else 0
 
 
-def _found(name: str, kits: List[Kit]) -> Tuple[Any, Tuple[Check, ...]]:
+def _found(name: str, kits: List[CheckSuite]) -> Tuple[Any, Tuple[Check, ...]]:
     """What the checks are made with, and these. Raises PluginError with what it lacks."""
     reasons = []
     for kit in kits:

@@ -6,7 +6,7 @@ from typing import Union
 
 
 @dataclass(frozen=True)
-class Finish:
+class FinishTask:
     """Order: the task is over, and why."""
 
     success: bool
@@ -19,32 +19,32 @@ class GoalReached:
 
 
 @dataclass(frozen=True)
-class GoalRefused:
+class GoalFailed:
     """Event: the robot gave the last order up, and why.
 
     ``is_taken_over``: it could have gone on, but somebody else gave it another goal, or cancelled this one.
     """
 
     reason: str
-    is_taken_over: bool = False
+    is_preempted: bool = False
 
 
 @dataclass(frozen=True)
-class GoalLeft:
+class RobotDisplaced:
     """Event: the robot, which stood there, sees something else: somebody may have carried it away."""
 
 
 class DriveResult(enum.Enum):
     REACHED = "reached"
-    REPLACED = "replaced"
+    PREEMPTED = "preempted"
     """Another goal took its place, or somebody cancelled it."""
     FAILED = "failed"
 
 
 _RESULTS = {
     "SUCCEEDED": DriveResult.REACHED,
-    "PREEMPTED": DriveResult.REPLACED,
-    "RECALLED": DriveResult.REPLACED,
+    "PREEMPTED": DriveResult.PREEMPTED,
+    "RECALLED": DriveResult.PREEMPTED,
 }
 
 
@@ -63,8 +63,8 @@ class DriveOutcome:
         return _RESULTS.get(self.status, DriveResult.FAILED)
 
     @property
-    def event(self) -> Union[GoalReached, GoalRefused]:
+    def event(self) -> Union[GoalReached, GoalFailed]:
         """The same for a task that only cares whether the robot has arrived."""
         if self.result is DriveResult.REACHED:
             return GoalReached()
-        return GoalRefused(self.text or self.status, self.result is DriveResult.REPLACED)
+        return GoalFailed(self.text or self.status, self.result is DriveResult.PREEMPTED)

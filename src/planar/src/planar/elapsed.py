@@ -3,7 +3,7 @@
 from typing import Optional
 
 
-class Elapsed:
+class ElapsedTime:
     """Seconds since the first look at a clock; when it is set back, no time has passed.
 
     A moment to wait for, kept in the clock's own time, could lie ahead for ever then.

@@ -22,7 +22,7 @@ class PluginError(SettingsError):
 
 
 @dataclass(frozen=True)
-class Contract:
+class PluginContract:
     """What a class of other people has to have.
 
     ``kind``: for people, as "local planner". ``protocol``: has the methods, with their parameters.
@@ -58,7 +58,7 @@ class Contract:
         return own or type(f"{found.__name__}Settings", (self.settings,), {"__doc__": self.settings.__doc__})
 
 
-def load(name: str, contract: Contract) -> Optional[type]:
+def load_plugin(name: str, contract: PluginContract) -> Optional[type]:
     """The class of that name; None if the name is neither dotted nor an entry point's.
 
     Raises PluginError if it is not there, or with what it lacks.
@@ -77,15 +77,15 @@ def load(name: str, contract: Contract) -> Optional[type]:
     return found
 
 
-def check_name(parameter: str, name: str, contract: Contract) -> None:
+def check_plugin_name(parameter: str, name: str, contract: PluginContract) -> None:
     """Raises PluginError if there is no such class, or with what it lacks."""
-    if load(name, contract) is None:
+    if load_plugin(name, contract) is None:
         example = f"my_package.my_module/My{contract.kind.rpartition(' ')[2].title()}"
         raise PluginError(f"{parameter} must be like {example}, got {name!r}")
 
 
 @contextmanager
-def blamed(name: str, failure: Type[Exception]) -> Iterator[None]:
+def errors_raised_as(name: str, failure: Type[Exception]) -> Iterator[None]:
     """Around code of other people: whatever that raises is a ``failure`` in its name."""
     try:
         yield
@@ -93,7 +93,7 @@ def blamed(name: str, failure: Type[Exception]) -> Iterator[None]:
         raise failure(f"{name} raised {type(error).__name__}: {error}") from error
 
 
-def find(name: str) -> Any:
+def load_object(name: str) -> Any:
     """What a dotted name, module/attribute, names, whatever it is. Raises PluginError if it is not there."""
     module, _, attribute = name.rpartition("/")
     if not (module and attribute):
@@ -101,7 +101,7 @@ def find(name: str) -> Any:
     return _from_module(name, module, attribute)
 
 
-def sources_of(names: Iterable[str]) -> Tuple[Path, ...]:
+def source_files(names: Iterable[str]) -> Tuple[Path, ...]:
     """The files of the modules that those of the names name that are dotted, in order; of those there are."""
     modules = [name.rpartition("/")[0] for name in names]
     files = [_file_of(module) for module in modules if "." in module]

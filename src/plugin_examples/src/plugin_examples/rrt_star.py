@@ -8,14 +8,16 @@ import numpy as np
 
 from move_base_lite import CostmapWindow, GoalBlocked, NoPath, OutOfMap, PlannerSettings, StartBlocked
 from move_base_lite.costmap import INSCRIBED
-from planar.config.parameters import POSITIVE, Bounds, parameter
+from planar.config.parameters import POSITIVE, Interval, parameter
 
 
 @dataclass(frozen=True)
 class RrtStarSettings(PlannerSettings):
-    samples: int = parameter(6000, "of the tree", bounds=Bounds(10, 100000, "10 to 100000"))
+    samples: int = parameter(6000, "of the tree", bounds=Interval(10, 100000, "10 to 100000"))
     steer: float = parameter(1.0, "the longest branch", "m", POSITIVE)
-    goal_bias: float = parameter(0.05, "share of the samples at the goal", bounds=Bounds(0.0, 1.0, "0 to 1"))
+    goal_bias: float = parameter(
+        0.05, "share of the samples at the goal", bounds=Interval(0.0, 1.0, "0 to 1")
+    )
     seed: int = parameter(0, "of all chance")
 
 

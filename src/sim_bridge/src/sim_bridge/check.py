@@ -9,7 +9,7 @@ from typing import List, Tuple
 import numpy as np
 
 from planar import Pose2, Scan, Twist2
-from planar.contract_check import Kit, expect, of_own, run
+from planar.contract_check import CheckSuite, expect, plugin_finder, run_checks
 from sim_bridge.faults import Fault, Faults, Stage, kind_named
 from sim_bridge.faults.own import CONTRACT
 from sim_bridge.faults.registry import fault_named
@@ -80,8 +80,8 @@ def _is_own(name: str) -> str:
 
 
 CHECKS = (says_what_goes_wrong, answers_at_any_strength, leaves_scans_as_they_are, repeats_itself)
-KITS = {"fault": Kit(of_own(CONTRACT, _is_own), CHECKS)}
+KITS = {"fault": CheckSuite(plugin_finder(CONTRACT, _is_own), CHECKS)}
 
 
 if __name__ == "__main__":
-    sys.exit(run("sim_bridge", KITS))
+    sys.exit(run_checks("sim_bridge", KITS))

@@ -4,7 +4,7 @@ import sys
 from dataclasses import dataclass
 
 from planar.config.listing import Section
-from planar.config.parameters import POSITIVE, Bounds, check_parameters, parameter, parameters_of
+from planar.config.parameters import POSITIVE, Interval, check_parameters, parameter, parameters_of
 from planar.config.settings import check
 from sim_bridge.noise import NOISE_PROFILES, NOT_NEGATIVE, NoiseSettings
 
@@ -22,7 +22,7 @@ class SimulationSettings(NoiseSettings):
         200,
         "steps of physics a second; every other rate must divide it",
         "Hz",
-        Bounds(1, HIGHEST_PHYSICS_RATE),
+        Interval(1, HIGHEST_PHYSICS_RATE),
     )
     odometry_rate: int = parameter(50, "odom, /tf and base_pose_ground_truth", "Hz")
     scan_rate: int = parameter(10, "scan", "Hz")
@@ -42,7 +42,7 @@ class RunTimeSettings:
     speed: float = parameter(
         1.0,
         "times real time; 0: as fast as the nodes of wait_for keep up",
-        bounds=Bounds(0.0, sys.float_info.max, "0 or a positive number"),
+        bounds=Interval(0.0, sys.float_info.max, "0 or a positive number"),
         dynamic=100.0,
     )
 

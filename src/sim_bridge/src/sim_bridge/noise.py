@@ -5,10 +5,10 @@ from typing import Any, Dict
 
 from planar import SettingsError
 from planar.config.hints import hint
-from planar.config.parameters import Bounds, check_parameters, parameter
+from planar.config.parameters import Interval, check_parameters, parameter
 from planar.config.settings import check
 
-NOT_NEGATIVE = Bounds(0.0, words="not negative")
+NOT_NEGATIVE = Interval(0.0, words="not negative")
 
 
 def _error(default: float, meaning: str, unit: str = "") -> Any:

@@ -6,7 +6,7 @@ from typing import Optional, Tuple
 import numpy as np
 
 from planar import Pose2, Twist2
-from planar.geometry.limits import FARTHEST
+from planar.geometry.limits import MAX_COORDINATE
 from sim_bridge.config import SimulationSettings
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import from_pose2
@@ -91,7 +91,7 @@ def box_on_floor(
     """A model of one box, ``size`` in metres, whose bottom is at ``height``. Raises WorldError if it has no
     size or place.
     """
-    if not (all(0.0 < length < FARTHEST for length in size) and pose.is_in_range()):
+    if not (all(0.0 < length < MAX_COORDINATE for length in size) and pose.is_in_range()):
         raise WorldError(f"{name}: a box needs positive lengths and a place, got {size} at {pose}")
     in_world = from_pose2(pose, z=height + size[2] / 2.0)
     return Body(f"{name}::link", in_world, (Collision(Box(size), np.eye(4)),), mass)

@@ -8,7 +8,7 @@ import sys
 import numpy as np
 
 from planar import OccupancyGrid, Pose2, Scan, grid_from_picture, wrap
-from planar.contract_check import Kit, expect, of_own, run
+from planar.contract_check import CheckSuite, expect, plugin_finder, run_checks
 from planar.geometry.ray_casting import cast_rays
 from slam_lite.config import MapperSettings
 from slam_lite.matching.local_map import LocalMap, Match
@@ -91,8 +91,12 @@ CHECKS = (
     takes_scans_without_a_point,
     is_deterministic,
 )
-KITS = {"scan_matcher": Kit(of_own(CONTRACT, lambda name: MapperSettings(matcher_plugin=name)), CHECKS)}
+KITS = {
+    "scan_matcher": CheckSuite(
+        plugin_finder(CONTRACT, lambda name: MapperSettings(matcher_plugin=name)), CHECKS
+    )
+}
 
 
 if __name__ == "__main__":
-    sys.exit(run("slam_lite", KITS))
+    sys.exit(run_checks("slam_lite", KITS))

@@ -7,9 +7,9 @@ from typing import List, Optional, Tuple
 import numpy as np
 
 from planar import OccupancyGrid, Pose2, Scan
-from planar.geometry.grid import GridInBands
+from planar.geometry.grid import BandedGrid
 from planar.geometry.limits import OutOfRangeError
-from planar.geometry.pose import check_place
+from planar.geometry.pose import check_pose
 from slam_lite.back_end import BackEnd, ClosureResult, ClosureTask
 from slam_lite.config import MapperSettings
 from slam_lite.continuity import Continuity, Pause
@@ -88,7 +88,7 @@ class Mapper:
         Raises OutOfRangeError for odometry at which no robot can be, or which leads to such a place in the
         map, MatchingError if a matcher of somebody's own fails; the scan leaves nothing in the map then.
         """
-        check_place(base_in_odom, "odometry")
+        check_pose(base_in_odom, "odometry")
         if self._pause.lasts(base_in_odom, scan.stamp) and not self._front_end.odometry_is_stuck:
             return None
         max_range, usable_range = ranges_of(scan, self._settings, self._no_return)
@@ -98,7 +98,7 @@ class Mapper:
         if self._is_to_be_found:
             self._find(surface)
         tracked = self._front_end.track(base_in_odom, surface)
-        check_place(self._in_map(tracked.base_in_track), "a robot in the map")
+        check_pose(self._in_map(tracked.base_in_track), "a robot in the map")
         is_key = self._is_key(tracked.base_in_track)
         if is_key:
             self._no_return.add(scan.ranges)
@@ -160,7 +160,7 @@ class Mapper:
         """The map of all key scans at their present poses, drawn from scratch."""
         return self.grid_in_bands().joined()
 
-    def grid_in_bands(self) -> GridInBands:
+    def grid_in_bands(self) -> BandedGrid:
         """The same map, drawn band by band while it is used: it never takes the memory of all its cells."""
         return drawn_in_bands(self.evidence(), self._settings.resolution, self._settings.occupied_threshold)
 
@@ -277,7 +277,7 @@ class Follower:
 
     def insert(self, base_in_odom: Pose2, scan: Scan) -> Optional[PoseUpdate]:
         """Follows one scan; None if the robot stands still. Raises what ``Mapper.insert`` raises."""
-        check_place(base_in_odom, "odometry")
+        check_pose(base_in_odom, "odometry")
         if self._pause.lasts(base_in_odom, scan.stamp) and not self._front_end.odometry_is_stuck:
             return None
         self._no_return.add(scan.ranges)
@@ -301,7 +301,7 @@ def ranges_of(scan: Scan, settings: MapperSettings, no_return: NoReturn) -> Tupl
 
 def _check_near(base_in_map: Pose2, poses: np.ndarray) -> None:
     """Raises OutOfRangeError for a pose that is nowhere near any of ``poses`` (N, 3), if there are any."""
-    check_place(base_in_map, "a robot")
+    check_pose(base_in_map, "a robot")
     distances = np.hypot(poses[:, 0] - base_in_map.x, poses[:, 1] - base_in_map.y)
     if len(poses) and distances.min() > _FARTHEST_OFF:
         raise OutOfRangeError(f"a robot {distances.min():.0f} m away from all that is mapped means nothing")

@@ -12,7 +12,7 @@ from typing import Iterator, List, NamedTuple, Optional, Sequence, Tuple, Union
 import numpy as np
 
 from planar import UNKNOWN, OccupancyGrid, Pose2, Scan, wrap
-from planar.geometry.grid import GridInBands
+from planar.geometry.grid import BandedGrid
 from slam_lite.tiles import TILE, Box, TileCounts, around
 
 _GROWTH = 10.0
@@ -130,7 +130,7 @@ class ScanCounter:
 
 def drawn_in_bands(
     evidence: Evidence, resolution: float, occupied_threshold: float, most_cells: int = _BAND_CELLS
-) -> GridInBands:
+) -> BandedGrid:
     """The map as a SessionRenderer draws it, in bands of at most ``most_cells``, or as low as a tile.
 
     Each is drawn when it is asked for, from the beams that reach it.
@@ -141,7 +141,7 @@ def drawn_in_bands(
     box = _box_of(now, before)
     rows, cols = box.shape
     bands = _bands(now, before, box, occupied_threshold, max(1, most_cells // (TILE * cols)))
-    return GridInBands(rows, cols, resolution, _origin(box, resolution), bands)
+    return BandedGrid(rows, cols, resolution, _origin(box, resolution), bands)
 
 
 def _bands(

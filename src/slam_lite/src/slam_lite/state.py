@@ -8,7 +8,7 @@ import numpy as np
 
 from planar import PlanarError, Pose2, write_atomically
 from planar.files.reading import read_arrays
-from planar.geometry.limits import FARTHEST
+from planar.geometry.limits import MAX_COORDINATE
 from slam_lite.graph.pose_graph import Edges
 from slam_lite.rendering import Beams
 from slam_lite.surface import Surface
@@ -122,7 +122,7 @@ def _problem_of(table: Mapping[str, np.ndarray]) -> str:
         for size, letter in zip(array.shape, shape):
             if size != (int(letter) if letter.isdigit() else lengths.setdefault(letter, size)):
                 return f"{name} has not the length it should have"
-        if name != "edge_information" and not (np.abs(array.astype(float)) <= FARTHEST).all():
+        if name != "edge_information" and not (np.abs(array.astype(float)) <= MAX_COORDINATE).all():
             return f"{name} holds numbers that mean nothing"
     if not np.isfinite(table["edge_information"]).all():
         return "edge_information holds numbers that mean nothing"

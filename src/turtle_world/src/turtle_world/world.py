@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Dict, List, Optional, Tuple
 
 from planar import PlanarError
-from planar.geometry.limits import FARTHEST, FASTEST, MOST_RADIANS, check_within, is_within
+from planar.geometry.limits import MAX_ANGLE, MAX_COORDINATE, MAX_SPEED, check_within, is_within
 from turtle_world.canvas import BACKGROUND, SIDE, Canvas, Color, Pen
 from turtle_world.physics import PERIOD, Physics, Place
 
@@ -28,7 +28,7 @@ class Command:
 
     def is_in_range(self) -> bool:
         """Whether it is finite, and no faster than anything moves."""
-        return is_within(FASTEST, self.forward, self.leftward, self.turn)
+        return is_within(MAX_SPEED, self.forward, self.leftward, self.turn)
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ class TurtleWorld:
     def teleport_by(self, name: str, distance: float, angle: float) -> None:
         """Turns a turtle, then moves it ahead, at once. Raises TurtleError."""
         place = self.place_of(name)
-        check_within(MOST_RADIANS, "a turtle's turn", angle=angle)
+        check_within(MAX_ANGLE, "a turtle's turn", angle=angle)
         theta = place.theta + angle
         self.teleport(name, place.x + distance * math.cos(theta), place.y + distance * math.sin(theta), theta)
 
@@ -184,6 +184,6 @@ class TurtleWorld:
 
 
 def _on_floor(place: Place) -> Place:
-    check_within(FARTHEST, "a turtle's place", x=place.x, y=place.y)
-    check_within(MOST_RADIANS, "a turtle's place", theta=place.theta)
+    check_within(MAX_COORDINATE, "a turtle's place", x=place.x, y=place.y)
+    check_within(MAX_ANGLE, "a turtle's place", theta=place.theta)
     return Place(min(max(place.x, 0.0), SIDE), min(max(place.y, 0.0), SIDE), place.theta)

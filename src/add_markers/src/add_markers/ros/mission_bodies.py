@@ -20,7 +20,7 @@ from add_markers.bodies import HEIGHT, MASS, RIDING_HEIGHT, Bodies, Move, Solid,
 from add_markers.config import MarkerSettings
 from planar import Pose2
 from planar_ros.calls.services import ServiceError, call_service
-from planar_ros.messages.border import listen
+from planar_ros.messages.border import subscribe
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg, pose2_from_msg, pose2_to_msg
 
 START_SECONDS, ANSWER_SECONDS = 20.0, 5.0
@@ -44,7 +44,7 @@ class MissionBodies:
         self._has_failed = False
         self._colors: Dict[str, ColorRGBA] = {}
         self._there: Set[str] = set()
-        listen("map", OccupancyGridArrays, self._keep_map, queue_size=1)
+        subscribe("map", OccupancyGridArrays, self._keep_map, queue_size=1)
 
     def follow(self, objects: Sequence[ObjectState]) -> Dict[str, Pose2]:
         """Brings the boxes to where they belong now; where each stands that is not carried."""

@@ -11,9 +11,9 @@ from add_markers.bodies import HEIGHT, RIDING_HEIGHT
 from add_markers.config import MarkerSettings
 from add_markers.ros.mission_bodies import MissionBodies
 from planar import Pose2
-from planar_ros.messages.border import listen
+from planar_ros.messages.border import subscribe
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
-from planar_ros.node.waiting import Waiting
+from planar_ros.node.waiting import ReadinessMonitor
 
 STATE_TOPIC = "pick_objects/mission_state"
 
@@ -34,8 +34,8 @@ class MissionMarkers:
             "visualization_marker", Marker, subscriber_listener=_Repeater(self), queue_size=50
         )
         self._has_state = False
-        listen(STATE_TOPIC, MissionState, self._follow, queue_size=50)
-        Waiting({f"a mission on {rospy.resolve_name(STATE_TOPIC)}": lambda: self._has_state})
+        subscribe(STATE_TOPIC, MissionState, self._follow, queue_size=50)
+        ReadinessMonitor({f"a mission on {rospy.resolve_name(STATE_TOPIC)}": lambda: self._has_state})
 
     def repeat(self, publish) -> None:
         """The latest marker of each object, to one subscriber."""

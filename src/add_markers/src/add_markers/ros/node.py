@@ -13,15 +13,15 @@ from add_markers.parcel import CarriedParcel, Stage, TimedParcel
 from add_markers.ros.mission_markers import MissionMarkers
 from add_markers.ros.zones import zone_markers
 from planar import Pose2
-from planar.maps.places import places_of_errand
-from planar_ros.messages.border import listen
+from planar.maps.places import load_pickup_and_dropoff
+from planar_ros.messages.border import subscribe
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
 from planar_ros.messages.transforms import Transforms
-from planar_ros.node.keepsake import Keepsake
+from planar_ros.node.keepsake import ParameterCheckpoint
 from planar_ros.node.parameters import read_settings
 from planar_ros.node.shell import run
-from planar_ros.node.waiting import Waiting
-from planar_ros.step import Step
+from planar_ros.node.waiting import ReadinessMonitor
+from planar_ros.step import LockstepClient
 
 UPDATE_SECONDS = 0.1
 NOWHERE_YET = object()
@@ -35,28 +35,28 @@ class AddMarkers:
 
     def __init__(self, settings: MarkerSettings):
         self._settings = settings
-        self._pickup, self._dropoff = places = places_of_errand(settings.zones_file)
+        self._pickup, self._dropoff = places = load_pickup_and_dropoff(settings.zones_file)
         self._robot: Optional[Pose2] = None
         self._shown_at: object = NOWHERE_YET
         self._publisher = rospy.Publisher("visualization_marker", Marker, queue_size=10, latch=True)
         self._zones = rospy.Publisher("zones", MarkerArray, queue_size=1, latch=True)
         self._zones.publish(zone_markers(places, settings.frame_id))
-        self._keepsake: Optional[Keepsake] = None
+        self._keepsake: Optional[ParameterCheckpoint] = None
         self._parcel: Union[TimedParcel, CarriedParcel]
         self._locate: Locate
         if settings.mode == "demo":
             self._parcel = TimedParcel(*places, settings.show_seconds, settings.hide_seconds)
             self._locate = lambda: None
         else:
-            self._keepsake = Keepsake() if settings.resume else None
+            self._keepsake = ParameterCheckpoint() if settings.resume else None
             stage = Stage((self._keepsake and self._keepsake.found) or Stage.WAITING)
             self._parcel = CarriedParcel(*places, settings.pickup_seconds, stage)
             self._locate = self._locator(settings.pose_source)
-        Waiting(self._conditions())
+        ReadinessMonitor(self._conditions())
 
     def work(self):
         """From now on follows the parcel."""
-        step = Step.of_node()
+        step = LockstepClient.of_node()
         step.every(lambda: UPDATE_SECONDS, self._update, lambda: None)
         step.join()
 
@@ -82,9 +82,9 @@ class AddMarkers:
         if source == "state":
             rospy.Subscriber("pick_objects/state", String, keep_state, queue_size=10)
         elif source == "odom":
-            listen("odom", Odometry, keep_pose, queue_size=1)
+            subscribe("odom", Odometry, keep_pose, queue_size=1)
         else:
-            listen("amcl_pose", PoseWithCovarianceStamped, keep_pose, queue_size=1)
+            subscribe("amcl_pose", PoseWithCovarianceStamped, keep_pose, queue_size=1)
         return lambda: latest[0]
 
     def _conditions(self):
@@ -117,11 +117,11 @@ class AddMarkers:
 
 def main():
     def start():
-        Step.of_node()
+        LockstepClient.of_node()
         settings = read_settings(MarkerSettings)
         if settings.mode == "mission":
             markers = MissionMarkers(settings)
-            Step.of_node().join()
+            LockstepClient.of_node().join()
             return markers
         return AddMarkers(settings).work()
 

@@ -7,14 +7,14 @@ from geometry_msgs.msg import Point
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
-from planar.maps.places import Place
+from planar.maps.places import NamedPlace
 
 CORNERS = 48
 LINE_WIDTH, TEXT_HEIGHT = 0.03, 0.25
 COLOUR = ColorRGBA(0.55, 0.3, 0.95, 1.0)
 
 
-def zone_markers(places: Iterable[Place], frame_id: str) -> MarkerArray:
+def zone_markers(places: Iterable[NamedPlace], frame_id: str) -> MarkerArray:
     """A ring of each place's radius, an arrow the way the robot should face, and the place's name."""
     markers: List[Marker] = []
     for number, place in enumerate(places):
@@ -26,7 +26,7 @@ def zone_markers(places: Iterable[Place], frame_id: str) -> MarkerArray:
     return MarkerArray(markers)
 
 
-def _ring(number: int, place: Place) -> Marker:
+def _ring(number: int, place: NamedPlace) -> Marker:
     marker = Marker(ns="zones", id=number, type=Marker.LINE_STRIP)
     marker.scale.x = LINE_WIDTH
     angles = [2.0 * math.pi * corner / CORNERS for corner in range(CORNERS + 1)]
@@ -34,14 +34,14 @@ def _ring(number: int, place: Place) -> Marker:
     return marker
 
 
-def _arrow(number: int, place: Place) -> Marker:
+def _arrow(number: int, place: NamedPlace) -> Marker:
     marker = Marker(ns="headings", id=number, type=Marker.ARROW)
     marker.scale.x, marker.scale.y = LINE_WIDTH, 3.0 * LINE_WIDTH
     marker.points = [_point(place, place.pose.yaw, reach * place.radius) for reach in (1.0, 1.6)]
     return marker
 
 
-def _name(number: int, place: Place) -> Marker:
+def _name(number: int, place: NamedPlace) -> Marker:
     marker = Marker(ns="names", id=number, type=Marker.TEXT_VIEW_FACING, text=place.name)
     marker.scale.z = TEXT_HEIGHT
     marker.pose.position.x = place.pose.x
@@ -49,5 +49,5 @@ def _name(number: int, place: Place) -> Marker:
     return marker
 
 
-def _point(place: Place, angle: float, distance: float) -> Point:
+def _point(place: NamedPlace, angle: float, distance: float) -> Point:
     return Point(place.pose.x + distance * math.cos(angle), place.pose.y + distance * math.sin(angle), 0.0)

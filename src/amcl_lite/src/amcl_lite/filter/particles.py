@@ -7,7 +7,7 @@ import numpy as np
 
 from amcl_lite.errors import LocalizationError
 from planar import FREE, OccupancyGrid, Pose2
-from planar.geometry.limits import FARTHEST
+from planar.geometry.limits import MAX_COORDINATE
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +47,8 @@ def gaussian_poses(mean: Pose2, covariance: np.ndarray, count: int, rng: np.rand
 
 
 def within_reach(poses: np.ndarray) -> np.ndarray:
-    """The poses (N, 3), with those beyond FARTHEST brought back to there: a robot can be no farther."""
-    np.clip(poses[:, :2], -FARTHEST, FARTHEST, out=poses[:, :2])
+    """The poses (N, 3), with those beyond MAX_COORDINATE brought back to there: a robot can be no farther."""
+    np.clip(poses[:, :2], -MAX_COORDINATE, MAX_COORDINATE, out=poses[:, :2])
     return poses
 
 

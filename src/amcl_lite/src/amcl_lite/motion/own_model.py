@@ -12,8 +12,8 @@ from amcl_lite.config import LocalizerSettings
 from amcl_lite.motion import motion_model
 from amcl_lite.own_model import OwnModel
 from planar import Pose2
-from planar.geometry.limits import FARTHEST
-from planar.plugins import Contract
+from planar.geometry.limits import MAX_COORDINATE
+from planar.plugins import PluginContract
 
 
 class MotionModel(Protocol):
@@ -28,7 +28,7 @@ class MotionModel(Protocol):
         ...
 
 
-CONTRACT = Contract("motion model", MotionModel, LocalizerSettings, "amcl_lite.motion_models")
+CONTRACT = PluginContract("motion model", MotionModel, LocalizerSettings, "amcl_lite.motion_models")
 
 
 def motion_model_of(settings: LocalizerSettings) -> MotionModel:
@@ -59,4 +59,4 @@ class GuardedMotionModel:
     ) -> np.ndarray:
         """Raises LocalizationError."""
         given = (poses.copy(), base_before, base_now, rng)
-        return self._own.ask("moved", poses.shape, *given, most=FARTHEST)
+        return self._own.ask("moved", poses.shape, *given, most=MAX_COORDINATE)

@@ -8,7 +8,7 @@ from tf2_msgs.msg import TFMessage
 
 from amcl_lite.ros.estimate_publisher import EstimatePublisher
 from amcl_lite.ros.shared_localizer import SharedLocalizer
-from planar_ros.bags.bag import TF, TF_STATIC, Bag, BagError, full_name
+from planar_ros.bags.bag import TF, TF_STATIC, BagError, BagReader, absolute_name
 from planar_ros.messages.conversion import LaserScanArrays
 from planar_ros.messages.scan_queue import ScanQueue
 from planar_ros.messages.transforms import Transforms
@@ -52,12 +52,12 @@ def play_bag(path: Path, transforms: Transforms, scans: ScanQueue, scan_period: 
     ``scan_period``: wall seconds between scans, 0 or less for none. What is fed is published too. Raises
     BagError, if the bag was cut off when what there is of it has been dealt with.
     """
-    scan_topic = full_name(scans.topic)
+    scan_topic = absolute_name(scans.topic)
     # On a busy machine the echo comes so late that time seems to have jumped back.
     scans.hear_no_more()
     scan_publisher = rospy.Publisher(scans.topic, LaserScanArrays, queue_size=100)
     tf_publisher = rospy.Publisher("/tf", TFMessage, queue_size=100)
-    bag = Bag(path)
+    bag = BagReader(path)
     transforms.take(TFMessage(bag.first_static_transforms()), is_static=True)
     for topic, message, _ in bag.messages([scan_topic, TF, TF_STATIC]):
         if rospy.is_shutdown():

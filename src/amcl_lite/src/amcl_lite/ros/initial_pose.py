@@ -10,10 +10,10 @@ from geometry_msgs.msg import PoseWithCovarianceStamped
 from amcl_lite.ros.shared_localizer import SharedLocalizer
 from amcl_lite.ros.tf_bridge import TfBridge
 from planar import Pose2
-from planar.geometry.limits import FARTHEST, check_within
-from planar_ros.messages.border import listen
+from planar.geometry.limits import MAX_COORDINATE, check_within
+from planar_ros.messages.border import subscribe
 from planar_ros.messages.conversion import frame_name, pose2_from_msg
-from planar_ros.step import Step
+from planar_ros.step import LockstepClient
 
 # How long a pose may wait for the odometry of its stamp, which moves it to the present.
 PATIENCE = rospy.Duration(0.5)
@@ -40,11 +40,11 @@ class InitialPoses:
     A pose whose odometry has not come yet waits for it, but no callback does: in step no time passes then.
     """
 
-    def __init__(self, shared: SharedLocalizer, tf_bridge: TfBridge, step: Step):
+    def __init__(self, shared: SharedLocalizer, tf_bridge: TfBridge, step: LockstepClient):
         self._shared, self._tf_bridge = shared, tf_bridge
         self._waiting: Optional[_ToldPose] = None
         self._lock = threading.Lock()
-        listen("initialpose", PoseWithCovarianceStamped, self._on_initial_pose, queue_size=2)
+        subscribe("initialpose", PoseWithCovarianceStamped, self._on_initial_pose, queue_size=2)
         step.every(lambda: RETRY_SECONDS, self._retry, lambda: None)
 
     def take(self, message: PoseWithCovarianceStamped, force_update: bool) -> None:
@@ -63,7 +63,7 @@ class InitialPoses:
             )
             return
         pose, covariance = pose2_from_msg(message.pose.pose), _planar(message.pose.covariance)
-        check_within(FARTHEST, "an initial pose", covariance=float(np.abs(covariance).max()))
+        check_within(MAX_COORDINATE, "an initial pose", covariance=float(np.abs(covariance).max()))
         now = rospy.Time.now()
         with self._lock:
             self._waiting = None  # the newest counts

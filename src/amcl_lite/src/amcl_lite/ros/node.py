@@ -23,22 +23,22 @@ from amcl_lite.ros.shared_localizer import SharedLocalizer
 from amcl_lite.ros.tf_bridge import TfBridge
 from amcl_lite.ros.views import Views
 from planar import PlanarError, SettingsError
-from planar.config.listing import yaml_of
+from planar.config.listing import render_yaml
 from planar_ros.messages.conversion import frame_name
 from planar_ros.messages.scan_queue import ScanQueue
 from planar_ros.messages.transforms import Transforms
-from planar_ros.node.command_line import understood
-from planar_ros.node.reconfigure import Reconfiguration, dynamic_values
+from planar_ros.node.command_line import parse_known
+from planar_ros.node.reconfigure import SettingsReconfigureServer, dynamic_values
 from planar_ros.node.shell import run
-from planar_ros.node.waiting import Waiting
-from planar_ros.step import Step
+from planar_ros.node.waiting import ReadinessMonitor
+from planar_ros.step import LockstepClient
 
 
 class AmclNode:
     """Puts the parts together; hands each scan to the one Localizer and publishes what it returns."""
 
     def __init__(self, scan_topic: str = "scan"):
-        self._step = Step.of_node()
+        self._step = LockstepClient.of_node()
         settings = read_node_settings()
         self._shared = SharedLocalizer(settings)
         _warm_up(settings)
@@ -62,7 +62,7 @@ class AmclNode:
         self._alarm.start()
         rospy.on_shutdown(self._publisher.keep_pose)
         self._say_what_is_missing()
-        Reconfiguration(settings, self._on_reconfigure)
+        SettingsReconfigureServer(settings, self._on_reconfigure)
         self._step.join(lambda: settings.use_map_topic or self._shared.localizer is not None)
 
     def fetch_map(self) -> None:
@@ -78,7 +78,7 @@ class AmclNode:
 
     def _say_what_is_missing(self):
         frames = self._shared.settings.odom_frame, self._shared.settings.base_frame
-        Waiting(
+        ReadinessMonitor(
             {
                 f"a map from the {self._map_source.name}": lambda: self._shared.localizer is not None,
                 f"a scan on {self._scans.topic}": lambda: self._scans.has_received,
@@ -131,7 +131,7 @@ class AmclNode:
 def _warm_up(settings: NodeSettings) -> None:
     """Compiles or loads the kernels, before any scan comes; says so if that takes long."""
     is_warm = threading.Event()
-    Waiting({"its kernels to be compiled, as after each installation": is_warm.is_set})
+    ReadinessMonitor({"its kernels to be compiled, as after each installation": is_warm.is_set})
     warm_up(settings)
     is_warm.set()
 
@@ -143,9 +143,9 @@ def main():
     parser.add_argument("--explain-params", action="store_true", help="print all parameters, with meanings")
     parser.add_argument("--run-from-bag", metavar="BAG", help="work through topics tf and base_scan of a bag")
     parser.add_argument("--global-localization", action="store_true", help="of the bag the start is unknown")
-    arguments = understood(parser, rospy.myargv()[1:])
+    arguments = parse_known(parser, rospy.myargv()[1:])
     if arguments.explain_params:
-        print(yaml_of(CONFIG_FILES["amcl_lite.yaml"]), end="")
+        print(render_yaml(CONFIG_FILES["amcl_lite.yaml"]), end="")
         return
     run("amcl", lambda: _start(arguments))
 

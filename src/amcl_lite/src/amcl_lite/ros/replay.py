@@ -15,10 +15,10 @@ from planar.config.settings_file import settings_from_yaml
 from planar_ros.bags.bag import BagError
 from planar_ros.bags.replaying import (
     add_replay_options,
+    load_settings,
+    process_scans,
     run_replay,
-    settings_of,
     warn,
-    work_through,
     write_trajectory,
 )
 from planar_ros.bags.scan_log import LoggedScan, ScanLog
@@ -59,7 +59,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _replay(options: argparse.Namespace) -> int:
-    settings = settings_of(NodeSettings, options.config, also_known=official_names(InitialPose))
+    settings = load_settings(NodeSettings, options.config, also_known=official_names(InitialPose))
     log = ScanLog(options.bag, options.scan_topic, settings.base_frame, settings.odom_frame, warn)
     localizer = _localizer(options, settings)
     stamped_poses: List[Tuple[float, ...]] = []
@@ -73,7 +73,7 @@ def _replay(options: argparse.Namespace) -> int:
             base_in_map = localizer.odom_in_map @ logged.base_in_odom
             stamped_poses.append((logged.scan.stamp, *base_in_map.as_array()))
 
-    exit_code = work_through(log, update, "localizing", options.progress)
+    exit_code = process_scans(log, update, "localizing", options.progress)
     if not stamped_poses:
         raise BagError(f"{options.bag}: no scan on {options.scan_topic} could be used")
     trajectory = options.trajectory or Path(Path(options.bag).stem + ".tum")

@@ -15,9 +15,9 @@ from std_msgs.msg import String
 from std_srvs.srv import Empty
 
 from planar import PlanarError
-from planar_ros.messages.border import listen
+from planar_ros.messages.border import subscribe
 from planar_ros.messages.conversion import pose2_from_msg
-from planar_ros.node.last_words import say_at_end
+from planar_ros.node.last_words import publish_on_shutdown
 from planar_ros.node.shell import fail, run
 
 # The particles are in one place when their standard deviations, metres and radians, are below these.
@@ -42,9 +42,9 @@ class SpinUntilLocalized:
         self._pose: Optional[PoseWithCovarianceStamped] = None
         self._asked_at = rospy.Time(0)
         self._cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1)
-        say_at_end(self._cmd_vel, Twist())
+        publish_on_shutdown(self._cmd_vel, Twist())
         rospy.Subscriber(f"{node}/localization_state", String, self._on_state, queue_size=2)
-        listen("amcl_pose", PoseWithCovarianceStamped, self._on_pose, queue_size=2)
+        subscribe("amcl_pose", PoseWithCovarianceStamped, self._on_pose, queue_size=2)
 
     def spin(self, timeout: float, turn_speed: float) -> str:
         """Returns where the robot is, in words. Raises NotLocalizedError after ``timeout``, ROS seconds."""

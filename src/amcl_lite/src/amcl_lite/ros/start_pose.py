@@ -18,7 +18,7 @@ from amcl_lite.errors import LocalizationError
 from amcl_lite.localizer import can_start_from
 from planar import Pose2
 from planar.config.parameters import official_names
-from planar_ros.node.kept_file import KeptFile
+from planar_ros.node.kept_file import FileCheckpoint
 from planar_ros.node.parameters import ParameterWriter, read_settings
 from planar_ros.node.reconfigure import RESTORE
 
@@ -43,7 +43,7 @@ class PoseKeeper:
     def __init__(self):
         self._kept_at, self._kept_at_wall = rospy.Time(0), 0.0
         self._writer = ParameterWriter()
-        self._kept_file = KeptFile()
+        self._kept_file = FileCheckpoint()
 
     def left_belief(self) -> Optional[Belief]:
         """What a node of this name that has crashed believed; None without such a one."""

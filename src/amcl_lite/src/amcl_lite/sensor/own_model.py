@@ -11,7 +11,7 @@ from amcl_lite.config import LocalizerSettings
 from amcl_lite.own_model import OwnModel
 from amcl_lite.sensor.beams import Beams
 from planar import OccupancyGrid
-from planar.plugins import Contract
+from planar.plugins import PluginContract
 
 
 class SensorModel(Protocol):
@@ -24,7 +24,7 @@ class SensorModel(Protocol):
         ...
 
 
-CONTRACT = Contract("sensor model", SensorModel, LocalizerSettings, "amcl_lite.sensor_models")
+CONTRACT = PluginContract("sensor model", SensorModel, LocalizerSettings, "amcl_lite.sensor_models")
 
 
 class GuardedSensorModel:

@@ -7,7 +7,7 @@ from typing import Optional
 import rospy
 from geometry_msgs.msg import Twist
 
-from planar_ros.node.last_words import wait_until_heard
+from planar_ros.node.last_words import flush_and_close
 from teleop_lite.teleop import TICK_SECONDS, Teleop
 
 # So long after it has come to rest the robot is told so, then others may drive it.
@@ -54,7 +54,7 @@ class PageTeleop:
             is_driving = self._driver is not None
             self._stop()
             if is_driving and self._publisher is not None:
-                wait_until_heard(self._publisher, patience=LAST_WORD_SECONDS)
+                flush_and_close(self._publisher, patience=LAST_WORD_SECONDS)
 
     def _stop(self) -> None:
         self._teleop.press(FORCE_STOP)

@@ -10,20 +10,20 @@ from home_service_msgs.msg import ExploreAction, ExploreActionGoal, ExploreFeedb
 from visualization_msgs.msg import MarkerArray
 
 from explorer_lite.config import ExplorerSettings, NodeSettings
-from explorer_lite.explorer import Explorer, ExplorerState, Finish, GoalReached, GoalRefused, GoTo
+from explorer_lite.explorer import Explorer, ExplorerState, FinishTask, GoalFailed, GoalReached, GoTo
 from explorer_lite.ros.markers import frontier_markers
 from explorer_lite.warming import warm_up
 from planar import OccupancyGrid, Pose2
 from planar_ros.calls.actions import ActionServer
-from planar_ros.calls.move_base import MoveBase
-from planar_ros.messages.border import listen
+from planar_ros.calls.move_base import MoveBaseClient
+from planar_ros.messages.border import subscribe
 from planar_ros.messages.conversion import LaserScanArrays, OccupancyGridArrays, grid_from_msg, pose2_to_msg
 from planar_ros.messages.transforms import Transforms
-from planar_ros.node.keepsake import Keepsake
+from planar_ros.node.keepsake import ParameterCheckpoint
 from planar_ros.node.parameters import read_settings
 from planar_ros.node.shell import run
-from planar_ros.node.waiting import Waiting
-from planar_ros.step import Step
+from planar_ros.node.waiting import ReadinessMonitor
+from planar_ros.step import LockstepClient
 
 POLL_SECONDS = 0.02
 FEEDBACK_SECONDS = 1.0
@@ -40,7 +40,7 @@ class Autostart:
         self._goal = ExploreActionGoal()
         self._goal.goal.return_to_start = return_to_start
         self._goals = rospy.Publisher("explore/goal", ExploreActionGoal, queue_size=1)
-        self._keepsake = Keepsake()
+        self._keepsake = ParameterCheckpoint()
         self._has_begun = False
 
     @property
@@ -64,7 +64,7 @@ class Explore:
         node_fields, explorer_fields = (
             kind.__dataclass_fields__ for kind in (NodeSettings, ExplorerSettings)
         )
-        self._step = Step.of_node()
+        self._step = LockstepClient.of_node()
         self._settings = read_settings(NodeSettings, ignore=explorer_fields)
         self._explorer_settings = read_settings(ExplorerSettings, ignore=node_fields)
         warm_up()
@@ -72,9 +72,9 @@ class Explore:
         self._field_of_view = 0.0
         self._transforms = Transforms()
         self._markers = rospy.Publisher("~frontiers", MarkerArray, queue_size=1, latch=True)
-        self._move_base = MoveBase(self._settings.global_frame)
-        listen("map", OccupancyGridArrays, self._keep_map, queue_size=1, tcp_nodelay=True)
-        self._scans = listen("scan", LaserScanArrays, self._measure_view, queue_size=1)
+        self._move_base = MoveBaseClient(self._settings.global_frame)
+        subscribe("map", OccupancyGridArrays, self._keep_map, queue_size=1, tcp_nodelay=True)
+        self._scans = subscribe("scan", LaserScanArrays, self._measure_view, queue_size=1)
         self._move_base.cancel_at_end()
         frames = f"{self._settings.global_frame} to {self._settings.robot_base_frame}"
         self._conditions = {
@@ -82,7 +82,7 @@ class Explore:
             f"the transform {frames}": lambda: self._robot() is not None,
             self._move_base.name: self._move_base.is_ready,
         }
-        Waiting(self._conditions)
+        ReadinessMonitor(self._conditions)
         self._server = ActionServer("explore", ExploreAction, auto_start=False)
         self._server.start()
         self._autostart = Autostart(self._settings.return_to_start) if self._settings.autostart else None
@@ -126,7 +126,7 @@ class Explore:
             rospy.logwarn("%s", end.reason)
             self._server.set_aborted(result, end.reason)
 
-    def _explore(self, explorer: Explorer) -> Optional[Finish]:
+    def _explore(self, explorer: Explorer) -> Optional[FinishTask]:
         """Explores to the end; None if it was cancelled before."""
         seen_map, event, goal = None, None, None
         next_feedback = 0.0
@@ -137,13 +137,13 @@ class Explore:
                 complete_at = time.monotonic()
             elif time.monotonic() - complete_at > self._settings.server_timeout:
                 text = f"{' and '.join(missing)} missing for {self._settings.server_timeout:g} s"
-                return Finish(False, text)
+                return FinishTask(False, text)
             now, grid, robot = rospy.get_time(), self._map, self._robot()
             order = None
             if not missing and robot is not None:
                 order = explorer.advance(now, None if grid is seen_map else grid, robot, event)
                 seen_map, event = grid, None
-            if isinstance(order, Finish):
+            if isinstance(order, FinishTask):
                 return order
             if self._autostart is not None and explorer.start is not None:
                 self._autostart.keep(explorer.start)
@@ -167,10 +167,10 @@ class Explore:
     def _robot(self) -> Optional[Pose2]:
         return self._transforms.lookup(self._settings.global_frame, self._settings.robot_base_frame)
 
-    def _next_event(self) -> Union[None, GoalReached, GoalRefused]:
+    def _next_event(self) -> Union[None, GoalReached, GoalFailed]:
         outcome = self._move_base.outcome()
         event = None if outcome is None else outcome.event
-        if isinstance(event, GoalRefused):
+        if isinstance(event, GoalFailed):
             rospy.loginfo("goal given up: %s", event.reason)
         return event
 

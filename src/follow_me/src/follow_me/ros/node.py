@@ -7,26 +7,26 @@ import rospy
 from follow_me.config import NodeSettings
 from follow_me.follower import Follower
 from planar import Pose2
-from planar_ros.calls.move_base import MoveBase
+from planar_ros.calls.move_base import MoveBaseClient
 from planar_ros.messages.transforms import Transforms
 from planar_ros.node.parameters import read_settings
 from planar_ros.node.shell import run
-from planar_ros.node.waiting import Waiting
-from planar_ros.step import Step
+from planar_ros.node.waiting import ReadinessMonitor
+from planar_ros.step import LockstepClient
 
 
 class FollowMe:
     """Sends goals for as long as it lives; without transforms it waits, and says for which."""
 
     def __init__(self):
-        step = Step.of_node()
+        step = LockstepClient.of_node()
         self._settings = read_settings(NodeSettings)
         self._follower = Follower(self._settings)
         self._transforms = Transforms()
-        self._move_base = MoveBase(self._settings.map_frame)
+        self._move_base = MoveBaseClient(self._settings.map_frame)
         self._move_base.cancel_at_end()
         frames = (self._settings.leader_frame, self._settings.base_frame)
-        Waiting(
+        ReadinessMonitor(
             {
                 self._move_base.name: self._move_base.is_ready,
                 **{

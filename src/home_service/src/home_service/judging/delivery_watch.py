@@ -5,7 +5,7 @@ from typing import Callable, Dict, List, Mapping, Optional
 from home_service.judging.verdict import DeliveryRecord
 from pick_objects import Delivery, Stage
 from planar import Pose2
-from planar.maps.places import Place
+from planar.maps.places import NamedPlace
 
 ENDS = (Stage.DELIVERED, Stage.FAILED, Stage.CANCELLED)
 
@@ -14,7 +14,7 @@ class DeliveryWatch:
     """Keeps a record of each delivery. ``records`` is changed in place; ``say`` is told of each arrival."""
 
     def __init__(
-        self, places: Mapping[str, Place], records: List[DeliveryRecord], say: Callable[[str], None]
+        self, places: Mapping[str, NamedPlace], records: List[DeliveryRecord], say: Callable[[str], None]
     ):
         self._places, self._records, self._say = places, records, say
         self._stages: Dict[str, Stage] = {}

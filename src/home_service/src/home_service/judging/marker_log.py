@@ -5,7 +5,7 @@ from typing import Iterable, List, Mapping
 
 from home_service.judging.verdict import Ledger
 from planar import Pose2
-from planar.maps.places import Place
+from planar.maps.places import NamedPlace
 
 # Name of the errand's object; those of a mission have names of their own.
 PARCEL = "parcel"
@@ -24,7 +24,7 @@ class Shown:
 class MarkerLog:
     """Fills the ``markers`` of a ledger, one entry for each change. ``places`` may become more."""
 
-    def __init__(self, places: Mapping[str, Place], ledger: Ledger):
+    def __init__(self, places: Mapping[str, NamedPlace], ledger: Ledger):
         self._places, self._ledger = places, ledger
         self._untold: List[Shown] = []
 

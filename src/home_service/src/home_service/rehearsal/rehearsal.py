@@ -37,10 +37,10 @@ from move_base_lite.control import check_local_planner
 from pick_objects import (
     Arrival,
     Errand,
-    Finish,
+    FinishTask,
     Fit,
+    GoalFailed,
     GoalReached,
-    GoalRefused,
     GoTo,
     MeasureWays,
     Mission,
@@ -182,7 +182,7 @@ class Rehearsal:
         while outcome is None:
             outcome = self._play_moment()
             if outcome is None and self._now > simulated_timeout:
-                outcome = Finish(False, f"not done within {simulated_timeout:g} simulated seconds")
+                outcome = FinishTask(False, f"not done within {simulated_timeout:g} simulated seconds")
         if not outcome.success:
             self._ledger.failure = outcome.reason
         self._ledger.reason = outcome.reason
@@ -198,7 +198,7 @@ class Rehearsal:
             self._company.ran_into_robot,
         )
 
-    def _play_moment(self) -> Optional[Finish]:
+    def _play_moment(self) -> Optional[FinishTask]:
         """Moves on by one control period, after which each part does what it has to do; the end, if so."""
         odom_in_map = self._localizer.odom_in_map
         observation, scan = self._advance_simulation()
@@ -224,8 +224,8 @@ class Rehearsal:
         if complaint is not None and self._senses.is_out_of_patience(self._now):
             # As move_base does with a sensor that it cannot trust.
             self._navigator.clear_goal()
-            self._event = GoalRefused(f"waiting for a trustworthy sensor ({complaint})")
-        return order if isinstance(order, Finish) else None
+            self._event = GoalFailed(f"waiting for a trustworthy sensor ({complaint})")
+        return order if isinstance(order, FinishTask) else None
 
     def _advance_errand(self, base_in_map: Pose2, truth: Pose2) -> Optional[Order]:
         """Its next order, if any; it begins when it has found the navigator."""
@@ -330,4 +330,4 @@ def parcel_of(errand: Mission) -> CarriedParcel:
 def _event_of(decision: Decision):
     if decision.status is Status.SUCCEEDED:
         return GoalReached()
-    return GoalRefused(decision.text) if decision.status is Status.ABORTED else None
+    return GoalFailed(decision.text) if decision.status is Status.ABORTED else None

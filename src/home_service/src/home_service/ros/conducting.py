@@ -9,7 +9,7 @@ from home_service.options import LaunchPlan, RunOptions
 from home_service.ros.referee import Referee
 from home_service.ros.run import Run
 from home_service.ros.run_recorder import RunRecorder
-from planar.maps.places import Place
+from planar.maps.places import NamedPlace
 from supervision.display import Display
 from supervision.interruption import RunInterruptedError
 
@@ -17,7 +17,7 @@ from supervision.interruption import RunInterruptedError
 def carry_out(
     options: RunOptions,
     launch: LaunchPlan,
-    places: Mapping[str, Place],
+    places: Mapping[str, NamedPlace],
     expected: Set[str],
     seconds: float = math.inf,
 ) -> int:
@@ -31,7 +31,9 @@ def carry_out(
         return run.conclude(referee.verdict(expected, failure))
 
 
-def stay_open(options: RunOptions, launch: LaunchPlan, hint: str, places: Mapping[str, Place] = {}) -> int:
+def stay_open(
+    options: RunOptions, launch: LaunchPlan, hint: str, places: Mapping[str, NamedPlace] = {}
+) -> int:
     """Runs a graph for people to work with, who are told where its master is; returns the exit code.
 
     Once it is open, Ctrl-C is how it is meant to end.

@@ -12,7 +12,7 @@ from home_service.ros.run import Run
 from home_service.ros.run_recorder import RunRecorder
 from planar import Pose2
 from planar.driving import DriveOutcome, DriveResult
-from planar_ros.calls.move_base import MoveBase
+from planar_ros.calls.move_base import MoveBaseClient
 from supervision.display import Display
 
 
@@ -33,7 +33,7 @@ def _drive_to_all(run: Run, referee: Referee, goals: Sequence[Pose2]) -> Optiona
     rospy.Subscriber(
         "move_base/result", MoveBaseActionResult, lambda result: ends.append(result.header.stamp.to_sec())
     )
-    move_base = MoveBase()
+    move_base = MoveBaseClient()
     failure = run.watch(move_base.is_ready)
     for number, pose in enumerate(goals, 1):
         if failure is None:
@@ -44,7 +44,7 @@ def _drive_to_all(run: Run, referee: Referee, goals: Sequence[Pose2]) -> Optiona
     return failure
 
 
-def _drive_to(run: Run, referee: Referee, move_base: MoveBase, pose: Pose2, name: str) -> Optional[str]:
+def _drive_to(run: Run, referee: Referee, move_base: MoveBaseClient, pose: Pose2, name: str) -> Optional[str]:
     outcome: Optional[DriveOutcome] = None
 
     def is_over() -> bool:

@@ -15,7 +15,7 @@ from home_service.ros.referee import Referee
 from home_service.ros.run import Run
 from home_service.ros.run_recorder import RunRecorder
 from planar import Pose2
-from planar.maps.places import Place
+from planar.maps.places import NamedPlace
 from planar_ros.messages.conversion import pose2_from_msg
 from supervision.display import Display
 
@@ -93,7 +93,7 @@ class FollowWatch:
         self.collisions += message.data.splitlines()
 
 
-def let_follow(options: RunOptions, launch: LaunchPlan, places: Mapping[str, Place]) -> int:
+def let_follow(options: RunOptions, launch: LaunchPlan, places: Mapping[str, NamedPlace]) -> int:
     """Runs an errand that another robot follows; returns the exit code."""
     display = Display()
     referee = Referee(places, display.say)

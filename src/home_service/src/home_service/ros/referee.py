@@ -22,7 +22,7 @@ from home_service.ros.goal_watch import GoalWatch
 from home_service.ros.hearing import hear
 from pick_objects import Delivery, Stage, parse_mission
 from planar import PlanarError, Pose2
-from planar.maps.places import Place
+from planar.maps.places import NamedPlace
 from planar_ros.messages.conversion import pose2_from_msg
 from supervision.processes import start_of_this_process
 
@@ -43,7 +43,9 @@ class Referee:
     robot is sent are learned from it.
     """
 
-    def __init__(self, places: Mapping[str, Place], say: Callable[[str], None], tells_goals: bool = False):
+    def __init__(
+        self, places: Mapping[str, NamedPlace], say: Callable[[str], None], tells_goals: bool = False
+    ):
         """``tells_goals``: also of the goals that move_base is given."""
         self.ledger = Ledger()
         self.state = ""

@@ -19,7 +19,7 @@ from home_service.ros.run_trace import RunTrace
 from home_service.ros.standstill import Standstill
 from planar import PlanarError, SettingsError
 from planar_ros.node.shell import init_node
-from planar_ros.step.step import AUDIENCE_PARAMETER
+from planar_ros.step.step import OBSERVERS_PARAMETER
 from run_report import summary, write_report
 from supervision.command_line import words
 from supervision.display import Display
@@ -157,7 +157,7 @@ class Run:
             self._standstill.start()
         self._judge.start()
         self._recorder.start()
-        rospy.set_param(AUDIENCE_PARAMETER, [rospy.get_name()])
+        rospy.set_param(OBSERVERS_PARAMETER, [rospy.get_name()])
 
     def _finish(self, error: Optional[BaseException]) -> None:
         """All that is to be done before the nodes end."""

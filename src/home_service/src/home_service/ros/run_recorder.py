@@ -15,7 +15,7 @@ from home_service.judging.samples import Samples
 from home_service.ros.hearing import hear
 from home_service.ros.referee import CONNECTION_CHATTER
 from planar import Pose2
-from planar.maps.places import Place
+from planar.maps.places import NamedPlace
 from planar_ros.messages.conversion import (
     OccupancyGridArrays,
     frame_name,
@@ -36,7 +36,7 @@ class RunRecorder:
     Notes every event, and keeps the latest.
     """
 
-    def __init__(self, places: Mapping[str, Place]):
+    def __init__(self, places: Mapping[str, NamedPlace]):
         self._places = places
         self._record = RunRecord()
         self._start_wall: Optional[float] = None

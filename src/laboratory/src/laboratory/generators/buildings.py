@@ -16,7 +16,7 @@ from laboratory.worlds.source import Arena
 from planar import FREE, OccupancyGrid, Pose2, SettingsError
 from planar.config.yaml_table import Table
 from planar.geometry.distance_field import distance_field
-from planar.maps.places import Place
+from planar.maps.places import NamedPlace
 from sim_bridge.doorway import Door
 from sim_bridge.views.true_map import true_map
 from sim_bridge.world import Body, World
@@ -90,17 +90,17 @@ def _door(name: str, gap: Wall, origin: Tuple[float, float]) -> Door:
     return Door(name, Pose2(x, y, yaw), gap.length)
 
 
-def _places(grid: OccupancyGrid, rng: np.random.Generator) -> Tuple[Place, ...]:
+def _places(grid: OccupancyGrid, rng: np.random.Generator) -> Tuple[NamedPlace, ...]:
     """Where things are fetched and brought, apart from each other, all within reach of the origin."""
     reach = regions(grid, ROOM_TO_PASS)
     ((row, col),) = grid.cells_of([[0.0, 0.0]])
     roomy = distance_field(grid.cells != FREE, grid.resolution) > ROOM_TO_STAND
     spots_xy = grid.points_of(np.argwhere((reach == reach[row, col]) & roomy))
-    places: Tuple[Place, ...] = ()
+    places: Tuple[NamedPlace, ...] = ()
     while len(places) < PLACES and len(spots_xy):
         x, y = spots_xy[rng.integers(len(spots_xy))].tolist()
         yaw = float(rng.uniform(-math.pi, math.pi))
-        places = (*places, Place(f"place {len(places)}", Pose2(x, y, yaw)))
+        places = (*places, NamedPlace(f"place {len(places)}", Pose2(x, y, yaw)))
         spots_xy = spots_xy[np.hypot(*(spots_xy - (x, y)).T) > APART]
     return places
 

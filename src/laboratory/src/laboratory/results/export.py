@@ -7,7 +7,7 @@ from typing import Iterable, Sequence, Tuple
 
 from laboratory.results.result import Result
 from laboratory.scenario.scenario import Scenario
-from planar.files.atomically import write_together
+from planar.files.atomically import write_all_atomically
 
 
 def export(runs: Iterable[Tuple[Scenario, Sequence[Result]]], folder: Path) -> None:
@@ -23,4 +23,4 @@ def export(runs: Iterable[Tuple[Scenario, Sequence[Result]]], folder: Path) -> N
     parquet = io.BytesIO()
     table.to_parquet(parquet, engine="pyarrow", index=False)
     files = {"results.csv": table.to_csv(index=False).encode(), "results.parquet": parquet.getvalue()}
-    write_together({folder / name: [data] for name, data in files.items()})
+    write_all_atomically({folder / name: [data] for name, data in files.items()})

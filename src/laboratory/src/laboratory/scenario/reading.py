@@ -19,7 +19,7 @@ from planar import Pose2, SettingsError
 from planar.config.hints import hint
 from planar.config.settings import settings_from
 from planar.config.yaml_table import Table, read_table
-from planar.maps.places import pose_from
+from planar.maps.places import parse_pose
 from sim_bridge import RobotError, SimulationSettings, robot_named
 from sim_bridge.faults.file import faults_from
 from sim_bridge.noise import noise_named
@@ -90,7 +90,7 @@ def _boxes(happens: Any) -> Dict[str, Any]:
     places = happens.tables("boxes")
     for place in places:
         place.allow_only("x", "y", "yaw")
-    return {"boxes_at": tuple(map(pose_from, places))}
+    return {"boxes_at": tuple(map(parse_pose, places))}
 
 
 def _robot(table: Any) -> Tuple[str, Pose2]:
@@ -105,7 +105,7 @@ def _robot(table: Any) -> Tuple[str, Pose2]:
     if "start" in table:
         start_table = table.table("start")
         start_table.allow_only("x", "y", "yaw")
-        start = pose_from(start_table)
+        start = parse_pose(start_table)
     return name, start
 
 

@@ -11,7 +11,7 @@ from laboratory.tasks.task import Task
 from laboratory.worlds.people import People, with_people
 from laboratory.worlds.source import Arena, WorldSource
 from planar import Pose2
-from planar.plugins import sources_of
+from planar.plugins import source_files
 from sim_bridge import SimulationSettings
 from sim_bridge.doorway import Door
 from sim_bridge.faults import Fault
@@ -70,7 +70,7 @@ class Scenario:
         """
         told = asdict(replace(self, name="", about="", seeds=(), file=Path()))
         kinds = [type(self.world).__name__, type(self.task).__name__]
-        own = sources_of((self.planner, *(fault.kind for fault in self.faults)))
+        own = source_files((self.planner, *(fault.kind for fault in self.faults)))
         files = [_content(path) for path in (*self.world.files(), *self.task.files(), *own)]
         software = [version_over_ros()] if self.is_over_ros else []
         text = json.dumps([kinds, files, software, told], sort_keys=True, default=_nameless)

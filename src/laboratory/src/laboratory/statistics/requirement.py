@@ -6,7 +6,7 @@ from typing import Mapping, NamedTuple
 
 from laboratory.statistics.summary import FIGURES, Estimate
 from planar import SettingsError
-from planar.config.hints import hint_or_all
+from planar.config.hints import hint_or_choices
 
 RELATIONS = {">=": operator.ge, "<=": operator.le, ">": operator.gt, "<": operator.lt}
 FORM = re.compile(r"\s*(\w+)\s*(>=|<=|>|<)\s*([0-9.eE+-]+)\s*")
@@ -37,5 +37,7 @@ def requirement_from(text: str) -> Requirement:
     except ValueError:
         raise SettingsError(f'--require must be like "success >= 0.99", got {text!r}') from None
     if wanted.figure not in FIGURES:
-        raise SettingsError(f"--require: {wanted.figure} is not known{hint_or_all(wanted.figure, FIGURES)}")
+        raise SettingsError(
+            f"--require: {wanted.figure} is not known{hint_or_choices(wanted.figure, FIGURES)}"
+        )
     return wanted

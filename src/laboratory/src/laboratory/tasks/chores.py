@@ -13,7 +13,7 @@ from laboratory.worlds.source import Arena
 from pick_objects import Delivery, Mission
 from planar import Pose2, SettingsError
 from planar.config.yaml_table import Table
-from planar.maps.places import Place
+from planar.maps.places import NamedPlace
 
 if TYPE_CHECKING:
     from laboratory.scenario.scenario import Scenario
@@ -65,7 +65,7 @@ class Chores:
         return Mission("chores", places, tuple(deliveries))
 
 
-def _place_as_table(place: Place) -> Dict[str, Any]:
+def _place_as_table(place: NamedPlace) -> Dict[str, Any]:
     """As a file of places has it."""
     pose = place.pose
     return {"x": pose.x, "y": pose.y, "yaw": pose.yaw, "radius": place.radius}

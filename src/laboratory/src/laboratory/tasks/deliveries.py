@@ -13,7 +13,7 @@ from laboratory.worlds.source import Arena
 from pick_objects import Mission, errand_mission, load_mission
 from planar import OccupancyGrid, Pose2, SettingsError
 from planar.config.yaml_table import Table
-from planar.maps.places import load_places, places_of_errand, why_unreachable
+from planar.maps.places import load_pickup_and_dropoff, load_places, unreachable_reason
 from sim_bridge import robot_named
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class Deliveries:
         if self.mission is not None:
             return None
         robot = Conditions(parameters=scenario.parameters).navigation(NAVIGATION_CONFIG)
-        ends = tuple(place.pose for place in places_of_errand(self.zones))
+        ends = tuple(place.pose for place in load_pickup_and_dropoff(self.zones))
         return shortest_way(_grid_of(arena), (scenario.start, *ends), robot.global_costmap.robot_radius)
 
     def files(self) -> Tuple[Path, ...]:
@@ -54,8 +54,8 @@ class Deliveries:
     def _mission(self, arena: Arena) -> Mission:
         if self.mission is not None:
             return load_mission(self.mission, load_places(self.zones), grid=arena.grid)
-        ends = places_of_errand(self.zones)
-        problems = filter(None, (why_unreachable(place, _grid_of(arena)) for place in ends))
+        ends = load_pickup_and_dropoff(self.zones)
+        problems = filter(None, (unreachable_reason(place, _grid_of(arena)) for place in ends))
         for problem in problems:
             raise SettingsError(f"{self.zones}: {problem}")
         return errand_mission(*ends)

@@ -15,7 +15,7 @@ from laboratory.worlds.source import Arena
 from move_base_lite import Navigator, Status
 from planar import Pose2, Scan, SettingsError, Twist2
 from planar.config.yaml_table import Table
-from planar.maps.places import pose_from
+from planar.maps.places import parse_pose
 from sim_bridge import Simulation, StepResult, robot_named
 from sim_bridge.faults import Faults, Stage
 from sim_bridge.simulation import ROBOT_NAME
@@ -150,4 +150,4 @@ def read_reach(table: Table, folder: Path) -> Reach:
     goal.allow_only("x", "y", "yaw", "radius")
     radius = goal.number("radius", Reach.radius)
     goal.check(radius > 0.0, "radius", "positive")
-    return Reach(pose_from(goal), radius)
+    return Reach(parse_pose(goal), radius)

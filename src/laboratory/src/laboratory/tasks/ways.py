@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from planar import FREE, OccupancyGrid, Pose2
 from planar.geometry.distance_field import distance_field
-from planar.geometry.ways import graph_of
+from planar.geometry.ways import grid_graph
 
 # Metres from a robot's middle to what is solid, on all ways of generated buildings.
 ROOM_TO_PASS = 0.35
@@ -22,7 +22,7 @@ class Ways:
     def __init__(self, grid: OccupancyGrid, radius: float):
         self._grid = grid
         self._is_open = distance_field(grid.cells != FREE, grid.resolution) > radius
-        self._graph = graph_of(self._is_open, grid.resolution)
+        self._graph = grid_graph(self._is_open, grid.resolution)
 
     def length(self, places: Sequence[Pose2]) -> Optional[float]:
         """Metres from place to place, straight to the nearest open cells; None if there is no way."""

@@ -10,7 +10,7 @@ from laboratory.tasks.ways import ROOM_TO_PASS, regions
 from laboratory.worlds.source import Arena
 from planar import OCCUPIED, OccupancyGrid, Pose2, SettingsError
 from planar.config.yaml_table import Table
-from planar.maps.places import pose_from
+from planar.maps.places import parse_pose
 from sim_bridge.doorway import Door
 
 # Simulated seconds within which each is shut.
@@ -77,4 +77,4 @@ def _door(name: str, table: Table) -> Door:
     table.check(start >= 0.0, "start", "not negative")
     end = table.number("end") if "end" in table else Door.end
     table.check(end > start, "end", f"after start ({start:g})")
-    return Door(name, pose_from(table), width, start, end)
+    return Door(name, parse_pose(table), width, start, end)

@@ -8,7 +8,7 @@ from laboratory.worlds.source import Arena
 from planar import PlanarError
 from planar.config.settings import settings_from
 from planar.config.yaml_table import Table
-from planar.plugins import Contract, PluginError, load, sources_of
+from planar.plugins import PluginContract, PluginError, load_plugin, source_files
 from sim_bridge import WorldError
 
 
@@ -20,7 +20,7 @@ class Generator(Protocol):
         ...
 
 
-CONTRACT = Contract("generator of worlds", Generator, None, "laboratory.worlds")
+CONTRACT = PluginContract("generator of worlds", Generator, None, "laboratory.worlds")
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class OwnWorlds:
 
     def files(self) -> Tuple[Path, ...]:
         """Its source: results of another one are not of the same scenario."""
-        return sources_of((self.name,))
+        return source_files((self.name,))
 
     def arena_number(self, seed: int) -> int:
         return seed
@@ -68,7 +68,7 @@ def read_own_worlds(table: Table, name: str) -> OwnWorlds:
 
 def kind_named(name: str) -> type:
     """Other people's generator of that dotted name. Raises PluginError with what it lacks."""
-    found = load(name, CONTRACT)
+    found = load_plugin(name, CONTRACT)
     if found is None:
         raise PluginError("there is no such entry point of laboratory.worlds")
     if not (is_dataclass(found) and found.__dataclass_params__.frozen):  # type: ignore[attr-defined]

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Optional, Protocol, Tuple
 
 from planar import OccupancyGrid
-from planar.maps.places import Place
+from planar.maps.places import NamedPlace
 from sim_bridge.doorway import Door
 from sim_bridge.world import World
 
@@ -27,7 +27,7 @@ class Arena:
     grid: Optional[OccupancyGrid] = None
     title: str = ""
     way: Optional[float] = None
-    places: Tuple[Place, ...] = ()
+    places: Tuple[NamedPlace, ...] = ()
     doorways: Tuple[Door, ...] = ()
 
 

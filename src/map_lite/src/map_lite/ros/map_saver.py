@@ -18,7 +18,7 @@ from planar import UNKNOWN, PlanarError, SettingsError, save_map
 from planar.config.parameters import parameters_of
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg
 from planar_ros.node.shell import fail, init_node, shut_down_on_signals
-from planar_ros.node.waiting import Waiting
+from planar_ros.node.waiting import ReadinessMonitor
 from supervision.interruption import INTERRUPTED
 
 
@@ -64,7 +64,7 @@ def _await_map(timeout):
     topic = rospy.resolve_name("map")
     rospy.loginfo("Waiting for the map")
     received = threading.Event()
-    Waiting({f"a map on {topic}": received.is_set})
+    ReadinessMonitor({f"a map on {topic}": received.is_set})
     try:
         return rospy.wait_for_message("map", OccupancyGridArrays, timeout)
     except rospy.ROSInterruptException:

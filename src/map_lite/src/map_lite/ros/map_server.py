@@ -16,15 +16,15 @@ from map_lite.config import ServerSettings
 from map_lite.map_url import path_of
 from planar import MapFileError, OccupancyGrid, Pose2, load_map
 from planar.maps.map_file import MapDescriptionError, MapImageError, MapMissingError, cells_from_image
-from planar_ros.calls.load_map import LoadMapArrays, LoadResult, offer
+from planar_ros.calls.load_map import LoadMapArrays, LoadMapResult, advertise_services
 from planar_ros.messages.conversion import GetMapArrays, OccupancyGridArrays, grid_to_msg
 from planar_ros.node.parameters import read_settings
 from planar_ros.node.shell import run
 
 RESULTS = {
-    MapMissingError: LoadResult.MAP_DOES_NOT_EXIST,
-    MapImageError: LoadResult.INVALID_MAP_DATA,
-    MapDescriptionError: LoadResult.INVALID_MAP_METADATA,
+    MapMissingError: LoadMapResult.MAP_DOES_NOT_EXIST,
+    MapImageError: LoadMapResult.INVALID_MAP_DATA,
+    MapDescriptionError: LoadMapResult.INVALID_MAP_METADATA,
 }
 
 
@@ -38,7 +38,7 @@ class MapServerNode:
         self._metadata_publisher = rospy.Publisher("map_metadata", MapMetaData, queue_size=1, latch=True)
         self._show(grid)
         rospy.Service("static_map", GetMapArrays, lambda request: {"map": self._map})
-        offer(LoadMapArrays, {"change_map": self._on_change_map})
+        advertise_services(LoadMapArrays, {"change_map": self._on_change_map})
 
     def _load(self, arguments) -> OccupancyGrid:
         path = path_of(arguments.map, _package_folder)
@@ -64,8 +64,8 @@ class MapServerNode:
         except MapFileError as error:
             rospy.logerr("%s", error)
             nothing = OccupancyGridArrays(data=np.zeros(0, dtype=np.int8))
-            return {"map": nothing, "result": RESULTS.get(type(error), LoadResult.UNDEFINED_FAILURE)}
-        return {"map": self._map, "result": LoadResult.SUCCESS}
+            return {"map": nothing, "result": RESULTS.get(type(error), LoadMapResult.UNDEFINED_FAILURE)}
+        return {"map": self._map, "result": LoadMapResult.SUCCESS}
 
 
 def _package_folder(package: str) -> str:

@@ -8,7 +8,7 @@ from move_base_lite.check.rooms import PICTURES, Room, room_of
 from move_base_lite.costmap import INSCRIBED
 from move_base_lite.errors import GoalBlocked, NoPath, OutOfMap
 from move_base_lite.plugin import Plugin
-from planar.contract_check import expect, expect_refusal
+from planar.contract_check import expect, expect_error
 
 # Cells of a path's longest step.
 LONGEST_STEP = 3.0
@@ -45,14 +45,14 @@ def says_why_not(plugin: Plugin[Any]) -> None:
     """Without a way it says why: outside of the map, no room at the goal, nothing that connects."""
     room = room_of("door")
     outside_xy = (room.start_xy[0] - 100.0, room.start_xy[1])
-    with expect_refusal(OutOfMap, "no OutOfMap for a goal 100 m outside"):
+    with expect_error(OutOfMap, "no OutOfMap for a goal 100 m outside"):
         _plan(plugin, Room(room.costmap, room.start_xy, outside_xy))
     in_the_wall_xy = (0.1, 0.1)
-    with expect_refusal(GoalBlocked, "no GoalBlocked for a goal in the wall"):
+    with expect_error(GoalBlocked, "no GoalBlocked for a goal in the wall"):
         _plan(plugin, Room(room.costmap, room.start_xy, in_the_wall_xy))
     middle = room.costmap.costs.shape[1] // 2
     room.costmap.costs[:, middle - 2 : middle + 2] = 254
-    with expect_refusal(NoPath, "no NoPath through a closed door"):
+    with expect_error(NoPath, "no NoPath through a closed door"):
         _plan(plugin, room)
 
 

@@ -9,11 +9,11 @@ from move_base_lite.costmap import LAYERS
 from move_base_lite.planning import GLOBAL_PLANNERS
 from move_base_lite.plugin import Registry
 from move_base_lite.recovery import RECOVERIES
-from planar.contract_check import Check, Kit
+from planar.contract_check import Check, CheckSuite
 
 
-def _kit(registry: Registry[Any], *checks: Check) -> Kit:
-    return Kit(partial(registry.find, is_package_needed=False), checks)
+def _kit(registry: Registry[Any], *checks: Check) -> CheckSuite:
+    return CheckSuite(partial(registry.find, is_package_needed=False), checks)
 
 
 KITS = {

@@ -11,7 +11,7 @@ from move_base_lite.control import Plan
 from move_base_lite.errors import ControlError, ControlPluginFailed
 from move_base_lite.plugin import Plugin
 from planar import Pose2, Twist2
-from planar.contract_check import expect, expect_refusal
+from planar.contract_check import expect, expect_error
 
 SPEEDS = Twist2(0.5, 1.0)
 
@@ -86,7 +86,7 @@ def refuses_a_blocked_plan(plugin: Plugin[Any]) -> None:
     x, y = room.start_xy
     in_the_wall = Plan(np.array([[x - 0.5, y], [x - 0.5, y + 0.3]]), 0.8)
     planner = plugin.make(plugin.settings(), PERIOD)
-    with expect_refusal(ControlError, "drives into the wall"):
+    with expect_error(ControlError, "drives into the wall"):
         try:
             planner.follow(situation_of(room.costmap, Pose2(x, y, math.pi)), in_the_wall, SPEEDS)
         except ControlPluginFailed as failure:

@@ -7,14 +7,16 @@ from move_base_lite.control.mppi import MPPI
 from move_base_lite.control.settings import ControllerSettings
 from move_base_lite.plugin import Registry
 from planar import SettingsError
-from planar.config.hints import hint_or_all
-from planar.plugins import Contract
+from planar.config.hints import hint_or_choices
+from planar.plugins import PluginContract
 
 LOCAL_PLANNERS: Registry[LocalPlanner] = Registry(
     TRAJECTORY,
     DWA,
     MPPI,
-    contract=Contract("local planner", LocalPlanner, ControllerSettings, "move_base_lite.local_planners"),
+    contract=PluginContract(
+        "local planner", LocalPlanner, ControllerSettings, "move_base_lite.local_planners"
+    ),
     guarded=GuardedLocalPlanner,
 )
 
@@ -25,4 +27,6 @@ def check_local_planner(name: str) -> None:
     (move_base itself is asked for planners of all the world, and drives with the nearest that there is.)
     """
     if LOCAL_PLANNERS.find(name) is None:
-        raise SettingsError(f"there is no local planner {name!r}{hint_or_all(name, LOCAL_PLANNERS.names)}")
+        raise SettingsError(
+            f"there is no local planner {name!r}{hint_or_choices(name, LOCAL_PLANNERS.names)}"
+        )

@@ -14,7 +14,7 @@ from move_base_lite.errors import PluginFailed
 from move_base_lite.plugin import Registry
 from move_base_lite.plugin_guard import PluginGuard
 from planar import Pose2
-from planar.plugins import Contract
+from planar.plugins import PluginContract
 
 
 class GuardedLayer(Layer):
@@ -55,7 +55,7 @@ class GuardedLayer(Layer):
                 layer.take_over(replaced)
 
 
-class LayerContract(Contract):
+class LayerContract(PluginContract):
     """The contract of layers; it accepts classes written before ``note`` became ``add_observation``."""
 
     def missing(self, found: Any) -> List[str]:

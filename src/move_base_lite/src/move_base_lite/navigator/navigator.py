@@ -24,7 +24,7 @@ from move_base_lite.navigator.state_machine import GoalAborted, GoalReached, ste
 from move_base_lite.navigator.zones import Zones
 from move_base_lite.planning import Potential
 from planar import OccupancyGrid, Pose2, Scan, Twist2
-from planar.geometry.pose import check_place
+from planar.geometry.pose import check_pose
 
 
 class Navigator:
@@ -111,7 +111,7 @@ class Navigator:
 
         Raises OutOfRangeError for a place at which no robot can be.
         """
-        check_place(goal_in_map, "a goal")
+        check_pose(goal_in_map, "a goal")
         self._new_goal = goal_in_map
 
     def cancel(self, now: float) -> Decision:
@@ -166,8 +166,8 @@ class Navigator:
 
     def make_plan(self, start_in_map: Pose2, goal_in_map: Pose2, tolerance: float = 0.0) -> np.ndarray:
         """Path (N, 2) in the map between any two places. Raises PlanningError, and as ``set_goal``."""
-        check_place(start_in_map, "a start")
-        check_place(goal_in_map, "a goal")
+        check_pose(start_in_map, "a start")
+        check_pose(goal_in_map, "a goal")
         return self._components.plan(start_in_map, goal_in_map, tolerance)
 
     def clear_costmaps(self) -> None:

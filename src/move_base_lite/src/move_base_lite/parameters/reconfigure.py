@@ -10,21 +10,22 @@ from move_base_lite.parameters.costmaps import INHERITED, layer_plugins, with_pl
 from move_base_lite.parameters.planners import PLANNERS
 from move_base_lite.parameters.reader import ParameterReader, Tree, subtree
 from move_base_lite.plugin import Plugin
-from planar.config.parameters import Tunable, tunables_of
+from planar.config.parameters import DynamicParameter, dynamic_parameters_of
 
 COSTMAPS = ("global_costmap", "local_costmap")
 # What a namespace has from move_base's own, unless it says otherwise.
 _FROM_ABOVE = (*INHERITED, "latch_xy_goal_tolerance")
 
 
-def reconfigure_servers(parameters: Tree) -> Dict[str, List[Tuple[Tunable, Any]]]:
+def reconfigure_servers(parameters: Tree) -> Dict[str, List[Tuple[DynamicParameter, Any]]]:
     """By namespace below move_base: what may be changed there, with the values in force."""
     chosen = [
-        Tunable(key, registry.names[0], key.replace("_", " ")[5:]) for key, registry in PLANNERS.items()
+        DynamicParameter(key, registry.names[0], key.replace("_", " ")[5:])
+        for key, registry in PLANNERS.items()
     ]
-    found = {"": _offered(parameters, "", [*chosen, *tunables_of(MoveBaseSettings)])}
+    found = {"": _offered(parameters, "", [*chosen, *dynamic_parameters_of(MoveBaseSettings)])}
     for costmap in COSTMAPS:
-        found[costmap] = _offered(parameters, costmap, tunables_of(CostmapSettings))
+        found[costmap] = _offered(parameters, costmap, dynamic_parameters_of(CostmapSettings))
         values = with_plugin_list(subtree(parameters, costmap), f"{costmap}/")
         for layer, kind in layer_plugins(ParameterReader(""), values, costmap).items():
             found[f"{costmap}/{layer}"] = _offered(parameters, f"{costmap}/{layer}", kind.tunables, kind)
@@ -48,8 +49,8 @@ def with_changes(parameters: Tree, namespace: str, values: Tree) -> Dict[str, An
 
 
 def _offered(
-    parameters: Tree, namespace: str, tunables: Sequence[Tunable], kind: Optional[Plugin] = None
-) -> List[Tuple[Tunable, Any]]:
+    parameters: Tree, namespace: str, tunables: Sequence[DynamicParameter], kind: Optional[Plugin] = None
+) -> List[Tuple[DynamicParameter, Any]]:
     """The tunables with their values in force, also if these are inherited or have an old name."""
     tree = parameters
     for name in filter(None, namespace.split("/")):
@@ -65,7 +66,7 @@ def _offered(
     return offered
 
 
-def _in_a_message(tunable: Tunable) -> Tunable:
+def _in_a_message(tunable: DynamicParameter) -> DynamicParameter:
     """A footprint is a text there."""
     return replace(tunable, default="[]") if tunable.default == () else tunable
 

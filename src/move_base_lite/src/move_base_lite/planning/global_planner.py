@@ -14,7 +14,7 @@ from typing import Any, Optional, Protocol, Tuple
 import numpy as np
 
 from move_base_lite.costmap import CostmapWindow
-from planar.config.parameters import Bounds, at_least, check_parameters, parameter
+from planar.config.parameters import Interval, at_least, check_parameters, parameter
 
 ORIENTATIONS = (
     "of the poses: 0 none, 1 forward (GlobalPlanner's), 2 interpolated, 3 forward then interpolated, "
@@ -30,14 +30,14 @@ class PlannerSettings:
     default_tolerance: float = parameter(
         0.0, "from a blocked goal, within which the nearest free place will do", "m", at_least(0.0)
     )
-    orientation_mode: int = parameter(0, ORIENTATIONS, bounds=Bounds(0, 6, "0 to 6"))
+    orientation_mode: int = parameter(0, ORIENTATIONS, bounds=Interval(0, 6, "0 to 6"))
     visualize_potential: bool = parameter(
         False,
         "whether each plan's wave is on the topic potential, while somebody listens; "
         "GlobalPlanner: publish_potential, true",
     )
     publish_scale: int = parameter(
-        100, "the highest value of GlobalPlanner's potential", bounds=Bounds(1, 127, "1 to 127")
+        100, "the highest value of GlobalPlanner's potential", bounds=Interval(1, 127, "1 to 127")
     )
 
     def __post_init__(self):

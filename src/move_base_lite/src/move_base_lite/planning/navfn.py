@@ -17,7 +17,7 @@ from move_base_lite.planning.nearest import Cell, passable_ends
 from move_base_lite.planning.shortcuts import shortened
 from move_base_lite.planning.wavefront import descend, spread, traversal_costs
 from move_base_lite.plugin import Plugin
-from planar.config.parameters import Bounds, Tunable, at_least, parameter
+from planar.config.parameters import DynamicParameter, Interval, at_least, parameter
 from planar.config.settings import check
 
 STEP_CELLS = 0.5
@@ -38,7 +38,7 @@ class NavfnSettings(PlannerSettings):
         0.8, "how much a cell's cost adds to that; GlobalPlanner: 3.0", bounds=at_least(0.0)
     )
     lethal_cost: int = parameter(
-        253, "cost from which on a cell cannot be entered", bounds=Bounds(high=253, words="at most 253")
+        253, "cost from which on a cell cannot be entered", bounds=Interval(high=253, words="at most 253")
     )
 
     def __post_init__(self):
@@ -55,7 +55,7 @@ class GlobalPlannerSettings(NavfnSettings):
     lethal_cost: int = parameter(
         253,
         "cost from which on a cell cannot be entered",
-        bounds=Bounds(high=253, words="at most 253"),
+        bounds=Interval(high=253, words="at most 253"),
         dynamic=(1, 255),
     )
     neutral_cost: int = parameter(50, "of entering a free cell", dynamic=(1, 255))
@@ -65,7 +65,7 @@ class GlobalPlannerSettings(NavfnSettings):
     visualize_potential: bool = parameter(
         True, "whether the wave of each plan is shown", name="publish_potential", dynamic=True
     )
-    orientation_mode: int = parameter(1, ORIENTATIONS, bounds=Bounds(0, 6, "0 to 6"), dynamic=(0, 6))
+    orientation_mode: int = parameter(1, ORIENTATIONS, bounds=Interval(0, 6, "0 to 6"), dynamic=(0, 6))
 
 
 class Navfn:
@@ -178,8 +178,8 @@ GLOBAL_PLANNER: Plugin[GlobalPlanner] = Plugin(
     Navfn,
     translate=_with_astar,
     without_effect=(
-        Tunable("orientation_window_size", 1, "(no effect)", 1, 255),
-        Tunable("outline_map", True, "(no effect: the rim is always barred)"),
+        DynamicParameter("orientation_window_size", 1, "(no effect)", 1, 255),
+        DynamicParameter("outline_map", True, "(no effect: the rim is always barred)"),
     ),
     ignored=IGNORED,
 )

@@ -6,13 +6,13 @@ from move_base_lite.recovery.clear_costmap import CLEAR_COSTMAP
 from move_base_lite.recovery.guarded import GuardedRecovery
 from move_base_lite.recovery.move_slow import MOVE_SLOW
 from move_base_lite.recovery.rotate import ROTATE
-from planar.plugins import Contract
+from planar.plugins import PluginContract
 
 RECOVERIES: Registry[RecoveryBehavior] = Registry(
     CLEAR_COSTMAP,
     ROTATE,
     MOVE_SLOW,
-    contract=Contract(
+    contract=PluginContract(
         "recovery behaviour", RecoveryBehavior, RecoverySettings, "move_base_lite.recovery_behaviors"
     ),
     guarded=GuardedRecovery,

@@ -12,10 +12,10 @@ from move_base_lite.collision_monitor import STOPPED, CollisionMonitor, LimitedC
 from move_base_lite.parameters.costmaps import parse_footprint
 from planar import Twist2
 from planar.config.settings import settings_from
-from planar_ros.messages.border import listen
+from planar_ros.messages.border import subscribe
 from planar_ros.messages.conversion import LaserScanArrays, frame_name, scan_from_msg
 from planar_ros.messages.transforms import Transforms
-from planar_ros.node.last_words import say_at_end
+from planar_ros.node.last_words import publish_on_shutdown
 from planar_ros.node.parameters import parameters_below
 from planar_ros.node.shell import run
 
@@ -40,9 +40,9 @@ class CollisionMonitorNode:
         self._reason = ""
         self._state = rospy.Publisher("~state", String, queue_size=1, latch=True)
         self._out = rospy.Publisher("cmd_vel_out", Twist, queue_size=1, tcp_nodelay=True)
-        say_at_end(self._out, Twist())
-        listen("scan", LaserScanArrays, self._on_scan, queue_size=1, tcp_nodelay=True)
-        listen("cmd_vel_in", Twist, self._on_command, queue_size=1, tcp_nodelay=True)
+        publish_on_shutdown(self._out, Twist())
+        subscribe("scan", LaserScanArrays, self._on_scan, queue_size=1, tcp_nodelay=True)
+        subscribe("cmd_vel_in", Twist, self._on_command, queue_size=1, tcp_nodelay=True)
 
     def _on_scan(self, message):
         mounting = self._transforms.mounting(self._base_frame, frame_name(message.header.frame_id))

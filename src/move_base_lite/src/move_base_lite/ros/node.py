@@ -23,13 +23,13 @@ from move_base_lite.ros.topics.potential import PotentialTopic
 from move_base_lite.ros.topics.zones import ZoneTopics
 from move_base_lite.warmup import warm_up
 from planar import OccupancyGrid, Pose2, SettingsError, Twist2
-from planar_ros.messages.border import listen
+from planar_ros.messages.border import subscribe
 from planar_ros.messages.conversion import OccupancyGridArrays, frame_name, grid_from_msg
 from planar_ros.messages.transforms import Transforms
 from planar_ros.node.parameters import parameters_below
 from planar_ros.node.shell import run
-from planar_ros.node.waiting import Waiting
-from planar_ros.step import Step, is_heard_in_step
+from planar_ros.node.waiting import ReadinessMonitor
+from planar_ros.step import LockstepClient, has_synchronised_publisher
 
 WARN_SECONDS = 5.0
 TIME_JUMP_TEXT = "Aborting on the goal because time has jumped back"
@@ -42,7 +42,7 @@ class MoveBaseNode:
     """
 
     def __init__(self):
-        self._step = Step.of_node()
+        self._step = LockstepClient.of_node()
         parameters = parameters_below("~")
         self._settings = _checked_settings(parameters)
         zones_file = parameters.get("zones_file", "")
@@ -85,10 +85,10 @@ class MoveBaseNode:
             conditions[f"a map on {rospy.resolve_name(static.map_topic)}"] = (
                 lambda: self._new_map is not None or self._navigator is not None
             )
-            self._maps = listen(static.map_topic, OccupancyGridArrays, self._on_map, queue_size=1)
+            self._maps = subscribe(static.map_topic, OccupancyGridArrays, self._on_map, queue_size=1)
         else:
             self._navigator = Navigator(self._settings, None, self._zones)
-        Waiting(conditions)
+        ReadinessMonitor(conditions)
 
     def _on_map(self, message):
         self._new_map = grid_from_msg(message)
@@ -103,7 +103,7 @@ class MoveBaseNode:
     def _has_map(self) -> bool:
         """Whether there is a map, or it is yet to be made."""
         is_there = self._new_map is not None or self._navigator is not None
-        return is_there or is_heard_in_step(self._maps)
+        return is_there or has_synchronised_publisher(self._maps)
 
     def _period(self) -> float:
         return 1.0 / self._settings.move_base.controller_frequency

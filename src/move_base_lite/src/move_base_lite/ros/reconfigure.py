@@ -13,7 +13,7 @@ from move_base_lite.parameters import settings_from_parameters
 from move_base_lite.parameters.planners import PLANNERS
 from move_base_lite.parameters.reconfigure import reconfigure_servers, with_changes
 from planar import SettingsError
-from planar_ros.node.reconfigure import Tuning
+from planar_ros.node.reconfigure import ReconfigureServer
 
 
 class ReconfigureServers:
@@ -23,7 +23,7 @@ class ReconfigureServers:
         self._parameters = parameters
         self._apply = apply
         self._lock, self._serving = threading.RLock(), threading.Lock()
-        self._servers: Dict[str, Tuning] = {}
+        self._servers: Dict[str, ReconfigureServer] = {}
         for costmap in ("global_costmap", "local_costmap"):
             self._hear_footprint(costmap)
 
@@ -32,7 +32,7 @@ class ReconfigureServers:
         with self._serving:
             for namespace, tunables in reconfigure_servers(self._parameters).items():
                 if namespace not in self._servers:
-                    self._servers[namespace] = Tuning(
+                    self._servers[namespace] = ReconfigureServer(
                         [tunable for tunable, _ in tunables],
                         {tunable.name: value for tunable, value in tunables},
                         partial(self._change, namespace),

@@ -10,7 +10,7 @@ from pick_objects.errand import Errand
 from pick_objects.mission import Mission
 from pick_objects.ros.mission_topics import MissionTopics, delivery_states
 from planar import PlanarError
-from planar.driving import Finish
+from planar.driving import FinishTask
 from planar_ros.calls.actions import ActionServer
 
 FEEDBACK_SECONDS = 0.2
@@ -27,7 +27,7 @@ class DeliverServer:
         self,
         topics: MissionTopics,
         understand: Callable[[DeliverGoal], Mission],
-        carry_out: Callable[[Mission, Callable[[Errand], None]], Finish],
+        carry_out: Callable[[Mission, Callable[[Errand], None]], FinishTask],
     ):
         self._topics, self._understand, self._carry_out = topics, understand, carry_out
         self._errand: Optional[Errand] = None

@@ -9,8 +9,8 @@ from pick_objects.approach import GoTo
 from pick_objects.arrival import Arrival, Fit, SendAgain
 from pick_objects.errand import MeasureWays, WaysMeasured
 from planar import Pose2
-from planar.driving import GoalLeft, GoalReached, GoalRefused
-from planar_ros.calls.move_base import MoveBase
+from planar.driving import GoalFailed, GoalReached, RobotDisplaced
+from planar_ros.calls.move_base import MoveBaseClient
 from planar_ros.calls.services import ServiceError
 
 # Who localizes the robot tells here how well each scan fits; the official amcl does not.
@@ -23,7 +23,7 @@ class Driver:
     """Has move_base drive, one order at a time."""
 
     def __init__(self, frame_id: str):
-        self.move_base = MoveBase(frame_id)
+        self.move_base = MoveBaseClient(frame_id)
         self.move_base.cancel_at_end()
         self._order: Optional[GoTo] = None
         self._arrival = Arrival(Pose2())
@@ -41,7 +41,7 @@ class Driver:
         self._order, self._arrival = order, Arrival(order.pose)
         self.move_base.send(order.pose)
 
-    def event(self) -> Union[None, GoalReached, GoalRefused, GoalLeft]:
+    def event(self) -> Union[None, GoalReached, GoalFailed, RobotDisplaced]:
         """What came of the last goal, told once; None while it is pursued, or the robot stands there."""
         outcome = self.move_base.outcome()
         if self._order is None:
@@ -53,9 +53,9 @@ class Driver:
             rospy.logwarn("place %s: the robot may be elsewhere, and is sent there again", place)
             self.move_base.send(self._order.pose)
             return None
-        if isinstance(event, GoalLeft):
+        if isinstance(event, RobotDisplaced):
             rospy.logwarn("place %s: the robot may have been carried away", place)
-        if isinstance(event, GoalRefused):
+        if isinstance(event, GoalFailed):
             rospy.logwarn("place %s: %s", place, event.reason)
         return event
 

@@ -11,7 +11,7 @@ from pick_objects.job import ErrandState, Job
 from pick_objects.mission import Delivery
 from planar import Pose2
 from planar_ros.messages.conversion import pose2_to_msg
-from planar_ros.node.last_words import wait_until_heard
+from planar_ros.node.last_words import flush_and_close
 
 
 class MissionTopics:
@@ -43,7 +43,7 @@ class MissionTopics:
 
     def wait_until_heard(self) -> None:
         """Until all who listen have heard the last state; nothing can be shown afterwards."""
-        wait_until_heard(self._state, self._mission_state)
+        flush_and_close(self._state, self._mission_state)
 
     def message(self, errand: Errand) -> msg.MissionState:
         now = rospy.Time.now()

@@ -19,15 +19,15 @@ from pick_objects.ros.deliver_server import DeliverServer
 from pick_objects.ros.driver import Driver
 from pick_objects.ros.mission_topics import MissionTopics, delivery_from_msg
 from planar import OccupancyGrid
-from planar.driving import Finish
-from planar.maps.places import Place, load_places, places_of_errand, why_unreachable
-from planar_ros.messages.border import listen
+from planar.driving import FinishTask
+from planar.maps.places import NamedPlace, load_pickup_and_dropoff, load_places, unreachable_reason
+from planar_ros.messages.border import subscribe
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg
-from planar_ros.node.keepsake import Keepsake
+from planar_ros.node.keepsake import ParameterCheckpoint
 from planar_ros.node.parameters import read_settings
 from planar_ros.node.shell import fail, run
-from planar_ros.node.waiting import Readiness, Waiting
-from planar_ros.step import Step
+from planar_ros.node.waiting import NodeReadiness, ReadinessMonitor
+from planar_ros.step import LockstepClient
 
 POLL_SECONDS = 0.02
 
@@ -36,7 +36,7 @@ class PickObjects:
     """Carries out the mission of a file, or the errand between the two zones, or what the action is sent."""
 
     def __init__(self):
-        self._step = Step.of_node()
+        self._step = LockstepClient.of_node()
         self._settings = read_settings(NodeSettings, ignore=ErrandSettings.__dataclass_fields__)
         self._defaults = read_settings(ErrandSettings, ignore=NodeSettings.__dataclass_fields__)
         self._map: Optional[OccupancyGrid] = None
@@ -44,26 +44,28 @@ class PickObjects:
         self._mission = self._read_mission()
         rospy.set_param("~places", sorted(self._places))  # for those who offer them to people
         self._errand: Optional[Errand] = None
-        self._keepsake = Keepsake() if self._settings.resume else None
+        self._keepsake = ParameterCheckpoint() if self._settings.resume else None
         self._lock = threading.Lock()
         self._driver = Driver(self._settings.frame_id)
         self._topics = MissionTopics(self._settings.frame_id, lambda: self._driver.robot_in_map)
-        listen("map", OccupancyGridArrays, self._keep_map, queue_size=1)
+        subscribe("map", OccupancyGridArrays, self._keep_map, queue_size=1)
         rospy.Service("~add_delivery", AddDelivery, self._on_add)
         rospy.Service("~cancel_delivery", CancelDelivery, self._on_cancel)
         self._required = {self._driver.move_base.name: self._driver.move_base.is_ready}
         for name in map(rospy.resolve_name, self._settings.wait_for.split()):
-            self._required[f"{name} to be ready"] = Readiness(name)
-        Waiting({f"a map on {rospy.resolve_name('map')}": lambda: self._map is not None, **self._required})
+            self._required[f"{name} to be ready"] = NodeReadiness(name)
+        ReadinessMonitor(
+            {f"a map on {rospy.resolve_name('map')}": lambda: self._map is not None, **self._required}
+        )
 
-    def work(self) -> Finish:
+    def work(self) -> FinishTask:
         """Carries the mission out and says how it ended; one that serves goes on until shutdown."""
-        outcome = Finish(True, "served")
+        outcome = FinishTask(True, "served")
         if self._mission is not None:
             self._topics.show(self._errand_for(self._mission))
         obstacle = self._why_not_to_start()
         if obstacle:
-            return Finish(False, obstacle)
+            return FinishTask(False, obstacle)
         if self._mission is not None:
             outcome = self._carry_out(self._read_again(self._mission))
         if self._settings.serve:
@@ -84,10 +86,10 @@ class PickObjects:
             return load_mission(settings.mission_file, self._zones, self._defaults, self._map)
         if settings.serve:
             return None
-        return errand_mission(*places_of_errand(settings.zones_file), self._defaults)
+        return errand_mission(*load_pickup_and_dropoff(settings.zones_file), self._defaults)
 
     @property
-    def _places(self) -> Dict[str, Place]:
+    def _places(self) -> Dict[str, NamedPlace]:
         return {**self._zones, **(self._mission.places if self._mission else {})}
 
     def _read_again(self, mission: Mission) -> Mission:
@@ -95,10 +97,12 @@ class PickObjects:
         self._mission = self._read_mission() or mission
         return self._mission
 
-    def _carry_out(self, mission: Mission, watch: Callable[[Errand], None] = lambda errand: None) -> Finish:
+    def _carry_out(
+        self, mission: Mission, watch: Callable[[Errand], None] = lambda errand: None
+    ) -> FinishTask:
         obstacle = self._why_impossible(mission)
         if obstacle:
-            return Finish(False, obstacle)
+            return FinishTask(False, obstacle)
         self._errand = self._errand_for(mission)
         event: Optional[Event] = None
         while not rospy.is_shutdown():
@@ -107,7 +111,7 @@ class PickObjects:
                 self._topics.show(self._errand)
                 if self._keepsake is not None:
                     self._keepsake.keep(record_of(self._errand))
-                if isinstance(order, Finish):
+                if isinstance(order, FinishTask):
                     self._driver.move_base.cancel_all()
                     return order
                 watch(self._errand)
@@ -118,7 +122,7 @@ class PickObjects:
             else:
                 self._step.pause(POLL_SECONDS)
                 event = self._driver.event()
-        return Finish(False, "interrupted")
+        return FinishTask(False, "interrupted")
 
     def _errand_for(self, mission: Mission) -> Errand:
         """Where an earlier node of this name was cut short, if one was."""
@@ -141,7 +145,7 @@ class PickObjects:
     def _why_impossible(self, mission: Mission) -> Optional[str]:
         names = dict.fromkeys(name for d in mission.deliveries for name in (d.source, d.destination))
         problems: List[Optional[str]] = [
-            why_unreachable(mission.places[name], self._map) for name in names if self._map is not None
+            unreachable_reason(mission.places[name], self._map) for name in names if self._map is not None
         ]
         return next((problem for problem in problems if problem), None)
 

@@ -16,7 +16,7 @@ def hint(name: object, known: Iterable[str]) -> str:
     return f", did you mean {nearest}?" if nearest else ""
 
 
-def hint_or_all(name: object, known: Iterable[str]) -> str:
+def hint_or_choices(name: object, known: Iterable[str]) -> str:
     """The same if it is few names that are known: "; did you mean crate?", or all of them."""
     known = list(known)
     nearest = nearest_name(name, known)

@@ -19,7 +19,7 @@ from typing import Any, Dict, List, Union
 
 import yaml
 
-from planar.config.parameters import Parameter, in_unit, parameters_of
+from planar.config.parameters import Parameter, parameters_of, with_unit
 
 LINE_LENGTH = 110
 # A longer entry does not push the comments of its neighbours to the right.
@@ -34,7 +34,7 @@ class Section:
         self.parts = tuple(part for given in parts for part in _parts(given))
 
 
-def yaml_of(section: Section) -> str:
+def render_yaml(section: Section) -> str:
     """The text of the file, whose comments tell unit, meaning and choices."""
     anchors = {part.same_as for part in section.parts if isinstance(part, Section)}
     lines = [f"# {line}" for line in section.about.splitlines()]
@@ -71,7 +71,7 @@ def _aligned(group: List[Parameter], indent: str) -> List[str]:
     column = max(lengths, default=0) + 2
     lines = []
     for part, entry in zip(group, entries):
-        comment = in_unit(part.unit, _meaning(part))
+        comment = with_unit(part.unit, _meaning(part))
         lines += [*_commented(entry[0], comment, column), *entry[1:]]
     return lines
 

@@ -16,11 +16,12 @@ import math
 from typing import Any, Dict, NamedTuple, Sequence, Tuple, Union
 
 from planar.config.settings import check
+from planar.deprecation import deprecated_names
 
 Dynamic = Union[None, bool, float, Tuple[float, float]]
 
 
-class Bounds(NamedTuple):
+class Interval(NamedTuple):
     """From ``low`` (itself included unless ``without_low``) to ``high``; ``words`` say so in errors."""
 
     low: float = -math.inf
@@ -36,12 +37,12 @@ class Bounds(NamedTuple):
         return self.words or f"between {self.low:g} and {self.high:g}"
 
 
-POSITIVE = Bounds(0.0, words="positive", without_low=True)
-ZERO_OR_MORE = Bounds(0.0, words="zero or more")
+POSITIVE = Interval(0.0, words="positive", without_low=True)
+ZERO_OR_MORE = Interval(0.0, words="zero or more")
 
 
-def at_least(low: float) -> Bounds:
-    return Bounds(low, words=f"at least {low:g}")
+def at_least(low: float) -> Interval:
+    return Interval(low, words=f"at least {low:g}")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -59,7 +60,7 @@ class Parameter:
     default: Any
     meaning: str
     unit: str = ""
-    bounds: Bounds = Bounds()
+    bounds: Interval = Interval()
     choices: Tuple[str, ...] = ()
     required: str = ""
     dynamic: Dynamic = None
@@ -81,7 +82,7 @@ def parameter(
     default: Any,
     meaning: str,
     unit: str = "",
-    bounds: Bounds = Bounds(),
+    bounds: Interval = Interval(),
     *,
     name: str = "",
     choices: Sequence[str] = (),
@@ -130,13 +131,13 @@ def check_parameters(settings: Any) -> None:
             check(value in each.bounds, each.field, str(each.bounds), value)
 
 
-def in_unit(unit: str, text: str) -> str:
+def with_unit(unit: str, text: str) -> str:
     """The text behind its unit: "[min] how long it draws"."""
     return f"[{unit}] {text}" if unit else text
 
 
 @dataclasses.dataclass(frozen=True)
-class Tunable:
+class DynamicParameter:
     """A value that may be changed while a node runs; its type is that of the ``default``."""
 
     name: str
@@ -147,18 +148,20 @@ class Tunable:
     choices: Tuple[str, ...] = ()
 
 
-def tunables_of(kind: type) -> Tuple[Tunable, ...]:
+def dynamic_parameters_of(kind: type) -> Tuple[DynamicParameter, ...]:
     """The parameters of a settings dataclass that are dynamic."""
     return tuple(_tunable(each) for each in parameters_of(kind) if each.dynamic is not None)
 
 
-def _tunable(said: Parameter) -> Tunable:
+def _tunable(said: Parameter) -> DynamicParameter:
     low, high = said.bounds.low, math.inf
     if isinstance(said.dynamic, tuple):
         low, high = said.dynamic
     elif said.dynamic is not None and not isinstance(said.dynamic, bool):
         high = said.dynamic
-    return Tunable(said.name, said.default, in_unit(said.unit, said.meaning), low, high, said.choices)
+    return DynamicParameter(
+        said.name, said.default, with_unit(said.unit, said.meaning), low, high, said.choices
+    )
 
 
 def _said_of(kind: type, field: str):
@@ -168,3 +171,6 @@ def _said_of(kind: type, field: str):
         if field in fields and "parameter" in fields[field].metadata:
             return fields[field].metadata["parameter"]
     return None
+
+
+__getattr__ = deprecated_names(__name__, {"Bounds": "Interval"})

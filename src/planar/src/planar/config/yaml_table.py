@@ -6,13 +6,13 @@ from typing import Any, Dict, Iterable, Iterator, List, Optional, Set, Tuple, Ty
 
 import yaml
 
-from planar.config.hints import hint_or_all
+from planar.config.hints import hint_or_choices
 from planar.errors import PlanarError, SettingsError
 from planar.files.reading import read_text
 
 _REQUIRED: Any = object()
 # No table that people write is nearly as large.
-MOST_BYTES = 4 << 20
+MAX_BYTES = 4 << 20
 _TAG = "tag:yaml.org,2002:"
 # None: what stands for all others, by refusing them.
 _KNOWN = {None, *(_TAG + kind for kind in ("null", "bool", "int", "float", "str", "seq", "map"))}
@@ -28,7 +28,7 @@ def read_table(
     """
     path = Path(path)
     try:
-        text = read_text(path, MOST_BYTES)
+        text = read_text(path, MAX_BYTES)
     except FileNotFoundError:
         raise (missing or error)(f"{path}: no such file") from None
     except (OSError, UnicodeDecodeError) as problem:
@@ -200,7 +200,7 @@ class Table:
         """Complains of the first key that is none of ``known``."""
         for key in self:
             if key not in known:
-                raise self.complaint(key, f"is not known{hint_or_all(key, known)}")
+                raise self.complaint(key, f"is not known{hint_or_choices(key, known)}")
 
     def check(self, condition: bool, key: str, requirement: str) -> None:
         """Complains that ``key`` must be ``requirement`` unless ``condition`` holds."""

@@ -14,10 +14,10 @@ class FileWriteError(PlanarError):
 
 def write_atomically(path, data: bytes) -> None:
     """Writes beside ``path``, then renames, so that no reader sees half a file. Raises FileWriteError."""
-    write_together({Path(path): [data]})
+    write_all_atomically({Path(path): [data]})
 
 
-def write_together(files: Mapping[Path, Iterable[bytes]]) -> None:
+def write_all_atomically(files: Mapping[Path, Iterable[bytes]]) -> None:
     """Writes all files beside their paths, then renames them: on a full disk the old ones stay.
 
     Each is told in chunks, so that one which is made while it is written need not be held in memory.

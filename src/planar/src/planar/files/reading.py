@@ -10,12 +10,12 @@ from typing import Dict
 
 import numpy as np
 
-MOST_BYTES = 256 << 20
+MAX_BYTES = 256 << 20
 # Of arrays when they are unpacked.
-MOST_UNPACKED_BYTES = 1 << 30
+MAX_UNPACKED_BYTES = 1 << 30
 
 
-def read_bytes(path, most: int = MOST_BYTES) -> bytes:
+def read_bytes(path, most: int = MAX_BYTES) -> bytes:
     """The content of a regular file. Raises OSError, whose ``strerror`` says what is wrong."""
     if "\0" in str(path):
         raise OSError(errno.EINVAL, "no name that a file can have", str(path))
@@ -32,7 +32,7 @@ def read_bytes(path, most: int = MOST_BYTES) -> bytes:
     return content
 
 
-def read_text(path, most: int = MOST_BYTES, errors: str = "strict") -> str:
+def read_text(path, most: int = MAX_BYTES, errors: str = "strict") -> str:
     """The text of a regular file in UTF-8. Raises OSError, or UnicodeDecodeError."""
     return read_bytes(path, most).decode("utf-8", errors).replace("\r\n", "\n")
 
@@ -56,7 +56,7 @@ def read_arrays(path) -> Dict[str, np.ndarray]:
     try:
         with zipfile.ZipFile(content) as archive:
             unpacked = sum(member.file_size for member in archive.infolist())
-        if unpacked > MOST_UNPACKED_BYTES:
+        if unpacked > MAX_UNPACKED_BYTES:
             raise ValueError(f"{unpacked >> 20} MB when unpacked")
         with np.load(content, allow_pickle=False) as file:
             arrays = dict(file)

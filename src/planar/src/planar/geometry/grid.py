@@ -6,7 +6,7 @@ from typing import Iterable
 import numpy as np
 
 from planar.errors import PlanarError
-from planar.geometry.limits import COARSEST_CELL, FINEST_CELL, OutOfRangeError
+from planar.geometry.limits import MAX_RESOLUTION, MIN_RESOLUTION, OutOfRangeError
 from planar.geometry.pose import Pose2
 
 FREE = 0
@@ -31,7 +31,7 @@ class OccupancyGrid:
             raise PlanarError(f"a grid needs rows and columns, got shape {self.cells.shape}")
         if not self.resolution > 0.0:
             raise PlanarError(f"a grid needs a positive resolution, got {self.resolution}")
-        if not (FINEST_CELL <= self.resolution <= COARSEST_CELL and self.origin.is_in_range()):
+        if not (MIN_RESOLUTION <= self.resolution <= MAX_RESOLUTION and self.origin.is_in_range()):
             raise OutOfRangeError(f"a grid of {self.resolution:g} m a cell at {self.origin} means nothing")
 
     @property
@@ -43,9 +43,9 @@ class OccupancyGrid:
         return self.cells.shape[1]
 
     @property
-    def in_bands(self) -> "GridInBands":
+    def in_bands(self) -> "BandedGrid":
         """The same, in one band."""
-        return GridInBands(self.rows, self.cols, self.resolution, self.origin, [self.cells])
+        return BandedGrid(self.rows, self.cols, self.resolution, self.origin, [self.cells])
 
     def cells_of(self, points_xy) -> np.ndarray:
         """Cells (N, 2) int64 as (row, col) in which map points (N, 2) lie; they may be outside the grid."""
@@ -69,7 +69,7 @@ class OccupancyGrid:
 
 
 @dataclass(frozen=True, eq=False)
-class GridInBands:
+class BandedGrid:
     """An OccupancyGrid that is larger than memory should be, had in bands of its rows, once.
 
     ``bands``: cells int8 (some rows, cols), the top band first, in each of which row 0 has the lowest y.

@@ -3,13 +3,13 @@
 from planar.errors import PlanarError
 
 # Metres from an origin: cells of a hundredth of a millimetre are still told apart there.
-FARTHEST = 1e6
+MAX_COORDINATE = 1e6
 # Radians: many turns, of which sines and cosines are still exact.
-MOST_RADIANS = 1e4
+MAX_ANGLE = 1e4
 # m/s and rad/s.
-FASTEST = 1e3
-MOST_BEAMS = 100_000
-FINEST_CELL, COARSEST_CELL = 1e-4, 1e4
+MAX_SPEED = 1e3
+MAX_BEAMS = 100_000
+MIN_RESOLUTION, MAX_RESOLUTION = 1e-4, 1e4
 
 
 class OutOfRangeError(PlanarError):

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from planar.geometry.limits import FARTHEST, MOST_RADIANS, OutOfRangeError
+from planar.geometry.limits import MAX_ANGLE, MAX_COORDINATE, OutOfRangeError
 
 
 def wrap(angle):
@@ -63,12 +63,12 @@ class Pose2:
         return math.isfinite(self.x) and math.isfinite(self.y) and math.isfinite(self.yaw)
 
     def is_in_range(self) -> bool:
-        """Whether a robot can be there: finite, and no farther than ``FARTHEST`` from the origin."""
-        is_near = -FARTHEST <= self.x <= FARTHEST and -FARTHEST <= self.y <= FARTHEST
-        return is_near and -MOST_RADIANS <= self.yaw <= MOST_RADIANS
+        """Whether a robot can be there: finite, and no farther than ``MAX_COORDINATE`` from the origin."""
+        is_near = -MAX_COORDINATE <= self.x <= MAX_COORDINATE and -MAX_COORDINATE <= self.y <= MAX_COORDINATE
+        return is_near and -MAX_ANGLE <= self.yaw <= MAX_ANGLE
 
 
-def check_place(pose: Pose2, what: str) -> None:
+def check_pose(pose: Pose2, what: str) -> None:
     """Raises OutOfRangeError for a pose, called ``what``, at which no robot can be."""
     if not pose.is_in_range():
         raise OutOfRangeError(f"{what} at {pose.x:g}, {pose.y:g}, {pose.yaw:g} means nothing")

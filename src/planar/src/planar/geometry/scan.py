@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from planar.geometry.limits import FARTHEST, MOST_BEAMS, MOST_RADIANS, OutOfRangeError, check_within
+from planar.geometry.limits import MAX_ANGLE, MAX_BEAMS, MAX_COORDINATE, OutOfRangeError, check_within
 from planar.geometry.pose import Pose2
 
 
@@ -32,11 +32,11 @@ class Scan:
     intensities: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=np.float32))
 
     def __post_init__(self):
-        if np.ndim(self.ranges) != 1 or len(self.ranges) > MOST_BEAMS:
+        if np.ndim(self.ranges) != 1 or len(self.ranges) > MAX_BEAMS:
             raise OutOfRangeError(f"a scan of {np.size(self.ranges)} ranges means nothing")
         last, step = self.angle_min + self.angle_increment * len(self.ranges), self.angle_increment
-        check_within(MOST_RADIANS, "a scan", angle_min=self.angle_min, angle_increment=step, angle_max=last)
-        check_within(FARTHEST, "a scan", range_min=self.range_min, range_max=self.range_max)
+        check_within(MAX_ANGLE, "a scan", angle_min=self.angle_min, angle_increment=step, angle_max=last)
+        check_within(MAX_COORDINATE, "a scan", range_min=self.range_min, range_max=self.range_max)
         if not (math.isfinite(self.stamp) and self.laser_in_base.is_in_range()):
             raise OutOfRangeError("a scan without a finite stamp and place means nothing")
 

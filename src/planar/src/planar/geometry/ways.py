@@ -10,7 +10,7 @@ import numpy as np
 STEPS = ((0, 1), (1, 0), (1, 1), (1, -1), (1, 2), (2, 1), (1, -2), (2, -1), (1, 3), (3, 1), (1, -3), (3, -1))
 
 
-def graph_of(is_open: np.ndarray, resolution: float) -> Any:
+def grid_graph(is_open: np.ndarray, resolution: float) -> Any:
     """Steps between open cells, bool (rows, cols), and their lengths, metres; undirected, as scipy's csr.
 
     The cell (row, col) is the node ``row * cols + col``.

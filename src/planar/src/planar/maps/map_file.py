@@ -8,14 +8,14 @@ import numpy as np
 
 from planar.config.yaml_table import read_table
 from planar.errors import PlanarError
-from planar.files.atomically import write_together
+from planar.files.atomically import write_all_atomically
 from planar.files.reading import read_bytes
-from planar.geometry.grid import FREE, OCCUPIED, UNKNOWN, GridInBands, OccupancyGrid
-from planar.geometry.limits import COARSEST_CELL, FINEST_CELL
+from planar.geometry.grid import FREE, OCCUPIED, UNKNOWN, BandedGrid, OccupancyGrid
+from planar.geometry.limits import MAX_RESOLUTION, MIN_RESOLUTION
 from planar.geometry.pose import Pose2
 
 MODES = ("trinary", "scale", "raw")
-MOST_PIXELS = 100_000_000
+MAX_PIXELS = 100_000_000
 # How a file begins that Git LFS keeps elsewhere.
 LFS_POINTER = b"version https://git-lfs"
 
@@ -42,8 +42,8 @@ def load_map(path) -> OccupancyGrid:
     table = read_table(path, error=MapDescriptionError, missing=MapMissingError)
     resolution = table.number("resolution")
     table.check(resolution > 0.0, "resolution", "positive")
-    of_use = f"from {FINEST_CELL:g} to {COARSEST_CELL:g}"
-    table.check(FINEST_CELL <= resolution <= COARSEST_CELL, "resolution", of_use)
+    of_use = f"from {MIN_RESOLUTION:g} to {MAX_RESOLUTION:g}"
+    table.check(MIN_RESOLUTION <= resolution <= MAX_RESOLUTION, "resolution", of_use)
     mode = table.choice("mode", MODES, "trinary")
     negate = table.value("negate")
     table.check(negate in (0, 1) and not isinstance(negate, bool), "negate", "0 or 1")
@@ -90,13 +90,13 @@ def _pixels(image_path) -> np.ndarray:
     """Those of an image, uint8 (rows, cols, 3), or with transparency (rows, cols, 4)."""
     from PIL import Image, UnidentifiedImageError  # late: who only writes maps need not have it in memory
 
-    Image.MAX_IMAGE_PIXELS = None  # it would warn of less than MOST_PIXELS
+    Image.MAX_IMAGE_PIXELS = None  # it would warn of less than MAX_PIXELS
     try:
         data = read_bytes(image_path)
         if data.startswith(LFS_POINTER):
             raise ValueError("a pointer of Git LFS, which git lfs pull replaces by the image")
         with Image.open(io.BytesIO(data)) as image:
-            if image.width * image.height > MOST_PIXELS:
+            if image.width * image.height > MAX_PIXELS:
                 raise ValueError(f"{image.width} x {image.height} pixels are too many")
             return np.asarray(image.convert("RGBA" if "A" in image.getbands() else "RGB"))
     except FileNotFoundError:
@@ -107,7 +107,7 @@ def _pixels(image_path) -> np.ndarray:
         raise MapImageError(f"{image_path}: not a readable image ({error})") from None
 
 
-def save_map(grid: Union[OccupancyGrid, GridInBands], stem, occupied_at: int = 65, free_at: int = 25) -> Path:
+def save_map(grid: Union[OccupancyGrid, BandedGrid], stem, occupied_at: int = 65, free_at: int = 25) -> Path:
     """Writes ``stem``.pgm and ``stem``.yaml as map_saver does, both or none; returns the YAML.
 
     Cells of 0..free_at become free, occupied_at..100 occupied, all others unknown. The YAML names the image
@@ -122,11 +122,13 @@ def save_map(grid: Union[OccupancyGrid, GridInBands], stem, occupied_at: int = 6
         "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n\n"
     )
     bands = grid.in_bands if isinstance(grid, OccupancyGrid) else grid
-    write_together({pgm_path: _pgm(bands, occupied_at, free_at), yaml_path: [description.encode("ascii")]})
+    write_all_atomically(
+        {pgm_path: _pgm(bands, occupied_at, free_at), yaml_path: [description.encode("ascii")]}
+    )
     return yaml_path
 
 
-def _pgm(grid: GridInBands, occupied_at: int, free_at: int) -> Iterator[bytes]:
+def _pgm(grid: BandedGrid, occupied_at: int, free_at: int) -> Iterator[bytes]:
     """The image, row by row: those of a campus have many millions of pixels."""
     shades = np.full(256, 205, dtype=np.uint8)  # of the cells' bytes; the negative ones' are from 128 on
     shades[: free_at + 1] = 254

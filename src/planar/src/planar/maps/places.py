@@ -12,7 +12,7 @@ DEFAULT_RADIUS = 0.35
 
 
 @dataclass(frozen=True)
-class Place:
+class NamedPlace:
     """A named pose in the map, and others that serve as well; within ``radius`` metres a robot is there.
 
     ``approaches``: the other poses, in the order in which they are worth trying.
@@ -35,17 +35,17 @@ class Place:
         return self.distance_to(robot_in_map) <= self.radius
 
 
-def load_places(path) -> Dict[str, Place]:
+def load_places(path) -> Dict[str, NamedPlace]:
     """The places of a YAML file ``name: {x: 1.0, y: 2.0, yaw: 0.0, radius: 0.35}`` by name.
 
     ``yaw`` and ``radius`` may be left out; ``approaches: [{x: 1.0, y: 1.5, yaw: 1.57}]`` may be added.
     Raises SettingsError naming file, line and key.
     """
     table = read_table(path)
-    return {name: place_from(table, name) for name in table}
+    return {name: parse_place(table, name) for name in table}
 
 
-def place_from(table: Table, name: str) -> Place:
+def parse_place(table: Table, name: str) -> NamedPlace:
     """The place below the key ``name`` of a table."""
     fields = table.table(name)
     fields.allow_only("x", "y", "yaw", "radius", "approaches")
@@ -54,15 +54,15 @@ def place_from(table: Table, name: str) -> Place:
         approach.allow_only("x", "y", "yaw")
     radius = fields.number("radius", DEFAULT_RADIUS)
     fields.check(radius > 0.0, "radius", "positive")
-    return Place(name, pose_from(fields), radius, tuple(map(pose_from, approaches)))
+    return NamedPlace(name, parse_pose(fields), radius, tuple(map(parse_pose, approaches)))
 
 
-def pose_from(table: Table) -> Pose2:
+def parse_pose(table: Table) -> Pose2:
     """The pose of a table's keys ``x``, ``y`` and, if it is there, ``yaw``."""
     return Pose2(table.number("x"), table.number("y"), table.number("yaw", 0.0))
 
 
-def places_of_errand(path) -> Tuple[Place, Place]:
+def load_pickup_and_dropoff(path) -> Tuple[NamedPlace, NamedPlace]:
     """The places ``pickup`` and ``dropoff`` of a YAML file. Raises SettingsError."""
     places = load_places(path)
     for name in ("pickup", "dropoff"):
@@ -71,7 +71,7 @@ def places_of_errand(path) -> Tuple[Place, Place]:
     return places["pickup"], places["dropoff"]
 
 
-def why_unreachable(place: Place, grid: OccupancyGrid) -> Optional[str]:
+def unreachable_reason(place: NamedPlace, grid: OccupancyGrid) -> Optional[str]:
     """Why no robot can ever stand at a pose of ``place`` on this map, or None if all seem free."""
     for pose in place.poses:
         obstruction = obstruction_at(pose, grid)

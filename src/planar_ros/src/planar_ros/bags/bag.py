@@ -22,7 +22,7 @@ class BagError(PlanarError):
     """A bag cannot be read, or not to its end; the text names it and says where it broke."""
 
 
-class Played(NamedTuple):
+class RecordedMessage(NamedTuple):
     """A message as it was recorded; ``stamp`` is when, in seconds."""
 
     topic: str
@@ -30,7 +30,7 @@ class Played(NamedTuple):
     stamp: float
 
 
-class Bag:
+class BagReader:
     """A bag opened for reading alone; one that was cut off is read as far as it goes.
 
     Topics have their full names, "/scan", also where they were recorded without the slash. ``types``: that of
@@ -51,21 +51,21 @@ class Bag:
 
     def _look_over(self) -> None:
         sums, topics = self._bag.get_type_and_topic_info()
-        self.types: Dict[str, str] = {full_name(topic): info.msg_type for topic, info in topics.items()}
+        self.types: Dict[str, str] = {absolute_name(topic): info.msg_type for topic, info in topics.items()}
         self.foreign = {topic for topic, kind in self.types.items() if not _is_installed(kind, sums[kind])}
-        self._spellings = {topic: full_name(topic) for topic in topics}
+        self._spellings = {topic: absolute_name(topic) for topic in topics}
         self.is_empty = self._bag.get_message_count() == 0
         self.start = 0.0 if self.is_empty else self._bag.get_start_time()
         self.end = 0.0 if self.is_empty else self._bag.get_end_time()
 
     def messages(
         self, topics: Iterable[str], since: float = 0.0, until: float = math.inf
-    ) -> Iterator[Played]:
+    ) -> Iterator[RecordedMessage]:
         """The messages of ``topics`` in the order in which they were recorded, and when. Raises BagError.
 
         ``since``, ``until``: those that were recorded between, both included, s.
         """
-        wanted = set(map(full_name, topics))
+        wanted = set(map(absolute_name, topics))
         spelled = [spelling for spelling, topic in self._spellings.items() if topic in wanted]
         if not spelled or since > self.end or until < self.start:  # of no topics rosbag would make all
             return
@@ -82,7 +82,7 @@ class Bag:
                 after = f"broken {now - self.start:.1f} s after its start"
                 raise BagError(f"{self.path}: {after} ({error or type(error).__name__})") from None
             now = recorded.to_sec()
-            yield Played(self._spellings[topic], message, now)
+            yield RecordedMessage(self._spellings[topic], message, now)
 
     def first_static_transforms(self) -> List[Any]:
         """Of each frame the first on /tf_static, wherever in the bag it is.
@@ -97,7 +97,7 @@ class Bag:
         return list(found.values())
 
 
-def full_name(topic: str) -> str:
+def absolute_name(topic: str) -> str:
     return "/" + topic.lstrip("/")
 
 

@@ -6,7 +6,7 @@ FORGIVEN_DELAY = 0.2
 """Wall seconds of delay that are not made up for."""
 
 
-class Playhead:
+class PlaybackClock:
     """Moves from ``start`` to ``end``, seconds of the recording, by a wall clock that each call is told.
 
     ``speed``: times real time, 0 as fast as asked. What is played is told by ``reach``.

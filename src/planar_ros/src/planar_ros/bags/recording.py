@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 from typing import Any, Dict, Iterable, Iterator, List, Sequence, Set, Tuple
 
-from planar_ros.bags.bag import Bag, BagError, Played
+from planar_ros.bags.bag import BagError, BagReader, RecordedMessage
 
 
 class Recording:
@@ -15,7 +15,7 @@ class Recording:
 
     def __init__(self, paths: Sequence[Path]):
         self.paths = bag_paths(paths)
-        bags = [Bag(path) for path in self.paths]
+        bags = [BagReader(path) for path in self.paths]
         self.gaps: List[str] = [f"{bag.path.name}: {bag.gap}" for bag in bags if bag.gap]
         self._bags = sorted((bag for bag in bags if not bag.is_empty), key=lambda bag: bag.start)
         if not self._bags:
@@ -37,7 +37,7 @@ class Recording:
 
     def messages(
         self, topics: Iterable[str], since: float = 0.0, until: float = math.inf
-    ) -> Iterator[Played]:
+    ) -> Iterator[RecordedMessage]:
         """The messages of ``topics`` in the order in which they were recorded, and when. Raises BagError.
 
         ``since``, ``until``: those that were recorded between, both included, s.

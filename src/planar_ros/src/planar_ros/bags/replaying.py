@@ -36,7 +36,7 @@ def run_replay(
 ) -> int:
     """The exit code of ``replay``; 2 if it came to nothing, which is told in a line."""
     use_one_blas_thread()
-    give_back_large_arrays()
+    unmap_large_arrays()
     try:
         return replay(parser.parse_args(arguments))
     except PlanarError as error:
@@ -44,7 +44,7 @@ def run_replay(
         return 2
 
 
-def give_back_large_arrays() -> None:
+def unmap_large_arrays() -> None:
     """Large arrays are mapped, and unmapped when they are freed.
 
     Otherwise glibc takes them from its heap, where what is kept, like scans, soon lies between them.
@@ -55,7 +55,9 @@ def give_back_large_arrays() -> None:
         mallopt(_M_TRIM_THRESHOLD, _SPARE)
 
 
-def work_through(log: ScanLog, use: Callable[[LoggedScan], None], activity: str, shows_progress: bool) -> int:
+def process_scans(
+    log: ScanLog, use: Callable[[LoggedScan], None], activity: str, shows_progress: bool
+) -> int:
     """Hands the scans to ``use``, one by one; returns 0, 1 if the bag broke off, or 130 if interrupted.
 
     What has been made of the scans so far is good in any case.
@@ -84,7 +86,7 @@ def _watched(log: ScanLog, activity: str) -> Iterator[LoggedScan]:
             progress.update(task, completed=logged.position)
 
 
-def settings_of(kind: Type[T], path: Optional[Path], also_known: Iterable[str] = ()) -> T:
+def load_settings(kind: Type[T], path: Optional[Path], also_known: Iterable[str] = ()) -> T:
     """Settings from a YAML file, if there is one; unknown names are warned of. Raises SettingsError."""
     if path is None:
         return kind()

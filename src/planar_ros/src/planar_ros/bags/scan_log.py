@@ -9,7 +9,7 @@ from typing import Callable, Deque, Iterator, Set, Union
 import numpy as np
 
 from planar import PlanarError, Pose2, Scan
-from planar_ros.bags.bag import TF, TF_STATIC, Bag, BagError, Played, full_name
+from planar_ros.bags.bag import TF, TF_STATIC, BagError, BagReader, RecordedMessage, absolute_name
 from planar_ros.bags.transform_log import TransformLog
 from planar_ros.messages.border import is_stamp
 from planar_ros.messages.conversion import frame_name, pose2_from_msg, scan_from_msg
@@ -48,8 +48,8 @@ class ScanLog:
         odom_frame: str,
         warn: Callable[[str], None],
     ):
-        self._bag, self._warn = Bag(path), warn
-        self._scan_topic = full_name(scan_topic)
+        self._bag, self._warn = BagReader(path), warn
+        self._scan_topic = absolute_name(scan_topic)
         self._base, self._odom = frame_name(base_frame), frame_name(odom_frame)
         self.path = self._bag.path
         if self._scan_topic not in self._bag.types:
@@ -78,7 +78,7 @@ class ScanLog:
 
     def __iter__(self) -> Iterator[LoggedScan]:
         """Raises BagError where the bag breaks off; what was read before is good."""
-        waiting: Deque[Played] = deque()
+        waiting: Deque[RecordedMessage] = deque()
         for played in self._bag.messages([TF, TF_STATIC, self._scan_topic]):
             if played.topic == self._scan_topic:
                 waiting.append(played)
@@ -91,19 +91,19 @@ class ScanLog:
         if self._bag.gap:
             raise BagError(f"{self.path}: {self._bag.gap}")
 
-    def _add_transforms(self, played: Played) -> None:
+    def _add_transforms(self, played: RecordedMessage) -> None:
         for pair in self._transforms.add(played.message, is_static=played.topic == TF_STATIC):
             what = f"{TF_STATIC} contradicts itself about {pair}"
             self._tell(what, "(from now on the later one holds)", played.stamp, self._position(played))
 
-    def _position(self, played: Played) -> float:
+    def _position(self, played: RecordedMessage) -> float:
         return (played.stamp - self._bag.start) / max(self._bag.end - self._bag.start, 1e-9)
 
-    def _is_ripe(self, scan: Played, now: float) -> bool:
+    def _is_ripe(self, scan: RecordedMessage, now: float) -> bool:
         latest = self._transforms.latest_stamp(self._odom, self._base)
         return now - scan.stamp > _PATIENCE or (latest is not None and latest >= scan.message.header.stamp)
 
-    def _with_odometry(self, played: Played) -> Iterator[LoggedScan]:
+    def _with_odometry(self, played: RecordedMessage) -> Iterator[LoggedScan]:
         message, position = played.message, self._position(played)
         stamp = message.header.stamp.to_sec()
         if not is_stamp(message.header.stamp):

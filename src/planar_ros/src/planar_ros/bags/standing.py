@@ -3,7 +3,7 @@
 import math
 from typing import Dict, Iterable, List
 
-from planar_ros.bags.bag import TF, Played
+from planar_ros.bags.bag import TF, RecordedMessage
 from planar_ros.bags.recording import Recording
 
 MARKERS = ("visualization_msgs/Marker", "visualization_msgs/MarkerArray")
@@ -11,7 +11,7 @@ MARKERS = ("visualization_msgs/Marker", "visualization_msgs/MarkerArray")
 STRETCHES = (2.0, 20.0, math.inf)
 
 
-def standing_at(recording: Recording, topics: Iterable[str], moment: float) -> List[Played]:
+def snapshot_at(recording: Recording, topics: Iterable[str], moment: float) -> List[RecordedMessage]:
     """The newest message of each topic, of transforms those of the last seconds, of markers all, in order.
 
     ``moment``: s, itself included. Raises BagError.
@@ -24,9 +24,9 @@ def standing_at(recording: Recording, topics: Iterable[str], moment: float) -> L
     return sorted(played, key=lambda each: each.stamp)
 
 
-def _newest(recording: Recording, topics: Iterable[str], moment: float) -> Dict[str, Played]:
+def _newest(recording: Recording, topics: Iterable[str], moment: float) -> Dict[str, RecordedMessage]:
     missing, until = set(topics), moment
-    found: Dict[str, Played] = {}
+    found: Dict[str, RecordedMessage] = {}
     for stretch in STRETCHES:
         if not missing:
             break

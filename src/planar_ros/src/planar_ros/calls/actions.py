@@ -5,14 +5,14 @@ from typing import Any, List, Sequence
 import actionlib
 import rospy
 
-from planar_ros.node.last_words import wait_until_heard
-from planar_ros.step import Step
+from planar_ros.node.last_words import flush_and_close
+from planar_ros.step import LockstepClient
 
 # Goals that have ended are told of for a while, but of no more than so many, and no more than so many are
 # kept: each goal that comes is looked up among them.
-MOST_ENDED, MOST_KEPT = 20, 60
+MAX_ENDED_GOALS, MAX_TRACKED_GOALS = 20, 60
 # Of ROS time, in which a goal that is under way comes to be known.
-HEARING_TIME = rospy.Duration(1)
+ACKNOWLEDGE_TIME = rospy.Duration(1)
 KILLED_TEXT = "Aborting on the goal because the node has been killed"
 
 
@@ -27,7 +27,7 @@ class ActionServer(actionlib.SimpleActionServer):
         rospy.on_shutdown(self._abort_at_end)
 
     def start(self) -> None:
-        server, step = self.action_server, Step.of_node()
+        server, step = self.action_server, LockstepClient.of_node()
         self._publish_status, self._is_to_tell = server.publish_status, False
         if step.is_on:  # clients connect between this moment and the next, and either all hear it or none
             server.publish_status = lambda: None
@@ -56,17 +56,17 @@ class ActionServer(actionlib.SimpleActionServer):
         """How all goals stand: once for all that have changed at a moment, which may be thousands."""
         server = self.action_server
         with server.lock:
-            if len(server.status_list) > MOST_KEPT:
-                server.status_list[:] = without_most_ended(server.status_list)
+            if len(server.status_list) > MAX_TRACKED_GOALS:
+                server.status_list[:] = prune_ended(server.status_list)
             if not self._is_to_tell:
                 self._is_to_tell = True
-                Step.of_node().soon(self._tell)
+                LockstepClient.of_node().soon(self._tell)
 
     def _tell(self) -> None:
         server = self.action_server
         with server.lock:
             self._is_to_tell = False
-            server.status_list[:] = without_most_ended(server.status_list)
+            server.status_list[:] = prune_ended(server.status_list)
             self._publish_status()
 
     def _abort_at_end(self) -> None:
@@ -77,13 +77,13 @@ class ActionServer(actionlib.SimpleActionServer):
                 return
             self.set_aborted(text=KILLED_TEXT)
             self._tell()
-        wait_until_heard(self.action_server.result_pub, self.action_server.status_pub)
+        flush_and_close(self.action_server.result_pub, self.action_server.status_pub)
 
 
-def without_most_ended(trackers: Sequence[Any]) -> List[Any]:
-    """The goals of a server (actionlib's StatusTracker), of those that have ended the last ``MOST_ENDED``."""
+def prune_ended(trackers: Sequence[Any]) -> List[Any]:
+    """Drop actionlib's StatusTrackers of ended goals but for the last MAX_ENDED_GOALS."""
     ended = [tracker for tracker in trackers if tracker.handle_destruction_time != rospy.Time()]
-    forgotten = {id(tracker) for tracker in ended[:-MOST_ENDED]}
+    forgotten = {id(tracker) for tracker in ended[:-MAX_ENDED_GOALS]}
     return [tracker for tracker in trackers if id(tracker) not in forgotten]
 
 
@@ -113,20 +113,20 @@ def goal_is_over(client: actionlib.SimpleActionClient) -> bool:
     return client.gh is not None and client.gh.get_comm_state() == actionlib.CommState.DONE
 
 
-def server_of(client: actionlib.SimpleActionClient) -> Any:
+def server_connection(client: actionlib.SimpleActionClient) -> Any:
     """What stands for the server that was heard last, None before: another one after it was started anew."""
     told = client.action_client.last_status_msg
     return None if told is None else told._connection_header
 
 
 def goal_is_lost(client: actionlib.SimpleActionClient, sent_to: Any) -> bool:
-    """Whether the last goal went to a server (``server_of``) that is gone, and that since does not know it.
+    """Whether the last goal went to a server that has been restarted since and does not know the goal.
 
     actionlib sees that only of goals that the server has acknowledged, and that have no result under way.
     """
     told = client.action_client.last_status_msg
-    if goal_is_over(client) or client.gh is None or told is None or server_of(client) is sent_to:
+    if goal_is_over(client) or client.gh is None or told is None or server_connection(client) is sent_to:
         return False
     goal_id = client.gh.comm_state_machine.action_goal.goal_id
     is_known = any(status.goal_id.id == goal_id.id for status in told.status_list)
-    return not is_known and told.header.stamp > goal_id.stamp + HEARING_TIME
+    return not is_known and told.header.stamp > goal_id.stamp + ACKNOWLEDGE_TIME

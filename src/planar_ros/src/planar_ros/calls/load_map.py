@@ -18,7 +18,7 @@ else:
         _response_class = numpy_msg(LoadMapResponse)
 
 
-class LoadResult(enum.IntEnum):
+class LoadMapResult(enum.IntEnum):
     """The codes of its answer."""
 
     SUCCESS = 0
@@ -28,7 +28,7 @@ class LoadResult(enum.IntEnum):
     UNDEFINED_FAILURE = 255
 
 
-def offer(kind, handlers: Mapping[str, Callable]) -> None:
+def advertise_services(kind, handlers: Mapping[str, Callable]) -> None:
     """Serves each name with ``kind``, one of the types above; where there is none, says so once."""
     if kind is None:
         rospy.loginfo("nav_msgs of this system has no LoadMap, so there is no %s", ", ".join(handlers))

@@ -13,16 +13,16 @@ from nav_msgs.srv import GetPlan, GetPlanRequest
 
 from planar import Pose2
 from planar.driving import DriveOutcome
-from planar_ros.calls.actions import goal_is_lost, goal_is_over, server_is_ready, server_of
+from planar_ros.calls.actions import goal_is_lost, goal_is_over, server_connection, server_is_ready
 from planar_ros.calls.services import call_service
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
-from planar_ros.node.last_words import wait_until_heard
+from planar_ros.node.last_words import flush_and_close
 
 PLAN_SECONDS = 5.0
 POLL_SECONDS = 0.02
 
 
-class MoveBase:
+class MoveBaseClient:
     """Has move_base drive, one goal at a time. Goals and plans are in the frame ``frame_id``.
 
     ``robot``: the robot's pose in move_base's global frame by the latest feedback, None before the first.
@@ -49,7 +49,7 @@ class MoveBase:
         """Drives there instead of to any earlier goal. ``stamp``: of the goal, by default now."""
         message = MoveBaseGoal(target_pose=self._stamped(goal))
         message.target_pose.header.stamp = rospy.Time.now() if stamp is None else stamp
-        self._sent_to = server_of(self._client)
+        self._sent_to = server_connection(self._client)
         self._client.send_goal(message, feedback_cb=self._keep_pose)
         self._is_driving, self._lost_since = True, None
 
@@ -103,9 +103,9 @@ class MoveBase:
 
         def cancel() -> None:
             inner = self._client.action_client
-            wait_until_heard(inner.pub_goal)  # lest a goal comes after what cancels it
+            flush_and_close(inner.pub_goal)  # lest a goal comes after what cancels it
             self.cancel()
-            wait_until_heard(inner.pub_cancel)
+            flush_and_close(inner.pub_cancel)
 
         rospy.on_shutdown(cancel)
 

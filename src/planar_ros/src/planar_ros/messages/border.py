@@ -10,7 +10,7 @@ import genpy
 import rospy
 
 from planar import PlanarError
-from planar.geometry.limits import FASTEST, is_within
+from planar.geometry.limits import MAX_SPEED, is_within
 
 WARN_SECONDS = 5.0
 
@@ -23,7 +23,7 @@ class MessageError(PlanarError):
     """A message means nothing; the text says what is wrong with it."""
 
 
-def listen(
+def subscribe(
     topic: str, kind: Type[genpy.Message], handle: Callable[[Any], object], **how: Any
 ) -> rospy.Subscriber:
     """A subscriber that ignores a message for which ``handle`` raises a PlanarError, and says so."""
@@ -38,7 +38,7 @@ def listen(
     return rospy.Subscriber(topic, kind, take, **how)
 
 
-def serve(name: str, kind: Any, handle: Callable[[Any], object]) -> rospy.Service:
+def advertise_service(name: str, kind: Any, handle: Callable[[Any], object]) -> rospy.Service:
     """A service; a request for which ``handle`` raises a PlanarError fails with its text."""
 
     def answer(request):
@@ -58,5 +58,5 @@ def is_stamp(stamp: genpy.Time) -> bool:
 def check_twist(twist) -> None:
     """Raises MessageError for a geometry_msgs/Twist that no robot has."""
     linear, angular = twist.linear, twist.angular
-    if not is_within(FASTEST, linear.x, linear.y, linear.z, angular.x, angular.y, angular.z):
+    if not is_within(MAX_SPEED, linear.x, linear.y, linear.z, angular.x, angular.y, angular.z):
         raise MessageError("a velocity that is not finite, or that no robot has, means nothing")

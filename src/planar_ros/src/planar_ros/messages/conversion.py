@@ -12,7 +12,7 @@ from rospy.numpy_msg import numpy_msg
 from sensor_msgs.msg import LaserScan
 
 from planar import OccupancyGrid, Pose2, Scan, Twist2
-from planar.geometry.limits import FARTHEST
+from planar.geometry.limits import MAX_COORDINATE
 from planar_ros.messages.border import MessageError, check_twist
 
 # Subscribed to with these types, `ranges` and `data` arrive as numpy arrays instead of tuples.
@@ -114,7 +114,7 @@ def scan_from_msg(message, laser_in_base: Pose2, upside_down: bool = False) -> S
         angle_increment=message.angle_increment,
         ranges=np.asarray(message.ranges, dtype=np.float32),
         range_min=message.range_min,
-        range_max=min(message.range_max, FARTHEST),
+        range_max=min(message.range_max, MAX_COORDINATE),
         laser_in_base=laser_in_base,
         upside_down=upside_down,
     )

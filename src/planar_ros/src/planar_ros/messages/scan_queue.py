@@ -10,7 +10,7 @@ from tf2_msgs.msg import TFMessage
 from planar import PlanarError, Pose2, Scan
 from planar_ros.messages.conversion import LaserScanArrays, frame_name, scan_from_msg
 from planar_ros.messages.transforms import JUMP_BACK_SECONDS, Transforms
-from planar_ros.step import Step
+from planar_ros.step import LockstepClient
 
 
 class ScanQueue:
@@ -43,7 +43,7 @@ class ScanQueue:
         self._newest_stamp = rospy.Time(0)
         self._has_news = threading.Condition()
         self._news = 0
-        self._step = Step.of_node()
+        self._step = LockstepClient.of_node()
         self._step.at_moments(self._deal_with_waiting)
         rospy.on_shutdown(self._wake)
         threading.Thread(target=self._work, daemon=True).start()

@@ -17,7 +17,7 @@ from planar_ros.messages.conversion import frame_name, pose2_of, transform_msg
 JUMP_BACK_SECONDS = 1.0
 
 
-class Intake:
+class TransformFilter:
     """Hands on to a buffer of tf2 only what leaves it alive, and empties it when time has jumped back.
 
     tf2 looks at the clock alone, which comes by a connection of its own: what was said of the time before a
@@ -81,7 +81,7 @@ class Transforms:
 
     def __init__(self, cache_seconds: float = 10.0):
         self.buffer = tf2_ros.Buffer(rospy.Duration(cache_seconds), debug=False)
-        self._intake = Intake(self.buffer)
+        self._intake = TransformFilter(self.buffer)
         self._listener = _Listener(self.buffer, self._intake, queue_size=100, tcp_nodelay=True)
         self._broadcaster = tf2_ros.TransformBroadcaster()
 

@@ -9,7 +9,7 @@ from rospy.impl.tcpros_base import TCPServer
 WAITING = 128
 
 
-def let_many_wait() -> None:
+def extend_listen_backlog() -> None:
     """From now on the node's server keeps so many connections waiting; to be called before ``init_node``.
 
     rospy's keeps five, and the sixth comes a second later: TCP tries again after that time.
@@ -23,7 +23,7 @@ def let_many_wait() -> None:
     TCPServer._create_server_sock = create
 
 
-def miss_no_publisher() -> None:
+def merge_publisher_updates() -> None:
     """From now on the node connects to all publishers that it is told of; to be called before ``init_node``.
 
     rospy's goes by the newest list of a topic's, as it comes. Who subscribes while another registers as its

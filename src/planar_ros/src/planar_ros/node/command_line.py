@@ -5,14 +5,14 @@ import sys
 from typing import List
 
 
-def understood(parser: argparse.ArgumentParser, words: List[str]) -> argparse.Namespace:
+def parse_known(parser: argparse.ArgumentParser, words: List[str]) -> argparse.Namespace:
     """What the parser knows of the words."""
     known, unknown = parser.parse_known_args(words)
-    go_on_without(parser.prog, unknown)
+    warn_unknown(parser.prog, unknown)
     return known
 
 
-def go_on_without(program: str, words: List[str]) -> None:
+def warn_unknown(program: str, words: List[str]) -> None:
     """Says which words mean nothing, if there are any."""
     if words:
         print(f"[{program}] goes on without what it does not know: {' '.join(words)}", file=sys.stderr)

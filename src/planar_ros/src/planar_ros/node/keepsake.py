@@ -11,7 +11,7 @@ import rospy
 from planar_ros.node.parameters import ParameterWriter
 
 
-class Keepsake:
+class ParameterCheckpoint:
     """A value made of what JSON knows, in the parameter ``~keepsake/value`` of the master.
 
     Whoever is started anew after a crash or a ``kill -9`` finds it; a node that ends in order takes it away.

@@ -8,21 +8,21 @@ import rospkg
 import rospy
 
 from planar import FileWriteError
-from planar_ros.node.keepsake import Keepsake
+from planar_ros.node.keepsake import ParameterCheckpoint
 
 # Wall seconds from one complaint to the next.
 ALARM_SECONDS = 60.0
 
 
-class Kept(NamedTuple):
+class SavedFile(NamedTuple):
     """``value``: what was known, when the file was written, of what it holds; made of what JSON knows."""
 
     path: Path
     value: Any
 
 
-class KeptFile:
-    """What is too large for a parameter: a file among the logs, of which a Keepsake tells.
+class FileCheckpoint:
+    """What is too large for a parameter: a file among the logs, of which a ParameterCheckpoint tells.
 
     File and value are always of one moment. A node that ends in order leaves neither. For one thread.
     """
@@ -34,14 +34,14 @@ class KeptFile:
         self._folder = Path(rospkg.get_log_dir())
         name = rospy.get_name().strip("/").replace("/", "-")
         self._stem = f"{name}-{rospy.get_param('/run_id', 'run')}.kept"
-        self._keepsake = Keepsake()
+        self._keepsake = ParameterCheckpoint()
         self._remove(but=self.found and self.found.path)
 
     @property
-    def found(self) -> Optional[Kept]:
+    def found(self) -> Optional[SavedFile]:
         """What an earlier node has left, or this one has kept since; None if there is nothing."""
         told = self._keepsake.found
-        return None if told is None else Kept(Path(told["path"]), told["value"])
+        return None if told is None else SavedFile(Path(told["path"]), told["value"])
 
     def keep(self, write: Callable[[Path], None], value: Any) -> None:
         """From now on this is what is found; if that cannot be, a warning tells so.

@@ -8,14 +8,14 @@ from typing import Any, List
 import genpy
 import rospy
 
-from planar_ros.node.listeners import is_heard_by_all
+from planar_ros.node.listeners import are_all_connected
 from planar_ros.step import transport
 
 PATIENCE_SECONDS = 3.0
 POLL_SECONDS = 0.01
 
 
-def wait_until_heard(*publishers: rospy.Publisher, patience: float = PATIENCE_SECONDS) -> None:
+def flush_and_close(*publishers: rospy.Publisher, patience: float = PATIENCE_SECONDS) -> None:
     """Waits, at most ``patience`` wall-clock seconds, until all subscribers have taken what was published.
 
     A node that just ended would take back its topic, upon which subscribers drop what they have not read. So
@@ -26,9 +26,9 @@ def wait_until_heard(*publishers: rospy.Publisher, patience: float = PATIENCE_SE
     transport.flush()  # what a node in step keeps until the moment's answer
     for publisher in publishers:
         # Asked anew each time, as listeners leave, too, where a whole graph is ended.
-        while not is_heard_by_all(publisher) and time.monotonic() < deadline:
+        while not are_all_connected(publisher) and time.monotonic() < deadline:
             time.sleep(POLL_SECONDS)
-        transport.keep_counts(publisher.resolved_name)
+        transport.remember_counts(publisher.resolved_name)
     sockets = [each for publisher in publishers for each in _flushed(publisher, deadline)]
     for each in sockets:
         with suppress(OSError):
@@ -37,12 +37,12 @@ def wait_until_heard(*publishers: rospy.Publisher, patience: float = PATIENCE_SE
         _wait_for_end(each, deadline)
 
 
-def say_at_end(publisher: rospy.Publisher, message: genpy.Message) -> None:
+def publish_on_shutdown(publisher: rospy.Publisher, message: genpy.Message) -> None:
     """Has whoever listens then hear ``message`` when the node ends: rospy alone would drop it."""
 
     def say():
         publisher.publish(message)
-        wait_until_heard(publisher)
+        flush_and_close(publisher)
 
     rospy.on_shutdown(say)
 

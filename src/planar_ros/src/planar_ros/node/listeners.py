@@ -10,17 +10,17 @@ import rospy
 CONNECT_SECONDS = 0.5
 
 
-def is_heard(publisher: rospy.Publisher) -> bool:
+def has_all_subscribers(publisher: rospy.Publisher) -> bool:
     """Whether somebody hears what is published now, and nobody who listens would miss it."""
-    return publisher.get_num_connections() > 0 and is_heard_by_all(publisher)
+    return publisher.get_num_connections() > 0 and are_all_connected(publisher)
 
 
-def is_heard_by_all(publisher: rospy.Publisher) -> bool:
+def are_all_connected(publisher: rospy.Publisher) -> bool:
     """Whether all who listen now, if anybody does, are connected."""
-    return publisher.get_num_connections() >= listeners_of(publisher.resolved_name)
+    return publisher.get_num_connections() >= count_subscribers(publisher.resolved_name)
 
 
-def listeners_of(topic: str) -> int:
+def count_subscribers(topic: str) -> int:
     """How many nodes listen to a topic."""
     master = rosgraph.Master(rospy.get_name())
     with suppress(OSError, rosgraph.MasterException):

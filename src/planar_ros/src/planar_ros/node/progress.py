@@ -6,7 +6,7 @@ from std_msgs.msg import Header
 TOPIC = "/simulation/progress"
 
 
-class Progress:
+class ProgressPublisher:
     """Reports the simulated time up to which this node has worked; silent without simulated time."""
 
     def __init__(self):

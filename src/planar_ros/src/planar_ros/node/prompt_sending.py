@@ -7,16 +7,16 @@ import rospy.topics
 from rospy.impl.tcpros_pubsub import QueuedConnection
 
 
-def send_promptly() -> None:
+def send_immediately() -> None:
     """From now on publishers with a queue send at once what the socket takes; to be called once a node.
 
     rospy hands every message to a thread of each subscriber, which for a node that publishes much costs more
     than all its work. A subscriber that is slow still holds up nobody: then its thread takes over.
     """
-    rospy.topics.QueuedConnection = PromptConnection
+    rospy.topics.QueuedConnection = ImmediateConnection
 
 
-class PromptConnection(QueuedConnection):
+class ImmediateConnection(QueuedConnection):
     """Relays to a transport; its thread gets only what does not fit into the socket's buffer."""
 
     def __init__(self, connection, queue_size: int):

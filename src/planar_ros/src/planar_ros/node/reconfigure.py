@@ -6,7 +6,7 @@ from typing import Any, Callable, Dict, Mapping, Sequence
 from dynamic_reconfigure.encoding import extract_params
 from dynamic_reconfigure.server import Server
 
-from planar.config.parameters import Tunable, parameters_of, tunables_of
+from planar.config.parameters import DynamicParameter, dynamic_parameters_of, parameters_of
 from planar_ros.node.parameters import RESTORE, ParameterWriter
 
 KINDS = {bool: "bool", int: "int", float: "double", str: "str"}
@@ -24,7 +24,7 @@ class _Server(Server):
         ParameterWriter().write({self.ns + name: self.config[name] for name in names})
 
 
-class Tuning:
+class ReconfigureServer:
     """Serves ``set_parameters`` below ``namespace`` (default: the node's own) for some tunables.
 
     ``values``: those in force at the start, by name, which ``restore_defaults`` brings back.
@@ -33,7 +33,7 @@ class Tuning:
 
     def __init__(
         self,
-        tunables: Sequence[Tunable],
+        tunables: Sequence[DynamicParameter],
         values: Mapping[str, Any],
         change: Callable[[Dict[str, Any]], Dict[str, Any]],
         namespace: str = "",
@@ -62,11 +62,11 @@ class Tuning:
         return config
 
 
-class Reconfiguration(Tuning):
+class SettingsReconfigureServer(ReconfigureServer):
     """Serves ``~set_parameters`` for the dynamic fields of ``settings``."""
 
     def __init__(self, settings: Any, change: Callable[[Dict[str, Any]], Dict[str, Any]]):
-        super().__init__(tunables_of(type(settings)), dynamic_values(settings), change)
+        super().__init__(dynamic_parameters_of(type(settings)), dynamic_values(settings), change)
 
 
 def dynamic_values(settings: Any) -> Dict[str, Any]:
@@ -78,7 +78,7 @@ def dynamic_values(settings: Any) -> Dict[str, Any]:
     }
 
 
-def _description(tunables: Sequence[Tunable], values: Mapping[str, Any]) -> SimpleNamespace:
+def _description(tunables: Sequence[DynamicParameter], values: Mapping[str, Any]) -> SimpleNamespace:
     """What dynamic_reconfigure's generator would have made of a .cfg file."""
     parameters = [_parameter(tunable, values[tunable.name]) for tunable in tunables]
     parameters.append(_entry(RESTORE, False, "bring back the values of the start", False, True))
@@ -90,7 +90,7 @@ def _description(tunables: Sequence[Tunable], values: Mapping[str, Any]) -> Simp
     return SimpleNamespace(config_description={**group, "groups": [], "parameters": parameters}, **tables)
 
 
-def _parameter(tunable: Tunable, value) -> Dict[str, Any]:
+def _parameter(tunable: DynamicParameter, value) -> Dict[str, Any]:
     kind = type(tunable.default)
     low: Any = ""
     high: Any = ""

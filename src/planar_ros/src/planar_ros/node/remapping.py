@@ -5,7 +5,7 @@ from typing import List
 import rospy
 
 
-def remapped_once(*names: str) -> List[str]:
+def remap_once(*names: str) -> List[str]:
     """The full names of topics, to be opened by these.
 
     rospy remaps a name once more where it opens the topic: with ``odom:=wheel_odom odom_faulty:=odom`` what

@@ -13,7 +13,7 @@ from rosgraph import get_master_uri
 from rospy.impl.paramserver import get_param_server_cache
 
 from planar import PlanarError
-from planar_ros.node.backlog import let_many_wait, miss_no_publisher
+from planar_ros.node.backlog import extend_listen_backlog, merge_publisher_updates
 from planar_ros.node.blas import use_one_blas_thread
 from supervision.interruption import on_signals
 from supervision.streams import drop_what_cannot_be_written
@@ -73,8 +73,8 @@ def init_node(name: str, **options: Any) -> None:
     rospy would subscribe to a parameter with each line of the log, and never unsubscribe: the master would
     take the next node of that name for a second one, and shut down who has the first one's port by then.
     """
-    let_many_wait()
-    miss_no_publisher()
+    extend_listen_backlog()
+    merge_publisher_updates()
     rospy.init_node(name, **{"disable_signals": True, **options})
     get_param_server_cache().set(LOG_WITHOUT_TOPICS, rospy.get_param(LOG_WITHOUT_TOPICS, False))
 

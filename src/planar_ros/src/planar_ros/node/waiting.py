@@ -8,7 +8,7 @@ import rosgraph
 import rospy
 from std_msgs.msg import String
 
-from planar_ros.step import Step
+from planar_ros.step import LockstepClient
 
 # Private topic, latched: what the node waits for, one a line; empty once it has everything.
 TOPIC = "waiting_for"
@@ -16,10 +16,10 @@ PATIENCE_SECONDS = 4.0
 POLL_SECONDS, HELD_UP_SECONDS = 0.2, 1.0
 
 
-class _Teller:
+class _WaitingForPublisher:
     """Of what a node waits for, a part: all of them tell together, on one topic."""
 
-    _lacking: ClassVar[Dict["_Teller", List[str]]] = {}
+    _lacking: ClassVar[Dict["_WaitingForPublisher", List[str]]] = {}
     _told: ClassVar[Optional[str]] = None
     _lock: ClassVar[threading.Lock] = threading.Lock()
 
@@ -31,12 +31,12 @@ class _Teller:
         with self._lock:
             self._lacking[self] = lacking
             text = "\n".join(name for part in self._lacking.values() for name in part)
-            if text != _Teller._told:
-                _Teller._told = text
+            if text != _WaitingForPublisher._told:
+                _WaitingForPublisher._told = text
                 self._publisher.publish(text)
 
 
-class Waiting:
+class ReadinessMonitor:
     """Watches the conditions a node needs before it can work, and names once each that stays unmet.
 
     On ``~waiting_for`` it tells at any time which they are.
@@ -48,8 +48,8 @@ class Waiting:
     def __init__(self, conditions: Mapping[str, Callable[[], bool]]):
         self._conditions = conditions
         self._missing: Optional[List[str]] = None
-        self._teller = _Teller()
-        self._step = Step.present()
+        self._teller = _WaitingForPublisher()
+        self._step = LockstepClient.present()
         if self._step is not None:
             self._step.at_moments(self._look)
         threading.Thread(target=self._watch, daemon=True).start()
@@ -78,14 +78,14 @@ class Waiting:
                 self._teller.tell(missing)
 
 
-class HoldUp:
+class StallReporter:
     """Tells on ``~waiting_for`` whom a node that works already waits for, if it does so for a while."""
 
     def __init__(self, patience: float = HELD_UP_SECONDS):
         self._patience = patience
         self._since: Optional[float] = None
         self._told: List[str] = []
-        self._teller = _Teller()
+        self._teller = _WaitingForPublisher()
 
     def look(self, names: List[str]) -> None:
         """Those that are waited for now; to be called again and again."""
@@ -101,7 +101,7 @@ class HoldUp:
             self._teller.tell(to_tell)
 
 
-class Readiness:
+class NodeReadiness:
     """Whether another node has all that it waits for, by what it tells on its ``~waiting_for``."""
 
     def __init__(self, node: str):

@@ -1,5 +1,8 @@
-"""Logical time: messages take effect at logical instants (docs/explanation/deterministic_runs.md)."""
+"""Logical time: messages are taken in, and take effect, at moments (docs/logical_time.md)."""
 
-from planar_ros.step.step import Step, is_heard_in_step
+from planar.deprecation import deprecated_names
+from planar_ros.step.step import LockstepClient, has_synchronised_publisher
 
-__all__ = ["Step", "is_heard_in_step"]
+__all__ = ["LockstepClient", "has_synchronised_publisher"]
+
+__getattr__ = deprecated_names(__name__, {"Step": "LockstepClient"})

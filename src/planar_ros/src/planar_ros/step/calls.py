@@ -9,7 +9,7 @@ HEADER = "moment"
 _local = threading.local()
 
 
-def headers_of(moment: int) -> Dict[str, str]:
+def call_headers(moment: int) -> Dict[str, str]:
     """What a node's call has to carry at this moment; nothing if it is not in step (0)."""
     return {HEADER: str(moment)} if moment else {}
 
@@ -19,7 +19,7 @@ def caller() -> str:
     return getattr(_local, "caller", "")
 
 
-def await_before_answering(wait: Callable[[int], None]) -> None:
+def delay_service_replies(wait: Callable[[int], None]) -> None:
     """From now on a call of a node in step is answered when ``wait(number of its moment)`` returns."""
     handle = ServiceImpl._handle_request
 

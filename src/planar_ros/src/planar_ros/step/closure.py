@@ -11,7 +11,7 @@ from planar_ros.step.transport import ANSWER_TOPIC, STATIC_TOPIC
 
 ANSWER_SECONDS = 1.0
 _SILENCE = (OSError, xmlrpc.client.Error)
-Table = Dict[str, List[str]]
+SystemState = Dict[str, List[str]]
 
 
 class _TimedTransport(xmlrpc.client.Transport):
@@ -21,7 +21,7 @@ class _TimedTransport(xmlrpc.client.Transport):
         return connection
 
 
-class Closure:
+class ConnectionCheck:
     """Asks the master and the nodes, none of which is waited for long."""
 
     def __init__(self):
@@ -63,7 +63,7 @@ class Closure:
         names = set(chain(*(chain(*table.values()) for table in tables)))
         return names, set(tables[0].get(ANSWER_TOPIC, ()))
 
-    def _state(self) -> Tuple[Table, Table, Table]:
+    def _state(self) -> Tuple[SystemState, SystemState, SystemState]:
         published, subscribed, services = _ask(self._master, "getSystemState")
         return dict(published), dict(subscribed), dict(services)
 

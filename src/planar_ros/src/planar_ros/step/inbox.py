@@ -10,14 +10,14 @@ import rospy
 from rospy.topics import _SubscriberImpl
 
 from planar_ros.node.progress import TOPIC as PROGRESS_TOPIC
-from planar_ros.step.transport import CLOCK_TOPIC, STATIC_TOPIC, UNCOUNTED, Frame
+from planar_ros.step.transport import CLOCK_TOPIC, STATIC_TOPIC, UNCOUNTED, SerializedMessage
 
 # Wall seconds that a message may be under way.
 PATIENCE_SECONDS = 4.0
 # Transforms are there before what refers to them is dealt with.
 FIRST_TOPICS = (STATIC_TOPIC, "/tf")
 # What is heard on these from nodes that are not in step decides nothing.
-UNSUSPICIOUS = frozenset((*FIRST_TOPICS, *UNCOUNTED, PROGRESS_TOPIC))
+HARMLESS_TOPICS = frozenset((*FIRST_TOPICS, *UNCOUNTED, PROGRESS_TOPIC))
 _receive = _SubscriberImpl.receive_callback
 
 
@@ -31,23 +31,23 @@ class _Channel:
         self.subscriber, self.connection = subscriber, connection
         self.message_class = connection.protocol.recv_data_class
         self.received = 0
-        self.waiting: Deque[Frame] = deque()
+        self.waiting: Deque[SerializedMessage] = deque()
         self.latch: Any = None
-        self._overdue: List[Frame] = [] if before is None else [*before._overdue, *before.waiting]
+        self._overdue: List[SerializedMessage] = [] if before is None else [*before._overdue, *before.waiting]
         self._socket = connection.socket
 
     def is_of(self, connection: Any) -> bool:
         """Whether it is that of a connection, and not of one that rospy has made anew in the same object."""
         return self.connection is connection and self._socket is connection.socket
 
-    def take(self, number: Optional[int]) -> List[Frame]:
+    def take(self, number: Optional[int]) -> List[SerializedMessage]:
         """What is overdue, and the first ``number`` of those that wait, or all."""
         number = len(self.waiting) if number is None else min(max(number, 0), len(self.waiting))
         overdue, self._overdue = self._overdue, []
         return overdue + [self.waiting.popleft() for _ in range(number)]
 
 
-class Inbox:
+class MessageBuffer:
     """Hands messages on at once, or, while there are ``members``, those of members when they are released.
 
     ``holds_strangers``: whether then messages of nodes that are not in step wait as well. ``on_stranger`` is
@@ -65,7 +65,7 @@ class Inbox:
         """From now on all subscribers of this node receive by it."""
 
         def receive(subscriber: Any, frames: Sequence[Any], connection: Any) -> None:
-            if frames and isinstance(frames[0], Frame):
+            if frames and isinstance(frames[0], SerializedMessage):
                 self._take(subscriber, frames, connection)
             else:  # a connection from before
                 _receive(subscriber, frames, connection)
@@ -113,7 +113,7 @@ class Inbox:
             self.members = frozenset()
         self.release({})
 
-    def _take(self, subscriber: Any, frames: Sequence[Frame], connection: Any) -> None:
+    def _take(self, subscriber: Any, frames: Sequence[SerializedMessage], connection: Any) -> None:
         topic, sender = subscriber.resolved_name, connection.callerid_pub
         if self.members and sender not in self.members and not connection.is_latched:
             self._note_stranger(topic, sender)
@@ -134,7 +134,7 @@ class Inbox:
             self._changed.notify_all()
 
     def _note_stranger(self, topic: str, sender: str) -> None:
-        if (topic, sender) not in self._known and topic not in UNSUSPICIOUS:
+        if (topic, sender) not in self._known and topic not in HARMLESS_TOPICS:
             self._known.add((topic, sender))
             self._on_stranger(f"{topic} came from {sender}, which is not in step")
 
@@ -155,7 +155,7 @@ def _order(entry) -> Tuple[int, str, str]:
     return (FIRST_TOPICS.index(topic) if topic in FIRST_TOPICS else len(FIRST_TOPICS)), topic, sender
 
 
-def _deliver(channel: _Channel, frames: Sequence[Frame]) -> None:
+def _deliver(channel: _Channel, frames: Sequence[SerializedMessage]) -> None:
     """To the subscriber's callbacks: no more of the latest than its queue holds."""
     subscriber, connection = channel.subscriber, channel.connection
     if subscriber.queue_size is not None:

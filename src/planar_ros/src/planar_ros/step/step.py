@@ -10,23 +10,23 @@ import rospy
 from sim_bridge_msgs.msg import Answer, Moment
 from std_msgs.msg import Header
 
-from planar_ros.node.progress import Progress
+from planar_ros.node.progress import ProgressPublisher
 from planar_ros.step import transport
-from planar_ros.step.calls import await_before_answering, headers_of
-from planar_ros.step.inbox import Inbox
+from planar_ros.step.calls import call_headers, delay_service_replies
+from planar_ros.step.inbox import MessageBuffer
 from planar_ros.step.ticker import Ticker
-from planar_ros.step.transport import ANSWER_TOPIC, MOMENT_TOPIC, STATIC_TOPIC, CountedConnection
-from planar_ros.step.turns import Turns
+from planar_ros.step.transport import ANSWER_TOPIC, STATIC_TOPIC, TICK_TOPIC, LockstepConnection
+from planar_ros.step.turns import LockstepThreads
 
 Hook = Callable[[], None]
-Tick = Callable[[rospy.Time], None]
+TickCallback = Callable[[rospy.Time], None]
 POLL_SECONDS = 0.02
 # Simulated seconds between two moments that a node needs which does not say.
 DEFAULT_PERIOD = 0.1
 # The nodes that the simulator waits for.
 WAIT_FOR_PARAMETER = "/simulation/wait_for"
 # Nodes outside that are to miss nothing.
-AUDIENCE_PARAMETER = "/simulation/audience"
+OBSERVERS_PARAMETER = "/simulation/audience"
 # Nodes that are not in step, whose static transforms are heard before the first moment is worked on.
 STATIC_PUBLISHERS_PARAMETER = "/simulation/static_publishers"
 # Wall seconds without a moment after which messages of strangers are handed on as they come.
@@ -35,7 +35,7 @@ STALLED_SECONDS = 0.5
 CALL_SECONDS = 4.0
 
 
-class Step:
+class LockstepClient:
     """The one of this node: takes in what belongs to each moment, has the node work, and answers.
 
     A node asks to be in step (``join``) when it has all that does not take simulated time; the simulator lets
@@ -44,14 +44,14 @@ class Step:
     turns go on until they ``pause``; what they send goes out with the answer. ROS time is the moment's.
     """
 
-    _instance: ClassVar[Optional["Step"]] = None
+    _instance: ClassVar[Optional["LockstepClient"]] = None
 
     def __init__(self):
         self._latency = 0.0
         self._name = rospy.get_name()
-        self._inbox = Inbox(True, lambda text: self.remark(f"at {self._name} {text}"))
-        self._turns = Turns()
-        self._progress = Progress()
+        self._inbox = MessageBuffer(True, lambda text: self.remark(f"at {self._name} {text}"))
+        self._turns = LockstepThreads()
+        self._progress = ProgressPublisher()
         self._hooks: List[Hook] = []
         self._required: Dict[Tuple[str, str], int] = {}
         self._told: Dict[str, int] = {}
@@ -64,20 +64,20 @@ class Step:
         if rospy.get_param("/use_sim_time", False):
             transport.install()
             self._inbox.install()
-            await_before_answering(self._await_answer)
+            delay_service_replies(self._await_answer)
             self._answers = rospy.Publisher(ANSWER_TOPIC, Answer, queue_size=10, tcp_nodelay=True)
-            rospy.Subscriber(MOMENT_TOPIC, Moment, self._on_moment, queue_size=100, tcp_nodelay=True)
+            rospy.Subscriber(TICK_TOPIC, Moment, self._on_moment, queue_size=100, tcp_nodelay=True)
             rospy.on_shutdown(self._take_leave)
 
     @classmethod
-    def of_node(cls) -> "Step":
+    def of_node(cls) -> "LockstepClient":
         """The node's own; the first call must come before all subscriptions."""
         if cls._instance is None:
             cls._instance = cls()
         return cls._instance
 
     @classmethod
-    def present(cls) -> Optional["Step"]:
+    def present(cls) -> Optional["LockstepClient"]:
         """The node's own, None if it has none."""
         return cls._instance
 
@@ -106,7 +106,9 @@ class Step:
         """``hook`` is called at every moment, when what belongs to it has been taken in."""
         self._hooks.append(hook)
 
-    def every(self, period: Callable[[], float], tick: Tick, afresh: Hook, reports: bool = False) -> None:
+    def every(
+        self, period: Callable[[], float], tick: TickCallback, afresh: Hook, reports: bool = False
+    ) -> None:
         """Calls ``tick(now)`` every ``period()`` seconds of ROS time, ``afresh`` when it has jumped back.
 
         If it ``reports``, the node has then worked up to this time.
@@ -137,7 +139,7 @@ class Step:
 
     def headers(self) -> Dict[str, str]:
         """What a call of a service has to carry now."""
-        return headers_of(self._number if self.is_on else 0)
+        return call_headers(self._number if self.is_on else 0)
 
     def remark(self, text: str) -> None:
         """Says why this run may not be repeatable."""
@@ -160,7 +162,7 @@ class Step:
                 self._leave()
             return
         with self._working:
-            transport.save_sends()
+            transport.batch_sends()
             self._begin(message, members)
             self._work()
             transport.flush()
@@ -172,8 +174,8 @@ class Step:
         """Takes in what belongs to the moment."""
         first_words = {} if self.is_on else _first_words()
         if members != self._inbox.members:
-            self._inbox.members = CountedConnection.members = members
-            CountedConnection.audience = audience()
+            self._inbox.members = LockstepConnection.members = members
+            LockstepConnection.audience = observers()
             self._required.clear()
             self._told.clear()
         self._required.update(_sent_to(self._name, message))
@@ -214,7 +216,7 @@ class Step:
         """The simulation goes on without this node, which works out of step and asks to be back."""
         if not rospy.core.is_shutdown_requested():
             rospy.logwarn("the simulation does not wait for this node any more")
-        CountedConnection.members = frozenset()
+        LockstepConnection.members = frozenset()
         transport.flush()
         self._inbox.release_all()
         self._turns.wake()
@@ -235,15 +237,15 @@ class Step:
                 transport.flush()
 
 
-def is_heard_in_step(topic: rospy.Subscriber) -> bool:
+def has_synchronised_publisher(topic: rospy.Subscriber) -> bool:
     """Whether a node that is to be in step sends on the topic: what it sends takes simulated time."""
     expected = rospy.get_param(WAIT_FOR_PARAMETER, [])
     return any(connection.callerid_pub in expected for connection in topic.impl.connections)
 
 
-def audience() -> FrozenSet[str]:
+def observers() -> FrozenSet[str]:
     """The nodes outside that are to miss nothing."""
-    return frozenset(rospy.get_param(AUDIENCE_PARAMETER, []))
+    return frozenset(rospy.get_param(OBSERVERS_PARAMETER, []))
 
 
 def _first_words() -> Dict[Tuple[str, str], int]:

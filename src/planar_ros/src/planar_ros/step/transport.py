@@ -9,21 +9,21 @@ from typing import Any, ClassVar, Deque, Dict, FrozenSet, Iterator, List, Option
 import rospy.topics
 from rospy.impl.tcpros_pubsub import TCPROSSub
 
-from planar_ros.node.prompt_sending import PromptConnection
+from planar_ros.node.prompt_sending import ImmediateConnection
 
-MOMENT_TOPIC, ANSWER_TOPIC, CLOCK_TOPIC = "/simulation/moment", "/simulation/answer", "/clock"
+TICK_TOPIC, ANSWER_TOPIC, CLOCK_TOPIC = "/simulation/moment", "/simulation/answer", "/clock"
 STATIC_TOPIC = "/tf_static"
 # They go by themselves: the first two say how many of all others there are, the moment is the time.
-UNCOUNTED = frozenset((MOMENT_TOPIC, ANSWER_TOPIC, CLOCK_TOPIC))
+UNCOUNTED = frozenset((TICK_TOPIC, ANSWER_TOPIC, CLOCK_TOPIC))
 LENGTH_BYTES = 4
 # Of messages to those who only look on, so many at most are sent in one piece.
-MOST_TOGETHER = 10
+MAX_BATCH = 10
 # By receiver and topic, of connections that may have been removed since.
 _last_counts: Dict[Tuple[str, str], int] = {}
 _init = TCPROSSub.__init__
 
 
-class CountedConnection(PromptConnection):
+class LockstepConnection(ImmediateConnection):
     """Towards a node in step it keeps what is sent back until the moment's answer, and loses nothing.
 
     ``members``: the nodes in step with this one; none, and it is a connection as any other.
@@ -35,7 +35,7 @@ class CountedConnection(PromptConnection):
     members: ClassVar[FrozenSet[str]] = frozenset()
     audience: ClassVar[FrozenSet[str]] = frozenset()
     saver: ClassVar[Optional[int]] = None
-    _full: ClassVar[Deque["CountedConnection"]] = deque()
+    _full: ClassVar[Deque["LockstepConnection"]] = deque()
 
     def __init__(self, connection, queue_size: int):
         self.count = 0
@@ -53,7 +53,7 @@ class CountedConnection(PromptConnection):
             self.count += 1
             if is_in_step and self._topic not in UNCOUNTED:
                 return self._keep(data)
-            if self._may_save() and len(self._kept) < MOST_TOGETHER:
+            if self._may_save() and len(self._kept) < MAX_BATCH:
                 return self._keep(data)
             self._send_kept()
             return super().write_data(data)
@@ -94,7 +94,7 @@ class CountedConnection(PromptConnection):
             super().write_data(kept)
 
 
-class Frame:
+class SerializedMessage:
     """A message as it came, not yet deserialized."""
 
     __slots__ = ("_connection_header", "data")
@@ -106,7 +106,7 @@ class Frame:
 
 def install() -> None:
     """From now on this node's connections are such."""
-    rospy.topics.QueuedConnection = CountedConnection
+    rospy.topics.QueuedConnection = LockstepConnection
     TCPROSSub.__init__ = _init_for_frames
 
 
@@ -116,7 +116,7 @@ def _init_for_frames(self: TCPROSSub, *given: Any, **named: Any) -> None:
     self.read_messages = _read_frames
 
 
-def _read_frames(b: BytesIO, msg_queue: List[Frame], sock: object) -> None:
+def _read_frames(b: BytesIO, msg_queue: List[SerializedMessage], sock: object) -> None:
     """Cuts what has come into frames, and leaves it to an Inbox to make messages of them."""
     end, at = b.tell(), 0
     with b.getbuffer() as view:
@@ -125,7 +125,7 @@ def _read_frames(b: BytesIO, msg_queue: List[Frame], sock: object) -> None:
             size = int.from_bytes(view[at:start], "little")
             if end - start < size:
                 break
-            msg_queue.append(Frame(bytes(view[start : start + size])))
+            msg_queue.append(SerializedMessage(bytes(view[start : start + size])))
             at = start + size
         rest = bytes(view[at:end]) if at else b""
     if at:
@@ -146,15 +146,15 @@ def connections() -> Iterator[Tuple[str, str, Any]]:
 
 def flush() -> None:
     """Sends whatever has been kept back."""
-    CountedConnection.flush_all()
+    LockstepConnection.flush_all()
 
 
-def save_sends() -> None:
+def batch_sends() -> None:
     """From now on the calling thread's messages to those who look on are sent when it calls ``flush``."""
-    CountedConnection.saver = threading.get_ident()
+    LockstepConnection.saver = threading.get_ident()
 
 
-def keep_counts(topic: str) -> None:
+def remember_counts(topic: str) -> None:
     """What has been sent on a topic until now is told although all who listen are about to hang up.
 
     rospy removes their connections twice a second, and so perhaps before the moment's answer.
@@ -168,7 +168,7 @@ def keep_counts(topic: str) -> None:
 
 def sent(sender: str) -> Dict[str, int]:
     """How many messages have gone out on each connection to a node in step, by "sender receiver topic"."""
-    members = CountedConnection.members
+    members = LockstepConnection.members
     now = {
         (receiver, topic): _count_of(connection)
         for receiver, topic, connection in connections()
@@ -183,7 +183,7 @@ def sent(sender: str) -> Dict[str, int]:
 
 
 def _count_of(connection: Any) -> int:
-    is_counted = isinstance(connection, CountedConnection)
+    is_counted = isinstance(connection, LockstepConnection)
     return int(connection.count if is_counted else connection.stat_num_msg)
 
 

@@ -4,7 +4,7 @@ import threading
 from typing import Callable, Set
 
 
-class Turns:
+class LockstepThreads:
     """Lets every thread that takes turns go on, and waits until all of them pause again."""
 
     def __init__(self):

@@ -7,7 +7,7 @@ import defusedxml.ElementTree
 import numpy as np
 from defusedxml.common import DefusedXmlException
 
-from planar.geometry.limits import FARTHEST, is_within
+from planar.geometry.limits import MAX_COORDINATE, is_within
 from sim_bridge.description.structure import GazeboElements, RobotJoint, RobotLink, RobotStructure
 from sim_bridge.errors import RobotError, WorldError
 from sim_bridge.geometry.meshes import load_mesh
@@ -127,7 +127,7 @@ def _origin(element: Element) -> np.ndarray:
         return IDENTITY
     zeros = (0.0, 0.0, 0.0)
     xyz, rpy = origin.attribute_numbers("xyz", 3, zeros), origin.attribute_numbers("rpy", 3, zeros)
-    if not is_within(FARTHEST, *xyz, *rpy):
+    if not is_within(MAX_COORDINATE, *xyz, *rpy):
         raise origin.error(f"nothing can be there, got {origin.attribute('xyz')!r}")
     return pose3(*xyz, *rpy)
 

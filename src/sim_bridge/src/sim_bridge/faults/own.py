@@ -6,17 +6,17 @@ from typing import Any, Callable, Optional, Tuple, Type
 import numpy as np
 
 from planar import Scan, Twist2
-from planar.plugins import Contract, PluginError, blamed, load
+from planar.plugins import PluginContract, PluginError, errors_raised_as, load_plugin
 from sim_bridge.errors import FaultError
 from sim_bridge.faults.kind import FaultKind, Stage
 from sim_bridge.sensors.odometry import Odometry
 
-CONTRACT = Contract("fault", FaultKind, None, "sim_bridge.faults")
+CONTRACT = PluginContract("fault", FaultKind, None, "sim_bridge.faults")
 
 
 def own_kind(name: str) -> Optional[Type[FaultKind]]:
     """The kind of that dotted name, or of an entry point; None if there is none. Raises PluginError."""
-    found: Any = load(name, CONTRACT)
+    found: Any = load_plugin(name, CONTRACT)
     if found is None:
         return None
     if not issubclass(found, FaultKind):
@@ -66,7 +66,7 @@ class GuardedFault(FaultKind):
         self._watched(self._kind.end, stage)
 
     def _watched(self, do: Callable[..., Any], *given: Any) -> Any:
-        with blamed(self._name, FaultError):
+        with errors_raised_as(self._name, FaultError):
             return do(*given)
 
     def _checked(self, method: str, expected: type, told: Any) -> Any:

@@ -12,7 +12,7 @@ from typing import Any, Optional, Sequence
 import numpy as np
 
 from planar.files.reading import read_arrays, read_bytes, read_text
-from planar.geometry.limits import FARTHEST
+from planar.geometry.limits import MAX_COORDINATE
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.shapes import Mesh, MeshFile
 
@@ -42,7 +42,7 @@ def load_mesh(file: MeshFile, cache: Optional[Path] = None) -> Mesh:
         mesh = _convert(file)
         _write(mesh, cached)
     vertices = mesh.vertices * file.scale
-    if not np.abs(vertices).max() <= FARTHEST:
+    if not np.abs(vertices).max() <= MAX_COORDINATE:
         raise WorldError(f"{file.path}: scaled by {file.scale} it is larger than anything in a world")
     return Mesh(vertices, mesh.triangles, mesh.colours)
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from planar import FREE, Pose2
 from planar.geometry.distance_field import distance_field
-from planar.geometry.ways import graph_of
+from planar.geometry.ways import grid_graph
 from sim_bridge.errors import WorldError
 from sim_bridge.views.true_map import true_map
 from sim_bridge.world import World
@@ -22,7 +22,7 @@ class WalkableArea:
         self.origin_xy = np.array([grid.origin.x, grid.origin.y])
         self.walls = distance_field(grid.cells != FREE, RESOLUTION).astype(float)
         self._is_open = self.walls > ROOM
-        self._graph = graph_of(self._is_open, RESOLUTION)
+        self._graph = grid_graph(self._is_open, RESOLUTION)
         self._world, self._grid = world.name, grid
 
     def distances_to(self, goals_xy: np.ndarray) -> np.ndarray:

@@ -3,7 +3,7 @@
 from typing import Dict, Iterable, List, Sequence
 
 from planar.config.hints import hint
-from planar.geometry.limits import FARTHEST
+from planar.geometry.limits import MAX_COORDINATE
 from sim_bridge.errors import UnknownEntityError, WorldError
 from sim_bridge.geometry.pose3 import inverse
 from sim_bridge.physics.engine import Engine, MassProperties
@@ -132,7 +132,7 @@ class Models:
         Raises WorldError for what nothing can weigh.
         """
         self.check_link(link)
-        if not all(0.0 < value <= FARTHEST for value in (mass, *moments)):
+        if not all(0.0 < value <= MAX_COORDINATE for value in (mass, *moments)):
             raise WorldError("mass and moments of inertia must be positive, and no larger than 1e6")
         self._engine.set_mass(link, mass, moments, has_gravity)
 

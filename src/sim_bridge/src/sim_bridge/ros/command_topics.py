@@ -7,8 +7,8 @@ from geometry_msgs.msg import Twist
 from std_msgs.msg import String
 
 from planar import SettingsError, Twist2
-from planar.config.parameters import Tunable
-from planar_ros.node.reconfigure import Tuning
+from planar.config.parameters import DynamicParameter
+from planar_ros.node.reconfigure import ReconfigureServer
 from sim_bridge.driving.mux import (
     TURTLEBOT_INPUTS,
     MuxInput,
@@ -104,13 +104,13 @@ class MuxTopics(CommandTopics):
             self._active.publish(active)
         return chosen or super().take(now)
 
-    def _tuned(self, values: Dict[str, str]) -> Optional[Tuning]:
+    def _tuned(self, values: Dict[str, str]) -> Optional[ReconfigureServer]:
         tunables = (
-            Tunable(MUX_FILE, "", "path of a YAML file of the mux's inputs"),
-            Tunable(MUX_TEXT, "", "the inputs as YAML, instead of a file"),
+            DynamicParameter(MUX_FILE, "", "path of a YAML file of the mux's inputs"),
+            DynamicParameter(MUX_TEXT, "", "the inputs as YAML, instead of a file"),
         )
         try:
-            return Tuning(tunables, values, self._on_reconfigure, self._where)
+            return ReconfigureServer(tunables, values, self._on_reconfigure, self._where)
         except rospy.ServiceException:  # there is one for all robots of a namespace
             return None
 

@@ -6,7 +6,7 @@ from typing import List, Sequence, Tuple
 import numpy as np
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
 
-from planar.geometry.limits import FARTHEST, is_within
+from planar.geometry.limits import MAX_COORDINATE, is_within
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import from_quaternion, position, quaternion
 from sim_bridge.physics.kinematics import KinematicState
@@ -25,7 +25,7 @@ def pose3_from_msg(message: Pose) -> np.ndarray:
     values = (q.x, q.y, q.z, q.w, at.x, at.y, at.z)
     if not all(math.isfinite(value) for value in values):
         raise WorldError("the pose is not finite")
-    if not is_within(FARTHEST, *values):
+    if not is_within(MAX_COORDINATE, *values):
         raise WorldError("nothing can be at the pose")
     is_turned = float(np.linalg.norm(values[:4])) > SHORTEST_QUATERNION
     pose = from_quaternion(values[:4] if is_turned else (0.0, 0.0, 0.0, 1.0))
@@ -42,7 +42,7 @@ def state_from_msgs(pose: Pose, twist: Twist) -> KinematicState:
     linear, angular = vector_from_msg(twist.linear), vector_from_msg(twist.angular)
     if not (np.isfinite(linear).all() and np.isfinite(angular).all()):
         raise WorldError("the twist is not finite")
-    if not is_within(FARTHEST, *linear, *angular):
+    if not is_within(MAX_COORDINATE, *linear, *angular):
         raise WorldError("nothing is as fast as the twist")
     return KinematicState(pose3_from_msg(pose), linear, angular)
 

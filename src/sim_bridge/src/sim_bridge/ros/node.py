@@ -82,7 +82,7 @@ class Bridge:
 
     def run(self) -> None:
         """Steps until shutdown."""
-        transport.save_sends()
+        transport.batch_sends()
         try:
             while not rospy.is_shutdown():
                 self._orders.carry_out(self._lock_step.awaited, self._lock_step.members)

@@ -10,7 +10,7 @@ import numpy as np
 from defusedxml.common import DefusedXmlException
 
 from planar.files.reading import read_bytes
-from planar.geometry.limits import FARTHEST, is_within
+from planar.geometry.limits import MAX_COORDINATE, is_within
 from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import pose3
 
@@ -109,8 +109,8 @@ class Element:
     def _positive(self, values: Sequence[float], what: str, said: str) -> Tuple[float, ...]:
         if min(values) <= 0.0:
             raise self.error(f"{what}must be positive, got {said!r}")
-        if max(values) > FARTHEST:
-            raise self.error(f"{what}must be at most {FARTHEST:g}, got {said!r}")
+        if max(values) > MAX_COORDINATE:
+            raise self.error(f"{what}must be at most {MAX_COORDINATE:g}, got {said!r}")
         return tuple(values)
 
     def flag(self, tag: str) -> bool:
@@ -124,7 +124,7 @@ class Element:
         if element is None or not element.text:
             return None
         values = element.numbers(6)
-        if not is_within(FARTHEST, *values):
+        if not is_within(MAX_COORDINATE, *values):
             raise element.error(f"nothing can be there, got {element.text!r}")
         return pose3(*values)
 

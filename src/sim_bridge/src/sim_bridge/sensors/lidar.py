@@ -7,7 +7,7 @@ from typing import Optional
 import numpy as np
 
 from planar import Pose2, Scan
-from planar.geometry.limits import MOST_BEAMS
+from planar.geometry.limits import MAX_BEAMS
 from sim_bridge.config import SimulationSettings
 from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.noise import NoiseSettings
@@ -145,7 +145,7 @@ def read_laser(found: Found) -> LaserProfile:
     ray = sensor.child("ray") or sensor.required("lidar")
     horizontal = ray.required("scan").required("horizontal")
     horizontal.required("samples")
-    beams = horizontal.count("samples", most=MOST_BEAMS, default=0)
+    beams = horizontal.count("samples", most=MAX_BEAMS, default=0)
     first, last = (horizontal.required(f"{end}_angle").numbers(1)[0] for end in ("min", "max"))
     span = ray.required("range")
     nearest, farthest = span.required("min").numbers(1)[0], span.required("max").lengths(1)[0]

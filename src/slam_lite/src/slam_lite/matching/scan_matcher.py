@@ -12,7 +12,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from planar import PlanarError, Pose2
-from planar.plugins import Contract, blamed, load
+from planar.plugins import PluginContract, errors_raised_as, load_plugin
 from slam_lite.config import MapperSettings
 from slam_lite.matching.correlative import Window, search_near
 from slam_lite.matching.local_map import LocalMap, Match
@@ -61,7 +61,7 @@ class ScanMatcher(Protocol):
         ...
 
 
-CONTRACT = Contract("scan matcher", ScanMatcher, MapperSettings, "slam_lite.scan_matchers")
+CONTRACT = PluginContract("scan matcher", ScanMatcher, MapperSettings, "slam_lite.scan_matchers")
 
 
 def scan_matcher_of(settings: MapperSettings) -> ScanMatcher:
@@ -91,13 +91,13 @@ class GuardedMatcher:
     def __init__(self, settings: MapperSettings):
         """Raises SettingsError with what it lacks, MatchingError if it cannot be made."""
         self._name = settings.matcher_plugin
-        make: Any = load(self._name, CONTRACT)
-        with blamed(self._name, MatchingError):
+        make: Any = load_plugin(self._name, CONTRACT)
+        with errors_raised_as(self._name, MatchingError):
             self._matcher = make(settings)
 
     def match(self, surface: Surface, local_map: LocalMap, prediction: Prediction) -> Match:
         """Raises MatchingError."""
-        with blamed(self._name, MatchingError):
+        with errors_raised_as(self._name, MatchingError):
             match = self._matcher.match(_to_read(surface), _to_read(local_map), _to_read(prediction))
             complaint = _complaint_about(match)
         if complaint:

@@ -5,7 +5,7 @@ from typing import Callable, Dict
 import rospy
 
 from planar import PlanarError, save_map
-from planar_ros.calls.load_map import LoadMap, LoadResult, offer
+from planar_ros.calls.load_map import LoadMap, LoadMapResult, advertise_services
 from slam_lite.ros.map_topics import MapTopics
 from slam_lite.ros.mapping import Mapping
 from slam_lite.state import save_state
@@ -22,7 +22,7 @@ class FileServices:
             "~save_state": self._on_save_state,
             "~load_state": self._on_load_state,
         }
-        offer(LoadMap, handlers)
+        advertise_services(LoadMap, handlers)
 
     def _on_save_map(self, request):
         grid = self._maps.grid()
@@ -37,13 +37,13 @@ class FileServices:
         return _answer(self._mapping.load, request.map_url)
 
 
-def _answer(act: Callable[..., object], *arguments) -> Dict[str, LoadResult]:
+def _answer(act: Callable[..., object], *arguments) -> Dict[str, LoadMapResult]:
     try:
         act(*arguments)
     except PlanarError as error:
         rospy.logerr("%s", error)
         raise rospy.ServiceException(str(error)) from None
-    return {"result": LoadResult.SUCCESS}
+    return {"result": LoadMapResult.SUCCESS}
 
 
 def _stem(path: str) -> str:

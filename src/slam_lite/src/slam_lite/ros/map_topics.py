@@ -12,7 +12,7 @@ from std_msgs.msg import Float64
 
 from planar import OccupancyGrid
 from planar_ros.messages.conversion import GetMapArrays, OccupancyGridArrays, frame_name, grid_to_msg
-from planar_ros.step import Step
+from planar_ros.step import LockstepClient
 from slam_lite.config import NodeSettings
 from slam_lite.ros.mapping import Mapping
 
@@ -62,7 +62,7 @@ class MapTopics:
             self._publish()
 
     def _draw_maps(self) -> None:
-        step = Step.of_node()
+        step = LockstepClient.of_node()
         while not rospy.is_shutdown():
             self._is_due.wait()
             if step.is_on:

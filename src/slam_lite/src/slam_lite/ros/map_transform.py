@@ -6,7 +6,7 @@ import rospy
 
 from planar_ros.messages.conversion import frame_name
 from planar_ros.messages.transforms import Transforms
-from planar_ros.step import Step
+from planar_ros.step import LockstepClient
 from slam_lite.config import NodeSettings
 from slam_lite.ros.mapping import Mapping
 
@@ -21,7 +21,7 @@ class MapTransform:
         self._stamp: Optional[rospy.Time] = None
         if settings.transform_publish_period > 0.0:
             self._send()
-            Step.of_node().every(
+            LockstepClient.of_node().every(
                 lambda: settings.transform_publish_period, lambda _now: self._send(), lambda: None
             )
 

@@ -7,8 +7,8 @@ import numpy as np
 import rospy
 
 from planar import Pose2, Scan
-from planar.geometry.pose import check_place
-from planar_ros.step import Step
+from planar.geometry.pose import check_pose
+from planar_ros.step import LockstepClient
 from slam_lite.config import NodeSettings
 from slam_lite.mapper import Follower, Mapper, PoseUpdate
 from slam_lite.rendering import Evidence, SessionRenderer
@@ -60,7 +60,7 @@ class Mapping:
 
     def place(self, base_in_map: Pose2) -> None:
         """Goes on from another pose of the robot. Raises OutOfRangeError if it can be nowhere near there."""
-        check_place(base_in_map, "a robot")
+        check_pose(base_in_map, "a robot")
         with self._lock:
             if self._follower is not None:
                 self._follower.place(base_in_map)
@@ -123,7 +123,7 @@ class Mapping:
             pass
 
     def _keep_closing(self) -> None:
-        step = Step.of_node()
+        step = LockstepClient.of_node()
         while not rospy.is_shutdown():
             if step.is_on or not self._close_one():
                 with self._lock:

@@ -6,14 +6,14 @@ from std_srvs.srv import SetBool, SetBoolResponse
 
 from planar import PlanarError, Pose2
 from planar.config.parameters import official_names
-from planar_ros.messages.border import listen
+from planar_ros.messages.border import subscribe
 from planar_ros.messages.conversion import frame_name, pose2_from_msg, scan_from_msg
 from planar_ros.messages.scan_queue import ScanQueue
 from planar_ros.messages.transforms import Transforms
 from planar_ros.node.parameters import read_settings
 from planar_ros.node.shell import run
-from planar_ros.node.waiting import Waiting
-from planar_ros.step import Step
+from planar_ros.node.waiting import ReadinessMonitor
+from planar_ros.step import LockstepClient
 from slam_lite.config import WITHOUT_EFFECT, NodeSettings
 from slam_lite.ros.alarms import ALARM_SECONDS, MountingAlarm, OdometryAlarm
 from slam_lite.ros.file_services import FileServices
@@ -30,7 +30,7 @@ class SlamNode:
     """Hands scans, which are dealt with in the queue's thread, to a mapping, whose outcome others publish."""
 
     def __init__(self):
-        self._step = Step.of_node()
+        self._step = LockstepClient.of_node()
         settings = self._settings = read_settings(
             NodeSettings, official_names(NodeSettings), ignore=[*WITHOUT_EFFECT, "seed"]
         )
@@ -52,7 +52,7 @@ class SlamNode:
         self._maps = MapTopics(settings, self._mapping)
         rospy.Service("~pause", SetBool, self._on_pause)
         FileServices(self._mapping, self._maps)
-        listen("initialpose", PoseWithCovarianceStamped, self._on_initial_pose, queue_size=2)
+        subscribe("initialpose", PoseWithCovarianceStamped, self._on_initial_pose, queue_size=2)
         self._mapping.start()
         self._scans = ScanQueue(
             self._transforms,
@@ -66,7 +66,7 @@ class SlamNode:
         self._step.at_moments(self._maps.draw_if_due)
         MapTransform(settings, self._mapping, self._transforms)
         self._step.join()
-        Waiting(
+        ReadinessMonitor(
             {
                 f"a scan on {self._scans.topic}": lambda: self._scan_count > 0,
                 f"the transform {settings.odom_frame} -> {settings.base_frame}": self._has_odometry,

@@ -8,10 +8,10 @@ from planar import PlanarError, save_map
 from planar_ros.bags.bag import BagError
 from planar_ros.bags.replaying import (
     add_replay_options,
+    load_settings,
+    process_scans,
     run_replay,
-    settings_of,
     warn,
-    work_through,
     write_trajectory,
 )
 from planar_ros.bags.scan_log import LoggedScan, ScanLog
@@ -44,7 +44,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _replay(options: argparse.Namespace) -> int:
-    mapper, trajectory = Mapper(settings_of(NodeSettings, options.config)), Trajectory()
+    mapper, trajectory = Mapper(load_settings(NodeSettings, options.config)), Trajectory()
     exit_code = _work_through(options, mapper, trajectory)
     if len(trajectory) == 0:
         raise BagError(f"{options.bag}: no scans on {options.scan_topic} could be used")
@@ -66,7 +66,7 @@ def _work_through(options: argparse.Namespace, mapper: Mapper, trajectory: Traje
             warn(f"{options.bag}: scan ignored: {error}")
         trajectory.add(logged.base_in_odom, logged.scan, update)
 
-    return work_through(log, insert, "mapping", options.progress)
+    return process_scans(log, insert, "mapping", options.progress)
 
 
 def _save(options: argparse.Namespace, mapper: Mapper, trajectory: Trajectory) -> None:

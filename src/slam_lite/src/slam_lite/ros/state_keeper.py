@@ -9,7 +9,7 @@ from functools import partial
 import rospy
 
 from planar import Pose2
-from planar_ros.node.kept_file import KeptFile
+from planar_ros.node.kept_file import FileCheckpoint
 from slam_lite.ros.mapping import Mapping
 from slam_lite.state import StateFileError, save_state
 
@@ -22,7 +22,7 @@ class StateKeeper:
 
     def __init__(self, mapping: Mapping):
         self._mapping = mapping
-        self._kept_file = KeptFile()
+        self._kept_file = FileCheckpoint()
         self._is_due = threading.Event()
         self._stamp = -math.inf
         self._take_over()

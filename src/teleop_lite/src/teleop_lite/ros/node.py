@@ -11,11 +11,11 @@ import rospy
 from geometry_msgs.msg import Twist
 
 from planar import PlanarError, Twist2
-from planar_ros.node.last_words import wait_until_heard
+from planar_ros.node.last_words import flush_and_close
 from planar_ros.node.parameters import read_settings
-from planar_ros.node.progress import Progress
+from planar_ros.node.progress import ProgressPublisher
 from planar_ros.node.shell import run
-from planar_ros.node.waiting import Waiting
+from planar_ros.node.waiting import ReadinessMonitor
 from supervision.interruption import ignore_further_signals, on_signals
 from teleop_lite.config import TeleopSettings
 from teleop_lite.key_script import KEYS, KeyScript, parse
@@ -109,7 +109,7 @@ class KeyboardTeleop:
     def follow_script(self, script: KeyScript, pipe: Optional[Pipe]) -> None:
         """Until the script, and the pipe that more of it may come from, is at its end. Timed by ROS time."""
         self._wait_for_listener()
-        progress = Progress()
+        progress = ProgressPublisher()
         rate = rospy.Rate(1.0 / TICK_SECONDS)
         while not rospy.is_shutdown():
             if pipe is not None:
@@ -133,7 +133,7 @@ class KeyboardTeleop:
                 return
             self._is_stopped = True
             self._publisher.publish(Twist())
-            wait_until_heard(self._publisher, patience=DELIVERY_SECONDS)
+            flush_and_close(self._publisher, patience=DELIVERY_SECONDS)
 
     def _wait_for_listener(self):
         conditions = {
@@ -142,7 +142,7 @@ class KeyboardTeleop:
             ),
             "the clock": lambda: not rospy.get_rostime().is_zero(),
         }
-        Waiting(conditions)
+        ReadinessMonitor(conditions)
         deadline = time.monotonic() + LISTENER_SECONDS
         while not rospy.is_shutdown():
             missing = [name for name, is_met in conditions.items() if not is_met()]

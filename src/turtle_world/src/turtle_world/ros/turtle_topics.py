@@ -14,7 +14,7 @@ from turtlesim.srv import (
     TeleportRelativeResponse,
 )
 
-from planar_ros.messages.border import listen, serve
+from planar_ros.messages.border import advertise_service, subscribe
 from turtle_world.canvas import Pen
 from turtle_world.world import Command, TurtleState, TurtleWorld
 
@@ -28,11 +28,11 @@ class TurtleTopics:
         self._name, self._world, self._lock = name, world, lock
         self._pose = rospy.Publisher(f"{name}/pose", Pose, queue_size=1)
         self._color = rospy.Publisher(f"{name}/color_sensor", Color, queue_size=1)
-        self._subscriber = listen(f"{name}/cmd_vel", Twist, self._on_command, queue_size=1)
+        self._subscriber = subscribe(f"{name}/cmd_vel", Twist, self._on_command, queue_size=1)
         self._services = [
-            serve(f"{name}/set_pen", SetPen, self._on_set_pen),
-            serve(f"{name}/teleport_absolute", TeleportAbsolute, self._on_teleport_absolute),
-            serve(f"{name}/teleport_relative", TeleportRelative, self._on_teleport_relative),
+            advertise_service(f"{name}/set_pen", SetPen, self._on_set_pen),
+            advertise_service(f"{name}/teleport_absolute", TeleportAbsolute, self._on_teleport_absolute),
+            advertise_service(f"{name}/teleport_relative", TeleportRelative, self._on_teleport_relative),
         ]
 
     def publish(self, state: TurtleState) -> None:

@@ -22,7 +22,7 @@ from gazebo_ros.ros.services import (
     spawn_urdf_model_client,
 )
 from gazebo_ros.spawn_options import parse
-from planar_ros.node.command_line import go_on_without
+from planar_ros.node.command_line import warn_unknown
 from planar_ros.node.shell import init_node
 from supervision.interruption import handling_signals, on_signals
 
@@ -124,7 +124,7 @@ def _wait_for_model(name: str, namespace: str) -> None:
 def main() -> None:
     """Exit code 0 if the model is there, 1 if not, 130 if interrupted before that was known."""
     options, unknown = parse(rospy.myargv()[1:], rospy.get_namespace())
-    go_on_without("spawn_model", unknown)
+    warn_unknown("spawn_model", unknown)
     # rospy's own handler may wait for ever for a lock that is held by what it interrupts.
     init_node("spawn_model", anonymous=True)
     on_signals(signal.default_int_handler)

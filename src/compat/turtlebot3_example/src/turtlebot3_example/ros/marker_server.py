@@ -8,7 +8,7 @@ from visualization_msgs.msg import InteractiveMarker, InteractiveMarkerControl, 
 
 from planar import PlanarError, Pose2
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
-from planar_ros.node.last_words import say_at_end
+from planar_ros.node.last_words import publish_on_shutdown
 from planar_ros.node.shell import run
 
 NAME, MARKER = "turtlebot3_marker_server", "turtlebot3_marker"
@@ -23,7 +23,7 @@ class MarkerServer:
         self._v_a_metre = rospy.get_param("~linear_scale", 1.0)
         self._omega_a_radian = rospy.get_param("~angular_scale", 2.2)
         self._publisher = rospy.Publisher(COMMANDS, Twist, queue_size=1)
-        say_at_end(self._publisher, Twist())
+        publish_on_shutdown(self._publisher, Twist())
         self._server = _server()
         self._server.insert(_marker(rospy.get_param("~link_name", "base_link")), self._follow)
         self._server.applyChanges()

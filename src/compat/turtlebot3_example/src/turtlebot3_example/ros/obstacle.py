@@ -6,7 +6,7 @@ import rospy
 from geometry_msgs.msg import Twist
 from sensor_msgs.msg import LaserScan
 
-from planar_ros.node.last_words import say_at_end
+from planar_ros.node.last_words import publish_on_shutdown
 from planar_ros.node.shell import run
 
 # m/s, and metres: the distance to stop at with the lidar's error.
@@ -19,7 +19,7 @@ class Obstacle:
     def __init__(self) -> None:
         self._is_moving = True
         self._publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1)
-        say_at_end(self._publisher, Twist())
+        publish_on_shutdown(self._publisher, Twist())
         rospy.Subscriber("scan", LaserScan, self._see, queue_size=1)
 
     def _see(self, scan: LaserScan) -> None:

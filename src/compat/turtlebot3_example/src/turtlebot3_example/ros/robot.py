@@ -9,7 +9,7 @@ from nav_msgs.msg import Odometry
 
 from planar import Pose2, Twist2
 from planar_ros.messages.conversion import pose2_from_msg
-from planar_ros.node.last_words import say_at_end
+from planar_ros.node.last_words import publish_on_shutdown
 from turtlebot3_example.going import velocity_to
 
 RATE, ODOMETRY_SECONDS, POLL_SECONDS = 15.0, 60.0, 0.02
@@ -21,7 +21,7 @@ class Robot:
     def __init__(self) -> None:
         self._base: Optional[Pose2] = None
         self._publisher = rospy.Publisher("cmd_vel", Twist, queue_size=5)
-        say_at_end(self._publisher, Twist())
+        publish_on_shutdown(self._publisher, Twist())
         rospy.Subscriber("odom", Odometry, self._see, queue_size=1)
 
     def base(self) -> Pose2:

@@ -9,7 +9,7 @@ from sensor_msgs.msg import LaserScan
 
 from planar import Pose2
 from planar_ros.messages.conversion import pose2_from_msg
-from planar_ros.node.last_words import say_at_end
+from planar_ros.node.last_words import publish_on_shutdown
 from planar_ros.node.shell import run
 from turtlebot3_gazebo.wandering import Wanderer
 
@@ -24,7 +24,7 @@ class DriveNode:
         self._wanderer, self._base = Wanderer(), Pose2()
         topic = rospy.get_param("cmd_vel_topic_name", "cmd_vel")
         self._publisher = rospy.Publisher(topic, Twist, queue_size=10)
-        say_at_end(self._publisher, Twist())
+        publish_on_shutdown(self._publisher, Twist())
         rospy.Subscriber("odom", Odometry, self._see_odometry, queue_size=10)
         rospy.Subscriber("scan", LaserScan, self._see_scan, queue_size=1)
 

@@ -16,7 +16,7 @@ from std_msgs.msg import Header, String
 from tf2_msgs.msg import TFMessage
 
 from home_service.ros.bags.states import BROKEN, ENDED, PLAYING, bags_of
-from planar_ros.bags.bag import LASER_SCAN, TF_STATIC, BagError, Played
+from planar_ros.bags.bag import LASER_SCAN, TF_STATIC, BagError, RecordedMessage
 from planar_ros.bags.recording import Recording
 from planar_ros.messages.conversion import frame_name, time_of
 from planar_ros.node.progress import TOPIC as PROGRESS_TOPIC
@@ -78,7 +78,7 @@ class BagPlayer:
         self._wait_until_due(self._recording.end + 2.0 * CLOCK_SECONDS)
         self._state.publish("; ".join([ENDED, *self._recording.gaps]))
 
-    def _play(self, messages: Iterable[Played]) -> None:
+    def _play(self, messages: Iterable[RecordedMessage]) -> None:
         for topic, message, stamp in messages:
             if rospy.is_shutdown():
                 return
@@ -86,12 +86,12 @@ class BagPlayer:
             self._tell_time(stamp)
             self._publish(topic, message)
 
-    def _beginning(self, messages: Iterator[Played]) -> Iterator[Played]:
+    def _beginning(self, messages: Iterator[RecordedMessage]) -> Iterator[RecordedMessage]:
         """Until shortly after the first scan; ends when a node has made a first estimate of that.
 
         One that is not ready yet would else start in the middle, while the robot drives.
         """
-        first: Optional[Played] = None
+        first: Optional[RecordedMessage] = None
         for played in messages:
             yield played
             if first is None and played.topic in self._scans:

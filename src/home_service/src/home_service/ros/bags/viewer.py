@@ -16,10 +16,10 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
 from home_service.ros.bags.states import BROKEN, ENDED, PLAYING, bags_of
-from planar_ros.bags.bag import TF_STATIC, BagError, Played
-from planar_ros.bags.playhead import Playhead
+from planar_ros.bags.bag import TF_STATIC, BagError, RecordedMessage
+from planar_ros.bags.playhead import PlaybackClock
 from planar_ros.bags.recording import Recording
-from planar_ros.bags.standing import MARKERS, standing_at
+from planar_ros.bags.standing import MARKERS, snapshot_at
 from planar_ros.messages.conversion import time_of
 from planar_ros.node.shell import run
 
@@ -37,7 +37,7 @@ class BagViewer:
         self._recording = Recording(bags_of(rospy.get_param("~bags")))
         self._stays = bool(rospy.get_param("~stays", False))
         speed = float(rospy.get_param("~speed", 1.0))
-        self._head = Playhead(self._recording.start, self._recording.end, speed, time.monotonic())
+        self._head = PlaybackClock(self._recording.start, self._recording.end, speed, time.monotonic())
         self._changed = threading.Condition()
         self._jumps = 0
         self._state = rospy.Publisher("~state", String, queue_size=10, latch=True)
@@ -85,7 +85,7 @@ class BagViewer:
         self._tell_time(start)
         if jump:
             time.sleep(ANEW_SECONDS)
-        self._publish(standing_at(self._recording, self._topics - {SAID}, start))
+        self._publish(snapshot_at(self._recording, self._topics - {SAID}, start))
         for played in self._recording.messages(self._topics, since=start):
             if not self._wait_until_due(played.stamp, jump):
                 return False
@@ -115,7 +115,7 @@ class BagViewer:
                 self._tell(time.monotonic())
                 self._changed.wait(POLL_SECONDS)
 
-    def _publish(self, messages: Iterable[Played]) -> None:
+    def _publish(self, messages: Iterable[RecordedMessage]) -> None:
         for played in messages:
             self._publishers[played.topic].publish(played.message)
 

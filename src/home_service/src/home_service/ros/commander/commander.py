@@ -25,12 +25,12 @@ from home_service.ros.commander.motions import Motion
 from home_service.ros.commander.outcomes import Feedback, Outcome
 from home_service.ros.commander.task import Task
 from planar import PlanarError, Pose2
-from planar_ros.calls.load_map import LoadMap, LoadResult
-from planar_ros.calls.move_base import MoveBase
+from planar_ros.calls.load_map import LoadMap, LoadMapResult
+from planar_ros.calls.move_base import MoveBaseClient
 from planar_ros.calls.services import call_service
 from planar_ros.messages.conversion import pose2_to_msg
 from planar_ros.messages.transforms import Transforms
-from planar_ros.node.listeners import is_heard
+from planar_ros.node.listeners import has_all_subscribers
 from planar_ros.node.shell import init_node, shut_down_on_signals
 
 POLL_SECONDS = 0.05
@@ -38,9 +38,9 @@ POLL_SECONDS = 0.05
 BY_HAND = (0.25, 0.25, 0.0685)
 BELIEVED_DISTANCE = 0.5
 MAP_ERRORS = {
-    LoadResult.MAP_DOES_NOT_EXIST: "there is no such map",
-    LoadResult.INVALID_MAP_DATA: "its image cannot be read",
-    LoadResult.INVALID_MAP_METADATA: "its description cannot be read",
+    LoadMapResult.MAP_DOES_NOT_EXIST: "there is no such map",
+    LoadMapResult.INVALID_MAP_DATA: "its image cannot be read",
+    LoadMapResult.INVALID_MAP_METADATA: "its description cannot be read",
 }
 
 
@@ -63,7 +63,7 @@ class Commander:
         self._task: Optional[Task] = None
         self._worker: Optional[threading.Thread] = None
         self._outcome: Optional[Outcome] = None
-        self._move_base = MoveBase(frame_id)
+        self._move_base = MoveBaseClient(frame_id)
         self._transforms = Transforms()
         self._initial_pose = rospy.Publisher("initialpose", PoseWithCovarianceStamped, queue_size=1)
         self._motion = Motion()
@@ -164,7 +164,7 @@ class Commander:
         message.pose.covariance = covariance
         deadline = time.monotonic() + timeout
         topic = rospy.resolve_name("initialpose")
-        self._wait_until(lambda: is_heard(self._initial_pose), deadline, f"nobody hears {topic}")
+        self._wait_until(lambda: has_all_subscribers(self._initial_pose), deadline, f"nobody hears {topic}")
         self._initial_pose.publish(message)
         told = f"the localization does not take up the pose told on {topic}"
         self._wait_until(lambda: self._believes(Pose2(x, y, yaw)), deadline, told)
@@ -179,7 +179,7 @@ class Commander:
             raise CommanderError("nav_msgs of this system has no LoadMap, with which maps are changed")
         request = LoadMap._request_class(map_url=str(Path(path).resolve()))
         response = call_service("change_map", LoadMap, request, timeout)
-        if response.result != LoadResult.SUCCESS:
+        if response.result != LoadMapResult.SUCCESS:
             raise CommanderError(f"{path}: {MAP_ERRORS.get(response.result, 'map_server refuses it')}")
 
     def _believes(self, pose: Pose2) -> bool:

@@ -9,19 +9,19 @@ from home_service.ros.commander.outcomes import Feedback, Outcome, Result
 from home_service.ros.commander.task import PATIENCE_SECONDS, Task
 from planar import Pose2
 from planar.driving import DriveResult
-from planar_ros.calls.move_base import MoveBase
+from planar_ros.calls.move_base import MoveBaseClient
 
 # Of each result of move_base: what it is called here, and why it came about if move_base does not tell.
 RESULTS = {
     DriveResult.REACHED: (Result.SUCCEEDED, "goal reached"),
-    DriveResult.REPLACED: (Result.CANCELLED, "another goal took its place"),
+    DriveResult.PREEMPTED: (Result.CANCELLED, "another goal took its place"),
 }
 
 
 class Drive(Task):
     """A goal for move_base."""
 
-    def __init__(self, move_base: MoveBase, goal: Pose2, timeout: float):
+    def __init__(self, move_base: MoveBaseClient, goal: Pose2, timeout: float):
         super().__init__(timeout)
         self.goal = goal
         self._move_base = move_base

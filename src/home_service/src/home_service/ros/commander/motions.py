@@ -14,7 +14,7 @@ from nav_msgs.msg import Odometry
 from home_service.ros.commander.outcomes import Feedback, Outcome, Result
 from home_service.ros.commander.task import PATIENCE_SECONDS, Task
 from planar import OccupancyGrid, Pose2, wrap
-from planar_ros.messages.border import listen
+from planar_ros.messages.border import subscribe
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg, pose2_from_msg
 
 SLOW_DOWN = 1.5
@@ -33,8 +33,8 @@ class Motion:
         self._lock = threading.Lock()
         self._commands = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True)
         costmap = "move_base/local_costmap/costmap"
-        listen("odom", Odometry, self._keep_pose, queue_size=1, tcp_nodelay=True)
-        listen(costmap, OccupancyGridArrays, self._keep_grid, queue_size=1)
+        subscribe("odom", Odometry, self._keep_pose, queue_size=1, tcp_nodelay=True)
+        subscribe(costmap, OccupancyGridArrays, self._keep_grid, queue_size=1)
         rospy.Subscriber(costmap + "_updates", OccupancyGridUpdate, self._update_grid, queue_size=10)
 
     def turn(self, angle: float, speed: float, timeout: float) -> "Stretch":

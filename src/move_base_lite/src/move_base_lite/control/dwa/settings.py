@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from move_base_lite.control.settings import OFFERED_FROM_ZERO, OFFERED_TO_20, ControllerSettings
-from planar.config.parameters import POSITIVE, Tunable, parameter
+from planar.config.parameters import POSITIVE, DynamicParameter, parameter
 
 SIDEWAYS = "(no effect on a differential drive)"
 EXACT = "(no effect: the footprint is exact)"
@@ -56,17 +56,17 @@ class DwaSettings(ControllerSettings):
 
 # In dynamic_reconfigure, of a robot that moves sideways or of details of the official code.
 DWA_WITHOUT_EFFECT = (
-    Tunable("max_vel_y", 0.1, f"[m/s] {SIDEWAYS}"),
-    Tunable("min_vel_y", -0.1, f"[m/s] {SIDEWAYS}"),
-    Tunable("acc_lim_y", 2.5, f"[m/s^2] {SIDEWAYS}", 0.0, 20.0),
-    Tunable("acc_lim_trans", 0.1, f"[m/s^2] {SIDEWAYS}", 0.0, 20.0),
-    Tunable("vy_samples", 10, SIDEWAYS, 1),
-    Tunable("prune_plan", False, "(no effect: what lies behind the robot is always left out)"),
-    Tunable("stop_time_buffer", 0.2, "[s] (no effect)", 0.0),
-    Tunable("oscillation_reset_dist", 0.05, f"[m] {STEADY}", 0.0),
-    Tunable("oscillation_reset_angle", 0.2, f"[rad] {STEADY}", 0.0),
-    Tunable("scaling_speed", 0.25, f"[m/s] {EXACT}", 0.0),
-    Tunable("max_scaling_factor", 0.2, EXACT, 0.0),
+    DynamicParameter("max_vel_y", 0.1, f"[m/s] {SIDEWAYS}"),
+    DynamicParameter("min_vel_y", -0.1, f"[m/s] {SIDEWAYS}"),
+    DynamicParameter("acc_lim_y", 2.5, f"[m/s^2] {SIDEWAYS}", 0.0, 20.0),
+    DynamicParameter("acc_lim_trans", 0.1, f"[m/s^2] {SIDEWAYS}", 0.0, 20.0),
+    DynamicParameter("vy_samples", 10, SIDEWAYS, 1),
+    DynamicParameter("prune_plan", False, "(no effect: what lies behind the robot is always left out)"),
+    DynamicParameter("stop_time_buffer", 0.2, "[s] (no effect)", 0.0),
+    DynamicParameter("oscillation_reset_dist", 0.05, f"[m] {STEADY}", 0.0),
+    DynamicParameter("oscillation_reset_angle", 0.2, f"[rad] {STEADY}", 0.0),
+    DynamicParameter("scaling_speed", 0.25, f"[m/s] {EXACT}", 0.0),
+    DynamicParameter("max_scaling_factor", 0.2, EXACT, 0.0),
 )
 # Known beside them: read by the official code and never used, or of no meaning here.
 DWA_IGNORED = frozenset(
@@ -120,9 +120,9 @@ class TrajectorySettings(DwaSettings):
 
 
 TRAJECTORY_WITHOUT_EFFECT = (
-    Tunable("acc_lim_y", 2.5, f"[m/s^2] {SIDEWAYS}", 0.0, 20.0),
-    Tunable("stop_time_buffer", 0.2, "[s] (no effect)", 0.0),
-    Tunable("oscillation_reset_dist", 0.05, f"[m] {STEADY}", 0.0),
+    DynamicParameter("acc_lim_y", 2.5, f"[m/s^2] {SIDEWAYS}", 0.0, 20.0),
+    DynamicParameter("stop_time_buffer", 0.2, "[s] (no effect)", 0.0),
+    DynamicParameter("oscillation_reset_dist", 0.05, f"[m] {STEADY}", 0.0),
 )
 TRAJECTORY_IGNORED = (
     DWA_IGNORED

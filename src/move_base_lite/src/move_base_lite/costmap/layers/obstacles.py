@@ -14,7 +14,7 @@ from move_base_lite.costmap.polygon import Polygon
 from move_base_lite.costmap.window import NO_CELLS, CellBounds, CostmapWindow, union
 from move_base_lite.plugin import Plugin
 from planar import Pose2
-from planar.config.parameters import POSITIVE, Tunable, at_least, check_parameters, parameter
+from planar.config.parameters import POSITIVE, DynamicParameter, at_least, check_parameters, parameter
 from planar.config.settings import check
 
 DATA_TYPES = ("LaserScan", "PointCloud", "PointCloud2")
@@ -241,11 +241,11 @@ def _clear_ray(costs, x0, y0, x1, y1):
 # Of voxels, which are not here: obstacles are flat.
 FLAT = "(no effect: obstacles are flat)"
 VOXELS = (
-    Tunable("origin_z", 0.0, f"[m] {FLAT}", 0.0),
-    Tunable("z_resolution", 0.2, f"[m] {FLAT}", 0.0, 50.0),
-    Tunable("z_voxels", 10, FLAT, 0, 16),
-    Tunable("unknown_threshold", 15, FLAT, 0, 16),
-    Tunable("mark_threshold", 0, FLAT, 0, 16),
+    DynamicParameter("origin_z", 0.0, f"[m] {FLAT}", 0.0),
+    DynamicParameter("z_resolution", 0.2, f"[m] {FLAT}", 0.0, 50.0),
+    DynamicParameter("z_voxels", 10, FLAT, 0, 16),
+    DynamicParameter("unknown_threshold", 15, FLAT, 0, 16),
+    DynamicParameter("mark_threshold", 0, FLAT, 0, 16),
 )
 # Read for the sensors, or known and without meaning.
 IGNORED = frozenset(

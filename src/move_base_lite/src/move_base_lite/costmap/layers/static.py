@@ -10,7 +10,7 @@ from move_base_lite.costmap.layer import CostmapPlacement, Layer, LayerContext, 
 from move_base_lite.costmap.resampling import resample_costs
 from move_base_lite.costmap.window import NO_CELLS, CellBounds, CostmapWindow
 from move_base_lite.plugin import Plugin
-from planar.config.parameters import Bounds as ParameterBounds
+from planar.config.parameters import Interval as ParameterBounds
 from planar.config.parameters import check_parameters, parameter
 
 

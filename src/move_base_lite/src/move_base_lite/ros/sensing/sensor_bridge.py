@@ -18,7 +18,7 @@ from move_base_lite.ros.sensing.checks import check_message
 from move_base_lite.ros.sensing.clouds import points_of
 from move_base_lite.ros.sensing.diagnostics import SensorDiagnostics
 from planar import Pose2, Twist2
-from planar_ros.messages.border import WARN_SECONDS, listen
+from planar_ros.messages.border import WARN_SECONDS, subscribe
 from planar_ros.messages.conversion import (
     LaserScanArrays,
     frame_name,
@@ -59,7 +59,7 @@ class SensorBridge:
         self._complaint: Optional[str] = None
         self._diagnostics = SensorDiagnostics()
         self._lock = threading.Lock()
-        listen(odom_topic, Odometry, self._on_odometry, queue_size=1, tcp_nodelay=True)
+        subscribe(odom_topic, Odometry, self._on_odometry, queue_size=1, tcp_nodelay=True)
         self._sensors = [
             _Sensor(source, transforms, self._local_frame, self._base_frame, self._on_scan)
             for source in _sources_of(settings).values()
@@ -163,7 +163,9 @@ class _Sensor:
         self._lock = threading.Lock()
         self._mountings: Dict[str, np.ndarray] = {}
         self.has_message, self.last_message_at = False, rospy.Time(0)
-        listen(source.topic, MESSAGES[source.data_type], self._on_message, queue_size=KEPT, tcp_nodelay=True)
+        subscribe(
+            source.topic, MESSAGES[source.data_type], self._on_message, queue_size=KEPT, tcp_nodelay=True
+        )
 
     @property
     def topic(self) -> str:

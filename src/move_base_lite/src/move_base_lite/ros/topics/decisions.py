@@ -14,7 +14,7 @@ from move_base_lite.ros.topics.dwa_clouds import DwaCloudTopics
 from move_base_lite.ros.topics.plan_messages import path_msg, plan_msg, pose_msg, trajectory_msg
 from move_base_lite.ros.topics.status_messages import outcome_msg, progress_msg
 from planar import Pose2, Twist2
-from planar_ros.node.last_words import wait_until_heard
+from planar_ros.node.last_words import flush_and_close
 
 FEEDBACK_PERIOD = rospy.Duration(0.2)
 # Where rviz's configurations look for the plans of any local planner.
@@ -46,7 +46,7 @@ class DecisionTopics:
     def publish_final_stop(self) -> None:
         """The last command of all, which is heard."""
         self.command(Twist2())
-        wait_until_heard(self._command)
+        flush_and_close(self._command)
 
     def publish_end(self, decision: Decision) -> None:
         """The last command for a goal, and how it ended."""

@@ -13,7 +13,7 @@ from nav_msgs.msg import Odometry as OdometryMessage
 from std_msgs.msg import Header
 
 from planar import Pose2, Scan, Twist2
-from planar.geometry.limits import FARTHEST
+from planar.geometry.limits import MAX_COORDINATE
 from planar_ros.messages.border import LATEST_STAMP, MessageError
 from planar_ros.messages.conversion import (
     LaserScanArrays,
@@ -48,7 +48,7 @@ class HeardScan(Scan):
         message.angle_min, message.angle_increment = told.angle_min, told.angle_increment
         message.ranges, message.intensities = _floats(told.ranges), _floats(told.intensities)
         message.range_min = told.range_min
-        if told.range_max != min(source.range_max, FARTHEST):
+        if told.range_max != min(source.range_max, MAX_COORDINATE):
             message.range_max = told.range_max
         if _fan(message) != _fan(source):
             message.angle_max = told.angle_min + told.angle_increment * (len(told.ranges) - 1)

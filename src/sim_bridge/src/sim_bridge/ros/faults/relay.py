@@ -10,11 +10,11 @@ from nav_msgs.msg import Odometry
 from tf2_msgs.msg import TFMessage
 
 from planar import PlanarError, SettingsError
-from planar_ros.messages.border import WARN_SECONDS, MessageError, is_stamp, listen
+from planar_ros.messages.border import WARN_SECONDS, MessageError, is_stamp, subscribe
 from planar_ros.messages.conversion import frame_name
 from planar_ros.node.clock import sleep_until
 from planar_ros.node.parameters import read_settings
-from planar_ros.node.remapping import remapped_once
+from planar_ros.node.remapping import remap_once
 from planar_ros.node.shell import run
 from sim_bridge.config import RelaySettings
 from sim_bridge.faults import load_faults
@@ -56,7 +56,7 @@ class FaultRelay:
         if settings.publish_tf:
             self._tf = rospy.Publisher("/tf", TFMessage, queue_size=QUEUE_SIZE, tcp_nodelay=True)
         topics = [way.topic for way in WAYS]
-        names = remapped_once(*topics, *(topic + FAULTY for topic in topics))
+        names = remap_once(*topics, *(topic + FAULTY for topic in topics))
         for way, hear_on, tell_on in zip(WAYS, names, names[len(WAYS) :]):
             if tell_on in names[: len(WAYS)]:
                 raise SettingsError(
@@ -80,7 +80,7 @@ class FaultRelay:
                     if way is ODOMETRY and self._tf is not None:
                         self._send_transform(self._tf, told)
 
-        listen(hear_on, kind, hand_on, queue_size=QUEUE_SIZE, tcp_nodelay=True)
+        subscribe(hear_on, kind, hand_on, queue_size=QUEUE_SIZE, tcp_nodelay=True)
 
     def _told(self, message: RawMessage, way: Way) -> Optional[RawMessage]:
         """What is told instead of a message; None: nothing. Raises PlanarError for one without meaning."""

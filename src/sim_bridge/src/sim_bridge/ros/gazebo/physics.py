@@ -10,8 +10,8 @@ from geometry_msgs.msg import Vector3
 from std_srvs.srv import Empty, EmptyResponse
 
 from planar import PlanarError
-from planar.config.parameters import Tunable
-from planar_ros.node.reconfigure import Tuning
+from planar.config.parameters import DynamicParameter
+from planar_ros.node.reconfigure import ReconfigureServer
 from sim_bridge.config import HIGHEST_PHYSICS_RATE
 from sim_bridge.errors import WorldError
 from sim_bridge.ros.gazebo.server import NAMESPACE, Server
@@ -20,9 +20,14 @@ from sim_bridge.scene import Scene
 
 # What dynamic_reconfigure offers (Physics.cfg of gazebo_ros), but for ODE's own.
 TUNABLES = (
-    Tunable("time_step", 0.005, "s of simulated time in a step of physics", 0.0, 10.0),
-    Tunable("max_update_rate", 200.0, "steps a second of real time; 0: as fast as possible", 0.0, 1000.0),
-    *(Tunable(f"gravity_{axis}", 0.0, f"gravity along {axis}, m/s^2", -100.0, 100.0) for axis in "xyz"),
+    DynamicParameter("time_step", 0.005, "s of simulated time in a step of physics", 0.0, 10.0),
+    DynamicParameter(
+        "max_update_rate", 200.0, "steps a second of real time; 0: as fast as possible", 0.0, 1000.0
+    ),
+    *(
+        DynamicParameter(f"gravity_{axis}", 0.0, f"gravity along {axis}, m/s^2", -100.0, 100.0)
+        for axis in "xyz"
+    ),
 )
 
 
@@ -41,7 +46,7 @@ class PhysicsServices:
         server.serve("get_physics_properties", srv.GetPhysicsProperties, self._on_get_physics)
         server.serve("set_physics_properties", srv.SetPhysicsProperties, self._on_set_physics)
         self._server = server
-        Tuning(TUNABLES, self._values(), self._on_reconfigure, NAMESPACE)
+        ReconfigureServer(TUNABLES, self._values(), self._on_reconfigure, NAMESPACE)
 
     def _on_get_world(self, _request):
         return srv.GetWorldPropertiesResponse(

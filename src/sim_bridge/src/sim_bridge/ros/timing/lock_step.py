@@ -9,10 +9,10 @@ from std_msgs.msg import Header, String
 
 from planar_ros.messages.conversion import time_of
 from planar_ros.step import transport
-from planar_ros.step.calls import await_before_answering
-from planar_ros.step.inbox import Inbox
+from planar_ros.step.calls import delay_service_replies
+from planar_ros.step.inbox import MessageBuffer
 from planar_ros.step.step import STATIC_PUBLISHERS_PARAMETER, WAIT_FOR_PARAMETER
-from planar_ros.step.transport import ANSWER_TOPIC, MOMENT_TOPIC, CountedConnection
+from planar_ros.step.transport import ANSWER_TOPIC, TICK_TOPIC, LockstepConnection
 from sim_bridge.coordination import LockStepCoordinator
 from sim_bridge.ros.orders import Orders
 from sim_bridge.ros.timing.loop_watch import LoopWatch
@@ -39,7 +39,7 @@ class LockStep:
         static = sorted(f"/{name}" for name in static_publishers)
         rospy.set_param(STATIC_PUBLISHERS_PARAMETER, static)
         self._conductor = LockStepCoordinator(latency)
-        self._inbox = Inbox(False, self._on_stranger)
+        self._inbox = MessageBuffer(False, self._on_stranger)
         self._inbox.install()
         self._joining: Dict[str, float] = {}
         self._leaving: List[str] = []
@@ -50,10 +50,10 @@ class LockStep:
         self._blocked_since: Optional[float] = None
         self._remarks: List[str] = []
         self._noted: Set[str] = set()
-        self._moments = rospy.Publisher(MOMENT_TOPIC, Moment, queue_size=10, tcp_nodelay=True)
+        self._moments = rospy.Publisher(TICK_TOPIC, Moment, queue_size=10, tcp_nodelay=True)
         self._remarks_topic = rospy.Publisher(REMARKS_TOPIC, String, queue_size=1, latch=True)
         self._answers = rospy.Subscriber(ANSWER_TOPIC, Answer, self._hear, queue_size=100, tcp_nodelay=True)
-        await_before_answering(lambda number: None)
+        delay_service_replies(lambda number: None)
 
     @property
     def members(self) -> FrozenSet[str]:
@@ -131,8 +131,8 @@ class LockStep:
         number, has_new_members = begun
         members = frozenset((self._name, *self.members)) if self.members else frozenset()
         if has_new_members:
-            self._inbox.members = CountedConnection.members = members
-            CountedConnection.audience = self._loop.audience
+            self._inbox.members = LockstepConnection.members = members
+            LockstepConnection.audience = self._loop.audience
             self._told.clear()
             if not members:
                 self._inbox.release_all()  # the last words of the last one

@@ -6,8 +6,8 @@ from typing import Collection, Dict, FrozenSet, List, Set
 
 import rospy
 
-from planar_ros.step.closure import Closure
-from planar_ros.step.step import audience
+from planar_ros.step.closure import ConnectionCheck
+from planar_ros.step.step import observers
 
 # Names of nodes, by spaces: those of the audience that will come. The launch file knows them before they do.
 EXPECTED_AUDIENCE_PARAMETER = "/simulation/expected_audience"
@@ -34,7 +34,7 @@ class LoopWatch:
         self._since: Dict[str, float] = {}
         self._given_up: Set[str] = set()
         self._untold: List[str] = []
-        self._closure = Closure()
+        self._closure = ConnectionCheck()
         self._changed = threading.Condition()
         self._version = 1
         self._seen = 0 if expected else 1
@@ -91,7 +91,7 @@ class LoopWatch:
                 gaps[f"the node {name}, which is not one of ours"] = STRANGE_SECONDS
             else:
                 gaps[f"the node {name}"] = COMING_SECONDS
-        self.audience = audience()
+        self.audience = observers()
         for name in sorted(self._onlookers - self.audience):
             gaps[f"the node {name}, which is to look on"] = COMING_SECONDS
         if not absent:

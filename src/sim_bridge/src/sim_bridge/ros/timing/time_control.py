@@ -11,8 +11,8 @@ from std_msgs.msg import Header
 
 from planar_ros.messages.conversion import time_of
 from planar_ros.node.progress import TOPIC as PROGRESS_TOPIC
-from planar_ros.node.reconfigure import Reconfiguration
-from planar_ros.node.waiting import HoldUp, Waiting
+from planar_ros.node.reconfigure import SettingsReconfigureServer
+from planar_ros.node.waiting import ReadinessMonitor, StallReporter
 from planar_ros.step import transport
 from sim_bridge.config import RunTimeSettings
 from sim_bridge.pacing import Pacer
@@ -44,8 +44,8 @@ class TimeControl:
         self._grants: List[_Grant] = []
         rospy.Subscriber(PROGRESS_TOPIC, Header, self._on_progress, queue_size=100, tcp_nodelay=True)
         rospy.Service("~step", Step, self._on_step)
-        self._hold_up = HoldUp()
-        Waiting({f"{name} on {PROGRESS_TOPIC}": self._follows(name) for name in pacer.wait_for})
+        self._hold_up = StallReporter()
+        ReadinessMonitor({f"{name} on {PROGRESS_TOPIC}": self._follows(name) for name in pacer.wait_for})
 
     @property
     def speed(self) -> float:
@@ -57,7 +57,7 @@ class TimeControl:
 
     def offer_speed(self) -> None:
         """Lets dynamic_reconfigure change the speed, below the node's own name."""
-        Reconfiguration(RunTimeSettings(self.speed), self._on_reconfigure)
+        SettingsReconfigureServer(RunTimeSettings(self.speed), self._on_reconfigure)
 
     def expect_odometry(self, seconds: float) -> None:
         """Each robot tells its odometry at least every ``seconds``."""

@@ -11,7 +11,7 @@ from move_base_msgs.msg import MoveBaseActionResult
 from planar import Pose2
 from planar_ros.messages.conversion import pose2_to_msg
 from planar_ros.messages.transforms import Transforms
-from planar_ros.node.listeners import is_heard
+from planar_ros.node.listeners import has_all_subscribers
 
 if TYPE_CHECKING:
     from run_project.ros.people.person import Person
@@ -67,14 +67,14 @@ def _go(person: "Person", place: Pose2, frame: str) -> None:
     results: List[MoveBaseActionResult] = []
     listener = rospy.Subscriber("/move_base/result", MoveBaseActionResult, results.append, queue_size=5)
     goals = rospy.Publisher("/move_base_simple/goal", PoseStamped, queue_size=1)
-    person.wait(lambda: is_heard(goals), 60.0, "no move_base listened", is_wall=True)
+    person.wait(lambda: has_all_subscribers(goals), 60.0, "no move_base listened", is_wall=True)
     goal = PoseStamped()
     goal.header.frame_id, goal.header.stamp, goal.pose = frame, rospy.get_rostime(), pose2_to_msg(place)
     goals.publish(goal)
     is_there = person.wait(lambda: bool(results), GOAL_SECONDS) and results[0].status.status == SUCCEEDED
     if not results:
         canceller = rospy.Publisher("/move_base/cancel", GoalID, queue_size=1)
-        person.wait(lambda: is_heard(canceller), 10.0, is_wall=True)
+        person.wait(lambda: has_all_subscribers(canceller), 10.0, is_wall=True)
         canceller.publish(GoalID())
         person.wait(lambda: bool(results), SETTLE_SECONDS)
     listener.unregister()
