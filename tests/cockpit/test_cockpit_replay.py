@@ -14,7 +14,7 @@ from browser import Browser
 from command import Command
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from nav_msgs.msg import Path as PathMsg
-from rosgraph_msgs.msg import Clock, Log
+from rosgraph_msgs.msg import Clock, LogBuffer
 from std_msgs.msg import Float64
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker
@@ -101,7 +101,7 @@ def record(path):
                 bag.write("/plan", plan(now), now)
             if tick == 400:
                 for topic in ("/rosout", "/rosout_agg"):
-                    bag.write(topic, Log(name="/pick_objects", level=Log.INFO, msg=SAID), now)
+                    bag.write(topic, LogBuffer(name="/pick_objects", level=LogBuffer.INFO, msg=SAID), now)
 
 
 def cube(number, now):

@@ -55,7 +55,7 @@ class CockpitToolsTest(unittest.TestCase):
         self.opened = title
 
     def test_the_graph_is_drawn(self):
-        self.open("Graph")
+        self.open("GraphClient")
         self.page.choose("Show", "nodes and all topics")
         self.page.wait_for("/stage", "/sine")
         self.assertNotIn("/rosout", self.drawn())

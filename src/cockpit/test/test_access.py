@@ -2,9 +2,9 @@
 
 import pytest
 
-from cockpit.access import FORBIDDEN, OK, Access
+from cockpit.access import FORBIDDEN, OK, AccessPolicy
 
-ACCESS = Access(8700, token="secret")
+ACCESS = AccessPolicy(8700, token="secret")
 HOST, COOKIE = "127.0.0.1:8700", "cockpit_8700=secret"
 
 
@@ -63,6 +63,6 @@ def test_a_socket_without_an_origin_or_with_only_the_token_is_refused():
 
 
 def test_tokens_are_long_and_never_the_same():
-    first, second = Access(1).token, Access(1).token
+    first, second = AccessPolicy(1).token, AccessPolicy(1).token
     assert first != second
     assert len(first) >= 32

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from cockpit.errors import RefusedError
-from cockpit.inbound import Allowance, check
+from cockpit.inbound import RateLimiter, check
 
 UPDATE = {"type": "GuiUpdateMessage", "uuid": "a", "updates": {"value": 1.5}}
 
@@ -39,6 +39,6 @@ def test_anything_else_is_refused(message):
 
 
 def test_so_many_messages_a_second_and_no_more():
-    allowance = Allowance(rate=10.0, burst=3.0)
-    assert [allowance.take(100.0) for _ in range(5)] == [True, True, True, False, False]
-    assert [allowance.take(100.2) for _ in range(3)] == [True, True, False]
+    limiter = RateLimiter(rate=10.0, burst=3.0)
+    assert [limiter.allow(100.0) for _ in range(5)] == [True, True, True, False, False]
+    assert [limiter.allow(100.2) for _ in range(3)] == [True, True, False]

@@ -9,7 +9,7 @@ from nav_msgs.msg import OccupancyGrid, Path
 from sensor_msgs.msg import Image, LaserScan
 from visualization_msgs.msg import Marker, MarkerArray
 
-from cockpit.drawing import Floor, Label, Lines, Points, Surface
+from cockpit.drawing import FloorImage, Label, LineSegments, PointCloudShape, TriangleMesh
 from cockpit.errors import CockpitError
 from cockpit.layers import all_layers, by_type
 from cockpit.layers.maps import MAP_COLOURS
@@ -44,14 +44,14 @@ def test_a_scan_is_the_points_that_were_seen():
     scan.ranges = [1.0, 2.0, float("inf"), float("nan"), 0.0, 9.0]
     (part,) = drawn(scan, "sensor_msgs/LaserScan").parts
     assert part.frame == "laser"
-    assert isinstance(part.thing, Points)
-    assert np.allclose(part.thing.points, [(1.0, 0.0, 0.0), (0.0, 2.0, 0.0)])
+    assert isinstance(part.shape, PointCloudShape)
+    assert np.allclose(part.shape.points, [(1.0, 0.0, 0.0), (0.0, 2.0, 0.0)])
 
 
 def test_a_scan_at_angles_that_are_none_is_no_points():
     scan = LaserScan(angle_min=math.nan, angle_increment=math.inf, range_max=5.0, ranges=[1.0, 2.0])
     (part,) = drawn(scan, "sensor_msgs/LaserScan").parts
-    assert part.thing.points.shape == (0, 3)
+    assert part.shape.points.shape == (0, 3)
 
 
 def grid(data, width=2, height=2):
@@ -63,10 +63,10 @@ def grid(data, width=2, height=2):
 
 def test_a_map_is_a_picture_whose_first_row_is_the_last_of_the_grid():
     (part,) = drawn(grid([0, 100, -1, 0]), "nav_msgs/OccupancyGrid").parts
-    assert isinstance(part.thing, Floor)
-    assert (part.thing.picture[0, 0] == MAP_COLOURS[255]).all()
-    assert (part.thing.picture[1, 1] == MAP_COLOURS[100]).all()
-    assert (part.thing.width, part.thing.height) == (1.0, 1.0)
+    assert isinstance(part.shape, FloorImage)
+    assert (part.shape.picture[0, 0] == MAP_COLOURS[255]).all()
+    assert (part.shape.picture[1, 1] == MAP_COLOURS[100]).all()
+    assert (part.shape.width, part.shape.height) == (1.0, 1.0)
 
 
 def test_a_grid_of_the_wrong_size_is_refused_in_a_sentence():
@@ -79,54 +79,54 @@ def test_a_path_leaves_out_what_is_not_finite():
     for number, pose in enumerate(path.poses):
         pose.pose.position.x = float("nan") if number == 1 else float(number)
     (part,) = drawn(path, "nav_msgs/Path").parts
-    assert part.thing.segments[:, :, 0].tolist() == [[0.0, 2.0], [2.0, 3.0]]
+    assert part.shape.segments[:, :, 0].tolist() == [[0.0, 2.0], [2.0, 3.0]]
 
 
 def test_an_empty_path_and_no_particles_are_drawings_of_nothing():
-    assert len(drawn(Path(), "nav_msgs/Path").parts[0].thing.segments) == 0
-    assert len(drawn(PoseArray(), "geometry_msgs/PoseArray").parts[0].thing.segments) == 0
+    assert len(drawn(Path(), "nav_msgs/Path").parts[0].shape.segments) == 0
+    assert len(drawn(PoseArray(), "geometry_msgs/PoseArray").parts[0].shape.segments) == 0
 
 
 def test_particles_are_lines_along_where_they_look():
     pose = Pose()
     pose.orientation.z = pose.orientation.w = math.sqrt(0.5)
     (part,) = drawn(PoseArray(poses=[pose]), "geometry_msgs/PoseArray").parts
-    along = part.thing.segments[0, 1] - part.thing.segments[0, 0]
+    along = part.shape.segments[0, 1] - part.shape.segments[0, 0]
     assert np.allclose(along, [0.0, 0.12, 0.0])
 
 
 @pytest.mark.parametrize(
     ("kind", "thing"),
     [
-        (Marker.ARROW, Lines),
-        (Marker.CUBE, Surface),
-        (Marker.SPHERE, Surface),
-        (Marker.CYLINDER, Surface),
-        (Marker.LINE_STRIP, Lines),
-        (Marker.LINE_LIST, Lines),
-        (Marker.CUBE_LIST, Surface),
-        (Marker.SPHERE_LIST, Surface),
-        (Marker.POINTS, Points),
+        (Marker.ARROW, LineSegments),
+        (Marker.CUBE, TriangleMesh),
+        (Marker.SPHERE, TriangleMesh),
+        (Marker.CYLINDER, TriangleMesh),
+        (Marker.LINE_STRIP, LineSegments),
+        (Marker.LINE_LIST, LineSegments),
+        (Marker.CUBE_LIST, TriangleMesh),
+        (Marker.SPHERE_LIST, TriangleMesh),
+        (Marker.POINTS, PointCloudShape),
         (Marker.TEXT_VIEW_FACING, Label),
-        (Marker.TRIANGLE_LIST, Surface),
+        (Marker.TRIANGLE_LIST, TriangleMesh),
     ],
 )
 @pytest.mark.parametrize("count", [0, 3])
 def test_each_type_of_marker_is_drawn_whatever_its_points(kind, thing, count):
     drawing = markers(marker(type=kind, points=[Point(float(i), 0.0, 0.0) for i in range(count)]))
-    assert not drawing.told
-    assert isinstance(drawing.parts[0].thing, thing)
+    assert not drawing.warning
+    assert isinstance(drawing.parts[0].shape, thing)
 
 
 def test_a_cube_is_as_large_as_its_scale():
     (part,) = markers(marker()).parts
-    assert part.thing.vertices.max() == 1.0
+    assert part.shape.vertices.max() == 1.0
     assert part.seconds == math.inf
 
 
 def test_a_nan_in_a_marker_is_told_and_the_others_are_drawn():
     drawing = markers(marker(id=1, points=[Point(float("nan"), 0.0, 0.0)]), marker(id=2))
-    assert "marker a:1" in drawing.told
+    assert "marker a:1" in drawing.warning
     assert [part.name for part in drawing.parts] == ["a:2"]
 
 
@@ -140,7 +140,7 @@ def test_markers_are_deleted_one_by_one_or_all():
 def test_a_picture_is_shown_in_the_order_of_its_colours():
     image = Image(width=1, height=1, encoding="bgr8", step=3, data=bytes([1, 2, 3]))
     (part,) = drawn(image, "sensor_msgs/Image").parts
-    assert part.thing.picture.tolist() == [[[3, 2, 1]]]
+    assert part.shape.picture.tolist() == [[[3, 2, 1]]]
 
 
 def test_a_picture_that_is_cut_off_is_refused():

@@ -11,15 +11,15 @@ from home_service_msgs.msg import Delivery, DeliveryState, MissionState
 from cockpit.errors import CockpitError
 from cockpit.frames import Transform
 from cockpit.models.bag_files import bags_below, new_bag
-from cockpit.models.computation import ALL, NODES, Shown, dot_of
-from cockpit.models.knobs import Knob, knobs_of, values_of
-from cockpit.models.log import MOST_KEPT, MOST_SHOWN, Log, Said, Wanted, level_named
+from cockpit.models.frame_table import rows_of
+from cockpit.models.graph_drawing import ALL, NODES, GraphFilter, dot_of
+from cockpit.models.log import MOST_KEPT, MOST_SHOWN, LogBuffer, LogEntry, LogFilter, level_named
 from cockpit.models.mission import STATES, mission_html
-from cockpit.models.repeating import Repeating
+from cockpit.models.rates import PeriodicTimer
+from cockpit.models.reconfigure import ReconfigurableParameter, parameters_from_description, values_of
 from cockpit.models.tables import table
 from cockpit.models.text import amount, flat
-from cockpit.models.traces import Traces, expanded, number_at, numbers_in
-from cockpit.models.tree import rows_of
+from cockpit.models.time_series import TimeSeries, expanded, number_at, numbers_in
 
 PUBLISHERS = {
     "/scan": ["/sim"],
@@ -37,7 +37,7 @@ SUBSCRIBERS = {
 
 
 def test_the_graph_has_what_is_in_use_and_no_debugging():
-    dot = dot_of(PUBLISHERS, SUBSCRIBERS, Shown())
+    dot = dot_of(PUBLISHERS, SUBSCRIBERS, GraphFilter())
     assert '"n/sim" -> "t/scan";' in dot
     assert '"t/scan" -> "n/nav";' in dot
     assert '"n/errand" -> "t/nav/action";' in dot
@@ -46,46 +46,51 @@ def test_the_graph_has_what_is_in_use_and_no_debugging():
 
 
 def test_the_graph_has_all_topics_or_none():
-    assert '"n/nav" -> "t/plan";' in dot_of(PUBLISHERS, SUBSCRIBERS, Shown(kind=ALL))
-    assert "/rosout" in dot_of(PUBLISHERS, SUBSCRIBERS, Shown(debug=True))
-    nodes = dot_of(PUBLISHERS, SUBSCRIBERS, Shown(kind=NODES))
+    assert '"n/nav" -> "t/plan";' in dot_of(PUBLISHERS, SUBSCRIBERS, GraphFilter(kind=ALL))
+    assert "/rosout" in dot_of(PUBLISHERS, SUBSCRIBERS, GraphFilter(debug=True))
+    nodes = dot_of(PUBLISHERS, SUBSCRIBERS, GraphFilter(kind=NODES))
     assert '"n/sim" -> "n/nav" [label="/scan"' in nodes
     assert '"t/' not in nodes
 
 
 def test_the_graph_is_filtered_by_names_of_nodes_and_topics():
-    dot = dot_of(PUBLISHERS, SUBSCRIBERS, Shown(part_of_name="SCAN"))
+    dot = dot_of(PUBLISHERS, SUBSCRIBERS, GraphFilter(part_of_name="SCAN"))
     assert "/sim" in dot and "/errand" not in dot
 
 
 def test_a_name_cannot_break_out_of_the_drawing():
-    dot = dot_of({'/a"]; evil [': ["/n\\"]}, {'/a"]; evil [': ["/m"]}, Shown())
+    dot = dot_of({'/a"]; evil [': ["/n\\"]}, {'/a"]; evil [': ["/m"]}, GraphFilter())
     assert '/a\\"]; evil [' in dot and '"n/n\\\\"' in dot
 
 
-def said(level, text, node="/amcl"):
-    return Said(level, 1.0, node, text, "amcl.py:1")
+def entry(level, text, node="/amcl"):
+    return LogEntry(level, 1.0, node, text, "amcl.py:1")
 
 
 def test_a_log_is_filtered_by_level_node_and_text_the_newest_first():
-    log = Log()
-    for line in (said(2, "one"), said(4, "Two"), said(8, "two", "/move_base"), said(1, "two")):
+    log = LogBuffer()
+    for line in (
+        entry(2, "one"),
+        entry(4, "Two"),
+        entry(8, "two", "/move_base"),
+        entry(1, "two"),
+    ):
         log.add(line)
-    assert [row[3] for row in log.rows(Wanted(lowest=2))] == ["two", "Two", "one"]
-    assert [row[2] for row in log.rows(Wanted(text="TWO", lowest=4))] == ["/move_base", "/amcl"]
-    assert [row[0] for row in log.rows(Wanted(node="move"))] == ["Error"]
+    assert [row[3] for row in log.rows(LogFilter(lowest=2))] == ["two", "Two", "one"]
+    assert [row[2] for row in log.rows(LogFilter(text="TWO", lowest=4))] == ["/move_base", "/amcl"]
+    assert [row[0] for row in log.rows(LogFilter(node="move"))] == ["Error"]
     assert level_named("Warn") == 4
 
 
 def test_a_log_has_an_end():
-    log = Log()
+    log = LogBuffer()
     for number in range(MOST_KEPT + 10):
-        log.add(said(2, str(number)))
-    rows = log.rows(Wanted())
+        log.add(entry(2, str(number)))
+    rows = log.rows(LogFilter())
     assert len(rows) == MOST_SHOWN
     assert rows[0][3] == str(MOST_KEPT + 9)
     log.clear()
-    assert log.rows(Wanted()) == []
+    assert log.rows(LogFilter()) == []
 
 
 def transform(parent, stamp=0.0, is_static=False):
@@ -163,7 +168,7 @@ def test_the_numbers_of_a_message_are_listed():
 
 
 def test_traces_hold_each_number_until_the_next_and_leave_out_what_is_none():
-    traces = Traces(seconds=10.0)
+    traces = TimeSeries(seconds=10.0)
     for at, value in ((0.0, 5.0), (91.0, 1.0), (95.0, 2.0), (96.0, math.nan)):
         traces.add("a", at, value)
     traces.add("b", 93.0, 7.0)
@@ -175,7 +180,7 @@ def test_traces_hold_each_number_until_the_next_and_leave_out_what_is_none():
 
 
 def test_many_samples_are_thinned():
-    traces = Traces(seconds=1000.0)
+    traces = TimeSeries(seconds=1000.0)
     for number in range(5000):
         traces.add("a", float(number) / 10.0, 1.0)
     times, values = traces.drawn(["a"], 500.0)
@@ -183,7 +188,7 @@ def test_many_samples_are_thinned():
     assert times[-1] == 0.0
 
 
-def parameter(name, kind, edit_method=""):
+def parameter_message(name, kind, edit_method=""):
     return SimpleNamespace(name=name, type=kind, description="what it does", edit_method=edit_method)
 
 
@@ -192,15 +197,17 @@ def config(**doubles):
     return SimpleNamespace(bools=[], ints=[], strs=[], doubles=found)
 
 
-def test_knobs_have_the_bounds_that_the_server_told():
-    group = SimpleNamespace(parameters=[parameter("speed", "double"), parameter("far", "double")])
+def test_parameters_have_the_bounds_published_by_the_server():
+    group = SimpleNamespace(
+        parameters=[parameter_message("speed", "double"), parameter_message("far", "double")]
+    )
     description = SimpleNamespace(
         groups=[group],
         min=config(speed=0.0, far=-math.inf),
         max=config(speed=2.0, far=math.inf),
         dflt=config(speed=0.5, far=1.0),
     )
-    speed, far = knobs_of(description)
+    speed, far = parameters_from_description(description)
     assert (speed.lowest, speed.highest, speed.default, speed.is_bounded) == (0.0, 2.0, 0.5, True)
     assert not far.is_bounded
     assert values_of(config(speed=1.0)) == {"speed": 1.0}
@@ -209,10 +216,12 @@ def test_knobs_have_the_bounds_that_the_server_told():
 def test_choices_are_read_and_nonsense_is_none():
     listed = "{'enum': [{'name': 'Slow', 'value': 0, 'type': 'int'}], 'enum_description': ''}"
     for text, choices in ((listed, (("Slow", 0),)), ("__import__('os')", ()), ("[[", ()), ("3", ())):
-        group = SimpleNamespace(parameters=[parameter("mode", "double", text)])
+        group = SimpleNamespace(parameters=[parameter_message("mode", "double", text)])
         told = config(mode=0.0)
-        (knob,) = knobs_of(SimpleNamespace(groups=[group], min=told, max=told, dflt=told))
-        assert knob.choices == choices
+        (parameter,) = parameters_from_description(
+            SimpleNamespace(groups=[group], min=told, max=told, dflt=told)
+        )
+        assert parameter.choices == choices
 
 
 @pytest.mark.parametrize(
@@ -220,11 +229,11 @@ def test_choices_are_read_and_nonsense_is_none():
     [("int", 50, 1), ("double", 5.0, 0.001), ("double", 500.0, 0.1), ("double", math.inf, 0.01)],
 )
 def test_sliders_are_as_fine_as_makes_sense(kind, highest, step):
-    assert Knob("a", kind, 0, highest, 1).step == step
+    assert ReconfigurableParameter("a", kind, 0, highest, 1).step == step
 
 
 def test_what_is_repeated_is_due_at_its_rate_and_makes_up_for_nothing():
-    repeating = Repeating()
+    repeating = PeriodicTimer()
     assert not repeating.is_due(0.0)
     repeating.start(1.0, 0.5)
     assert [repeating.is_due(at) for at in (1.0, 1.2, 1.5, 1.6)] == [True, False, True, False]
@@ -261,7 +270,7 @@ def test_amounts_are_told_in_what_is_short():
 
 def test_a_mission_tells_of_its_deliveries():
     told = MissionState(mission="<tea>", state="carrying", progress=0.5, time_left=12.0)
-    what = Delivery(object="cup", source="kitchen", destination="desk")
+    what = Delivery(object="cup", source="kitchen", destination="context")
     told.deliveries = [DeliveryState(delivery=what, state=state) for state in (DeliveryState.CARRYING, 99)]
     html = mission_html(told)
     for text in (
@@ -270,7 +279,7 @@ def test_a_mission_tells_of_its_deliveries():
         "12 s left",
         "cup",
         "kitchen",
-        "desk",
+        "context",
         ">carrying<",
         ">99<",
     ):

@@ -4,17 +4,17 @@ import math
 
 import numpy as np
 
-from cockpit.models.pointing import facing, on_floor
+from cockpit.models.pointing import drag_yaw, floor_intersection
 from cockpit.models.solids import ball, box, cylinder
-from cockpit.scene.look import Look, Piece, cut_at, merged
-from cockpit.scene.reading import world_look
+from cockpit.scene.description import SceneDescription, VisualPart, cut_at, merged
+from cockpit.scene.reader import describe_world
 
 
 def wall(low, high, colour=(1, 2, 3)):
     vertices, triangles = box()
     pose = np.eye(4)
     pose[:3, 3] = 5.0, 0.0, (low + high) / 2.0
-    return Piece("home", "wall", pose, vertices * (1.0, 1.0, high - low), triangles, colour)
+    return VisualPart("home", "wall", pose, vertices * (1.0, 1.0, high - low), triangles, colour)
 
 
 def heights(piece):
@@ -33,7 +33,7 @@ def test_pieces_of_a_colour_become_one_surface():
 
 
 def test_a_look_comes_through_to_another_process():
-    look = Look.from_bytes(Look((wall(0.0, 1.0),), ("a warning",)).to_bytes())
+    look = SceneDescription.from_bytes(SceneDescription((wall(0.0, 1.0),), ("a warning",)).to_bytes())
     assert look.warnings == ("a warning",)
     assert look.pieces[0].colour == (1, 2, 3)
     assert np.allclose(look.pieces[0].pose, wall(0.0, 1.0).pose)
@@ -47,16 +47,16 @@ def test_solids_are_a_metre_across():
 
 
 def test_a_ray_meets_the_floor_below_and_nowhere_above():
-    assert on_floor((0.0, 0.0, 2.0), (1.0, 0.5, 1.0)) == (2.0, 1.0)
-    assert on_floor((0.0, 0.0, 2.0), (1.0, 0.0, 3.0)) is None
-    assert on_floor((0.0, 0.0, 2.0), (1.0, 0.0, 2.0)) is None
-    assert on_floor((0.0, 0.0, 2.0), (1.0, 0.0, math.nan)) is None
+    assert floor_intersection((0.0, 0.0, 2.0), (1.0, 0.5, 1.0)) == (2.0, 1.0)
+    assert floor_intersection((0.0, 0.0, 2.0), (1.0, 0.0, 3.0)) is None
+    assert floor_intersection((0.0, 0.0, 2.0), (1.0, 0.0, 2.0)) is None
+    assert floor_intersection((0.0, 0.0, 2.0), (1.0, 0.0, math.nan)) is None
 
 
 def test_a_press_without_a_turn_has_no_direction_of_its_own():
-    assert facing((0.0, 0.0), (0.0, 1.0), 7.0) == math.pi / 2
-    assert facing((0.0, 0.0), (0.05, 0.0), 7.0) == 7.0
-    assert facing((0.0, 0.0), None, 7.0) == 7.0
+    assert drag_yaw((0.0, 0.0), (0.0, 1.0), 7.0) == math.pi / 2
+    assert drag_yaw((0.0, 0.0), (0.05, 0.0), 7.0) == 7.0
+    assert drag_yaw((0.0, 0.0), None, 7.0) == 7.0
 
 
 def test_a_door_is_shut_at_the_limit_where_it_was_built_and_what_has_none_is_opened_a_little(tmp_path):
@@ -72,8 +72,8 @@ def test_a_door_is_shut_at_the_limit_where_it_was_built_and_what_has_none_is_ope
         for name, kind, limit in (("hinge", "revolute", limited), ("rail", "prismatic", ""))
     )
     world.write_text(f"<sdf version='1.6'><world name='w'><model name='m'>{content}</model></world></sdf>")
-    look = Look.from_bytes(world_look(world, ()).to_bytes())
-    assert [(hinge.model, hinge.name, hinge.opened(0.0), hinge.opened(1.0)) for hinge in look.hinges] == [
+    look = SceneDescription.from_bytes(describe_world(world, ()).to_bytes())
+    assert [(joint.model, joint.name, joint.opened(0.0), joint.opened(1.0)) for joint in look.joints] == [
         ("m", "hinge", 0.0, -1.5),
         ("m", "rail", 0.0, 0.5),
     ]

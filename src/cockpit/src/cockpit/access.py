@@ -12,7 +12,7 @@ OK, FORBIDDEN = 200, 403
 
 
 @dataclass(frozen=True)
-class Answer:
+class AccessDecision:
     """``status``: 200, let it pass, or come again with ``cookie`` if there is one; 403, and why."""
 
     status: int
@@ -20,7 +20,7 @@ class Answer:
     cookie: str = ""
 
 
-class Access:
+class AccessPolicy:
     """Judges requests by token, cookie, Host and Origin.
 
     The token is in the URL that the terminal prints; the first request turns it into a cookie and is sent on
@@ -35,20 +35,22 @@ class Access:
         # Cookies know no ports: two cockpits of one machine must not share one.
         self._cookie = f"cockpit_{port}"
 
-    def judge(self, target: str, host: str, origin: Optional[str], cookies: str, is_socket: bool) -> Answer:
+    def judge(
+        self, target: str, host: str, origin: Optional[str], cookies: str, is_socket: bool
+    ) -> AccessDecision:
         """``target``: path and query; ``origin``: None if there is none, which no browser's socket lacks."""
         if _host_name(f"//{host}") not in self._hosts:
-            return Answer(FORBIDDEN, "this name is not one of the cockpit's")
+            return AccessDecision(FORBIDDEN, "this name is not one of the cockpit's")
         if origin is not None and origin != f"http://{host}":
-            return Answer(FORBIDDEN, "asked for by a page of another site")
+            return AccessDecision(FORBIDDEN, "asked for by a page of another site")
         if is_socket and origin is None:
-            return Answer(FORBIDDEN, "asked for by no page")
+            return AccessDecision(FORBIDDEN, "asked for by no page")
         told = parse_qs(target.partition("?")[2]).get("token", [""])[0]
         if not is_socket and self._is_token(told):
-            return Answer(OK, cookie=f"{self._cookie}={self.token}; HttpOnly; SameSite=Lax; Path=/")
+            return AccessDecision(OK, cookie=f"{self._cookie}={self.token}; HttpOnly; SameSite=Lax; Path=/")
         if not self._is_token(self._kept(cookies)):
-            return Answer(FORBIDDEN, "open the URL that the terminal prints: it has the token")
-        return Answer(OK)
+            return AccessDecision(FORBIDDEN, "open the URL that the terminal prints: it has the token")
+        return AccessDecision(OK)
 
     def _is_token(self, text: str) -> bool:
         return hmac.compare_digest(text.encode(), self.token.encode())

@@ -1,16 +1,24 @@
-"""What layers draw: few kinds of things, as arrays, which the page knows how to show."""
+"""Shapes that layers draw, as arrays, and the update that a layer returns."""
 
 from dataclasses import dataclass, field
 from typing import Optional, Tuple, Union
 
 import numpy as np
 
+from planar.deprecation import deprecated_names
+
 Colour = Tuple[int, int, int]
 
 
 @dataclass(frozen=True, eq=False)
-class Points:
-    """``points``: (N, 3) metres; ``colours``: (N, 3) uint8, or one for all; ``size``: metres across."""
+class PointCloudShape:
+    """A point cloud.
+
+    Attributes:
+        points: (N, 3) [m].
+        colours: (N, 3) uint8, or one colour for all.
+        size: Diameter of a point [m].
+    """
 
     points: np.ndarray
     colours: Union[np.ndarray, Colour]
@@ -18,8 +26,14 @@ class Points:
 
 
 @dataclass(frozen=True, eq=False)
-class Lines:
-    """``segments``: (N, 2, 3) metres; ``colours``: (N, 2, 3) uint8, or one for all; ``width``: pixels."""
+class LineSegments:
+    """Line segments.
+
+    Attributes:
+        segments: (N, 2, 3) [m].
+        colours: (N, 2, 3) uint8, or one colour for all.
+        width: Line width [pixels].
+    """
 
     segments: np.ndarray
     colours: Union[np.ndarray, Colour]
@@ -27,8 +41,16 @@ class Lines:
 
 
 @dataclass(frozen=True, eq=False)
-class Surface:
-    """Triangles: ``vertices`` (N, 3) metres, ``triangles`` (M, 3); ``opacity``: 0 to 1."""
+class TriangleMesh:
+    """A triangle mesh.
+
+    Attributes:
+        vertices: (N, 3) [m].
+        triangles: (M, 3) indices of vertices.
+        colour: Colour of the mesh.
+        opacity: 0 to 1.
+        is_smooth: Whether normals are interpolated.
+    """
 
     vertices: np.ndarray
     triangles: np.ndarray
@@ -38,10 +60,14 @@ class Surface:
 
 
 @dataclass(frozen=True, eq=False)
-class Floor:
-    """A picture (rows, columns, 4) uint8, first row at the top, that lies flat: ``width`` along x, m.
+class FloorImage:
+    """An image that lies in the xy plane.
 
-    ``height``: along y; ``pose``: (4, 4) of its lower left corner.
+    Attributes:
+        picture: (rows, columns, 4) uint8, the first row at the top.
+        width: Size along x [m].
+        height: Size along y [m].
+        pose: (4, 4) pose of the lower left corner.
     """
 
     picture: np.ndarray
@@ -57,48 +83,71 @@ class Label:
 
 
 @dataclass(frozen=True, eq=False)
-class Axes:
-    """Frames: ``poses`` (N, 4, 4); ``length``: of their axes, metres."""
+class FrameAxes:
+    """Coordinate axes at ``poses`` (N, 4, 4), each ``length`` long [m]."""
 
     poses: np.ndarray
     length: float = 0.3
 
 
 @dataclass(frozen=True, eq=False)
-class Screen:
-    """A camera's picture (rows, columns, 3) uint8, which is shown beside the world."""
+class CameraImage:
+    """A camera image (rows, columns, 3) uint8, shown in a window beside the world."""
 
     picture: np.ndarray
 
 
-Drawable = Union[Points, Lines, Surface, Floor, Label, Axes, Screen]
+Drawable = Union[PointCloudShape, LineSegments, TriangleMesh, FloorImage, Label, FrameAxes, CameraImage]
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
-    """A thing seen from ``frame``; ``name`` tells it from the others of its layer; the same name replaces.
+class PlacedShape:
+    """A shape in a frame. A shape of the same name in the same layer is replaced.
 
-    ``pose``: (4, 4) in that frame; ``seconds``: after which it vanishes by itself; ``stamp``: seconds of ROS
-    time, when it was seen from where the frame was then; None: it goes along with its frame.
+    Attributes:
+        name: Name within the layer.
+        frame: Frame id.
+        shape: What is drawn.
+        pose: (4, 4) pose of the shape in the frame; None for the identity.
+        seconds: Lifetime [s].
+        stamp: ROS time at which the frame's pose is taken [s]; None to follow the frame.
     """
 
     name: str
     frame: str
-    thing: Drawable
+    shape: Drawable
     pose: Optional[np.ndarray] = None
     seconds: float = np.inf
     stamp: Optional[float] = None
 
 
 @dataclass(frozen=True, eq=False)
-class Drawing:
-    """What a layer shows from now on; ``keeps``: parts that are not named stay as they are.
+class LayerUpdate:
+    """A change of what a layer shows.
 
-    ``gone``: names of parts that are shown no more, or "*" for all that were shown before. ``told``: what
-    cannot be drawn, in words.
+    Attributes:
+        parts: New or replaced shapes.
+        keeps: Whether shapes that are not listed stay.
+        gone: Names of removed shapes; "*" removes all earlier ones.
+        warning: What cannot be drawn, and why.
     """
 
-    parts: Tuple[Part, ...] = ()
+    parts: Tuple[PlacedShape, ...] = ()
     keeps: bool = False
     gone: Tuple[str, ...] = ()
-    told: str = field(default="")
+    warning: str = field(default="")
+
+
+__getattr__ = deprecated_names(
+    __name__,
+    {
+        "Points": "PointCloudShape",
+        "Lines": "LineSegments",
+        "Surface": "TriangleMesh",
+        "Floor": "FloorImage",
+        "Axes": "FrameAxes",
+        "Screen": "CameraImage",
+        "Part": "PlacedShape",
+        "Drawing": "LayerUpdate",
+    },
+)

@@ -1,15 +1,15 @@
-"""What the cockpit cannot do, told on its page or in the terminal."""
+"""Errors of the cockpit, reported on the page or in the terminal."""
 
 from planar import PlanarError
 
 
 class CockpitError(PlanarError):
-    """Something cannot be shown or done; the text is for the person at the page."""
+    """A request cannot be carried out; the text is shown to the user."""
 
 
 class PortError(CockpitError):
-    """The page cannot be served where it was asked for."""
+    """The page cannot be served at the requested address."""
 
 
 class RefusedError(CockpitError):
-    """A browser sent what no page of ours sends."""
+    """A browser sent a message that the page never sends."""

@@ -38,7 +38,7 @@ def wxyz_of(pose: np.ndarray) -> Tuple[float, float, float, float]:
     return w, x, y, z
 
 
-def told_pose(position: Any, orientation: Any) -> Optional[np.ndarray]:
+def pose_from_message(position: Any, orientation: Any) -> Optional[np.ndarray]:
     """The same as messages of geometry_msgs tell it: of a Point or Vector3, and a Quaternion."""
     p, q = position, orientation
     return pose_matrix((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
@@ -60,7 +60,7 @@ class Transform:
     pose_in_parent: np.ndarray
     stamp: float
     is_static: bool
-    told_by: str = ""
+    publisher: str = ""
 
 
 class FrameTree:
@@ -82,7 +82,7 @@ class FrameTree:
         self._transforms.clear()
         self._past.clear()
 
-    def begin_anew(self) -> None:
+    def reset(self) -> None:
         """Time has: what moves is nowhere until it is told again."""
         for child in [child for child, told in self._transforms.items() if not told.is_static]:
             del self._transforms[child]

@@ -25,7 +25,7 @@ KINDS = frozenset(
 )
 
 
-class Allowance:
+class RateLimiter:
     """A bucket of ``burst`` messages, into which ``rate`` a second run."""
 
     def __init__(self, rate: float = MESSAGES_PER_SECOND, burst: float = BURST):
@@ -33,7 +33,7 @@ class Allowance:
         self._left = burst
         self._at = -math.inf
 
-    def take(self, now: float) -> bool:
+    def allow(self, now: float) -> bool:
         """Whether there was one left; ``now``: seconds by a steady clock."""
         self._left = min(self._burst, self._left + (now - self._at) * self._rate)
         self._at = now

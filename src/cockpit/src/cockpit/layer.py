@@ -1,29 +1,33 @@
-"""The contract of a layer: what is drawn of the messages of a topic."""
+"""The contract of a layer: how the messages of a topic are drawn."""
 
 from dataclasses import dataclass
 from typing import Any, Callable, Tuple
 
-from cockpit.drawing import Drawing
+from cockpit.drawing import LayerUpdate
+from planar.deprecation import deprecated_names
 
-# What makes a drawing of a message. An object of its own for each topic, so it may remember: markers do.
-# Raises CockpitError if the message cannot be drawn; whatever else it raises is told as well.
-Draw = Callable[[Any], Drawing]
+# Converts a message to a LayerUpdate. One object per topic, so it may keep state, as markers do.
+# Raises CockpitError if the message cannot be drawn; any other exception is reported as well.
+Draw = Callable[[Any], LayerUpdate]
 
 
 @dataclass(frozen=True)
-class Layer:
+class DisplayLayer:
     """How messages of some types are shown.
 
-    A layer is a module of ``cockpit/layers`` that holds one as ``LAYER``; nothing else has to know of it. It
-    never imports ROS: messages are taken as they come, by their fields.
+    A layer is a module of ``cockpit/layers`` that defines one as ``LAYER``; it is found automatically. It
+    never imports ROS: it reads the fields of the messages.
 
-    ``title``: what its topics are listed under. ``types``: of its messages, "sensor_msgs/LaserScan".
-    ``make``: makes the ``Draw`` for one topic. ``shown``: the topics that are shown at first, by the end of
-    their names. ``seconds``: drawn again no sooner than after so many.
+    Life cycle: only the newest message of an enabled topic is drawn, at most ten times a second of wall time.
+    While the topic is disabled or no page is open, it is not subscribed to.
 
-    Life cycle: of a topic that is switched on the newest message alone is drawn, at most ten times a second
-    by a wall clock. While no page is open, or it is switched off, the topic is not subscribed to.
-    ``needs_all``: every message is drawn in its turn, since each may add to what those before have shown.
+    Attributes:
+        title: Heading of its topics.
+        types: Message types, such as "sensor_msgs/LaserScan".
+        make: Creates the ``Draw`` for one topic.
+        shown: Ends of the names of topics that are enabled at first.
+        seconds: Shortest time between two updates [s].
+        needs_all: Whether every message is drawn in order, since each adds to those before.
     """
 
     title: str
@@ -35,3 +39,6 @@ class Layer:
 
     def is_shown_at_first(self, topic: str) -> bool:
         return topic.endswith(self.shown) if self.shown else False
+
+
+__getattr__ = deprecated_names(__name__, {"Layer": "DisplayLayer"})

@@ -63,13 +63,13 @@ class CockpitProcess:
     def _wait_for_url(self) -> str:
         deadline = time.monotonic() + START_SECONDS
         while time.monotonic() < deadline:
-            has_said_all = not self._reading.is_alive()
+            has_ended = not self._reading.is_alive()
             for line in list(self._lines):
                 if line.startswith(URL):
                     return line.partition(": ")[2].strip()
                 if line.startswith(ERROR):
                     raise PortError(line.partition(": ")[2].strip())
-            if has_said_all:
+            if has_ended:
                 break
             time.sleep(POLL_SECONDS)
         self.close()

@@ -10,12 +10,12 @@ from typing import Optional
 
 import numpy as np
 
-from cockpit.drawing import Drawing, Part, Points, Surface
+from cockpit.drawing import LayerUpdate, PlacedShape, PointCloudShape, TriangleMesh
 from cockpit.frames import FrameTree, Transform
-from cockpit.page.drawer import Drawer
+from cockpit.page.scene_renderer import SceneRenderer
 from cockpit.page.server import Page
 from cockpit.page.world_view import RobotView, WorldView
-from cockpit.scene.reading import look_of, robot_joints, robot_look
+from cockpit.scene.reader import describe_bodies, describe_robot, robot_joints
 from home_service_gym.playground import Moment, Playground, lidar_of
 from home_service_gym.task import Marks
 from planar import Pose2
@@ -37,10 +37,10 @@ class Window:
         self._page = Page("127.0.0.1", 0)
         self._title = self._page.gui.add_html("")
         print(f"environment: {self._page.url}", flush=True)
-        self._frames, self._drawer = FrameTree(), Drawer(self._page.scene)
+        self._frames, self._drawer = FrameTree(), SceneRenderer(self._page.scene)
         self._world = WorldView(self._page.scene)
         urdf, find_file = robot.description(), partial(resolve, beside=Path.cwd(), model_folders=())
-        self._robot = RobotView(self._page.scene, "robot", robot_look(urdf, find_file), "")
+        self._robot = RobotView(self._page.scene, "robot", describe_robot(urdf, find_file), "")
         for child, (parent, pose) in robot_joints(urdf).items():
             self._frames.put(child, Transform(parent, pose, 0.0, is_static=True))
         (self._base,) = self._frames.roots()
@@ -65,10 +65,10 @@ class Window:
         for model in self._world.models:
             self._world.remove(model)
         world = playground.arena.world
-        look = look_of(replace(world, bodies=(*world.bodies, *map(body_of, world.walkers))))
+        look = describe_bodies(replace(world, bodies=(*world.bodies, *map(body_of, world.walkers))))
         corners = np.vstack([piece.pose[:3, 3] for piece in look.pieces])[:, :2]
         self._world.show(look)
-        self._page.look_over(corners.min(axis=0), corners.max(axis=0))
+        self._page.frame_view(corners.min(axis=0), corners.max(axis=0))
         self._title.content = f"<b>{escape(playground.arena.title)}</b>"
         self._playground = playground
 
@@ -85,10 +85,10 @@ class Window:
         self._robot.update(self._frames, WORLD, is_shown=True)
         hits = base.transform_points(moment.scan.hit_points_in_base())
         seen = np.column_stack([hits, np.full(len(hits), self._scan_height)])
-        parts = [Part("scan", WORLD, Points(seen, SCAN, 0.05))]
+        parts = [PlacedShape("scan", WORLD, PointCloudShape(seen, SCAN, 0.05))]
         if marks.goal is not None:
-            parts.append(Part("goal", WORLD, _disc(*marks.goal)))
-        self._drawer.show("episode", Drawing(tuple(parts)))
+            parts.append(PlacedShape("goal", WORLD, _disc(*marks.goal)))
+        self._drawer.show("episode", LayerUpdate(tuple(parts)))
         self._drawer.place(self._frames, WORLD, time.monotonic())
 
 
@@ -96,10 +96,10 @@ def _lifted(pose: Pose2) -> np.ndarray:
     return pose3(pose.x, pose.y, 0.0, 0.0, 0.0, pose.yaw)
 
 
-def _disc(at: Pose2, radius: float) -> Surface:
+def _disc(at: Pose2, radius: float) -> TriangleMesh:
     angles = np.linspace(0.0, 2.0 * math.pi, CORNERS, endpoint=False)
     rim_xy = (at.x, at.y) + radius * np.column_stack([np.cos(angles), np.sin(angles)])
     vertices = np.column_stack([np.vstack([rim_xy, [(at.x, at.y)]]), np.full(CORNERS + 1, ABOVE)])
     corners = np.arange(CORNERS)
     triangles = np.column_stack([np.full(CORNERS, CORNERS), corners, (corners + 1) % CORNERS])
-    return Surface(vertices, triangles, GOAL, 0.6)
+    return TriangleMesh(vertices, triangles, GOAL, 0.6)

@@ -2,15 +2,15 @@
 
 import numpy as np
 
-from cockpit.drawing import Drawing, Part, Points
+from cockpit.drawing import LayerUpdate, PlacedShape, PointCloudShape
 from cockpit.errors import CockpitError
-from cockpit.layer import Layer
+from cockpit.layer import DisplayLayer
 
 MOST = 20000
 FLOAT32 = 7
 
 
-def draw(message) -> Drawing:
+def draw(message) -> LayerUpdate:
     fields = {field.name: field for field in message.fields}
     if not {"x", "y", "z"} <= set(fields) or any(fields[axis].datatype != FLOAT32 for axis in "xyz"):
         raise CockpitError("a cloud without x, y and z as float32")
@@ -26,8 +26,8 @@ def draw(message) -> Drawing:
         [np.ascontiguousarray(rows[:, end - 4 : end]).view(f"{order}f4").reshape(-1) for end in ends]
     )
     points = points[np.isfinite(points).all(axis=1)]
-    header, thing = message.header, Points(points, colours_of(points[:, 2]), 0.03)
-    return Drawing((Part("cloud", header.frame_id, thing, stamp=header.stamp.to_sec() or None),))
+    header, shape = message.header, PointCloudShape(points, colours_of(points[:, 2]), 0.03)
+    return LayerUpdate((PlacedShape("cloud", header.frame_id, shape, stamp=header.stamp.to_sec() or None),))
 
 
 def colours_of(heights: np.ndarray) -> np.ndarray:
@@ -39,4 +39,4 @@ def colours_of(heights: np.ndarray) -> np.ndarray:
     )
 
 
-LAYER = Layer("Point clouds", ("sensor_msgs/PointCloud2",), lambda: draw, seconds=0.2)
+LAYER = DisplayLayer("Point clouds", ("sensor_msgs/PointCloud2",), lambda: draw, seconds=0.2)

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from cockpit.drawing import Drawing, Floor, Part
+from cockpit.drawing import FloorImage, LayerUpdate, PlacedShape
 from cockpit.errors import CockpitError
 from cockpit.frames import pose_matrix
-from cockpit.layer import Layer
+from cockpit.layer import DisplayLayer
 
 UNKNOWN, LETHAL, INSCRIBED = -1, 100, 99
 LARGEST = 4000 * 4000
@@ -43,7 +43,7 @@ def picture_of(cells: np.ndarray, is_costmap: bool) -> np.ndarray:
 def draw_as(is_costmap: bool, height: float):
     """Draws grids ``height`` metres above the floor, so that those of several topics do not flicker."""
 
-    def draw(message) -> Drawing:
+    def draw(message) -> LayerUpdate:
         info = message.info
         if not 0 < info.width * info.height <= LARGEST or len(message.data) != info.width * info.height:
             raise CockpitError(f"a grid of {info.width} x {info.height} with {len(message.data)} cells")
@@ -57,18 +57,20 @@ def draw_as(is_costmap: bool, height: float):
             raise CockpitError("a grid at no place, or of no resolution")
         size = info.width * info.resolution, info.height * info.resolution
         picture = picture_of(cells, is_costmap)
-        return Drawing((Part("grid", message.header.frame_id, Floor(picture, *size, corner)),))
+        return LayerUpdate(
+            (PlacedShape("grid", message.header.frame_id, FloorImage(picture, *size, corner)),)
+        )
 
     return draw
 
 
-class Grid:
+class GridLayer:
     """A topic's grids; a costmap is known by its values between the extremes."""
 
-    def __call__(self, message) -> Drawing:
+    def __call__(self, message) -> LayerUpdate:
         values = np.asarray(message.data, dtype=np.int8)
         is_costmap = bool(((values > 0) & (values < LETHAL)).any())
         return draw_as(is_costmap, 0.02 if is_costmap else 0.01)(message)
 
 
-LAYER = Layer("Map and costmaps", ("nav_msgs/OccupancyGrid",), Grid, shown=("/map",), seconds=0.5)
+LAYER = DisplayLayer("Map and costmaps", ("nav_msgs/OccupancyGrid",), GridLayer, shown=("/map",), seconds=0.5)

@@ -4,9 +4,17 @@ from typing import Callable, Dict, List, Tuple
 
 import numpy as np
 
-from cockpit.drawing import Drawable, Drawing, Label, Lines, Part, Points, Surface
+from cockpit.drawing import (
+    Drawable,
+    Label,
+    LayerUpdate,
+    LineSegments,
+    PlacedShape,
+    PointCloudShape,
+    TriangleMesh,
+)
 from cockpit.frames import pose_matrix
-from cockpit.layer import Layer
+from cockpit.layer import DisplayLayer
 from cockpit.models.solids import ball, box, cylinder, placed_at
 
 ADD, DELETE, DELETE_ALL = 0, 2, 3
@@ -18,13 +26,13 @@ PIXELS_PER_METRE = 60.0
 MOST_SOLIDS = 2000
 
 
-class Markers:
+class MarkerLayer:
     """Each marker replaces the one of its namespace and number."""
 
-    def __call__(self, message) -> Drawing:
-        parts: Dict[str, Part] = {}
+    def __call__(self, message) -> LayerUpdate:
+        parts: Dict[str, PlacedShape] = {}
         gone: List[str] = []
-        told = ""
+        warning = ""
         for marker in getattr(message, "markers", None) or ([message] if hasattr(message, "ns") else []):
             name = f"{marker.ns}:{marker.id}"
             if marker.action == DELETE_ALL:
@@ -37,11 +45,11 @@ class Markers:
                 try:
                     parts[name] = part_of(marker, name)
                 except ValueError as error:
-                    told = f"marker {name}: {error}"
-        return Drawing(tuple(parts.values()), keeps=True, gone=tuple(gone), told=told)
+                    warning = f"marker {name}: {error}"
+        return LayerUpdate(tuple(parts.values()), keeps=True, gone=tuple(gone), warning=warning)
 
 
-def part_of(marker, name: str) -> Part:
+def part_of(marker, name: str) -> PlacedShape:
     """Raises ValueError if it makes no sense."""
     p, q = marker.pose.position, marker.pose.orientation
     quaternion = (q.x, q.y, q.z, q.w) if any((q.x, q.y, q.z, q.w)) else (0.0, 0.0, 0.0, 1.0)
@@ -54,13 +62,13 @@ def part_of(marker, name: str) -> Part:
     if draw is None:
         raise ValueError(f"its type {marker.type} cannot be shown")
     seconds = marker.lifetime.to_sec()
-    thing = draw(marker, np.abs(scale), points)
-    return Part(name, marker.header.frame_id, thing, pose, seconds if seconds > 0.0 else np.inf)
+    shape = draw(marker, np.abs(scale), points)
+    return PlacedShape(name, marker.header.frame_id, shape, pose, seconds if seconds > 0.0 else np.inf)
 
 
-def _colour(told) -> Tuple[int, int, int]:
+def _colour(warning) -> Tuple[int, int, int]:
     red, green, blue = (
-        int(np.clip(np.nan_to_num(part), 0.0, 1.0) * 255) for part in (told.r, told.g, told.b)
+        int(np.clip(np.nan_to_num(part), 0.0, 1.0) * 255) for part in (warning.r, warning.g, warning.b)
     )
     return red, green, blue
 
@@ -75,7 +83,7 @@ def _colours(marker, count: int) -> np.ndarray:
 def _solid(shape: Callable[[], Tuple[np.ndarray, np.ndarray]]):
     def draw(marker, scale: np.ndarray, _points: np.ndarray) -> Drawable:
         vertices, triangles = shape()
-        return Surface(vertices * scale, triangles, _colour(marker.color), _opacity(marker))
+        return TriangleMesh(vertices * scale, triangles, _colour(marker.color), _opacity(marker))
 
     return draw
 
@@ -84,7 +92,7 @@ def _solids(shape: Callable[[], Tuple[np.ndarray, np.ndarray]]):
     def draw(marker, scale: np.ndarray, points: np.ndarray) -> Drawable:
         vertices, triangles = shape()
         vertices, triangles = placed_at(vertices * scale, triangles, points[:MOST_SOLIDS])
-        return Surface(vertices, triangles, _colour(marker.color), _opacity(marker))
+        return TriangleMesh(vertices, triangles, _colour(marker.color), _opacity(marker))
 
     return draw
 
@@ -101,7 +109,7 @@ def _arrow(marker, scale: np.ndarray, points: np.ndarray) -> Drawable:
     head = 0.3 * along
     ends = [start, end - head + 0.2 * across, end - head - 0.2 * across]
     segments = np.array([(point, end) for point in ends])
-    return Lines(segments, _colour(marker.color), max(PIXELS_PER_METRE * float(scale[1]), HAIRLINE))
+    return LineSegments(segments, _colour(marker.color), max(PIXELS_PER_METRE * float(scale[1]), HAIRLINE))
 
 
 def _lines(is_strip: bool):
@@ -112,13 +120,13 @@ def _lines(is_strip: bool):
         else:
             ends = np.arange(len(points) // 2 * 2).reshape(-1, 2)
         width = max(PIXELS_PER_METRE * float(scale[0]), HAIRLINE)
-        return Lines(points[ends].reshape(-1, 2, 3), colours[ends].reshape(-1, 2, 3), width)
+        return LineSegments(points[ends].reshape(-1, 2, 3), colours[ends].reshape(-1, 2, 3), width)
 
     return draw
 
 
 def _points(marker, scale: np.ndarray, points: np.ndarray) -> Drawable:
-    return Points(points, _colours(marker, len(points)), max(float(scale[0]), 0.01))
+    return PointCloudShape(points, _colours(marker, len(points)), max(float(scale[0]), 0.01))
 
 
 def _text(marker, _scale: np.ndarray, _points: np.ndarray) -> Drawable:
@@ -127,7 +135,7 @@ def _text(marker, _scale: np.ndarray, _points: np.ndarray) -> Drawable:
 
 def _triangles(marker, scale: np.ndarray, points: np.ndarray) -> Drawable:
     count = len(points) // 3
-    return Surface(
+    return TriangleMesh(
         points[: 3 * count] * scale,
         np.arange(3 * count).reshape(-1, 3),
         _colour(marker.color),
@@ -148,10 +156,10 @@ _KINDS: Dict[int, Callable[..., Drawable]] = {
     TEXT: _text,
     TRIANGLES: _triangles,
 }
-LAYER = Layer(
+LAYER = DisplayLayer(
     "Markers",
     ("visualization_msgs/Marker", "visualization_msgs/MarkerArray"),
-    Markers,
+    MarkerLayer,
     shown=("visualization_marker", "visualization_marker_array", "markers", "frontiers"),
     needs_all=True,
 )

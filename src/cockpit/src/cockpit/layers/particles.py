@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from cockpit.drawing import Drawing, Lines, Part
-from cockpit.layer import Layer
+from cockpit.drawing import LayerUpdate, LineSegments, PlacedShape
+from cockpit.layer import DisplayLayer
 
 LENGTH, HEIGHT, MOST = 0.12, 0.05, 3000
 COLOUR = (120, 80, 220)
 
 
-def draw(message) -> Drawing:
+def draw(message) -> LayerUpdate:
     poses = message.poses[:: len(message.poses) // MOST + 1]
     told = [
         (p.position.x, p.position.y, p.orientation.x, p.orientation.y, p.orientation.z, p.orientation.w)
@@ -21,7 +21,9 @@ def draw(message) -> Drawing:
     ends = starts + LENGTH * np.column_stack((np.cos(yaw), np.sin(yaw), np.zeros(len(x))))
     segments = np.stack((starts, ends), axis=1)
     segments = segments[np.isfinite(segments).all(axis=(1, 2))]
-    return Drawing((Part("poses", message.header.frame_id, Lines(segments, COLOUR, 2.0)),))
+    return LayerUpdate((PlacedShape("poses", message.header.frame_id, LineSegments(segments, COLOUR, 2.0)),))
 
 
-LAYER = Layer("Particles", ("geometry_msgs/PoseArray",), lambda: draw, shown=("particlecloud",), seconds=0.2)
+LAYER = DisplayLayer(
+    "Particles", ("geometry_msgs/PoseArray",), lambda: draw, shown=("particlecloud",), seconds=0.2
+)

@@ -2,20 +2,20 @@
 
 import numpy as np
 
-from cockpit.drawing import Drawing, Lines, Part
-from cockpit.layer import Layer
+from cockpit.drawing import LayerUpdate, LineSegments, PlacedShape
+from cockpit.layer import DisplayLayer
 
 HEIGHT = 0.04
 COLOUR = (46, 160, 67)
 
 
-def draw(message) -> Drawing:
+def draw(message) -> LayerUpdate:
     points = np.array([(pose.pose.position.x, pose.pose.position.y, HEIGHT) for pose in message.poses])
     points = points.reshape(-1, 3)
     points = points[np.isfinite(points).all(axis=1)]
     segments = np.stack((points[:-1], points[1:]), axis=1)
     frame = message.header.frame_id or (message.poses[0].header.frame_id if message.poses else "")
-    return Drawing((Part("path", frame, Lines(segments, COLOUR, 4.0)),))
+    return LayerUpdate((PlacedShape("path", frame, LineSegments(segments, COLOUR, 4.0)),))
 
 
-LAYER = Layer("Paths", ("nav_msgs/Path",), lambda: draw, shown=("plan", "path"), seconds=0.2)
+LAYER = DisplayLayer("Paths", ("nav_msgs/Path",), lambda: draw, shown=("plan", "path"), seconds=0.2)

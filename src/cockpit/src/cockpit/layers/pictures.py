@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from cockpit.drawing import Drawing, Part, Screen
+from cockpit.drawing import CameraImage, LayerUpdate, PlacedShape
 from cockpit.errors import CockpitError
-from cockpit.layer import Layer
+from cockpit.layer import DisplayLayer
 
 # The channels of each encoding, in the order red, green, blue.
 CHANNELS = {
@@ -18,12 +18,14 @@ WIDEST = 480
 FAR = 5.0
 
 
-def draw(message) -> Drawing:
+def draw(message) -> LayerUpdate:
     if not 0 < message.width * message.height <= 1 << 24:
         raise CockpitError(f"a picture of {message.width} x {message.height}")
     picture = _depth(message) if message.encoding in ("32FC1", "16UC1") else _colours(message)
     step = max(1, -(-picture.shape[1] // WIDEST))
-    return Drawing((Part("picture", "", Screen(np.ascontiguousarray(picture[::step, ::step]))),))
+    return LayerUpdate(
+        (PlacedShape("picture", "", CameraImage(np.ascontiguousarray(picture[::step, ::step]))),)
+    )
 
 
 def _rows(message, width: int) -> np.ndarray:
@@ -53,4 +55,4 @@ def _depth(message) -> np.ndarray:
     return np.repeat(shade[:, :, None], 3, axis=2)
 
 
-LAYER = Layer("Cameras", ("sensor_msgs/Image",), lambda: draw, seconds=0.2)
+LAYER = DisplayLayer("Cameras", ("sensor_msgs/Image",), lambda: draw, seconds=0.2)

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from cockpit.drawing import Drawing, Lines, Part
+from cockpit.drawing import LayerUpdate, LineSegments, PlacedShape
 from cockpit.frames import pose_matrix
-from cockpit.layer import Layer
+from cockpit.layer import DisplayLayer
 
 COLOUR = (255, 140, 0)
 LENGTH, HEAD, HEIGHT = 0.45, 0.14, 0.06
@@ -27,7 +27,7 @@ def ellipse(covariance: np.ndarray, sigmas: float = 2.0) -> np.ndarray:
     return np.stack((points[:-1], points[1:]), axis=1)
 
 
-def draw(message) -> Drawing:
+def draw(message) -> LayerUpdate:
     """Of PoseStamped, PoseWithCovarianceStamped, Odometry and PointStamped."""
     if hasattr(message, "point"):
         point = message.point
@@ -39,19 +39,19 @@ def draw(message) -> Drawing:
         pose = pose_matrix((told.position.x, told.position.y, HEIGHT), (q.x, q.y, q.z, q.w))
         parts = [arrow()]
     if pose is None:
-        return Drawing(told="a pose that is no pose")
+        return LayerUpdate(warning="the pose is not finite, or its quaternion is zero")
     frame = message.header.frame_id
-    lines = [Part("arrow", frame, Lines(np.concatenate(parts), COLOUR, 6.0), pose)]
+    lines = [PlacedShape("arrow", frame, LineSegments(np.concatenate(parts), COLOUR, 6.0), pose)]
     covariance = getattr(message.pose, "covariance", None) if hasattr(message, "pose") else None
     if covariance is not None and np.isfinite(covariance).all():
         flat = np.reshape(covariance, (6, 6))[:2, :2]
         place = np.eye(4)
         place[:3, 3] = pose[:3, 3]
-        lines.append(Part("ellipse", frame, Lines(ellipse(flat), (180, 120, 255), 3.0), place))
-    return Drawing(tuple(lines))
+        lines.append(PlacedShape("ellipse", frame, LineSegments(ellipse(flat), (180, 120, 255), 3.0), place))
+    return LayerUpdate(tuple(lines))
 
 
-LAYER = Layer(
+LAYER = DisplayLayer(
     "Poses",
     (
         "geometry_msgs/PoseStamped",

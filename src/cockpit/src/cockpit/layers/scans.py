@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from cockpit.drawing import Drawing, Part, Points
-from cockpit.layer import Layer
+from cockpit.drawing import LayerUpdate, PlacedShape, PointCloudShape
+from cockpit.layer import DisplayLayer
 
 COLOUR = (230, 57, 70)
 
 
-def draw(message) -> Drawing:
+def draw(message) -> LayerUpdate:
     ranges = np.asarray(message.ranges, dtype=float)
     with np.errstate(invalid="ignore"):  # angles may be anything
         angles = message.angle_min + message.angle_increment * np.arange(len(ranges))
@@ -21,8 +21,8 @@ def draw(message) -> Drawing:
     ranges, angles = ranges[seen], angles[seen]
     points = np.column_stack((ranges * np.cos(angles), ranges * np.sin(angles), np.zeros(len(ranges))))
     header = message.header
-    thing = Points(points, COLOUR, 0.05)
-    return Drawing((Part("scan", header.frame_id, thing, stamp=header.stamp.to_sec() or None),))
+    shape = PointCloudShape(points, COLOUR, 0.05)
+    return LayerUpdate((PlacedShape("scan", header.frame_id, shape, stamp=header.stamp.to_sec() or None),))
 
 
-LAYER = Layer("Scan", ("sensor_msgs/LaserScan",), lambda: draw, shown=("scan",))
+LAYER = DisplayLayer("Scan", ("sensor_msgs/LaserScan",), lambda: draw, shown=("scan",))

@@ -1,4 +1,4 @@
-"""Faults that are asked for at the page: what their kinds are, and which of them last."""
+"""Faults requested on the page: their kinds, and which of them are active."""
 
 import math
 from dataclasses import dataclass
@@ -8,68 +8,82 @@ Row = Tuple[str, str, str]
 
 
 @dataclass(frozen=True)
-class Kind:
-    """``says``: what goes wrong; ``unit``: of its strength, empty if it has none.
+class FaultKindInfo:
+    """A kind of fault of the simulator.
 
-    ``usual``, ``least``, ``largest``: strengths.
+    Attributes:
+        name: Name in scenario files and of the service.
+        description: What the fault does, without a full stop.
+        unit: Unit of the strength; empty if the kind has no strength.
+        usual: Default strength.
+        least: Smallest strength.
+        largest: Largest strength.
     """
 
     name: str
-    says: str
+    description: str
     unit: str
     usual: float
     least: float
     largest: float
 
     def sentence(self) -> str:
-        """What goes wrong, and how much it can."""
+        """Describe the fault and the range of its strength."""
         if not self.unit:
-            return f"{self.says}."
-        return f"{self.says}. Usually {self.amount(0.0)}, from {self.least:g} to {self.largest:g}."
+            return f"{self.description}."
+        return f"{self.description}. Usually {self.amount(0.0)}, from {self.least:g} to {self.largest:g}."
 
     def amount(self, strength: float) -> str:
-        """As a person reads it; 0: the usual one."""
+        """Format a strength with its unit; 0 means the usual one."""
         return f"{strength or self.usual:g} {self.unit}" if self.unit else ""
 
 
 @dataclass(frozen=True)
-class Wish:
-    """A fault as it is asked for; ``seconds``: 0 for ever, ``strength``: 0 the usual one."""
+class FaultRequest:
+    """A requested fault.
 
-    kind: Kind
+    Attributes:
+        kind: Kind of the fault.
+        seconds: Duration [simulated s]; 0 means forever.
+        strength: Strength in the unit of the kind; 0 means the usual one.
+    """
+
+    kind: FaultKindInfo
     seconds: float
     strength: float
 
 
-class Asked:
-    """What one simulator has been asked for, and has let go wrong."""
+class RequestedFaults:
+    """The faults that one simulator has accepted."""
 
     def __init__(self) -> None:
         self._simulator: Optional[str] = None
-        self._begun: List[Tuple[Wish, float]] = []
+        self._begun: List[Tuple[FaultRequest, float]] = []
 
-    def know(self, simulator: Optional[str]) -> None:
-        """Which one there is: another one, or none, has nothing of what was asked for before."""
+    def set_simulator(self, simulator: Optional[str]) -> None:
+        """Set the address of the simulator's service; the list is cleared when it changes."""
         if simulator != self._simulator:
             self._begun.clear()
         self._simulator = simulator
 
-    def add(self, wish: Wish, now: float) -> None:
-        """``now``: simulated seconds."""
-        self._begun.append((wish, now))
+    def add(self, request: FaultRequest, now: float) -> None:
+        """Record a fault that began at ``now`` [simulated s]."""
+        self._begun.append((request, now))
 
     def rows(self, now: float) -> List[Row]:
-        """Kind, strength and seconds left of each that lasts.
+        """Return kind, strength and seconds left of each active fault.
 
-        Nothing is over for good: where time is set back, the simulator lets it go wrong once more.
+        Expired faults are kept: when simulated time jumps back, the simulator applies them again.
         """
-        lasting = ((wish, start + (wish.seconds or math.inf)) for wish, start in self._begun if start <= now)
-        return [_row(wish, end - now) for wish, end in lasting if now < end]
+        active = (
+            (request, start + (request.seconds or math.inf)) for request, start in self._begun if start <= now
+        )
+        return [_row(request, end - now) for request, end in active if now < end]
 
 
-def _row(wish: Wish, left: float) -> Row:
+def _row(request: FaultRequest, left: float) -> Row:
     return (
-        wish.kind.name,
-        wish.kind.amount(wish.strength),
-        "for ever" if math.isinf(left) else f"{round(left, 1):g}",
+        request.kind.name,
+        request.kind.amount(request.strength),
+        "forever" if math.isinf(left) else f"{round(left, 1):g}",
     )

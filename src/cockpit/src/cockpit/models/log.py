@@ -1,4 +1,4 @@
-"""What nodes have said, and of that what a person wants to read (rqt_console)."""
+"""The log messages of nodes, and a filter for them (rqt_console)."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -10,8 +10,16 @@ HEADS = ("Level", "Time", "Node", "Message", "Where")
 
 
 @dataclass(frozen=True)
-class Said:
-    """A line of a log; ``stamp``: seconds of ROS time; ``where``: in its source."""
+class LogEntry:
+    """A log message.
+
+    Attributes:
+        level: Level as in rosgraph_msgs/Log.
+        stamp: ROS time [s].
+        node: Name of the node.
+        text: The message.
+        where: File, line and function.
+    """
 
     level: int
     stamp: float
@@ -21,40 +29,46 @@ class Said:
 
 
 @dataclass(frozen=True)
-class Wanted:
-    """``lowest``: level; ``node``, ``text``: parts of names and messages, in whatever case."""
+class LogFilter:
+    """Which log messages are listed.
+
+    Attributes:
+        lowest: Lowest level.
+        node: Part of the node's name, ignoring case.
+        text: Part of the message, ignoring case.
+    """
 
     lowest: int = 1
     node: str = ""
     text: str = ""
 
-    def takes(self, said: Said) -> bool:
+    def accepts(self, entry: LogEntry) -> bool:
         return (
-            said.level >= self.lowest
-            and self.node.lower() in said.node.lower()
-            and self.text.lower() in said.text.lower()
+            entry.level >= self.lowest
+            and self.node.lower() in entry.node.lower()
+            and self.text.lower() in entry.text.lower()
         )
 
 
-class Log:
-    """The last MOST_KEPT lines."""
+class LogBuffer:
+    """The last MOST_KEPT log messages."""
 
     def __init__(self) -> None:
-        self._lines: Deque[Said] = deque(maxlen=MOST_KEPT)
+        self._lines: Deque[LogEntry] = deque(maxlen=MOST_KEPT)
 
-    def add(self, said: Said) -> None:
-        self._lines.append(said)
+    def add(self, entry: LogEntry) -> None:
+        self._lines.append(entry)
 
     def clear(self) -> None:
         self._lines.clear()
 
-    def rows(self, wanted: Wanted) -> List[Tuple[str, str, str, str, str]]:
-        """The newest that are wanted, the newest first."""
+    def rows(self, log_filter: LogFilter) -> List[Tuple[str, str, str, str, str]]:
+        """Return the accepted messages as table rows, the newest first."""
         rows = []
-        for said in reversed(self._lines):
-            if wanted.takes(said):
-                level = LEVELS.get(said.level, str(said.level))
-                rows.append((level, f"{said.stamp:.3f}", said.node, said.text, said.where))
+        for entry in reversed(self._lines):
+            if log_filter.accepts(entry):
+                level = LEVELS.get(entry.level, str(entry.level))
+                rows.append((level, f"{entry.stamp:.3f}", entry.node, entry.text, entry.where))
                 if len(rows) == MOST_SHOWN:
                     break
         return rows

@@ -1,4 +1,4 @@
-"""Solids one metre across, as triangles."""
+"""Triangle meshes of solids with a size of one metre."""
 
 from typing import Tuple
 
@@ -10,7 +10,7 @@ Solid = Tuple[np.ndarray, np.ndarray]
 
 
 def box() -> Solid:
-    """Vertices (N, 3) and triangles (M, 3)."""
+    """Return vertices (N, 3) and triangles (M, 3) of a cube."""
     vertices = np.array(np.meshgrid(*[(-0.5, 0.5)] * 3, indexing="ij")).reshape(3, -1).T
     sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     triangles = [part for a, b, c, d in sides for part in ((a, b, c), (a, c, d))]
@@ -18,7 +18,7 @@ def box() -> Solid:
 
 
 def cylinder() -> Solid:
-    """Its axis along z."""
+    """Return a cylinder with its axis along z."""
     rim = 0.5 * _circle()
     vertices = np.vstack([np.column_stack((rim, np.full(CORNERS, z))) for z in (-0.5, 0.5)])
     at, after = np.arange(CORNERS), np.roll(np.arange(CORNERS), -1)
@@ -41,7 +41,7 @@ def ball() -> Solid:
 
 
 def placed_at(vertices: np.ndarray, triangles: np.ndarray, points: np.ndarray) -> Solid:
-    """One copy of a solid at each of ``points`` (N, 3)."""
+    """Return one copy of a solid at each of ``points`` (N, 3)."""
     count = len(vertices)
     copies = (vertices[None] + points[:, None]).reshape(-1, 3)
     offsets = np.arange(len(points))[:, None, None] * count

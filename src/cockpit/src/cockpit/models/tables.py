@@ -1,4 +1,4 @@
-"""Tables as the page shows them: HTML in which nothing that comes from the graph is HTML."""
+"""HTML tables and paragraphs; all text from the graph is escaped."""
 
 from html import escape
 from typing import Iterable, Sequence
@@ -13,7 +13,7 @@ LONGEST_LINE = 48
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """``rows``: anything that has a text."""
+    """Format a table; cells are converted with ``str``."""
     head = "".join(f'<th style="{CELL};opacity:.6;font-weight:600">{escape(text)}</th>' for text in heads)
     body = "".join("<tr>" + "".join(_cell(str(cell)) for cell in row) + "</tr>" for row in rows)
     return f'<div style="{STYLE}"><table style="border-collapse:collapse"><tr>{head}</tr>{body}</table></div>'
@@ -23,8 +23,8 @@ def _cell(text: str) -> str:
     return f'<td style="{CELL}{SHORT if len(text) <= LONGEST_LINE else LONG}">{escape(text)}</td>'
 
 
-def note(text: str) -> str:
-    """A sentence or two, as long as they are."""
+def paragraph(text: str) -> str:
+    """Format a short paragraph."""
     return f'<div style="margin:0 12px 6px 12px;font-size:12px;opacity:.75">{escape(text)}</div>'
 
 

@@ -1,4 +1,4 @@
-"""Messages as text, however large they are."""
+"""Messages as text of bounded length."""
 
 from typing import Any, Dict, List
 
@@ -10,12 +10,12 @@ MOST_LINES, MOST_ITEMS, LONGEST = 60, 8, 120
 
 
 def outline(message: Any) -> str:
-    """A message's fields with their values as HTML; of long arrays the first."""
+    """Format a message's fields as HTML, with the first items of long arrays."""
     return preformatted("\n".join(lines_of(message)))
 
 
 def lines_of(message: Any, indent: str = "") -> List[str]:
-    """At most MOST_LINES."""
+    """Return the fields as at most MOST_LINES lines."""
     lines: List[str] = []
     for name in message.__slots__:
         if name.startswith("_"):
@@ -40,19 +40,19 @@ def value_text(value: Any) -> str:
     if isinstance(value, bytes):
         return f"{len(value)} bytes"
     if isinstance(value, (list, tuple, np.ndarray)):
-        told = ", ".join(value_text(item) for item in value[:MOST_ITEMS])
-        return f"[{told}]" if len(value) <= MOST_ITEMS else f"{len(value)} of [{told}, ...]"
+        text = ", ".join(value_text(item) for item in value[:MOST_ITEMS])
+        return f"[{text}]" if len(value) <= MOST_ITEMS else f"{len(value)} of [{text}, ...]"
     text = str(value)
     return text if len(text) <= LONGEST else text[:LONGEST] + "..."
 
 
 def flat(tree: Any, name: str = "") -> Dict[str, Any]:
-    """The leaves of dictionaries in dictionaries, each by its full name."""
+    """Flatten nested dictionaries to their leaves by full name."""
     if not isinstance(tree, dict) or not tree:
         return {name: tree} if name else {}
     return {path: leaf for key, below in tree.items() for path, leaf in flat(below, f"{name}/{key}").items()}
 
 
 def amount(size: int) -> str:
-    """Of bytes."""
+    """Format a number of bytes."""
     return f"{size / 1e6:.1f} MB" if size >= 100_000 else f"{size / 1e3:.1f} KB"

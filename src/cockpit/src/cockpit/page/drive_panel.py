@@ -2,7 +2,7 @@
 
 from typing import Any, Callable, Mapping, Protocol, Sequence, Tuple
 
-from cockpit.models.tables import note
+from cockpit.models.tables import paragraph
 
 LOOK, GOAL, POSE, POINT, BOX, MOVE = "Look", "Goal", "Pose", "Point", "Box", "Move"
 MODES = (LOOK, GOAL, POSE, POINT, BOX, MOVE)
@@ -24,7 +24,7 @@ SPEEDS = ("as fast as it keeps up", "0.5 x", "1 x", "2 x", "5 x")
 FACTORS = (0.0, 0.5, 1.0, 2.0, 5.0)
 
 
-class Driver(Protocol):
+class DriveCommands(Protocol):
     """What the panel asks for; whatever it raises is told on the page."""
 
     def set_mode(self, mode: str) -> None: ...
@@ -51,21 +51,21 @@ class Driver(Protocol):
 class DrivePanel:
     """``guarded`` wraps what controls call."""
 
-    def __init__(self, gui, tab, driver: Driver, guarded: Callable[[Callable], Callable]):
+    def __init__(self, gui, tab, driver: DriveCommands, guarded: Callable[[Callable], Callable]):
         self._gui, self._driver, self._guarded = gui, driver, guarded
         with tab:
             self._build_pointing()
             self._build_teleop()
             self._build_time()
             self._build_mission()
-            self._build_hinges()
+            self._build_joints()
         self._build_keys()
 
-    def offer_world(self, things: Sequence[str], hinges: Sequence[str]) -> None:
+    def offer_world(self, things: Sequence[str], joints: Sequence[str]) -> None:
         """What can be moved, and opened."""
         _offer(self.thing, things)
-        _offer(self.hinge, hinges)
-        self._hinges.visible = bool(hinges)
+        _offer(self.joint, joints)
+        self._joints.visible = bool(joints)
 
     def offer(self, robots: Sequence[str], topics: Sequence[str], places: Sequence[str]) -> None:
         """Robots that take goals, topics that take velocities, and where things are carried."""
@@ -74,14 +74,14 @@ class DrivePanel:
         for end in (self.source, self.destination):
             _offer(end, places)
 
-    def look(self) -> None:
+    def reset_mode(self) -> None:
         """Pointing is over."""
         self.mode.value = LOOK
 
     def _build_pointing(self) -> None:
         gui = self._gui
         self.mode = gui.add_dropdown("Mouse", MODES)
-        self.hint = gui.add_html(note(HINTS[LOOK]))
+        self.hint = gui.add_html(paragraph(HINTS[LOOK]))
         self.robot = gui.add_dropdown("Robot", ("/",))
         self.thing = gui.add_dropdown("Thing", (NOTHING,), visible=False)
         self.cancel = gui.add_button("Cancel the goal", color="gray")
@@ -91,12 +91,12 @@ class DrivePanel:
     def _choose_mode(self, _event: Any) -> None:
         self.thing.visible = self.mode.value == MOVE
         self._driver.set_mode(self.mode.value)
-        self.hint.content = note(HINTS[self.mode.value])  # said when it is so
+        self.hint.content = paragraph(HINTS[self.mode.value])  # said when it is so
 
     def _build_teleop(self) -> None:
         gui = self._gui
         with gui.add_folder("Drive by hand"):
-            gui.add_html(note("Hold a button or its key: u i o j k l, m is back. Let go: it stops."))
+            gui.add_html(paragraph("Hold a button or its key: u i o j k l, m is back. Let go: it stops."))
             self.topic = gui.add_dropdown("Velocities to", (NOBODY,))
             for label, key in BUTTONS:
                 button = gui.add_button(f"{label}  {ARROWS[label]}")
@@ -106,7 +106,7 @@ class DrivePanel:
     def _build_mission(self) -> None:
         gui, driver, guarded = self._gui, self._driver, self._guarded
         with gui.add_folder("Mission"):
-            self.mission = gui.add_html(note("No mission is told of."))
+            self.mission = gui.add_html(paragraph("No mission is told of."))
             self.object = gui.add_text("Object", "parcel")
             self.source = gui.add_dropdown("From", (NOWHERE,))
             self.destination = gui.add_dropdown("To", (NOWHERE,))
@@ -114,10 +114,10 @@ class DrivePanel:
             start.on_click(guarded(lambda _: driver.deliver()))
             end.on_click(guarded(lambda _: driver.cancel_mission()))
 
-    def _build_hinges(self) -> None:
-        self._hinges = self._gui.add_folder("Doors and drawers", visible=False)
-        with self._hinges:
-            self.hinge = self._gui.add_dropdown("Of", (NOTHING,))
+    def _build_joints(self) -> None:
+        self._joints = self._gui.add_folder("Doors and drawers", visible=False)
+        with self._joints:
+            self.joint = self._gui.add_dropdown("Of", (NOTHING,))
             self.opened = self._gui.add_slider("Open, %", 0, 100, 5, 0)
             self.opened.on_update(self._guarded(lambda _: self._driver.swing()))
 

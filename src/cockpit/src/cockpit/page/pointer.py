@@ -4,23 +4,23 @@ from typing import Any, Callable, Optional, Tuple
 
 import numpy as np
 
-from cockpit.drawing import Drawing, Lines, Part
+from cockpit.drawing import LayerUpdate, LineSegments, PlacedShape
 from cockpit.frames import pose_matrix
 from cockpit.layers.poses import arrow
-from cockpit.models.pointing import facing, on_floor, quaternion_of
-from cockpit.page.drawer import Drawer
+from cockpit.models.pointing import drag_yaw, floor_intersection, quaternion_of
+from cockpit.page.scene_renderer import SceneRenderer
 
 Point = Tuple[float, float]
 PREVIEW, COLOUR, HEIGHT = "pointer", (46, 160, 67), 0.08
 
 
-class Pointer:
+class FloorPointer:
     """Calls ``on_pose`` with x, y and yaw in the fixed frame, and the client that pointed.
 
     ``floor``: the handle of what is pressed. Without a turn the yaw is None.
     """
 
-    def __init__(self, floor: Any, drawer: Drawer):
+    def __init__(self, floor: Any, drawer: SceneRenderer):
         self._floor, self._drawer = floor, drawer
         self._on_pose: Optional[Callable[[float, float, Optional[float], int], None]] = None
         self._start: Optional[Point] = None
@@ -40,17 +40,17 @@ class Pointer:
         if event.ray_origin is None or event.ray_direction is None or self._on_pose is None:
             return
         origin = np.asarray(event.ray_origin, float)
-        hit = on_floor(origin, origin + np.asarray(event.ray_direction, float))
+        hit = floor_intersection(origin, origin + np.asarray(event.ray_direction, float))
         if hit is not None:
             self._on_pose(*hit, None, event.client_id)
 
     def _dragged(self, event: Any) -> None:
         if event.phase == "start":
             self._start = event.start_position[0], event.start_position[1]
-        start, end = self._start, on_floor(event.client.camera.position, event.end_position)
+        start, end = self._start, floor_intersection(event.client.camera.position, event.end_position)
         if start is None:
             return
-        yaw = facing(start, end, np.nan)
+        yaw = drag_yaw(start, end, np.nan)
         if event.phase == "end":
             self._start = None
             self._drawer.clear(PREVIEW)
@@ -58,5 +58,5 @@ class Pointer:
                 self._on_pose(*start, None if np.isnan(yaw) else yaw, event.client_id)
         elif not np.isnan(yaw):
             pose = pose_matrix((*start, HEIGHT), quaternion_of(yaw))
-            lines = Lines(arrow(0.7, 0.2), COLOUR, 8.0)
-            self._drawer.show(PREVIEW, Drawing((Part("arrow", "", lines, pose),)))
+            lines = LineSegments(arrow(0.7, 0.2), COLOUR, 8.0)
+            self._drawer.show(PREVIEW, LayerUpdate((PlacedShape("arrow", "", lines, pose),)))

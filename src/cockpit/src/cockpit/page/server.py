@@ -1,4 +1,4 @@
-"""viser's server behind the gate: the page's look, its lights, who is there."""
+"""viser's server behind the guard: the page's look, its lights, who is there."""
 
 import contextlib
 import io
@@ -8,10 +8,10 @@ from typing import Callable, List
 import numpy as np
 import viser
 
-from cockpit.access import Access
+from cockpit.access import AccessPolicy
 from cockpit.frames import wxyz_of
-from cockpit.page.drawer import LAID_DOWN
-from cockpit.page.gate import Gate, listen
+from cockpit.page.connection_guard import ConnectionGuard, listen
+from cockpit.page.scene_renderer import LAID_DOWN
 
 NAME = "Cockpit"
 BRAND = (38, 110, 160)
@@ -31,16 +31,16 @@ class Page:
         listening = listen(address, port)
         port = listening.getsockname()[1]
         shown = "127.0.0.1" if address in ("0.0.0.0", "::") else address
-        access = Access(port, (shown,))
+        access = AccessPolicy(port, (shown,))
         self.url = f"http://{f'[{shown}]' if ':' in shown else shown}:{port}/?token={access.token}"
         self._on_leave: List[Callable[[int], None]] = []
         self._is_watched = threading.Event()
         # viser greets on the standard output, with a URL that has no token.
-        gate = Gate(listening, access)
-        with gate.guarding(), contextlib.redirect_stdout(io.StringIO()):
+        guard = ConnectionGuard(listening, access)
+        with guard.guarding(), contextlib.redirect_stdout(io.StringIO()):
             self._server = viser.ViserServer(address, port, label=NAME, verbose=False)
         self.gui, self.scene = self._server.gui, self._server.scene
-        gate.know(self.gui)
+        guard.set_controls(self.gui)
         self._server.on_client_connect(self._came)
         self._server.on_client_disconnect(self._left)
         self._dress()
@@ -60,7 +60,7 @@ class Page:
         """``do`` is given the number of each client whose page was closed, or lost."""
         self._on_leave.append(do)
 
-    def tell(self, text: str, is_bad: bool = False) -> None:
+    def notify(self, text: str, is_bad: bool = False) -> None:
         """A note on every page, which goes by itself."""
         for client in self.clients():
             client.add_notification(
@@ -74,7 +74,7 @@ class Page:
         """What is changed within is seen at once."""
         return self._server.atomic()
 
-    def look_over(self, low_xy: np.ndarray, high_xy: np.ndarray) -> None:
+    def frame_view(self, low_xy: np.ndarray, high_xy: np.ndarray) -> None:
         """Those who come from now on see all between two corners, m, from above and aside."""
         middle = np.append(0.5 * (low_xy + high_xy), 0.0)
         away = 0.5 * float(np.linalg.norm(high_xy - low_xy)) / np.tan(0.5 * FIELD_OF_VIEW)

@@ -24,10 +24,10 @@ class ToolPanel:
 
     def window(self, title: str, width: int) -> Any:
         """A new window with one tab: the context in which controls are made, and ``remove()``."""
-        return Window(self._gui, title, width)
+        return ToolWindow(self._gui, title, width)
 
 
-class Window:
+class ToolWindow:
     """A movable window of the page; ``width``: pixels."""
 
     def __init__(self, gui, title: str, width: int = WIDTH):

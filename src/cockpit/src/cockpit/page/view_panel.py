@@ -2,7 +2,7 @@
 
 from typing import Any, Callable, Dict, Tuple
 
-from cockpit.layer import Layer
+from cockpit.layer import DisplayLayer
 
 AUTOMATIC = "automatic"
 
@@ -37,7 +37,7 @@ class ViewPanel:
         if self.fixed.options != (AUTOMATIC, *names):
             self.fixed.options = (AUTOMATIC, *names)
 
-    def offer(self, topic: str, layer: Layer) -> None:
+    def offer(self, topic: str, layer: DisplayLayer) -> None:
         """A box for a topic, as it was last left."""
         if topic in self._boxes:
             return
@@ -60,7 +60,7 @@ class ViewPanel:
         """The topics that have a box, and whether they are switched on."""
         return {topic: box.value for topic, box in self._boxes.items()}
 
-    def tell(self, text: str) -> None:
+    def show_status(self, text: str) -> None:
         """How things stand, as HTML."""
         if self.status.content != text:
             self.status.content = text

@@ -6,15 +6,15 @@ from typing import Any, Dict, List, Optional, Tuple
 import numpy as np
 
 from cockpit.frames import FrameTree, wxyz_of
-from cockpit.scene.look import Hinge, Look, Piece, cut_at, merged
+from cockpit.scene.description import DisplayJoint, SceneDescription, VisualPart, cut_at, merged
 
 STILL = 1e-5
 
 
-class Thing:
+class LinkView:
     """Pieces that move together: a node of the scene with a surface for each colour."""
 
-    def __init__(self, scene, path: str, pieces: Tuple[Piece, ...]):
+    def __init__(self, scene, path: str, pieces: Tuple[VisualPart, ...]):
         self._scene, self._path = scene, path
         self.pieces = pieces
         self.node = scene.add_frame(path, show_axes=False)
@@ -58,10 +58,10 @@ class WorldView:
 
     def __init__(self, scene):
         self._scene = scene
-        self._things: Dict[str, Thing] = {}
+        self._things: Dict[str, LinkView] = {}
         self._poses: Dict[str, np.ndarray] = {}
         self._height = np.inf
-        self.hinges: Dict[str, Hinge] = {}
+        self.joints: Dict[str, DisplayJoint] = {}
         self.is_shown = True
 
     @property
@@ -73,13 +73,13 @@ class WorldView:
     def models(self) -> List[str]:
         return sorted({thing.pieces[0].model for thing in self._things.values()})
 
-    def show(self, look: Look) -> None:
-        def thing_of(piece: Piece) -> str:
+    def show(self, look: SceneDescription) -> None:
+        def thing_of(piece: VisualPart) -> str:
             return f"{piece.model}::{piece.link}"
 
-        self.hinges.update({f"{hinge.model}: {hinge.name}": hinge for hinge in look.hinges})
+        self.joints.update({f"{joint.model}: {joint.name}": joint for joint in look.joints})
         for name, pieces in groupby(sorted(look.pieces, key=thing_of), thing_of):
-            thing = Thing(self._scene, f"/world/{name.replace('/', ':')}", tuple(pieces))
+            thing = LinkView(self._scene, f"/world/{name.replace('/', ':')}", tuple(pieces))
             thing.draw(self._height)
             self._things[name] = thing
             self._poses[name] = thing.pieces[0].pose
@@ -89,7 +89,7 @@ class WorldView:
         for name in [name for name, thing in self._things.items() if thing.pieces[0].model == model]:
             self._things.pop(name).remove()
             del self._poses[name]
-        self.hinges = {name: hinge for name, hinge in self.hinges.items() if hinge.model != model}
+        self.joints = {name: joint for name, joint in self.joints.items() if joint.model != model}
 
     def cut(self, height: float) -> None:
         """Takes off what is above ``height``, metres: roofs, and the upper part of walls."""
@@ -116,12 +116,12 @@ class WorldView:
 class RobotView:
     """A robot's links, each where tf says; ``prefix`` is before the names of its frames."""
 
-    def __init__(self, scene, name: str, look: Look, prefix: str):
+    def __init__(self, scene, name: str, look: SceneDescription, prefix: str):
         self._prefix = f"{prefix.strip('/')}/" if prefix.strip("/") else ""
-        self._things: Dict[str, Thing] = {}
+        self._things: Dict[str, LinkView] = {}
         for link, pieces in groupby(sorted(look.pieces, key=_link), _link):
             path = f"/robots/{name.strip('/').replace('/', ':') or 'robot'}/{link}"
-            self._things[link] = Thing(scene, path, tuple(pieces))
+            self._things[link] = LinkView(scene, path, tuple(pieces))
             self._things[link].draw(np.inf)
 
     def update(self, frames: FrameTree, fixed: str, is_shown: bool) -> None:
@@ -133,5 +133,5 @@ class RobotView:
             thing.remove()
 
 
-def _link(piece: Piece) -> str:
+def _link(piece: VisualPart) -> str:
     return piece.link

@@ -24,7 +24,7 @@ def call(name: str, kind: Any, *arguments: Any, seconds: float = ANSWER_SECONDS)
         raise CockpitError(str(error)) from None
 
 
-def join(publisher: rospy.Publisher, listeners: int) -> None:
+def wait_for_subscribers(publisher: rospy.Publisher, listeners: int) -> None:
     """Gives those who listen the time to find it."""
     deadline = time.monotonic() + LISTENER_SECONDS
     while time.monotonic() < deadline and publisher.get_num_connections() < listeners:

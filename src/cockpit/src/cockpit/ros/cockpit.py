@@ -8,23 +8,23 @@ from typing import Any, Callable
 import numpy as np
 import rospy
 
-from cockpit.drawing import Axes, Drawing, Label, Part
+from cockpit.drawing import FrameAxes, Label, LayerUpdate, PlacedShape
 from cockpit.errors import CockpitError
 from cockpit.frames import FrameTree
-from cockpit.page.camera import Follower
-from cockpit.page.drawer import Drawer
-from cockpit.page.pointer import Pointer
-from cockpit.page.screens import Screens
+from cockpit.page.camera_follower import CameraFollower
+from cockpit.page.camera_images import CameraWindow
+from cockpit.page.pointer import FloorPointer
+from cockpit.page.scene_renderer import SceneRenderer
 from cockpit.page.server import Page
 from cockpit.page.view_panel import AUTOMATIC, ViewPanel
-from cockpit.ros.driving import Driving
-from cockpit.ros.graph import Graph
-from cockpit.ros.showing import Layers
-from cockpit.ros.tool import said
+from cockpit.ros.drive_tab import DriveTab
+from cockpit.ros.graph import GraphClient
+from cockpit.ros.layer_subscriptions import LayerManager
+from cockpit.ros.tool import error_text
 from cockpit.ros.toolbox import Toolbox
-from cockpit.ros.transforms import TransformListener
-from cockpit.ros.world.looks import Reader
-from cockpit.ros.world.world import World
+from cockpit.ros.transforms import TransformFeed
+from cockpit.ros.world.scene_reader import SceneReader
+from cockpit.ros.world.world import WorldTracker
 
 PERIOD = 0.1
 # How often it is asked what there is.
@@ -39,22 +39,22 @@ JITTER_SECONDS = 0.1
 class Cockpit:
     """Everything of the page but the page itself."""
 
-    def __init__(self, page: Page, reader: Reader):
+    def __init__(self, page: Page, reader: SceneReader):
         self._page = page
-        self._graph = Graph()
+        self._graph = GraphClient()
         self._fixed: str = FIXED_FRAMES[0]
         self._frames = FrameTree()
-        self._transforms = TransformListener(self._frames)
-        self._drawer = Drawer(page.scene)
-        self._world = World(self._graph, page.scene, reader, self._warn)
-        pointer = Pointer(page.floor, self._drawer)
-        self._driving = Driving(
-            self._graph, self._frames, pointer, self._world, page.tell, lambda: self._fixed
+        self._transforms = TransformFeed(self._frames)
+        self._drawer = SceneRenderer(page.scene)
+        self._world = WorldTracker(self._graph, page.scene, reader, self._warn)
+        pointer = FloorPointer(page.floor, self._drawer)
+        self._driving = DriveTab(
+            self._graph, self._frames, pointer, self._world, page.notify, lambda: self._fixed
         )
         self._build()
         self._world.view.cut(self._view.height.value)
-        self._layers = Layers(self._graph, self._drawer, self._warn)
-        self._follower = Follower(page)
+        self._layers = LayerManager(self._graph, self._drawer, self._warn)
+        self._follower = CameraFollower(page)
         page.on_leave(self._driving.teleop.release)
         self._look_at = self._newest = 0.0
         self._trouble = self._complaint = ""
@@ -66,7 +66,7 @@ class Cockpit:
         self._driving.build(gui, tabs.add_tab("Drive"), self._guarded)
         with tabs.add_tab("Tools"):
             self.toolbox = Toolbox(self._page, self._graph)
-        self._screens = Screens(gui)
+        self._screens = CameraWindow(gui)
 
     def run(self, is_over: Callable[[], bool] = rospy.is_shutdown) -> None:
         """Until ``is_over``."""
@@ -79,7 +79,7 @@ class Cockpit:
             try:
                 self._turn(began)
             except Exception as error:  # whatever a graph sends, the page goes on
-                self._complain(said(error))
+                self._complain(error_text(error))
             time.sleep(max(PERIOD - (time.monotonic() - began), 0.02))
         self._driving.teleop.close()
         self._rest()
@@ -87,7 +87,7 @@ class Cockpit:
     def _read_world(self) -> None:
         """So that it is there when the first page opens."""
         with suppress(CockpitError):
-            self._world.look_for()
+            self._world.poll()
 
     def _rest(self) -> None:
         """Nobody looks: nothing is subscribed to."""
@@ -103,12 +103,12 @@ class Cockpit:
             self._transforms.listen(True)
             if now >= self._look_at:
                 self._look_at = now + LOOKING_SECONDS
-                self._look_around()
+                self._refresh()
             self._driving.update()
             self._transforms.update()
             self._trouble = ""
         except Exception as error:  # the rest is shown nevertheless
-            self._trouble = said(error)
+            self._trouble = error_text(error)
         self._fixed = self._fixed_frame()
         self._layers.update(now)
         self._show(now)
@@ -117,11 +117,11 @@ class Cockpit:
     def _watch_time(self, stamp: float) -> None:
         """``stamp``: seconds of ROS time."""
         if stamp < self._newest - JITTER_SECONDS:
-            self._layers.begin_anew()
-            self._frames.begin_anew()
+            self._layers.reset()
+            self._frames.reset()
         self._newest = stamp
 
-    def _look_around(self) -> None:
+    def _refresh(self) -> None:
         """What there is, and what of it is to be shown. Raises CockpitError."""
         offers = self._layers.offers()
         for topic, layer in offers.items():
@@ -129,9 +129,9 @@ class Cockpit:
         for topic in set(self._view.offered()) - set(offers):
             self._view.withdraw(topic)
         self._layers.choose(self._view.offered(), offers)
-        self._world.look_for()
+        self._world.poll()
         self._view.offer_frames(tuple(self._frames.names()))
-        self._driving.look_around()
+        self._driving.refresh()
 
     def _fixed_frame(self) -> str:
         """The one that was chosen, or the likeliest."""
@@ -152,7 +152,7 @@ class Cockpit:
         base = self._driving.base_frame() if view.follow.value else None
         self._follower.update(None if base is None else self._frames.pose(base, fixed))
         self._screens.show(self._layers.screens)
-        view.tell(self._status())
+        view.show_status(self._status())
 
     def _status(self) -> str:
         if self._trouble:
@@ -167,7 +167,7 @@ class Cockpit:
 
     def _warn(self, text: str) -> None:
         rospy.logwarn("%s", text)
-        self._page.tell(text, True)
+        self._page.notify(text, True)
 
     def _guarded(self, do: Callable[[Any], object]) -> Callable[[Any], None]:
         """For what controls call: whatever it raises is told, and is the end of this call only."""
@@ -176,17 +176,17 @@ class Cockpit:
             try:
                 do(event)
             except Exception as error:  # a person's input meets the whole of ROS here
-                self._warn(said(error))
+                self._warn(error_text(error))
 
         return guarded
 
 
-def frames_drawn(frames: FrameTree, fixed: str) -> Drawing:
+def frames_drawn(frames: FrameTree, fixed: str) -> LayerUpdate:
     """The axes of every frame that is joined to the fixed one, with their names."""
     found = [(name, frames.pose(name, fixed)) for name in frames.names()]
     poses = [(name, pose) for name, pose in found if pose is not None]
     if not poses:
-        return Drawing()
-    labels = [Part(name, fixed, Label(name, np.zeros(3)), pose) for name, pose in poses]
-    axes = Part("axes", fixed, Axes(np.array([pose for _, pose in poses])))
-    return Drawing((axes, *labels))
+        return LayerUpdate()
+    labels = [PlacedShape(name, fixed, Label(name, np.zeros(3)), pose) for name, pose in poses]
+    axes = PlacedShape("axes", fixed, FrameAxes(np.array([pose for _, pose in poses])))
+    return LayerUpdate((axes, *labels))

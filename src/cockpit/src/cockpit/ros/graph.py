@@ -1,4 +1,4 @@
-"""The ROS graph as the cockpit sees it: what there is, and what is listened to."""
+"""The ROS graph: topics, nodes, services and parameters of the master, and subscriptions."""
 
 import threading
 import time
@@ -11,35 +11,50 @@ import rospy
 from rosgraph.masterapi import MasterError, MasterException
 
 from cockpit.errors import CockpitError
+from planar.deprecation import renamed_method
 
 CATALOGUE_SECONDS = 1.0
 MOST_WAITING = 2000
 
 
-class Feed:
-    """A topic listened to: messages are kept as bytes, and made into messages only when they are taken.
+class TopicFeed:
+    """A subscription whose messages are kept serialized until they are read, so that receiving only copies.
 
-    ``all_of_them``: keeps those that have not been taken yet, else the newest only. Whatever a person looks
-    at, the graph is served first: receiving costs no more than a copy.
+    Attributes:
+        topic: Name of the topic.
+        kind: Message type, "package/Type".
+        count: Messages received so far.
+        bytes: Bytes received so far.
     """
 
     def __init__(self, topic: str, kind: str, all_of_them: bool = False):
-        """Raises CockpitError if this system does not know the type."""
+        """Subscribe.
+
+        Args:
+            topic: Name of the topic.
+            kind: Message type, "package/Type".
+            all_of_them: Keep every unread message (at most MOST_WAITING) instead of the newest only.
+
+        Raises:
+            CockpitError: If the message type is not installed.
+        """
         message_class = roslib.message.get_message_class(kind)
         if message_class is None:
-            raise CockpitError(f"{topic}: {kind} is a type that is not installed here")
+            raise CockpitError(f"{topic}: message type {kind} is not installed")
         self.topic, self.kind = topic, kind
         self._class = message_class
         self._waiting: Deque[Tuple[float, bytes, str]] = deque(maxlen=MOST_WAITING if all_of_them else 1)
         self.count, self.bytes = 0, 0
         self._subscriber = rospy.Subscriber(topic, rospy.AnyMsg, self._on_message, tcp_nodelay=True)
 
-    def take(self) -> List[Any]:
-        """The messages that have come since the last call. Raises CockpitError if all are malformed."""
-        return [message for _, message, _ in self.take_stamped()]
+    def messages(self) -> List[Any]:
+        """Return the messages received since the last call. Raises CockpitError if all are malformed."""
+        return [message for _, message, _ in self.stamped_messages()]
 
-    def take_stamped(self) -> List[Tuple[float, Any, str]]:
-        """The same, each with when it came, in seconds by a steady clock, and the node that sent it."""
+    take = renamed_method("take", "messages")
+
+    def stamped_messages(self) -> List[Tuple[float, Any, str]]:
+        """Return (steady-clock time of arrival [s], message, publishing node) for each unread message."""
         taken, trouble = [], ""
         while self._waiting:
             at, content, sender = self._waiting.popleft()
@@ -65,8 +80,8 @@ class Feed:
         )
 
 
-class Graph:
-    """Topics, nodes and services, asked of the master at most once a second."""
+class GraphClient:
+    """Client of the ROS master; caches the lists of topics, nodes and services for a second."""
 
     def __init__(self):
         self._master = rosgraph.Master(rospy.get_name())
@@ -76,49 +91,46 @@ class Graph:
         self._state: Tuple[Dict[str, List[str]], ...] = ({}, {}, {})
 
     def topics(self) -> Dict[str, str]:
-        """The type of each topic that anybody publishes or subscribes to. Raises CockpitError."""
+        """Return the type of each topic with a publisher or a subscriber. Raises CockpitError."""
         self._ask()
         return dict(self._types)
 
     def publishers(self) -> Dict[str, List[str]]:
-        """The nodes that publish each topic. Raises CockpitError."""
+        """Return the publishing nodes of each topic. Raises CockpitError."""
         self._ask()
         return dict(self._state[0])
 
     def subscribers(self) -> Dict[str, List[str]]:
-        """The nodes that subscribe to each topic. Raises CockpitError."""
+        """Return the subscribing nodes of each topic. Raises CockpitError."""
         self._ask()
         return dict(self._state[1])
 
     def services(self) -> Dict[str, List[str]]:
-        """The node behind each service. Raises CockpitError."""
+        """Return the providers of each service. Raises CockpitError."""
         self._ask()
         return dict(self._state[2])
 
     def address(self, service: str) -> Optional[str]:
-        """Where a service is offered, each time elsewhere if its node is started anew; None if it is not.
-
-        Raises CockpitError.
-        """
+        """Return the URI of a service, which changes when its node restarts, or None. Raises CockpitError."""
         return self._find(lambda: self._master.lookupService(service))
 
     def is_there(self) -> bool:
-        """Whether the master answers."""
+        """Return whether the master responds."""
         try:
             self._ask()
         except CockpitError:
             return False
         return True
 
-    def feed(self, topic: str, kind: Optional[str] = None, all_of_them: bool = False) -> Feed:
-        """Listens to a topic. Raises CockpitError."""
+    def feed(self, topic: str, kind: Optional[str] = None, all_of_them: bool = False) -> TopicFeed:
+        """Subscribe to a topic; ``kind`` defaults to its published type. Raises CockpitError."""
         kind = kind or self.topics().get(topic)
         if kind is None:
             raise CockpitError(f"there is no topic {topic}")
-        return Feed(topic, kind, all_of_them)
+        return TopicFeed(topic, kind, all_of_them)
 
     def parameter(self, name: str, default: Any = None) -> Any:
-        """Raises CockpitError. rospy would answer for "/" from its cache, once that holds anything."""
+        """Return a parameter from the master (rospy answers "/" from its cache). Raises CockpitError."""
         return self._find(lambda: self._master.getParam(rospy.resolve_name(name)), default)
 
     def parameter_names(self) -> List[str]:
@@ -126,7 +138,7 @@ class Graph:
         return _asking(rospy.get_param_names)
 
     def _find(self, ask: Callable[[], Any], default: Any = None) -> Any:
-        """What the master says, ``default`` if it knows of none."""
+        """Ask the master; ``default`` if the name is unknown."""
 
         def find() -> Any:
             try:
@@ -150,7 +162,7 @@ class Graph:
 
 
 def _asking(ask: Callable[[], Any]) -> Any:
-    """Raises CockpitError, whatever went wrong on the way to the master."""
+    """Convert every failure to reach the master to a CockpitError."""
     try:
         return ask()
     except (OSError, MasterException, rospy.ROSException) as error:

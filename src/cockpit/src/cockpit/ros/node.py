@@ -19,7 +19,7 @@ from cockpit.layers import all_layers
 from cockpit.page.server import Page
 from cockpit.ros.cockpit import Cockpit
 from cockpit.ros.tools import all_tools, names
-from cockpit.ros.world.looks import Reader
+from cockpit.ros.world.scene_reader import SceneReader
 from planar import PlanarError
 from planar_ros.node.shell import init_node
 from supervision.command_line import option, parse
@@ -34,7 +34,7 @@ NICENESS = 5
 
 
 @dataclass(frozen=True)
-class Options:
+class CockpitOptions:
     """Shows and drives a running ROS graph in the browser."""
 
     web_port: str = option(FREE_PORT, "where the page is served; 0: a free port", metavar="[ADDRESS:]PORT")
@@ -42,7 +42,7 @@ class Options:
 
 
 def main() -> None:
-    options = parse(Options, rospy.myargv()[1:], "cockpit")
+    options = parse(CockpitOptions, rospy.myargv()[1:], "cockpit")
     try:
         leave(serve(options.web_port, options.tool))
     except PlanarError as error:
@@ -76,9 +76,9 @@ def serve(where: str, tool: Optional[str], words: Tuple[str, ...] = ()) -> int:
     return 0
 
 
-def _get_ready() -> Reader:
+def _get_ready() -> SceneReader:
     """What can be done before there is a graph, which would have to wait for it later."""
-    reader = Reader()
+    reader = SceneReader()
     reader.prepare()
     all_layers()
     all_tools()

@@ -1,36 +1,46 @@
-"""The contract of a tool, as those of rqt are: a window of the page with a subject of its own."""
+"""The contract of a tool: a window of the page, like one plugin of rqt."""
 
 import threading
 from typing import Any, Callable, Protocol, Tuple
 
-from cockpit.ros.graph import Graph
+from cockpit.ros.graph import GraphClient
 from planar import PlanarError
+from planar.deprecation import renamed_method
 
 
-class Desk:
-    """What a tool works with.
+class ToolContext:
+    """What a tool is given: the page, the ROS graph, a lock and its arguments.
 
-    ``gui``: viser's, whose controls come into the tool's window while it is built. ``graph``: the ROS graph.
-    ``lock``: held while any of the tool's methods runs. ``words``: what a person has asked it to show, as in
-    ``rqt_plot /odom/twist/twist/linear/x``; a tool may take no notice.
+    Attributes:
+        gui: The gui of viser; controls made during ``Tool.build`` appear in the tool's window.
+        graph: Client of the ROS graph.
+        lock: Held while any method of the tool runs.
+        words: Arguments of the command line, as in ``rqt_plot /odom/twist/twist/linear/x``; may be ignored.
     """
 
     def __init__(
-        self, gui: Any, graph: Graph, tell: Callable[[str, bool], None], words: Tuple[str, ...] = ()
+        self, gui: Any, graph: GraphClient, notify: Callable[[str, bool], None], words: Tuple[str, ...] = ()
     ):
         self.gui, self.graph, self.words = gui, graph, words
         self.lock = threading.RLock()
-        self._tell = tell
+        self._notify = notify
 
-    def tell(self, text: str, is_bad: bool = False) -> None:
-        """A note on every page."""
-        self._tell(text, is_bad)
+    def notify(self, text: str, is_bad: bool = False) -> None:
+        """Show a notification on every open page.
+
+        Args:
+            text: The notification.
+            is_bad: Whether it reports an error.
+        """
+        self._notify(text, is_bad)
+
+    tell = renamed_method("tell", "notify")
 
     def guarded(self, do: Callable[[Any], None]) -> Callable[[Any], None]:
-        """For what controls call, as ``button.on_click(desk.guarded(self._send))``.
+        """Wrap a callback of a control: ``button.on_click(context.guarded(self._send))``.
 
-        Controls call from threads of their own, whenever a person of any page acts. What is guarded has the
-        tool for itself meanwhile; whatever it raises is told on the page, and is the end of this call only.
+        viser calls back from other threads. The wrapper holds the tool's lock during the call and reports any
+        exception on the page.
         """
 
         def guarded(event: Any) -> None:
@@ -38,27 +48,30 @@ class Desk:
                 try:
                     do(event)
                 except Exception as error:  # a person's input meets the whole of ROS here
-                    self.tell(said(error), True)
+                    self.notify(error_text(error), True)
 
         return guarded
 
 
 class Tool(Protocol):
-    """A window of the page that a person opens and closes.
+    """A window of the page that can be opened and closed.
 
-    A tool is a module of ``cockpit/ros/tools`` that holds the class as ``TOOL``; nothing else has to know of
-    it. What it computes is a pure module of ``cockpit/models``, tested without ROS and without a page.
+    A tool is a module of ``cockpit/ros/tools`` that defines the class as ``TOOL``; it is found automatically.
+    Computations belong in a module of ``cockpit/models``, tested without ROS and without a page.
 
-    ``name``: by which ``cockpit.sh --tool`` and the page know it, one word; ``title``: of its window;
-    ``seconds``: between two updates; ``width``: of its window, pixels.
+    Life cycle: created with a context when it is opened. ``build`` is called once and creates the controls
+    with ``context.gui``; they are removed with the window. ``update`` is called every ``seconds`` while the
+    window and at least one page are open, ``close`` once at the end. ``pause`` is called when the last page
+    closes: it ends all subscriptions; the next ``update`` makes them again.
 
-    Life cycle: made when it is opened, with a desk of its own. ``build`` makes its controls, with
-    ``desk.gui``, once; they vanish with the window. ``update`` is called every ``seconds`` while the window
-    is open and a page is watched, ``close`` once at the end. ``pause`` is called when the last page closes:
-    it ends every subscription, and the next ``update`` makes them anew.
+    No method may block for more than a second: longer work runs in a BackgroundCall, and a later ``update``
+    shows its result. ROS callbacks only store messages. An exception of any method is reported on the page.
 
-    No method waits for another node for longer than a second: what takes longer gets a thread, and is shown
-    by a later ``update``. Callbacks of ROS only hand over. Whatever a method raises is told on the page.
+    Attributes:
+        name: Identifier for ``cockpit.sh --tool`` and the page, one word.
+        title: Title of the window.
+        seconds: Time between two updates [s].
+        width: Width of the window [pixels].
     """
 
     name: str
@@ -66,19 +79,19 @@ class Tool(Protocol):
     seconds: float
     width: int
 
-    def __init__(self, desk: Desk): ...
+    def __init__(self, context: ToolContext): ...
 
     def build(self) -> None: ...
 
     def update(self, now: float) -> None:
-        """``now``: seconds by a steady clock."""
+        """Refresh the window; ``now`` is steady-clock time [s]."""
 
     def pause(self) -> None: ...
 
     def close(self) -> None: ...
 
 
-def said(error: Exception) -> str:
-    """What went wrong, in one line."""
+def error_text(error: Exception) -> str:
+    """Format an error as one line."""
     text = " ".join(str(error).split())
     return text if isinstance(error, PlanarError) and text else f"{type(error).__name__}: {text}"[:300]

@@ -6,15 +6,15 @@ from typing import Any, Dict, List, Tuple
 
 from cockpit.page.server import Page
 from cockpit.page.tool_panel import ToolPanel
-from cockpit.ros.graph import Graph
-from cockpit.ros.tool import Desk, Tool, said
+from cockpit.ros.graph import GraphClient
+from cockpit.ros.tool import Tool, ToolContext, error_text
 from cockpit.ros.tools import all_tools
 
 
 @dataclass
-class _Open:
+class _OpenTool:
     tool: Tool
-    desk: Desk
+    context: ToolContext
     window: Any
     due: float = 0.0
     complaint: str = ""
@@ -23,10 +23,10 @@ class _Open:
 class Toolbox:
     """Opens and closes tools, and lets each of those that are open do its work in turn."""
 
-    def __init__(self, page: Page, graph: Graph):
+    def __init__(self, page: Page, graph: GraphClient):
         self._page, self._graph = page, graph
         self._kinds = all_tools()
-        self._open: Dict[str, _Open] = {}
+        self._open: Dict[str, _OpenTool] = {}
         self._words: Dict[str, Tuple[str, ...]] = {}
         self._lock = threading.RLock()
         titles = [(name, kind.title) for name, kind in self._kinds.items()]
@@ -43,7 +43,7 @@ class Toolbox:
 
     def update(self, now: float) -> None:
         for name, opened in self._opened():
-            if now < opened.due or not opened.desk.lock.acquire(blocking=False):
+            if now < opened.due or not opened.context.lock.acquire(blocking=False):
                 continue  # a person is at it: it has its turn later
             opened.due = now + opened.tool.seconds
             try:
@@ -53,11 +53,11 @@ class Toolbox:
             except Exception as error:  # what a tool meets in a graph may be anything
                 self._complain(opened, error)
             finally:
-                opened.desk.lock.release()
+                opened.context.lock.release()
 
     def pause(self) -> None:
         for _, opened in self._opened():
-            with opened.desk.lock:
+            with opened.context.lock:
                 opened.tool.pause()
 
     def close(self) -> None:
@@ -74,22 +74,22 @@ class Toolbox:
                 self._open[name] = self._make(name)
             elif not is_on and name in self._open:
                 opened = self._open.pop(name)
-                with opened.desk.lock:
+                with opened.context.lock:
                     opened.tool.close()
                 opened.window.remove()
 
-    def _make(self, name: str) -> _Open:
+    def _make(self, name: str) -> _OpenTool:
         kind = self._kinds[name]
-        desk = Desk(self._page.gui, self._graph, self._page.tell, self._words.pop(name, ()))
+        context = ToolContext(self._page.gui, self._graph, self._page.notify, self._words.pop(name, ()))
         window = self._panel.window(kind.title, kind.width)
-        opened = _Open(kind(desk), desk, window)
-        with desk.lock, window:
+        opened = _OpenTool(kind(context), context, window)
+        with context.lock, window:
             opened.tool.build()
         return opened
 
-    def _complain(self, opened: _Open, error: Exception) -> None:
+    def _complain(self, opened: _OpenTool, error: Exception) -> None:
         """Once for each thing that is wrong."""
-        text = f"{opened.tool.title}: {said(error)}"
+        text = f"{opened.tool.title}: {error_text(error)}"
         if text != opened.complaint:
-            self._page.tell(text, True)
+            self._page.notify(text, True)
         opened.complaint = text

@@ -4,24 +4,24 @@ from collections import Counter
 from typing import Iterator, List
 
 from cockpit.errors import CockpitError
-from cockpit.frames import FrameTree, Transform, told_pose
-from cockpit.ros.graph import Feed
+from cockpit.frames import FrameTree, Transform, pose_from_message
+from cockpit.ros.graph import TopicFeed
 
 TOPICS = ("/tf", "/tf_static")
 KIND = "tf2_msgs/TFMessage"
 
 
-class TransformListener:
+class TransformFeed:
     """Keeps ``frames`` up to date while it listens; ``counts``: how many transforms of each have come."""
 
     def __init__(self, frames: FrameTree):
         self._frames = frames
         self.counts: Counter = Counter()
-        self._feeds: List[Feed] = []
+        self._feeds: List[TopicFeed] = []
 
     def listen(self, wanted: bool) -> None:
         if wanted and not self._feeds:
-            self._feeds = [Feed(topic, KIND, all_of_them=True) for topic in TOPICS]
+            self._feeds = [TopicFeed(topic, KIND, all_of_them=True) for topic in TOPICS]
         if not wanted:
             for feed in self._feeds:
                 feed.close()
@@ -33,10 +33,10 @@ class TransformListener:
         if troubles:
             raise CockpitError(troubles[0])
 
-    def _update_from(self, feed: Feed) -> Iterator[str]:
+    def _update_from(self, feed: TopicFeed) -> Iterator[str]:
         """What is wrong with what has come."""
         try:
-            for _, message, sender in feed.take_stamped():
+            for _, message, sender in feed.stamped_messages():
                 for stamped in message.transforms:
                     if not self._take(stamped, feed.topic == TOPICS[1], sender):
                         yield f"{sender} sends a transform of {stamped.child_frame_id} that is none"
@@ -45,7 +45,7 @@ class TransformListener:
 
     def _take(self, stamped, is_static: bool, sender: str) -> bool:
         """Whether it is a transform."""
-        pose = told_pose(stamped.transform.translation, stamped.transform.rotation)
+        pose = pose_from_message(stamped.transform.translation, stamped.transform.rotation)
         if pose is None:
             return False
         parent, stamp = stamped.header.frame_id.lstrip("/"), stamped.header.stamp.to_sec()

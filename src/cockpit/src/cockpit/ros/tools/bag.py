@@ -6,32 +6,32 @@ from typing import List, Optional
 
 from std_srvs.srv import SetBool
 
+from cockpit.child_program import ChildProgram
 from cockpit.errors import CockpitError
 from cockpit.models.bag_files import bags_below, new_bag
 from cockpit.models.text import amount
-from cockpit.program import Program
-from cockpit.ros.aside import Aside
+from cockpit.ros.background import BackgroundCall
 from cockpit.ros.calls import call
-from cockpit.ros.tool import Desk
+from cockpit.ros.tool import ToolContext
 from planar_ros.bags.recording import Recording
 
 NONE, PAUSE = "(none)", "/pause_playback"
 ROSBAG = ("rosrun", "rosbag")
 
 
-class Bag:
+class BagTool:
     name, title, seconds, width = "bag", "Bag", 0.5, 440
 
-    def __init__(self, desk: Desk):
-        self._desk = desk
+    def __init__(self, context: ToolContext):
+        self._context = context
         self._folder = Path.cwd()
-        self._recorder: Optional[Program] = None
-        self._player: Optional[Program] = None
+        self._recorder: Optional[ChildProgram] = None
+        self._player: Optional[ChildProgram] = None
         self._file = Path()
-        self._aside = Aside()
+        self._background = BackgroundCall()
 
     def build(self) -> None:
-        gui, guarded = self._desk.gui, self._desk.guarded
+        gui, guarded = self._context.gui, self._context.guarded
         with gui.add_folder("Record"):
             self._name = gui.add_text("File", "recording.bag", hint=f"in {self._folder}")
             self._topics = gui.add_text("Topics", "", hint="names with blanks between; empty: all")
@@ -54,7 +54,7 @@ class Bag:
         options = (NONE, *bags_below(self._folder))
         if self._found.options != options:
             self._found.options = options
-        for do in self._aside.take():
+        for do in self._background.results():
             do()
         self._status.content = "  \n".join(self._told())
 
@@ -88,7 +88,7 @@ class Bag:
         if bad:
             raise CockpitError(f"'{bad[0]}' is no topic: its name begins with /")
         self._file = path
-        self._recorder = Program([*ROSBAG, "record", "-O", str(path), *(topics or ["--all"])])
+        self._recorder = ChildProgram([*ROSBAG, "record", "-O", str(path), *(topics or ["--all"])])
 
     def _end_recorder(self) -> None:
         if self._recorder is not None:
@@ -107,15 +107,15 @@ class Bag:
             words = ["play", "--rate", f"{rate:g}", *(["--clock"] if clock else []), *map(str, bags)]
 
             def start() -> None:
-                self._player = Program([*ROSBAG, *words])
+                self._player = ChildProgram([*ROSBAG, *words])
 
             return start
 
-        self._aside.start(look)
+        self._background.start(look)
 
     def _pause(self, is_paused: bool) -> None:
         """Whatever plays a bag in this graph."""
-        found = [name for name in self._desk.graph.services() if name.endswith(PAUSE)]
+        found = [name for name in self._context.graph.services() if name.endswith(PAUSE)]
         if not found:
             raise CockpitError("no bag is played")
 
@@ -124,11 +124,11 @@ class Bag:
                 call(name, SetBool, is_paused)
             return lambda: None
 
-        self._aside.start(ask)
+        self._background.start(ask)
 
     def _end_player(self) -> None:
         if self._player is not None:
             self._player.end()
 
 
-TOOL = Bag
+TOOL = BagTool

@@ -5,29 +5,29 @@ from typing import Optional
 from roscpp.srv import GetLoggers, SetLoggerLevel
 
 from cockpit.errors import CockpitError
-from cockpit.models.log import HEADS, LEVELS, Log, Said, Wanted, level_named
+from cockpit.models.log import HEADS, LEVELS, LogBuffer, LogEntry, LogFilter, level_named
 from cockpit.models.tables import table
-from cockpit.ros.aside import Aside
+from cockpit.ros.background import BackgroundCall
 from cockpit.ros.calls import call
-from cockpit.ros.graph import Feed
-from cockpit.ros.tool import Desk
+from cockpit.ros.graph import TopicFeed
+from cockpit.ros.tool import ToolContext
 
 COLLECTED, TOLD, KIND = "/rosout_agg", "/rosout", "rosgraph_msgs/Log"
 NONE = "(none)"
 LOGGERS, SET_LEVEL = "/get_loggers", "/set_logger_level"
 
 
-class Console:
+class ConsoleTool:
     name, title, seconds, width = "console", "Console", 0.5, 640
 
-    def __init__(self, desk: Desk):
-        self._desk = desk
-        self._log = Log()
-        self._feed: Optional[Feed] = None
-        self._asking, self._setting = Aside(), Aside()
+    def __init__(self, context: ToolContext):
+        self._context = context
+        self._log = LogBuffer()
+        self._feed: Optional[TopicFeed] = None
+        self._asking, self._setting = BackgroundCall(), BackgroundCall()
 
     def build(self) -> None:
-        gui, guarded = self._desk.gui, self._desk.guarded
+        gui, guarded = self._context.gui, self._context.guarded
         self._lowest = gui.add_dropdown("From level", tuple(LEVELS.values()), initial_value="Info")
         self._node = gui.add_text("Node", "", hint="part of a node's name")
         self._text = gui.add_text("Message", "", hint="part of a message")
@@ -41,28 +41,28 @@ class Console:
         self._speaker.on_update(guarded(self._ask_loggers))
 
     def update(self, now: float) -> None:
-        for told in self._listening().take():
+        for told in self._listening().messages():
             where = f"{told.file.rpartition('/')[2]}:{told.line} {told.function}".strip(": ")
-            self._log.add(Said(told.level, told.header.stamp.to_sec(), told.name, told.msg, where))
-        wanted = Wanted(level_named(self._lowest.value), self._node.value, self._text.value)
+            self._log.add(LogEntry(told.level, told.header.stamp.to_sec(), told.name, told.msg, where))
+        wanted = LogFilter(level_named(self._lowest.value), self._node.value, self._text.value)
         content = table(HEADS, self._log.rows(wanted))
         if self._lines.content != content:
             self._lines.content = content
-        services = self._desk.graph.services()
+        services = self._context.graph.services()
         speakers = sorted(name[: -len(LOGGERS)] for name in services if name.endswith(LOGGERS))
         if self._speaker.options != (NONE, *speakers):
             self._speaker.options = (NONE, *speakers)
-        for aside in (self._asking, self._setting):
-            for do in aside.take():
+        for background in (self._asking, self._setting):
+            for do in background.results():
                 do()
 
-    def _listening(self) -> Feed:
+    def _listening(self) -> TopicFeed:
         """To the collector of all that is said or, where none runs, to each node itself."""
-        wanted = COLLECTED if COLLECTED in self._desk.graph.publishers() else TOLD
+        wanted = COLLECTED if COLLECTED in self._context.graph.publishers() else TOLD
         if self._feed is not None and self._feed.topic != wanted:
             self.pause()
         if self._feed is None:
-            self._feed = self._desk.graph.feed(wanted, KIND, all_of_them=True)
+            self._feed = self._context.graph.feed(wanted, KIND, all_of_them=True)
         return self._feed
 
     def pause(self) -> None:
@@ -96,9 +96,9 @@ class Console:
 
         def ask():
             call(node + SET_LEVEL, SetLoggerLevel, logger, level.lower())
-            return lambda: self._desk.tell(f"{node}: {logger} is at {level}")
+            return lambda: self._context.notify(f"{node}: {logger} is at {level}")
 
         self._setting.start(ask)
 
 
-TOOL = Console
+TOOL = ConsoleTool

@@ -6,12 +6,12 @@ import rospy
 from sim_bridge_msgs.srv import AddFault
 
 from cockpit.errors import CockpitError
-from cockpit.fault_kinds import known_kinds
-from cockpit.models.faults import Asked, Kind, Wish
-from cockpit.models.tables import note, table
-from cockpit.ros.aside import Aside
+from cockpit.fault_kinds import fault_kinds
+from cockpit.models.faults import FaultKindInfo, FaultRequest, RequestedFaults
+from cockpit.models.tables import paragraph, table
+from cockpit.ros.background import BackgroundCall
 from cockpit.ros.calls import call
-from cockpit.ros.tool import Desk
+from cockpit.ros.tool import ToolContext
 
 SERVICE = "/sim_bridge/add_fault"
 NOBODY = f"No simulator here lets anything go wrong: nobody offers {SERVICE}."
@@ -20,19 +20,19 @@ HEADS = ("Goes wrong now", "Strength", "Seconds left")
 USUAL_SECONDS = 5.0
 
 
-class Faults:
+class FaultsTool:
     name, title, seconds, width = "faults", "Faults", 0.5, 440
     # Outlives the window, as what has been asked for does.
-    _asked = Asked()
+    _asked = RequestedFaults()
 
-    def __init__(self, desk: Desk):
-        self._desk = desk
-        self._kinds: Dict[str, Kind] = {}
-        self._reading, self._calling = Aside(), Aside()
+    def __init__(self, context: ToolContext):
+        self._context = context
+        self._kinds: Dict[str, FaultKindInfo] = {}
+        self._reading, self._calling = BackgroundCall(), BackgroundCall()
 
     def build(self) -> None:
-        gui, guarded = self._desk.gui, self._desk.guarded
-        self._trouble = gui.add_html(note(NOBODY), visible=False)
+        gui, guarded = self._context.gui, self._context.guarded
+        self._trouble = gui.add_html(paragraph(NOBODY), visible=False)
         self._chosen = gui.add_dropdown("Kind", (NONE,))
         self._says = gui.add_html("")
         self._strength = gui.add_number("Strength", 0.0, step=0.01, hint="0: the usual one", visible=False)
@@ -42,15 +42,15 @@ class Faults:
         self._lasting = gui.add_html("")
         self._chosen.on_update(guarded(lambda _: self._show_kind()))
         self._button.on_click(guarded(lambda _: self._let_go_wrong()))
-        self._reading.start(known_kinds)
+        self._reading.start(fault_kinds)
 
     def update(self, now: float) -> None:
-        for kinds in self._reading.take():
+        for kinds in self._reading.results():
             self._kinds, self._chosen.options = kinds, tuple(kinds)
             self._show_kind()
         self._look_for_simulator()
-        for answer in self._calling.take():
-            self._answer.content = note(answer)
+        for answer in self._calling.results():
+            self._answer.content = paragraph(answer)
         rows = self._asked.rows(rospy.get_time())
         self._lasting.content = table(HEADS, rows) if rows else ""
 
@@ -60,26 +60,26 @@ class Faults:
     close = pause
 
     def _look_for_simulator(self) -> None:
-        simulator = self._desk.graph.address(SERVICE)
-        self._asked.know(simulator)
+        simulator = self._context.graph.address(SERVICE)
+        self._asked.set_simulator(simulator)
         self._trouble.visible = simulator is None
         self._button.disabled = simulator is None
 
     def _show_kind(self) -> None:
         kind = self._kinds.get(self._chosen.value)
         if kind is not None:
-            self._says.content = note(kind.sentence())
+            self._says.content = paragraph(kind.sentence())
             self._strength.visible, self._strength.value = bool(kind.unit), kind.usual
 
     def _let_go_wrong(self) -> None:
         kind = self._kinds.get(self._chosen.value)
         if kind is None:
             raise CockpitError("which kinds of faults there are is still being read")
-        wish = Wish(kind, self._seconds.value, self._strength.value if kind.unit else 0.0)
+        wish = FaultRequest(kind, self._seconds.value, self._strength.value if kind.unit else 0.0)
         self._calling.start(lambda: self._ask(wish))
-        self._answer.content = note("...")
+        self._answer.content = paragraph("...")
 
-    def _ask(self, wish: Wish) -> str:
+    def _ask(self, wish: FaultRequest) -> str:
         """What has come of it."""
         try:
             answer = call(SERVICE, AddFault, wish.kind.name, wish.seconds, wish.strength)
@@ -91,4 +91,4 @@ class Faults:
         return f"{wish.kind.name} has begun."
 
 
-TOOL = Faults
+TOOL = FaultsTool

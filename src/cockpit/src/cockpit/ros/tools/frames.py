@@ -5,24 +5,24 @@ from typing import Dict
 import rospy
 
 from cockpit.frames import FrameTree
-from cockpit.models.rates import Rate
+from cockpit.models.frame_table import HEADS, rows_of
+from cockpit.models.rates import RateMeter
 from cockpit.models.tables import table
-from cockpit.models.tree import HEADS, rows_of
-from cockpit.ros.tool import Desk
-from cockpit.ros.transforms import TransformListener
+from cockpit.ros.tool import ToolContext
+from cockpit.ros.transforms import TransformFeed
 
 
-class Frames:
+class FramesTool:
     name, title, seconds, width = "frames", "Frames (tf)", 0.5, 520
 
-    def __init__(self, desk: Desk):
-        self._desk = desk
+    def __init__(self, context: ToolContext):
+        self._context = context
         self._frames = FrameTree()
-        self._listener = TransformListener(self._frames)
-        self._rates: Dict[str, Rate] = {}
+        self._listener = TransformFeed(self._frames)
+        self._rates: Dict[str, RateMeter] = {}
 
     def build(self) -> None:
-        self._tree = self._desk.gui.add_html("")
+        self._tree = self._context.gui.add_html("")
 
     def update(self, now: float) -> None:
         self._listener.listen(True)
@@ -30,7 +30,7 @@ class Frames:
         transforms = self._frames.transforms()
         rates = {}
         for frame in transforms:
-            rate = self._rates.setdefault(frame, Rate())
+            rate = self._rates.setdefault(frame, RateMeter())
             rates[frame], _ = rate.update(now, self._listener.counts[frame], 0)
         rows = rows_of(transforms, rospy.get_time(), rates)
         self._tree.content = table(HEADS, rows) if rows else table(("Nobody tells of frames on /tf.",), ())
@@ -43,4 +43,4 @@ class Frames:
     close = pause
 
 
-TOOL = Frames
+TOOL = FramesTool

@@ -4,24 +4,24 @@ import re
 import subprocess
 
 from cockpit.errors import CockpitError
-from cockpit.models.computation import ACTIVE, KINDS, Shown, dot_of
-from cockpit.ros.aside import Aside
-from cockpit.ros.tool import Desk
+from cockpit.models.graph_drawing import ACTIVE, KINDS, GraphFilter, dot_of
+from cockpit.ros.background import BackgroundCall
+from cockpit.ros.tool import ToolContext
 
 DRAWING_SECONDS = 10.0
 SIZE = re.compile(r'<svg width="(\d+)[^"]*" height="[^"]*"')
 
 
-class Graph:
+class GraphTool:
     name, title, seconds, width = "graph", "Graph", 1.0, 640
 
-    def __init__(self, desk: Desk):
-        self._desk = desk
-        self._aside = Aside()
+    def __init__(self, context: ToolContext):
+        self._context = context
+        self._background = BackgroundCall()
         self._drawn = ""
 
     def build(self) -> None:
-        gui = self._desk.gui
+        gui = self._context.gui
         self._kind = gui.add_dropdown("Show", KINDS, initial_value=ACTIVE)
         self._part = gui.add_text("Filter", "", hint="part of a name")
         self._debug = gui.add_checkbox("Debug", False, hint="the log, the clock, the cockpit itself")
@@ -30,20 +30,20 @@ class Graph:
         self._picture = gui.add_html("")
 
     def update(self, now: float) -> None:
-        for picture in self._aside.take():
+        for picture in self._background.results():
             self._picture.content = picture
-        shown = Shown(
+        shown = GraphFilter(
             self._kind.value,
             self._debug.value,
             self._transforms.value,
             self._actions.value,
             self._part.value,
         )
-        graph = self._desk.graph
+        graph = self._context.graph
         dot = dot_of(graph.publishers(), graph.subscribers(), shown)
-        if dot != self._drawn and not self._aside.is_busy:
+        if dot != self._drawn and not self._background.is_busy:
             self._drawn = dot
-            self._aside.start(lambda: _html(dot))
+            self._background.start(lambda: _html(dot))
 
     def pause(self) -> None:
         """It listens to nothing."""
@@ -66,4 +66,4 @@ def _html(dot: str) -> str:
     return f'<div style="overflow:auto;max-height:70vh;margin:0 12px">{svg}</div>'
 
 
-TOOL = Graph
+TOOL = GraphTool

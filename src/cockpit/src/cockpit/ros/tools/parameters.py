@@ -6,20 +6,20 @@ import yaml
 from cockpit.errors import CockpitError
 from cockpit.models.tables import table
 from cockpit.models.text import flat, value_text
-from cockpit.ros.tool import Desk
+from cockpit.ros.tool import ToolContext
 
 MOST_LISTED = 300
 LONGEST = 10_000
 
 
-class Parameters:
+class ParametersTool:
     name, title, seconds, width = "parameters", "Parameters", 1.0, 560
 
-    def __init__(self, desk: Desk):
-        self._desk = desk
+    def __init__(self, context: ToolContext):
+        self._context = context
 
     def build(self) -> None:
-        gui, guarded = self._desk.gui, self._desk.guarded
+        gui, guarded = self._context.gui, self._context.guarded
         self._filter = gui.add_text("Filter", "", hint="part of a parameter's name")
         self._list = gui.add_html("")
         self._name = gui.add_text("Name", "")
@@ -29,7 +29,7 @@ class Parameters:
         gui.add_button("Remove", color="orange").on_click(guarded(lambda _: self._remove()))
 
     def update(self, now: float) -> None:
-        known = flat(self._desk.graph.parameter("/", {}))
+        known = flat(self._context.graph.parameter("/", {}))
         part = self._filter.value.lower()
         rows = [(name, value_text(value)) for name, value in sorted(known.items()) if part in name.lower()]
         more = [(f"... and {len(rows) - MOST_LISTED} more", "")] if len(rows) > MOST_LISTED else []
@@ -50,7 +50,7 @@ class Parameters:
 
     def _get(self) -> None:
         name = self._named()
-        value = self._desk.graph.parameter(name)
+        value = self._context.graph.parameter(name)
         if value is None:
             raise CockpitError(f"there is no parameter {name}")
         self._value.value = yaml.safe_dump(value, default_flow_style=False).replace("\n...\n", "").strip()
@@ -66,7 +66,7 @@ class Parameters:
         if value is None:
             raise CockpitError(f"{name}: say a value first")
         rospy.set_param(name, value)
-        self._desk.tell(f"{name} is set; a node that has read it already knows nothing of that")
+        self._context.notify(f"{name} is set; a node that has read it already knows nothing of that")
 
     def _remove(self) -> None:
         name = self._named()
@@ -74,7 +74,7 @@ class Parameters:
             rospy.delete_param(name)
         except KeyError:
             raise CockpitError(f"there is no parameter {name}") from None
-        self._desk.tell(f"{name} is removed")
+        self._context.notify(f"{name} is removed")
 
 
-TOOL = Parameters
+TOOL = ParametersTool

@@ -4,29 +4,29 @@ from typing import Any, Dict, List, Tuple
 
 from cockpit.errors import CockpitError
 from cockpit.models.tables import table
-from cockpit.models.traces import Traces, expanded, number_at, numbers_in
-from cockpit.ros.filling import message_class
-from cockpit.ros.graph import Feed
-from cockpit.ros.tool import Desk
+from cockpit.models.time_series import TimeSeries, expanded, number_at, numbers_in
+from cockpit.ros.graph import TopicFeed
+from cockpit.ros.message_yaml import message_class
+from cockpit.ros.tool import ToolContext
 
 NONE = "(none)"
 COLOURS = ("#1c7ed6", "#e8590c", "#2f9e44", "#ae3ec9", "#f59f00", "#0c8599", "#c92a2a", "#495057")
 SECONDS, LONGEST = 20.0, 300.0
 
 
-class Plot:
+class PlotTool:
     name, title, seconds, width = "plot", "Plot", 0.2, 560
 
-    def __init__(self, desk: Desk):
-        self._desk = desk
-        self._feeds: Dict[str, Feed] = {}
+    def __init__(self, context: ToolContext):
+        self._context = context
+        self._feeds: Dict[str, TopicFeed] = {}
         self._paths: Dict[str, Tuple[str, str]] = {}
-        self._traces = Traces(SECONDS)
+        self._traces = TimeSeries(SECONDS)
         self._chart: Any = None
-        self._awaited = [name for word in desk.words for name in expanded(word)]
+        self._awaited = [name for word in context.words for name in expanded(word)]
 
     def build(self) -> None:
-        gui, guarded = self._desk.gui, self._desk.guarded
+        gui, guarded = self._context.gui, self._context.guarded
         self._topic = gui.add_dropdown("Topic", (NONE,))
         self._field = gui.add_dropdown("Number", (NONE,))
         self._typed = gui.add_text("or type it", "", hint="/odom/twist/twist/linear/x, /scan/ranges[3]")
@@ -39,7 +39,7 @@ class Plot:
         self._topic.on_update(guarded(self._offer_fields))
 
     def update(self, now: float) -> None:
-        topics = (NONE, *sorted(self._desk.graph.topics()))
+        topics = (NONE, *sorted(self._context.graph.topics()))
         if self._topic.options != topics:
             self._topic.options = topics
         self._add_awaited()
@@ -60,7 +60,7 @@ class Plot:
     close = pause
 
     def _offer_fields(self, _event: Any) -> None:
-        kind = self._desk.graph.topics().get(self._topic.value)
+        kind = self._context.graph.topics().get(self._topic.value)
         found = [] if kind is None else numbers_in(message_class(kind)())
         self._field.options = tuple(found) or (NONE,)
 
@@ -75,7 +75,7 @@ class Plot:
 
     def _add_awaited(self) -> None:
         """Of what was asked for at the start, that of topics which are there by now."""
-        topics = self._desk.graph.topics()
+        topics = self._context.graph.topics()
         come = [name for name in self._awaited if any(name.startswith(f"{topic}/") for topic in topics)]
         if come:
             self._awaited = [name for name in self._awaited if name not in come]
@@ -84,7 +84,7 @@ class Plot:
 
     def _split(self, typed: str) -> Tuple[str, str]:
         """A topic and what follows it, as rqt_plot takes them."""
-        known = [name for name in self._desk.graph.topics() if typed.startswith(f"{name}/")]
+        known = [name for name in self._context.graph.topics() if typed.startswith(f"{name}/")]
         if not known:
             raise CockpitError(f"no topic is the beginning of '{typed}'")
         topic = max(known, key=len)
@@ -93,7 +93,7 @@ class Plot:
     def _remove(self, _event: Any) -> None:
         name = self._shown.value
         if self._paths.pop(name, None) is not None:
-            self._traces.forget(name)
+            self._traces.remove(name)
             self._rebuild()
 
     def _rebuild(self) -> None:
@@ -108,7 +108,7 @@ class Plot:
             for number, name in enumerate(names):
                 series.append({"label": name, "stroke": COLOURS[number % len(COLOURS)], "width": 2})
             with self._space:
-                self._chart = self._desk.gui.add_uplot(
+                self._chart = self._context.gui.add_uplot(
                     self._traces.drawn(names, 0.0), tuple(series), scales={"x": {"time": False}}, height=260
                 )
 
@@ -117,13 +117,13 @@ class Plot:
         for topic in set(self._feeds) - wanted:
             self._feeds.pop(topic).close()
         for topic in wanted - set(self._feeds):
-            if topic in self._desk.graph.topics():  # it may be gone, and come again
-                self._feeds[topic] = self._desk.graph.feed(topic, all_of_them=True)
+            if topic in self._context.graph.topics():  # it may be gone, and come again
+                self._feeds[topic] = self._context.graph.feed(topic, all_of_them=True)
 
     def _take(self) -> None:
         for topic, feed in self._feeds.items():
             wanted = [(name, path) for name, (source, path) in self._paths.items() if source == topic]
-            for at, message, _ in feed.take_stamped():
+            for at, message, _ in feed.stamped_messages():
                 for name, path in wanted:
                     self._traces.add(name, at, number_at(message, path))
 
@@ -133,4 +133,4 @@ def _name(topic: str, path: str) -> str:
     return f"{topic}/{path.replace('.', '/')}"
 
 
-TOOL = Plot
+TOOL = PlotTool

@@ -6,26 +6,26 @@ from typing import Any, Optional
 import rospy
 
 from cockpit.errors import CockpitError
-from cockpit.models.repeating import Repeating
-from cockpit.ros.calls import join
-from cockpit.ros.filling import filled, message_class, template
-from cockpit.ros.tool import Desk
+from cockpit.models.rates import PeriodicTimer
+from cockpit.ros.calls import wait_for_subscribers
+from cockpit.ros.message_yaml import filled, message_class, template
+from cockpit.ros.tool import ToolContext
 
 FASTEST = 20.0
 
 
-class Publisher:
+class PublisherTool:
     name, title, seconds, width = "publisher", "Publisher", 0.05, 440
 
-    def __init__(self, desk: Desk):
-        self._desk = desk
+    def __init__(self, context: ToolContext):
+        self._context = context
         self._publisher: Optional[rospy.Publisher] = None
         self._message: Any = None
-        self._repeating = Repeating()
+        self._repeating = PeriodicTimer()
         self._sent = 0
 
     def build(self) -> None:
-        gui, guarded = self._desk.gui, self._desk.guarded
+        gui, guarded = self._context.gui, self._context.guarded
         self._topic = gui.add_text("Topic", "/cmd_vel")
         self._kind = gui.add_text("Type", "", hint="of its messages; empty: that which the topic has")
         gui.add_button("Make the message", color="gray").on_click(guarded(self._fill_in))
@@ -53,7 +53,7 @@ class Publisher:
     def _kind_name(self) -> str:
         if self._kind.value.strip():
             return self._kind.value.strip()
-        known = self._desk.graph.topics().get(self._topic.value.strip())
+        known = self._context.graph.topics().get(self._topic.value.strip())
         if known is None:
             raise CockpitError(f"there is no topic {self._topic.value.strip()}: say the type too")
         return known
@@ -86,7 +86,7 @@ class Publisher:
         """A publisher of what is filled in, joined to those who listen. Raises CockpitError."""
         kind, topic = message_class(self._kind_name()), self._topic.value.strip()
         message = filled(kind, self._fields.value)
-        known = self._desk.graph.topics().get(topic)
+        known = self._context.graph.topics().get(topic)
         if known not in (None, kind._type):
             raise CockpitError(f"{topic} has messages of type {known}")
         old = self._publisher
@@ -99,7 +99,7 @@ class Publisher:
                 self._publisher = None
                 raise CockpitError(f"{topic}: {error}") from None
             else:
-                join(self._publisher, len(self._desk.graph.subscribers().get(topic, ())))
+                wait_for_subscribers(self._publisher, len(self._context.graph.subscribers().get(topic, ())))
         self._message = message
 
     def _publish(self) -> None:
@@ -110,4 +110,4 @@ class Publisher:
         self._status.content = f"{self._sent} sent, {listeners} listening"
 
 
-TOOL = Publisher
+TOOL = PublisherTool

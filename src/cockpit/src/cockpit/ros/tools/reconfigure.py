@@ -5,12 +5,12 @@ from typing import Any, Dict, List
 from dynamic_reconfigure.msg import BoolParameter, Config, DoubleParameter, IntParameter, StrParameter
 from dynamic_reconfigure.srv import Reconfigure as ReconfigureService
 
-from cockpit.models.knobs import Knob, knobs_of, values_of
-from cockpit.page.dial import Dial
-from cockpit.ros.aside import Aside
+from cockpit.models.reconfigure import ReconfigurableParameter, parameters_from_description, values_of
+from cockpit.page.controls import TwoWayControl
+from cockpit.ros.background import BackgroundCall
 from cockpit.ros.calls import call
-from cockpit.ros.graph import Feed
-from cockpit.ros.tool import Desk
+from cockpit.ros.graph import TopicFeed
+from cockpit.ros.tool import ToolContext
 
 NONE = "(none)"
 DESCRIPTIONS, UPDATES, SERVICE = "/parameter_descriptions", "/parameter_updates", "/set_parameters"
@@ -23,23 +23,23 @@ LISTS = {
 }
 
 
-class Reconfigure:
+class ReconfigureTool:
     name, title, seconds, width = "reconfigure", "Reconfigure", 0.2, 480
 
-    def __init__(self, desk: Desk):
-        self._desk = desk
-        self._aside = Aside()
-        self._feeds: List[Feed] = []
+    def __init__(self, context: ToolContext):
+        self._context = context
+        self._background = BackgroundCall()
+        self._feeds: List[TopicFeed] = []
         self._server = NONE
         self._controls: Dict[str, Control] = {}
 
     def build(self) -> None:
-        self._servers = self._desk.gui.add_dropdown("Server", (NONE,))
-        self._space = self._desk.gui.add_folder("Parameters")
-        self._servers.on_update(self._desk.guarded(lambda _: self._choose(self._servers.value)))
+        self._servers = self._context.gui.add_dropdown("Server", (NONE,))
+        self._space = self._context.gui.add_folder("Parameters")
+        self._servers.on_update(self._context.guarded(lambda _: self._choose(self._servers.value)))
 
     def update(self, now: float) -> None:
-        types = self._desk.graph.topics()
+        types = self._context.graph.topics()
         found = sorted(
             topic[: -len(DESCRIPTIONS)]
             for topic, kind in types.items()
@@ -50,7 +50,7 @@ class Reconfigure:
             self._choose(self._servers.value)
         if self._server != NONE and not self._feeds:
             self._listen()
-        for config in self._aside.take():
+        for config in self._background.results():
             self._show(values_of(config))
         self._take()
         self._send()
@@ -70,32 +70,32 @@ class Reconfigure:
 
     def _listen(self) -> None:
         self._feeds = [
-            self._desk.graph.feed(self._server + DESCRIPTIONS, DESCRIPTION_TYPE),
-            self._desk.graph.feed(self._server + UPDATES, "dynamic_reconfigure/Config"),
+            self._context.graph.feed(self._server + DESCRIPTIONS, DESCRIPTION_TYPE),
+            self._context.graph.feed(self._server + UPDATES, "dynamic_reconfigure/Config"),
         ]
 
     def _take(self) -> None:
         if not self._feeds:
             return
-        for description in self._feeds[0].take():
+        for description in self._feeds[0].messages():
             self._clear()
             with self._space:
-                for knob in knobs_of(description):
-                    self._controls[knob.name] = Control(self._desk.gui, knob)
+                for parameter in parameters_from_description(description):
+                    self._controls[parameter.name] = Control(self._context.gui, parameter)
         if self._controls:
-            for config in self._feeds[1].take():
+            for config in self._feeds[1].messages():
                 self._show(values_of(config))
 
     def _send(self) -> None:
         """What was turned since the last answer, in one call."""
-        turned = [control for control in self._controls.values() if control.dial.is_turned()]
-        if not turned or self._aside.is_busy:
+        turned = [control for control in self._controls.values() if control.widget.is_changed()]
+        if not turned or self._background.is_busy:
             return
         config, service = Config(), self._server + SERVICE
         for control in turned:
-            field, kind = LISTS[control.knob.kind]
-            getattr(config, field).append(kind(control.knob.name, control.taken()))
-        self._aside.start(lambda: call(service, ReconfigureService, config).config)
+            field, kind = LISTS[control.parameter.kind]
+            getattr(config, field).append(kind(control.parameter.name, control.consume()))
+        self._background.start(lambda: call(service, ReconfigureService, config).config)
 
     def _show(self, values: Dict[str, Any]) -> None:
         for name, value in values.items():
@@ -104,45 +104,47 @@ class Reconfigure:
 
     def _clear(self) -> None:
         for control in self._controls.values():
-            control.dial.handle.remove()
+            control.widget.handle.remove()
         self._controls.clear()
 
 
 class Control:
     """The control of one parameter: a slider between its bounds, a box, a list of choices."""
 
-    def __init__(self, gui: Any, knob: Knob):
-        self.knob = knob
-        self._names = {value: name for name, value in knob.choices}
-        self._values = dict(knob.choices)
-        self.dial = Dial(self._made(gui))
+    def __init__(self, gui: Any, parameter: ReconfigurableParameter):
+        self.parameter = parameter
+        self._names = {value: name for name, value in parameter.choices}
+        self._values = dict(parameter.choices)
+        self.widget = TwoWayControl(self._made(gui))
 
-    def taken(self) -> Any:
+    def consume(self) -> Any:
         """What it was turned to."""
-        told = self.dial.taken()
+        told = self.widget.consume()
         if self._values:
             return self._values[told]
-        return {"bool": bool, "int": int, "double": float, "str": str}[self.knob.kind](told)
+        return {"bool": bool, "int": int, "double": float, "str": str}[self.parameter.kind](told)
 
     def show(self, value: Any) -> None:
         """What the server says."""
         told = self._names.get(value, value) if self._values else value
         if not (self._values and told not in self._values):
-            self.dial.show(told)
+            self.widget.show(told)
 
     def _made(self, gui: Any) -> Any:
-        knob, hint = self.knob, self.knob.meaning or None
-        if knob.choices:
+        parameter, hint = self.parameter, self.parameter.meaning or None
+        if parameter.choices:
             names = tuple(self._values)
-            return gui.add_dropdown(knob.name, names, initial_value=self._names.get(knob.default), hint=hint)
-        if knob.kind == "bool":
-            return gui.add_checkbox(knob.name, bool(knob.default), hint=hint)
-        if knob.kind == "str":
-            return gui.add_text(knob.name, str(knob.default), hint=hint)
-        if knob.is_bounded:
-            bounds = {"min": knob.lowest, "max": knob.highest, "step": knob.step}
-            return gui.add_slider(knob.name, initial_value=knob.default, hint=hint, **bounds)
-        return gui.add_number(knob.name, knob.default, step=knob.step, hint=hint)
+            return gui.add_dropdown(
+                parameter.name, names, initial_value=self._names.get(parameter.default), hint=hint
+            )
+        if parameter.kind == "bool":
+            return gui.add_checkbox(parameter.name, bool(parameter.default), hint=hint)
+        if parameter.kind == "str":
+            return gui.add_text(parameter.name, str(parameter.default), hint=hint)
+        if parameter.is_bounded:
+            bounds = {"min": parameter.lowest, "max": parameter.highest, "step": parameter.step}
+            return gui.add_slider(parameter.name, initial_value=parameter.default, hint=hint, **bounds)
+        return gui.add_number(parameter.name, parameter.default, step=parameter.step, hint=hint)
 
 
-TOOL = Reconfigure
+TOOL = ReconfigureTool

@@ -6,11 +6,11 @@ from home_service_msgs.srv import Seek, SetPlaybackSpeed
 from std_srvs.srv import SetBool
 
 from cockpit.errors import CockpitError
-from cockpit.page.dial import Dial
-from cockpit.ros.aside import Aside
+from cockpit.page.controls import TwoWayControl
+from cockpit.ros.background import BackgroundCall
 from cockpit.ros.calls import LONG_SECONDS, call
-from cockpit.ros.graph import Feed
-from cockpit.ros.tool import Desk
+from cockpit.ros.graph import TopicFeed
+from cockpit.ros.tool import ToolContext
 
 KIND, TOPIC = "home_service_msgs/Playback", "/playback"
 PAUSE, SEEK, SPEED = "/pause_playback", "/seek", "/set_speed"
@@ -19,18 +19,18 @@ FACTORS = (0.1, 0.5, 1.0, 2.0, 5.0, 20.0, 0.0)
 STEP_SECONDS = 0.1
 
 
-class Replay:
+class ReplayTool:
     name, title, seconds, width = "replay", "Replay", 0.1, 420
 
-    def __init__(self, desk: Desk):
-        self._desk = desk
-        self._feed: Optional[Feed] = None
+    def __init__(self, context: ToolContext):
+        self._context = context
+        self._feed: Optional[TopicFeed] = None
         self._player = ""
-        self._aside = Aside()
+        self._background = BackgroundCall()
 
     def build(self) -> None:
-        gui, guarded = self._desk.gui, self._desk.guarded
-        self._place = Dial(gui.add_slider("Time, s", 0.0, 1.0, STEP_SECONDS, 0.0))
+        gui, guarded = self._context.gui, self._context.guarded
+        self._place = TwoWayControl(gui.add_slider("Time, s", 0.0, 1.0, STEP_SECONDS, 0.0))
         self._pace = gui.add_dropdown("Pace", PACES, initial_value="1 x")
         pause, go_on = gui.add_button("Pause"), gui.add_button("Go on")
         self._status = gui.add_markdown("No recording is played.")
@@ -41,12 +41,12 @@ class Replay:
     def update(self, now: float) -> None:
         if self._feed is None:
             self._listen()
-        for answer in self._aside.take():
+        for answer in self._background.results():
             if not answer.success:
                 raise CockpitError(answer.message)
-        if self._place.is_turned() and not self._aside.is_busy:
-            self._aside.start(self._calling(SEEK, Seek, self._place.taken()))
-        for playback in self._feed.take() if self._feed is not None else ():
+        if self._place.is_changed() and not self._background.is_busy:
+            self._background.start(self._calling(SEEK, Seek, self._place.consume()))
+        for playback in self._feed.messages() if self._feed is not None else ():
             self._show(playback)
 
     def pause(self) -> None:
@@ -57,14 +57,14 @@ class Replay:
     close = pause
 
     def _listen(self) -> None:
-        found: List[str] = [topic for topic, kind in self._desk.graph.topics().items() if kind == KIND]
+        found: List[str] = [topic for topic, kind in self._context.graph.topics().items() if kind == KIND]
         if found:
             self._player = found[0][: -len(TOPIC)]
-            self._feed = self._desk.graph.feed(found[0], KIND)
+            self._feed = self._context.graph.feed(found[0], KIND)
 
     def _show(self, playback) -> None:
         self._place.handle.max = max(playback.length, STEP_SECONDS)
-        if not self._aside.is_busy:
+        if not self._background.is_busy:
             self._place.show(min(playback.position, self._place.handle.max))
         state = "paused" if playback.is_paused else "playing"
         self._status.content = f"{state}: {playback.position:.1f} s of {playback.length:.1f} s"
@@ -74,7 +74,7 @@ class Replay:
             self._ask(SPEED, SetPlaybackSpeed, FACTORS[PACES.index(self._pace.value)])
 
     def _ask(self, service: str, kind: type, value) -> None:
-        self._aside.start(self._calling(service, kind, value))
+        self._background.start(self._calling(service, kind, value))
 
     def _calling(self, service: str, kind: type, value) -> Callable:
         if not self._player:
@@ -83,4 +83,4 @@ class Replay:
         return lambda: call(name, kind, value, seconds=LONG_SECONDS)
 
 
-TOOL = Replay
+TOOL = ReplayTool

@@ -7,26 +7,26 @@ import rosservice
 from cockpit.errors import CockpitError
 from cockpit.models.tables import preformatted, table
 from cockpit.models.text import outline
-from cockpit.ros.aside import Aside
+from cockpit.ros.background import BackgroundCall
 from cockpit.ros.calls import LONG_SECONDS, call
-from cockpit.ros.filling import filled, service_class, template
-from cockpit.ros.tool import Desk
+from cockpit.ros.message_yaml import filled, service_class, template
+from cockpit.ros.tool import ToolContext
 
 NONE = "(none)"
 # Those that every node has, or every node of its kind.
 COMMON = ("/get_loggers", "/set_logger_level", "/tf2_frames")
 
 
-class Services:
+class ServicesTool:
     name, title, seconds, width = "services", "Services", 0.5, 520
 
-    def __init__(self, desk: Desk):
-        self._desk = desk
+    def __init__(self, context: ToolContext):
+        self._context = context
         self._types: Dict[str, str] = {}
-        self._asking, self._calling = Aside(), Aside()
+        self._asking, self._calling = BackgroundCall(), BackgroundCall()
 
     def build(self) -> None:
-        gui, guarded = self._desk.gui, self._desk.guarded
+        gui, guarded = self._context.gui, self._context.guarded
         self._filter = gui.add_text("Filter", "", hint="part of a service's name")
         self._common = gui.add_checkbox("Those of loggers too", False)
         self._list = gui.add_html("")
@@ -40,7 +40,7 @@ class Services:
     def update(self, now: float) -> None:
         providers = {
             name: ", ".join(nodes)
-            for name, nodes in sorted(self._desk.graph.services().items())
+            for name, nodes in sorted(self._context.graph.services().items())
             if self._filter.value.lower() in name.lower()
             and (self._common.value or not name.endswith(COMMON))
         }
@@ -49,9 +49,9 @@ class Services:
             self._list.content = content
         if self._chosen.options != (NONE, *providers):
             self._chosen.options = (NONE, *providers)
-        for name, kind in self._asking.take():
+        for name, kind in self._asking.results():
             self._show_request(name, kind)
-        for answer in self._calling.take():
+        for answer in self._calling.results():
             self._answer.content = outline(answer) if answer.__slots__ else preformatted("done")
 
     def pause(self) -> None:
@@ -92,4 +92,4 @@ def _type_of(name: str) -> str:
     return kind
 
 
-TOOL = Services
+TOOL = ServicesTool

@@ -3,28 +3,28 @@
 from typing import Dict, Optional
 
 from cockpit.errors import CockpitError
-from cockpit.models.rates import Rate
+from cockpit.models.rates import RateMeter
 from cockpit.models.tables import preformatted, table
 from cockpit.models.text import outline
-from cockpit.ros.graph import Feed
-from cockpit.ros.tool import Desk
+from cockpit.ros.graph import TopicFeed
+from cockpit.ros.tool import ToolContext
 
 NONE = "(none)"
 
 
-class Topics:
+class TopicsTool:
     name, title, seconds, width = "topics", "Topics", 0.5, 620
 
-    def __init__(self, desk: Desk):
-        self._desk = desk
-        self._feeds: Dict[str, Feed] = {}
-        self._rates: Dict[str, Rate] = {}
+    def __init__(self, context: ToolContext):
+        self._context = context
+        self._feeds: Dict[str, TopicFeed] = {}
+        self._rates: Dict[str, RateMeter] = {}
         self._latest: Optional[str] = None
         # Why a topic is listed without figures.
         self._troubles: Dict[str, str] = {}
 
     def build(self) -> None:
-        gui = self._desk.gui
+        gui = self._context.gui
         self._filter = gui.add_text("Filter", "", hint="part of a topic's name")
         self._measured = gui.add_checkbox("Measure", False, hint="subscribe to all that are listed")
         self._list = gui.add_html("")
@@ -34,7 +34,7 @@ class Topics:
     def update(self, now: float) -> None:
         types = {
             topic: kind
-            for topic, kind in sorted(self._desk.graph.topics().items())
+            for topic, kind in sorted(self._context.graph.topics().items())
             if self._filter.value.lower() in topic.lower()
         }
         options = (NONE, *types)
@@ -62,8 +62,8 @@ class Topics:
             self._rates.pop(topic, None)
         for topic in sorted(wanted - set(self._feeds)):
             try:
-                self._feeds[topic] = self._desk.graph.feed(topic)
-                self._rates[topic] = Rate()
+                self._feeds[topic] = self._context.graph.feed(topic)
+                self._rates[topic] = RateMeter()
                 self._troubles.pop(topic, None)
             except CockpitError as error:  # of a type that is not installed
                 self._troubles[topic] = str(error)
@@ -81,10 +81,10 @@ class Topics:
             self._latest = None
             self._values.content = preformatted(self._troubles.get(self._watched.value, ""))
             return
-        messages = feed.take()
+        messages = feed.messages()
         if messages:
             self._latest = outline(messages[-1])
         self._values.content = self._latest or "<i>no message yet</i>"
 
 
-TOOL = Topics
+TOOL = TopicsTool

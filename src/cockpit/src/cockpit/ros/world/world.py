@@ -7,12 +7,12 @@ from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple
 import numpy as np
 
 from cockpit.errors import CockpitError
-from cockpit.frames import FrameTree, told_pose
+from cockpit.frames import FrameTree, pose_from_message
 from cockpit.page.world_view import RobotView, WorldView
-from cockpit.ros.graph import Feed, Graph
-from cockpit.ros.world.looks import ROBOT, WORLD, Answer, Reader, Request
-from cockpit.ros.world.spawned import Spawned
-from cockpit.scene.look import Look
+from cockpit.ros.graph import GraphClient, TopicFeed
+from cockpit.ros.world.scene_reader import ROBOT, WORLD, SceneReader, SceneRequest, SceneResult
+from cockpit.ros.world.spawned_models import SpawnedModelsView
+from cockpit.scene.description import SceneDescription
 
 # Of the simulator under its own name and under that of Gazebo.
 WORLD_PARAMETERS = ("/sim_bridge/world", "/gazebo/world")
@@ -22,19 +22,19 @@ WORLD_FRAME, MAP_FRAME = "world", "map"
 LINK_STATES = "/gazebo/link_states"
 
 
-class World:
+class WorldTracker:
     """Looks for worlds and robots, and draws them once they have been read."""
 
-    def __init__(self, graph: Graph, scene, reader: Reader, tell: Callable[[str], None]):
-        self._graph, self._scene, self._reader, self._tell = graph, scene, reader, tell
+    def __init__(self, graph: GraphClient, scene, reader: SceneReader, notify: Callable[[str], None]):
+        self._graph, self._scene, self._reader, self._notify = graph, scene, reader, notify
         self.view = WorldView(scene)
         self.robots: Dict[str, RobotView] = {}
         self._asked: Set[str] = set()
         self._arrived: List[Callable[[], None]] = []
-        self._states: Optional[Feed] = None
-        self._spawned = Spawned(graph, self.view, reader, tell)
+        self._states: Optional[TopicFeed] = None
+        self._spawned = SpawnedModelsView(graph, self.view, reader, notify)
 
-    def look_for(self) -> None:
+    def poll(self) -> None:
         """Reads, in the background, what has come since the last call. Raises CockpitError."""
         names = self._graph.parameter_names()
         worlds = [(WORLD, name, self._show_world) for name in WORLD_PARAMETERS if name in names]
@@ -45,7 +45,7 @@ class World:
         ]
         self._read([*worlds, *robots])
         self._reader.rest()
-        self._spawned.look_for()
+        self._spawned.poll()
 
     def update(self, frames: FrameTree, fixed: str, shows_world: bool, shows_robots: bool) -> None:
         while self._arrived:
@@ -75,40 +75,40 @@ class World:
             self._stop_following()
         elif self._states is None and LINK_STATES in self._graph.publishers():
             self._states = self._graph.feed(LINK_STATES, "gazebo_msgs/LinkStates")
-        for message in self._states.take() if self._states is not None else ():
+        for message in self._states.messages() if self._states is not None else ():
             found = dict(zip(message.name, message.pose))
             for name in set(movable) & set(found):
-                pose = told_pose(found[name].position, found[name].orientation)
+                pose = pose_from_message(found[name].position, found[name].orientation)
                 if pose is not None:
                     self.view.place(name, pose)
 
-    def _read(self, found: Sequence[Tuple[str, str, Callable[[Look], None]]]) -> None:
+    def _read(self, found: Sequence[Tuple[str, str, Callable[[SceneDescription], None]]]) -> None:
         """Those that have not been read: of which kind each is, its parameter, and what shows its look."""
         new = [(kind, name, show) for kind, name, show in found if name not in self._asked]
         if not new:
             return
         values = [str(self._graph.parameter(name)) for _, name, _ in new]
-        requests: List[Request] = [
+        requests: List[SceneRequest] = [
             (kind, value, "") if kind == WORLD else (kind, name, value)
             for (kind, name, _), value in zip(new, values)
         ]
         self._asked.update(name for _, name, _ in new)
 
-        def take(answers: List[Answer]) -> None:
+        def take(answers: List[SceneResult]) -> None:
             for (_, name, show), answer in zip(new, answers):
-                if isinstance(answer, Look):
+                if isinstance(answer, SceneDescription):
                     self._arrived.append(partial(show, answer))
                 else:
-                    self._tell(f"{name}: {answer}")
+                    self._notify(f"{name}: {answer}")
 
-        self._reader.read_aside(requests, take)
+        self._reader.read_in_background(requests, take)
 
-    def _show_world(self, look: Look) -> None:
+    def _show_world(self, look: SceneDescription) -> None:
         self.view.show(look)
         for warning in look.warnings[:3]:
-            self._tell(warning)
+            self._notify(warning)
 
-    def _show_robot(self, parameter: str, look: Look) -> None:
+    def _show_robot(self, parameter: str, look: SceneDescription) -> None:
         namespace = parameter.rpartition("/")[0]
         try:
             prefix = str(self._graph.parameter(f"{namespace}/{PREFIX}", ""))
@@ -116,7 +116,7 @@ class World:
             prefix = ""
         self.robots[parameter] = RobotView(self._scene, namespace, look, prefix)
         for warning in look.warnings[:3]:
-            self._tell(warning)
+            self._notify(warning)
 
 
 def world_in(frames: FrameTree, fixed: str) -> Optional[np.ndarray]:

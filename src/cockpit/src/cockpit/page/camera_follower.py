@@ -9,7 +9,7 @@ from cockpit.page.server import Page
 STILL = 0.01
 
 
-class Follower:
+class CameraFollower:
     """Keeps the view that each person has chosen, moved on by as much as the robot."""
 
     def __init__(self, page: Page):

@@ -2,33 +2,33 @@
 
 from typing import Any, Callable, Dict, List, Optional
 
-from cockpit.drawing import Drawing, Screen
+from cockpit.drawing import CameraImage, LayerUpdate
 from cockpit.errors import CockpitError
-from cockpit.layer import Draw, Layer
+from cockpit.layer import DisplayLayer, Draw
 from cockpit.layers import by_type
-from cockpit.page.drawer import Drawer
-from cockpit.ros.graph import Feed, Graph
-from cockpit.ros.tool import said
+from cockpit.page.scene_renderer import SceneRenderer
+from cockpit.ros.graph import GraphClient, TopicFeed
+from cockpit.ros.tool import error_text
 
 
-class ShownTopic:
+class LayerSubscription:
     """A topic that is switched on."""
 
-    def __init__(self, graph: Graph, topic: str, kind: str, layer: Layer):
+    def __init__(self, graph: GraphClient, topic: str, kind: str, layer: DisplayLayer):
         """Raises CockpitError."""
         self.topic, self.layer = topic, layer
-        self._feed: Feed = graph.feed(topic, kind, layer.needs_all)
-        self.begin_anew()
+        self._feed: TopicFeed = graph.feed(topic, kind, layer.needs_all)
+        self.reset()
 
-    def begin_anew(self) -> None:
+    def reset(self) -> None:
         self._draw: Draw = self.layer.make()
         self._due = 0.0
 
-    def drawings(self, now: float) -> List[Drawing]:
+    def updates(self, now: float) -> List[LayerUpdate]:
         """What is new. Raises whatever a message that makes no sense makes its layer raise."""
         if now < self._due:
             return []
-        messages = self._feed.take()
+        messages = self._feed.messages()
         if messages:
             self._due = now + self.layer.seconds
         return [self._draw(message) for message in messages]
@@ -37,24 +37,24 @@ class ShownTopic:
         self._feed.close()
 
 
-class Layers:
+class LayerManager:
     """All topics that a layer knows to draw."""
 
-    def __init__(self, graph: Graph, drawer: Drawer, tell: Callable[[str], None]):
-        self._graph, self._drawer, self._tell = graph, drawer, tell
+    def __init__(self, graph: GraphClient, drawer: SceneRenderer, notify: Callable[[str], None]):
+        self._graph, self._drawer, self._notify = graph, drawer, notify
         self._by_type = by_type()
-        self._shown: Dict[str, ShownTopic] = {}
+        self._shown: Dict[str, LayerSubscription] = {}
         self._complaints: Dict[str, str] = {}
         # The newest picture of each camera.
         self.screens: Dict[str, Any] = {}
 
-    def offers(self) -> Dict[str, Layer]:
+    def offers(self) -> Dict[str, DisplayLayer]:
         """The layer of each topic that somebody publishes. Raises CockpitError."""
         published, types = self._graph.publishers(), self._graph.topics()
         known = ((topic, self._by_type.get(types.get(topic, ""))) for topic in sorted(published))
         return {topic: layer for topic, layer in known if layer is not None}
 
-    def choose(self, wanted: Dict[str, bool], offers: Dict[str, Layer]) -> None:
+    def choose(self, wanted: Dict[str, bool], offers: Dict[str, DisplayLayer]) -> None:
         """Subscribes to what is switched on, and to nothing else."""
         for topic in [topic for topic in self._shown if not wanted.get(topic)]:
             self._close(topic)
@@ -65,16 +65,16 @@ class Layers:
     def update(self, now: float) -> None:
         for topic, shown in self._shown.items():
             try:
-                for drawing in shown.drawings(now):
-                    self._show(topic, drawing, now)
-                    self._complain(topic, drawing.told)
+                for update in shown.updates(now):
+                    self._show(topic, update, now)
+                    self._complain(topic, update.warning)
             except Exception as error:  # what a graph sends may be anything
-                self._complain(topic, said(error))
+                self._complain(topic, error_text(error))
 
-    def begin_anew(self) -> None:
+    def reset(self) -> None:
         """Time has: what was shown belongs to another."""
         for topic, shown in self._shown.items():
-            shown.begin_anew()
+            shown.reset()
             self._clear(topic)
 
     def close(self) -> None:
@@ -83,9 +83,9 @@ class Layers:
             shown.close()
         self._shown.clear()
 
-    def _open(self, topic: str, layer: Layer) -> None:
+    def _open(self, topic: str, layer: DisplayLayer) -> None:
         try:
-            self._shown[topic] = ShownTopic(self._graph, topic, layer_type(self._graph, topic), layer)
+            self._shown[topic] = LayerSubscription(self._graph, topic, layer_type(self._graph, topic), layer)
         except CockpitError as error:
             self._complain(topic, str(error))
 
@@ -97,21 +97,21 @@ class Layers:
         self._drawer.clear(topic)
         self.screens.pop(topic, None)
 
-    def _show(self, topic: str, drawing: Drawing, now: float) -> None:
-        screens = [part for part in drawing.parts if isinstance(part.thing, Screen)]
+    def _show(self, topic: str, update: LayerUpdate, now: float) -> None:
+        screens = [part for part in update.parts if isinstance(part.shape, CameraImage)]
         for part in screens:
-            self.screens[topic] = part.thing.picture  # type: ignore[union-attr]
+            self.screens[topic] = part.shape.picture  # type: ignore[union-attr]
         if not screens:
-            self._drawer.show(topic, drawing, now)
+            self._drawer.show(topic, update, now)
 
     def _complain(self, topic: str, text: str) -> None:
-        """Once for each thing that is wrong with a topic."""
+        """Once for each shape that is wrong with a topic."""
         if text and self._complaints.get(topic) != text:
-            self._tell(f"{topic}: {text}")
+            self._notify(f"{topic}: {text}")
         self._complaints[topic] = text or self._complaints.get(topic, "")
 
 
-def layer_type(graph: Graph, topic: str) -> str:
+def layer_type(graph: GraphClient, topic: str) -> str:
     """Raises CockpitError."""
     kind: Optional[str] = graph.topics().get(topic)
     if kind is None:

@@ -5,9 +5,9 @@ from queue import Queue
 
 import pytest
 
-from cockpit.ros.world import looks
-from cockpit.ros.world.looks import MODEL, ROBOT, WORLD, Reader, read_looks
-from cockpit.scene.look import Look
+from cockpit.ros.world import scene_reader
+from cockpit.ros.world.scene_reader import MODEL, ROBOT, WORLD, SceneReader, read_scenes
+from cockpit.scene.description import SceneDescription
 
 HOME = Path(__file__).resolve().parents[3] / "map/home.world"
 SDF = """<sdf version="1.6"><model name="m"><link name="l">
@@ -19,8 +19,8 @@ URDF = """<robot name="m"><link name="l"><inertial><mass value="1"/>
 ROBOT_TEXT = "<robot name='a'><link name='base'/></robot>"
 
 
-def test_each_is_answered_by_a_look_or_by_why_there_is_none():
-    world, robot, nonsense, missing = read_looks(
+def test_each_request_returns_a_scene_or_a_reason():
+    world, robot, nonsense, missing = read_scenes(
         [
             (WORLD, str(HOME), ""),
             (ROBOT, "", ROBOT_TEXT),
@@ -28,8 +28,8 @@ def test_each_is_answered_by_a_look_or_by_why_there_is_none():
             (WORLD, "/nowhere.world", ""),
         ]
     )
-    assert isinstance(world, Look) and len(world.pieces) > 10
-    assert isinstance(robot, Look)
+    assert isinstance(world, SceneDescription) and len(world.pieces) > 10
+    assert isinstance(robot, SceneDescription)
     assert "not well-formed" in nonsense
     assert missing.startswith("/nowhere.world: cannot be read")
 
@@ -37,33 +37,33 @@ def test_each_is_answered_by_a_look_or_by_why_there_is_none():
 def test_one_that_ends_the_process_leaves_the_others(monkeypatch):
     answered = []
 
-    class Deadly(looks.Popen):
+    class Deadly(scene_reader.Popen):
         def communicate(self, asked, *rest):
             answered.append(asked)
             if b"deadly" in asked:
                 self.kill()
             return super().communicate(asked, *rest)
 
-    monkeypatch.setattr(looks, "Popen", Deadly)
-    deadly, robot = read_looks([(ROBOT, "", "deadly"), (ROBOT, "", ROBOT_TEXT)])
-    assert (deadly, type(robot)) == ("could not be read", Look)
+    monkeypatch.setattr(scene_reader, "Popen", Deadly)
+    deadly, robot = read_scenes([(ROBOT, "", "deadly"), (ROBOT, "", ROBOT_TEXT)])
+    assert (deadly, type(robot)) == ("could not be read", SceneDescription)
     assert len(answered) == 3
 
 
 def test_what_is_prepared_reads_what_comes_next_only():
-    reader, answers = Reader(), Queue()
+    reader, answers = SceneReader(), Queue()
     reader.prepare()
     for _ in range(2):
-        reader.read_aside([(ROBOT, "", ROBOT_TEXT)], answers.put)
+        reader.read_in_background([(ROBOT, "", ROBOT_TEXT)], answers.put)
         (answer,) = answers.get(timeout=20.0)
-        assert isinstance(answer, Look)
+        assert isinstance(answer, SceneDescription)
 
 
-def test_what_is_prepared_in_vain_ends(monkeypatch):
+def test_a_prepared_process_that_is_not_needed_ends(monkeypatch):
     started = []
-    start = looks._start
-    monkeypatch.setattr(looks, "_start", lambda: started.append(start()) or started[-1])
-    reader = Reader()
+    start = scene_reader._start
+    monkeypatch.setattr(scene_reader, "_start", lambda: started.append(start()) or started[-1])
+    reader = SceneReader()
     reader.prepare()
     reader.rest()
     reader.rest()
@@ -71,14 +71,14 @@ def test_what_is_prepared_in_vain_ends(monkeypatch):
     assert process.poll() is not None
 
 
-def test_one_that_takes_too_long_is_told(monkeypatch):
-    monkeypatch.setattr(looks, "READING_SECONDS", 0.001)
-    assert read_looks([(ROBOT, "", ROBOT_TEXT)]) == ["was not read within 0.001 s"]
+def test_a_reading_that_takes_too_long_is_an_error(monkeypatch):
+    monkeypatch.setattr(scene_reader, "READING_SECONDS", 0.001)
+    assert read_scenes([(ROBOT, "", ROBOT_TEXT)]) == ["was not read within 0.001 s"]
 
 
 def test_a_model_is_shown_under_the_name_that_it_was_spawned_by():
     for text in (SDF, URDF):
-        (answer,) = read_looks([(MODEL, "cup", text)])
+        (answer,) = read_scenes([(MODEL, "cup", text)])
         (piece,) = answer.pieces
         assert (piece.model, piece.link) == ("cup", "l")
         assert abs(piece.vertices).max() == pytest.approx(0.1)

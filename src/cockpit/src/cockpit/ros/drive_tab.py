@@ -13,32 +13,32 @@ from cockpit.frames import FrameTree
 from cockpit.models.mission import is_running, mission_html
 from cockpit.models.tables import table
 from cockpit.page.drive_panel import BOX, GOAL, LOOK, MOVE, NOBODY, NOTHING, NOWHERE, POINT, POSE, DrivePanel
-from cockpit.page.pointer import Pointer
-from cockpit.ros.graph import Feed, Graph
-from cockpit.ros.orders import Orders
+from cockpit.page.pointer import FloorPointer
+from cockpit.ros.graph import GraphClient, TopicFeed
+from cockpit.ros.graph_commands import GraphCommands
 from cockpit.ros.teleop import PageTeleop
-from cockpit.ros.world.world import World, world_in
+from cockpit.ros.world.world import WorldTracker, world_in
 
 BASE_FRAMES = ("base_footprint", "base_link")
 MISSION, ERRAND = "/pick_objects/mission_state", "/pick_objects/state"
 
 
-class Driving:
+class DriveTab:
     """Implements what the panel asks for (cockpit.page.drive_panel.Driver)."""
 
     def __init__(
         self,
-        graph: Graph,
+        graph: GraphClient,
         frames: FrameTree,
-        pointer: Pointer,
-        world: World,
-        tell: Callable[[str], None],
+        pointer: FloorPointer,
+        world: WorldTracker,
+        notify: Callable[[str], None],
         fixed: Callable[[], str],
     ):
         """``fixed``: tells the fixed frame."""
         self._graph, self._frames, self._pointer, self._world = graph, frames, pointer, world
-        self._tell, self._fixed = tell, fixed
-        self._orders, self.teleop = Orders(graph), PageTeleop()
+        self._notify, self._fixed = notify, fixed
+        self._orders, self.teleop = GraphCommands(graph), PageTeleop()
         self._feeds: dict = {}
         self._is_on_mission = False
         self._swung: Optional[Tuple[str, str, float]] = None
@@ -48,22 +48,22 @@ class Driving:
     def build(self, gui, tab, guarded) -> None:
         self._panel = DrivePanel(gui, tab, self, guarded)
 
-    def look_around(self) -> None:
+    def refresh(self) -> None:
         """Raises CockpitError."""
         assert self._panel is not None
         orders, view = self._orders, self._world.view
         self._panel.offer(orders.robots(), orders.velocity_topics(), orders.places())
-        self._panel.offer_world(view.models, sorted(view.hinges))
+        self._panel.offer_world(view.models, sorted(view.joints))
         types = self._graph.topics()
         for topic, kind in ((MISSION, MissionState), (ERRAND, String)):
             if topic in types and topic not in self._feeds:
-                self._feeds[topic] = Feed(topic, kind._type)
+                self._feeds[topic] = TopicFeed(topic, kind._type)
 
     def update(self) -> None:
         """Raises CockpitError."""
         assert self._panel is not None
         for topic in (MISSION, ERRAND):
-            for message in self._feeds[topic].take() if topic in self._feeds else ():
+            for message in self._feeds[topic].messages() if topic in self._feeds else ():
                 if topic == MISSION:
                     self._is_on_mission = is_running(message)
                     self._panel.mission.content = mission_html(message)
@@ -118,11 +118,11 @@ class Driving:
         if NOWHERE in ends:
             raise CockpitError("nobody has told of places to deliver between")
         self._alone(lambda: self._orders.deliver(thing, *ends, joins=self._is_on_mission))
-        self._tell(f"{thing}: from {ends[0]} to {ends[1]}")
+        self._notify(f"{thing}: from {ends[0]} to {ends[1]}")
 
     def cancel_mission(self) -> None:
         self._alone(self._orders.cancel_mission)
-        self._tell("the mission is cancelled")
+        self._notify("the mission is cancelled")
 
     def _alone(self, order: Callable[[], None]) -> None:
         """One order at a time: those that a node leaves unanswered must not hold up who drives."""
@@ -146,32 +146,32 @@ class Driving:
     def _wanted_swing(self) -> Tuple[str, str, float]:
         """Model, joint and position. Raises CockpitError."""
         assert self._panel is not None
-        hinge = self._world.view.hinges.get(self._panel.hinge.value)
-        if hinge is None:
+        joint = self._world.view.joints.get(self._panel.joint.value)
+        if joint is None:
             raise CockpitError("there is nothing to open")
-        return hinge.model, hinge.name, hinge.opened(self._panel.opened.value / 100.0)
+        return joint.model, joint.name, joint.opened(self._panel.opened.value / 100.0)
 
     def _pointed(self, x: float, y: float, yaw: Optional[float], _client: int) -> None:
         assert self._panel is not None
         mode, robot, fixed = self._panel.mode.value, self._panel.robot.value, self._fixed()
-        self._panel.look()
+        self._panel.reset_mode()
         self._pointer.aim(None)
         try:
             if mode == GOAL:
                 self._orders.goal(robot, fixed, x, y, self._yaw_to(x, y) if yaw is None else yaw)
-                self._tell(f"goal sent: {x:.2f}, {y:.2f} in {fixed}")
+                self._notify(f"goal sent: {x:.2f}, {y:.2f} in {fixed}")
             elif mode == POSE:
                 self._orders.estimate(robot, fixed, x, y, yaw or 0.0)
-                self._tell(f"pose estimate sent: {x:.2f}, {y:.2f} in {fixed}")
+                self._notify(f"pose estimate sent: {x:.2f}, {y:.2f} in {fixed}")
             elif mode == POINT:
                 self._orders.point(fixed, x, y)
-                self._tell(f"point published: {x:.2f}, {y:.2f} in {fixed}")
+                self._notify(f"point published: {x:.2f}, {y:.2f} in {fixed}")
             elif mode == BOX:
                 self._drop(*self._in_world(x, y, 0.0)[:2])
             elif mode == MOVE:
                 self._move(*self._in_world(x, y, yaw))
         except (CockpitError, rospy.ROSException) as error:
-            self._tell(str(error))
+            self._notify(str(error))
 
     def _yaw_to(self, x: float, y: float) -> float:
         """The direction from the robot to a place: a goal that is only clicked is reached looking ahead."""
@@ -189,7 +189,7 @@ class Driving:
 
     def _drop(self, x: float, y: float) -> None:
         name = self._orders.drop_box(x, y)
-        self._tell(f"{name} dropped")
+        self._notify(f"{name} dropped")
 
     def _move(self, x: float, y: float, yaw: Optional[float]) -> None:
         assert self._panel is not None
@@ -197,4 +197,4 @@ class Driving:
         if model == NOTHING:
             raise CockpitError("there is nothing to move")
         self._world.view.move(model, self._orders.move_model(model, x, y, yaw))
-        self._tell(f"{model} moved to {x:.2f}, {y:.2f}")
+        self._notify(f"{model} moved to {x:.2f}, {y:.2f}")

@@ -3,25 +3,27 @@
 from dataclasses import replace
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
-from cockpit.frames import told_pose
+from cockpit.frames import pose_from_message
 from cockpit.page.world_view import WorldView
-from cockpit.ros.graph import Feed, Graph
-from cockpit.ros.world.looks import MODEL, Answer, Reader, Request
-from cockpit.scene.look import Look
+from cockpit.ros.graph import GraphClient, TopicFeed
+from cockpit.ros.world.scene_reader import MODEL, SceneReader, SceneRequest, SceneResult
+from cockpit.scene.description import SceneDescription
 
 TYPE = "sim_bridge_msgs/SpawnedModels"
 
 
-class Spawned:
+class SpawnedModelsView:
     """Shows them in the ``view``, where they were put."""
 
-    def __init__(self, graph: Graph, view: WorldView, reader: Reader, tell: Callable[[str], None]):
-        self._graph, self._view, self._reader, self._tell = graph, view, reader, tell
-        self._feed: Optional[Feed] = None
+    def __init__(
+        self, graph: GraphClient, view: WorldView, reader: SceneReader, notify: Callable[[str], None]
+    ):
+        self._graph, self._view, self._reader, self._notify = graph, view, reader, notify
+        self._feed: Optional[TopicFeed] = None
         self._models: Dict[str, Any] = {}
-        self._arrived: List[Tuple[List[Any], List[Answer]]] = []
+        self._arrived: List[Tuple[List[Any], List[SceneResult]]] = []
 
-    def look_for(self) -> None:
+    def poll(self) -> None:
         """Listens to who tells of them, if anybody does. Raises CockpitError."""
         if self._feed is None:
             told = (topic for topic, kind in self._graph.topics().items() if kind == TYPE)
@@ -30,7 +32,7 @@ class Spawned:
 
     def update(self) -> None:
         """Raises CockpitError."""
-        for message in self._feed.take() if self._feed is not None else ():
+        for message in self._feed.messages() if self._feed is not None else ():
             self._compare({model.name: model for model in message.models})
         while self._arrived:
             for model, answer in zip(*self._arrived.pop(0)):
@@ -51,13 +53,13 @@ class Spawned:
         new = [model for name, model in models.items() if self._models.get(name) != model]
         self._models = models
         if new:
-            requests: List[Request] = [(MODEL, model.name, model.xml) for model in new]
-            self._reader.read_aside(requests, lambda answers: self._arrived.append((new, answers)))
+            requests: List[SceneRequest] = [(MODEL, model.name, model.xml) for model in new]
+            self._reader.read_in_background(requests, lambda answers: self._arrived.append((new, answers)))
 
-    def _show(self, model: Any, answer: Answer) -> None:
-        pose = told_pose(model.pose.position, model.pose.orientation)
-        if not isinstance(answer, Look):
-            self._tell(f"{model.name}: {answer}")
+    def _show(self, model: Any, answer: SceneResult) -> None:
+        pose = pose_from_message(model.pose.position, model.pose.orientation)
+        if not isinstance(answer, SceneDescription):
+            self._notify(f"{model.name}: {answer}")
         elif pose is not None:
             pieces = tuple(replace(piece, pose=pose @ piece.pose) for piece in answer.pieces)
             self._view.show(replace(answer, pieces=pieces))

@@ -8,19 +8,19 @@ from typing import Callable, List, Optional, Sequence, Tuple, Union
 
 import msgspec.msgpack
 
-from cockpit.scene.look import Look
+from cockpit.scene.description import SceneDescription
 
 READING_SECONDS = 120.0
 # Where processors are short, the graph goes first, but this must not starve.
 NICENESS = "5"
 WORLD, ROBOT, MODEL = "world", "robot", "model"
 # WORLD, an SDF file, and nothing; ROBOT, its parameter, and its URDF; MODEL, its name, and its SDF or URDF.
-Request = Tuple[str, str, str]
+SceneRequest = Tuple[str, str, str]
 # A look, or why there is none.
-Answer = Union[Look, str]
+SceneResult = Union[SceneDescription, str]
 
 
-class Reader:
+class SceneReader:
     """Starts the processes that read, each for all that is asked at once."""
 
     def __init__(self):
@@ -37,13 +37,15 @@ class Reader:
             self._ready.communicate()
             self._ready = None
 
-    def read_aside(self, requests: Sequence[Request], take: Callable[[List[Answer]], None]) -> None:
+    def read_in_background(
+        self, requests: Sequence[SceneRequest], take: Callable[[List[SceneResult]], None]
+    ) -> None:
         """Reads in a thread, which gives ``take`` the answers."""
         process, self._ready = self._ready, None
-        threading.Thread(target=lambda: take(read_looks(requests, process)), daemon=True).start()
+        threading.Thread(target=lambda: take(read_scenes(requests, process)), daemon=True).start()
 
 
-def read_looks(requests: Sequence[Request], process: Optional[Popen] = None) -> List[Answer]:
+def read_scenes(requests: Sequence[SceneRequest], process: Optional[Popen] = None) -> List[SceneResult]:
     """By one process for all of them: that which is given, or a new one."""
     process = process or _start()
     try:
@@ -54,9 +56,11 @@ def read_looks(requests: Sequence[Request], process: Optional[Popen] = None) -> 
         return [f"was not read within {READING_SECONDS:g} s"] * len(requests)
     if process.returncode == 0:
         answers = msgspec.msgpack.decode(told)
-        return [Look.from_bytes(answer) if isinstance(answer, bytes) else answer for answer in answers]
+        return [
+            SceneDescription.from_bytes(answer) if isinstance(answer, bytes) else answer for answer in answers
+        ]
     if len(requests) > 1:  # one of them has ended it
-        return [answer for request in requests for answer in read_looks([request])]
+        return [answer for request in requests for answer in read_scenes([request])]
     lines = complaint.decode(errors="replace").strip().splitlines()
     return [lines[-1] if lines else "could not be read"]
 
@@ -68,25 +72,25 @@ def _start() -> Popen:
 
 def main() -> None:
     read = _reading()
-    requests = msgspec.msgpack.decode(sys.stdin.buffer.read(), type=List[Request])
+    requests = msgspec.msgpack.decode(sys.stdin.buffer.read(), type=List[SceneRequest])
     answers = [read(*request) for request in requests]
     sys.stdout.buffer.write(msgspec.msgpack.encode(answers))
 
 
 def _reading() -> Callable[[str, str, str], Union[bytes, str]]:
     """What reads a request; only the process that reads imports what that takes."""
-    from cockpit.scene.reading import model_look, robot_look, world_look
+    from cockpit.scene.reader import describe_model, describe_robot, describe_world
     from planar import PlanarError
     from sim_bridge.ros.describing import find_file, model_folders
 
     def read(kind: str, name: str, text: str) -> Union[bytes, str]:
         try:
             if kind == WORLD:
-                look = world_look(Path(name), model_folders())
+                look = describe_world(Path(name), model_folders())
             elif kind == ROBOT:
-                look = robot_look(text, find_file)
+                look = describe_robot(text, find_file)
             else:
-                look = model_look(text, name, model_folders(), find_file)
+                look = describe_model(text, name, model_folders(), find_file)
         except PlanarError as error:
             return str(error)
         return look.to_bytes()

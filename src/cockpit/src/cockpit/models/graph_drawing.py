@@ -1,4 +1,4 @@
-"""The graph of nodes and topics as a picture by graphviz (rqt_graph)."""
+"""The graph of nodes and topics in graphviz's language (rqt_graph)."""
 
 from dataclasses import dataclass
 from typing import Dict, Iterable, List, Mapping, Sequence, Set, Tuple
@@ -12,19 +12,19 @@ ACTION = frozenset(("goal", "cancel", "status", "feedback", "result"))
 ACTION_TOPICS = "action"
 NODE = 'shape=ellipse, style=filled, fillcolor="#fff9db"'
 TOPIC = 'shape=box, style=filled, fillcolor="#e7f5ff"'
-LOOKS = """graph [rankdir=LR, bgcolor=transparent, nodesep=0.15, ranksep=0.35];
+STYLE = """graph [rankdir=LR, bgcolor=transparent, nodesep=0.15, ranksep=0.35];
 node [fontname="Helvetica", fontsize=11, height=0.3, margin="0.08,0.03"];
 edge [fontname="Helvetica", arrowsize=0.6];"""
 ARROW = 'fontsize=9, color="#868e96", fontcolor="#495057"'
 
-# Which nodes are at the one end of each topic.
+# The publishing, or the subscribing, nodes of each topic.
 Ends = Mapping[str, Sequence[str]]
 Edge = Tuple[str, str]
 
 
 @dataclass(frozen=True)
-class Shown:
-    """What of the graph is drawn."""
+class GraphFilter:
+    """Which part of the graph is drawn."""
 
     kind: str = ACTIVE
     debug: bool = False
@@ -33,8 +33,8 @@ class Shown:
     part_of_name: str = ""
 
 
-def dot_of(publishers: Ends, subscribers: Ends, shown: Shown) -> str:
-    """The graph in graphviz's language."""
+def dot_of(publishers: Ends, subscribers: Ends, shown: GraphFilter) -> str:
+    """Return the graph in graphviz's language."""
     writers, readers = _chosen(publishers, shown), _chosen(subscribers, shown)
     if shown.kind == NODES:
         return _nodes_only(writers, readers)
@@ -62,8 +62,8 @@ def _nodes_only(writers: Dict[str, Set[str]], readers: Dict[str, Set[str]]) -> s
     return _digraph(_nodes(writers, readers), lines)
 
 
-def _chosen(ends: Ends, shown: Shown) -> Dict[str, Set[str]]:
-    """The nodes of each topic that is drawn."""
+def _chosen(ends: Ends, shown: GraphFilter) -> Dict[str, Set[str]]:
+    """Return the nodes of each topic that passes the filter."""
     hidden = (() if shown.debug else DEBUG_TOPICS + CLOCK) + (() if shown.transforms else TRANSFORMS)
     actions = set() if shown.actions_apart else _actions(ends)
     part = shown.part_of_name.lower()
@@ -82,7 +82,7 @@ def _chosen(ends: Ends, shown: Shown) -> Dict[str, Set[str]]:
 
 
 def _actions(ends: Iterable[str]) -> Set[str]:
-    """The names below which all topics are that one side of an action has."""
+    """Return the namespaces of actions: those with all topics of one side of an action."""
     found: Dict[str, Set[str]] = {}
     for topic in ends:
         above, _, last = topic.rpartition("/")
@@ -100,7 +100,7 @@ def _nodes(*sides: Dict[str, Set[str]]) -> List[str]:
 
 def _digraph(nodes: Iterable[str], lines: Iterable[str]) -> str:
     drawn = [f"{_id('n', node)} [{NODE}, {_label(node)}];" for node in nodes]
-    return "\n".join(["digraph graph_of_nodes {", LOOKS, *drawn, *lines, "}\n"])
+    return "\n".join(["digraph graph_of_nodes {", STYLE, *drawn, *lines, "}\n"])
 
 
 def _id(kind: str, name: str) -> str:
@@ -112,5 +112,5 @@ def _label(*names: str) -> str:
 
 
 def _plain(name: str) -> str:
-    """Without what means something in graphviz's strings: names in a graph may be anything."""
+    """Escape a name for a string of graphviz."""
     return name.replace("\\", "\\\\").replace('"', '\\"')

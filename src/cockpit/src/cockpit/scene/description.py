@@ -11,7 +11,7 @@ from cockpit.drawing import Colour
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class VisualPart:
     """A visible part of a link: ``vertices`` (N, 3) in the link's frame, ``triangles`` (M, 3).
 
     ``model``, ``link``: what it belongs to; of a robot the model is empty. ``pose``: (4, 4) of the link in
@@ -28,7 +28,7 @@ class Piece:
 
 
 @dataclass(frozen=True)
-class Hinge:
+class DisplayJoint:
     """A door or a drawer: the joint ``name`` of a ``model``, and where it is shut and wide open, rad or m."""
 
     model: str
@@ -42,12 +42,12 @@ class Hinge:
 
 
 @dataclass(frozen=True, eq=False)
-class Look:
+class SceneDescription:
     """``warnings``: what cannot be shown, in words."""
 
-    pieces: Tuple[Piece, ...]
+    pieces: Tuple[VisualPart, ...]
     warnings: Tuple[str, ...] = ()
-    hinges: Tuple[Hinge, ...] = ()
+    joints: Tuple[DisplayJoint, ...] = ()
 
     def to_bytes(self) -> bytes:
         """As another process reads it with ``from_bytes``."""
@@ -60,18 +60,18 @@ class Look:
             arrays[f"p{number}"] = piece.pose
             arrays[f"v{number}"] = piece.vertices.astype(np.float32)
             arrays[f"t{number}"] = piece.triangles.astype(np.int32)
-        hinges = [astuple(hinge) for hinge in self.hinges]
-        index = json.dumps({"pieces": about, "warnings": self.warnings, "hinges": hinges})
+        joints = [astuple(joint) for joint in self.joints]
+        index = json.dumps({"pieces": about, "warnings": self.warnings, "joints": joints})
         file = io.BytesIO()
         np.savez(file, index=np.array(index), **arrays)
         return file.getvalue()
 
     @staticmethod
-    def from_bytes(content: bytes) -> "Look":
+    def from_bytes(content: bytes) -> "SceneDescription":
         with np.load(io.BytesIO(content)) as arrays:
             index = json.loads(str(arrays["index"]))
             pieces = [
-                Piece(
+                VisualPart(
                     about["model"],
                     about["link"],
                     arrays[f"p{number}"],
@@ -82,29 +82,29 @@ class Look:
                 )
                 for number, about in enumerate(index["pieces"])
             ]
-        hinges = tuple(Hinge(*hinge) for hinge in index["hinges"])
-        return Look(tuple(pieces), tuple(index["warnings"]), hinges)
+        joints = tuple(DisplayJoint(*joint) for joint in index["joints"])
+        return SceneDescription(tuple(pieces), tuple(index["warnings"]), joints)
 
 
-def cut_at(piece: Piece, height: float) -> Piece:
+def cut_at(piece: VisualPart, height: float) -> VisualPart:
     """The piece without what is above ``height``, metres in the world; empty if it is all above."""
     in_world = piece.vertices @ piece.pose[:3, :3].T + piece.pose[:3, 3]
     if not len(in_world) or in_world[:, 2].max() <= height:
         return piece
     if in_world[:, 2].min() >= height:
-        return Piece(*_named(piece), np.empty((0, 3)), np.empty((0, 3), int), piece.colour, piece.moves)
+        return VisualPart(*_named(piece), np.empty((0, 3)), np.empty((0, 3), int), piece.colour, piece.moves)
     in_world[:, 2] = np.minimum(in_world[:, 2], height)
     vertices = (in_world - piece.pose[:3, 3]) @ piece.pose[:3, :3]
-    return Piece(*_named(piece), vertices, piece.triangles, piece.colour, piece.moves)
+    return VisualPart(*_named(piece), vertices, piece.triangles, piece.colour, piece.moves)
 
 
-def _named(piece: Piece) -> Tuple[str, str, np.ndarray]:
+def _named(piece: VisualPart) -> Tuple[str, str, np.ndarray]:
     return piece.model, piece.link, piece.pose
 
 
-def merged(pieces: Tuple[Piece, ...]) -> List[Tuple[np.ndarray, np.ndarray, Colour]]:
+def merged(pieces: Tuple[VisualPart, ...]) -> List[Tuple[np.ndarray, np.ndarray, Colour]]:
     """Vertices, triangles and colour, one of each colour, of pieces of one link."""
-    by_colour: Dict[Colour, List[Piece]] = {}
+    by_colour: Dict[Colour, List[VisualPart]] = {}
     for piece in pieces:
         if len(piece.triangles):
             by_colour.setdefault(piece.colour, []).append(piece)

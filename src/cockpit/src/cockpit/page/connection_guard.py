@@ -18,10 +18,10 @@ import websockets.asyncio.server as library
 from viser import _messages as forms
 from websockets.exceptions import ConnectionClosed
 
-from cockpit.access import OK, Access
+from cockpit.access import OK, AccessPolicy
 from cockpit.errors import PortError, RefusedError
-from cockpit.inbound import KINDS, LARGEST_MESSAGE, Allowance, check
-from cockpit.page.controls import can_have
+from cockpit.inbound import KINDS, LARGEST_MESSAGE, RateLimiter, check
+from cockpit.page.controls import accepts
 from supervision.open_files import allow_open_files
 
 MOST_PAGES = 32
@@ -63,10 +63,10 @@ def listen(address: str, port: int) -> socket.socket:
     return listening
 
 
-class Gate:
+class ConnectionGuard:
     """Stands before what is served on ``listening`` from within ``guarding()``."""
 
-    def __init__(self, listening: socket.socket, access: Access):
+    def __init__(self, listening: socket.socket, access: AccessPolicy):
         self._socket, self._access = listening, access
         self._pages = 0
         self._controls: Mapping[str, Any] = {}
@@ -75,7 +75,7 @@ class Gate:
         # It would print the traceback of every request that is refused.
         logging.getLogger("websockets.server").setLevel(logging.CRITICAL)
 
-    def know(self, gui: Any) -> None:
+    def set_controls(self, gui: Any) -> None:
         """Whose controls get only such values as they can have: viser's ``gui``."""
         self._controls = gui._gui_input_handle_from_uuid
 
@@ -85,9 +85,11 @@ class Gate:
         serve = library.serve
 
         def guarded(handler, _host, _port, *, process_request, **options):
-            connection = partial(_Connection, most=self._most_connections, is_of_use=self._is_of_use)
+            connection = partial(_Connection, most=self._most_connections, is_acceptable=self._is_of_use)
             options.update(max_size=LARGEST_MESSAGE, create_connection=connection, sock=self._socket)
-            return serve(self._seeing_out(handler), process_request=self._before(process_request), **options)
+            return serve(
+                self._closing_on_error(handler), process_request=self._checked(process_request), **options
+            )
 
         library.serve = guarded  # type: ignore[assignment, misc]
         try:
@@ -98,9 +100,9 @@ class Gate:
     def _is_of_use(self, message: Mapping[str, Any]) -> bool:
         """Controls come and go, so that a page may well speak of one as it was."""
         control = self._controls.get(message.get("uuid", ""))
-        return control is None or all(can_have(control, each) for each in message.get("updates", {}).values())
+        return control is None or all(accepts(control, each) for each in message.get("updates", {}).values())
 
-    def _before(self, process_request: Callable) -> Callable:
+    def _checked(self, process_request: Callable) -> Callable:
         """What judges a request before viser sees it."""
 
         def judged(connection, request):
@@ -123,10 +125,10 @@ class Gate:
 
         return judged
 
-    def _seeing_out(self, handler: Callable) -> Callable:
+    def _closing_on_error(self, handler: Callable) -> Callable:
         """Whatever a page sends, it is the end of its own connection only."""
 
-        async def seen_out(connection) -> None:
+        async def handled(connection) -> None:
             self._pages += 1
             try:
                 await handler(connection)
@@ -137,18 +139,18 @@ class Gate:
             finally:
                 self._pages -= 1
 
-        return seen_out
+        return handled
 
 
 class _Connection(library.ServerConnection):
     """Passes on what a page may send; closes at the first thing that it may not."""
 
     def __init__(
-        self, *arguments: Any, most: int, is_of_use: Callable[[Mapping[str, Any]], bool], **options: Any
+        self, *arguments: Any, most: int, is_acceptable: Callable[[Mapping[str, Any]], bool], **options: Any
     ):
         super().__init__(*arguments, **options)
-        self._most, self._is_of_use = most, is_of_use
-        self._allowance = Allowance()
+        self._most, self._is_of_use = most, is_acceptable
+        self._rate_limiter = RateLimiter()
 
     def connection_made(self, transport: Any) -> None:
         super().connection_made(transport)
@@ -158,7 +160,7 @@ class _Connection(library.ServerConnection):
     async def recv(self, *arguments: Any, **options: Any):
         while True:
             message = await super().recv(*arguments, **options)
-            if not self._allowance.take(time.monotonic()):
+            if not self._rate_limiter.allow(time.monotonic()):
                 await self.close(1008, "too many messages")
                 continue  # which raises that it is closed
             try:

@@ -1,4 +1,4 @@
-"""Numbers out of messages, and how they went over time (rqt_plot)."""
+"""Numbers in messages, and their values over time (rqt_plot)."""
 
 import math
 import re
@@ -15,7 +15,7 @@ STEP = re.compile(r"(\w+)((?:\[-?\d+\])*)")
 
 
 def expanded(word: str) -> List[str]:
-    """What rqt_plot takes as one word: "/pose/x:y" and "/pose/x,/pose/y" are two numbers."""
+    """Expand a field path of rqt_plot: "/pose/x:y" and "/pose/x,/pose/y" are two numbers each."""
     found = []
     for part in filter(None, word.split(",")):
         first, *others = part.split(":")
@@ -25,7 +25,7 @@ def expanded(word: str) -> List[str]:
 
 
 def number_at(message: Any, path: str) -> float:
-    """The number at ``pose.position.x``, ``ranges[3]``. Raises CockpitError if there is none."""
+    """Return the number at a path such as ``ranges[3]``. Raises CockpitError if there is none."""
     value = message
     for word in path.split("."):
         matched = STEP.fullmatch(word)
@@ -45,7 +45,7 @@ def number_at(message: Any, path: str) -> float:
 
 
 def numbers_in(message: Any, depth: int = DEEPEST) -> List[str]:
-    """The paths of the numbers of a message, of arrays the first few."""
+    """Return the paths of the numbers in a message, with the first elements of arrays."""
     return _numbers(message, "", depth)[:MOST_LISTED]
 
 
@@ -65,8 +65,8 @@ def _numbers(value: Any, path: str, depth: int) -> List[str]:
     return found
 
 
-class Traces:
-    """Numbers that came over time, each under a name; ``seconds``: how far back they are drawn."""
+class TimeSeries:
+    """Named series of timed numbers; ``seconds`` is the plotted time span [s]."""
 
     def __init__(self, seconds: float):
         self.seconds = seconds
@@ -77,16 +77,24 @@ class Traces:
         if math.isfinite(value):
             samples.append((at, value))
 
-    def forget(self, name: str) -> None:
+    def remove(self, name: str) -> None:
         self._samples.pop(name, None)
 
     def newest(self, name: str) -> float:
-        """NaN if there is none."""
+        """Return the newest value; NaN if there is none."""
         samples = self._samples.get(name)
         return samples[-1][1] if samples else math.nan
 
     def drawn(self, names: List[str], now: float) -> Tuple[np.ndarray, ...]:
-        """Times (N,) in seconds before ``now``, and the values (N,) of each, held until the next."""
+        """Resample series for plotting.
+
+        Args:
+            names: Names of the series.
+            now: Steady-clock time [s].
+
+        Returns:
+            Times (N,) relative to ``now`` [s], then the values (N,) of each series, held until the next.
+        """
         taken = [np.array(self._samples.get(name, ())).reshape(-1, 2) for name in names]
         times = np.unique(np.concatenate([np.array([now]), *(samples[:, 0] for samples in taken)]))
         times = times[times >= now - self.seconds]

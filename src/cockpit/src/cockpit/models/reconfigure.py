@@ -1,4 +1,4 @@
-"""What a dynamic_reconfigure server lets be changed, with its bounds (rqt_reconfigure)."""
+"""The parameters of a dynamic_reconfigure server with their bounds (rqt_reconfigure)."""
 
 import ast
 from contextlib import suppress
@@ -7,13 +7,23 @@ from typing import Any, Dict, List, Tuple
 
 # In the order of the fields of a dynamic_reconfigure/Config.
 KINDS = {"bools": "bool", "ints": "int", "doubles": "double", "strs": "str"}
-# What makers of .cfg files write for "no bound".
+# A bound of this size in a .cfg file means no bound.
 UNBOUNDED = 1e6
 
 
 @dataclass(frozen=True)
-class Knob:
-    """A parameter: ``kind`` is bool, int, double or str; ``choices``: the name and value of each, if few."""
+class ReconfigurableParameter:
+    """A parameter of a dynamic_reconfigure server.
+
+    Attributes:
+        name: Name of the parameter.
+        kind: bool, int, double or str.
+        lowest: Lower bound.
+        highest: Upper bound.
+        default: Default value.
+        meaning: Description.
+        choices: Name and value of each choice of an enumeration.
+    """
 
     name: str
     kind: str
@@ -29,19 +39,19 @@ class Knob:
 
     @property
     def step(self) -> float:
-        """How fine its control goes: a thousandth of what is as large as its bounds."""
+        """Step of the control: about a thousandth of the upper bound."""
         if self.kind == "int":
             return 1
         return 10.0 ** (len(str(int(abs(self.highest)))) - 4) if self.is_bounded else 0.01
 
 
-def knobs_of(description: Any) -> List[Knob]:
-    """Of a dynamic_reconfigure/ConfigDescription, in its order."""
+def parameters_from_description(description: Any) -> List[ReconfigurableParameter]:
+    """Convert a dynamic_reconfigure/ConfigDescription, keeping its order."""
     lowest, highest, default = (
         values_of(part) for part in (description.min, description.max, description.dflt)
     )
     return [
-        Knob(
+        ReconfigurableParameter(
             parameter.name,
             parameter.type,
             lowest.get(parameter.name),
@@ -57,12 +67,12 @@ def knobs_of(description: Any) -> List[Knob]:
 
 
 def values_of(config: Any) -> Dict[str, Any]:
-    """The values of a dynamic_reconfigure/Config by name."""
+    """Return the values of a dynamic_reconfigure/Config by name."""
     return {each.name: each.value for field in KINDS for each in getattr(config, field)}
 
 
 def _choices(edit_method: str) -> Tuple[Tuple[str, Any], ...]:
-    """The generator writes an enumeration as a Python literal."""
+    """Parse an enumeration, which the generator writes as a Python literal."""
     with suppress(ValueError, SyntaxError, KeyError, TypeError, AttributeError, MemoryError, RecursionError):
         listed = ast.literal_eval(edit_method)["enum"]
         return tuple((str(choice["name"]), choice["value"]) for choice in listed)

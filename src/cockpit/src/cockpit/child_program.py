@@ -10,7 +10,7 @@ from supervision.guard import guarded
 END_SECONDS = 5.0
 
 
-class Program:
+class ChildProgram:
     """It ends as by Ctrl-C, when it is to or when this process is no more."""
 
     def __init__(self, command: Sequence[str]):

@@ -15,10 +15,10 @@ from sim_bridge_msgs.srv import Step
 from std_srvs.srv import Empty
 
 from cockpit.errors import CockpitError
-from cockpit.frames import inverse, told_pose
+from cockpit.frames import inverse, pose_from_message
 from cockpit.models.pointing import quaternion_of
-from cockpit.ros.calls import call, join
-from cockpit.ros.graph import Graph
+from cockpit.ros.calls import call, wait_for_subscribers
+from cockpit.ros.graph import GraphClient
 
 GOAL, ESTIMATE, POINT = "move_base_simple/goal", "initialpose", "clicked_point"
 CANCEL = "move_base/cancel"
@@ -36,10 +36,10 @@ BOX = """<sdf version="1.6"><model name="{name}"><link name="box">
 <material><diffuse>0.85 0.55 0.2 1</diffuse></material></visual></link></model></sdf>"""
 
 
-class Orders:
+class GraphCommands:
     """Each raises CockpitError if nobody is there to take it."""
 
-    def __init__(self, graph: Graph):
+    def __init__(self, graph: GraphClient):
         self._graph = graph
         self._publishers: Dict[str, rospy.Publisher] = {}
         self._boxes = 0
@@ -170,7 +170,7 @@ class Orders:
         if topic not in self._publishers:
             self._publishers[topic] = rospy.Publisher(topic, type(message), queue_size=1)
         publisher = self._publishers[topic]
-        join(publisher, len(self._graph.subscribers().get(topic, ())) or int(needs_listener))
+        wait_for_subscribers(publisher, len(self._graph.subscribers().get(topic, ())) or int(needs_listener))
         if needs_listener and not publisher.get_num_connections():
             raise CockpitError(f"nobody listens to {topic}")
         publisher.publish(message)
@@ -191,7 +191,7 @@ def _pose(x: float, y: float, yaw: float) -> Pose:
 
 def _matrix(pose: Pose) -> np.ndarray:
     """Raises CockpitError."""
-    matrix = told_pose(pose.position, pose.orientation)
+    matrix = pose_from_message(pose.position, pose.orientation)
     if matrix is None:
         raise CockpitError("the simulator tells a pose that is none")
     return matrix

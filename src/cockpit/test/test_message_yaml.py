@@ -6,7 +6,7 @@ from std_msgs.msg import String, UInt8
 from std_srvs.srv import SetBoolRequest, TriggerRequest
 
 from cockpit.errors import CockpitError
-from cockpit.ros.filling import filled, message_class, service_class, template
+from cockpit.ros.message_yaml import filled, message_class, service_class, template
 
 
 def test_a_template_is_a_message_as_it_is_by_itself():

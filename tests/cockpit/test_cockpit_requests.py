@@ -21,37 +21,37 @@ TOPICS = {"/base/parameter_descriptions": DESCRIPTION_TYPE}
 
 class WishesTest(unittest.TestCase):
     def test_a_place_in_a_recording_is_gone_to_though_the_player_tells_another(self):
-        feed = Feed(Playback(position=0.3, length=60.0, is_paused=True))
-        desk = Desk({"/player/playback": "home_service_msgs/Playback"}, [feed])
+        feed = TopicFeed(Playback(position=0.3, length=60.0, is_paused=True))
+        context = ToolContext({"/player/playback": "home_service_msgs/Playback"}, [feed])
         with patch("cockpit.ros.tools.replay.call") as called:
             called.return_value = SeekResponse(success=True)
-            replay = Replay(desk)
+            replay = Replay(context)
             replay.build()
             replay.update(0.0)
-            slider = desk.gui.made["Time, s"]
+            slider = context.gui.made["Time, s"]
             self.assertEqual(slider.value, 0.3)
             slider.value = 45.0
             feed.told.append(Playback(position=0.4, length=60.0, is_paused=True))
             replay.update(0.1)
-            slider.tell()
+            slider.notify()
             replay.update(0.2)
             wait_until("a call", lambda: called.called, 5.0)
         self.assertEqual([each[0][0::2] for each in called.call_args_list], [("/player/seek", 45.0)])
 
     def test_a_parameter_is_sent_though_the_server_tells_its_old_value(self):
-        updates = Feed()
-        desk = Desk(TOPICS, [Feed(described(1.5)), updates])
+        updates = TopicFeed()
+        context = ToolContext(TOPICS, [TopicFeed(described(1.5)), updates])
         with patch("cockpit.ros.tools.reconfigure.call") as called:
             called.return_value = SimpleNamespace(config=speed(1.5))
-            tool = Reconfigure(desk)
+            tool = Reconfigure(context)
             tool.build()
-            desk.gui.made["Server"].value = "/base"
+            context.gui.made["Server"].value = "/base"
             tool.update(0.0)
-            slider = desk.gui.made["speed"]
+            slider = context.gui.made["speed"]
             slider.value = 2.0
             updates.told.append(speed(0.5))
             tool.update(0.2)
-            slider.tell()
+            slider.notify()
             tool.update(0.4)
             wait_until("a call", lambda: called.called, 5.0)
             self.assertEqual(called.call_args[0][2], speed(2.0))
@@ -59,18 +59,18 @@ class WishesTest(unittest.TestCase):
         self.assertEqual(called.call_count, 1)
 
     def test_a_parameter_that_is_no_number_is_nobodys_wish(self):
-        updates = Feed(speed(math.nan))
-        desk = Desk(TOPICS, [Feed(described(1.5)), updates])
+        updates = TopicFeed(speed(math.nan))
+        context = ToolContext(TOPICS, [TopicFeed(described(1.5)), updates])
         with patch("cockpit.ros.tools.reconfigure.call") as called:
-            tool = Reconfigure(desk)
+            tool = Reconfigure(context)
             tool.build()
-            desk.gui.made["Server"].value = "/base"
+            context.gui.made["Server"].value = "/base"
             for now in (0.0, 0.2):
                 tool.update(now)
-            self.assertTrue(math.isnan(desk.gui.made["speed"].value))
+            self.assertTrue(math.isnan(context.gui.made["speed"].value))
             updates.told.append(speed(1.0))
             tool.update(0.4)
-        self.assertEqual((desk.gui.made["speed"].value, called.called), (1.0, False))
+        self.assertEqual((context.gui.made["speed"].value, called.called), (1.0, False))
 
 
 def speed(value):
@@ -83,7 +83,7 @@ def described(highest):
     return ConfigDescription(groups=groups, max=speed(highest), min=speed(0.0), dflt=speed(0.5))
 
 
-class Feed:
+class TopicFeed:
     def __init__(self, *told):
         self.told = list(told)
 
@@ -95,7 +95,7 @@ class Feed:
         pass
 
 
-class Desk:
+class ToolContext:
     """A page without a browser, a graph without nodes."""
 
     def __init__(self, topics, feeds):
@@ -133,7 +133,7 @@ class Handle:
 
     on_click = on_update
 
-    def tell(self):
+    def notify(self):
         for do in self._on_update:
             do(SimpleNamespace(client=self))
 

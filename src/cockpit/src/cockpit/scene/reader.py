@@ -1,7 +1,7 @@
-"""The look of worlds and robots, from SDF and URDF.
+"""Read the visual shapes of worlds and robots from SDF and URDF.
 
-It brings physics along, which is not to stay in the cockpit's memory: cockpit.ros.world.looks runs it in a
-process of its own, and whatever a foreign mesh does to its parser is over with that.
+This module loads the physics packages. cockpit.ros.world.scene_reader runs it in a child process, so that
+they do not stay in the cockpit's memory and a malformed mesh cannot crash the cockpit.
 """
 
 import math
@@ -11,7 +11,7 @@ from typing import Dict, Iterator, List, Optional, Sequence, Tuple
 import numpy as np
 
 from cockpit.drawing import Colour
-from cockpit.scene.look import Hinge, Look, Piece
+from cockpit.scene.description import DisplayJoint, SceneDescription, VisualPart
 from planar import PlanarError
 from sim_bridge import load_world
 from sim_bridge.description import read_prop
@@ -30,33 +30,33 @@ COARSENESS = 16
 FREELY, BEYOND = {"revolute": math.pi / 2.0, "prismatic": 0.5}, 1000.0
 
 
-def world_look(path: Path, folders: Sequence[Path]) -> Look:
-    """The bodies of an SDF file. Raises PlanarError."""
-    return look_of(load_world(path, folders))
+def describe_world(path: Path, folders: Sequence[Path]) -> SceneDescription:
+    """Describe the bodies of an SDF file. Raises PlanarError."""
+    return describe_bodies(load_world(path, folders))
 
 
-def model_look(text: str, name: str, folders: Sequence[Path], find_file: FindFile) -> Look:
-    """The bodies of the SDF or URDF of one model, called ``name``, at the origin. Raises PlanarError."""
+def describe_model(text: str, name: str, folders: Sequence[Path], find_file: FindFile) -> SceneDescription:
+    """Describe one model from its SDF or URDF, named ``name``, at the origin. Raises PlanarError."""
     if parse_text(text, name, ("sdf", "gazebo", "robot")).tag == "robot":
-        return look_of(read_prop(text, name, IDENTITY, find_file))
-    return look_of(read_model(text, name, IDENTITY, folders))
+        return describe_bodies(read_prop(text, name, IDENTITY, find_file))
+    return describe_bodies(read_model(text, name, IDENTITY, folders))
 
 
-def look_of(world: World) -> Look:
-    """The bodies of a world as it is in memory."""
+def describe_bodies(world: World) -> SceneDescription:
+    """Describe the bodies of a loaded world."""
     collector = _Collector()
     for body in world.bodies:
         model, _, link = body.name.partition("::")
         for visual in visible_parts(body):
-            if not isinstance(visual.shape, Plane):  # the page has a floor of its own
+            if not isinstance(visual.shape, Plane):  # the page draws its own floor
                 place = model, link, body.pose_in_world, body.mass is not None
                 collector.add(place, visual.shape, visual.pose_in_body, visual.colour)
-    hinges = tuple(_hinge(joint) for joint in world.joints if joint.kind in FREELY)
-    return Look(tuple(collector.pieces), (*world.warnings, *collector.warnings), hinges)
+    joints = tuple(_display_joint(joint) for joint in world.joints if joint.kind in FREELY)
+    return SceneDescription(tuple(collector.pieces), (*world.warnings, *collector.warnings), joints)
 
 
-def robot_look(text: str, find_file: FindFile) -> Look:
-    """The links of a robot's URDF, each in its own frame. Raises PlanarError."""
+def describe_robot(text: str, find_file: FindFile) -> SceneDescription:
+    """Describe the links of a robot's URDF, each in its link frame. Raises PlanarError."""
     robot = parse_text(text, "robot_description", ("robot",))
     named = {child.name: _rgb(child) for child in robot.children("material")}
     collector = _Collector()
@@ -69,11 +69,11 @@ def robot_look(text: str, find_file: FindFile) -> Look:
             material = visual.child("material")
             own = None if material is None else _rgb(material) or named.get(material.name)
             collector.add(("", link.name, IDENTITY, True), shape, _origin(visual), own)
-    return Look(tuple(collector.pieces), tuple(collector.warnings))
+    return SceneDescription(tuple(collector.pieces), tuple(collector.warnings))
 
 
 def robot_joints(text: str) -> Dict[str, Tuple[str, np.ndarray]]:
-    """The links of a robot's URDF that have a parent: its name, and the pose (4, 4) there, joints at zero."""
+    """Return the parent link and the pose (4, 4) in it of each link of a URDF, with joints at zero."""
     robot = parse_text(text, "robot_description", ("robot",))
     return {
         joint.required("child").attribute("link"): (
@@ -84,19 +84,19 @@ def robot_joints(text: str) -> Dict[str, Tuple[str, np.ndarray]]:
     }
 
 
-def _hinge(joint: Joint) -> Hinge:
-    """The limit that is nearer to 0, where it is as built, is that of a thing that is shut."""
+def _display_joint(joint: Joint) -> DisplayJoint:
+    """The limit closer to zero, the position in the file, is the closed one."""
     shut, wide = sorted((joint.lower, joint.upper), key=abs)
     if abs(wide) > BEYOND:
         shut, wide = 0.0, FREELY[joint.kind]
-    return Hinge(joint.model, joint.name.partition("::")[2], shut, wide)
+    return DisplayJoint(joint.model, joint.name.partition("::")[2], shut, wide)
 
 
 class _Collector:
-    """Takes shapes, and keeps their triangles by colour."""
+    """Collects the triangles of shapes, grouped by colour."""
 
     def __init__(self):
-        self.pieces: List[Piece] = []
+        self.pieces: List[VisualPart] = []
         self.warnings: List[str] = []
 
     def add(self, place: Tuple[str, str, np.ndarray, bool], shape: Shape, pose: np.ndarray, rgb) -> None:
@@ -105,7 +105,7 @@ class _Collector:
         try:
             for vertices, triangles, colour in _coloured(shape, rgb):
                 vertices = transform_points(pose, vertices)
-                self.pieces.append(Piece(model, link, link_pose, vertices, triangles, colour, moves))
+                self.pieces.append(VisualPart(model, link, link_pose, vertices, triangles, colour, moves))
         except PlanarError as error:
             self.warnings.append(str(error))
 

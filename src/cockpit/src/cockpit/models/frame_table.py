@@ -1,15 +1,21 @@
-"""The tree of frames as a table: who tells each transform, how old it is (rqt_tf_tree)."""
+"""The tree of frames as a table: publisher and age of each transform (rqt_tf_tree)."""
 
 from typing import Dict, Iterator, List, Mapping, Tuple
 
 from cockpit.frames import Transform
 
-HEADS = ("Frame", "Age (s)", "Hz", "Told by")
+HEADS = ("Frame", "Age (s)", "Hz", "Publisher")
 Row = Tuple[str, str, str, str]
 
 
 def rows_of(transforms: Mapping[str, Transform], now: float, rates: Mapping[str, float]) -> List[Row]:
-    """From the roots down. ``now``: seconds of ROS time; ``rates``: transforms a second of each frame."""
+    """List the frames from the roots down.
+
+    Args:
+        transforms: Newest transform of each child frame.
+        now: ROS time [s].
+        rates: Transforms per second of each child frame.
+    """
     children: Dict[str, List[str]] = {}
     for frame, transform in sorted(transforms.items()):
         children.setdefault(transform.parent, []).append(frame)
@@ -25,13 +31,13 @@ def rows_of(transforms: Mapping[str, Transform], now: float, rates: Mapping[str,
 def _below(frame, depth, transforms, children, now, rates, seen) -> Iterator[Row]:
     seen.append(frame)
     name = "\u00a0\u00a0\u00a0" * depth + frame
-    told = transforms.get(frame)
-    yield (name, "", "", "") if told is None else _row(name, told, now, rates.get(frame))
+    transform = transforms.get(frame)
+    yield (name, "", "", "") if transform is None else _row(name, transform, now, rates.get(frame))
     for child in children.get(frame, ()):
         yield from _below(child, depth + 1, transforms, children, now, rates, seen)
 
 
-def _row(name: str, told: Transform, now: float, rate) -> Row:
-    if told.is_static:
-        return name, "static", "", told.told_by
-    return name, f"{now - told.stamp:.2f}", "" if rate is None else f"{rate:.1f}", told.told_by
+def _row(name: str, transform: Transform, now: float, rate) -> Row:
+    if transform.is_static:
+        return name, "static", "", transform.publisher
+    return name, f"{now - transform.stamp:.2f}", "" if rate is None else f"{rate:.1f}", transform.publisher

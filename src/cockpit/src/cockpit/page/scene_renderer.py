@@ -7,7 +7,16 @@ from typing import Any, Callable, Dict, Optional, Tuple
 import numpy as np
 import viser.transforms
 
-from cockpit.drawing import Axes, Drawing, Floor, Label, Lines, Part, Points, Surface
+from cockpit.drawing import (
+    FloorImage,
+    FrameAxes,
+    Label,
+    LayerUpdate,
+    LineSegments,
+    PlacedShape,
+    PointCloudShape,
+    TriangleMesh,
+)
 from cockpit.frames import FrameTree, wxyz_of
 
 STILL = 1e-6
@@ -17,35 +26,35 @@ LAID_DOWN = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
 @dataclass
-class _Shown:
-    """A part in the scene: ``node`` has its place, ``thing`` hangs from it; ``pose``: as it was last sent."""
+class _SceneNode:
+    """A part in the scene: ``node`` has its place, ``shape`` hangs from it; ``pose``: as it was last sent."""
 
-    part: Part
+    part: PlacedShape
     node: Any
-    thing: Any
+    shape: Any
     pose: Optional[np.ndarray] = None
     digest: bytes = b""
     ends: float = np.inf
 
 
-class Drawer:
+class SceneRenderer:
     """Holds what each layer shows."""
 
     def __init__(self, scene):
         self._scene = scene
-        self._shown: Dict[Tuple[str, str], _Shown] = {}
+        self._shown: Dict[Tuple[str, str], _SceneNode] = {}
 
-    def show(self, layer: str, drawing: Drawing, now: float = 0.0) -> None:
+    def show(self, layer: str, update: LayerUpdate, now: float = 0.0) -> None:
         """Shows what ``layer`` has drawn, in place of what it showed before."""
-        names = {part.name for part in drawing.parts}
+        names = {part.name for part in update.parts}
         for key in list(self._shown):
             if (
                 key[0] == layer
                 and key[1] not in names
-                and (not drawing.keeps or EVERYTHING in drawing.gone or key[1] in drawing.gone)
+                and (not update.keeps or EVERYTHING in update.gone or key[1] in update.gone)
             ):
                 self._remove(key)
-        for part in drawing.parts:
+        for part in update.parts:
             self._put((layer, part.name), part)
             self._shown[layer, part.name].ends = now + part.seconds
 
@@ -71,24 +80,24 @@ class Drawer:
             if pose is not None:
                 _move(shown, pose if shown.part.pose is None else pose @ shown.part.pose)
 
-    def _put(self, key: Tuple[str, str], part: Part) -> None:
+    def _put(self, key: Tuple[str, str], part: PlacedShape) -> None:
         shown = self._shown.get(key)
         path = "/layers/" + "/".join(_path_word(word) for word in key)
-        if shown is not None and type(shown.part.thing) is type(part.thing):
+        if shown is not None and type(shown.part.shape) is type(part.shape):
             shown.part = part
-            _update(self._scene, f"{path}/thing", shown)
+            _update(self._scene, f"{path}/shape", shown)
             return
         if shown is not None:
             self._remove(key)
         node = self._scene.add_frame(path, show_axes=False, visible=False)
-        shown = self._shown[key] = _Shown(part, node, None)
-        _update(self._scene, f"{path}/thing", shown)
+        shown = self._shown[key] = _SceneNode(part, node, None)
+        _update(self._scene, f"{path}/shape", shown)
 
     def _remove(self, key: Tuple[str, str]) -> None:
         self._shown.pop(key).node.remove()
 
 
-def _move(shown: _Shown, pose: np.ndarray) -> None:
+def _move(shown: _SceneNode, pose: np.ndarray) -> None:
     if shown.pose is not None and np.abs(pose - shown.pose).max() < STILL:
         return
     if shown.pose is None or np.abs(pose[:3, :3] - shown.pose[:3, :3]).max() >= STILL:
@@ -98,86 +107,86 @@ def _move(shown: _Shown, pose: np.ndarray) -> None:
     shown.pose = pose
 
 
-def _update(scene, path: str, shown: _Shown) -> None:
-    """Sends a part's thing if it is another than the one that is shown."""
-    digest = _digest(shown.part.thing)
+def _update(scene, path: str, shown: _SceneNode) -> None:
+    """Sends a part's shape if it is another than the one that is shown."""
+    digest = _digest(shown.part.shape)
     if digest == shown.digest:
         return
     shown.digest = digest
-    shown.thing = _DRAWN[type(shown.part.thing)](scene, path, shown.part.thing, shown.thing)
+    shown.shape = _DRAWN[type(shown.part.shape)](scene, path, shown.part.shape, shown.shape)
 
 
-def _digest(thing) -> bytes:
+def _digest(shape) -> bytes:
     found = hashlib.blake2b(digest_size=16)
-    for value in vars(thing).values():
+    for value in vars(shape).values():
         found.update(value.tobytes() if isinstance(value, np.ndarray) else repr(value).encode())
         found.update(b"|")
     return found.digest()
 
 
-def _points(scene, path: str, thing: Points, old):
+def _points(scene, path: str, shape: PointCloudShape, old):
     if old is not None:
-        old.points, old.colors = thing.points.astype(np.float16), np.asarray(thing.colours, np.uint8)
+        old.points, old.colors = shape.points.astype(np.float16), np.asarray(shape.colours, np.uint8)
         return old
     return scene.add_point_cloud(
-        path, thing.points, thing.colours, point_size=thing.size, point_shape="circle", point_shading="flat"
+        path, shape.points, shape.colours, point_size=shape.size, point_shape="circle", point_shading="flat"
     )
 
 
-def _lines(scene, path: str, thing: Lines, old):
+def _lines(scene, path: str, shape: LineSegments, old):
     if old is not None:
-        old.points, old.colors = thing.segments.astype(np.float32), np.asarray(thing.colours, np.uint8)
+        old.points, old.colors = shape.segments.astype(np.float32), np.asarray(shape.colours, np.uint8)
         return old
     return scene.add_line_segments(
-        path, thing.segments, thing.colours, thickness=thing.width, thickness_units="screen"
+        path, shape.segments, shape.colours, thickness=shape.width, thickness_units="screen"
     )
 
 
-def _surface(scene, path: str, thing: Surface, _old):
+def _surface(scene, path: str, shape: TriangleMesh, _old):
     return scene.add_mesh_simple(
         path,
-        thing.vertices,
-        thing.triangles,
-        color=thing.colour,
-        opacity=None if thing.opacity >= 1.0 else thing.opacity,
-        flat_shading=not thing.is_smooth,
+        shape.vertices,
+        shape.triangles,
+        color=shape.colour,
+        opacity=None if shape.opacity >= 1.0 else shape.opacity,
+        flat_shading=not shape.is_smooth,
         side="double",
     )
 
 
-def _floor(scene, path: str, thing: Floor, _old):
+def _floor(scene, path: str, shape: FloorImage, _old):
     middle = np.eye(4)
-    middle[:3, 3] = thing.width / 2.0, thing.height / 2.0, 0.0
-    pose = thing.pose @ middle @ LAID_DOWN
+    middle[:3, 3] = shape.width / 2.0, shape.height / 2.0, 0.0
+    pose = shape.pose @ middle @ LAID_DOWN
     return scene.add_image(
         path,
-        thing.picture,
-        thing.width,
-        thing.height,
+        shape.picture,
+        shape.width,
+        shape.height,
         format="png",
         wxyz=wxyz_of(pose),
         position=pose[:3, 3],
     )
 
 
-def _label(scene, path: str, thing: Label, _old):
-    return scene.add_label(path, thing.text, position=thing.position)
+def _label(scene, path: str, shape: Label, _old):
+    return scene.add_label(path, shape.text, position=shape.position)
 
 
-def _axes(scene, path: str, thing: Axes, _old):
-    wxyzs = viser.transforms.SO3.from_matrix(thing.poses[:, :3, :3]).wxyz
+def _axes(scene, path: str, shape: FrameAxes, _old):
+    wxyzs = viser.transforms.SO3.from_matrix(shape.poses[:, :3, :3]).wxyz
     return scene.add_batched_axes(
-        path, wxyzs, thing.poses[:, :3, 3], axes_length=thing.length, axes_radius=thing.length / 30.0
+        path, wxyzs, shape.poses[:, :3, 3], axes_length=shape.length, axes_radius=shape.length / 30.0
     )
 
 
 _DRAWN: Dict[type, Callable] = {
-    Points: _points,
-    Lines: _lines,
-    Surface: _surface,
-    Floor: _floor,
+    PointCloudShape: _points,
+    LineSegments: _lines,
+    TriangleMesh: _surface,
+    FloorImage: _floor,
     Label: _label,
-    Axes: _axes,
+    FrameAxes: _axes,
 }
 
 

@@ -6,7 +6,7 @@ from typing import Any, Callable, List, Optional, Tuple
 from cockpit.errors import CockpitError
 
 
-class Aside:
+class BackgroundCall:
     """One thing at a time, in a thread that nobody waits for."""
 
     def __init__(self) -> None:
@@ -30,7 +30,7 @@ class Aside:
         self._thread = threading.Thread(target=_work, args=(do, done), daemon=True)
         self._thread.start()
 
-    def take(self) -> List[Any]:
+    def results(self) -> List[Any]:
         """What has come of it since the last call, if anything. Raises what it has raised."""
         if not self._done:
             return []

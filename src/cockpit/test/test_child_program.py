@@ -5,7 +5,7 @@ import subprocess
 import sys
 import time
 
-from cockpit.program import Program
+from cockpit.child_program import ChildProgram
 
 SECONDS = 20.0
 TOUCHES = (
@@ -22,7 +22,7 @@ except KeyboardInterrupt:
 """
 STARTER = """
 import sys, threading, time
-from cockpit.program import Program
+from cockpit.child_program import ChildProgram
 threading.Thread(target=lambda: (Program([sys.executable, *sys.argv[1:]]), time.sleep(60))).start()
 """
 
@@ -39,7 +39,7 @@ def test_it_ends_with_who_has_started_it_in_whatever_thread(tmp_path):
 
 def test_it_is_ended_as_by_ctrl_c(tmp_path):
     path = tmp_path / "file"
-    program = Program([sys.executable, "-c", WRITES_AT_CTRL_C, str(path)])
+    program = ChildProgram([sys.executable, "-c", WRITES_AT_CTRL_C, str(path)])
     wait_until(lambda: path.exists() and path.read_text() == "recording")
     assert program.is_running and program.complaints() == []
     program.end()
@@ -47,8 +47,8 @@ def test_it_is_ended_as_by_ctrl_c(tmp_path):
     assert path.read_text() == "whole"
 
 
-def test_what_it_said_at_a_bad_end_is_told():
-    program = Program([sys.executable, "-c", "import sys; sys.exit('no such bag')"])
+def test_the_last_line_of_a_failed_program_is_reported():
+    program = ChildProgram([sys.executable, "-c", "import sys; sys.exit('no such bag')"])
     wait_until(lambda: not program.is_running)
     assert program.complaints() == ["no such bag"]
 

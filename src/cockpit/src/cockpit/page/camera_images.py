@@ -4,10 +4,10 @@ from typing import Any, Dict
 
 import numpy as np
 
-from cockpit.page.tool_panel import Window
+from cockpit.page.tool_panel import ToolWindow
 
 
-class Screens:
+class CameraWindow:
     """A window that is there as long as there are pictures."""
 
     def __init__(self, gui):
@@ -30,7 +30,7 @@ class Screens:
             self._window.remove()
         self._window, self._images, self._shown = None, {}, {}
         if pictures:
-            self._window = Window(self._gui, "Cameras")
+            self._window = ToolWindow(self._gui, "Cameras")
             with self._window:
                 for topic, picture in sorted(pictures.items()):
                     self._images[topic] = self._gui.add_image(picture, label=topic, jpeg_quality=70)

@@ -15,7 +15,7 @@ from websockets.exceptions import ConnectionClosed, InvalidHandshake
 from websockets.sync.client import connect
 
 from cockpit.errors import PortError
-from cockpit.page.gate import MOST_PAGES, listen
+from cockpit.page.connection_guard import MOST_PAGES, listen
 from cockpit.page.server import Page
 
 DEADLINE = 30.0
