@@ -19,7 +19,7 @@ from soak import RUNS, Graph, Traces
 from home_service.judging.verdict import ARRIVAL_TOLERANCE
 from home_service.rehearsal.twins import START
 from planar import write_atomically
-from sim_bridge.faults import KINDS, usual_strength
+from sim_bridge.faults import KINDS, default_strength
 
 # Wall seconds that a run may take, and that it may take beyond them to end and to judge.
 RUN_SECONDS, SPARE_SECONDS = 240.0, 60.0
@@ -106,7 +106,7 @@ def run(kind: str, seed: int, traces: Traces) -> Run:
     folder = Path(traces.environment["TMPDIR"]) / RUNS
     folder.mkdir(exist_ok=True)
     faults = folder / f"{kind}.yaml"
-    listed = [] if kind == CLEAN else [{"kind": kind, "start": START, "strength": usual_strength(kind)}]
+    listed = [] if kind == CLEAN else [{"kind": kind, "start": START, "strength": default_strength(kind)}]
     faults.write_text(yaml.safe_dump({"faults": listed}))
     before = set(folder.iterdir())
     options = ("--faults", str(faults), "--seed", str(seed), "--timeout", str(RUN_SECONDS))

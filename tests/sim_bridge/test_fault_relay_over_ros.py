@@ -179,7 +179,7 @@ class TestFaultRelay(unittest.TestCase):
                 (
                     "circle",
                     "odom_faulty:=odom",
-                    "odom_faulty is remapped to /odom, which the relay itself hears",
+                    "odom_faulty is remapped to /odom, to which the relay subscribes",
                 ),
                 ("chance", "_seed:=-1", "/chance/seed must be not negative, got -1"),
             ):

@@ -51,7 +51,7 @@ class ByChance(FaultKind):
 
 @pytest.fixture(autouse=True)
 def module(monkeypatch):
-    monkeypatch.setitem(sys.modules, "own.erring", sys.modules[__name__])
+    monkeypatch.setitem(sys.modules, "custom.faulty", sys.modules[__name__])
 
 
 @pytest.mark.parametrize(("kind", "check"), product(KINDS, CHECKS))
@@ -70,5 +70,5 @@ def test_a_kind_of_the_project_passes(kind, check):
     ],
 )
 def test_what_a_kind_does_not_do_is_said(kind, said, capsys):
-    assert run_checks("sim_bridge", KITS, [f"own.erring/{kind}"]) == 1
+    assert run_checks("sim_bridge", KITS, [f"custom.faulty/{kind}"]) == 1
     assert said in capsys.readouterr().out

@@ -17,12 +17,12 @@ from planar import PlanarError, Pose2, SettingsError, Twist2
 from planar_ros.messages.border import MessageError
 from planar_ros.messages.conversion import LaserScanArrays, yaw_of
 from sim_bridge.faults import KINDS, Fault, load_faults
-from sim_bridge.faults.faulty import through
+from sim_bridge.faults.injection import apply_faults
 from sim_bridge.faults.kind import FaultKind
-from sim_bridge.faults.registry import fault_named, usual_strength
-from sim_bridge.faults.relayed import CHANGES, RelayedFaults, why_not_relayed
-from sim_bridge.ros.faults.heard import HeardCommand, HeardOdometry, HeardScan
-from sim_bridge.ros.faults.raw import raw
+from sim_bridge.faults.registry import default_strength, make_fault
+from sim_bridge.faults.relay import MESSAGE_METHODS, RelayedFaults, unsupported_by_relay
+from sim_bridge.ros.faults.raw import raw_type
+from sim_bridge.ros.faults.received import ReceivedCommand, ReceivedOdometry, ReceivedScan
 from sim_bridge.ros.faults.relay import transform_of
 
 OUT_OF_REACH = {"wheel_weak", "wheel_stuck", "wheels_blocked"} | {
@@ -93,14 +93,16 @@ def command_message(v=0.4, seq=7):
     return Twist(Vector3(v, float(seq), 0.2), Vector3(0.3, 0.4, 0.5))
 
 
-def through_kind(name, change, heard_class, *messages, strength=None):
+def apply_kind(name, change, heard_class, *messages, strength=None):
     """What becomes of messages, as they are read off the wire: messages, or None."""
-    kind = fault_named(name, usual_strength(name) if strength is None else strength, np.random.default_rng(0))
+    kind = make_fault(
+        name, default_strength(name) if strength is None else strength, np.random.default_rng(0)
+    )
     told = []
     for message in messages:
-        heard = heard_class.of(heard_class.kind().deserialize(data_of(message)))
-        value = through([kind], change, heard)
-        told.append(None if value is None else read_back(heard.tell(value), type(message)))
+        heard = heard_class.from_msg(heard_class.kind().deserialize(data_of(message)))
+        value = apply_faults([kind], change, heard)
+        told.append(None if value is None else read_back(heard.to_msg(value), type(message)))
     return told
 
 
@@ -128,17 +130,17 @@ def pitch_of(q):
 
 @pytest.mark.parametrize("name", KINDS)
 def test_what_changes_messages_can_be_relayed_and_nothing_else(name):
-    reason = why_not_relayed(name)
+    reason = unsupported_by_relay(name)
     assert (reason is not None) == (name in OUT_OF_REACH)
     if reason is not None:
         assert reason.startswith(f"{name} changes no scan, odometry or command, only wheels or the home")
 
 
 def test_other_peoples_kinds_are_judged_by_what_they_are_not_by_their_guard():
-    assert why_not_relayed("own.relayed/FarSighted") is None
-    assert "own.relayed/OnlyABeginning changes no scan" in why_not_relayed("own.relayed/OnlyABeginning")
+    assert unsupported_by_relay("own.relayed/FarSighted") is None
+    assert "own.relayed/OnlyABeginning changes no scan" in unsupported_by_relay("own.relayed/OnlyABeginning")
     faults = RelayedFaults([Fault("own.relayed/FarSighted", strength=1.0)])
-    assert [len(faults.at(0.0, change)) for change in CHANGES] == [1, 0, 0]
+    assert [len(faults.active(0.0, change)) for change in MESSAGE_METHODS] == [1, 0, 0]
 
 
 @pytest.mark.parametrize("name", sorted(OUT_OF_REACH))
@@ -149,7 +151,7 @@ def test_what_no_relay_can_do_is_refused_in_a_file_with_its_line(name, tmp_path)
     with pytest.raises(
         SettingsError, match=rf"faults.yaml:3: faults\[2\].kind cannot be used: {name} changes"
     ):
-        load_faults(path, why_not_relayed)
+        load_faults(path, unsupported_by_relay)
 
 
 def test_what_no_relay_can_do_is_refused_when_asked_for():
@@ -158,11 +160,11 @@ def test_what_no_relay_can_do_is_refused_when_asked_for():
         faults.add("kidnapped", 1.0, 0.5, 0.0)
     with pytest.raises(SettingsError, match="there is no fault 'scan_nans', did you mean scan_nan?"):
         faults.add("scan_nans", 1.0, 0.5, 0.0)
-    assert not any(faults.at(0.0, change) for change in CHANGES)
+    assert not any(faults.active(0.0, change) for change in MESSAGE_METHODS)
 
 
 def lasting(faults, times, change="scan"):
-    return [len(faults.at(time, change)) for time in times]
+    return [len(faults.active(time, change)) for time in times]
 
 
 def test_a_fault_lasts_by_the_seconds_since_the_clock_was_there():
@@ -174,8 +176,8 @@ def test_a_fault_lasts_by_the_seconds_since_the_clock_was_there():
 
 def test_a_fault_is_asked_only_for_what_it_changes():
     faults = RelayedFaults([Fault("scan_nan"), Fault("odometry_stopped"), Fault("commands_deaf")])
-    for change, kind in zip(CHANGES, ("scan_nan", "odometry_stopped", "commands_deaf")):
-        assert [type(each) for each in faults.at(0.0, change)] == [KINDS[kind]]
+    for change, kind in zip(MESSAGE_METHODS, ("scan_nan", "odometry_stopped", "commands_deaf")):
+        assert [type(each) for each in faults.active(0.0, change)] == [KINDS[kind]]
 
 
 def test_a_fault_that_is_added_lasts_from_now_on():
@@ -190,48 +192,54 @@ def test_when_the_clock_jumps_back_the_faults_begin_anew():
     faults = RelayedFaults([Fault("scan_late", 1.0, strength=0.5)])
     faults.begin(1000.0)
     faults.add("scan_nan", 100.0, 1.0, 1009.0)
-    (late, _) = faults.at(1010.0, "scan")
-    assert faults.at(1009.5, "scan")[0] is late, "a correction of the clock is no jump"
+    (late, _) = faults.active(1010.0, "scan")
+    assert faults.active(1009.5, "scan")[0] is late, "a correction of the clock is no jump"
     assert lasting(faults, [1000.5, 1001.0]) == [0, 1]
-    assert faults.at(1001.0, "scan") != [late]
+    assert faults.active(1001.0, "scan") != [late]
     assert lasting(faults, [10.5, 11.4, 11.6]) == [0, 0, 1], "the clock begins where it has jumped to"
 
 
 def test_chance_is_that_of_the_seed():
     def noise(seed):
-        (kind,) = RelayedFaults([Fault("scan_noisy", strength=0.5)], seed).at(0.0, "scan")
-        return kind.scan(HeardScan.of(LaserScanArrays().deserialize(data_of(scan_message())))).ranges[0]
+        (kind,) = RelayedFaults([Fault("scan_noisy", strength=0.5)], seed).active(0.0, "scan")
+        return kind.scan(
+            ReceivedScan.from_msg(LaserScanArrays().deserialize(data_of(scan_message())))
+        ).ranges[0]
 
     assert noise(1) == noise(1) != noise(2)
 
 
 @pytest.mark.parametrize(
     ("heard_class", "message"),
-    [(HeardScan, scan_message()), (HeardOdometry, odometry_message()), (HeardCommand, command_message())],
+    [
+        (ReceivedScan, scan_message()),
+        (ReceivedOdometry, odometry_message()),
+        (ReceivedCommand, command_message()),
+    ],
 )
 def test_a_raw_message_is_the_same_to_the_last_bit(heard_class, message):
-    kind = raw(heard_class.kind)
+    kind = raw_type(heard_class.kind)
     wire = data_of(message)
     heard = kind().deserialize(wire)
-    assert data_of(heard) == wire == data_of(kind.of(message))
-    assert data_of(heard.read()) == wire
+    assert data_of(heard) == wire == data_of(kind.from_message(message))
+    assert data_of(heard.decode()) == wire
     assert (kind._type, kind._md5sum) == (message._type, message._md5sum)
     with pytest.raises(MessageError, match="cannot be read"):
-        kind().deserialize(wire[:-3]).read()
+        kind().deserialize(wire[:-3]).decode()
 
 
 @pytest.mark.parametrize(
     ("change", "heard_class", "message"),
     [
-        ("scan", HeardScan, scan_message()),
-        ("odometry", HeardOdometry, odometry_message()),
-        ("command", HeardCommand, command_message()),
+        ("scan", ReceivedScan, scan_message()),
+        ("odometry", ReceivedOdometry, odometry_message()),
+        ("command", ReceivedCommand, command_message()),
     ],
 )
 def test_what_no_fault_touches_is_told_as_it_was_heard(change, heard_class, message):
-    heard = heard_class.of(heard_class.kind().deserialize(data_of(message)))
-    assert data_of(heard.tell(heard)) == data_of(message)
-    assert data_of(heard.tell(replace(heard))) == data_of(message)
+    heard = heard_class.from_msg(heard_class.kind().deserialize(data_of(message)))
+    assert data_of(heard.to_msg(heard)) == data_of(message)
+    assert data_of(heard.to_msg(replace(heard))) == data_of(message)
 
 
 @pytest.mark.parametrize(
@@ -248,44 +256,44 @@ def test_what_no_fault_touches_is_told_as_it_was_heard(change, heard_class, mess
 )
 def test_only_what_a_fault_changes_of_a_scan_is_changed(name, changed):
     message = scan_message()
-    (told,) = through_kind(name, "scan", HeardScan, message)
+    (told,) = apply_kind(name, "scan", ReceivedScan, message)
     assert difference(told, message) == changed
 
 
 def test_a_scan_is_changed_as_in_the_simulator():
     message = scan_message()
-    (told,) = through_kind("scan_turned", "scan", HeardScan, message, strength=90.0)
+    (told,) = apply_kind("scan_turned", "scan", ReceivedScan, message, strength=90.0)
     assert told.angle_min == pytest.approx(-1.0 - math.pi / 2.0)
     assert told.angle_max == pytest.approx(1.0 - math.pi / 2.0)
-    (told,) = through_kind("scan_misdated", "scan", HeardScan, message, strength=-0.25)
+    (told,) = apply_kind("scan_misdated", "scan", ReceivedScan, message, strength=-0.25)
     assert (told.header.stamp - message.header.stamp).to_sec() == pytest.approx(-0.25, abs=1e-6)
     assert (told.header.frame_id, told.header.seq) == ("laser", 7)
-    (told,) = through_kind("own.relayed/FarSighted", "scan", HeardScan, message)
+    (told,) = apply_kind("own.relayed/FarSighted", "scan", ReceivedScan, message)
     assert told.ranges[0] == 2.0 and told.ranges[2] == 5.0
 
 
 def test_a_late_scan_is_the_earlier_message():
     messages = [scan_message(1700000000 + number, number) for number in range(3)]
-    told = through_kind("scan_late", "scan", HeardScan, *messages, strength=2.0)
+    told = apply_kind("scan_late", "scan", ReceivedScan, *messages, strength=2.0)
     assert told[:2] == [None, None]
     assert data_of(told[2]) == data_of(messages[0])
 
 
 def test_a_frozen_scan_has_fresh_headers_to_the_nanosecond():
     first, second = scan_message(1700000000, 1), scan_message(1700000001, 2)
-    _, told = through_kind("scan_frozen", "scan", HeardScan, first, second)
+    _, told = apply_kind("scan_frozen", "scan", ReceivedScan, first, second)
     assert difference(told, first) == {"header"}
     assert data_of(told.header) == data_of(second.header)
 
 
 def test_a_stamp_that_no_message_holds_is_refused():
     with pytest.raises(MessageError, match="a scan at 1e\\+12 s means nothing"):
-        through_kind("own.relayed/FromTheFuture", "scan", HeardScan, scan_message())
+        apply_kind("own.relayed/FromTheFuture", "scan", ReceivedScan, scan_message())
 
 
 def test_odometry_that_is_scaled_keeps_height_tilt_covariances_and_all_else():
     messages = [odometry_message(2.0), odometry_message(3.0)]
-    _, told = through_kind("odometry_scaled", "odometry", HeardOdometry, *messages, strength=2.0)
+    _, told = apply_kind("odometry_scaled", "odometry", ReceivedOdometry, *messages, strength=2.0)
     assert difference(told, messages[1]) == {"pose"}
     assert list(told.pose.covariance) == messages[1].pose.covariance
     assert (told.pose.pose.position.x, told.pose.pose.position.z) == (pytest.approx(4.0), 0.25)
@@ -293,7 +301,7 @@ def test_odometry_that_is_scaled_keeps_height_tilt_covariances_and_all_else():
 
 def test_odometry_that_turns_keeps_its_tilt():
     messages = [odometry_message(yaw=0.5), odometry_message(yaw=0.5)]
-    _, told = through_kind("gyro_biased", "odometry", HeardOdometry, *messages, strength=1.0)
+    _, told = apply_kind("gyro_biased", "odometry", ReceivedOdometry, *messages, strength=1.0)
     assert yaw_of(told.pose.pose.orientation) == pytest.approx(0.52)
     assert pitch_of(messages[1].pose.pose.orientation) == pytest.approx(TILT)
     assert pitch_of(told.pose.pose.orientation) == pytest.approx(TILT)
@@ -301,35 +309,35 @@ def test_odometry_that_turns_keeps_its_tilt():
 
 def test_frozen_odometry_is_the_first_with_fresh_headers():
     first, second = odometry_message(2.0, 0.5, seq=1), odometry_message(3.0, 0.7, seq=2)
-    _, told = through_kind("odometry_frozen", "odometry", HeardOdometry, first, second)
+    _, told = apply_kind("odometry_frozen", "odometry", ReceivedOdometry, first, second)
     assert difference(told, first) == {"header"}
     assert data_of(told.header) == data_of(second.header)
 
 
 def test_a_command_that_is_saturated_keeps_its_other_axes():
-    (told,) = through_kind("velocity_saturated", "command", HeardCommand, command_message(0.4))
+    (told,) = apply_kind("velocity_saturated", "command", ReceivedCommand, command_message(0.4))
     assert told == Twist(Vector3(0.15, 7.0, 0.2), Vector3(0.3, 0.4, 0.5))
 
 
 def test_a_late_command_is_the_earlier_message():
     messages = [command_message(0.1, 1), command_message(0.2, 2)]
-    told = through_kind("commands_late", "command", HeardCommand, *messages, strength=1.0)
+    told = apply_kind("commands_late", "command", ReceivedCommand, *messages, strength=1.0)
     assert told == [None, messages[0]]
 
 
 @pytest.mark.parametrize(
     ("heard_class", "message"),
     [
-        (HeardScan, LaserScan(angle_min=math.nan, ranges=[1.0])),
-        (HeardOdometry, OdometryMessage(header=Header(frame_id="odom"))),
-        (HeardCommand, Twist(linear=Vector3(math.inf, 0.0, 0.0))),
+        (ReceivedScan, LaserScan(angle_min=math.nan, ranges=[1.0])),
+        (ReceivedOdometry, OdometryMessage(header=Header(frame_id="odom"))),
+        (ReceivedCommand, Twist(linear=Vector3(math.inf, 0.0, 0.0))),
     ],
 )
 def test_a_message_without_meaning_is_refused(heard_class, message):
-    if heard_class is HeardOdometry:
+    if heard_class is ReceivedOdometry:
         message.pose.pose.position.x = math.nan
     with pytest.raises(PlanarError, match="means nothing"):
-        heard_class.of(message)
+        heard_class.from_msg(message)
 
 
 def test_the_transform_is_where_odometry_tells():
@@ -355,7 +363,7 @@ def test_odometry_without_place_or_frame_has_no_transform(lacking):
 
 
 def test_what_is_heard_is_what_faults_know():
-    heard = HeardOdometry.of(odometry_message(2.0, 0.5))
+    heard = ReceivedOdometry.from_msg(odometry_message(2.0, 0.5))
     assert (heard.base_in_odom.x, heard.base_in_odom.y) == (2.0, 3.0)
     assert heard.base_in_odom.yaw == pytest.approx(Pose2(2.0, 3.0, 0.5).yaw)
     assert heard.twist == Twist2(0.4, 0.5)

@@ -10,7 +10,7 @@ import pytest
 from planar import Pose2, SettingsError, Twist2
 from sim_bridge import Simulation, SimulationSettings
 from sim_bridge.errors import FaultError
-from sim_bridge.faults import KINDS, Fault, Faults, Stage, load_faults
+from sim_bridge.faults import KINDS, Fault, FaultContext, FaultInjector, load_faults
 from sim_bridge.faults.kind import FaultKind
 from sim_bridge.geometry.shapes import Box, Plane
 from sim_bridge.noise import noise_named
@@ -31,13 +31,13 @@ def played_world():
 
 def played(*faults, seed=0):
     """Observations of a robot that drives towards a wall."""
-    going_wrong = Faults(faults, seed)
+    going_wrong = FaultInjector(faults, seed)
     simulation = Simulation(played_world(), settings=EXACT, wrappers=going_wrong.wrappers)
     seen = []
     for _ in range(round(SECONDS / simulation.step_seconds)):
         command = Twist2(0.3, math.sin(0.1 * len(seen)))
         seen.append(simulation.step(command))
-        going_wrong.disturb(seen[-1].stamp, Stage(simulation.scene, ROBOT_NAME, seen[-1].base_in_world))
+        going_wrong.update(seen[-1].stamp, FaultContext(simulation.scene, ROBOT_NAME, seen[-1].base_in_world))
     simulation.close()
     return seen
 
@@ -107,11 +107,11 @@ def test_a_robot_that_is_kidnapped_is_not_set_down_in_a_wall():
     at[:3, 3] = (0.0, 0.6, 0.5)
     wall = Body("wall::l", at, (Collision(Box((8.0, 0.2, 1.0)), np.eye(4)),))
     simulation = Simulation(World("w", (floor, wall)), settings=EXACT)
-    faults, touched, seen = Faults([Fault("kidnapped", START, strength=0.5)]), [], None
+    faults, touched, seen = FaultInjector([Fault("kidnapped", START, strength=0.5)]), [], None
     for _ in range(100):
         seen = simulation.step()
         touched += seen.contacts
-        faults.disturb(seen.stamp, Stage(simulation.scene, ROBOT_NAME, seen.base_in_world))
+        faults.update(seen.stamp, FaultContext(simulation.scene, ROBOT_NAME, seen.base_in_world))
     simulation.close()
     assert touched == []
     assert 0.15 < seen.base_in_world.y < 0.35
@@ -119,15 +119,15 @@ def test_a_robot_that_is_kidnapped_is_not_set_down_in_a_wall():
 
 @pytest.mark.parametrize("kind", ["way_closed", "object_in_way"])
 def test_two_things_may_be_in_the_way_and_somebody_may_take_them_away(kind):
-    simulation, faults = Simulation(played_world(), settings=EXACT), Faults((), may_come=True)
+    simulation, faults = Simulation(played_world(), settings=EXACT), FaultInjector((), extendable=True)
     before = simulation.scene.models.names()
     for end, strength in ((0.5, 1.0), (0.5, 3.0), (9.0, 5.0)):
         faults.add(Fault(kind, 0.0, end, strength))
-    stage = Stage(simulation.scene, ROBOT_NAME, Pose2())
-    faults.disturb(0.1, stage)
+    stage = FaultContext(simulation.scene, ROBOT_NAME, Pose2())
+    faults.update(0.1, stage)
     first, second, third = (name for name in simulation.scene.models.names() if name not in before)
     simulation.scene.remove_model(second)
-    faults.disturb(0.6, stage)
+    faults.update(0.6, stage)
     assert simulation.scene.models.names() == [*before[:-1], third, before[-1]]
     simulation.close()
 
@@ -164,7 +164,7 @@ def test_a_mistake_is_told_with_file_line_and_key(tmp_path, entry, complaint):
 
 
 def test_a_fault_may_come_later():
-    faults = Faults((), may_come=True)
+    faults = FaultInjector((), extendable=True)
     floor = Body("floor::l", np.eye(4), (Collision(Plane(), np.eye(4)),))
     simulation = Simulation(World("w", (floor,)), settings=EXACT, wrappers=faults.wrappers)
     while (seen := simulation.step(Twist2())).scan is None:
@@ -258,19 +258,19 @@ def test_a_fault_of_other_people_is_known_by_its_dotted_name(tmp_path, own, clea
     ("kind", "said"),
     [
         (Raises, "raised ZeroDivisionError: division by zero"),
-        (SpinsForEver, "gave wheel speeds"),
-        (AnswersANumber, "gave a int for scan"),
+        (SpinsForEver, "wheel_speeds returned"),
+        (AnswersANumber, "scan returned int, expected Scan or None"),
     ],
 )
 def test_what_goes_wrong_in_it_is_told_in_its_name(kind, said, own):
-    with pytest.raises(FaultError, match=f"^{own(kind)} {said}"):
+    with pytest.raises(FaultError, match=f"^{own(kind)}:? {said}"):
         played(Fault(own(kind), 0.0))
 
 
 @pytest.mark.parametrize(
     ("kind", "lacks"),
     [
-        (WithoutMeasure, "its strength is not the usual one, the least and the largest"),
+        (WithoutMeasure, r"strength must be \(default, least, largest\), got 3.0"),
         (HearsLess, r"it cannot be called as scan\(scan\)"),
         (Stranger, "it is not derived from sim_bridge.faults.kind.FaultKind"),
     ],

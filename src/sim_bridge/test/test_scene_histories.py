@@ -12,7 +12,7 @@ from planar import PlanarError, Pose2, Twist2
 from sim_bridge import ROBOTS, Scene, SimulationSettings
 from sim_bridge.doorway import Door
 from sim_bridge.errors import WorldError
-from sim_bridge.faults import KINDS, Fault, Faults, Stage, usual_strength
+from sim_bridge.faults import KINDS, Fault, FaultContext, FaultInjector, default_strength
 from sim_bridge.geometry.pose3 import pose3
 from sim_bridge.geometry.shapes import Box, Plane
 from sim_bridge.people.walker import Walker
@@ -67,7 +67,7 @@ class SceneHistories(RuleBasedStateMachine):
 
     @initialize()
     def begin(self):
-        self.faults = Faults((), may_come=True)
+        self.faults = FaultInjector((), extendable=True)
         self.scene = Scene(WORLD, SETTINGS, wrappers=self.faults.wrappers)
         self.scene.add_robot("robot", ROBOTS["turtlebot_lidar"])
         self.models, self.robots = set(self.scene.models.names()), {"robot"}
@@ -86,8 +86,8 @@ class SceneHistories(RuleBasedStateMachine):
             for observation in seen.values():
                 self.check(observation)
             for robot, observation in list(seen.items())[:1]:
-                stage = Stage(self.scene, robot, observation.base_in_world)
-                self.faults.disturb(self.scene.stamp, stage)
+                stage = FaultContext(self.scene, robot, observation.base_in_world)
+                self.faults.update(self.scene.stamp, stage)
             # Faults put things in the way, and take them out of it.
             in_way = {model for model in self.scene.models.names() if model.startswith("fault_")}
             self.models = {model for model in self.models if not model.startswith("fault_")} | in_way
@@ -178,7 +178,7 @@ class SceneHistories(RuleBasedStateMachine):
     @rule(kind=st.sampled_from((*sorted(KINDS), *(4 * OF_HOME))), seconds=st.sampled_from((0.2, math.inf)))
     def a_fault_comes(self, kind, seconds):
         now = self.scene.stamp
-        self.faults.add(Fault(kind, now, now + seconds, usual_strength(kind)))
+        self.faults.add(Fault(kind, now, now + seconds, default_strength(kind)))
 
     @rule(rate=st.sampled_from((50, 200, 1000, 30, 0)))
     def physics_get_another_rate(self, rate):

@@ -11,9 +11,15 @@ from sim_bridge.geometry.pose3 import pose3, transform_points
 from sim_bridge.geometry.shapes import Box, Cylinder, MeshFile, Plane, Sphere
 from sim_bridge.noise import noise_named
 from sim_bridge.physics.kinematics import KinematicState
-from sim_bridge.sensors.bumper import CENTRE, LEFT, RIGHT, pressed
-from sim_bridge.sensors.camera import Camera, CameraProfile, CameraSettings, DepthCameraSettings, points_of
+from sim_bridge.sensors.camera import (
+    Camera,
+    CameraProfile,
+    CameraSettings,
+    DepthCameraSettings,
+    depth_to_points,
+)
 from sim_bridge.sensors.imu import Imu, ImuProfile, ImuSettings
+from sim_bridge.sensors.kobuki import CENTRE, LEFT, RIGHT, pressed
 from sim_bridge.views.render_geometry import RenderGeometry
 from sim_bridge.world import Body, Collision, Visual, World
 
@@ -37,7 +43,7 @@ def camera(settings, seed=0):
 
 
 def picture(settings, *shapes, at=None, seed=0):
-    return camera(settings, seed).picture(*drawing_of(*shapes), pose3(z=1.0) if at is None else at)
+    return camera(settings, seed).render(*drawing_of(*shapes), pose3(z=1.0) if at is None else at)
 
 
 WALL = (Box((0.2, 10.0, 10.0)), pose3(3.1), (1.0, 0.0, 0.0))
@@ -55,7 +61,7 @@ def test_what_glows_is_as_bright_from_all_sides():
     drawing = RenderGeometry()
     ball = Visual(Sphere(0.5), np.eye(4), (1.0, 1.0, 1.0), emissive=(1.0, 1.0, 1.0))
     drawing.add(Body("ball::link", pose3(3.0, 0.0, 1.0), (), visuals=(ball,)))
-    seen = camera(SMALL).picture(*drawing.triangles(lambda name: np.eye(4)), pose3(z=1.0))
+    seen = camera(SMALL).render(*drawing.triangles(lambda name: np.eye(4)), pose3(z=1.0))
     assert (seen.rgb[np.isfinite(seen.depth)] == 255).all()
 
 
@@ -85,7 +91,7 @@ def test_left_is_left_and_up_is_up():
 def test_points_lie_on_what_is_seen():
     at = pose3(0.3, -0.2, 0.8, 0.05, 0.2, 0.4)
     seen = picture(SMALL, (Cylinder(0.6, 2.0), pose3(2.5, 1.0, 1.0), (1.0, 1.0, 1.0)), at=at)
-    points = points_of(seen.depth, SMALL)[np.isfinite(seen.depth)]
+    points = depth_to_points(seen.depth, SMALL)[np.isfinite(seen.depth)]
     camera = np.column_stack((points[:, 2], -points[:, 0], -points[:, 1]))
     in_world = transform_points(at, camera)
     distances = np.hypot(in_world[:, 0] - 2.5, in_world[:, 1] - 1.0)
@@ -153,7 +159,7 @@ def test_an_imu_at_rest_feels_what_keeps_it_from_falling():
     imu = Imu(ImuSettings(), np.random.default_rng(0), AT_BASE)
     reading = imu.feel(at_rest(pose3(pitch=0.1)), 0.02, 9.8)
     assert reading.acceleration == pytest.approx([-9.8 * math.sin(0.1), 0.0, 9.8 * math.cos(0.1)])
-    assert reading.turn_rates == pytest.approx(np.zeros(3))
+    assert reading.angular_velocity == pytest.approx(np.zeros(3))
 
 
 def test_an_imu_feels_turning_and_speeding_up_in_its_own_frame():
@@ -162,7 +168,7 @@ def test_an_imu_feels_turning_and_speeding_up_in_its_own_frame():
     imu.feel(KinematicState(turned, np.zeros(3), np.zeros(3)), 0.1, 9.8)
     reading = imu.feel(KinematicState(turned, np.array([0.0, 0.2, 0.0]), np.array([0.0, 0.0, 0.7])), 0.1, 9.8)
     assert reading.acceleration == pytest.approx([2.0, 0.0, 9.8])
-    assert reading.turn_rates == pytest.approx([0.0, 0.0, 0.7])
+    assert reading.angular_velocity == pytest.approx([0.0, 0.0, 0.7])
 
 
 def test_an_imu_errs_as_asked_for():
@@ -170,10 +176,10 @@ def test_an_imu_errs_as_asked_for():
         imu = Imu(ImuSettings(turn_noise=0.01, acceleration_noise=0.1), np.random.default_rng(seed), AT_BASE)
         return [imu.feel(at_rest(np.eye(4)), 0.02, 9.8) for _ in range(2000)]
 
-    assert np.std([reading.turn_rates for reading in readings(0)]) == pytest.approx(0.01, rel=0.05)
+    assert np.std([reading.angular_velocity for reading in readings(0)]) == pytest.approx(0.01, rel=0.05)
     accelerations = [reading.acceleration - (0.0, 0.0, 9.8) for reading in readings(0)]
     assert np.std(accelerations) == pytest.approx(0.1, rel=0.05)
-    assert np.array_equal(readings(3)[0].turn_rates, readings(3)[0].turn_rates)
+    assert np.array_equal(readings(3)[0].angular_velocity, readings(3)[0].angular_velocity)
 
 
 @pytest.mark.parametrize(
@@ -204,8 +210,8 @@ def test_the_depth_camera_and_the_laser_made_of_it_agree():
     scan = next(filter(None, (simulation.step().scan for _ in range(20))))
     laser = simulation.scene.models.state("mobile_base").pose @ robot.laser.pose_in_base
     settings = DepthCameraSettings(min_depth=robot.laser.range_min, max_depth=robot.laser.sight)
-    seen = camera(settings).picture(*simulation.scene.view.triangles("mobile_base"), laser)
-    middle = points_of(seen.depth, settings)[240]
+    seen = camera(settings).render(*simulation.scene.view.triangles("mobile_base"), laser)
+    middle = depth_to_points(seen.depth, settings)[240]
     bearings, ranges = np.arctan2(-middle[:, 0], middle[:, 2]), np.hypot(middle[:, 0], middle[:, 2])
     at_bearings = np.interp(bearings[::-1], scan.angles, scan.ranges)[::-1]
     errors = np.abs(ranges - at_bearings)

@@ -8,7 +8,7 @@ import pytest
 from planar import load_map
 from sim_bridge import load_world
 from sim_bridge.description.urdf import read_urdf
-from sim_bridge.ros.describing import find_file, robot_description
+from sim_bridge.ros.description import find_file, robot_description
 from sim_bridge.ros.rendering import render_map
 from sim_bridge.views.true_map import true_map
 

@@ -12,8 +12,7 @@ from sim_bridge import ROBOTS, Simulation, SimulationSettings, WorldError, load_
 from sim_bridge.geometry.pose3 import pose3
 from sim_bridge.geometry.shapes import Box, Cylinder, Plane
 from sim_bridge.physics.kinematics import at_rest
-from sim_bridge.sensors.bumper import CENTRE
-from sim_bridge.sensors.kobuki import KobukiReading
+from sim_bridge.sensors.kobuki import CENTRE, KobukiReading
 from sim_bridge.simulation import ROBOT_NAME
 from sim_bridge.views.section import CrossSection, cast_beams
 from sim_bridge.world import Body, Collision, World

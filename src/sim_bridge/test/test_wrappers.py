@@ -35,8 +35,8 @@ class DroppingOut(SensorWrapper):
         super().__init__(sensor)
         self._share, self._rng = share, rng
 
-    def measure(self, around):
-        reading = super().measure(around)
+    def measure(self, context):
+        reading = super().measure(context)
         return None if self._rng.random() < self._share else reading
 
 

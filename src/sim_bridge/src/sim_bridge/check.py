@@ -10,9 +10,9 @@ import numpy as np
 
 from planar import Pose2, Scan, Twist2
 from planar.contract_check import CheckSuite, expect, plugin_finder, run_checks
-from sim_bridge.faults import Fault, Faults, Stage, kind_named
-from sim_bridge.faults.own import CONTRACT
-from sim_bridge.faults.registry import fault_named
+from sim_bridge.faults import Fault, FaultContext, FaultInjector, kind_named
+from sim_bridge.faults.custom import CONTRACT
+from sim_bridge.faults.registry import make_fault
 from sim_bridge.geometry.shapes import Plane
 from sim_bridge.sensors.odometry import Odometry
 from sim_bridge.simulation import ROBOT_NAME, Simulation, box_on_floor
@@ -30,7 +30,7 @@ def says_what_goes_wrong(kind: str) -> None:
 def answers_at_any_strength(kind: str) -> None:
     """With its usual, least and largest strength it gives what robots can have."""
     for strength in kind_named(kind).strength:
-        fault = fault_named(kind, strength, np.random.default_rng(0))
+        fault = make_fault(kind, strength, np.random.default_rng(0))
         for number in range(10):
             fault.scan(_scan(0.1 * number))
             fault.odometry(Odometry(Pose2(0.1 * number, 0.0), SPEED))
@@ -40,7 +40,7 @@ def answers_at_any_strength(kind: str) -> None:
 
 def leaves_scans_as_they_are(kind: str) -> None:
     """What it is given stays as it was: a changed scan is another one."""
-    fault, scan = fault_named(kind, kind_named(kind).strength[0], np.random.default_rng(0)), _scan(0.0)
+    fault, scan = make_fault(kind, kind_named(kind).strength[0], np.random.default_rng(0)), _scan(0.0)
     before = scan.ranges.copy()
     fault.scan(scan)
     expect(np.array_equal(scan.ranges, before, equal_nan=True), "the scan is another after the call")
@@ -58,14 +58,16 @@ def _scan(stamp: float) -> Scan:
 
 def _run(kind: str) -> List[Tuple[str, bytes]]:
     """What a robot tells that drives past a box while the fault begins and ends."""
-    faults = Faults([Fault(kind, BEGIN, END, kind_named(kind).strength[0], seed=1)])
+    faults = FaultInjector([Fault(kind, BEGIN, END, kind_named(kind).strength[0], seed=1)])
     floor = Body("floor::link", np.eye(4), (Collision(Plane(), np.eye(4)),))
     world = World("room", (floor, box_on_floor("box", (0.5, 0.5, 1.0), Pose2(2.0, 0.3))))
     simulation, told = Simulation(world, wrappers=faults.wrappers), []
     try:
         observation = simulation.step(SPEED)
         while observation.stamp < SECONDS:
-            faults.disturb(observation.stamp, Stage(simulation.scene, ROBOT_NAME, observation.base_in_world))
+            faults.update(
+                observation.stamp, FaultContext(simulation.scene, ROBOT_NAME, observation.base_in_world)
+            )
             observation = simulation.step(SPEED)
             scans = b"".join(scan.ranges.tobytes() for scan in observation.scans)
             told.append((repr((observation.truth, observation.odometry)), scans))

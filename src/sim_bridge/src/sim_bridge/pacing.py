@@ -1,29 +1,39 @@
-"""How fast simulated time may pass: in step with the wall clock, and with the nodes that work on its data."""
+"""Pace of simulated time: limited by the wall clock and by the nodes that process its data."""
 
 from collections import deque
 from typing import Deque, Dict, FrozenSet, Iterable, List, Optional, Set
 
 REAL_TIME = 1.0
-# Wall seconds of delay that are not made up for.
+# Delay that is not caught up [wall s].
 FORGIVEN_DELAY = 0.2
-# Wall seconds after which to ask again while a node is behind.
+# Time until the next check while a node is behind [wall s].
 RECHECK = 0.05
-# Simulated seconds between two reports that are taken for a node's period, and how many are remembered.
+# Longest gap between two reports that counts as a node's period [simulated s], and how many gaps are kept.
 LONGEST_PERIOD = 1.0
 GAPS_KEPT = 10
 
 
 class Pacer:
-    """Says when the next step of a simulation may be taken.
+    """Decides when the next step of a simulation may be taken.
 
-    ``speed`` times as fast as the wall clock, 0 for no such limit; may be changed. The nodes of ``wait_for``
-    report how far they have come; simulated time never passes more than one of a node's periods ahead of it.
-    The period is the longest of the latest times between two of its reports, not less than
-    ``shortest_period`` seconds. A node that keeps all others waiting for ``patience`` wall seconds is given
-    up as missing until its reports tell its period anew and it has caught up: one that lags behind for good,
-    as who waits for odometry that is dead, would keep them waiting again and again.
-    ``odometry_delay``: simulated seconds that a scan may have to wait for odometry; they are granted besides.
-    While a node is missing, as all are at the start, the simulation goes on at most in real time.
+    The nodes of ``wait_for`` report how far they have processed the simulation; simulated time never passes
+    more than one period of a node ahead of it. The period is the longest of the latest gaps between two of
+    its reports. A node that stops the simulation for ``patience`` is given up as missing, until it reports
+    again and has caught
+    up: a node that lags for good, as one that waits for dead odometry, would otherwise stop the simulation
+    again and again. While a node is missing, as all are at the start, the simulation runs at most in real
+    time.
+
+    Args:
+        speed: Multiple of real time; 0 for no limit.
+        wait_for: Names of the nodes to wait for.
+        shortest_period: Least period of a node [simulated s].
+        patience: Time after which a node is given up [wall s].
+
+    Attributes:
+        speed: As the argument; may be changed.
+        odometry_delay: Time that a scan may have to wait for odometry, granted in addition [simulated s].
+        synchronised_nodes: Nodes in lock-step, which are waited for elsewhere.
     """
 
     def __init__(
@@ -32,25 +42,24 @@ class Pacer:
         self.speed = speed
         self.wait_for = frozenset(wait_for)
         self.odometry_delay = 0.0
-        # Nodes that are in step by moments, which are waited for there.
         self.synchronised_nodes: FrozenSet[str] = frozenset()
         self._shortest_period = shortest_period
         self._patience = patience
         self._missing: Set[str] = set(self.wait_for)
         self._given_up: Set[str] = set()
         self._next_stamp = 0.0
-        self._reached: Dict[str, float] = {}
+        self._reported: Dict[str, float] = {}
         self._gaps: Dict[str, Deque[float]] = {}
         self._blocked_since: Optional[float] = None
         self._anchor_wall = self._anchor_stamp = 0.0
         self._anchor_speed = -1.0
 
     def report(self, name: str, stamp: float) -> None:
-        """A node has worked up to the simulated time ``stamp``."""
+        """Record that a node has processed the simulation up to ``stamp`` [simulated s]."""
         if name not in self.wait_for:
             return
-        gap = stamp - self._reached.get(name, stamp)
-        self._reached[name] = stamp
+        gap = stamp - self._reported.get(name, stamp)
+        self._reported[name] = stamp
         if 0.0 < gap <= LONGEST_PERIOD:
             self._gaps.setdefault(name, deque(maxlen=GAPS_KEPT)).append(gap)
             if name not in self._given_up or stamp >= self._next_stamp - LONGEST_PERIOD:
@@ -58,11 +67,12 @@ class Pacer:
                 self._given_up.discard(name)
 
     def is_missing(self, name: str) -> bool:
+        """Return whether a node has not reported yet, or has been given up."""
         return name in self._missing - self.synchronised_nodes
 
-    def restart(self) -> None:
-        """Time begins anew: what the nodes have reported is void."""
-        self._reached.clear()
+    def reset(self) -> None:
+        """Discard all reports, as simulated time restarts."""
+        self._reported.clear()
         self._gaps.clear()
         self._missing = set(self.wait_for)
         self._given_up.clear()
@@ -70,9 +80,12 @@ class Pacer:
         self._anchor_speed = -1.0
 
     def delay(self, stamp: float, wall: float, is_limited: bool = True) -> float:
-        """Wall seconds to wait before asking again; 0 if the step to the time ``stamp`` may be taken.
+        """Return the wall seconds to wait before the next check; 0 if the step may be taken.
 
-        Unless ``is_limited``, only the nodes are waited for.
+        Args:
+            stamp: Simulated time after the step [s].
+            wall: Wall clock [s].
+            is_limited: Whether the speed limits the pace; if not, only nodes are waited for.
         """
         self._next_stamp = stamp
         if self.lagging_nodes(stamp):
@@ -80,23 +93,23 @@ class Pacer:
                 self._blocked_since = wall
             return RECHECK
         self._blocked_since = None
-        return self._delay_of_speed(stamp, wall) if is_limited else 0.0
+        return self._speed_delay(stamp, wall) if is_limited else 0.0
 
     def lagging_nodes(self, stamp: float) -> List[str]:
-        """The nodes that a step to ``stamp`` has to wait for."""
+        """Return the nodes that a step to ``stamp`` has to wait for."""
         return sorted(
             name
-            for name, reached in self._reached.items()
+            for name, reported in self._reported.items()
             if name not in self._missing | self.synchronised_nodes
-            and reached < stamp - self.period_of(name) - 1e-6
+            and reported < stamp - self.period_of(name) - 1e-6
         )
 
     def period_of(self, name: str) -> float:
-        """How far, in simulated seconds, time may pass ahead of a node."""
+        """Return how far time may pass ahead of a node [simulated s]."""
         return max(self._shortest_period, *self._gaps.get(name, (0.0,))) + self.odometry_delay
 
     def give_up(self, stamp: float, wall: float) -> List[str]:
-        """The nodes that have been waited for too long; from now on they are missing."""
+        """Mark nodes as missing that have been waited for too long, and return their names."""
         if self._blocked_since is None or wall - self._blocked_since < self._patience:
             return []
         given_up = self.lagging_nodes(stamp)
@@ -107,7 +120,7 @@ class Pacer:
         self._blocked_since = None
         return given_up
 
-    def _delay_of_speed(self, stamp: float, wall: float) -> float:
+    def _speed_delay(self, stamp: float, wall: float) -> float:
         speed = self.speed
         if self._missing - self.synchronised_nodes and not 0.0 < speed < REAL_TIME:
             speed = REAL_TIME

@@ -16,11 +16,11 @@ from sim_bridge.driving.drive import BASE_RATE, RampedDrive, WheelDrive
 from sim_bridge.physics.engine import Engine
 from sim_bridge.physics.vehicle import Vehicle
 from sim_bridge.sensors.base import Mounting, Reading, Sensor, SensorSpec
+from sim_bridge.sensors.context import RobotSensorContext
 from sim_bridge.sensors.kobuki import KobukiReading
-from sim_bridge.sensors.mount import Mount
+from sim_bridge.sensors.mounted import MountedSensor
 from sim_bridge.sensors.odometry import Odometer, Odometry
-from sim_bridge.sensors.surroundings import RobotSurroundings
-from sim_bridge.sensors.truth import ContactList, GroundTruth, JointEncoders, Truth, WheelState
+from sim_bridge.sensors.truth import ContactSensor, GroundTruth, TruthReading, WheelEncoders, WheelState
 from sim_bridge.views.scene_view import SceneView
 
 
@@ -43,7 +43,7 @@ class StepResult:
 
     stamp: float
     readings: Mapping[str, Reading]
-    truth: Truth
+    truth: TruthReading
     odometry: Odometry
     wheels: WheelState
     contacts: Tuple[str, ...]
@@ -111,7 +111,7 @@ class Robot:
         self.vehicle = Vehicle(
             engine, name, *parts, len(drive.left_joints), drive.torque, mounting.base_in_space
         )
-        self._surroundings = RobotSurroundings(self.vehicle, view)
+        self._context = RobotSensorContext(self.vehicle, view)
         # What its description has, by the names that they tell by.
         self.specs: Dict[str, SensorSpec] = {}
         self.begin(mounting)
@@ -121,17 +121,17 @@ class Robot:
         self._time(mounting.settings)
         drive, odometry = self.profile.drive, self.profile.odometry
         self._drive = self._wrappers.drive(RampedDrive(drive))
-        self._surroundings.look_anew(0.0)
-        self._surroundings.end_period()
-        truth, wheels, contacts = GroundTruth(), JointEncoders(), ContactList()
-        self._odometer = Odometer(odometry, odometry.reckoning(drive, mounting))
+        self._context.refresh(0.0)
+        self._context.clear_contacts()
+        truth, wheels, contacts = GroundTruth(), WheelEncoders(), ContactSensor()
+        self._odometer = Odometer(odometry, odometry.odometry_model(drive, mounting))
         self._latest: Dict[str, Any] = {
-            truth.name: truth.measure(self._surroundings),
+            truth.name: truth.measure(self._context),
             self._odometer.name: Odometry(),
-            wheels.name: wheels.measure(self._surroundings),
+            wheels.name: wheels.measure(self._context),
             contacts.name: (),
         }
-        self._mounts: Dict[str, Mount] = {}
+        self._mounts: Dict[str, MountedSensor] = {}
         # Before this step of physics nothing is due.
         self._next_step = 0
         for sensor in (truth, self._odometer, wheels, contacts):
@@ -177,7 +177,7 @@ class Robot:
 
     def want(self, name: str, is_wanted: bool = True) -> None:
         """A sensor that measures only on demand is to do so from now on, or no longer."""
-        self._mounts[name].want(is_wanted)
+        self._mounts[name].enable(is_wanted)
 
     def begin_steps(self, step: int) -> None:
         """Before the step of physics number ``step``: sets the motors if it is time to."""
@@ -188,16 +188,16 @@ class Robot:
     def end_steps(self, step: int, stamp: float) -> None:
         """At the time ``stamp``, when ``step`` steps of physics are over: what is due measures."""
         if step % self._interval == 0:
-            self._surroundings.feel()
+            self._context.record_contacts()
         if step < self._next_step:
             return
-        self._surroundings.look_anew(stamp)
-        self._next_step = min([mount.end_step(step, self._surroundings) for mount in self._mounts.values()])
+        self._context.refresh(stamp)
+        self._next_step = min([mount.end_step(step, self._context) for mount in self._mounts.values()])
 
     def observe(self, stamp: float) -> StepResult:
         """What has been measured since the last call."""
-        self._surroundings.end_period()
-        told = {name: mount.take() for name, mount in self._mounts.items()}
+        self._context.clear_contacts()
+        told = {name: mount.pop_reading() for name, mount in self._mounts.items()}
         readings = {name: reading for name, reading in told.items() if reading is not None}
         self._latest.update({name: readings[name].value for name in self._latest if name in readings})
         return StepResult(
@@ -205,8 +205,8 @@ class Robot:
             readings,
             truth=self._latest[GroundTruth.name],
             odometry=self._latest[Odometer.name],
-            wheels=self._latest[JointEncoders.name],
-            contacts=self._latest[ContactList.name],
+            wheels=self._latest[WheelEncoders.name],
+            contacts=self._latest[ContactSensor.name],
             scanner=self.profile.scanner,
         )
 
@@ -216,7 +216,7 @@ class Robot:
         while name in self._mounts:
             count += 1
             name = f"{sensor.name}_{count}"
-        self._mounts[name] = Mount(sensor, self._settings)
+        self._mounts[name] = MountedSensor(sensor, self._settings)
         return name
 
 

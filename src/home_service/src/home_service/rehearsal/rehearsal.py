@@ -53,7 +53,7 @@ from planar import OccupancyGrid, Pose2, Scan, Twist2
 from planar.config.settings_file import settings_from_yaml
 from sim_bridge import RobotProfile, Simulation, SimulationSettings, StepResult
 from sim_bridge.config import LATENCY
-from sim_bridge.faults import Fault, Faults, Stage
+from sim_bridge.faults import Fault, FaultContext, FaultInjector
 from sim_bridge.sensors.lidar import LaserProfile
 from sim_bridge.simulation import ROBOT_NAME
 from sim_bridge.world import World
@@ -142,7 +142,7 @@ class Rehearsal:
     ):
         """``parcel``: the marker of an errand that is rehearsed with it."""
         start = conditions.start
-        self._faults = Faults(conditions.faults, seed)
+        self._faults = FaultInjector(conditions.faults, seed)
         self._simulation = Simulation(
             world,
             _with_what_it_uses(robot),
@@ -254,8 +254,8 @@ class Rehearsal:
             if observation.scan is not None:
                 scan = observation.scan
                 self._localize(scan)
-            place = Stage(self._simulation.scene, ROBOT_NAME, observation.base_in_world)
-            self._faults.disturb(observation.stamp, place)
+            place = FaultContext(self._simulation.scene, ROBOT_NAME, observation.base_in_world)
+            self._faults.update(observation.stamp, place)
         is_under_way = self._steps_of_latency == self._steps_per_tick
         self._command_under_way = self._command if is_under_way else None
         return observation, scan

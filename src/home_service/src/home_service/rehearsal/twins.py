@@ -6,7 +6,7 @@ from typing import Dict, Sequence
 from home_service.judging.verdict import collision
 from home_service.rehearsal.rehearsal import Conditions, Rehearsal, Rehearsed, parcel_of
 from home_service.stage import MissionHome
-from sim_bridge.faults import KINDS, Fault, usual_strength
+from sim_bridge.faults import KINDS, Fault, default_strength
 
 # Simulated seconds: on the way to the object.
 START = 8.0
@@ -81,7 +81,7 @@ class Twins:
 
     def compare(self, kind: str) -> Row:
         """What the kind of fault does."""
-        fault = Fault(kind, START, strength=usual_strength(kind))
+        fault = Fault(kind, START, strength=default_strength(kind))
         pairs = [(self._twin(seed), self._play(seed, (fault,))) for seed in self._seeds]
         won = [(clean, run) for clean, run in pairs if run.verdict.success]
         lost = sum(run.simulated_seconds - clean.simulated_seconds for clean, run in won)

@@ -17,7 +17,7 @@ from planar import Pose2, Scan, SettingsError, Twist2
 from planar.config.yaml_table import Table
 from planar.maps.places import parse_pose
 from sim_bridge import Simulation, StepResult, robot_named
-from sim_bridge.faults import Faults, Stage
+from sim_bridge.faults import FaultContext, FaultInjector
 from sim_bridge.simulation import ROBOT_NAME
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ class _Drive:
     def __init__(self, scenario: "Scenario", arena: Arena, seed: int, task: Reach):
         settings = Conditions(scenario.planner, scenario.parameters).navigation(config_of(scenario.robot))
         self._navigator = Navigator(settings)
-        self._faults = Faults(scenario.faults, seed)
+        self._faults = FaultInjector(scenario.faults, seed)
         self._simulation = Simulation(
             arena.world,
             robot_named(scenario.robot),
@@ -127,8 +127,8 @@ class _Drive:
             observation = self._simulation.step(command)
             command, scan = None, observation.scan or scan
             self.touched.update(self.company.contacts(observation))
-            place = Stage(self._simulation.scene, ROBOT_NAME, observation.base_in_world)
-            self._faults.disturb(observation.stamp, place)
+            place = FaultContext(self._simulation.scene, ROBOT_NAME, observation.base_in_world)
+            self._faults.update(observation.stamp, place)
         return observation, scan
 
     def _note(self, observation: StepResult, began: float) -> None:

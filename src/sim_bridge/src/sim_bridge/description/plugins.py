@@ -16,7 +16,7 @@ from sim_bridge.sdf.supported import plugin_name
 from sim_bridge.sdf.values import flag, length, number, text
 from sim_bridge.sensors.base import SensorSpec
 from sim_bridge.sensors.camera import CameraProfile, scan_of
-from sim_bridge.sensors.found import Found, namespace_of
+from sim_bridge.sensors.element import SensorElement, namespace_of
 from sim_bridge.sensors.imu import ImuProfile
 from sim_bridge.sensors.kobuki import KobukiProfile
 from sim_bridge.sensors.lidar import LaserProfile
@@ -199,16 +199,16 @@ def _read_body_sensor(plugin: Element, structure: RobotStructure, equipment: Plu
     if link not in structure.links:
         equipment.warnings.append(f"{plugin.place}: <bodyName>: there is no link {link!r}, left out")
         return
-    found = Found(plugin, plugin, link, structure.pose_in_base(link), equipment.namespace)
+    found = SensorElement(plugin, plugin, link, structure.pose_in_base(link), equipment.namespace)
     equipment.sensors.append(SENSORS[plugin_name(plugin)](found))
 
 
 def _found(
     plugin: Element, sensor: Element, link: str, structure: RobotStructure, equipment: PluginProfiles
-) -> Found:
+) -> SensorElement:
     pose = sensor.raw_pose()
     in_base = structure.pose_in_base(link) @ (IDENTITY if pose is None else pose)
-    return Found(plugin, sensor, link, in_base, equipment.namespace)
+    return SensorElement(plugin, sensor, link, in_base, equipment.namespace)
 
 
 # One that fails does not matter where another drives the robot.

@@ -1,17 +1,28 @@
-"""Faults as data: what goes wrong with a robot's sensors, its drive and its home, when and how much."""
+"""Fault injection: faults of a robot's sensors, drive and environment, described as data."""
 
-from sim_bridge.faults.faulty import Faults
+from planar.deprecation import deprecated_names
 from sim_bridge.faults.file import load_faults
-from sim_bridge.faults.kind import Fault, Stage
-from sim_bridge.faults.registry import KINDS, kind_named, usual_strength, why_not_of_strength
+from sim_bridge.faults.injection import FaultInjector
+from sim_bridge.faults.kind import Fault, FaultContext
+from sim_bridge.faults.registry import KINDS, default_strength, kind_named, strength_error
 
 __all__ = [
     "KINDS",
     "Fault",
-    "Faults",
-    "Stage",
+    "FaultContext",
+    "FaultInjector",
+    "default_strength",
     "kind_named",
     "load_faults",
-    "usual_strength",
-    "why_not_of_strength",
+    "strength_error",
 ]
+
+__getattr__ = deprecated_names(
+    __name__,
+    {
+        "Faults": "FaultInjector",
+        "Stage": "FaultContext",
+        "usual_strength": "default_strength",
+        "why_not_of_strength": "strength_error",
+    },
+)

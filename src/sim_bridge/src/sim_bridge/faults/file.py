@@ -1,4 +1,4 @@
-"""Faults in files: a list ``faults``, of which every mistake is told with file, line and key."""
+"""Faults from YAML files: a list ``faults``, each error with file, line and key."""
 
 from pathlib import Path
 from typing import Callable, Optional, Tuple
@@ -6,28 +6,34 @@ from typing import Callable, Optional, Tuple
 from planar import SettingsError
 from planar.config.yaml_table import Table, read_table
 from sim_bridge.faults.kind import Fault
-from sim_bridge.faults.registry import KINDS, kind_named, usual_strength, why_not_of_strength
+from sim_bridge.faults.registry import KINDS, default_strength, kind_named, strength_error
 
 KEYS = ("kind", "start", "end", "strength", "seed")
+Check = Callable[[str], Optional[str]]
 
 
-def load_faults(path: Path, why_not: Callable[[str], Optional[str]] = lambda _: None) -> Tuple[Fault, ...]:
-    """The faults of a file, which may hold other things beside, as a mission. Raises SettingsError.
+def load_faults(path: Path, unsupported: Check = lambda _: None) -> Tuple[Fault, ...]:
+    """Read the faults of a file, which may have other keys too, as a mission has.
 
-    ``why_not``: the reason for which a kind cannot be used here; None if it can.
+    Args:
+        path: YAML file.
+        unsupported: Returns why a kind cannot be used here; None if it can.
+
+    Raises:
+        SettingsError: With file, line and key.
     """
-    return faults_from(read_table(path), why_not)
+    return faults_from(read_table(path), unsupported)
 
 
-def faults_from(table: Table, why_not: Callable[[str], Optional[str]] = lambda _: None) -> Tuple[Fault, ...]:
-    """The faults of a table of a file, as ``load_faults``."""
-    return tuple(_fault(entry, why_not) for entry in table.tables("faults"))
+def faults_from(table: Table, unsupported: Check = lambda _: None) -> Tuple[Fault, ...]:
+    """Read the faults of a YAML table; see ``load_faults``."""
+    return tuple(_fault(entry, unsupported) for entry in table.tables("faults"))
 
 
-def _fault(entry: Table, why_not: Callable[[str], Optional[str]]) -> Fault:
+def _fault(entry: Table, unsupported: Check) -> Fault:
     entry.allow_only(*KEYS)
     name = _kind(entry)
-    reason = why_not(name)
+    reason = unsupported(name)
     if reason is not None:
         raise entry.complaint("kind", f"cannot be used: {reason}")
     start, end = entry.number("start", 0.0), float("inf")
@@ -35,8 +41,8 @@ def _fault(entry: Table, why_not: Callable[[str], Optional[str]]) -> Fault:
     if "end" in entry:
         end = entry.number("end")
         entry.check(end > start, "end", f"after start ({start:g})")
-    strength = entry.number("strength", usual_strength(name))
-    expected = why_not_of_strength(name, strength)
+    strength = entry.number("strength", default_strength(name))
+    expected = strength_error(name, strength)
     entry.check(expected is None, "strength", expected or "")
     seed = entry.value("seed") or 0
     is_seed = isinstance(seed, int) and not isinstance(seed, bool) and seed >= 0
@@ -45,7 +51,7 @@ def _fault(entry: Table, why_not: Callable[[str], Optional[str]]) -> Fault:
 
 
 def _kind(entry: Table) -> str:
-    """One of ours, or the dotted name of other people's."""
+    """A kind of the registry, or the dotted name of a user-defined one."""
     name = entry.text("kind")
     if "/" not in name:
         return entry.choice("kind", KINDS)

@@ -1,8 +1,8 @@
-"""The contract of a kind of fault: what it changes of a scan, of odometry, of a drive, or of the home.
+"""Contract of a kind of fault: what it changes of scans, odometry, commands, wheels, or the environment.
 
-A kind is a class of its own file, and one line of the registry. It is made anew for each fault of a run, with
-the fault's strength and random numbers, and may keep what it needs in mind. Only while its fault lasts is it
-asked.
+A kind is a class derived from ``FaultKind`` and one line of the registry, or a user-defined class that is
+chosen by its dotted name. Each fault of a run gets its own instance, with its strength and random generator,
+which may keep state. Its methods are called only while the fault is active.
 """
 
 from dataclasses import dataclass
@@ -11,15 +11,23 @@ from typing import ClassVar, Optional, Tuple
 import numpy as np
 
 from planar import Pose2, Scan, Twist2
+from planar.deprecation import deprecated_names
 from sim_bridge.scene import Scene
 from sim_bridge.sensors.odometry import Odometry
+
+__getattr__ = deprecated_names(__name__, {"Stage": "FaultContext"})
 
 
 @dataclass(frozen=True)
 class Fault:
-    """Something that goes wrong from ``start`` to ``end``, seconds of simulated time.
+    """A fault of a run.
 
-    ``strength``: in the unit of its kind. ``seed``: of what is random about it.
+    Attributes:
+        kind: Name of the kind.
+        start: When it becomes active [simulated s].
+        end: When it ends [simulated s].
+        strength: In the unit of its kind.
+        seed: Seed of its random numbers.
     """
 
     kind: str
@@ -30,8 +38,14 @@ class Fault:
 
 
 @dataclass(frozen=True, eq=False)
-class Stage:
-    """What a fault of the home can reach: the world, the robot's name in it, and where that truly is."""
+class FaultContext:
+    """What a fault of the environment may change.
+
+    Attributes:
+        scene: The simulated world.
+        robot: Name of the robot in it.
+        base_in_world: True pose of the robot.
+    """
 
     scene: Scene
     robot: str
@@ -39,8 +53,14 @@ class Stage:
 
 
 class FaultKind:
-    """``strength``: the usual one, its least and its largest; ``unit``: of it; ``survivable``: whether the
-    mission can be done all the same. The class's docstring says in a line what goes wrong.
+    """Base class of faults; a subclass overrides the methods for what it changes.
+
+    The first line of the subclass's docstring states the effect; tables and the cockpit show it.
+
+    Attributes:
+        strength: Default, least and largest strength.
+        unit: Unit of the strength.
+        survivable: Whether the mission can succeed in spite of the fault.
     """
 
     strength: ClassVar[Tuple[float, float, float]] = (1.0, 0.0, 1.0)
@@ -51,23 +71,23 @@ class FaultKind:
         self._strength, self._rng = strength, rng
 
     def scan(self, scan: Scan) -> Optional[Scan]:
-        """What the laser tells instead of ``scan``; None: nothing."""
+        """Return the scan that the laser publishes instead; None for none."""
         return scan
 
     def odometry(self, odometry: Odometry) -> Optional[Odometry]:
-        """What odometry tells instead; None: nothing."""
+        """Return the odometry that is published instead; None for none."""
         return odometry
 
     def command(self, twist: Twist2) -> Optional[Twist2]:
-        """What the drive hears instead of a command; None: nothing."""
+        """Return the velocity command that the drive receives instead; None for none."""
         return twist
 
     def wheel_speeds(self, left: float, right: float) -> Tuple[float, float]:
-        """What the wheels turn at instead, rad/s."""
+        """Return the speeds at which the wheels turn instead [rad/s]."""
         return left, right
 
-    def begin(self, stage: Stage) -> None:
-        """The fault has begun."""
+    def begin(self, context: FaultContext) -> None:
+        """Change the environment when the fault starts."""
 
-    def end(self, stage: Stage) -> None:
-        """It is over."""
+    def end(self, context: FaultContext) -> None:
+        """Undo the change when the fault ends."""

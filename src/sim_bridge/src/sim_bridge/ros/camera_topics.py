@@ -6,8 +6,8 @@ import numpy as np
 import rospy
 from sensor_msgs.msg import CameraInfo, Image, PointCloud2, PointField
 
-from sim_bridge.ros.outlet import Outlet
-from sim_bridge.sensors.camera import CameraProfile, CameraSettings, Picture, points_of
+from sim_bridge.ros.publishers import RobotPublishers
+from sim_bridge.sensors.camera import CameraImage, CameraProfile, CameraSettings, depth_to_points
 
 # As gazebo_plugins' openni_kinect lays out its points.
 POINT_OFFSETS = {"x": 0, "y": 4, "z": 8, "rgb": 16}
@@ -27,9 +27,9 @@ POINT_FIELDS = [PointField(name, offset, PointField.FLOAT32, 1) for name, offset
 class CameraTopics:
     """Publishes of a camera's pictures what somebody has subscribed to."""
 
-    def __init__(self, profile: CameraProfile, outlet: Outlet):
+    def __init__(self, profile: CameraProfile, publishers: RobotPublishers):
         self._settings = profile.settings
-        self._frame = outlet.frame(profile.frame)
+        self._frame = publishers.frame(profile.frame)
         kinds = (
             (profile.image_topic, Image, _colour_msg),
             (profile.info_topic, CameraInfo, _info_msg),
@@ -38,16 +38,16 @@ class CameraTopics:
             (profile.points_topic, PointCloud2, _points_msg),
         )
         self._topics: List[Tuple[rospy.Publisher, Callable]] = [
-            (outlet.publisher(topic, kind, QUEUE_SIZE), message_of)
+            (publishers.publisher(topic, kind, QUEUE_SIZE), message_of)
             for topic, kind, message_of in kinds
             if topic
         ]
 
-    def are_wanted(self) -> bool:
+    def has_subscribers(self) -> bool:
         """Whether anybody has subscribed."""
         return any(topic.get_num_connections() for topic, _ in self._topics)
 
-    def publish(self, picture: Picture, stamp: rospy.Time) -> None:
+    def publish(self, picture: CameraImage, stamp: rospy.Time) -> None:
         for topic, message_of in self._topics:
             if topic.get_num_connections():
                 message = message_of(picture, self._settings)
@@ -55,11 +55,11 @@ class CameraTopics:
                 topic.publish(message)
 
 
-def _colour_msg(picture: Picture, _settings: CameraSettings) -> Image:
+def _colour_msg(picture: CameraImage, _settings: CameraSettings) -> Image:
     return _image_msg(picture.rgb, "rgb8")
 
 
-def _depth_msg(picture: Picture, _settings: CameraSettings) -> Image:
+def _depth_msg(picture: CameraImage, _settings: CameraSettings) -> Image:
     """In metres (REP 118)."""
     return _image_msg(picture.depth, "32FC1")
 
@@ -71,7 +71,7 @@ def _image_msg(pixels: np.ndarray, encoding: str) -> Image:
     )
 
 
-def _info_msg(_picture: Picture, settings: CameraSettings) -> CameraInfo:
+def _info_msg(_picture: CameraImage, settings: CameraSettings) -> CameraInfo:
     (x, y), scale = settings.centre, settings.focal_length
     return CameraInfo(
         height=settings.height,
@@ -84,10 +84,10 @@ def _info_msg(_picture: Picture, settings: CameraSettings) -> CameraInfo:
     )
 
 
-def _points_msg(picture: Picture, settings: CameraSettings) -> PointCloud2:
+def _points_msg(picture: CameraImage, settings: CameraSettings) -> PointCloud2:
     height, width = picture.depth.shape
     cloud = np.zeros((height, width), dtype=POINT)
-    points = points_of(picture.depth, settings)
+    points = depth_to_points(picture.depth, settings)
     for axis, name in enumerate("xyz"):
         cloud[name] = points[..., axis]
     red, green, blue = np.moveaxis(picture.rgb.astype(np.uint32), -1, 0)

@@ -20,13 +20,13 @@ from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.noise import noise_named
 from sim_bridge.pacing import Pacer
 from sim_bridge.robots import robot_named
-from sim_bridge.ros.describing import find_file, model_folders
-from sim_bridge.ros.faults.control import FaultControl
-from sim_bridge.ros.fleet import Fleet
+from sim_bridge.ros.call_queue import CallQueue
+from sim_bridge.ros.description import find_file, model_folders
+from sim_bridge.ros.faults.service import FaultServer
 from sim_bridge.ros.gazebo import GazeboInterface
 from sim_bridge.ros.gazebo.server import NAMESPACE
-from sim_bridge.ros.orders import Orders
 from sim_bridge.ros.performance import Performance
+from sim_bridge.ros.robot_manager import RobotManager
 from sim_bridge.ros.timing.lock_step import LockStep
 from sim_bridge.ros.timing.time_control import TimeControl
 from sim_bridge.scene import Scene
@@ -37,77 +37,81 @@ from sim_bridge.world import World
 
 
 def world_of_file(settings: BridgeSettings) -> World:
-    """Raises WorldError."""
+    """Load the world of the parameter ~world. Raises WorldError."""
     return load_world(settings.world, model_folders(), settings.strict)
 
 
 class Bridge:
-    """Steps a scene as fast as it may, in one thread; callbacks of other threads leave it their orders."""
+    """Steps a scene in one thread; callbacks in other threads submit calls to it.
+
+    Args:
+        world_of: Makes the world from the node's settings.
+    """
 
     def __init__(self, world_of: Callable[[BridgeSettings], World] = world_of_file):
-        threading.Thread(target=warm_up, daemon=True).start()  # while the master is asked this and that
+        threading.Thread(target=warm_up, daemon=True).start()  # in parallel with calls to the master
         settings, robot = (_read(kind) for kind in (BridgeSettings, RobotSettings))
         simulation_settings = _read(SimulationSettings, noise_named(settings.noise))
         rate = simulation_settings.odometry_rate
         self._clock_steps = _steps_between(settings.clock_rate, rate, "clock_rate")
         joint_steps = _steps_between(settings.joint_state_rate, rate, "joint_state_rate")
-        robots = _robots_asked_for(robot)
+        robots = _robots_from_parameters(robot)
         world = world_of(settings)
         for warning in world.warnings:
             rospy.logwarn("%s", warning)
-        self._orders = Orders()
-        self._faults = FaultControl(settings.faults_file, settings.seed, self._orders)
+        self._calls = CallQueue()
+        self._faults = FaultServer(settings.faults_file, settings.seed, self._calls)
         self._scene = Scene(world, simulation_settings, settings.seed, self._faults.wrappers)
         self._steps = 0
         wait_for, static_publishers = map(_names, (settings.wait_for, settings.static_publishers))
         pacer = Pacer(settings.speed, wait_for)
-        self._lock_step = LockStep(wait_for, static_publishers, settings.latency, self._orders)
+        self._lock_step = LockStep(wait_for, static_publishers, settings.latency, self._calls)
         self._clock = rospy.Publisher("/clock", Clock, queue_size=10, latch=True, tcp_nodelay=True)
         self._performance = Performance()
-        self._time = TimeControl(self._scene, pacer, self._lock_step, self._orders)
-        self._fleet = Fleet(self._scene, self._orders, joint_steps)
-        for name, one in robots.items():
-            profile, start = robot_named(one.robot, find_file), Pose2(one.x, one.y, one.yaw)
-            self._fleet.add(name, profile, start, namespace=one.namespace)
+        self._time = TimeControl(self._scene, pacer, self._lock_step, self._calls)
+        self._robots = RobotManager(self._scene, self._calls, joint_steps)
+        for name, each in robots.items():
+            profile, start = robot_named(each.robot, find_file), Pose2(each.x, each.y, each.yaw)
+            self._robots.add(name, profile, start, namespace=each.namespace)
         for model in world.robots:
             profile, pose = read_sdf_robot(model)
-            self._fleet.add(model.name, profile, to_pose2(pose), float(pose[2, 3]))
-        # As Gazebo does: those that start from now on go by our clock.
+            self._robots.add(model.name, profile, to_pose2(pose), float(pose[2, 3]))
+        # As Gazebo does: nodes that start from now on use simulated time.
         if not rospy.has_param("/use_sim_time"):
             rospy.set_param("/use_sim_time", True)
-        self._gazebo = GazeboInterface(self._scene, self._fleet, self._time, self._orders, model_folders())
-        if rospy.resolve_name("~") != NAMESPACE:  # else what Gazebo itself offers has that name
-            self._time.offer_speed()
+        self._gazebo = GazeboInterface(self._scene, self._robots, self._time, self._calls, model_folders())
+        if rospy.resolve_name("~") != NAMESPACE:  # else Gazebo's own parameters have that name
+            self._time.advertise_speed()
         rospy.Subscriber("~add_box", Marker, self._on_box, queue_size=10)
 
     def run(self) -> None:
-        """Steps until shutdown."""
+        """Step until shutdown."""
         transport.batch_sends()
         try:
             while not rospy.is_shutdown():
-                self._orders.carry_out(self._lock_step.awaited, self._lock_step.members)
-                self._time.expect_odometry(self._fleet.odometry_seconds)
-                if not self._time.wait_for_turn():
+                self._calls.run_pending(self._lock_step.awaited, self._lock_step.members)
+                self._time.set_odometry_period(self._robots.odometry_seconds)
+                if not self._time.wait_for_step():
                     continue
                 self._step()
-                self._performance.report(self._scene.stamp, self._fleet.publishers)
+                self._performance.report(self._scene.stamp, self._robots.publishers)
         finally:
             transport.flush()
             self._time.close()
-            self._orders.close()
+            self._calls.close()
             self._scene.close()
 
     def _step(self):
-        self._faults.disturb(self._scene, self._fleet.step())
+        self._faults.update(self._scene, self._robots.step())
         self._gazebo.publish()
-        # Last, so that what it wakes up finds the data of this moment.
+        # Last, so that nodes which it wakes up find the data of this step.
         self._steps += 1
         if self._steps % self._clock_steps == 0:
             self._clock.publish(time_of(self._scene.stamp))
-        self._time.count_step()
+        self._time.on_step_finished()
 
     def _on_box(self, message):
-        self._orders.leave(lambda: self._add_box(message))
+        self._calls.submit(lambda: self._add_box(message))
 
     def _add_box(self, message):
         size = (message.scale.x, message.scale.y, message.scale.z)
@@ -120,14 +124,14 @@ class Bridge:
 
 
 def _read(kind: type, defaults: Mapping[str, Any] = {}) -> Any:
-    """Settings of one of the kinds that are all among the node's private parameters."""
+    """Read one of the settings classes that share the node's private parameters."""
     kinds = (BridgeSettings, SimulationSettings, RobotSettings)
     known = {field.name for each in kinds for field in dataclasses.fields(each)}
     return read_settings(kind, ignore=known, defaults=defaults)
 
 
-def _robots_asked_for(robot: RobotSettings) -> Dict[str, RobotSettings]:
-    """The robots by their names: those below ~robots if there are any, else the one of ``robot``."""
+def _robots_from_parameters(robot: RobotSettings) -> Dict[str, RobotSettings]:
+    """Return robots by name: those below ~robots if there are any, else the one of ``robot``."""
     names = parameters_below("~robots")
     if names:
         return {name: read_settings(RobotSettings, namespace=f"~robots/{name}") for name in sorted(names)}
@@ -140,7 +144,7 @@ def _steps_between(rate: int, step_rate: int, name: str) -> int:
 
 
 def _names(text: str) -> List[str]:
-    """Of nodes, without the slash."""
+    """Return names of nodes without slash."""
     return [name.lstrip("/") for name in text.split()]
 
 

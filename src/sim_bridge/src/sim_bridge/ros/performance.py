@@ -6,24 +6,12 @@ from typing import Callable, Dict, Iterable
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from gazebo_msgs.msg import PerformanceMetrics, SensorPerformanceMetric
-from rospy.impl.tcpros_pubsub import QueuedConnection
 from std_msgs.msg import Float64
+
+from sim_bridge.ros.publishers import CountingPublisher
 
 # Wall seconds between two reports.
 REPORT_PERIOD = 1.0
-
-
-class CountingPublisher(rospy.Publisher):
-    """Counts its messages, and those that are lost because a subscriber is too slow for its queue."""
-
-    def __init__(self, *arguments, **named):
-        super().__init__(*arguments, **named)
-        self.published = self.dropped = 0
-
-    def publish(self, *arguments, **named):
-        self.published += 1
-        self.dropped += sum(_is_full(connection) for connection in self.impl.connections)
-        super().publish(*arguments, **named)
 
 
 class Performance:
@@ -73,10 +61,3 @@ def _diagnostics(stamp: float, factor: float, publishers) -> DiagnosticArray:
     message = DiagnosticArray(status=[status])
     message.header.stamp = rospy.Time.from_sec(stamp)
     return message
-
-
-def _is_full(connection) -> bool:
-    """Whether the oldest message of a connection's queue is about to be thrown away."""
-    if not isinstance(connection, QueuedConnection):
-        return False
-    return 0 < connection._queue_size <= len(connection._queue)

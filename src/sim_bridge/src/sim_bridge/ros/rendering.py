@@ -9,7 +9,7 @@ import numpy as np
 from PIL import Image
 
 from planar import PlanarError, save_map, write_atomically
-from sim_bridge.ros.describing import model_folders
+from sim_bridge.ros.description import model_folders
 from sim_bridge.sdf import load_world
 from sim_bridge.views.top_view import render_top_view
 from sim_bridge.views.true_map import true_map

@@ -11,13 +11,12 @@ from planar import Twist2
 from planar_ros.messages.conversion import time_of
 from sim_bridge.description.profile import JointStateProfile
 from sim_bridge.robot import StepResult
+from sim_bridge.ros.call_queue import CallQueue
 from sim_bridge.ros.command_topics import CommandTopics, MuxTopics
 from sim_bridge.ros.kobuki.commands import KobukiCommands
 from sim_bridge.ros.messages import covariance_of
 from sim_bridge.ros.motion_messages import OdometryMsg, TransformMsg
-from sim_bridge.ros.orders import Orders
-from sim_bridge.ros.outlet import Outlet
-from sim_bridge.ros.performance import CountingPublisher
+from sim_bridge.ros.publishers import CountingPublisher, RobotPublishers
 from sim_bridge.ros.sensor_topics import RobotSensors
 from sim_bridge.scene import Scene
 from sim_bridge.sensors.base import Reading
@@ -38,30 +37,30 @@ class RobotTopics:
     """
 
     def __init__(
-        self, scene: Scene, name: str, orders: Orders, joint_steps: int, namespace: str, tf_prefix: str
+        self, scene: Scene, name: str, calls: CallQueue, joint_steps: int, namespace: str, tf_prefix: str
     ):
         self._scene = scene
         self._profile = profile = scene.robot(name).profile
-        self._outlet = outlet = Outlet(namespace, tf_prefix)
+        self._publishers = publishers = RobotPublishers(namespace, tf_prefix)
         self._steps = 0
         self._odom_steps = self._steps_of(profile.odometry.rate, 1)
         self._contacts: Optional[Tuple[str, ...]] = None
-        self._odom = outlet.publisher(profile.odometry.topic, Odometry, 100)
-        self._truth = outlet.publisher("base_pose_ground_truth", Odometry, TRUTH_QUEUE)
-        base_frame = outlet.frame(profile.odometry.base_frame)
-        odom_frame = outlet.frame(profile.odometry.frame)
+        self._odom = publishers.publisher(profile.odometry.topic, Odometry, 100)
+        self._truth = publishers.publisher("base_pose_ground_truth", Odometry, TRUTH_QUEUE)
+        base_frame = publishers.frame(profile.odometry.base_frame)
+        odom_frame = publishers.frame(profile.odometry.frame)
         self._odom_msg = OdometryMsg(odom_frame, base_frame, covariance_of(profile.odometry.variances))
         self._truth_msg = OdometryMsg(WORLD_FRAME, base_frame, [0.0] * 36)
         self._transform = TransformMsg(odom_frame, base_frame)
-        self._sensors = RobotSensors(scene.robot(name), outlet)
-        self._touches = outlet.publisher("contacts", String, latch=True)
+        self._sensors = RobotSensors(scene.robot(name), publishers)
+        self._touches = publishers.publisher("contacts", String, latch=True)
         if profile.joint_states is not None:
-            self._joints = outlet.publisher(profile.joint_states.topic, JointState)
+            self._joints = publishers.publisher(profile.joint_states.topic, JointState)
             self._joint_steps = self._steps_of(profile.joint_states.rate, joint_steps)
         is_kobuki = bool(profile.sensors_of(KobukiProfile))
         commands = MuxTopics if is_kobuki else CommandTopics
         self._commands = commands(name, namespace, profile.drive.command_topics)
-        self._kobuki = KobukiCommands(scene, name, namespace, orders) if is_kobuki else None
+        self._kobuki = KobukiCommands(scene, name, namespace, calls) if is_kobuki else None
 
     @property
     def odometry_seconds(self) -> float:
@@ -92,11 +91,11 @@ class RobotTopics:
 
     def publishers(self) -> List[CountingPublisher]:
         """Of all topics of the robot."""
-        return self._outlet.publishers
+        return self._publishers.publishers
 
     def close(self) -> None:
         """Ends the topics."""
-        self._outlet.close()
+        self._publishers.close()
         self._commands.close()
         if self._kobuki is not None:
             self._kobuki.close()
@@ -136,7 +135,7 @@ class RobotTopics:
         speeds = dict(zip(driven, observation.wheel_speeds))
         message = JointState()
         message.header.stamp = stamp
-        message.header.frame_id = self._outlet.frame("base_link")
+        message.header.frame_id = self._publishers.frame("base_link")
         message.name = list(profile.joints)
         message.position = [angles.get(joint, 0.0) for joint in message.name]
         message.velocity = [speeds.get(joint, 0.0) for joint in message.name]

@@ -27,7 +27,7 @@ def imu_to_msg(reading: ImuReading, profile: ImuProfile) -> Imu:
     return Imu(
         orientation=Quaternion(*quaternion(reading.orientation)),
         orientation_covariance=covariance_of(profile.orientation_variances),
-        angular_velocity=Vector3(*reading.turn_rates),
+        angular_velocity=Vector3(*reading.angular_velocity),
         angular_velocity_covariance=covariance_of(profile.turn_variances),
         linear_acceleration=Vector3(*reading.acceleration),
         linear_acceleration_covariance=covariance_of(profile.acceleration_variances),

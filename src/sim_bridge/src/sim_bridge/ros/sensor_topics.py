@@ -10,7 +10,7 @@ from planar_ros.messages.conversion import LaserScanArrays, time_of
 from sim_bridge.robot import Robot, StepResult
 from sim_bridge.ros.camera_topics import CameraTopics
 from sim_bridge.ros.kobuki.topics import KobukiTopics
-from sim_bridge.ros.outlet import Outlet
+from sim_bridge.ros.publishers import RobotPublishers
 from sim_bridge.ros.sensor_messages import imu_to_msg, scan_to_msg
 from sim_bridge.sensors.camera import CameraProfile
 from sim_bridge.sensors.imu import ImuProfile
@@ -21,7 +21,7 @@ from sim_bridge.sensors.lidar import LaserProfile
 class SensorTopics(Protocol):
     """The topics of one sensor; made of its spec and an Outlet, which opens them."""
 
-    def are_wanted(self) -> bool:
+    def has_subscribers(self) -> bool:
         """Whether anybody has subscribed; a sensor that takes long measures only then."""
 
     def publish(self, value: Any, stamp: rospy.Time) -> None:
@@ -32,18 +32,23 @@ class OneTopic:
     """All that a sensor tells, on the ``topic`` and in the ``frame`` of its spec; ``to_msg`` translates."""
 
     def __init__(
-        self, spec: Any, outlet: Outlet, kind: type, to_msg: Callable[[Any, Any], Any], queue_size: int
+        self,
+        spec: Any,
+        publishers: RobotPublishers,
+        kind: type,
+        to_msg: Callable[[Any, Any], Any],
+        queue_size: int,
     ):
         self._spec = spec
         self._to_msg = to_msg
-        self._frame = outlet.frame(spec.frame)
-        self._publisher = outlet.publisher(spec.topic, kind, queue_size)
+        self._frame = publishers.frame(spec.frame)
+        self._publisher = publishers.publisher(spec.topic, kind, queue_size)
 
-    def are_wanted(self) -> bool:
+    def has_subscribers(self) -> bool:
         return self._publisher.get_num_connections() > 0
 
     def publish(self, value: Any, stamp: rospy.Time) -> None:
-        if self.are_wanted():
+        if self.has_subscribers():
             message = self._to_msg(value, self._spec)
             message.header.stamp, message.header.frame_id = stamp, self._frame
             self._publisher.publish(message)
@@ -51,13 +56,13 @@ class OneTopic:
 
 def one_topic(
     kind: type, to_msg: Callable[[Any, Any], Any], queue_size: int = 10
-) -> Callable[[Any, Outlet], SensorTopics]:
+) -> Callable[[Any, RobotPublishers], SensorTopics]:
     """What makes the topic, of messages of a ``kind``, of a sensor that has just one."""
-    return lambda spec, outlet: OneTopic(spec, outlet, kind, to_msg, queue_size)
+    return lambda spec, publishers: OneTopic(spec, publishers, kind, to_msg, queue_size)
 
 
 # By the class of a sensor's spec (see sim_bridge.sensors.registry).
-TOPICS: Dict[type, Callable[[Any, Outlet], SensorTopics]] = {
+TOPICS: Dict[type, Callable[[Any, RobotPublishers], SensorTopics]] = {
     LaserProfile: one_topic(LaserScanArrays, scan_to_msg),
     CameraProfile: CameraTopics,
     ImuProfile: one_topic(Imu, imu_to_msg, queue_size=100),
@@ -68,10 +73,10 @@ TOPICS: Dict[type, Callable[[Any, Outlet], SensorTopics]] = {
 class RobotSensors:
     """The topics of all sensors of a robot's description that have some."""
 
-    def __init__(self, robot: Robot, outlet: Outlet):
+    def __init__(self, robot: Robot, publishers: RobotPublishers):
         self._robot = robot
         self._topics: List[Tuple[str, SensorTopics]] = [
-            (name, TOPICS[type(spec)](spec, outlet))
+            (name, TOPICS[type(spec)](spec, publishers))
             for name, spec in robot.specs.items()
             if type(spec) in TOPICS
         ]
@@ -79,7 +84,7 @@ class RobotSensors:
     def ask(self) -> None:
         """Before a step: what takes long is measured only if it is wanted."""
         for name, topics in self._topics:
-            self._robot.want(name, topics.are_wanted())
+            self._robot.want(name, topics.has_subscribers())
 
     def publish(self, observation: StepResult) -> None:
         for name, topics in self._topics:

@@ -1,1 +1,1 @@
-"""What a robot senses: each sensor has frozen settings, one verb, and a generator of its noise."""
+"""Sensors of a robot: each has frozen settings, a contract (``base``), and its own random generator."""

@@ -1,9 +1,9 @@
-"""The contract of a sensor: when it measures, in which frame, what it tells, how wrong it is.
+"""Contract of a sensor: when it measures, in which frame, what, and with which errors.
 
-A robot's description holds a *spec*, data of the sensor's own (``LaserProfile``). When the robot is put into
-a scene, ``spec.build(mounting)`` makes the sensor with its noise and random numbers of its own. From then on
-``schedule`` says at the end of which steps of physics it is due; each time that it is, and is wanted,
-``measure(around)`` is called once. Whatever keeps the contract can stand before a sensor: see SensorWrapper.
+A robot's description holds a *spec*, the sensor's settings (``LaserProfile``). When the robot is put into a
+scene, ``spec.build(mounting)`` makes the sensor with its noise and random generator. From then on
+``schedule`` states after which physics steps it is due; each time it is due and enabled, ``measure(context)``
+is called once. A wrapper that meets the contract can stand in for a sensor: see SensorWrapper.
 """
 
 from dataclasses import dataclass
@@ -12,20 +12,26 @@ from typing import Any, Generic, List, NamedTuple, Optional, Protocol, Sequence,
 import numpy as np
 
 from planar import Twist2
+from planar.deprecation import deprecated_names
 from sim_bridge.config import SimulationSettings
 from sim_bridge.physics.collision_queries import Contact
 from sim_bridge.physics.kinematics import KinematicState
 
 Value = TypeVar("Value")
-Told = TypeVar("Told", covariant=True)
+Measurement = TypeVar("Measurement", covariant=True)
 # Streams of random numbers below this belong to odometry and range finders.
 FIRST_OTHER_STREAM = 100
 
+__getattr__ = deprecated_names(__name__, {"Surroundings": "SensorContext"})
+
 
 class Schedule(NamedTuple):
-    """In steps of physics: a sensor measures at the end of each that is number ``offset`` of ``interval``.
+    """When a sensor measures, in physics steps.
 
-    What it tells is heard ``delay`` steps later.
+    Attributes:
+        interval: Steps between two measurements.
+        offset: Number of the first step after which it measures.
+        delay: Steps from a measurement until its reading is available.
     """
 
     interval: int
@@ -34,73 +40,85 @@ class Schedule(NamedTuple):
 
 
 class Reading(NamedTuple):
-    """What a sensor told, and the simulated time, s, at which it was so."""
+    """What a sensor measured.
+
+    Attributes:
+        stamp: Time of the measurement [simulated s].
+        value: The sensor's type of measurement, such as a Scan.
+    """
 
     stamp: float
     value: Any
 
 
-class Surroundings(Protocol):
-    """What a sensor can perceive of its robot and the world at the end of a step of physics."""
+class SensorContext(Protocol):
+    """What a sensor can measure of its robot and the world at the end of a physics step."""
 
     @property
     def stamp(self) -> float:
-        """Simulated seconds since the start."""
+        """Time since the start [simulated s]."""
 
     @property
     def base(self) -> KinematicState:
-        """How the robot's base frame moves in the world."""
+        """KinematicState of the robot's base frame in the world."""
 
     @property
     def twist(self) -> Twist2:
-        """Velocity of the base frame along its own x axis, and turn rate."""
+        """Velocity of the base frame along its x axis [m/s] and turn rate [rad/s]."""
 
     @property
     def wheels(self) -> Tuple[Tuple[float, ...], Tuple[float, ...]]:
-        """Angles, rad, and speeds, rad/s, of the driven wheels, those on the left first."""
+        """Angles [rad] and speeds [rad/s] of the driven wheels, left ones first."""
 
     @property
     def bumps(self) -> Sequence[Contact]:
-        """Where the robot has touched things since the last period of the odometry, one for each link."""
+        """Contacts of the robot since the last odometry period, one for each link that it touched."""
 
     @property
     def gravity(self) -> float:
-        """Downwards, m/s^2."""
+        """Acceleration downwards [m/s^2]."""
 
     def floors_below(self, points: Sequence[Sequence[float]]) -> List[float]:
-        """The heights of what is below points of the world, -inf where there is nothing."""
+        """Return the height of the surface below each point of the world [m], -inf where there is none."""
 
     def section(self, height: float) -> Tuple[np.ndarray, np.ndarray]:
-        """All but the robot at a height: sides (N, 4) as x, y, x, y, and how brightly they reflect, (N,)."""
+        """Return the horizontal section of everything but the robot.
+
+        Args:
+            height: Above the world's origin [m].
+
+        Returns:
+            Sides (N, 4) as x, y, x, y in the world [m], and their laser retro (N,).
+        """
 
     def triangles(self) -> Tuple[np.ndarray, np.ndarray]:
-        """Triangles (T, 3, 3) of all but the robot, in the world, and their shades (T, 3), uint8."""
+        """Return triangles (T, 3, 3) of all but the robot, in the world [m], and shades (T, 3), uint8."""
 
 
-class Sensor(Protocol[Told]):
-    """Something on a robot that measures."""
+class Sensor(Protocol[Measurement]):
+    """A sensor of a robot."""
 
     @property
     def name(self) -> str:
-        """By which an observation tells what it measured."""
+        """Key of its readings in an observation."""
 
     @property
     def frame(self) -> str:
-        """That its readings are told in."""
+        """Frame of its measurements."""
 
     @property
     def on_demand(self) -> bool:
-        """Whether it measures only while it is asked to, as it takes long."""
+        """Whether it measures only while it is enabled, because a measurement takes long."""
 
     def schedule(self, settings: SimulationSettings) -> Schedule:
-        """When it is due at these rates."""
+        """Return when it measures at these rates."""
 
-    def measure(self, around: Surroundings) -> Optional[Told]:
-        """What it tells now; None if nothing."""
+    def measure(self, context: SensorContext) -> Optional[Measurement]:
+        """Measure; None for no reading."""
 
 
 class SensorWrapper(Generic[Value]):
-    """Stands before a sensor and passes everything on; a subclass changes what it is for."""
+    """Passes every call on to a sensor; a subclass overrides what it changes."""
 
     def __init__(self, sensor: Sensor[Value]):
         self._sensor = sensor
@@ -120,15 +138,20 @@ class SensorWrapper(Generic[Value]):
     def schedule(self, settings: SimulationSettings) -> Schedule:
         return self._sensor.schedule(settings)
 
-    def measure(self, around: Surroundings) -> Optional[Value]:
-        return self._sensor.measure(around)
+    def measure(self, context: SensorContext) -> Optional[Value]:
+        return self._sensor.measure(context)
 
 
 @dataclass(frozen=True, eq=False)
 class Mounting:
-    """What a sensor learns when it is put on a robot, the one number ``robot`` of its scene.
+    """Where and how a sensor is mounted.
 
-    ``base_in_space``: (4, 4), where the robot starts. ``number``: how many sensors of its kind came before.
+    Attributes:
+        base_in_space: Initial pose of the robot in the world, (4, 4).
+        settings: Rates and noise.
+        seed: Seed of the simulation.
+        robot: Number of the robot in its scene.
+        number: How many sensors of the same kind the robot has before this one.
     """
 
     base_in_space: np.ndarray
@@ -138,22 +161,24 @@ class Mounting:
     number: int = 0
 
     def rng(self, stream: int) -> np.random.Generator:
-        """The sensor's own random numbers; ``stream``: of its kind, a hundred apart from other kinds'.
+        """Return the sensor's random generator.
 
-        Taken are 0 (odometry), 1 (range finders), 100 (cameras) and 200 (inertial sensors).
+        Args:
+            stream: Number of the kind of sensor, a hundred apart from others. Taken are 0 (odometry), 1
+                (range finders), 100 (cameras) and 200 (inertial sensors).
         """
         robot = [] if self.robot == 0 and stream < FIRST_OTHER_STREAM else [self.robot]
         return np.random.default_rng([self.seed, *robot, stream + self.number])
 
 
 class SensorSpec(Protocol):
-    """A sensor as a robot's description has it."""
+    """Settings of a sensor in a robot's description."""
 
     def build(self, mounting: Mounting) -> Sensor[Any]:
-        """The sensor itself."""
+        """Make the sensor."""
 
 
 def every(rate: Optional[float], settings: SimulationSettings) -> Schedule:
-    """``rate`` times a second, as near as whole periods of the odometry come to it; None: each of them."""
+    """Return the schedule of a rate [Hz], rounded to whole odometry periods; None for each period."""
     periods = 1 if rate is None else max(round(settings.odometry_rate / rate), 1)
     return Schedule(periods * (settings.physics_rate // settings.odometry_rate))

@@ -11,8 +11,8 @@ from planar.config.settings import check
 from sim_bridge.config import SimulationSettings
 from sim_bridge.geometry.pose3 import inverse
 from sim_bridge.sdf.values import number, text
-from sim_bridge.sensors.base import Mounting, Schedule, Surroundings, every
-from sim_bridge.sensors.found import Found
+from sim_bridge.sensors.base import Mounting, Schedule, SensorContext, every
+from sim_bridge.sensors.element import SensorElement
 from sim_bridge.sensors.lidar import LaserProfile
 from sim_bridge.views.rasterizer import Projection, rasterize
 
@@ -84,7 +84,7 @@ class DepthCameraSettings(CameraSettings):
 
 
 @dataclass(frozen=True, eq=False)
-class Picture:
+class CameraImage:
     """``rgb``: (H, W, 3), uint8; ``depth``: (H, W), float32, metres along the optical axis."""
 
     rgb: np.ndarray
@@ -131,19 +131,27 @@ class Camera:
     def schedule(self, settings: SimulationSettings) -> Schedule:
         return every(self._profile.rate, settings)
 
-    def measure(self, around: Surroundings) -> Picture:
+    def measure(self, context: SensorContext) -> CameraImage:
         """What is seen along the x axis of the camera's place on the robot."""
-        return self.picture(*around.triangles(), around.base.pose @ self._profile.pose_in_base)
+        return self.render(*context.triangles(), context.base.pose @ self._profile.pose_in_base)
 
-    def picture(self, triangles_xyz: np.ndarray, shades: np.ndarray, camera_in_world: np.ndarray) -> Picture:
-        """What is seen from ``camera_in_world``, (4, 4), along its x axis (see views.render_geometry)."""
+    def render(
+        self, triangles_xyz: np.ndarray, shades: np.ndarray, camera_in_world: np.ndarray
+    ) -> CameraImage:
+        """Render triangles (see sim_bridge.views.drawing).
+
+        Args:
+            triangles_xyz: (T, 3, 3), in the world [m].
+            shades: (T, 3), uint8.
+            camera_in_world: (4, 4); the camera faces along its x axis.
+        """
         world_in_optical = inverse(camera_in_world @ OPTICAL_IN_CAMERA)
         seen = triangles_xyz @ world_in_optical[:3, :3].T + world_in_optical[:3, 3]
         rgb, depth = rasterize(seen, shades, self._settings.projection())
         if self._settings.noise > 0.0:
             noisy = rgb + 255.0 * self._rng.normal(0.0, self._settings.noise, rgb.shape)
             rgb = np.clip(np.rint(noisy), 0, 255).astype(np.uint8)
-        return Picture(rgb, self._measured(depth))
+        return CameraImage(rgb, self._measured(depth))
 
     def _measured(self, depth: np.ndarray) -> np.ndarray:
         settings = self._settings
@@ -158,7 +166,7 @@ class Camera:
         return depth
 
 
-def points_of(depth: np.ndarray, settings: CameraSettings) -> np.ndarray:
+def depth_to_points(depth: np.ndarray, settings: CameraSettings) -> np.ndarray:
     """The points (H, W, 3), float32, in the optical frame that a depth picture (H, W) shows."""
     (centre_x, centre_y), scale = settings.centre, settings.focal_length
     columns = (np.arange(settings.width, dtype=np.float32) - np.float32(centre_x)) / np.float32(scale)
@@ -166,7 +174,7 @@ def points_of(depth: np.ndarray, settings: CameraSettings) -> np.ndarray:
     return np.stack((columns[None, :] * depth, rows[:, None] * depth, depth), axis=2)
 
 
-def read_camera(found: Found) -> CameraProfile:
+def read_camera(found: SensorElement) -> CameraProfile:
     """Of gazebo_ros_camera. Raises WorldError."""
     values, topics = _values_of(found)
     try:
@@ -176,7 +184,7 @@ def read_camera(found: Found) -> CameraProfile:
     return CameraProfile(settings=settings, **topics)
 
 
-def read_depth_camera(found: Found) -> CameraProfile:
+def read_depth_camera(found: SensorElement) -> CameraProfile:
     """Of gazebo_ros_openni_kinect. Raises WorldError."""
     plugin, prefix = found.plugin, _prefix(found)
     values, topics = _values_of(found)
@@ -197,7 +205,7 @@ def read_depth_camera(found: Found) -> CameraProfile:
     )
 
 
-def _values_of(found: Found) -> Tuple[Dict[str, Any], Dict[str, Any]]:
+def _values_of(found: SensorElement) -> Tuple[Dict[str, Any], Dict[str, Any]]:
     """What all cameras say: values of CameraSettings, and the rest of their profile."""
     sensor, plugin, prefix = found.sensor, found.plugin, _prefix(found)
     camera = sensor.child("camera") or sensor
@@ -218,7 +226,7 @@ def _values_of(found: Found) -> Tuple[Dict[str, Any], Dict[str, Any]]:
     return values, topics
 
 
-def _prefix(found: Found) -> str:
+def _prefix(found: SensorElement) -> str:
     namespace = text(found.plugin, "cameraName", "").strip("/")
     return f"{namespace}/" if namespace else ""
 

@@ -10,8 +10,8 @@ from planar.config.settings import check
 from sim_bridge.config import SimulationSettings
 from sim_bridge.physics.kinematics import KinematicState
 from sim_bridge.sdf.values import number, text
-from sim_bridge.sensors.base import Mounting, Schedule, Surroundings, every
-from sim_bridge.sensors.found import Found
+from sim_bridge.sensors.base import Mounting, Schedule, SensorContext, every
+from sim_bridge.sensors.element import SensorElement
 
 STREAM = 200
 
@@ -41,7 +41,7 @@ class ImuReading:
     """
 
     orientation: np.ndarray
-    turn_rates: np.ndarray
+    angular_velocity: np.ndarray
     acceleration: np.ndarray
 
 
@@ -93,9 +93,9 @@ class Imu:
         self._seconds = schedule.interval / settings.physics_rate
         return schedule
 
-    def measure(self, around: Surroundings) -> ImuReading:
-        sensor = around.base.of_frame(self._profile.pose_in_base)
-        return self.feel(sensor, self._seconds, around.gravity)
+    def measure(self, context: SensorContext) -> ImuReading:
+        sensor = context.base.of_frame(self._profile.pose_in_base)
+        return self.feel(sensor, self._seconds, context.gravity)
 
     def feel(self, sensor: KinematicState, seconds: float, gravity: float) -> ImuReading:
         """``sensor``: its motion in the world; ``seconds`` since the last reading; ``gravity``: downwards."""
@@ -115,7 +115,7 @@ class Imu:
         return self._rng.normal(0.0, deviation, 3)
 
 
-def read_imu(found: Found) -> ImuProfile:
+def read_imu(found: SensorElement) -> ImuProfile:
     """Of gazebo_ros_imu and its like, in a <sensor> or below the model. Raises WorldError."""
     plugin = found.plugin
     noise = plugin.child("gaussianNoise")

@@ -1,5 +1,6 @@
-"""What a Kobuki base feels besides its wheels: its bumper, cliffs and wheels that hang."""
+"""Sensors of a Kobuki base: bumper, cliff sensors and wheel drops (kobuki_gazebo_plugins)."""
 
+import math
 from dataclasses import dataclass
 from typing import Dict, FrozenSet
 
@@ -7,24 +8,34 @@ import numpy as np
 
 from sim_bridge.config import SimulationSettings
 from sim_bridge.geometry.pose3 import transform_points
-from sim_bridge.sensors.base import Mounting, Schedule, Surroundings, every
-from sim_bridge.sensors.bumper import CENTRE, LEFT, RIGHT, pressed
+from sim_bridge.sensors.base import Mounting, Schedule, SensorContext, every
 
-# Where the cliff sensors look down from, in the base frame, m (kobuki_description).
+LEFT, CENTRE, RIGHT = 0, 1, 2
+# Bearings of each sector of the bumper [rad], and its heights [m], in the base frame.
+SECTORS = {
+    LEFT: (math.radians(30.0), math.radians(90.0)),
+    CENTRE: (-math.radians(30.0), math.radians(30.0)),
+    RIGHT: (-math.radians(90.0), -math.radians(30.0)),
+}
+LOWEST, HIGHEST = 0.01, 0.13
+# Positions of the cliff sensors in the base frame [m] (kobuki_description).
 CLIFF_SENSORS: Dict[int, np.ndarray] = {
     LEFT: np.array([0.08734, 0.13601, 0.0316]),
     CENTRE: np.array([0.156, 0.0, 0.0316]),
     RIGHT: np.array([0.085, -0.13601, 0.0316]),
 }
-# A wheel hangs if the floor is so much farther below its hub than its radius, m.
+# A wheel has dropped if the floor is so much farther below its hub than its radius [m].
 WHEEL_DROP = 0.02
 
 
 @dataclass(frozen=True)
 class KobukiReading:
-    """``bumpers``, ``cliffs``: sectors (left 0, centre 1, right 2) touched, or without a floor below.
+    """State of a Kobuki's sensors; sectors are left 0, centre 1, right 2.
 
-    ``dropped``: wheels (left 0, right 1) that hang.
+    Attributes:
+        bumpers: Pressed sectors.
+        cliffs: Sectors without a floor below.
+        dropped: Dropped wheels: left 0, right 1.
     """
 
     bumpers: FrozenSet[int] = frozenset()
@@ -34,9 +45,12 @@ class KobukiReading:
 
 @dataclass(frozen=True, eq=False)
 class KobukiProfile:
-    """``cliff_threshold``: of the range to the floor, m. ``hubs_xyz``: (2, 3), of the left and right wheel.
+    """Settings of a Kobuki's sensors.
 
-    The hubs are seen from the base frame, with ``wheel_radius`` in m.
+    Attributes:
+        hubs_xyz: (2, 3), hubs of the left and right wheel in the base frame [m].
+        wheel_radius: [m].
+        cliff_threshold: Range to the floor from which there is a cliff [m].
     """
 
     hubs_xyz: np.ndarray
@@ -48,7 +62,7 @@ class KobukiProfile:
 
 
 class KobukiSensors:
-    """Reads the sensors of a base."""
+    """Measures bumper, cliffs and wheel drops."""
 
     name, frame, on_demand = "kobuki", "base_link", True
 
@@ -60,17 +74,28 @@ class KobukiSensors:
     def schedule(self, settings: SimulationSettings) -> Schedule:
         return every(None, settings)
 
-    def measure(self, around: Surroundings) -> KobukiReading:
-        base_in_world = around.base.pose
+    def measure(self, context: SensorContext) -> KobukiReading:
+        base_in_world = context.base.pose
         points = transform_points(base_in_world, self._downward_xyz).tolist()
-        floors = around.floors_below(points)
+        floors = context.floors_below(points)
         is_deep = [z - floor >= limit for (_, _, z), floor, limit in zip(points, floors, self._limits)]
         bumpers: FrozenSet[int] = frozenset()
-        if around.bumps:
-            touched = np.array([bump.point for bump in around.bumps])
+        if context.bumps:
+            touched = np.array([bump.point for bump in context.bumps])
             bumpers = pressed(transform_points(np.linalg.inv(base_in_world), touched))
         if not any(is_deep):
             return KobukiReading(bumpers)
         cliffs = (sector for sector, deep in zip(CLIFF_SENSORS, is_deep) if deep)
         dropped = (wheel for wheel, deep in enumerate(is_deep[len(CLIFF_SENSORS) :]) if deep)
         return KobukiReading(bumpers, frozenset(cliffs), frozenset(dropped))
+
+
+def pressed(contacts_xyz: np.ndarray) -> FrozenSet[int]:
+    """Return the pressed sectors; ``contacts_xyz``: (N, 3), contacts of the robot in its base frame [m]."""
+    x, y, z = np.asarray(contacts_xyz, dtype=float).reshape(-1, 3).T
+    bearings = np.arctan2(y, x)[(z >= LOWEST) & (z <= HIGHEST)]
+    return frozenset(
+        sector
+        for sector, (first, last) in SECTORS.items()
+        if ((bearings >= first) & (bearings <= last)).any()
+    )

@@ -12,8 +12,8 @@ from sim_bridge.config import SimulationSettings
 from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.noise import NoiseSettings
 from sim_bridge.sdf.values import text
-from sim_bridge.sensors.base import Mounting, Schedule, Surroundings
-from sim_bridge.sensors.found import Found
+from sim_bridge.sensors.base import Mounting, Schedule, SensorContext
+from sim_bridge.sensors.element import SensorElement
 from sim_bridge.views.section import cast_beams
 
 STREAM = 1
@@ -74,8 +74,8 @@ class Lidar:
         rate = self._profile.rate or settings.scan_rate
         return Schedule(max(round(settings.physics_rate / rate), 1))
 
-    def measure(self, around: Surroundings) -> Scan:
-        return self.sweep(around.stamp, *around.section(self._height), around.base.pose2)
+    def measure(self, context: SensorContext) -> Scan:
+        return self.sweep(context.stamp, *context.section(self._height), context.base.pose2)
 
     def sweep(self, stamp: float, segments: np.ndarray, retros: np.ndarray, base_in_world: Pose2) -> Scan:
         """All beams at one moment.
@@ -139,7 +139,7 @@ class Lidar:
         return np.where(np.isfinite(ranges), np.append(retros, 0.0)[nearest], 0.0).astype(np.float32)
 
 
-def read_laser(found: Found) -> LaserProfile:
+def read_laser(found: SensorElement) -> LaserProfile:
     """Of gazebo_ros_laser. Raises WorldError."""
     sensor = found.sensor
     ray = sensor.child("ray") or sensor.required("lidar")

@@ -9,7 +9,7 @@ import numpy as np
 from planar import Pose2, Twist2
 from sim_bridge.config import SimulationSettings
 from sim_bridge.driving.drive import DriveProfile
-from sim_bridge.sensors.base import Mounting, Schedule, Surroundings, every
+from sim_bridge.sensors.base import Mounting, Schedule, SensorContext, every
 
 STREAM = 0
 # x, y and yaw are measured, the rest is not (kobuki_gazebo_plugins).
@@ -25,7 +25,7 @@ class Odometry:
 
 
 @dataclass(frozen=True)
-class Moved:
+class TrueMotion:
     """The truth after a period: where the robot is, how it moves, and its wheels' angles, left ones first."""
 
     base_in_world: Pose2
@@ -34,13 +34,13 @@ class Moved:
     seconds: float
 
 
-class Reckoning(Protocol):
+class OdometryModel(Protocol):
     """Tells from how a robot moves where it believes to be."""
 
     def reset(self) -> None:
         """The odometry begins anew."""
 
-    def update(self, moved: Moved) -> Odometry:
+    def update(self, moved: TrueMotion) -> Odometry:
         """Moves on by one period."""
 
 
@@ -61,7 +61,7 @@ class OdometryProfile:
     rate: Optional[float] = None
     variances: Tuple[float, ...] = KOBUKI_VARIANCES
 
-    def reckoning(self, drive: DriveProfile, mounting: Mounting) -> Reckoning:
+    def odometry_model(self, drive: DriveProfile, mounting: Mounting) -> OdometryModel:
         """How the robot with this drive measures."""
         if self.source == "world":
             return TrueOdometry()
@@ -73,9 +73,9 @@ class Odometer:
 
     name, on_demand = "odometry", False
 
-    def __init__(self, profile: OdometryProfile, reckoning: Reckoning):
+    def __init__(self, profile: OdometryProfile, odometry_model: OdometryModel):
         self.frame = profile.frame
-        self._reckoning = reckoning
+        self._reckoning = odometry_model
         self._seconds = 0.0
 
     def reset(self) -> None:
@@ -85,9 +85,9 @@ class Odometer:
         self._seconds = 1.0 / settings.odometry_rate
         return every(None, settings)
 
-    def measure(self, around: Surroundings) -> Odometry:
-        angles, _ = around.wheels
-        return self._reckoning.update(Moved(around.base.pose2, around.twist, angles, self._seconds))
+    def measure(self, context: SensorContext) -> Odometry:
+        angles, _ = context.wheels
+        return self._reckoning.update(TrueMotion(context.base.pose2, context.twist, angles, self._seconds))
 
 
 class TrueOdometry:
@@ -96,7 +96,7 @@ class TrueOdometry:
     def reset(self) -> None:
         """The frame of the world stays where it is."""
 
-    def update(self, moved: Moved) -> Odometry:
+    def update(self, moved: TrueMotion) -> Odometry:
         return Odometry(moved.base_in_world, moved.twist)
 
 
@@ -121,7 +121,7 @@ class DeadReckoning:
         self._separation = drive.wheel_separation
         self._has_gyro = has_gyro
         self._settings = settings
-        self._alphas = _Alphas(settings, rng)
+        self._alphas = _MotionNoise(settings, rng)
         self._rng = rng
         self._angles = (0.0, 0.0)
         self._pose = Pose2()
@@ -130,7 +130,7 @@ class DeadReckoning:
         """The robot's present place becomes the origin of odometry."""
         self._pose = Pose2()
 
-    def update(self, moved: Moved) -> Odometry:
+    def update(self, moved: TrueMotion) -> Odometry:
         """Moves on by one period."""
         left, right = moved.wheel_angles[: self._left_count], moved.wheel_angles[self._left_count :]
         sides = (sum(left) / len(left), sum(right) / len(right))
@@ -144,7 +144,7 @@ class DeadReckoning:
         self._pose = self._pose @ self._alphas.disturbed(_arc(distance + slip, rate * moved.seconds))
         return Odometry(self._pose, Twist2(distance / moved.seconds, rate))
 
-    def _measured_rate(self, moved: Moved, rolled: Tuple[float, ...]) -> float:
+    def _measured_rate(self, moved: TrueMotion, rolled: Tuple[float, ...]) -> float:
         """The turn rate, rad/s, by the gyro or by the distances that the left and right side have rolled."""
         draw = self._rng.standard_normal()
         if self._has_gyro:
@@ -155,7 +155,7 @@ class DeadReckoning:
         return (right - left + slip) / self._separation / moved.seconds
 
 
-class _Alphas:
+class _MotionNoise:
     """Noise of heading and distance that grows with both, by the four alphas.
 
     Over a metre or a radian the variances are those of the table, of two metres twice that: so the noise does

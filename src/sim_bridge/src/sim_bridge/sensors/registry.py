@@ -4,12 +4,12 @@ from typing import Callable, Dict
 
 from sim_bridge.sensors.base import SensorSpec
 from sim_bridge.sensors.camera import read_camera, read_depth_camera
-from sim_bridge.sensors.found import Found
+from sim_bridge.sensors.element import SensorElement
 from sim_bridge.sensors.imu import read_imu
 from sim_bridge.sensors.lidar import read_laser
 
 # By the plugin's name (gazebo_plugins 2.9).
-SENSORS: Dict[str, Callable[[Found], SensorSpec]] = {
+SENSORS: Dict[str, Callable[[SensorElement], SensorSpec]] = {
     "gazebo_ros_laser": read_laser,
     "gazebo_ros_gpu_laser": read_laser,
     "gazebo_ros_camera": read_camera,

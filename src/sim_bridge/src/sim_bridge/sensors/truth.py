@@ -1,4 +1,4 @@
-"""What is true of a robot, as sensors that never err."""
+"""Ground truth of a robot, as sensors without errors."""
 
 import math
 from dataclasses import dataclass
@@ -6,12 +6,18 @@ from typing import Tuple
 
 from planar import Pose2, Twist2
 from sim_bridge.config import SimulationSettings
-from sim_bridge.sensors.base import Schedule, Surroundings, every
+from sim_bridge.sensors.base import Schedule, SensorContext, every
 
 
 @dataclass(frozen=True)
-class Truth:
-    """``tilt``: between the robot's axis and the vertical, rad."""
+class TruthReading:
+    """True state of a robot.
+
+    Attributes:
+        base_in_world: Pose.
+        twist: Velocity in the base frame.
+        tilt: Angle between the robot's axis and the vertical [rad].
+    """
 
     base_in_world: Pose2
     twist: Twist2
@@ -20,44 +26,49 @@ class Truth:
 
 @dataclass(frozen=True)
 class WheelState:
-    """Of the driven wheels, those on the left first, rad and rad/s."""
+    """State of the driven wheels, left ones first.
+
+    Attributes:
+        angles: [rad].
+        speeds: [rad/s].
+    """
 
     angles: Tuple[float, ...]
     speeds: Tuple[float, ...]
 
 
 class GroundTruth:
-    """Where the robot is."""
+    """Measures pose, twist and tilt of the robot."""
 
     name, frame, on_demand = "ground_truth", "world", False
 
     def schedule(self, settings: SimulationSettings) -> Schedule:
         return every(None, settings)
 
-    def measure(self, around: Surroundings) -> Truth:
-        base = around.base
-        return Truth(base.pose2, around.twist, math.acos(min(base.pose.item(2, 2), 1.0)))
+    def measure(self, context: SensorContext) -> TruthReading:
+        base = context.base
+        return TruthReading(base.pose2, context.twist, math.acos(min(base.pose.item(2, 2), 1.0)))
 
 
-class JointEncoders:
-    """How far and how fast the wheels turn."""
+class WheelEncoders:
+    """Measures angles and speeds of the driven wheels."""
 
     name, frame, on_demand = "wheels", "base_link", False
 
     def schedule(self, settings: SimulationSettings) -> Schedule:
         return every(None, settings)
 
-    def measure(self, around: Surroundings) -> WheelState:
-        return WheelState(*around.wheels)
+    def measure(self, context: SensorContext) -> WheelState:
+        return WheelState(*context.wheels)
 
 
-class ContactList:
-    """The names (``model::link``) of what the robot has bumped into since it last told."""
+class ContactSensor:
+    """Lists the links (``model::link``) that the robot has touched since the last reading."""
 
     name, frame, on_demand = "contacts", "world", False
 
     def schedule(self, settings: SimulationSettings) -> Schedule:
         return every(None, settings)
 
-    def measure(self, around: Surroundings) -> Tuple[str, ...]:
-        return tuple(sorted(bump.link for bump in around.bumps))
+    def measure(self, context: SensorContext) -> Tuple[str, ...]:
+        return tuple(sorted(bump.link for bump in context.bumps))

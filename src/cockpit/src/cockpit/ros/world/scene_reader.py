@@ -81,7 +81,7 @@ def _reading() -> Callable[[str, str, str], Union[bytes, str]]:
     """What reads a request; only the process that reads imports what that takes."""
     from cockpit.scene.reader import describe_model, describe_robot, describe_world
     from planar import PlanarError
-    from sim_bridge.ros.describing import find_file, model_folders
+    from sim_bridge.ros.description import find_file, model_folders
 
     def read(kind: str, name: str, text: str) -> Union[bytes, str]:
         try:

@@ -1,1 +1,1 @@
-"""Faults over ROS: of the simulator, and of what other people's nodes say to each other."""
+"""Fault injection over ROS: into the simulator, and into messages between external nodes."""

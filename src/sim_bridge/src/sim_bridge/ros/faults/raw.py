@@ -1,4 +1,4 @@
-"""Messages that are handed on as they came, to the last bit."""
+"""Messages that are passed on without being deserialized, byte for byte."""
 
 from io import BytesIO
 from typing import Any, ClassVar
@@ -9,23 +9,29 @@ from planar_ros.messages.border import MessageError
 
 
 class RawMessage:
-    """Of a ``kind`` on the wire, but only its bytes, with the number that its first sender gave it."""
+    """The bytes of a message, with the sequence number of its first publisher.
+
+    Attributes:
+        kind: Type of the message.
+        data: Its serialized bytes.
+    """
 
     kind: ClassVar[Any]
     data = b""
 
     @classmethod
-    def of(cls, message: genpy.Message) -> "RawMessage":
-        buffer, made = BytesIO(), cls()
+    def from_message(cls, message: genpy.Message) -> "RawMessage":
+        """Serialize a message."""
+        buffer, raw = BytesIO(), cls()
         message.serialize(buffer)
-        made.data = buffer.getvalue()
-        return made
+        raw.data = buffer.getvalue()
+        return raw
 
-    def read(self) -> Any:
-        """The message itself. Raises MessageError if the bytes are none."""
+    def decode(self) -> Any:
+        """Deserialize the message. Raises MessageError if its bytes are invalid."""
         try:
             return self.kind().deserialize(self.data)
-        except (genpy.DeserializationError, ValueError) as error:  # the latter: arrays cut short
+        except (genpy.DeserializationError, ValueError) as error:  # ValueError: an array is cut short
             raise MessageError(f"it cannot be read ({error})") from None
 
     def serialize(self, buff) -> None:
@@ -36,6 +42,6 @@ class RawMessage:
         return self
 
 
-def raw(kind: type) -> Any:
-    """The messages of a kind, to publish and to subscribe to, as RawMessage."""
+def raw_type(kind: type) -> Any:
+    """Make a type to publish and subscribe messages of a kind as RawMessage."""
     return type(f"Raw{kind.__name__}", (RawMessage, kind), {"kind": kind})

@@ -1,4 +1,4 @@
-"""The node ``fault_relay``: puts faults between nodes that are not ours."""
+"""The node ``fault_relay``: injects faults into messages between external nodes."""
 
 import threading
 from pathlib import Path
@@ -18,83 +18,94 @@ from planar_ros.node.remapping import remap_once
 from planar_ros.node.shell import run
 from sim_bridge.config import RelaySettings
 from sim_bridge.faults import load_faults
-from sim_bridge.faults.faulty import through
-from sim_bridge.faults.relayed import RelayedFaults, why_not_relayed
-from sim_bridge.ros.faults.asking import offer_faults
-from sim_bridge.ros.faults.heard import HeardCommand, HeardOdometry, HeardScan
-from sim_bridge.ros.faults.raw import RawMessage, raw
+from sim_bridge.faults.injection import apply_faults
+from sim_bridge.faults.relay import RelayedFaults, unsupported_by_relay
+from sim_bridge.ros.faults.raw import RawMessage, raw_type
+from sim_bridge.ros.faults.received import ReceivedCommand, ReceivedOdometry, ReceivedScan
+from sim_bridge.ros.faults.service import advertise_add_fault
 from sim_bridge.ros.messages import pose3_from_msg, pose3_to_msg
 
 QUEUE_SIZE = 100
+# Suffix of the topic on which faulty messages are published.
+FAULTY = "_faulty"
 
 
-class Way(NamedTuple):
-    """Of the messages on a topic; what faults make of them is told on another, ``topic`` with FAULTY behind.
+class RelayedTopic(NamedTuple):
+    """A topic that is relayed to the topic of its name with the suffix FAULTY.
 
-    ``change``: the method of a kind of fault that does so; ``heard``: what it is given.
+    Attributes:
+        topic: Name of the subscribed topic.
+        method: Method of a fault that changes its messages.
+        value_type: What that method is given.
     """
 
     topic: str
-    change: str
-    heard: Type[Union[HeardScan, HeardOdometry, HeardCommand]]
+    method: str
+    value_type: Type[Union[ReceivedScan, ReceivedOdometry, ReceivedCommand]]
 
 
-FAULTY = "_faulty"
-ODOMETRY = Way("odom", "odometry", HeardOdometry)
-WAYS = (Way("scan", "scan", HeardScan), ODOMETRY, Way("cmd_vel", "command", HeardCommand))
+ODOMETRY = RelayedTopic("odom", "odometry", ReceivedOdometry)
+RELAYED_TOPICS = (
+    RelayedTopic("scan", "scan", ReceivedScan),
+    ODOMETRY,
+    RelayedTopic("cmd_vel", "command", ReceivedCommand),
+)
 
 
 class FaultRelay:
-    """Hears scans, odometry and commands, and publishes what the faults make of them; all else as it came."""
+    """Subscribes to scans, odometry and commands, and publishes what the faults make of them."""
 
     def __init__(self):
         settings = read_settings(RelaySettings)
         file = settings.faults_file
-        self._faults = RelayedFaults(load_faults(Path(file), why_not_relayed) if file else (), settings.seed)
-        self._lock = threading.Lock()  # each topic and each service has a thread of its own
+        faults = load_faults(Path(file), unsupported_by_relay) if file else ()
+        self._faults = RelayedFaults(faults, settings.seed)
+        self._lock = threading.Lock()  # each topic and each service has its own thread
         self._tf: Optional[rospy.Publisher] = None
         if settings.publish_tf:
             self._tf = rospy.Publisher("/tf", TFMessage, queue_size=QUEUE_SIZE, tcp_nodelay=True)
-        topics = [way.topic for way in WAYS]
+        topics = [relayed.topic for relayed in RELAYED_TOPICS]
         names = remap_once(*topics, *(topic + FAULTY for topic in topics))
-        for way, hear_on, tell_on in zip(WAYS, names, names[len(WAYS) :]):
-            if tell_on in names[: len(WAYS)]:
+        inputs, outputs = names[: len(topics)], names[len(topics) :]
+        for relayed, input_name, output_name in zip(RELAYED_TOPICS, inputs, outputs):
+            if output_name in inputs:
                 raise SettingsError(
-                    f"{way.topic}{FAULTY} is remapped to {tell_on}, which the relay itself hears"
+                    f"{relayed.topic}{FAULTY} is remapped to {output_name}, to which the relay subscribes; "
+                    "remap one of them to another name"
                 )
-            self._relay(way, hear_on, tell_on)
+            self._relay(relayed, input_name, output_name)
         first = sleep_until(rospy.Time(0)).to_sec()
         with self._lock:
             self._faults.begin(first)
-        offer_faults(self._add)
+        advertise_add_fault(self._add)
 
-    def _relay(self, way: Way, hear_on: str, tell_on: str) -> None:
-        kind = raw(way.heard.kind)
-        publisher = rospy.Publisher(tell_on, kind, queue_size=QUEUE_SIZE, tcp_nodelay=True)
+    def _relay(self, relayed: RelayedTopic, input_name: str, output_name: str) -> None:
+        kind = raw_type(relayed.value_type.kind)
+        publisher = rospy.Publisher(output_name, kind, queue_size=QUEUE_SIZE, tcp_nodelay=True)
 
-        def hand_on(message: RawMessage) -> None:
+        def on_message(message: RawMessage) -> None:
             with self._lock:
-                told = self._told(message, way)
-                if told is not None:
-                    publisher.publish(told)
-                    if way is ODOMETRY and self._tf is not None:
-                        self._send_transform(self._tf, told)
+                faulty = self._apply(message, relayed)
+                if faulty is not None:
+                    publisher.publish(faulty)
+                    if relayed is ODOMETRY and self._tf is not None:
+                        self._send_transform(self._tf, faulty)
 
-        subscribe(hear_on, kind, hand_on, queue_size=QUEUE_SIZE, tcp_nodelay=True)
+        subscribe(input_name, kind, on_message, queue_size=QUEUE_SIZE, tcp_nodelay=True)
 
-    def _told(self, message: RawMessage, way: Way) -> Optional[RawMessage]:
-        """What is told instead of a message; None: nothing. Raises PlanarError for one without meaning."""
-        kinds = self._faults.at(rospy.get_time(), way.change)
+    def _apply(self, message: RawMessage, relayed: RelayedTopic) -> Optional[RawMessage]:
+        """Return the message to publish; None for none. Raises PlanarError for an invalid message."""
+        kinds = self._faults.active(rospy.get_time(), relayed.method)
         if not kinds:
             return message
-        heard: Any = way.heard.of(message.read())
-        told = through(kinds, way.change, heard)
-        return None if told is None else type(message).of(heard.tell(told))
+        received: Any = relayed.value_type.from_msg(message.decode())
+        changed = apply_faults(kinds, relayed.method, received)
+        return None if changed is None else type(message).from_message(received.to_msg(changed))
 
     @staticmethod
     def _send_transform(tf: rospy.Publisher, odometry: RawMessage) -> None:
         try:
-            tf.publish(TFMessage([transform_of(odometry.read())]))
+            tf.publish(TFMessage([transform_of(odometry.decode())]))
         except PlanarError as error:
             rospy.logwarn_throttle_identical(WARN_SECONDS, f"no transform of odometry: {error}")
 
@@ -104,16 +115,16 @@ class FaultRelay:
 
 
 def transform_of(odometry: Odometry) -> TransformStamped:
-    """Where odometry tells that the base is. Raises PlanarError if that is nowhere."""
+    """Return the transform of an odometry message. Raises PlanarError if the message is invalid."""
     parent, child = frame_name(odometry.header.frame_id), frame_name(odometry.child_frame_id)
     if not (parent and child and is_stamp(odometry.header.stamp)):
-        raise MessageError("it lacks a frame, or its stamp is none")
+        raise MessageError("a frame is missing, or the stamp is invalid")
     pose = pose3_to_msg(pose3_from_msg(odometry.pose.pose))
-    made = TransformStamped(child_frame_id=child)
-    made.header.stamp, made.header.frame_id = odometry.header.stamp, parent
-    at = pose.position
-    made.transform = Transform(Vector3(at.x, at.y, at.z), pose.orientation)
-    return made
+    transform = TransformStamped(child_frame_id=child)
+    transform.header.stamp, transform.header.frame_id = odometry.header.stamp, parent
+    position = pose.position
+    transform.transform = Transform(Vector3(position.x, position.y, position.z), pose.orientation)
+    return transform
 
 
 def main():

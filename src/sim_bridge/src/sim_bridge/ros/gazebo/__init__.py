@@ -1,16 +1,16 @@
 """Gazebo's services and topics below /gazebo (gazebo_ros 2.9), with its status texts, and a plugin's."""
 
-from sim_bridge.ros.fleet import Fleet
-from sim_bridge.ros.gazebo.attaching import AttachServices
+from sim_bridge.ros.call_queue import CallQueue
 from sim_bridge.ros.gazebo.forces import ForceServices
 from sim_bridge.ros.gazebo.joints import JointServices
 from sim_bridge.ros.gazebo.lights import LightServices
+from sim_bridge.ros.gazebo.link_attacher import AttachServices
 from sim_bridge.ros.gazebo.physics import PhysicsServices
 from sim_bridge.ros.gazebo.properties import PropertyServices
-from sim_bridge.ros.gazebo.server import Server
+from sim_bridge.ros.gazebo.server import GazeboServer
 from sim_bridge.ros.gazebo.spawning import SpawnServices
 from sim_bridge.ros.gazebo.states import StateServices
-from sim_bridge.ros.orders import Orders
+from sim_bridge.ros.robot_manager import RobotManager
 from sim_bridge.ros.timing.time_control import TimeControl
 from sim_bridge.scene import Scene
 
@@ -20,11 +20,13 @@ __all__ = ["GazeboInterface"]
 class GazeboInterface:
     """Serves a scene as Gazebo does; ``model_folders`` are searched for the models of spawned ones."""
 
-    def __init__(self, scene: Scene, fleet: Fleet, time_control: TimeControl, orders: Orders, model_folders):
-        server = Server(orders)
+    def __init__(
+        self, scene: Scene, robots: RobotManager, time_control: TimeControl, calls: CallQueue, model_folders
+    ):
+        server = GazeboServer(calls)
         self._states = StateServices(scene, server)
         PhysicsServices(scene, time_control, server)
-        SpawnServices(scene, fleet, server, model_folders)
+        SpawnServices(scene, robots, server, model_folders)
         PropertyServices(scene, server)
         JointServices(scene, server)
         ForceServices(scene, server)

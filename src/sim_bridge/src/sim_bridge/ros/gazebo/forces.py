@@ -8,13 +8,13 @@ import numpy as np
 from sim_bridge.errors import UnknownEntityError
 from sim_bridge.geometry.pose3 import cross
 from sim_bridge.physics.forces import JointEffort, LinkWrench
-from sim_bridge.ros.gazebo.server import WORLD_NAMES, Server, frame_named
+from sim_bridge.ros.gazebo.server import WORLD_NAMES, GazeboServer, frame_named
 from sim_bridge.ros.messages import vector_from_msg
 from sim_bridge.scene import Scene
 
 
 class ForceServices:
-    def __init__(self, scene: Scene, server: Server):
+    def __init__(self, scene: Scene, server: GazeboServer):
         self._scene = scene
         server.serve("apply_body_wrench", srv.ApplyBodyWrench, self._on_apply_wrench)
         server.serve("clear_body_wrenches", srv.BodyRequest, self._on_clear_wrenches)

@@ -4,7 +4,7 @@ import gazebo_msgs.srv as srv
 import numpy as np
 
 from sim_bridge.errors import UnknownEntityError
-from sim_bridge.ros.gazebo.server import Server
+from sim_bridge.ros.gazebo.server import GazeboServer
 from sim_bridge.scene import Scene
 
 KINDS = {
@@ -17,7 +17,7 @@ KINDS = {
 class JointServices:
     """Joints are known by their own name or as ``model::joint``, as in Gazebo."""
 
-    def __init__(self, scene: Scene, server: Server):
+    def __init__(self, scene: Scene, server: GazeboServer):
         self._scene = scene
         server.serve("get_joint_properties", srv.GetJointProperties, self._on_get)
         server.serve("set_joint_properties", srv.SetJointProperties, self._on_set)

@@ -5,12 +5,12 @@ from dataclasses import replace
 import gazebo_msgs.srv as srv
 from std_msgs.msg import ColorRGBA
 
-from sim_bridge.ros.gazebo.server import Server
+from sim_bridge.ros.gazebo.server import GazeboServer
 from sim_bridge.scene import Scene
 
 
 class LightServices:
-    def __init__(self, scene: Scene, server: Server):
+    def __init__(self, scene: Scene, server: GazeboServer):
         self._lights = scene.lights
         server.serve("get_light_properties", srv.GetLightProperties, self._on_get)
         server.serve("set_light_properties", srv.SetLightProperties, self._on_set)

@@ -14,7 +14,7 @@ from planar.config.parameters import DynamicParameter
 from planar_ros.node.reconfigure import ReconfigureServer
 from sim_bridge.config import HIGHEST_PHYSICS_RATE
 from sim_bridge.errors import WorldError
-from sim_bridge.ros.gazebo.server import NAMESPACE, Server
+from sim_bridge.ros.gazebo.server import NAMESPACE, GazeboServer
 from sim_bridge.ros.timing.time_control import TimeControl
 from sim_bridge.scene import Scene
 
@@ -32,7 +32,7 @@ TUNABLES = (
 
 
 class PhysicsServices:
-    def __init__(self, scene: Scene, time_control: TimeControl, server: Server):
+    def __init__(self, scene: Scene, time_control: TimeControl, server: GazeboServer):
         self._scene = scene
         self._time = time_control
         for name, do in (

@@ -6,7 +6,7 @@ from geometry_msgs.msg import Point, Pose, Quaternion
 
 from sim_bridge.errors import UnknownEntityError, WorldError
 from sim_bridge.geometry.pose3 import position
-from sim_bridge.ros.gazebo.server import SCOPE_HINT, Server
+from sim_bridge.ros.gazebo.server import SCOPE_HINT, GazeboServer
 from sim_bridge.ros.messages import vector_from_msg
 from sim_bridge.scene import Scene
 
@@ -15,7 +15,7 @@ NEGLIGIBLE = 1e-6
 
 
 class PropertyServices:
-    def __init__(self, scene: Scene, server: Server):
+    def __init__(self, scene: Scene, server: GazeboServer):
         self._scene = scene
         server.serve("get_model_properties", srv.GetModelProperties, self._on_get_model)
         server.serve("get_link_properties", srv.GetLinkProperties, self._on_get_link)

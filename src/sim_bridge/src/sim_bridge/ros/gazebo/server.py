@@ -8,7 +8,7 @@ import rospy
 from sim_bridge.errors import UnknownEntityError
 from sim_bridge.geometry.pose3 import inverse
 from sim_bridge.physics.kinematics import KinematicState
-from sim_bridge.ros.orders import Orders
+from sim_bridge.ros.call_queue import CallQueue
 from sim_bridge.scene import Scene
 
 T = TypeVar("T")
@@ -19,18 +19,18 @@ WORLD_NAMES = ("", "world", "map", "/map")
 SCOPE_HINT = "did you forget to scope the link by model name?"
 
 
-class Server:
+class GazeboServer:
     """Answers calls, and takes what comes by topic, between two steps of the simulation."""
 
-    def __init__(self, orders: Orders):
-        self._orders = orders
+    def __init__(self, calls: CallQueue):
+        self._calls = calls
 
     def serve(self, name: str, kind, answer: Callable) -> None:
         """The service ``name``, below /gazebo unless it begins with a slash."""
         full_name = rospy.names.ns_join(NAMESPACE, name)
         rospy.Service(full_name, kind, lambda request: self.between_steps(lambda: answer(request)))
 
-    def serve_aside(self, name: str, kind, answer: Callable) -> None:
+    def serve_in_thread(self, name: str, kind, answer: Callable) -> None:
         """The same for an ``answer`` that takes its time: it runs in a thread beside the simulation.
 
         What it does to the scene it has done ``between_steps``.
@@ -39,13 +39,13 @@ class Server:
 
     def between_steps(self, do: Callable[[], T]) -> T:
         """Has ``do`` called between two steps and returns what it returns."""
-        return self._orders.ask(do)
+        return self._calls.call(do)
 
     def listen(self, name: str, kind, take: Callable) -> None:
         """The topic /gazebo/``name``; ``take`` is called with a message and what tells a failure."""
 
         def on_message(message):
-            self._orders.leave(lambda: take(message, _tell_failure))
+            self._calls.submit(lambda: take(message, _tell_failure))
 
         rospy.Subscriber(NAMESPACE + name, kind, on_message, queue_size=10)
 

@@ -1,54 +1,58 @@
-"""Models and robots that come and go."""
+"""Services that spawn and delete models and robots."""
 
 from functools import partial
-from typing import Callable, List
+from typing import Callable, Dict, List
 
 import gazebo_msgs.srv as srv
 import numpy as np
 import rospy
+from sim_bridge_msgs.msg import SpawnedModel, SpawnedModels
 
 from planar import PlanarError
 from sim_bridge.description import RobotProfile, read_prop, read_sdf_robot, read_urdf_robot
 from sim_bridge.errors import NoDriveError, UnknownEntityError, WorldError
 from sim_bridge.geometry.pose3 import to_pose2
 from sim_bridge.physics.kinematics import KinematicState
-from sim_bridge.ros.describing import find_file
-from sim_bridge.ros.fleet import Fleet
-from sim_bridge.ros.gazebo.server import SCOPE_HINT, Server, frame_named
-from sim_bridge.ros.gazebo.spawned import Spawned
-from sim_bridge.ros.messages import pose3_from_msg
+from sim_bridge.ros.description import find_file
+from sim_bridge.ros.gazebo.server import SCOPE_HINT, GazeboServer, frame_named
+from sim_bridge.ros.messages import pose3_from_msg, pose3_to_msg
+from sim_bridge.ros.robot_manager import RobotManager
 from sim_bridge.scene import Scene
 from sim_bridge.sdf import read_model
 from sim_bridge.world import World
 
 
 class SpawnRefusedError(PlanarError):
-    """What Gazebo says of a call that has no model in it to complain of."""
+    """A call that Gazebo refuses before it reads the model; the text is Gazebo's."""
 
 
-# What there is to be done between two steps once all files have been read.
-Arrivals = List[Callable[[], None]]
+# Calls that put models into the scene between two steps, once all files have been read.
+Insertions = List[Callable[[], None]]
 
 
 class SpawnServices:
-    """``model_folders`` are searched for what the models spawned include.
+    """Services spawn_sdf_model, spawn_urdf_model and delete_model.
 
-    Files are read beside the simulation, which only puts in what has come of them.
+    Files are read in the thread of the call, so the simulation runs on; only the result is inserted between
+    steps.
+
+    Args:
+        model_folders: Searched for models that spawned ones include.
     """
 
-    def __init__(self, scene: Scene, fleet: Fleet, server: Server, model_folders):
-        self._scene, self._fleet, self._server = scene, fleet, server
+    def __init__(self, scene: Scene, robots: RobotManager, server: GazeboServer, model_folders):
+        self._scene, self._robots, self._server = scene, robots, server
         self._model_folders = model_folders
-        self._spawned = Spawned()
-        server.serve_aside("spawn_sdf_model", srv.SpawnModel, partial(self._on_spawn, self._read_sdf))
-        server.serve_aside("spawn_urdf_model", srv.SpawnModel, partial(self._on_spawn, self._read_urdf))
+        self._spawned = SpawnedModelsPublisher()
+        server.serve_in_thread("spawn_sdf_model", srv.SpawnModel, partial(self._on_spawn, self._read_sdf))
+        server.serve_in_thread("spawn_urdf_model", srv.SpawnModel, partial(self._on_spawn, self._read_urdf))
         server.serve("delete_model", srv.DeleteModel, self._on_delete)
 
-    def _on_spawn(self, read: Callable[..., Arrivals], request):
+    def _on_spawn(self, read: Callable[..., Insertions], request):
         try:
             frame = self._server.between_steps(lambda: self._frame_of(request))
-            arrivals = read(request, frame.pose @ pose3_from_msg(request.initial_pose))
-            self._server.between_steps(lambda: self._put_in(request, arrivals))
+            insertions = read(request, frame.pose @ pose3_from_msg(request.initial_pose))
+            self._server.between_steps(lambda: self._put_in(request, insertions))
         except SpawnRefusedError as error:
             return srv.SpawnModelResponse(False, str(error))
         except PlanarError as error:
@@ -66,41 +70,64 @@ class SpawnServices:
         if request.model_name in self._scene.models.names():
             raise SpawnRefusedError("SpawnModel: Failure - entity already exists.")
 
-    def _put_in(self, request, arrivals: Arrivals) -> None:
+    def _put_in(self, request, insertions: Insertions) -> None:
         self._check_name(request)
-        for arrive in arrivals:
-            arrive()
+        for insert in insertions:
+            insert()
 
-    def _read_sdf(self, request, pose: np.ndarray) -> Arrivals:
+    def _read_sdf(self, request, pose: np.ndarray) -> Insertions:
         model = read_model(request.model_xml, request.model_name, pose, self._model_folders)
-        return self._arrivals(request, model, pose)
+        return self._insertions(request, model, pose)
 
-    def _read_urdf(self, request, pose: np.ndarray) -> Arrivals:
+    def _read_urdf(self, request, pose: np.ndarray) -> Insertions:
         try:
             robot = read_urdf_robot(request.model_xml, request.model_name, find_file)
         except NoDriveError:
             prop = read_prop(request.model_xml, request.model_name, pose, find_file)
-            return self._arrivals(request, prop, pose)
+            return self._insertions(request, prop, pose)
         return [partial(self._add_robot, request, robot, pose)]
 
-    def _arrivals(self, request, model: World, pose: np.ndarray) -> Arrivals:
+    def _insertions(self, request, model: World, pose: np.ndarray) -> Insertions:
         if not (model.bodies or model.robots):
             raise WorldError("; ".join([f"{request.model_name} has no links", *model.warnings]))
         for warning in model.warnings:
             rospy.logwarn("%s", warning)
         robots = [partial(self._add_robot, request, *read_sdf_robot(robot)) for robot in model.robots]
-        told = (
-            [partial(self._spawned.add, request.model_name, request.model_xml, pose)] if model.bodies else []
-        )
-        return [partial(self._scene.add, model.bodies, model.joints), *robots, *told]
+        insertions: Insertions = [partial(self._scene.add, model.bodies, model.joints), *robots]
+        if model.bodies:
+            insertions.append(partial(self._spawned.add, request.model_name, request.model_xml, pose))
+        return insertions
 
     def _add_robot(self, request, robot: RobotProfile, pose: np.ndarray) -> None:
-        self._fleet.add(request.model_name, robot, to_pose2(pose), float(pose[2, 3]), request.robot_namespace)
+        self._robots.add(
+            request.model_name, robot, to_pose2(pose), float(pose[2, 3]), request.robot_namespace
+        )
 
     def _on_delete(self, request):
         try:
-            self._fleet.remove(request.model_name)
+            self._robots.remove(request.model_name)
         except UnknownEntityError:
             return srv.DeleteModelResponse(False, "DeleteModel: model does not exist")
         self._spawned.remove(request.model_name)
         return srv.DeleteModelResponse(True, "DeleteModel: successfully deleted model")
+
+
+class SpawnedModelsPublisher:
+    """Publishes the models that are not in the world's file, for viewers that read that file."""
+
+    def __init__(self) -> None:
+        self._models: Dict[str, SpawnedModel] = {}
+        self._publisher = rospy.Publisher("~spawned", SpawnedModels, queue_size=1, latch=True)
+
+    def add(self, name: str, xml: str, pose: np.ndarray) -> None:
+        """Add a model; ``pose`` is (4, 4), in the world."""
+        self._models[name] = SpawnedModel(name, xml, pose3_to_msg(pose))
+        self._publish()
+
+    def remove(self, name: str) -> None:
+        """Remove a model if it was spawned."""
+        if self._models.pop(name, None) is not None:
+            self._publish()
+
+    def _publish(self) -> None:
+        self._publisher.publish(SpawnedModels(list(self._models.values())))

@@ -7,13 +7,13 @@ import rospy
 from gazebo_msgs.msg import LinkState, LinkStates, ModelState, ModelStates
 
 from sim_bridge.errors import UnknownEntityError, WorldError
-from sim_bridge.ros.gazebo.server import NAMESPACE, SCOPE_HINT, Server, absolute, frame_named, relative
+from sim_bridge.ros.gazebo.server import NAMESPACE, SCOPE_HINT, GazeboServer, absolute, frame_named, relative
 from sim_bridge.ros.messages import state_from_msgs, state_to_msgs
 from sim_bridge.scene import Scene
 
 
 class StateServices:
-    def __init__(self, scene: Scene, server: Server):
+    def __init__(self, scene: Scene, server: GazeboServer):
         self._scene = scene
         self._asked: Counter = Counter()
         self._models = rospy.Publisher(NAMESPACE + "model_states", ModelStates, queue_size=10)

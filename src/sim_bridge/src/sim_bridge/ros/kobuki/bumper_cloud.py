@@ -8,8 +8,7 @@ import rospy
 from sensor_msgs.msg import PointCloud2
 
 from planar_ros.messages.clouds import cloud_msg
-from sim_bridge.sensors.bumper import CENTRE, LEFT, RIGHT
-from sim_bridge.sensors.kobuki import KobukiReading
+from sim_bridge.sensors.kobuki import CENTRE, LEFT, RIGHT, KobukiReading
 
 FRAME = "base_link"
 # As turtlebot_bringup sets it, and how far off a point lies that means "nothing there", m.

@@ -4,18 +4,18 @@ import rospy
 from kobuki_msgs.msg import Led, MotorPower, Sound
 from std_msgs.msg import Empty
 
+from sim_bridge.ros.call_queue import CallQueue
 from sim_bridge.ros.kobuki.topics import NAMESPACE
-from sim_bridge.ros.orders import Orders
 from sim_bridge.scene import Scene
 
 
 class KobukiCommands:
     """Commands for the motors and the odometry of the robot ``name``, below ``namespace``."""
 
-    def __init__(self, scene: Scene, name: str, namespace: str, orders: Orders):
+    def __init__(self, scene: Scene, name: str, namespace: str, calls: CallQueue):
         self._scene = scene
         self._name = name
-        self._orders = orders
+        self._calls = calls
         self._where = rospy.names.ns_join(namespace, NAMESPACE)
         self._subscribers = [
             self._subscriber("motor_power", MotorPower, self._on_motor_power),
@@ -35,10 +35,10 @@ class KobukiCommands:
 
     def _on_motor_power(self, message):
         is_on = message.state == MotorPower.ON
-        self._orders.leave(lambda: self._scene.robot(self._name).switch_motors(is_on))
+        self._calls.submit(lambda: self._scene.robot(self._name).switch_motors(is_on))
 
     def _on_reset_odometry(self, _message):
-        self._orders.leave(lambda: self._scene.robot(self._name).reset_odometry())
+        self._calls.submit(lambda: self._scene.robot(self._name).reset_odometry())
 
 
 def _ignore(_message):

@@ -5,9 +5,8 @@ from kobuki_msgs.msg import BumperEvent, CliffEvent, SensorState, WheelDropEvent
 from sensor_msgs.msg import PointCloud2
 
 from sim_bridge.ros.kobuki.bumper_cloud import FRAME, BumperCloud
-from sim_bridge.ros.outlet import Outlet
-from sim_bridge.sensors.bumper import CENTRE, LEFT, RIGHT
-from sim_bridge.sensors.kobuki import KobukiProfile, KobukiReading
+from sim_bridge.ros.publishers import RobotPublishers
+from sim_bridge.sensors.kobuki import CENTRE, LEFT, RIGHT, KobukiProfile, KobukiReading
 
 NAMESPACE = "mobile_base"
 # Bits of SensorState; wheels are numbered otherwise than sectors.
@@ -18,12 +17,12 @@ WHEEL_BITS = {WheelDropEvent.RIGHT: 1, WheelDropEvent.LEFT: 2}
 class KobukiTopics:
     """Events when something changes, the state as often as it is told."""
 
-    def __init__(self, _profile: KobukiProfile, outlet: Outlet):
+    def __init__(self, _profile: KobukiProfile, publishers: RobotPublishers):
         self._last = KobukiReading()
-        self._frame = outlet.frame(FRAME)
+        self._frame = publishers.frame(FRAME)
         self._points = BumperCloud()
         self._bumper, self._cliff, self._drop, self._state, self._cloud = self._all = [
-            outlet.publisher(f"{NAMESPACE}/{topic}", kind)
+            publishers.publisher(f"{NAMESPACE}/{topic}", kind)
             for topic, kind in (
                 ("events/bumper", BumperEvent),
                 ("events/cliff", CliffEvent),
@@ -33,7 +32,7 @@ class KobukiTopics:
             )
         ]
 
-    def are_wanted(self) -> bool:
+    def has_subscribers(self) -> bool:
         return any(publisher.get_num_connections() for publisher in self._all)
 
     def publish(self, reading: KobukiReading, stamp: rospy.Time) -> None:

@@ -1,1 +1,1 @@
-"""How simulated time passes: lock-step with nodes, pausing, stepping, resetting."""
+"""Simulated time: lock-step with nodes, pausing, stepping, resetting."""

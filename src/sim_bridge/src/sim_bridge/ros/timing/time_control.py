@@ -1,4 +1,4 @@
-"""Pausing, stepping and resetting a scene, and how fast its time passes."""
+"""Control of simulated time: pausing, stepping, resetting, and the speed."""
 
 import time
 from concurrent.futures import CancelledError, Future
@@ -16,67 +16,74 @@ from planar_ros.node.waiting import ReadinessMonitor, StallReporter
 from planar_ros.step import transport
 from sim_bridge.config import RunTimeSettings
 from sim_bridge.pacing import Pacer
-from sim_bridge.ros.orders import Orders
+from sim_bridge.ros.call_queue import CallQueue
 from sim_bridge.ros.timing.lock_step import LockStep
 from sim_bridge.scene import Scene
 
-# So that a shutdown is noticed soon.
+# Longest single wait [wall s], so that a shutdown is noticed soon.
 LONGEST_WAIT_SECONDS = 0.05
 
 
 @dataclass
-class _Grant:
-    """Steps that a paused simulation may take; ``done`` gets the time after the last of them."""
+class _StepRequest:
+    """A call of ``~step``: steps still to take, and a future of the simulated time after the last of them."""
 
     steps_left: int
     done: Future
 
 
 class TimeControl:
-    """Says when the next step is due; its methods are called in the thread that owns the scene."""
+    """Decides when the next step is due; its methods are called in the thread that owns the scene.
 
-    def __init__(self, scene: Scene, pacer: Pacer, step: LockStep, orders: Orders):
+    Args:
+        scene: The simulated world.
+        pacer: Limits the speed.
+        lock_step: Synchronised nodes.
+        calls: Queue of the thread that owns the scene.
+    """
+
+    def __init__(self, scene: Scene, pacer: Pacer, lock_step: LockStep, calls: CallQueue):
         self.is_paused = False
-        self._step = step
+        self._lock_step = lock_step
         self._scene = scene
         self._pacer = pacer
-        self._orders = orders
-        self._grants: List[_Grant] = []
+        self._calls = calls
+        self._requests: List[_StepRequest] = []
         rospy.Subscriber(PROGRESS_TOPIC, Header, self._on_progress, queue_size=100, tcp_nodelay=True)
         rospy.Service("~step", Step, self._on_step)
         self._hold_up = StallReporter()
-        ReadinessMonitor({f"{name} on {PROGRESS_TOPIC}": self._follows(name) for name in pacer.wait_for})
+        ReadinessMonitor({f"{name} on {PROGRESS_TOPIC}": self._is_followed(name) for name in pacer.wait_for})
 
     @property
     def speed(self) -> float:
         return self._pacer.speed
 
     def set_speed(self, speed: float) -> None:
-        """``speed``: times real time, 0 for as fast as possible."""
+        """Set the speed as a multiple of real time; 0 for as fast as possible."""
         self._pacer.speed = speed
 
-    def offer_speed(self) -> None:
-        """Lets dynamic_reconfigure change the speed, below the node's own name."""
+    def advertise_speed(self) -> None:
+        """Make the speed a parameter of dynamic_reconfigure."""
         SettingsReconfigureServer(RunTimeSettings(self.speed), self._on_reconfigure)
 
-    def expect_odometry(self, seconds: float) -> None:
-        """Each robot tells its odometry at least every ``seconds``."""
+    def set_odometry_period(self, seconds: float) -> None:
+        """Set the longest time between two odometry messages of a robot [simulated s]."""
         self._pacer.odometry_delay = max(0.0, seconds - self._scene.step_seconds)
 
-    def wait_for_turn(self) -> bool:
-        """Waits until the next step may be taken, or something else is to be done first (then False)."""
-        may_go = self._may_go()
-        self._hold_up.look([] if may_go else self._waits_for())
-        return may_go
+    def wait_for_step(self) -> bool:
+        """Wait until the next step may be taken; return False if pending calls have to be run first."""
+        may_step = self._may_step()
+        self._hold_up.look([] if may_step else self._waiting_for())
+        return may_step
 
-    def _may_go(self) -> bool:
-        if self.is_paused and not self._grants:
+    def _may_step(self) -> bool:
+        if self.is_paused and not self._requests:
             return self._wait(LONGEST_WAIT_SECONDS)
-        if not self._step.may_pass(self._scene.stamp):
+        if not self._lock_step.may_step(self._scene.stamp):
             return self._wait(LONGEST_WAIT_SECONDS)
-        if self._orders.are_waiting:  # what has just taken effect
+        if self._calls.has_pending:  # of what was just delivered
             return self._wait(0.0)
-        self._pacer.synchronised_nodes = self._step.names
+        self._pacer.synchronised_nodes = self._lock_step.member_names
         wall, stamp = time.monotonic(), self._scene.stamp + self._scene.step_seconds
         delay = self._pacer.delay(stamp, wall, is_limited=not self.is_paused)
         if delay <= 0.0:
@@ -86,25 +93,24 @@ class TimeControl:
         return self._wait(min(delay, LONGEST_WAIT_SECONDS))
 
     def _wait(self, seconds: float) -> bool:
-        """False, when orders have come or after ``seconds``; before, all that was published is sent."""
+        """Send what has been published, wait for calls, at most ``seconds``, and return False."""
         transport.flush()
-        self._orders.wait(seconds)
+        self._calls.wait(seconds)
         return False
 
-    def _waits_for(self) -> List[str]:
-        if self.is_paused and not self._grants:
+    def _waiting_for(self) -> List[str]:
+        if self.is_paused and not self._requests:
             return []
         return [
-            *self._step.waits_for(),
+            *self._lock_step.waiting_for(),
             *self._pacer.lagging_nodes(self._scene.stamp + self._scene.step_seconds),
         ]
 
-    def count_step(self) -> None:
-        """A step has been taken."""
-        if self._grants:
-            grant = self._grants[0]
-            grant.steps_left -= 1
-            self._end_grants()
+    def on_step_finished(self) -> None:
+        """Count a step, and answer the calls of ``~step`` that are finished."""
+        if self._requests:
+            self._requests[0].steps_left -= 1
+            self._answer_finished()
 
     def pause(self) -> None:
         self.is_paused = True
@@ -114,44 +120,44 @@ class TimeControl:
 
     def reset_world(self) -> None:
         self._scene.reset_poses()
-        rospy.loginfo("all models are back where they started")
+        rospy.loginfo("all models are back at their initial poses")
 
     def reset_simulation(self) -> None:
         self._scene.reset()
-        self._pacer.restart()
-        self._step.restart()
+        self._pacer.reset()
+        self._lock_step.reset_time()
         rospy.loginfo("the simulation starts again at time 0")
 
     def close(self) -> None:
-        """Lets go those who wait for steps."""
-        for grant in self._grants:
-            grant.done.cancel()
+        """Refuse the calls of ``~step`` that are not finished."""
+        for request in self._requests:
+            request.done.cancel()
 
-    def _on_step(self, request) -> StepResponse:
-        """Pauses, and steps as fast as possible, but leaves no node behind that is waited for."""
-        grant = _Grant(request.steps, Future())
-        self._orders.ask(lambda: self._allow(grant))
+    def _on_step(self, message) -> StepResponse:
+        """Pause, and take steps as fast as the nodes that are waited for allow."""
+        request = _StepRequest(message.steps, Future())
+        self._calls.call(lambda: self._add_request(request))
         try:
-            return StepResponse(time_of(grant.done.result()))
+            return StepResponse(time_of(request.done.result()))
         except CancelledError:
             raise rospy.ServiceException("the simulation is shutting down") from None
 
     def _on_reconfigure(self, values):
-        self._orders.leave(lambda: self.set_speed(values["speed"]))
+        self._calls.submit(lambda: self.set_speed(values["speed"]))
         return values
 
-    def _allow(self, grant: _Grant) -> None:
+    def _add_request(self, request: _StepRequest) -> None:
         self.is_paused = True
-        self._grants.append(grant)
-        self._end_grants()
+        self._requests.append(request)
+        self._answer_finished()
 
-    def _end_grants(self) -> None:
-        while self._grants and self._grants[0].steps_left == 0:
-            self._grants.pop(0).done.set_result(self._scene.stamp)
+    def _answer_finished(self) -> None:
+        while self._requests and self._requests[0].steps_left == 0:
+            self._requests.pop(0).done.set_result(self._scene.stamp)
 
     def _on_progress(self, message):
         name, stamp = message.frame_id.lstrip("/"), message.stamp.to_sec()
-        self._orders.leave(lambda: self._pacer.report(name, stamp))
+        self._calls.submit(lambda: self._pacer.report(name, stamp))
 
-    def _follows(self, name):
-        return lambda: name in self._step.names or not self._pacer.is_missing(name)
+    def _is_followed(self, name):
+        return lambda: name in self._lock_step.member_names or not self._pacer.is_missing(name)

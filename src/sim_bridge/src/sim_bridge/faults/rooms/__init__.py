@@ -1,1 +1,0 @@
-"""What happens to the home, and to where the robot is."""

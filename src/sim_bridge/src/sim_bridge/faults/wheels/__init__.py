@@ -1,1 +1,0 @@
-"""What goes wrong between commands and wheels."""

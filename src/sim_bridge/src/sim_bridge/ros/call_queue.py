@@ -1,0 +1,84 @@
+"""Queue of calls from other threads to the thread that owns the scene."""
+
+import threading
+from collections import deque
+from concurrent.futures import CancelledError, Future
+from typing import Callable, Collection, Deque, Tuple, TypeVar
+
+import rospy
+
+from planar_ros.step.calls import caller
+
+T = TypeVar("T")
+
+
+class CallQueue:
+    """Calls that are run between two steps of the simulation; callers get the result or the error."""
+
+    def __init__(self):
+        self._pending: Deque[Tuple[Callable, Future, str]] = deque()
+        self._changed = threading.Condition()
+        self._is_closed = self._has_new = False
+
+    def call(self, function: Callable[[], T]) -> T:
+        """Run a function between two steps, wait for it, and return its result.
+
+        Raises:
+            rospy.ServiceException: The simulation is shutting down.
+            Exception: What the function raises.
+        """
+        try:
+            return self.submit(function).result()
+        except CancelledError:
+            raise rospy.ServiceException("the simulation is shutting down") from None
+
+    def submit(self, function: Callable[[], T]) -> "Future[T]":
+        """Have a function run between two steps, without waiting for it."""
+        future: Future[T] = Future()
+        with self._changed:
+            if self._is_closed:
+                future.cancel()
+            else:
+                self._pending.append((function, future, caller()))
+            self._has_new = True
+            self._changed.notify_all()
+        return future
+
+    def run_pending(self, awaited: Collection[str] = (), members: Collection[str] = ()) -> None:
+        """Run pending calls, in the thread that owns the scene.
+
+        Args:
+            awaited: Synchronised nodes for whose answers simulated time is stopped: their calls are run.
+            members: Synchronised nodes: their other calls stay pending, so that they run at the same
+                simulated time in each run.
+        """
+        self._has_new = False
+        if not self._pending:
+            return
+        with self._changed:
+            due = [entry for entry in self._pending if entry[2] in awaited or entry[2] not in members]
+            self._pending = deque(entry for entry in self._pending if entry not in due)
+        for function, future, _ in due:
+            try:
+                future.set_result(function())
+            except Exception as error:
+                future.set_exception(error)
+
+    @property
+    def has_pending(self) -> bool:
+        """Whether calls have been submitted since ``run_pending``."""
+        return self._has_new
+
+    def wait(self, seconds: float) -> None:
+        """Wait for new calls, at most so many wall seconds."""
+        with self._changed:
+            if not (self._has_new or self._is_closed):
+                self._changed.wait(seconds)
+
+    def close(self) -> None:
+        """Refuse pending and future calls."""
+        with self._changed:
+            self._is_closed = True
+            while self._pending:
+                self._pending.popleft()[1].cancel()
+            self._changed.notify_all()

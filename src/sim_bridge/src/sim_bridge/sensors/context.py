@@ -1,0 +1,75 @@
+"""State of a robot and of the world around it, as its sensors measure it."""
+
+from typing import Dict, List, Optional, Sequence, Tuple
+
+import numpy as np
+
+from planar import Twist2
+from sim_bridge.physics.collision_queries import Contact
+from sim_bridge.physics.kinematics import KinematicState
+from sim_bridge.physics.vehicle import Vehicle, twist_in_base
+from sim_bridge.views.scene_view import SceneView
+
+Wheels = Tuple[Tuple[float, ...], Tuple[float, ...]]
+
+
+class RobotSensorContext:
+    """The SensorContext of a vehicle; what several sensors ask for is queried from physics once a step."""
+
+    def __init__(self, vehicle: Vehicle, view: SceneView):
+        self.stamp = 0.0
+        self._vehicle = vehicle
+        self._view = view
+        self._base: Optional[KinematicState] = None
+        self._twist: Optional[Twist2] = None
+        self._wheels: Optional[Wheels] = None
+        self._bumps: Dict[str, Contact] = {}
+
+    def record_contacts(self) -> None:
+        """Record what the robot touches after a physics step."""
+        for bump in self._vehicle.collision_contacts():
+            self._bumps[bump.link] = bump
+
+    def clear_contacts(self) -> None:
+        """Discard the recorded contacts, at the end of an odometry period."""
+        self._bumps.clear()
+
+    def refresh(self, stamp: float) -> None:
+        """Discard cached state, at the end of a physics step in which a sensor is due, at ``stamp`` [s]."""
+        self.stamp = stamp
+        self._base = self._twist = self._wheels = None
+
+    @property
+    def gravity(self) -> float:
+        return self._vehicle.gravity
+
+    @property
+    def base(self) -> KinematicState:
+        if self._base is None:
+            self._base = self._vehicle.state()
+        return self._base
+
+    @property
+    def twist(self) -> Twist2:
+        if self._twist is None:
+            self._twist = twist_in_base(self.base)
+        return self._twist
+
+    @property
+    def wheels(self) -> Wheels:
+        if self._wheels is None:
+            self._wheels = self._vehicle.wheels()
+        return self._wheels
+
+    @property
+    def bumps(self) -> Sequence[Contact]:
+        return list(self._bumps.values())
+
+    def floors_below(self, points: Sequence[Sequence[float]]) -> List[float]:
+        return self._vehicle.floors_below(points)
+
+    def section(self, height: float) -> Tuple[np.ndarray, np.ndarray]:
+        return self._view.section(self._vehicle.name, height)
+
+    def triangles(self) -> Tuple[np.ndarray, np.ndarray]:
+        return self._view.triangles(self._vehicle.name)
