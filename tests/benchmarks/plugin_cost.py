@@ -20,7 +20,7 @@ import numpy as np
 
 from amcl_lite import Localizer, LocalizerSettings
 from move_base_lite import Navigator, load_settings
-from move_base_lite.control.guarded import GuardedLocalPlanner
+from move_base_lite.control.registry import GuardedLocalPlanner
 from move_base_lite.warmup import warm_up
 from planar import Pose2, load_map
 from planar.plugins import load_object

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from move_base_lite import ControlError, ControllerSettings, Plan, Situation, Trajectory
+from move_base_lite import ControlContext, ControlError, ControllerSettings, Plan, Trajectory
 from planar import Pose2, Twist2
 from planar.config.parameters import POSITIVE, parameter
 
@@ -24,14 +24,14 @@ class CLASS:
     def __init__(self, settings: Settings, period: float):
         self._settings, self._period = settings, period
 
-    def follow(self, situation: Situation, plan: Plan, limits: Twist2) -> Trajectory:
+    def follow(self, context: ControlContext, plan: Plan, limits: Twist2) -> Trajectory:
         """See move_base_lite.LocalPlanner: raise ControlError where no velocity is safe."""
-        base = situation.base_in_local
+        base = context.base_in_local
         ahead = base.inverse().transform_points(plan.path_xy[min(6, len(plan.path_xy) - 1)][None, :])[0]
         error = float(np.arctan2(ahead[1], ahead[0]))
         wanted = Twist2(limits.v * max(np.cos(error), 0.0), self._settings.gain * error)
-        command = self._settings.reachable(situation.twist, wanted, limits, self._period)
+        command = self._settings.reachable(context.twist, wanted, limits, self._period)
         end = base @ Pose2(0.3 * command.v, 0.0, 0.3 * command.omega)
-        if situation.costmap.collides(end):
+        if context.costmap.collides(end):
             raise ControlError("something is in the way")
         return Trajectory(command, np.array([base.as_array(), end.as_array()]), abs(error))

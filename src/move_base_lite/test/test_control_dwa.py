@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from move_base_lite.check.rooms import PERIOD, plan_in, room_of, situation_of
+from move_base_lite.check.maps import PERIOD, check_map, context_of, plan_in
 from move_base_lite.control import DwaSettings, Plan, TrajectorySettings
-from move_base_lite.control.dwa import DynamicWindow
+from move_base_lite.control.dwa import DwaPlanner
 from move_base_lite.control.dwa.critics import goal_distance, obstacles, path_alignment, path_distance
 from move_base_lite.control.dwa.planner import _scene, velocity_samples
 from move_base_lite.errors import ControlError
@@ -17,9 +17,9 @@ LIMITS = Twist2(0.5, 1.0)
 @pytest.fixture(scope="module")
 def scene():
     """From the left end of an open room to its right end."""
-    room = room_of("open")
-    situation = situation_of(room.costmap, Pose2(*room.start_xy, 0.0))
-    return _scene(situation, np.array([room.start_xy, room.goal_xy]), nose=0.3)
+    room = check_map("open")
+    context = context_of(room.costmap, Pose2(*room.start_xy, 0.0))
+    return _scene(context, np.array([room.start_xy, room.goal_xy]), forward_distance=0.3)
 
 
 def ending_at(*poses):
@@ -35,12 +35,12 @@ def test_a_robot_at_rest_tries_what_it_can_reach_and_nothing_that_does_not_move_
 
 
 def test_a_limit_below_the_least_speed_leaves_no_velocity():
-    room = room_of("open")
-    planner = DynamicWindow(DwaSettings(), PERIOD)
-    situation = situation_of(room.costmap, Pose2(*room.start_xy, 0.0))
+    room = check_map("open")
+    planner = DwaPlanner(DwaSettings(), PERIOD)
+    context = context_of(room.costmap, Pose2(*room.start_xy, 0.0))
     with pytest.raises(ControlError) as caught:
-        planner.follow(situation, Plan(plan_in(room), 4.5), Twist2(0.05, 1.0))
-    assert len(caught.value.exploration.trajectory_points()) == 0
+        planner.follow(context, Plan(plan_in(room), 4.5), Twist2(0.05, 1.0))
+    assert len(caught.value.trajectory_samples.trajectory_points()) == 0
 
 
 def test_distance_critics_count_cells_to_the_plan_and_to_its_end(scene):

@@ -5,30 +5,30 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from move_base_lite.check import rooms
+from move_base_lite.check import maps
 from move_base_lite.control import Plan
 from move_base_lite.control.mppi import MPPI
-from move_base_lite.control.mppi.samples import evasions
+from move_base_lite.control.mppi.samples import evasive_controls
 from move_base_lite.errors import ControlError
 from planar import Pose2, Twist2
 
 HERE_XY = np.array([3.0, 1.75])
 # Of what comes: m, metres from the robot, m/s.
-MOVER_RADIUS, NEAR, SPEED = 0.25, 0.04, 0.3
+OBSTACLE_RADIUS, NEAR, SPEED = 0.25, 0.04, 0.3
 
 
 def command(bearing):
     """To a robot that stands in an open room, on the way to the goal, as something comes from a side, rad."""
-    open_room = rooms.room_of("open")
+    open_room = maps.check_map("open")
     aside = np.array([np.cos(bearing), np.sin(bearing)])
-    mover_xy, velocity = HERE_XY + (rooms.RADIUS + MOVER_RADIUS + NEAR) * aside, -SPEED * aside
-    situation = replace(
-        rooms.situation_of(open_room.costmap, Pose2(*HERE_XY, 0.0)),
-        movers=np.array([[*mover_xy, *velocity, MOVER_RADIUS]]),
+    obstacle_xy, velocity = HERE_XY + (maps.RADIUS + OBSTACLE_RADIUS + NEAR) * aside, -SPEED * aside
+    context = replace(
+        maps.context_of(open_room.costmap, Pose2(*HERE_XY, 0.0)),
+        dynamic_obstacles=np.array([[*obstacle_xy, *velocity, OBSTACLE_RADIUS]]),
     )
-    planner = MPPI.make(MPPI.settings(), rooms.PERIOD)
+    planner = MPPI.make(MPPI.settings(), maps.PERIOD)
     plan = Plan(np.linspace(HERE_XY, open_room.goal_xy, 20), 2.0)
-    return planner.follow(situation, plan, Twist2(0.5, 1.5)).command
+    return planner.follow(context, plan, Twist2(0.5, 1.5)).command
 
 
 @pytest.mark.parametrize("bearing", [1.6, -1.6, 2.6, 3.1])
@@ -42,9 +42,9 @@ def test_a_robot_goes_back_from_who_comes_from_ahead():
 
 @pytest.mark.parametrize("heading", [0.0, 0.4, -0.7, 2.1])
 def test_a_robot_that_is_crowded_does_not_creep_into_the_wall_at_its_back(heading):
-    costmap = rooms.room_of("open").costmap
-    planner = MPPI.make(replace(MPPI.settings(), min_vel_x=-0.15), rooms.PERIOD)
-    pose, twist = Pose2(0.5 + rooms.RADIUS + 0.07, 1.3, heading), Twist2()
+    costmap = maps.check_map("open").costmap
+    planner = MPPI.make(replace(MPPI.settings(), min_vel_x=-0.15), maps.PERIOD)
+    pose, twist = Pose2(0.5 + maps.RADIUS + 0.07, 1.3, heading), Twist2()
     plan = Plan(np.linspace((pose.x, pose.y), (5.0, 1.25), 20), 4.0)
     gap = 0.25
     assert costmap.contacts(pose) == 0
@@ -52,22 +52,24 @@ def test_a_robot_that_is_crowded_does_not_creep_into_the_wall_at_its_back(headin
         gap = max(gap - 0.03, 0.0)
         crowd = [
             (
-                pose.x + (rooms.RADIUS + MOVER_RADIUS + gap) * c,
-                pose.y + (rooms.RADIUS + MOVER_RADIUS + gap) * s,
+                pose.x + (maps.RADIUS + OBSTACLE_RADIUS + gap) * c,
+                pose.y + (maps.RADIUS + OBSTACLE_RADIUS + gap) * s,
             )
             for c, s in ((1.0, 0.0), (0.5, 0.87), (0.5, -0.87))
         ]
-        movers = np.array([(x, y, 0.6 * (pose.x - x), 0.6 * (pose.y - y), MOVER_RADIUS) for x, y in crowd])
-        situation = replace(rooms.situation_of(costmap, pose, twist), movers=movers)
+        dynamic_obstacles = np.array(
+            [(x, y, 0.6 * (pose.x - x), 0.6 * (pose.y - y), OBSTACLE_RADIUS) for x, y in crowd]
+        )
+        context = replace(maps.context_of(costmap, pose, twist), dynamic_obstacles=dynamic_obstacles)
         try:
-            twist = planner.follow(situation, plan, Twist2(0.5, 1.5)).command
+            twist = planner.follow(context, plan, Twist2(0.5, 1.5)).command
         except ControlError:
             twist = Twist2()
-        pose = rooms.moved(pose, twist)
+        pose = maps.moved(pose, twist)
         assert costmap.contacts(pose) == 0
 
 
 def test_evasions_are_of_two_different_arcs_each():
-    ways = evasions(MPPI.settings(), 20)
+    ways = evasive_controls(MPPI.settings(), 20)
     assert (ways[:, 0] != ways[:, -1]).any(axis=1).all()
     assert len(np.unique(ways[:, [0, -1]].reshape(len(ways), 4), axis=0)) == len(ways) == 15 * 14

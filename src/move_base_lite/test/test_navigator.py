@@ -51,10 +51,10 @@ def test_what_dwa_has_chosen_from_can_be_looked_at():
     robot, navigator = Robot(grid, Pose2(1.0, 2.0)), Navigator(settings_from_parameters(parameters)[0], grid)
     navigator.set_goal(Pose2(5.0, 2.0))
     decision = [robot.tick(navigator) for _ in range(10)][-1]
-    points = decision.exploration.trajectory_points()
+    points = decision.trajectory_samples.trajectory_points()
     cheapest = points[points[:, 3] == points[:, 3].min()]
     assert np.array_equal(cheapest[:, :3], decision.trajectory)
-    x, y, to_path, to_goal, cost, total = decision.exploration.cell_costs().T
+    x, y, to_path, to_goal, cost, total = decision.trajectory_samples.cell_costs().T
     beside_plan = np.hypot(*(decision.followed_xy[:, None] - np.column_stack((x, y))).T).min(axis=1)
     assert beside_plan[to_path == 0.0].max() < navigator.local_costmap.window.resolution
     assert cost.max() < INSCRIBED

@@ -69,5 +69,5 @@ def test_a_person_who_crosses_its_way_is_given_way_to(number):
 
 
 def test_without_prediction_people_would_be_run_into():
-    blind = replace(SETTINGS, controller=replace(SETTINGS.controller, predict_movers=False))
+    blind = replace(SETTINGS, controller=replace(SETTINGS.controller, predict_dynamic_obstacles=False))
     assert min(drive_across(number, blind)[1] for number in range(6)) < 0.0

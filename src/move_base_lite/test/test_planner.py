@@ -8,7 +8,14 @@ from move_base_lite import GoalBlocked, NoPath, OutOfMap, StartBlocked
 from move_base_lite.check import KITS
 from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, CostmapWindow
 from move_base_lite.planning import GLOBAL_PLANNERS, Navfn, NavfnSettings, path_cost
-from move_base_lite.planning.wavefront import FACTOR, IMPASSABLE, NEUTRAL, descend, spread, traversal_costs
+from move_base_lite.planning.wavefront import (
+    FACTOR,
+    IMPASSABLE,
+    NEUTRAL,
+    propagate_wavefront,
+    trace_path,
+    traversal_costs,
+)
 
 PICTURES = {
     "empty": """
@@ -117,8 +124,10 @@ def test_a_plan_is_neither_longer_nor_dearer_than_the_bare_gradient():
     rng = np.random.default_rng(5)
     costs = rng.choice([0, 0, 30, 90, 200], (60, 60)).astype(np.uint8)
     window, start, goal = CostmapWindow(60, 60, 1.0), (5, 4), (50, 56)
-    potential = spread(traversal_costs(costs, True, NEUTRAL, FACTOR, IMPASSABLE - 1), *start, *goal, False)
-    bare = descend(potential, *start, *goal, 0.5)
+    potential = propagate_wavefront(
+        traversal_costs(costs, True, NEUTRAL, FACTOR, IMPASSABLE - 1), *start, *goal, False
+    )
+    bare = trace_path(potential, *start, *goal, 0.5)
     plan = Navfn(NavfnSettings()).plan(costs, window, centre(window, start), centre(window, goal))
     lengths = [np.linalg.norm(np.diff(path, axis=0), axis=1).sum() for path in (plan, bare)]
     assert lengths[0] < lengths[1]

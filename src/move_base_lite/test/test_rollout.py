@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from move_base_lite.check import rooms
+from move_base_lite.check import maps
 from move_base_lite.control import Plan
-from move_base_lite.control.mppi.rollout import Limits, Weights, costs_of, drive
+from move_base_lite.control.mppi.rollout import CostWeights, MotionLimits, costs_of, drive
 from move_base_lite.control.mppi.scene import scene_of
 from planar import Pose2, Twist2
 
@@ -29,13 +29,13 @@ def test_ways_followed_side_by_side_cost_what_each_costs_alone():
 
 
 def problem_beside_a_wall_and_somebody():
-    room = rooms.room_of("open")
-    pose, twist = Pose2(0.5 + rooms.RADIUS + 0.1, 1.3, 2.0), Twist2(0.3, 0.0)
-    situation = replace(
-        rooms.situation_of(room.costmap, pose, twist), movers=np.array([(2.0, 1.9, -0.3, -0.1, 0.25)])
+    room = maps.check_map("open")
+    pose, twist = Pose2(0.5 + maps.RADIUS + 0.1, 1.3, 2.0), Twist2(0.3, 0.0)
+    context = replace(
+        maps.context_of(room.costmap, pose, twist), dynamic_obstacles=np.array([(2.0, 1.9, -0.3, -0.1, 0.25)])
     )
     plan = Plan(np.linspace((pose.x, pose.y), room.goal_xy, 20), 4.0)
-    scene = scene_of(situation, plan, heeds_remembered=False)
-    limits = Limits(rooms.PERIOD, -0.3, 0.5, 1.5, 0.5, 2.0, 0.25, 0.3)
-    weights = Weights(0.15, 2.0, 0.02, 1.0, 0.2, 0.5, 10.0, 0.15)
+    scene = scene_of(context, plan, use_global_costmap=False)
+    limits = MotionLimits(maps.PERIOD, -0.3, 0.5, 1.5, 0.5, 2.0, 0.25, 0.3)
+    weights = CostWeights(0.15, 2.0, 0.02, 1.0, 0.2, 0.5, 10.0, 0.15)
     return (scene, limits, weights), np.array([*pose.as_array(), twist.v, twist.omega])

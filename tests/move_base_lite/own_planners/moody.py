@@ -15,16 +15,16 @@ class Moody:
     def __init__(self, settings, period):
         pass
 
-    def follow(self, situation, plan, limits):
+    def follow(self, context, plan, limits):
         row = min([2.0, *MISDEEDS], key=lambda y: abs(y - plan.path_xy[-1][1]))
         misdeed, v = MISDEEDS.get(row, ""), CREEP
-        if situation.costmap.collides(situation.base_in_local):
+        if context.costmap.collides(context.base_in_local):
             raise ControlError("it stands in an obstacle")
         if misdeed == "raises":
             raise ZeroDivisionError("division by zero")
         if misdeed == "dawdles":
             time.sleep(2.0)
         if misdeed == "scribbles":
-            situation.costmap.costs[:] = 0
+            context.costmap.costs[:] = 0
         v = {"answers NaN": float("nan"), "rushes": 100.0}.get(misdeed, v)
-        return Trajectory(Twist2(v, 0.0), situation.base_in_local.as_array()[None, :], 0.0)
+        return Trajectory(Twist2(v, 0.0), context.base_in_local.as_array()[None, :], 0.0)

@@ -4,7 +4,7 @@ Also what plugins of one's own are made of: the contracts of the seams and what 
 """
 
 from move_base_lite.config import NavigatorSettings
-from move_base_lite.control import ControllerSettings, LocalPlanner, Plan, Situation, Trajectory
+from move_base_lite.control import ControlContext, ControllerSettings, LocalPlanner, Plan, Trajectory
 from move_base_lite.costmap import CostmapPlacement, CostmapWindow, Layer, LayerContext, LayerSettings
 from move_base_lite.errors import (
     ControlError,
@@ -45,7 +45,7 @@ __all__ = [
     "RecoveryContext",
     "RecoverySettings",
     "LayerContext",
-    "Situation",
+    "ControlContext",
     "StartBlocked",
     "Status",
     "Trajectory",
@@ -55,5 +55,11 @@ __all__ = [
 ]
 
 __getattr__ = deprecated_names(
-    __name__, {"Placement": "CostmapPlacement", "Site": "LayerContext", "Window": "CostmapWindow"}
+    __name__,
+    {
+        "Placement": "CostmapPlacement",
+        "Situation": "ControlContext",
+        "Site": "LayerContext",
+        "Window": "CostmapWindow",
+    },
 )

@@ -4,9 +4,10 @@
 from typing import TYPE_CHECKING, Optional
 
 from planar import PlanarError
+from planar.deprecation import renamed_fields
 
 if TYPE_CHECKING:
-    from move_base_lite.control.local_planner import Exploration
+    from move_base_lite.control.local_planner import TrajectorySamples
 
 
 class NavigationError(PlanarError):
@@ -50,15 +51,20 @@ class NoPath(PlanningError):
     code = "NO_PATH"
 
 
+@renamed_fields(exploration="trajectory_samples")
 class ControlError(NavigationError):
-    """No safe velocity follows the plan; ``exploration``: what was tried in vain, if that can be shown."""
+    """No safe velocity follows the plan.
+
+    Attributes:
+        trajectory_samples: The trajectories that the local planner evaluated, if it can show them.
+    """
 
     code = "NO_VALID_CONTROL"
     outcome = 100
 
-    def __init__(self, text: str, exploration: "Optional[Exploration]" = None):
+    def __init__(self, text: str, trajectory_samples: "Optional[TrajectorySamples]" = None):
         super().__init__(text)
-        self.exploration = exploration
+        self.trajectory_samples = trajectory_samples
 
 
 class PluginFailed(NavigationError):

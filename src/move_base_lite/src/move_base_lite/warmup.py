@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from move_base_lite.config import NavigatorSettings
-from move_base_lite.control.escape import way_out
+from move_base_lite.control.escape import escape_command
 from move_base_lite.navigator import Navigator
 from planar import OccupancyGrid, Pose2, Scan, Twist2
 
@@ -21,4 +21,4 @@ def warm_up(settings: NavigatorSettings) -> None:
     for tick in range(2):
         scan = Scan(float(tick), -0.1, 0.1, ranges, 0.1, 10.0)
         navigator.tick(float(tick), start, start, Twist2(), scan)
-    way_out(navigator.local_costmap, start)
+    escape_command(navigator.local_costmap, start)

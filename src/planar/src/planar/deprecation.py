@@ -1,8 +1,11 @@
-"""Old names of public classes and functions, kept as aliases that warn."""
+"""Old names of public classes, functions and fields, kept as aliases that warn."""
 
+import functools
 import importlib
 import warnings
-from typing import Any, Callable, Dict
+from typing import Any, Callable, Dict, TypeVar
+
+C = TypeVar("C", bound=type)
 
 
 def deprecated_names(module: str, renamed: Dict[str, str]) -> Callable[[str], Any]:
@@ -45,3 +48,43 @@ def renamed_method(old: str, new: str) -> Callable[..., Any]:
         return getattr(self, new)(*arguments, **keywords)
 
     return call
+
+
+def renamed_fields(**renamed: str) -> Callable[[C], C]:
+    """Decorate a class whose fields have new names so that the old ones are still read and passed.
+
+    Use it above ``@dataclass`` as ``@renamed_fields(movers="dynamic_obstacles")``. An old name works as an
+    attribute, as a keyword of the constructor and in ``dataclasses.replace``, with a DeprecationWarning.
+
+    Args:
+        renamed: Each old name with its replacement.
+    """
+
+    def decorate(cls: C) -> C:
+        construct: Callable[..., None] = cls.__init__  # type: ignore[misc]
+
+        @functools.wraps(construct)
+        def construct_with_old_names(self: Any, *arguments: Any, **keywords: Any) -> None:
+            for old in renamed.keys() & keywords.keys():
+                _warn_of_field(cls, old, renamed[old])
+                keywords[renamed[old]] = keywords.pop(old)
+            construct(self, *arguments, **keywords)
+
+        cls.__init__ = construct_with_old_names  # type: ignore[misc]
+        for old, new in renamed.items():
+            setattr(cls, old, _renamed_field(old, new))
+        return cls
+
+    return decorate
+
+
+def _renamed_field(old: str, new: str) -> property:
+    def read(self: Any) -> Any:
+        _warn_of_field(type(self), old, new)
+        return getattr(self, new)
+
+    return property(read, doc=f"Deprecated name of ``{new}``.")
+
+
+def _warn_of_field(cls: type, old: str, new: str) -> None:
+    warnings.warn(f"{cls.__name__}.{old} is deprecated; use {new}", DeprecationWarning, stacklevel=3)

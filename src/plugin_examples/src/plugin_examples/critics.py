@@ -10,7 +10,7 @@ from typing import Callable, Tuple
 
 import numpy as np
 
-from move_base_lite import ControlError, ControllerSettings, Plan, Situation, Trajectory
+from move_base_lite import ControlContext, ControlError, ControllerSettings, Plan, Trajectory
 from move_base_lite.costmap import INSCRIBED
 from planar import Pose2, Twist2
 from planar.config.parameters import POSITIVE, at_least, parameter
@@ -44,31 +44,31 @@ class Arcs:
     poses: np.ndarray
 
 
-Critic = Callable[[Arcs, Situation, Plan], np.ndarray]
+Critic = Callable[[Arcs, ControlContext, Plan], np.ndarray]
 
 
-def obstacles(arcs: Arcs, situation: Situation, _plan: Plan) -> np.ndarray:
+def obstacles(arcs: Arcs, context: ControlContext, _plan: Plan) -> np.ndarray:
     """The highest cost under each arc, as a share; infinite where the robot would touch something."""
-    window = situation.costmap.window
+    window = context.costmap.window
     cells = np.floor((arcs.poses[..., :2] - (window.origin_x, window.origin_y)) / window.resolution).astype(
         int
     )
     cols, rows = np.clip(cells[..., 0], 0, window.cols - 1), np.clip(cells[..., 1], 0, window.rows - 1)
-    highest = situation.costmap.costs[rows, cols].max(axis=1).astype(float)
+    highest = context.costmap.costs[rows, cols].max(axis=1).astype(float)
     return np.where(highest < INSCRIBED, highest / INSCRIBED, np.inf)
 
 
-def path_distance(arcs: Arcs, _situation: Situation, plan: Plan) -> np.ndarray:
+def path_distance(arcs: Arcs, _context: ControlContext, plan: Plan) -> np.ndarray:
     """Metres from each end to the plan."""
     return _way(arcs.poses[:, -1, :2], plan.path_xy).min(axis=1)
 
 
-def path_align(arcs: Arcs, _situation: Situation, plan: Plan) -> np.ndarray:
+def path_align(arcs: Arcs, _context: ControlContext, plan: Plan) -> np.ndarray:
     """Metres from a nose ahead of each end to the plan, so that the robot looks along it."""
     return _way(_nose(arcs), plan.path_xy).min(axis=1)
 
 
-def goal_distance(arcs: Arcs, _situation: Situation, plan: Plan) -> np.ndarray:
+def goal_distance(arcs: Arcs, _context: ControlContext, plan: Plan) -> np.ndarray:
     """Metres from each end to a point of the plan a little ahead."""
     steps = np.hypot(*np.diff(plan.path_xy, axis=0, prepend=plan.path_xy[:1]).T)
     ahead = plan.path_xy[min(int(np.searchsorted(np.cumsum(steps), LOOKAHEAD)), len(steps) - 1)]
@@ -84,32 +84,30 @@ class Critics:
     def __init__(self, settings: CriticsSettings, period: float):
         self._settings, self._period = settings, period
 
-    def follow(self, situation: Situation, plan: Plan, limits: Twist2) -> Trajectory:
-        arcs = self._arcs(situation, limits)
+    def follow(self, context: ControlContext, plan: Plan, limits: Twist2) -> Trajectory:
+        arcs = self._arcs(context, limits)
         scores = np.zeros(len(arcs.commands))
         for critic in CRITICS:
-            scores += getattr(self._settings, critic.__name__) * critic(arcs, situation, plan)
+            scores += getattr(self._settings, critic.__name__) * critic(arcs, context, plan)
         for best in np.argsort(scores, kind="stable"):
             if not np.isfinite(scores[best]):
                 break
             poses = arcs.poses[best]
-            if not any(situation.costmap.collides(Pose2(*pose)) for pose in poses[1:].tolist()):
+            if not any(context.costmap.collides(Pose2(*pose)) for pose in poses[1:].tolist()):
                 return Trajectory(Twist2(*arcs.commands[best].tolist()), poses, float(scores[best]))
         raise ControlError("every arc leads into an obstacle")
 
-    def _arcs(self, situation: Situation, limits: Twist2) -> Arcs:
+    def _arcs(self, context: ControlContext, limits: Twist2) -> Arcs:
         """Of the velocities within reach, those that lead on; as circles, not as chords of them."""
         reach = [
-            self._settings.reachable(
-                situation.twist, Twist2(sign * 100.0, sign * 100.0), limits, self._period
-            )
+            self._settings.reachable(context.twist, Twist2(sign * 100.0, sign * 100.0), limits, self._period)
             for sign in (-1.0, 1.0)
         ]
         slowest = min(max(reach[0].v, SLOWEST), reach[1].v)
         speeds = np.linspace(slowest, reach[1].v, SPEEDS)
         turns = np.linspace(reach[0].omega, reach[1].omega, TURNS)
         commands = np.array(list(product(speeds, turns)))
-        base = situation.base_in_local
+        base = context.base_in_local
         turned = np.outer(commands[:, 1], np.linspace(0.0, self._settings.sim_time, STEPS + 1))
         driven = np.outer(commands[:, 0], np.linspace(0.0, self._settings.sim_time, STEPS + 1))
         chord, heading = driven * np.sinc(turned / (2.0 * np.pi)), base.yaw + 0.5 * turned

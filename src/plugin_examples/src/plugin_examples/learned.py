@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from move_base_lite import ControlError, ControllerSettings, Plan, Situation, Trajectory
+from move_base_lite import ControlContext, ControlError, ControllerSettings, Plan, Trajectory
 from move_base_lite.costmap import LETHAL
 from planar import OCCUPIED, OccupancyGrid, Pose2, Twist2
 from planar.geometry.ray_casting import cast_rays
@@ -67,25 +67,25 @@ class Learned:
         self._settings, self._period = settings, period
         self._policy = Policy(np.load(WEIGHTS)["weights"])
 
-    def follow(self, situation: Situation, plan: Plan, limits: Twist2) -> Trajectory:
-        base, twist = situation.base_in_local, situation.twist
+    def follow(self, context: ControlContext, plan: Plan, limits: Twist2) -> Trajectory:
+        base, twist = context.base_in_local, context.twist
         apart = np.hypot(plan.path_xy[:, 0] - base.x, plan.path_xy[:, 1] - base.y)
         ahead = plan.path_xy[int(np.argmax(apart >= LOOKAHEAD)) or -1]
         x, y = base.inverse().transform_points(ahead[None, :])[0].tolist()
-        seen = Seen(clear_around(situation), x, y, twist.v / limits.v, twist.omega / limits.omega)
+        seen = Seen(clear_around(context), x, y, twist.v / limits.v, twist.omega / limits.omega)
         v, omega = (self._policy.act(seen) * (limits.v, limits.omega)).tolist()
         for share in SLOWER:
             command = self._settings.reachable(twist, Twist2(share * v, omega), limits, self._period)
             poses = arc(base, command, min(FARTHEST, math.hypot(x, y)) / max(command.v, 0.1), STEPS)
-            if not any(situation.costmap.collides(Pose2(*pose)) for pose in poses[1:].tolist()):
+            if not any(context.costmap.collides(Pose2(*pose)) for pose in poses[1:].tolist()):
                 return Trajectory(command, poses, math.hypot(x, y))
         raise ControlError("the way to the plan leads into an obstacle")
 
 
-def clear_around(situation: Situation) -> np.ndarray:
+def clear_around(context: ControlContext) -> np.ndarray:
     """How far it is in each sector to what the costmap has as solid, (SECTORS,), m."""
-    costmap = situation.costmap
+    costmap = context.costmap
     cells = np.where(costmap.costs == LETHAL, OCCUPIED, 0).astype(np.int8)
     window = costmap.window
     grid = OccupancyGrid(cells, window.resolution, Pose2(window.origin_x, window.origin_y))
-    return cast_rays(grid, situation.base_in_local, ANGLES, SIGHT).reshape(SECTORS, BEAMS).min(axis=1)
+    return cast_rays(grid, context.base_in_local, ANGLES, SIGHT).reshape(SECTORS, BEAMS).min(axis=1)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from move_base_lite import ControlError, ControllerSettings, Plan, Situation, Trajectory
+from move_base_lite import ControlContext, ControlError, ControllerSettings, Plan, Trajectory
 from planar import Pose2, Twist2, wrap
 from planar.config.parameters import POSITIVE, at_least, parameter
 from plugin_examples.pure_pursuit import arc
@@ -28,25 +28,25 @@ class PotentialField:
     def __init__(self, settings: PotentialFieldSettings, period: float):
         self._settings, self._period = settings, period
 
-    def follow(self, situation: Situation, plan: Plan, limits: Twist2) -> Trajectory:
-        base = situation.base_in_local
+    def follow(self, context: ControlContext, plan: Plan, limits: Twist2) -> Trajectory:
+        base = context.base_in_local
         apart = np.hypot(plan.path_xy[:, 0] - base.x, plan.path_xy[:, 1] - base.y)
         drawn_xy = plan.path_xy[int(np.argmax(apart >= self._settings.lookahead)) or -1] - (base.x, base.y)
-        force_x, force_y = drawn_xy / max(np.hypot(*drawn_xy), 1e-6) - self._push(situation)
+        force_x, force_y = drawn_xy / max(np.hypot(*drawn_xy), 1e-6) - self._push(context)
         error = wrap(math.atan2(force_y, force_x) - base.yaw)
         v = limits.v * max(math.cos(error), 0.0) ** 2
         omega = max(-limits.omega, min(limits.omega, TURN_GAIN * error))
-        command = self._settings.reachable(situation.twist, Twist2(v, omega), limits, self._period)
+        command = self._settings.reachable(context.twist, Twist2(v, omega), limits, self._period)
         reach = min(FARTHEST, float(np.hypot(*drawn_xy)))
         poses = arc(base, command, reach / max(command.v, 0.1), STEPS)
-        if any(situation.costmap.collides(Pose2(*pose)) for pose in poses[1:].tolist()):
+        if any(context.costmap.collides(Pose2(*pose)) for pose in poses[1:].tolist()):
             raise ControlError("the way to the plan leads into an obstacle")
         return Trajectory(command, poses, 1.0 - math.cos(error))
 
-    def _push(self, situation: Situation) -> np.ndarray:
+    def _push(self, context: ControlContext) -> np.ndarray:
         """Up the slope of the costs around the robot: (2,), at most the settings' repulsion long."""
-        costs, window = situation.costmap.costs, situation.costmap.window
-        row, col = window.cell_of(situation.base_in_local.x, situation.base_in_local.y)
+        costs, window = context.costmap.costs, context.costmap.window
+        row, col = window.cell_of(context.base_in_local.x, context.base_in_local.y)
         if not (3 <= row < window.rows - 3 and 3 <= col < window.cols - 3):
             return np.zeros(2)
         patch = costs[row - 3 : row + 4, col - 3 : col + 4].astype(float) / 254.0

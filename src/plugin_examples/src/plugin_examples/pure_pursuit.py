@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from move_base_lite import ControlError, ControllerSettings, Plan, Situation, Trajectory
+from move_base_lite import ControlContext, ControlError, ControllerSettings, Plan, Trajectory
 from planar import Pose2, Twist2
 from planar.config.parameters import POSITIVE, parameter
 
@@ -24,16 +24,16 @@ class PurePursuit:
     def __init__(self, settings: PurePursuitSettings, period: float):
         self._settings, self._period = settings, period
 
-    def follow(self, situation: Situation, plan: Plan, limits: Twist2) -> Trajectory:
-        base = situation.base_in_local
+    def follow(self, context: ControlContext, plan: Plan, limits: Twist2) -> Trajectory:
+        base = context.base_in_local
         apart = np.hypot(plan.path_xy[:, 0] - base.x, plan.path_xy[:, 1] - base.y)
         ahead = plan.path_xy[int(np.argmax(apart >= self._settings.lookahead)) or -1]
         x, y = base.inverse().transform_points(ahead[None, :])[0]
         curvature = 2.0 * y / max(x * x + y * y, 1e-6)
         v = min(limits.v, limits.omega / max(abs(curvature), 1e-6))
-        command = self._settings.reachable(situation.twist, Twist2(v, v * curvature), limits, self._period)
+        command = self._settings.reachable(context.twist, Twist2(v, v * curvature), limits, self._period)
         poses = arc(base, command, min(FARTHEST, math.hypot(x, y)) / max(command.v, 0.1), STEPS)
-        if any(situation.costmap.collides(Pose2(*pose)) for pose in poses[1:].tolist()):
+        if any(context.costmap.collides(Pose2(*pose)) for pose in poses[1:].tolist()):
             raise ControlError("the way to the plan leads into an obstacle")
         return Trajectory(command, poses, math.hypot(x, y))
 

@@ -12,7 +12,7 @@ import numpy as np
 from move_base_lite import Layer, LayerSettings
 from move_base_lite.costmap import INSCRIBED, CostmapPlacement, LayerContext, Observation
 from move_base_lite.costmap.window import NO_CELLS, CellBounds, CostmapWindow, union
-from move_base_lite.people import NO_MOVERS, Movers
+from move_base_lite.dynamic_obstacles import NO_DYNAMIC_OBSTACLES, DynamicObstacleTracker
 from planar import Pose2
 from planar.config.parameters import POSITIVE, at_least, parameter
 
@@ -34,16 +34,20 @@ class SocialDistance(Layer):
 
     def __init__(self, settings: SocialDistanceSettings, site: LayerContext):
         self._settings = settings
-        self._movers, self._seen_at = Movers(), 0.0
-        self._people, self._bounds = NO_MOVERS, NO_CELLS
+        self._obstacle_tracker, self._seen_at = DynamicObstacleTracker(), 0.0
+        self._people, self._bounds = NO_DYNAMIC_OBSTACLES, NO_CELLS
 
     def add_observation(self, observation: Observation, base_in_frame: Pose2) -> None:
         if observation.topic == self._settings.topic:
-            self._movers.look(base_in_frame, observation)
+            self._obstacle_tracker.update(base_in_frame, observation)
             self._seen_at = observation.stamp
 
     def update(self, placement: CostmapPlacement) -> CellBounds:
-        before, self._people, self._bounds = self._bounds, self._movers.at(self._seen_at), NO_CELLS
+        before, self._people, self._bounds = (
+            self._bounds,
+            self._obstacle_tracker.obstacles_at(self._seen_at),
+            NO_CELLS,
+        )
         for x, y, along_x, along_y, _ in self._people:
             reach = REACH * self._ahead(math.hypot(along_x, along_y))
             self._bounds = union(
@@ -64,7 +68,11 @@ class SocialDistance(Layer):
 
     def clear_outside(self, bounds: CellBounds, window: CostmapWindow) -> CellBounds:
         before = self._bounds
-        self._movers, self._people, self._bounds = Movers(), NO_MOVERS, NO_CELLS
+        self._obstacle_tracker, self._people, self._bounds = (
+            DynamicObstacleTracker(),
+            NO_DYNAMIC_OBSTACLES,
+            NO_CELLS,
+        )
         return before
 
     def _ahead(self, speed: float) -> float:

@@ -3,6 +3,25 @@
 Each seam has a module of checks (planar.contract_check), which are given a Plugin.
 """
 
-from move_base_lite.check.kits import KITS
+from functools import partial
+from typing import Any
 
-__all__ = ["KITS"]
+from move_base_lite.check import global_planners, layers, local_planners, recoveries
+from move_base_lite.control import LOCAL_PLANNERS
+from move_base_lite.costmap import LAYERS
+from move_base_lite.planning import GLOBAL_PLANNERS
+from move_base_lite.plugin import Registry
+from move_base_lite.recovery import RECOVERIES
+from planar.contract_check import Check, CheckSuite
+
+
+def _kit(registry: Registry[Any], *checks: Check) -> CheckSuite:
+    return CheckSuite(partial(registry.find, is_package_needed=False), checks)
+
+
+KITS = {
+    "local_planner": _kit(LOCAL_PLANNERS, *local_planners.CHECKS),
+    "global_planner": _kit(GLOBAL_PLANNERS, *global_planners.CHECKS),
+    "recovery_behavior": _kit(RECOVERIES, *recoveries.CHECKS),
+    "costmap_layer": _kit(LAYERS, *layers.CHECKS),
+}

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from move_base_lite.check.rooms import PICTURES, Room, room_of
+from move_base_lite.check.maps import PICTURES, CheckMap, check_map
 from move_base_lite.costmap import INSCRIBED
 from move_base_lite.errors import GoalBlocked, NoPath, OutOfMap
 from move_base_lite.plugin import Plugin
@@ -14,10 +14,10 @@ from planar.contract_check import expect, expect_error
 LONGEST_STEP = 3.0
 
 
-def finds_ways(plugin: Plugin[Any]) -> None:
+def finds_paths(plugin: Plugin[Any]) -> None:
     """It finds a way of small steps from start to goal that crosses nothing, in every picture."""
     for name in PICTURES:
-        room = room_of(name)
+        room = check_map(name)
         window, path_xy = room.costmap.window, _plan(plugin, room)
         expect(np.allclose(path_xy[0], room.start_xy), f"{name}: begins at {path_xy[0]}")
         expect(np.allclose(path_xy[-1], room.goal_xy), f"{name}: ends at {path_xy[-1]}")
@@ -29,36 +29,36 @@ def finds_ways(plugin: Plugin[Any]) -> None:
 
 def is_deterministic(plugin: Plugin[Any]) -> None:
     """The same calls give the same answers."""
-    first, second = (_plan(plugin, room_of("door")) for _ in range(2))
+    first, second = (_plan(plugin, check_map("door")) for _ in range(2))
     expect(np.array_equal(first, second), "another path in the same picture")
 
 
 def changes_nothing(plugin: Plugin[Any]) -> None:
     """What it is given stays as it was."""
-    room = room_of("corner")
+    room = check_map("corner")
     before = room.costmap.costs.copy()
     _plan(plugin, room)
     expect(np.array_equal(room.costmap.costs, before), "the costs are others after the call")
 
 
-def says_why_not(plugin: Plugin[Any]) -> None:
+def raises_the_reason(plugin: Plugin[Any]) -> None:
     """Without a way it says why: outside of the map, no room at the goal, nothing that connects."""
-    room = room_of("door")
+    room = check_map("door")
     outside_xy = (room.start_xy[0] - 100.0, room.start_xy[1])
     with expect_error(OutOfMap, "no OutOfMap for a goal 100 m outside"):
-        _plan(plugin, Room(room.costmap, room.start_xy, outside_xy))
+        _plan(plugin, CheckMap(room.costmap, room.start_xy, outside_xy))
     in_the_wall_xy = (0.1, 0.1)
     with expect_error(GoalBlocked, "no GoalBlocked for a goal in the wall"):
-        _plan(plugin, Room(room.costmap, room.start_xy, in_the_wall_xy))
+        _plan(plugin, CheckMap(room.costmap, room.start_xy, in_the_wall_xy))
     middle = room.costmap.costs.shape[1] // 2
     room.costmap.costs[:, middle - 2 : middle + 2] = 254
     with expect_error(NoPath, "no NoPath through a closed door"):
         _plan(plugin, room)
 
 
-def _plan(plugin: Plugin[Any], room: Room) -> np.ndarray:
+def _plan(plugin: Plugin[Any], room: CheckMap) -> np.ndarray:
     planner = plugin.make(plugin.settings())
     return planner.plan(room.costmap.costs, room.costmap.window, room.start_xy, room.goal_xy)
 
 
-CHECKS = (finds_ways, is_deterministic, changes_nothing, says_why_not)
+CHECKS = (finds_paths, is_deterministic, changes_nothing, raises_the_reason)

@@ -37,13 +37,13 @@ def keeps_to_its_bounds(plugin: Plugin[Any]) -> None:
         expect(np.array_equal(costs[outside], _ground()[outside]), f"cells outside of {bounds} changed")
 
 
-def repeats_itself(plugin: Plugin[Any]) -> None:
+def is_repeatable(plugin: Plugin[Any]) -> None:
     """Applied twice it gives the same."""
     layer, _ = _shown(plugin)
     expect(np.array_equal(_applied(layer), _applied(layer)), "other costs the second time")
 
 
-def tells_what_changed(plugin: Plugin[Any]) -> None:
+def reports_changed_bounds(plugin: Plugin[Any]) -> None:
     """An update tells of all that has changed."""
     before = _applied(_made(plugin))
     layer, changed = _shown(plugin)
@@ -53,7 +53,7 @@ def tells_what_changed(plugin: Plugin[Any]) -> None:
     expect(not has_changed.any(), f"cells outside of {block} changed")
 
 
-def forgets(plugin: Plugin[Any]) -> None:
+def clears_observations(plugin: Plugin[Any]) -> None:
     """What forgets shows what it would have shown anew."""
     layer, _ = _shown(plugin)
     layer.clear_outside(WINDOW.cut(WINDOW.bounds_around(-9.0, -9.0, 0.1)), WINDOW)
@@ -86,4 +86,4 @@ def _applied(layer: Layer, bounds: Optional[CellBounds] = None) -> np.ndarray:
     return costs
 
 
-CHECKS = (keeps_to_its_bounds, repeats_itself, tells_what_changed, forgets)
+CHECKS = (keeps_to_its_bounds, is_repeatable, reports_changed_bounds, clears_observations)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from move_base_lite.check.rooms import PERIOD, PICTURES, drive, plan_in, room_of, situation_of
+from move_base_lite.check.maps import PERIOD, PICTURES, check_map, context_of, drive, plan_in
 from move_base_lite.control import Plan
 from move_base_lite.errors import ControlError, ControlPluginFailed
 from move_base_lite.plugin import Plugin
@@ -19,7 +19,7 @@ SPEEDS = Twist2(0.5, 1.0)
 def reaches_goals(plugin: Plugin[Any]) -> None:
     """It reaches the goal and stops there without a collision, in every picture."""
     for name in PICTURES:
-        room = room_of(name)
+        room = check_map(name)
         poses = drive(plugin, room)
         off = math.dist((poses[-1].x, poses[-1].y), room.goal_xy)
         expect(off <= plugin.settings().xy_goal_tolerance, f"{name}: stands {off:.2f} m from the goal")
@@ -29,31 +29,33 @@ def reaches_goals(plugin: Plugin[Any]) -> None:
 
 def is_deterministic(plugin: Plugin[Any]) -> None:
     """The same calls give the same answers."""
-    first, second = (drive(plugin, room_of("corner")) for _ in range(2))
+    first, second = (drive(plugin, check_map("corner")) for _ in range(2))
     expect(first == second, "another drive in the same picture")
 
 
 def changes_nothing(plugin: Plugin[Any]) -> None:
     """What it is given stays as it was."""
-    room = room_of("post")
-    path_xy, movers = plan_in(room), np.array([[2.0, 1.0, 0.0, 0.3, 0.2]])
-    lent = {"costs": room.costmap.costs, "plan": path_xy, "movers": movers}
+    room = check_map("post")
+    path_xy, dynamic_obstacles = plan_in(room), np.array([[2.0, 1.0, 0.0, 0.3, 0.2]])
+    lent = {"costs": room.costmap.costs, "plan": path_xy, "movers": dynamic_obstacles}
     before = {name: array.copy() for name, array in lent.items()}
-    situation = replace(situation_of(room.costmap, Pose2(*room.start_xy, 0.0)), movers=movers)
-    plugin.make(plugin.settings(), PERIOD).follow(situation, Plan(path_xy, 4.5), SPEEDS)
+    context = replace(
+        context_of(room.costmap, Pose2(*room.start_xy, 0.0)), dynamic_obstacles=dynamic_obstacles
+    )
+    plugin.make(plugin.settings(), PERIOD).follow(context, Plan(path_xy, 4.5), SPEEDS)
     for name, array in lent.items():
         expect(np.array_equal(array, before[name]), f"the {name} are others after the call")
 
 
 def stays_within_limits(plugin: Plugin[Any]) -> None:
     """Its velocity is within the limits, and within reach by the accelerations."""
-    room, settings = room_of("corner"), plugin.settings()
+    room, settings = check_map("corner"), plugin.settings()
     for limits in (SPEEDS, Twist2(0.2, 1.0), Twist2(0.5, 0.1)):
         planner, twist = plugin.make(settings, PERIOD), Twist2()
         pose, path_xy = Pose2(*room.start_xy, -0.5), plan_in(room)
         for _ in range(5):
-            situation = situation_of(room.costmap, pose, twist)
-            now = planner.follow(situation, Plan(path_xy, 5.0), limits).command
+            context = context_of(room.costmap, pose, twist)
+            now = planner.follow(context, Plan(path_xy, 5.0), limits).command
             expect(settings.min_vel_x <= now.v <= limits.v + 1e-9, f"{now.v} m/s, limit {limits.v}")
             expect(abs(now.omega) <= limits.omega + 1e-9, f"{now.omega} rad/s, limit {limits.omega}")
             # A robot at rest may set off at once with the least speed that moves it.
@@ -65,12 +67,12 @@ def stays_within_limits(plugin: Plugin[Any]) -> None:
             twist = now
 
 
-def tells_its_trajectory(plugin: Plugin[Any]) -> None:
+def predicts_its_trajectory(plugin: Plugin[Any]) -> None:
     """A trajectory begins where the robot is, touches nothing and costs something finite."""
-    room = room_of("open")
+    room = check_map("open")
     pose = Pose2(*room.start_xy, 0.2)
     planner = plugin.make(plugin.settings(), PERIOD)
-    trajectory = planner.follow(situation_of(room.costmap, pose), Plan(plan_in(room), 4.5), SPEEDS)
+    trajectory = planner.follow(context_of(room.costmap, pose), Plan(plan_in(room), 4.5), SPEEDS)
     poses = np.asarray(trajectory.poses)
     is_shaped = poses.ndim == 2 and poses.shape[1] == 3 and len(poses) > 1
     expect(is_shaped, f"poses of the shape {poses.shape}, not (N, 3) with N > 1")
@@ -82,13 +84,13 @@ def tells_its_trajectory(plugin: Plugin[Any]) -> None:
 
 def refuses_a_blocked_plan(plugin: Plugin[Any]) -> None:
     """A plan that is blocked as far as it is seen is refused with a ControlError."""
-    room = room_of("open")
+    room = check_map("open")
     x, y = room.start_xy
     in_the_wall = Plan(np.array([[x - 0.5, y], [x - 0.5, y + 0.3]]), 0.8)
     planner = plugin.make(plugin.settings(), PERIOD)
     with expect_error(ControlError, "drives into the wall"):
         try:
-            planner.follow(situation_of(room.costmap, Pose2(x, y, math.pi)), in_the_wall, SPEEDS)
+            planner.follow(context_of(room.costmap, Pose2(x, y, math.pi)), in_the_wall, SPEEDS)
         except ControlPluginFailed as failure:
             expect(False, str(failure))
 
@@ -98,6 +100,6 @@ CHECKS = (
     is_deterministic,
     changes_nothing,
     stays_within_limits,
-    tells_its_trajectory,
+    predicts_its_trajectory,
     refuses_a_blocked_plan,
 )

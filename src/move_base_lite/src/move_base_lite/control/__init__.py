@@ -1,28 +1,40 @@
-"""Local control: a velocity that follows the plan without touching anything.
+"""Local control: velocity commands that follow the plan without a collision.
 
-``local_planner.py`` is the contract, ``registry.py`` the list of those that hold it, ``controller.py`` what
-they have in common; each planner has a room of its own.
+``local_planner.py`` is the contract of local planners, ``registry.py`` their registry, ``controller.py`` what
+all of them share; each planner has a package of its name.
 """
 
-from move_base_lite.control.controller import Control, Controller
+from move_base_lite.control.controller import Controller, ControlOutput
 from move_base_lite.control.dwa import DwaSettings, TrajectorySettings
-from move_base_lite.control.local_planner import Exploration, LocalPlanner, Plan, Situation, Trajectory
+from move_base_lite.control.local_planner import (
+    ControlContext,
+    LocalPlanner,
+    Plan,
+    Trajectory,
+    TrajectorySamples,
+)
 from move_base_lite.control.mppi import MppiSettings
 from move_base_lite.control.registry import LOCAL_PLANNERS, check_local_planner
 from move_base_lite.control.settings import ControllerSettings
+from planar.deprecation import deprecated_names
 
 __all__ = [
     "LOCAL_PLANNERS",
-    "Control",
+    "ControlContext",
+    "ControlOutput",
     "Controller",
     "ControllerSettings",
     "DwaSettings",
-    "Exploration",
     "LocalPlanner",
     "MppiSettings",
     "Plan",
-    "Situation",
     "Trajectory",
+    "TrajectorySamples",
     "TrajectorySettings",
     "check_local_planner",
 ]
+
+__getattr__ = deprecated_names(
+    __name__,
+    {"Situation": "ControlContext", "Exploration": "TrajectorySamples", "Control": "ControlOutput"},
+)

@@ -1,4 +1,4 @@
-"""The Controller: what all local planners have in common, around the one it is given."""
+"""The Controller: follows a plan with a local planner, and does what is the same for all local planners."""
 
 import math
 from dataclasses import dataclass, replace
@@ -6,74 +6,85 @@ from typing import Optional
 
 import numpy as np
 
-from move_base_lite.control.escape import way_out
-from move_base_lite.control.local_planner import Exploration, LocalPlanner, Plan, Situation
-from move_base_lite.control.rotation import stopping
+from move_base_lite.control.escape import escape_command
+from move_base_lite.control.local_planner import ControlContext, LocalPlanner, Plan, TrajectorySamples
+from move_base_lite.control.path_progress import PathProgress
+from move_base_lite.control.rotation import blocks_dynamic_obstacle, stopping_command, turn_in_place
 from move_base_lite.control.settings import ControllerSettings
-from move_base_lite.control.tracking import Tracking
-from move_base_lite.control.turning import turn, would_be_in_the_way
 from move_base_lite.costmap import LayeredCostmap
 from move_base_lite.errors import ControlError, ControlPluginFailed
 from planar import Pose2, Twist2, wrap
 
+# Heading error at which a turn in place towards the plan ends [rad].
 ALIGNED_ANGLE = 0.3
-FOLLOWED_ANGLE = 0.1
-# Share of the acceleration with which the robot slows down towards the plan's end.
-GENTLE = 0.3
-# Metres that a robot which has been near its goal can be beyond the tolerance and have come there by itself,
-# rolling on and turning; farther off it has been carried away, or was never there.
-ROLLED = 0.1
-# Arrivals after which it stays: an estimate that moves as the robot turns would have it come and go for ever.
-MOST_ARRIVALS = 3
+# Heading error above which the robot turns in place if the local planner fails [rad].
+HEADING_TOLERANCE = 0.1
+# Share of the acceleration limit used to slow down towards the plan's end.
+APPROACH_DECELERATION_SHARE = 0.3
+# Distance beyond xy_goal_tolerance that a robot may drift while it stops and turns at the goal [m]; farther
+# away it was moved, or localization jumped, and the goal position is no longer latched.
+LATCH_MARGIN = 0.1
+# Arrivals after which the goal position stays latched: a pose estimate that shifts as the robot turns would
+# otherwise make it leave and return forever.
+MAX_ARRIVALS = 3
 
 
 @dataclass(frozen=True, eq=False)
-class Control:
-    """A velocity; where it leads, poses (N, 3), and the plan followed (M, 2), both in the local frame.
+class ControlOutput:
+    """The result of a control period.
 
-    ``exploration``: what the local planner chose from, also in vain; None if it was not asked.
+    Attributes:
+        command: Velocity command [m/s, rad/s].
+        poses: (N, 3) predicted trajectory: x, y, yaw in the local frame.
+        path_xy: (M, 2) part of the plan that is followed, in the local frame.
+        trajectory_samples: The trajectories that the local planner evaluated, also if none was valid; None if
+            the planner was not called or does not show them.
     """
 
     command: Twist2
     poses: np.ndarray
     path_xy: np.ndarray
-    exploration: Optional[Exploration] = None
+    trajectory_samples: Optional[TrajectorySamples] = None
 
 
 class Controller:
-    """Follows one plan at a time; plan and goal are given in the map, costs in the local frame.
+    """Follows one plan at a time with a local planner.
 
-    How the plan is followed is for the local planner to say; turning to it on the spot, its end, and the way
-    out of a contact are the same for all.
+    Plan and goal are in the map frame, costs in the local frame. The controller itself turns in place towards
+    the plan (as Nav2's rotation shim controller), stops and turns at the goal, and backs out of collisions.
+
+    Args:
+        settings: Settings of the local planner.
+        period: Control period [s].
+        planner: Local planner constructed with these settings and this period.
     """
 
     def __init__(self, settings: ControllerSettings, period: float, planner: LocalPlanner):
-        """``period``: of control, seconds. ``planner``: made for these settings and this period."""
         self.change(settings, period, planner)
-        self._tracking: Optional[Tracking] = None
+        self._progress: Optional[PathProgress] = None
         self._goal_in_map = Pose2()
         self._arrived = False
         self._arrivals = 0
         self._is_turning = False
-        self._omega_told: Optional[float] = None
+        self._commanded_omega: Optional[float] = None
 
     def change(self, settings: ControllerSettings, period: float, planner: LocalPlanner) -> None:
-        """Goes on along the same plan with other settings."""
+        """Replace settings and local planner; the plan stays."""
         self._settings, self._period, self._planner = settings, period, planner
 
     def set_plan(self, path_xy: np.ndarray, goal_in_map: Pose2) -> None:
-        """Follows another path (N, 2); a change of goal forgets that the old one had been reached."""
-        self._tracking = Tracking(path_xy)
+        """Follow another path (N, 2) in the map frame; a different goal resets the arrival state."""
+        self._progress = PathProgress(path_xy)
         if goal_in_map != self._goal_in_map:
             self._goal_in_map = goal_in_map
             self._arrived = self._is_turning = False
             self._arrivals = 0
 
     def is_goal_reached(self, base_in_map: Pose2, twist: Twist2) -> bool:
-        """Within both tolerances of the goal, and at a standstill."""
+        """Whether the robot is within both goal tolerances and stopped."""
         settings = self._settings
         return (
-            self._is_near(base_in_map)
+            self._is_at_goal_position(base_in_map)
             and abs(wrap(self._goal_in_map.yaw - base_in_map.yaw)) <= settings.yaw_goal_tolerance
             and abs(twist.v) <= settings.trans_stopped_vel
             and abs(twist.omega) <= settings.theta_stopped_vel
@@ -81,82 +92,89 @@ class Controller:
 
     @property
     def plan_left_xy(self) -> np.ndarray:
-        """The plan from the robot on: (N, 2), in the map."""
-        return self._tracking.ahead_xy if self._tracking else np.empty((0, 2))
+        """The part of the plan ahead of the robot: (N, 2), in the map frame."""
+        return self._progress.remaining_xy if self._progress else np.empty((0, 2))
 
     @property
     def distance_left(self) -> float:
-        """Metres of the plan still to drive."""
-        return self._tracking.distance_left if self._tracking else 0.0
+        """Length of the plan ahead of the robot [m]."""
+        return self._progress.distance_left if self._progress else 0.0
 
-    def control(self, situation: Situation, highest: Twist2) -> Control:
-        """The velocity for the next period, within the settings and the ``highest`` speeds.
+    def control(self, context: ControlContext, max_speeds: Twist2) -> ControlOutput:
+        """Compute the velocity command for the next period.
 
-        Raises ControlError if none is safe.
+        Args:
+            context: Robot state, costmaps and dynamic obstacles.
+            max_speeds: Speed limits in addition to those of the settings [m/s, rad/s].
+
+        Raises:
+            ControlError: No velocity is safe.
         """
-        told, self._omega_told = self._omega_told, None
-        situation = replace(situation, twist=self._as_told(situation.twist, told))
-        control = self._choose(situation, highest)
-        self._omega_told = control.command.omega
+        commanded, self._commanded_omega = self._commanded_omega, None
+        context = replace(context, twist=self._commanded_or_measured(context.twist, commanded))
+        control = self._choose_command(context, max_speeds)
+        self._commanded_omega = control.command.omega
         return control
 
-    def _as_told(self, twist: Twist2, told: Optional[float]) -> Twist2:
-        """The velocity measured, with the turn rate last ``told`` if the robot turns distinctly faster.
+    def _commanded_or_measured(self, twist: Twist2, commanded: Optional[float]) -> Twist2:
+        """The measured velocity, but the last commanded turn rate if the robot turns distinctly faster.
 
-        A robot whose wheels stand closer than its drive believes always does: to brake by what is measured
-        would speed it up.
+        A robot with a smaller track width than its drive assumes always turns faster than commanded; starting
+        from the measured rate would accelerate it further.
         """
         margin = 0.5 * self._settings.acc_lim_theta * self._period
-        if told is None or abs(twist.omega) <= abs(told) + margin:
+        if commanded is None or abs(twist.omega) <= abs(commanded) + margin:
             return twist
-        return Twist2(twist.v, math.copysign(told, twist.omega))
+        return Twist2(twist.v, math.copysign(commanded, twist.omega))
 
-    def _choose(self, situation: Situation, highest: Twist2) -> Control:
-        assert self._tracking is not None, "control() needs a plan"
-        base_in_map = situation.base_in_map
-        self._tracking.advance(base_in_map.x, base_in_map.y)
-        if self._is_near(base_in_map):
-            return self._turn_at_goal(situation)
-        map_in_local = situation.base_in_local @ base_in_map.inverse()
-        path_xy = _within(situation.costmap, map_in_local.transform_points(self._tracking.ahead_xy))
-        error = self._tracking.heading_error(
+    def _choose_command(self, context: ControlContext, max_speeds: Twist2) -> ControlOutput:
+        assert self._progress is not None, "control() needs a plan"
+        base_in_map = context.base_in_map
+        self._progress.advance(base_in_map.x, base_in_map.y)
+        if self._is_at_goal_position(base_in_map):
+            return self._turn_at_goal(context)
+        map_in_local = context.base_in_local @ base_in_map.inverse()
+        path_xy = _part_in_costmap(
+            context.costmap, map_in_local.transform_points(self._progress.remaining_xy)
+        )
+        error = self._progress.heading_error(
             base_in_map.x, base_in_map.y, base_in_map.yaw, self._settings.heading_lookahead
         )
-        if self._should_turn(error) and not would_be_in_the_way(self._settings, situation, self._period):
-            control = self._turn(error, situation, path_xy)
+        if self._should_turn(error) and not blocks_dynamic_obstacle(self._settings, context, self._period):
+            control = self._turn(error, context, path_xy)
             if control is not None:
                 return control
-        plan = Plan(path_xy, self._tracking.distance_left)
+        plan = Plan(path_xy, self._progress.distance_left)
         try:
-            trajectory = self._planner.follow(situation, plan, self._limits(highest))
+            trajectory = self._planner.follow(context, plan, self._limits(max_speeds))
         except ControlPluginFailed:
             raise
         except ControlError as failure:
-            return self._find_another_way(error, situation, path_xy, failure)
-        return Control(trajectory.command, trajectory.poses, path_xy, trajectory.exploration)
+            return self._turn_or_back_out(error, context, path_xy, failure)
+        return ControlOutput(trajectory.command, trajectory.poses, path_xy, trajectory.trajectory_samples)
 
-    def _find_another_way(
-        self, error: float, situation: Situation, path_xy: np.ndarray, failure: ControlError
-    ) -> Control:
-        """Where no way on is free: turns to the plan, or backs out of a contact. Raises ControlError."""
-        control = self._turn(error, situation, path_xy) if abs(error) > FOLLOWED_ANGLE else None
+    def _turn_or_back_out(
+        self, error: float, context: ControlContext, path_xy: np.ndarray, failure: ControlError
+    ) -> ControlOutput:
+        """Turn towards the plan or back out of a collision if the planner failed. Raises ControlError."""
+        control = self._turn(error, context, path_xy) if abs(error) > HEADING_TOLERANCE else None
         if control is None:
-            control = self._back_out(situation, path_xy, failure.exploration)
-        return replace(control, exploration=failure.exploration)
+            control = self._back_out(context, path_xy, failure.trajectory_samples)
+        return replace(control, trajectory_samples=failure.trajectory_samples)
 
     def _back_out(
-        self, situation: Situation, path_xy: np.ndarray, tried: Optional[Exploration] = None
-    ) -> Control:
-        """Leaves a contact the way that lessens it. Raises ControlError if it cannot."""
-        costmap, base_in_local = situation.costmap, situation.base_in_local
-        command = way_out(costmap, base_in_local) if costmap.contacts(base_in_local) else None
+        self, context: ControlContext, path_xy: np.ndarray, samples: Optional[TrajectorySamples] = None
+    ) -> ControlOutput:
+        """Drive so that fewer footprint points are in collision. Raises ControlError if impossible."""
+        costmap, base_in_local = context.costmap, context.base_in_local
+        command = escape_command(costmap, base_in_local) if costmap.contacts(base_in_local) else None
         if command is None:
-            raise ControlError("every velocity within reach leads into an obstacle", tried)
-        return Control(command, _here(situation), path_xy)
+            raise ControlError("every velocity within reach leads into an obstacle", samples)
+        return ControlOutput(command, _standing_trajectory(context), path_xy)
 
-    def _is_near(self, base_in_map: Pose2) -> bool:
+    def _is_at_goal_position(self, base_in_map: Pose2) -> bool:
         beyond = base_in_map.distance_to(self._goal_in_map) - self._settings.xy_goal_tolerance
-        stays = beyond <= ROLLED or self._arrivals > MOST_ARRIVALS
+        stays = beyond <= LATCH_MARGIN or self._arrivals > MAX_ARRIVALS
         is_latched = self._settings.latch_xy_goal_tolerance and self._arrived and stays
         self._arrivals += beyond <= 0.0 and not self._arrived
         self._arrived = beyond <= 0.0 or is_latched
@@ -169,41 +187,43 @@ class Controller:
         self._is_turning = abs(error) > (min(ALIGNED_ANGLE, threshold) if self._is_turning else threshold)
         return self._is_turning
 
-    def _turn_at_goal(self, situation: Situation) -> Control:
-        settings, twist = self._settings, situation.twist
-        here_xy = _here(situation)[:, :2]
-        error = wrap(self._goal_in_map.yaw - situation.base_in_map.yaw)
+    def _turn_at_goal(self, context: ControlContext) -> ControlOutput:
+        settings, twist = self._settings, context.twist
+        here_xy = _standing_trajectory(context)[:, :2]
+        error = wrap(self._goal_in_map.yaw - context.base_in_map.yaw)
         if abs(error) <= settings.yaw_goal_tolerance or abs(twist.v) > settings.trans_stopped_vel:
-            return Control(stopping(settings, twist, self._period), _here(situation), here_xy)
-        return self._turn(error, situation, here_xy) or self._back_out(situation, here_xy)
+            return ControlOutput(
+                stopping_command(settings, twist, self._period), _standing_trajectory(context), here_xy
+            )
+        return self._turn(error, context, here_xy) or self._back_out(context, here_xy)
 
-    def _turn(self, error: float, situation: Situation, path_xy: np.ndarray) -> Optional[Control]:
-        """A turn on the spot, if there is room."""
-        command = turn(self._settings, situation, error, self._period)
-        return None if command is None else Control(command, _here(situation), path_xy)
+    def _turn(self, error: float, context: ControlContext, path_xy: np.ndarray) -> Optional[ControlOutput]:
+        """A turn in place, if there is room."""
+        command = turn_in_place(self._settings, context, error, self._period)
+        return None if command is None else ControlOutput(command, _standing_trajectory(context), path_xy)
 
-    def _limits(self, highest: Twist2) -> Twist2:
-        """The highest speeds: those of the settings, lower where asked for and to stop at the plan's end."""
+    def _limits(self, max_speeds: Twist2) -> Twist2:
+        """Speed limits: those of the settings, ``max_speeds``, and what allows to stop at the plan's end."""
         settings = self._settings
-        stoppable = math.sqrt(2.0 * (GENTLE * settings.acc_lim_x) * self.distance_left)
+        stoppable = math.sqrt(2.0 * (APPROACH_DECELERATION_SHARE * settings.acc_lim_x) * self.distance_left)
         return Twist2(
             min(
                 settings.max_vel_x,
                 settings.max_vel_trans,
-                highest.v,
+                max_speeds.v,
                 max(stoppable, settings.min_vel_trans),
             ),
-            min(settings.max_vel_theta, highest.omega),
+            min(settings.max_vel_theta, max_speeds.omega),
         )
 
 
-def _here(situation: Situation) -> np.ndarray:
-    """A trajectory (1, 3) that does not leave the spot."""
-    return situation.base_in_local.as_array()[None, :]
+def _standing_trajectory(context: ControlContext) -> np.ndarray:
+    """A trajectory (1, 3) of the present pose only."""
+    return context.base_in_local.as_array()[None, :]
 
 
-def _within(costmap: LayeredCostmap, path_xy: np.ndarray) -> np.ndarray:
-    """The part of the plan up to where it leaves the costmap, at least one point."""
+def _part_in_costmap(costmap: LayeredCostmap, path_xy: np.ndarray) -> np.ndarray:
+    """The plan up to where it leaves the costmap, at least one point."""
     window = costmap.window
     low = np.array([window.origin_x, window.origin_y])
     high = low + window.resolution * np.array([window.cols, window.rows])

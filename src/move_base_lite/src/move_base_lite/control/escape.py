@@ -1,4 +1,4 @@
-"""Getting out of contact: the robot stands in an obstacle's cells, so no trajectory is free of collision."""
+"""Escape from a collision: the footprint overlaps an obstacle, so every trajectory starts in collision."""
 
 import math
 from typing import Optional
@@ -16,13 +16,21 @@ SECONDS = 1.5
 STEPS = 15
 
 
-def way_out(costmap: LayeredCostmap, base_pose: Pose2) -> Optional[Twist2]:
-    """A slow velocity along which less and less of the outline touches obstacles; None if there is none."""
+def escape_command(costmap: LayeredCostmap, base_pose: Pose2) -> Optional[Twist2]:
+    """Find a slow velocity along which fewer and fewer points of the footprint are in collision.
+
+    Args:
+        costmap: The local costmap.
+        base_pose: Robot pose in the costmap's frame.
+
+    Returns:
+        The velocity that ends with the fewest contacts; None if no velocity reduces them.
+    """
     window = costmap.window
     candidates = np.array(
         [(v, omega) for v in (-SPEED, SPEED, 0.0) for omega in (0.0, TURN_RATE, -TURN_RATE) if v or omega]
     )
-    best = _best(
+    best = _least_contacts(
         costmap.costs,
         window.origin_x,
         window.origin_y,
@@ -35,9 +43,10 @@ def way_out(costmap: LayeredCostmap, base_pose: Pose2) -> Optional[Twist2]:
 
 
 @numba.njit(cache=True)
-def _best(costs, origin_x, origin_y, resolution, outline_xy, start, candidates):
-    touching = count_contacts(costs, origin_x, origin_y, resolution, outline_xy, start[0], start[1], start[2])
-    best, fewest = -1, touching
+def _least_contacts(costs, origin_x, origin_y, resolution, outline_xy, start, candidates):
+    """Index of the best candidate (N, 2), -1 if none has fewer contacts than the start pose (3,)."""
+    contacts = count_contacts(costs, origin_x, origin_y, resolution, outline_xy, start[0], start[1], start[2])
+    best, fewest = -1, contacts
     dt = SECONDS / STEPS
     for i in range(candidates.shape[0]):
         v, omega = candidates[i]
@@ -47,7 +56,7 @@ def _best(costs, origin_x, origin_y, resolution, outline_xy, start, candidates):
             y += v * dt * math.sin(yaw)
             yaw += omega * dt
             count = count_contacts(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw)
-            if count > touching:
+            if count > contacts:
                 break
         else:
             if count < fewest:

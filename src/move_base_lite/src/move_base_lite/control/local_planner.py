@@ -1,13 +1,13 @@
-"""The contract of local planners: a velocity that follows the plan without touching anything.
+"""The contract of local planners: a velocity that follows the plan without a collision.
 
-Life cycle. A local planner is made with its settings and the control period, for each goal and whenever its
-settings change; it may keep what it has learned in between, as the speeds it had in mind. Once a period it is
-asked to :meth:`~LocalPlanner.follow` a plan. It is not asked where all local planners do the same, which is
-the Controller's: turning to the plan, standing still at the goal and turning as it says, backing out of a
-contact.
+Life cycle: a local planner is constructed with its settings and the control period, once per goal and again
+whenever its settings change; it may keep state in between, such as a warm start. :meth:`~LocalPlanner.follow`
+is called once per control period. The Controller handles what is the same for all local planners and does
+not ask them then: turning in place towards the plan, stopping and turning at the goal, backing out of a
+collision.
 
-To add one: a file with settings (a subclass of ControllerSettings), a class and its Plugin, and a line in
-``control/registry.py``. ``test/test_control_contract.py`` holds it to what is said here.
+To add one: a module with settings (a subclass of ControllerSettings), a class and its Plugin, and a line in
+``control/registry.py``. ``test/test_control_contract.py`` checks every member of the registry.
 """
 
 from dataclasses import dataclass
@@ -17,80 +17,113 @@ import numpy as np
 
 from move_base_lite.costmap import LayeredCostmap
 from planar import Pose2, Twist2
+from planar.deprecation import deprecated_names, renamed_fields
 
 
+@renamed_fields(movers="dynamic_obstacles", whole="global_costmap")
 @dataclass(frozen=True, eq=False)
-class Situation:
-    """What a velocity is chosen from: where the robot is, how fast, and what is around it.
+class ControlContext:
+    """The inputs of a local planner: robot state, costmaps and dynamic obstacles.
 
-    ``base_in_local``, ``base_in_map``: the robot in the frame of the ``costmap``, odometry's, and in the map.
-    ``twist``: m/s, rad/s. ``movers``: rows (N, 5) of what moves, in the local frame: x, y, velocity by x and
-    y, radius (see people.Movers); the costmap shows them where they have been seen. ``whole``: the costmap
-    that was planned on, in the map: it also knows what is out of sight.
+    Attributes:
+        base_in_map: Robot pose in the map frame.
+        base_in_local: Robot pose in the frame of ``costmap`` (odom).
+        twist: Velocity of the robot [m/s, rad/s].
+        costmap: Local costmap; dynamic obstacles are in it where they were last observed.
+        dynamic_obstacles: (N, 5) rows of x, y, vx, vy, radius in the local frame [m, m/s]; see
+            DynamicObstacleTracker.
+        global_costmap: Costmap of the global planner, in the map frame; it also has what no sensor observes
+            at present.
     """
 
     base_in_map: Pose2
     base_in_local: Pose2
     twist: Twist2
     costmap: LayeredCostmap
-    movers: np.ndarray
-    whole: LayeredCostmap
+    dynamic_obstacles: np.ndarray
+    global_costmap: LayeredCostmap
 
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """What is left of a plan.
+    """The part of a global plan that the robot has not driven yet.
 
-    ``path_xy``: (N, 2), at least one point, in the local frame, from the robot on to where it ends or leaves
-    the costmap. ``distance_left``: metres to its very end, also behind the costmap's edge.
+    Attributes:
+        path_xy: (N, 2), N >= 1 [m], in the local frame, from the robot to the plan's end or to where the plan
+            leaves the local costmap.
+        distance_left: Path length to the plan's end, including the part outside of the local costmap [m].
     """
 
     path_xy: np.ndarray
     distance_left: float
 
 
-class Exploration(Protocol):
-    """What a velocity was chosen from, for people to look at before the next period, if the settings ask."""
+class TrajectorySamples(Protocol):
+    """The trajectories that a local planner evaluated, for display (dwa_local_planner's point clouds).
+
+    Valid until the next control period.
+    """
 
     @property
-    def shows_trajectories(self) -> bool: ...
+    def shows_trajectories(self) -> bool:
+        """Whether the settings ask for ``trajectory_cloud``."""
+        ...
 
     @property
-    def shows_costs(self) -> bool: ...
+    def shows_costs(self) -> bool:
+        """Whether the settings ask for ``cost_cloud``."""
+        ...
 
     def trajectory_points(self) -> np.ndarray:
-        """Points (M, 4) of all trajectories that may be driven: x, y, yaw, score; in the local frame."""
+        """Points (M, 4) of all valid trajectories in the local frame: x, y, yaw, score."""
         ...
 
     def cell_costs(self) -> np.ndarray:
-        """Cells (M, 6) that can be driven to: x, y, cells to plan and to its end, cost, all three weighed."""
+        """Reachable cells (M, 6): x, y, cells to the plan, cells to its end, cost, weighted sum."""
         ...
 
 
+@renamed_fields(exploration="trajectory_samples")
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """The velocity chosen for the coming period, and where it may lead.
+    """The velocity command for the coming period and the predicted trajectory.
 
-    ``poses``: (N, 3), x, y, yaw in the local frame, the first the robot's own. ``cost``: by the planner's own
-    measure, finite. ``exploration``: what it was chosen from, if the planner has that to show.
+    Attributes:
+        command: Velocity command [m/s, rad/s].
+        poses: (N, 3) of x, y, yaw in the local frame [m, rad]; the first is the robot's pose.
+        cost: Finite, in the planner's own unit.
+        trajectory_samples: The trajectories it was chosen from, if the planner can show them.
     """
 
     command: Twist2
     poses: np.ndarray
     cost: float
-    exploration: Optional[Exploration] = None
+    trajectory_samples: Optional[TrajectorySamples] = None
 
 
 class LocalPlanner(Protocol):
-    """Made by ``make(settings, period)``; seconds."""
+    """Computes velocity commands that follow a plan; constructed as ``make(settings, period)``."""
 
     def __init__(self, settings: Any, period: float): ...
 
-    def follow(self, situation: Situation, plan: Plan, limits: Twist2) -> Trajectory:
-        """The velocity for the next period, within the settings' accelerations, and where it leads.
+    def follow(self, context: ControlContext, plan: Plan, limits: Twist2) -> Trajectory:
+        """Compute the velocity command for the next period, within the acceleration limits of the settings.
 
-        ``limits``: the highest speeds, m/s and rad/s, both positive; backwards the settings' own count.
-        None of the arguments is changed, and the same calls give the same answers: chance has a seed.
-        Raises ControlError if no velocity is safe, or none leads on; what was tried may go with it.
+        Must not modify its arguments. The same sequence of calls must give the same results: random numbers
+        come from a seed.
+
+        Args:
+            context: Robot state, costmaps and dynamic obstacles.
+            plan: The part of the global plan that is still to be driven.
+            limits: Maximum speeds [m/s, rad/s], both positive; ``min_vel_x`` of the settings limits v too.
+
+        Returns:
+            The command and the trajectory that it is predicted to lead along.
+
+        Raises:
+            ControlError: No velocity is safe or none makes progress; may carry the trajectory samples.
         """
         ...
+
+
+__getattr__ = deprecated_names(__name__, {"Situation": "ControlContext", "Exploration": "TrajectorySamples"})

@@ -1,14 +1,59 @@
-"""The local planners that there are. To add one is to add it here."""
+"""Registry of the local planners, and the guard that checks custom ones."""
+
+from typing import Callable
+
+import numpy as np
 
 from move_base_lite.control.dwa import DWA, TRAJECTORY
-from move_base_lite.control.guarded import GuardedLocalPlanner
-from move_base_lite.control.local_planner import LocalPlanner
+from move_base_lite.control.local_planner import ControlContext, LocalPlanner, Plan, Trajectory
 from move_base_lite.control.mppi import MPPI
 from move_base_lite.control.settings import ControllerSettings
+from move_base_lite.errors import ControlPluginFailed
 from move_base_lite.plugin import Registry
-from planar import SettingsError
+from move_base_lite.plugin_guard import PluginGuard
+from planar import SettingsError, Twist2
 from planar.config.hints import hint_or_choices
 from planar.plugins import PluginContract
+
+# Relative tolerance of the speed limits, for rounding.
+ROUNDING = 1e-3
+
+
+class GuardedLocalPlanner:
+    """A LocalPlanner that wraps a custom one.
+
+    Args:
+        name: Name of the plugin, for messages.
+        make: Constructs the wrapped planner.
+    """
+
+    def __init__(self, name: str, make: Callable[[], LocalPlanner]):
+        self._guard = PluginGuard(name, make, ControlPluginFailed)
+
+    def follow(self, context: ControlContext, plan: Plan, limits: Twist2) -> Trajectory:
+        """See LocalPlanner.follow.
+
+        Raises:
+            ControlPluginFailed: The planner raised, took too long, modified its arguments or returned an
+                invalid trajectory.
+        """
+        with self._guard.watch(context.costmap.costs, context.dynamic_obstacles, plan.path_xy) as planner:
+            trajectory = planner.follow(context, plan, limits)
+            self._check(trajectory, limits)
+        return trajectory
+
+    def _check(self, trajectory: Trajectory, limits: Twist2) -> None:
+        command = trajectory.command
+        self._guard.check_velocity(command)
+        if command.v > limits.v * (1.0 + ROUNDING) or abs(command.omega) > limits.omega * (1.0 + ROUNDING):
+            raise self._guard.fail(
+                f"asked for {command.v:g} m/s, {command.omega:g} rad/s, "
+                f"beyond its limits of {limits.v:g} m/s, {limits.omega:g} rad/s"
+            )
+        poses = np.asarray(trajectory.poses)
+        if not (poses.ndim == 2 and poses.shape[1] == 3 and len(poses) and np.isfinite(poses).all()):
+            raise self._guard.fail("gave poses that are not finite or not of the shape (N, 3)")
+
 
 LOCAL_PLANNERS: Registry[LocalPlanner] = Registry(
     TRAJECTORY,
@@ -22,9 +67,13 @@ LOCAL_PLANNERS: Registry[LocalPlanner] = Registry(
 
 
 def check_local_planner(name: str) -> None:
-    """Raises SettingsError if there is no local planner of a name that a person gives.
+    """Check a local planner's name given by a user.
 
-    (move_base itself is asked for planners of all the world, and drives with the nearest that there is.)
+    (The parameter ``base_local_planner`` may name planners of the official stack; move_base then falls back
+    to the first of LOCAL_PLANNERS.)
+
+    Raises:
+        SettingsError: There is no local planner of this name.
     """
     if LOCAL_PLANNERS.find(name) is None:
         raise SettingsError(

@@ -5,13 +5,13 @@ from typing import Optional, Sequence, Tuple
 import numpy as np
 
 from move_base_lite.config import NavigatorSettings
-from move_base_lite.control import LOCAL_PLANNERS, Controller, Situation
+from move_base_lite.control import LOCAL_PLANNERS, ControlContext, Controller
 from move_base_lite.costmap import Observation
+from move_base_lite.dynamic_obstacles import DynamicObstacleTracker
 from move_base_lite.navigator.costmaps import Costmaps
 from move_base_lite.navigator.goal_execution import RobotState
 from move_base_lite.navigator.motion_prediction import predict_motion
 from move_base_lite.navigator.zones import Zones
-from move_base_lite.people import Movers
 from move_base_lite.planning import GLOBAL_PLANNERS
 from planar import OccupancyGrid, Pose2, Twist2
 
@@ -32,7 +32,7 @@ class NavigatorComponents:
     def set_map(self, grid: Optional[OccupancyGrid]) -> None:
         """Another map, and nothing has been seen yet."""
         self.costmaps = Costmaps(self.settings, grid, self.zones)
-        self._movers = Movers()
+        self._obstacle_tracker = DynamicObstacleTracker()
 
     def reset_controller(self) -> None:
         """Forgets how the last goal was pursued."""
@@ -60,10 +60,10 @@ class NavigatorComponents:
 
     def _lasting(self, base_in_odom: Pose2, observation: Observation) -> Observation:
         """What is seen without what moves."""
-        lookout = self.settings.controller.lookout
-        if lookout is None or observation.topic != self.settings.scan_topic:
+        settings = self.settings.controller.tracker_settings
+        if settings is None or observation.topic != self.settings.scan_topic:
             return observation
-        return self._movers.look(base_in_odom, observation, lookout)
+        return self._obstacle_tracker.update(base_in_odom, observation, settings)
 
     def plan(self, start_in_map: Pose2, goal_in_map: Pose2, tolerance: float = 0.0) -> np.ndarray:
         """Path (N, 2) in the map between any two places. Raises PlanningError."""
@@ -73,16 +73,16 @@ class NavigatorComponents:
             costmap.costs, costmap.window, start_xy, (goal_in_map.x, goal_in_map.y), tolerance
         )
 
-    def situation(self, state: RobotState) -> Situation:
+    def control_context(self, state: RobotState) -> ControlContext:
         """What a velocity is to be chosen from: how things will stand when it takes effect."""
         controller = self.settings.controller
         acceleration = Twist2(controller.acc_lim_x, controller.acc_lim_theta)
         moved, twist = predict_motion(state.twist, self.active_command, self.latency, acceleration)
-        return Situation(
+        return ControlContext(
             state.base_in_map @ moved,
             state.base_in_odom @ moved,
             twist,
             self.costmaps.local_costmap,
-            self._movers.at(state.now + self.latency),
+            self._obstacle_tracker.obstacles_at(state.now + self.latency),
             self.costmaps.global_costmap,
         )

@@ -6,7 +6,7 @@ from typing import Optional
 
 import numpy as np
 
-from move_base_lite.control import Exploration
+from move_base_lite.control import TrajectorySamples
 from move_base_lite.errors import NavigationError
 from planar import Twist2
 
@@ -94,9 +94,8 @@ class Decision:
     ``command``: the velocity to send, None while there is no goal. ``text``: why, where there is something
     to tell. ``plan_xy``: (N, 2) in the map, a plan made in this period, empty if none was found.
     ``trajectory``: poses (N, 3) the command leads through, and ``followed_xy``: (M, 2) the part of the plan
-    it follows, both in the local frame. ``exploration``: what the command was chosen from, if it was by the
-    dynamic window; to be looked at before the next period. ``progress``: while there is a goal.
-    ``outcome``: with the last decision for a goal.
+    it follows, both in the local frame. ``trajectory_samples``: the trajectories that DWA evaluated, valid
+    until the next period. ``progress``: while there is a goal. ``outcome``: with a goal's last decision.
     """
 
     status: Status
@@ -105,7 +104,7 @@ class Decision:
     plan_xy: Optional[np.ndarray] = None
     trajectory: Optional[np.ndarray] = None
     followed_xy: Optional[np.ndarray] = None
-    exploration: Optional[Exploration] = None
+    trajectory_samples: Optional[TrajectorySamples] = None
     recovery: Optional[RecoveryStart] = None
     progress: Optional[GoalProgress] = None
     outcome: Optional[GoalOutcome] = None

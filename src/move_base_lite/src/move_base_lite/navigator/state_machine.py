@@ -130,11 +130,15 @@ def _control(execution: GoalExecution, state: RobotState, components: NavigatorC
         return Decision(execution.status, Twist2(), plan_xy=plan_xy)
     highest = execution.speed_limit(state.base_in_odom, components.zones.max_speed(execution.pose))
     try:
-        control = controller.control(components.situation(state), highest)
+        control = controller.control(components.control_context(state), highest)
     except ControlError as error:
         execution.on_control_failed(error, now, settings.controller_patience)
         return Decision(
-            execution.status, Twist2(), str(error), plan_xy=plan_xy, exploration=error.exploration
+            execution.status,
+            Twist2(),
+            str(error),
+            plan_xy=plan_xy,
+            trajectory_samples=error.trajectory_samples,
         )
     execution.on_control_succeeded(controller.distance_left)
     return Decision(
@@ -143,7 +147,7 @@ def _control(execution: GoalExecution, state: RobotState, components: NavigatorC
         plan_xy=plan_xy,
         trajectory=control.poses,
         followed_xy=control.path_xy,
-        exploration=control.exploration,
+        trajectory_samples=control.trajectory_samples,
     )
 
 
@@ -161,7 +165,7 @@ def _recover(execution: GoalExecution, state: RobotState, components: NavigatorC
     if execution.recovery is None:
         start = _begin_recovery(execution, components)
     assert execution.recovery is not None
-    ahead = components.situation(state)
+    ahead = components.control_context(state)
     context = RecoveryContext(
         ahead.base_in_map,
         ahead.base_in_local,

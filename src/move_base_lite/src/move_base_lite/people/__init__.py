@@ -1,5 +1,12 @@
-"""People, and whatever else moves near the robot."""
+"""Deprecated name of move_base_lite.dynamic_obstacles."""
 
-from move_base_lite.people.movers import NO_MOVERS, Lookout, Movers
+from planar.deprecation import deprecated_names
 
-__all__ = ["NO_MOVERS", "Lookout", "Movers"]
+__getattr__ = deprecated_names(
+    __name__,
+    {
+        "NO_MOVERS": "move_base_lite.dynamic_obstacles:NO_DYNAMIC_OBSTACLES",
+        "Lookout": "move_base_lite.dynamic_obstacles:TrackerSettings",
+        "Movers": "move_base_lite.dynamic_obstacles:DynamicObstacleTracker",
+    },
+)

@@ -1,12 +1,11 @@
-"""Global planning: a way through a costmap.
+"""Global planning: paths through a costmap.
 
-``global_planner.py`` is the contract, ``registry.py`` the list of those that hold it.
+``global_planner.py`` is the contract of global planners, ``registry.py`` their registry.
 """
 
 from move_base_lite.planning.global_planner import GlobalPlanner, PlannerSettings, Potential
-from move_base_lite.planning.headings import headings_along
 from move_base_lite.planning.navfn import GlobalPlannerSettings, Navfn, NavfnSettings
-from move_base_lite.planning.path_cost import path_cost
+from move_base_lite.planning.paths import headings_along, path_cost
 from move_base_lite.planning.registry import GLOBAL_PLANNERS
 
 __all__ = [

@@ -14,8 +14,8 @@ from move_base_lite.planning.global_planner import (
     Potential,
 )
 from move_base_lite.planning.nearest import Cell, passable_ends
-from move_base_lite.planning.shortcuts import shortened
-from move_base_lite.planning.wavefront import descend, spread, traversal_costs
+from move_base_lite.planning.shortcuts import shorten
+from move_base_lite.planning.wavefront import propagate_wavefront, trace_path, traversal_costs
 from move_base_lite.plugin import Plugin
 from planar.config.parameters import DynamicParameter, Interval, at_least, parameter
 from planar.config.settings import check
@@ -112,12 +112,12 @@ class Navfn:
     ) -> np.ndarray:
         """The path (N, 2) as (col, row), empty if nothing leads there; keeps the wave if it is to be seen."""
         settings = self._settings
-        potential = spread(traversal, *start, *goal, settings.use_astar)
+        potential = propagate_wavefront(traversal, *start, *goal, settings.use_astar)
         if settings.visualize_potential:
             self.potential = Potential(potential, window, float(potential[goal]))
-        path_cells = descend(potential, *start, *goal, 0.0 if settings.use_grid_path else STEP_CELLS)
+        path_cells = trace_path(potential, *start, *goal, 0.0 if settings.use_grid_path else STEP_CELLS)
         if len(path_cells) and not settings.use_grid_path:
-            return shortened(traversal, path_cells, ANY_ANGLE if settings.any_angle else SMOOTH)
+            return shorten(traversal, path_cells, ANY_ANGLE if settings.any_angle else SMOOTH)
         return path_cells
 
 

@@ -14,7 +14,7 @@ GRAZING = 0.05
 
 
 @numba.njit(cache=True)
-def shortened(traversal, path, longest):
+def shorten(traversal, path, longest):
     """The path (N, 2) as (col, row), with shortcuts of at most ``longest`` cells; points at most half a cell
     apart, the ends as they were. It is never longer nor dearer.
 

@@ -48,11 +48,11 @@ def cost_to_go(costs: np.ndarray, targets: np.ndarray) -> Optional[np.ndarray]:
         return None
     row, col = map(int, targets[free[-1]])
     # The corner is never reached, so the wave runs until it has been everywhere.
-    return spread(traversal, row, col, 0, 0, False)
+    return propagate_wavefront(traversal, row, col, 0, 0, False)
 
 
 @numba.njit(cache=True)
-def spread(traversal, start_row, start_col, goal_row, goal_col, use_astar):
+def propagate_wavefront(traversal, start_row, start_col, goal_row, goal_col, use_astar):
     """Potential, float32 (rows, cols), of each cell reached until the goal's has settled; inf elsewhere.
 
     Cells wait in three lists: this round's, the next, and those beyond the threshold, which rises when the
@@ -122,7 +122,7 @@ def _potential_from_neighbours(potential, cell, cols, cost):
 
 
 @numba.njit(cache=True)
-def descend(potential, start_row, start_col, goal_row, goal_col, step):
+def trace_path(potential, start_row, start_col, goal_row, goal_col, step):
     """Path, float64 (N, 2) as (col, row) in cells (centres at .5), from start to goal along the gradient.
 
     Empty if the goal was not reached. ``step``: cells per point; 0: from cell to neighbouring cell.

@@ -1,6 +1,6 @@
-"""The dynamic window approach: dwa_local_planner, and base_local_planner's TrajectoryPlannerROS by it."""
+"""The dynamic window approach: dwa_local_planner, also under the names of TrajectoryPlannerROS."""
 
-from move_base_lite.control.dwa.planner import DynamicWindow
+from move_base_lite.control.dwa.planner import DwaPlanner
 from move_base_lite.control.dwa.settings import (
     DWA_IGNORED,
     DWA_WITHOUT_EFFECT,
@@ -15,7 +15,7 @@ from move_base_lite.plugin import Plugin
 DWA: Plugin[LocalPlanner] = Plugin(
     "dwa_local_planner/DWAPlannerROS",
     DwaSettings,
-    DynamicWindow,
+    DwaPlanner,
     deprecated={
         "max_trans_vel": "max_vel_trans",
         "min_trans_vel": "min_vel_trans",
@@ -33,7 +33,7 @@ DWA: Plugin[LocalPlanner] = Plugin(
 TRAJECTORY: Plugin[LocalPlanner] = Plugin(
     "base_local_planner/TrajectoryPlannerROS",
     TrajectorySettings,
-    DynamicWindow,
+    DwaPlanner,
     synonyms={
         "max_rotational_vel": "max_vel_theta",
         "min_in_place_rotational_vel": "min_in_place_vel_theta",

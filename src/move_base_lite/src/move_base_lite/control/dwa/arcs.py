@@ -1,4 +1,4 @@
-"""Arcs: where a constant velocity leads."""
+"""Arcs: trajectories of constant velocity."""
 
 import math
 
@@ -8,7 +8,10 @@ import numpy as np
 
 @numba.njit(cache=True)
 def arc(start, v, omega, seconds, granularity, angular_granularity):
-    """Poses (N, 3) along an arc from ``start`` (3,), at most so many metres and radians apart."""
+    """Poses (N, 3) of an arc that starts at ``start`` (3,) [m, rad].
+
+    Consecutive poses are at most ``granularity`` metres and ``angular_granularity`` radians apart.
+    """
     steps = _steps(v, omega, seconds, granularity, angular_granularity)
     dt = seconds / steps
     poses = np.empty((steps + 1, 3))

@@ -1,7 +1,7 @@
-"""The critics of dwa_local_planner: what each holds against a trajectory. Kernels.
+"""The critics of dwa_local_planner: numba kernels that score a trajectory.
 
-A critic is given the trajectory's poses (N, 3) and the Scene, and returns a cost, inf if the trajectory must
-not be driven. They are weighed and summed by :func:`scores_of`; to add one is to add a weight and a term.
+A critic takes the trajectory's poses (N, 3) and the DwaScene and returns a cost, inf for an invalid
+trajectory. :func:`scores_of` sums the weighted costs; a new critic needs a weight and a term there.
 """
 
 import math
@@ -16,11 +16,19 @@ from move_base_lite.costmap import INSCRIBED
 from move_base_lite.costmap.footprint import COLLISION, count_contacts, footprint_cost
 
 
-class Scene(NamedTuple):
-    """What trajectories are judged by: fields (rows, cols), where they lie, and the robot.
+class DwaScene(NamedTuple):
+    """Grids that trajectories are scored on, and the robot's footprint.
 
-    ``costs``: the costmap's. ``from_path``, ``from_goal``, ``from_nose_goal``: cells to the plan, to its end,
-    and to where the robot's nose is when it stands there. ``nose``: metres ahead of the robot.
+    Attributes:
+        costs: (rows, cols) of the local costmap, uint8.
+        origin_x: Corner of the grids in the local frame [m]; so is ``origin_y``.
+        origin_y: See ``origin_x``.
+        resolution: Cell size [m].
+        outline_xy: (N, 2) footprint points in the base frame [m].
+        path_map: (rows, cols) distance to the plan [cells] (base_local_planner's MapGrid).
+        goal_map: (rows, cols) distance to the plan's end in the window [cells].
+        goal_front_map: (rows, cols) distance to the forward point of a robot at the plan's end [cells].
+        forward_distance: Distance of the forward point ahead of the robot's centre [m].
     """
 
     costs: np.ndarray
@@ -28,14 +36,14 @@ class Scene(NamedTuple):
     origin_y: float
     resolution: float
     outline_xy: np.ndarray
-    from_path: np.ndarray
-    from_goal: np.ndarray
-    from_nose_goal: np.ndarray
-    nose: float
+    path_map: np.ndarray
+    goal_map: np.ndarray
+    goal_front_map: np.ndarray
+    forward_distance: float
 
 
-class Ways(NamedTuple):
-    """How velocities are followed: from a pose (3,), for so long, poses so many metres and radians apart."""
+class ArcSampling(NamedTuple):
+    """How a velocity is simulated: start pose (3,), time [s], and spacing of the poses [m, rad]."""
 
     start: np.ndarray
     seconds: float
@@ -43,8 +51,8 @@ class Ways(NamedTuple):
     angular_granularity: float
 
 
-class Weights(NamedTuple):
-    """Of the critics; cells count in metres."""
+class CriticWeights(NamedTuple):
+    """Weights of the critics; those of distances are per cell, scaled by the resolution."""
 
     obstacles: float
     path_distance: float
@@ -55,24 +63,26 @@ class Weights(NamedTuple):
 
 
 @numba.njit(cache=True)
-def scores_of(velocities, ways, scene, weights):
-    """Cost (N,) of each velocity (N, 2), inf if it must not be driven."""
-    x, y, yaw = ways.start
-    touching = count_contacts(
+def scores_of(velocities, sampling, scene, weights):
+    """Score (N,) of each velocity (N, 2), inf for an invalid one."""
+    x, y, yaw = sampling.start
+    start_contacts = count_contacts(
         scene.costs, scene.origin_x, scene.origin_y, scene.resolution, scene.outline_xy, x, y, yaw
     )
     scores = np.full(velocities.shape[0], np.inf)
     for i in range(velocities.shape[0]):
         v, omega = velocities[i]
-        poses = arc(ways.start, v, omega, ways.seconds, ways.granularity, ways.angular_granularity)
-        in_the_way = obstacles(poses, scene, touching)
-        if in_the_way == np.inf:
+        poses = arc(
+            sampling.start, v, omega, sampling.seconds, sampling.granularity, sampling.angular_granularity
+        )
+        obstacle_cost = obstacles(poses, scene, start_contacts)
+        if obstacle_cost == np.inf:
             continue
         to_path, to_goal = path_distance(poses, scene), goal_distance(poses, scene)
         if to_path >= UNREACHABLE or to_goal >= UNREACHABLE:
             continue
         scores[i] = (
-            weights.obstacles * in_the_way
+            weights.obstacles * obstacle_cost
             + weights.path_distance * to_path
             + weights.goal_distance * to_goal
             + weights.path_alignment * path_alignment(poses, scene)
@@ -82,22 +92,22 @@ def scores_of(velocities, ways, scene, weights):
 
 
 @numba.njit(cache=True)
-def obstacles(poses, scene, touching):
-    """Highest cost below the footprint along the trajectory, inf if it collides.
+def obstacles(poses, scene, start_contacts):
+    """Highest cost under the footprint along the trajectory, inf if it collides.
 
-    A robot that is ``touching`` something already, at so many points of its outline, may move as long as it
-    never touches at more.
+    A robot that starts in collision, with ``start_contacts`` footprint points, may move as long as the number
+    of contacts never rises.
     """
     highest = 0.0
     for j in range(poses.shape[0]):
         x, y, yaw = poses[j]
-        if touching > 0:
-            now = count_contacts(
+        if start_contacts > 0:
+            contacts = count_contacts(
                 scene.costs, scene.origin_x, scene.origin_y, scene.resolution, scene.outline_xy, x, y, yaw
             )
-            if now > touching:
+            if contacts > start_contacts:
                 return np.inf
-            touching = now
+            start_contacts = contacts
             highest = float(INSCRIBED)
         else:
             cost = footprint_cost(
@@ -111,44 +121,44 @@ def obstacles(poses, scene, touching):
 
 @numba.njit(cache=True)
 def path_distance(poses, scene):
-    """How far from the plan it ends."""
-    return _at(scene.from_path, scene, poses[-1, 0], poses[-1, 1])
+    """Distance of the end pose to the plan [cells]."""
+    return _interpolated_distance(scene.path_map, scene, poses[-1, 0], poses[-1, 1])
 
 
 @numba.njit(cache=True)
 def goal_distance(poses, scene):
-    """How far from the end of the plan in sight it ends."""
-    return _at(scene.from_goal, scene, poses[-1, 0], poses[-1, 1])
+    """Distance of the end pose to the plan's end in the window [cells]."""
+    return _interpolated_distance(scene.goal_map, scene, poses[-1, 0], poses[-1, 1])
 
 
 @numba.njit(cache=True)
 def path_alignment(poses, scene):
-    """How far from the plan the robot's nose ends."""
-    x, y = _nose_at(poses[-1], scene.nose)
-    return _at(scene.from_path, scene, x, y)
+    """Distance of the end pose's forward point to the plan [cells]."""
+    x, y = _forward_point(poses[-1], scene.forward_distance)
+    return _interpolated_distance(scene.path_map, scene, x, y)
 
 
 @numba.njit(cache=True)
 def goal_alignment(poses, scene):
-    """How far from where it is to be at the end the robot's nose ends."""
-    x, y = _nose_at(poses[-1], scene.nose)
-    return _at(scene.from_nose_goal, scene, x, y)
+    """Distance of the end pose's forward point to that of a robot at the plan's end [cells]."""
+    x, y = _forward_point(poses[-1], scene.forward_distance)
+    return _interpolated_distance(scene.goal_front_map, scene, x, y)
 
 
 @numba.njit(cache=True)
 def twirling(omega):
-    """How fast it turns."""
+    """Absolute turn rate [rad/s]."""
     return abs(omega)
 
 
 @numba.njit(cache=True)
-def _nose_at(pose, nose):
-    return pose[0] + nose * math.cos(pose[2]), pose[1] + nose * math.sin(pose[2])
+def _forward_point(pose, forward_distance):
+    return pose[0] + forward_distance * math.cos(pose[2]), pose[1] + forward_distance * math.sin(pose[2])
 
 
 @numba.njit(cache=True)
-def _at(distances, scene, x, y):
-    """Distance in cells, interpolated between cell centres so that small motions count too."""
+def _interpolated_distance(distances, scene, x, y):
+    """Distance in cells, interpolated between cell centres so that motions below a cell change it."""
     rows, cols = distances.shape
     row, col = int((y - scene.origin_y) / scene.resolution), int((x - scene.origin_x) / scene.resolution)
     if row < 0 or row >= rows or col < 0 or col >= cols:

@@ -1,4 +1,4 @@
-"""Distances through free cells to the plan or to its end (base_local_planner's map grid)."""
+"""Distances through free cells to the plan or to its end (base_local_planner's MapGrid)."""
 
 import math
 
@@ -12,9 +12,17 @@ DIAGONAL = math.sqrt(2.0)
 
 
 def distances_to(costs: np.ndarray, window: CostmapWindow, targets_xy: np.ndarray) -> np.ndarray:
-    """Cells, float32 (rows, cols), from each free cell to the nearest of the targets (N, 2) in the window.
+    """Path length from each free cell to the nearest target.
 
-    Paths may turn by 45 degrees and do not pass cells nearer to an obstacle than the inscribed radius.
+    Paths have eight directions and avoid cells nearer to an obstacle than the inscribed radius.
+
+    Args:
+        costs: (rows, cols), uint8.
+        window: Position and resolution of the grid.
+        targets_xy: (N, 2) in the window's frame [m]; those outside of the window are ignored.
+
+    Returns:
+        Distances (rows, cols) in cells, float32, UNREACHABLE where no path leads to a target.
     """
     cells = (targets_xy - (window.origin_x, window.origin_y)) / window.resolution
     return _distances(costs, np.floor(cells).astype(np.int64))

@@ -4,24 +4,23 @@ import math
 
 import numpy as np
 
-from move_base_lite.control.local_planner import Plan, Situation, Trajectory
-from move_base_lite.control.mppi.rollout import Limits, Weights, arguments_of, best_way
-from move_base_lite.control.mppi.samples import KNOTS, evasions, fan, smooth_noise
+from move_base_lite.control.local_planner import ControlContext, Plan, Trajectory
+from move_base_lite.control.mppi.rollout import CostWeights, MotionLimits, best_controls, kernel_arguments
+from move_base_lite.control.mppi.samples import KNOTS, arc_controls, evasive_controls, smooth_noise
 from move_base_lite.control.mppi.scene import scene_of
 from move_base_lite.control.mppi.settings import MppiSettings
 from move_base_lite.errors import ControlError
 from planar import Twist2
 
 
-class PathIntegral:
-    """A LocalPlanner that drives the mean of many random ways, weighted by what each costs, and starts the
-    next from it.
+class MppiPlanner:
+    """A LocalPlanner: the cost-weighted mean of many random control sequences, warm-started from the last.
 
-    What a way costs is what is left to drive at its end, through free cells and shy of obstacles, in metres,
-    with penalties for nearness, turning and driving backwards. A way that touches something ends there; if
-    the robot could not stop before, it does not count. What moves is expected where it will be by then, the
-    less surely the later; where anything does, ways that evade it are tried as well. The random deviations
-    are drawn once, from the seed. What was tried is not shown.
+    The cost of a sequence is the cost to go at its end, through free cells and away from obstacles [m], plus
+    penalties for small clearance, turning and driving backwards. A rollout ends at a collision; it is invalid
+    if the robot could not have stopped before. Dynamic obstacles are predicted at constant velocity with
+    growing uncertainty; while there are any, evasive sequences are evaluated too. The noise is drawn once,
+    from the seed. There are no trajectory samples to show.
     """
 
     def __init__(self, settings: MppiSettings, period: float):
@@ -29,43 +28,44 @@ class PathIntegral:
         self._period = period
         steps = max(KNOTS, round(settings.horizon / period))
         self._noise = smooth_noise(np.random.default_rng(settings.seed), settings, steps)
-        self._fan = fan(settings, steps)
-        self._fan_and_evasions = np.concatenate((self._fan, evasions(settings, steps)))
+        self._arc_controls = arc_controls(settings, steps)
+        self._arcs_and_evasions = np.concatenate((self._arc_controls, evasive_controls(settings, steps)))
         self._mean = np.zeros((steps, 2))
-        self._weights = Weights(
+        self._weights = CostWeights(
             safe_distance=settings.safe_distance,
             obstacle=settings.obstacle_weight,
             turn=settings.turn_weight,
             backward=settings.backward_weight,
             heading=settings.heading_weight,
             delay=settings.delay_weight,
-            mover=settings.mover_weight,
-            mover_distance=settings.mover_distance,
+            dynamic_obstacle=settings.dynamic_obstacle_weight,
+            dynamic_obstacle_distance=settings.dynamic_obstacle_distance,
         )
 
-    def follow(self, situation: Situation, plan: Plan, limits: Twist2) -> Trajectory:
-        """The mean of the ways tried, or the best of them if that is better."""
-        twist = situation.twist
-        start = np.array([*situation.base_in_local.as_array(), twist.v, twist.omega])
-        scene = scene_of(situation, plan, self._settings.heed_global_costmap)
-        problem = arguments_of(scene, self._limits(limits), self._weights)
-        others = self._fan_and_evasions if len(situation.movers) else self._fan
-        ways = (self._noise, self._mean, others)
-        mean, cost, poses, speeds = best_way(*ways, start, self._settings.temperature, *problem)
+    def follow(self, context: ControlContext, plan: Plan, limits: Twist2) -> Trajectory:
+        """See LocalPlanner.follow: the weighted mean of the samples, or the best of them if it is better."""
+        twist = context.twist
+        start = np.array([*context.base_in_local.as_array(), twist.v, twist.omega])
+        scene = scene_of(context, plan, self._settings.use_global_costmap)
+        problem = kernel_arguments(scene, self._limits(limits), self._weights)
+        extra_controls = self._arcs_and_evasions if len(context.dynamic_obstacles) else self._arc_controls
+        mean, cost, poses, speeds = best_controls(
+            self._noise, self._mean, extra_controls, start, self._settings.temperature, *problem
+        )
         if not math.isfinite(cost):
             self._mean[:] = 0.0
-            raise ControlError("every way tried leads into an obstacle")
+            raise ControlError("every sampled trajectory leads into an obstacle")
         self._mean = np.concatenate((mean[1:], mean[-1:]))
         v, omega = map(float, speeds[0])
         return Trajectory(Twist2(v, omega), poses, float(cost))
 
-    def _limits(self, highest: Twist2) -> Limits:
+    def _limits(self, max_speeds: Twist2) -> MotionLimits:
         settings = self._settings
-        return Limits(
+        return MotionLimits(
             period=self._period,
             lowest_v=settings.min_vel_x,
-            highest_v=highest.v,
-            highest_omega=highest.omega,
+            highest_v=max_speeds.v,
+            highest_omega=max_speeds.omega,
             acceleration=settings.acc_lim_x,
             turn_acceleration=settings.acc_lim_theta,
             approach_time=settings.approach_time,

@@ -1,4 +1,4 @@
-"""Ways of driving to be tried: speeds and turn rates over time."""
+"""Control sequences to be evaluated: speeds and turn rates over time."""
 
 from typing import List
 
@@ -6,14 +6,23 @@ import numpy as np
 
 from move_base_lite.control.mppi.settings import MppiSettings
 
-# Points in time at which the speeds of a sample are drawn; between them they change evenly.
+# Points in time at which noise is drawn; it is interpolated linearly between them.
 KNOTS = 5
-# Share of the time that the first of two arcs takes.
-FIRST = 1.0 / 3.0
+# Share of the horizon that the first arc of an evasive sequence takes.
+FIRST_ARC_SHARE = 1.0 / 3.0
 
 
 def smooth_noise(rng: np.random.Generator, settings: MppiSettings, steps: int) -> np.ndarray:
-    """Deviations (samples, steps, 2) of speed and turn rate; the first is none."""
+    """Draw smooth deviations of speed and turn rate.
+
+    Args:
+        rng: Random number generator.
+        settings: Number of samples and standard deviations.
+        steps: Control periods of the horizon.
+
+    Returns:
+        Noise (samples, steps, 2) [m/s, rad/s]; the first sample is zero.
+    """
     knots = rng.standard_normal((settings.samples, KNOTS, 2))
     knots *= (settings.noise_vel_x, settings.noise_vel_theta)
     knots[0] = 0.0
@@ -23,22 +32,20 @@ def smooth_noise(rng: np.random.Generator, settings: MppiSettings, steps: int) -
     return (1.0 - share) * knots[:, before] + share * knots[:, before + 1]
 
 
-def fan(settings: MppiSettings, steps: int) -> np.ndarray:
-    """Ways (N, steps, 2) that a stuck mean would not come upon: arcs at some speeds, ahead and back."""
+def arc_controls(settings: MppiSettings, steps: int) -> np.ndarray:
+    """Constant controls (N, steps, 2), forward and backward: an escape from a local minimum of the mean."""
     speeds = [settings.max_vel_x, 0.5 * settings.max_vel_x, settings.creep_vel_x, 0.0, settings.min_vel_x]
     rates = np.linspace(-settings.max_vel_theta, settings.max_vel_theta, 11)
     return np.repeat(_arcs(speeds, rates)[:, None, :], steps, axis=1)
 
 
-def evasions(settings: MppiSettings, steps: int) -> np.ndarray:
-    """Ways (N, steps, 2) that let something pass and then go on, or get out of its way and then stop: every
-    two of some arcs, one after the other.
-    """
+def evasive_controls(settings: MppiSettings, steps: int) -> np.ndarray:
+    """Controls (N, steps, 2) of two different arcs: wait and then go on, or evade and then stop."""
     speeds = [settings.max_vel_x, 0.0, settings.min_vel_x]
     rates = settings.max_vel_theta * np.array([-1.0, -0.3, 0.0, 0.3, 1.0])
     arcs = _arcs(speeds, rates)
     first, second = (~np.eye(len(arcs), dtype=bool)).nonzero()
-    is_first = (np.arange(steps) < steps * FIRST)[None, :, None]
+    is_first = (np.arange(steps) < steps * FIRST_ARC_SHARE)[None, :, None]
     return np.where(is_first, arcs[first, None], arcs[second, None])
 
 

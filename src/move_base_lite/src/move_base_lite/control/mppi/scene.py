@@ -1,4 +1,4 @@
-"""What is around the robot, as the kernels of path integral control look at it."""
+"""The surroundings of the robot as arrays for the MPPI kernels: clearance, cost to go, dynamic obstacles."""
 
 import math
 from typing import NamedTuple
@@ -6,29 +6,43 @@ from typing import NamedTuple
 import numba
 import numpy as np
 
-from move_base_lite.control.local_planner import Plan, Situation
-from move_base_lite.control.mppi.remembered import costs_with_remembered
-from move_base_lite.costmap import LETHAL, CostmapWindow
+from move_base_lite.control.local_planner import ControlContext, Plan
+from move_base_lite.costmap import INSCRIBED, LETHAL, CostmapWindow
+from move_base_lite.costmap.resampling import resample_costs
 from move_base_lite.errors import ControlError
 from move_base_lite.planning.wavefront import NEUTRAL, cost_to_go
+from planar import Pose2
 from planar.geometry.distance_field import distance_field
 
-# Metres around what moves within which obstacles are taken for it.
-AROUND_MOVER = 0.1
+# Obstacle cells within this distance of a dynamic obstacle belong to it [m].
+OBSTACLE_MARGIN = 0.1
+# Value of unknown distances and costs to go [m].
 FAR = 1e3
-# Of a distance, by which a square that stands for it may be wrong, and far more.
+# Highest cost of a cell that can be entered.
+MAX_GLOBAL_COST = INSCRIBED - 1
+# Factor that covers the rounding of squared distances.
 ROUNDING = 1.0 + 1e-6
 
 
-class Scene(NamedTuple):
-    """What there is around the robot: fields (rows, cols) in metres, the outline it fills itself, and what
-    moves; then numbers.
+class MppiScene(NamedTuple):
+    """The robot's surroundings: arrays, then numbers (see ARRAYS).
+
+    Attributes:
+        clearance: (rows, cols) distance to the nearest static obstacle [m].
+        to_go: (rows, cols) cost to go to the plan's end in the window [m].
+        outline_xy: (N, 2) footprint points in the base frame [m].
+        dynamic_obstacles: (N, 5), see ControlContext.
+        origin_x: Corner of the grids in the local frame [m]; so is ``origin_y``.
+        origin_y: See ``origin_x``.
+        cells_per_metre: Inverse of the resolution.
+        inscribed_radius: Of the footprint [m].
+        circumscribed_radius: Of the footprint [m].
     """
 
     clearance: np.ndarray
     to_go: np.ndarray
     outline_xy: np.ndarray
-    movers: np.ndarray
+    dynamic_obstacles: np.ndarray
     origin_x: float
     origin_y: float
     cells_per_metre: float
@@ -36,19 +50,29 @@ class Scene(NamedTuple):
     circumscribed_radius: float
 
 
+# The first fields of MppiScene are arrays.
 ARRAYS = 4
 
 
-def scene_of(situation: Situation, plan: Plan, heeds_remembered: bool) -> Scene:
-    """Clearance and cost to go around the robot. Raises ControlError if the plan is blocked."""
-    costmap, movers = situation.costmap, situation.movers
-    costs = costs_with_remembered(situation) if heeds_remembered else costmap.costs
+def scene_of(context: ControlContext, plan: Plan, use_global_costmap: bool) -> MppiScene:
+    """Compute clearance and cost to go around the robot.
+
+    Args:
+        context: Robot state, costmaps and dynamic obstacles.
+        plan: The plan; the cost to go leads to its last free point in the window.
+        use_global_costmap: Whether obstacles that only the global costmap has count too.
+
+    Raises:
+        ControlError: The plan is blocked within the window.
+    """
+    costmap, dynamic_obstacles = context.costmap, context.dynamic_obstacles
+    costs = costs_with_global(context) if use_global_costmap else costmap.costs
     window = costmap.window
-    return Scene(
-        clearance=distance_field(_standing(costs, window, movers), window.resolution, FAR),
+    return MppiScene(
+        clearance=distance_field(_static_obstacles(costs, window, dynamic_obstacles), window.resolution, FAR),
         to_go=_cost_to_go(costs, window, plan.path_xy),
         outline_xy=costmap.outline_xy,
-        movers=movers,
+        dynamic_obstacles=dynamic_obstacles,
         origin_x=window.origin_x,
         origin_y=window.origin_y,
         cells_per_metre=1.0 / window.resolution,
@@ -57,73 +81,89 @@ def scene_of(situation: Situation, plan: Plan, heeds_remembered: bool) -> Scene:
     )
 
 
+def costs_with_global(context: ControlContext) -> np.ndarray:
+    """Costs of the local costmap, uint8 (rows, cols), with the obstacles that only the global costmap has.
+
+    Inflated cells around those stay passable at the highest cost, as localization may be off by centimetres.
+    """
+    local, global_window = context.costmap, context.global_costmap.window
+    local_in_map = context.base_in_map @ context.base_in_local.inverse()
+    origin = Pose2(global_window.origin_x, global_window.origin_y)
+    known = resample_costs(
+        local.window, local_in_map, context.global_costmap.costs, origin, global_window.resolution
+    )
+    both = np.where(known < LETHAL, np.maximum(local.costs, np.minimum(known, MAX_GLOBAL_COST)), local.costs)
+    both[known == LETHAL] = LETHAL
+    return both
+
+
 def _cost_to_go(costs: np.ndarray, window: CostmapWindow, path_xy: np.ndarray) -> np.ndarray:
-    """Metres, float32 (rows, cols), to the path's last point in the window that is free."""
+    """Cost to go, float32 (rows, cols) [m], to the path's last free point in the window."""
     cells = np.floor((path_xy - (window.origin_x, window.origin_y)) / window.resolution)
     field = cost_to_go(costs, cells[:, ::-1].astype(np.int64))
     if field is None:
-        raise ControlError("all of the plan in sight is blocked")
+        raise ControlError("the plan is blocked as far as the local costmap shows it")
     return field * np.float32(window.resolution / NEUTRAL)
 
 
-def _standing(costs: np.ndarray, window: CostmapWindow, movers: np.ndarray) -> np.ndarray:
-    """Which cells (rows, cols) are obstacles that stay: those that movers are seen in will have gone."""
+def _static_obstacles(costs: np.ndarray, window: CostmapWindow, dynamic_obstacles: np.ndarray) -> np.ndarray:
+    """Mask (rows, cols) of the static obstacles: lethal cells without those of dynamic obstacles."""
     obstacles = costs >= LETHAL
-    for x, y, _, _, radius in movers:
-        bounds = window.bounds_around(x, y, radius + AROUND_MOVER)
+    for x, y, _, _, radius in dynamic_obstacles:
+        bounds = window.bounds_around(x, y, radius + OBSTACLE_MARGIN)
         block = obstacles[slice(*bounds[:2]), slice(*bounds[2:])]
         rows, cols = np.nonzero(block)
         apart_x = window.origin_x + (bounds[2] + cols + 0.5) * window.resolution - x
         apart_y = window.origin_y + (bounds[0] + rows + 0.5) * window.resolution - y
-        is_its_own = np.hypot(apart_x, apart_y) < radius + AROUND_MOVER
-        block[rows[is_its_own], cols[is_its_own]] = False
+        is_dynamic = np.hypot(apart_x, apart_y) < radius + OBSTACLE_MARGIN
+        block[rows[is_dynamic], cols[is_dynamic]] = False
     return obstacles
 
 
 @numba.njit(cache=True)
-def room_at(scene, x, y, c, s, enough):
-    """Metres from the outline to the nearest obstacle, at least; if it touches, minus how many points do.
+def footprint_clearance(scene, x, y, c, s, exact_below):
+    """Lower bound of the distance from the footprint to the nearest static obstacle [m].
 
-    ``c``, ``s``: cosine and sine of the heading; ``enough``: metres from which on it need not be exact. All
-    that is outside the window counts as an obstacle.
+    ``c``, ``s``: cosine and sine of the heading. A result above ``exact_below`` may be a coarse bound. In
+    collision, it is minus the number of footprint points in collision; outside of the window is an obstacle.
     """
     rows, cols = scene.clearance.shape
     cells = scene.cells_per_metre
     base_col = (x - scene.origin_x) * cells
     base_row = (y - scene.origin_y) * cells
-    touching, nearest = 0, np.float32(FAR)
+    contacts, nearest = 0, np.float32(FAR)
     if not (0.0 <= base_row < rows and 0.0 <= base_col < cols):
-        touching = 1
+        contacts = 1
     else:
-        around = scene.clearance[np.uint32(base_row), np.uint32(base_col)]
-        if around - scene.circumscribed_radius > enough:
-            return float(around - scene.circumscribed_radius)
-        if around < scene.inscribed_radius:
-            touching = 1
+        centre_clearance = scene.clearance[np.uint32(base_row), np.uint32(base_col)]
+        if centre_clearance - scene.circumscribed_radius > exact_below:
+            return float(centre_clearance - scene.circumscribed_radius)
+        if centre_clearance < scene.inscribed_radius:
+            contacts = 1
     c, s = c * cells, s * cells
     margin = scene.circumscribed_radius * cells + 1.0
-    if margin <= base_row < rows - margin and margin <= base_col < cols - margin and touching == 0:
-        room = _least_clearance(scene, base_row, base_col, c, s)
-        if room > 0.0:
-            return float(room)
+    if margin <= base_row < rows - margin and margin <= base_col < cols - margin and contacts == 0:
+        clearance = _least_clearance(scene, base_row, base_col, c, s)
+        if clearance > 0.0:
+            return float(clearance)
     for i in range(scene.outline_xy.shape[0]):
         along, across = scene.outline_xy[i, 0], scene.outline_xy[i, 1]
         row = base_row + s * along + c * across
         col = base_col + c * along - s * across
         if not (0.0 <= row < rows and 0.0 <= col < cols):
-            touching += 1
+            contacts += 1
             continue
-        room = scene.clearance[np.uint32(row), np.uint32(col)]
-        if room == 0.0:
-            touching += 1
+        clearance = scene.clearance[np.uint32(row), np.uint32(col)]
+        if clearance == 0.0:
+            contacts += 1
         else:
-            nearest = min(nearest, room)
-    return float(nearest) if touching == 0 else -float(touching)
+            nearest = min(nearest, clearance)
+    return float(nearest) if contacts == 0 else -float(contacts)
 
 
 @numba.njit(cache=True)
 def _least_clearance(scene, base_row, base_col, c, s):
-    """Of all points of an outline that lies within the window: without a branch, as most touch nothing."""
+    """Least clearance of an outline within the window; free of branches, as most are not in collision."""
     least = np.float32(FAR)
     for i in range(scene.outline_xy.shape[0]):
         along, across = scene.outline_xy[i, 0], scene.outline_xy[i, 1]
@@ -134,15 +174,15 @@ def _least_clearance(scene, base_row, base_col, c, s):
 
 
 @numba.njit(cache=True)
-def room_beside_movers(scene, x, y, seconds, enough):
-    """Metres from the robot's circle to the nearest of what moves, so many seconds from now.
+def dynamic_obstacle_clearance(scene, x, y, seconds, exact_below):
+    """Distance from the robot's circle to the nearest dynamic obstacle ``seconds`` from now [m].
 
-    ``enough``: metres from which on it need not be told how many more those are.
+    At most ``exact_below``.
     """
-    nearest = enough
-    for i in range(scene.movers.shape[0]):
-        mover_x, mover_y, v_x, v_y, radius = scene.movers[i]
-        off_x, off_y = mover_x + seconds * v_x - x, mover_y + seconds * v_y - y
+    nearest = exact_below
+    for i in range(scene.dynamic_obstacles.shape[0]):
+        obstacle_x, obstacle_y, v_x, v_y, radius = scene.dynamic_obstacles[i]
+        off_x, off_y = obstacle_x + seconds * v_x - x, obstacle_y + seconds * v_y - y
         reach = (nearest + radius + scene.circumscribed_radius) * ROUNDING
         if off_x * off_x + off_y * off_y < reach * reach:
             nearest = min(nearest, math.hypot(off_x, off_y) - radius - scene.circumscribed_radius)
@@ -151,7 +191,7 @@ def room_beside_movers(scene, x, y, seconds, enough):
 
 @numba.njit(cache=True)
 def value_at(field, scene, x, y):
-    """A field between the centres of its cells; FAR where it is not known."""
+    """A field's bilinear value at (x, y); FAR where it is unknown."""
     rows, cols = field.shape
     cells = scene.cells_per_metre
     u = (y - scene.origin_y) * cells - 0.5
@@ -169,7 +209,7 @@ def value_at(field, scene, x, y):
 
 @numba.njit(cache=True)
 def _value_of_known(field, row, col, u, w):
-    """The same where some of four cells are not known; ``u``, ``w``: from the first of them on, 0 to 1."""
+    """The same if some of the four cells are unknown; ``u``, ``w``: offsets from the first cell, 0 to 1."""
     total, weight = 0.0, 0.0
     for i in range(2):
         for j in range(2):

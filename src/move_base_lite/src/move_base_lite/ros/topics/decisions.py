@@ -36,7 +36,7 @@ class DecisionTopics:
         self._plan = rospy.Publisher(f"~{global_planner}/plan", Path, queue_size=1)
         self._global_plan = rospy.Publisher(f"~{local}/global_plan", Path, queue_size=1)
         self._local_plan = rospy.Publisher(f"~{local}/local_plan", Path, queue_size=1)
-        self._exploration = DwaCloudTopics(local, odom_frame)
+        self._dwa_clouds = DwaCloudTopics(local, odom_frame)
 
     def command(self, command: Twist2) -> None:
         message = Twist()
@@ -75,8 +75,8 @@ class DecisionTopics:
         self._publish_followed(now, decision.followed_xy)
         if decision.trajectory is not None and self._local_plan.get_num_connections():
             self._local_plan.publish(trajectory_msg(decision.trajectory, now, self._odom_frame))
-        if decision.exploration is not None:
-            self._exploration.publish(now, decision.exploration)
+        if decision.trajectory_samples is not None:
+            self._dwa_clouds.publish(now, decision.trajectory_samples)
         if decision.recovery is not None:
             self._publish_recovery(now, decision.recovery, base_in_map)
         if decision.progress is not None and now >= self._next_feedback:

@@ -4,7 +4,7 @@ import numpy as np
 import rospy
 from sensor_msgs.msg import PointCloud2
 
-from move_base_lite.control import Exploration
+from move_base_lite.control import TrajectorySamples
 from planar_ros.messages.clouds import cloud_msg
 
 TRAJECTORY_FIELDS = ("x", "y", "z", "theta", "cost")
@@ -19,13 +19,13 @@ class DwaCloudTopics:
         self._trajectories = rospy.Publisher(f"~{local_planner}/trajectory_cloud", PointCloud2, queue_size=1)
         self._costs = rospy.Publisher(f"~{local_planner}/cost_cloud", PointCloud2, queue_size=1)
 
-    def publish(self, now: rospy.Time, exploration: Exploration) -> None:
+    def publish(self, now: rospy.Time, samples: TrajectorySamples) -> None:
         """To be called in the period in which it was made."""
-        if exploration.shows_trajectories and self._trajectories.get_num_connections():
-            x, y, *rest = exploration.trajectory_points().T
+        if samples.shows_trajectories and self._trajectories.get_num_connections():
+            x, y, *rest = samples.trajectory_points().T
             columns = (x, y, np.zeros(len(x)), *rest)
             self._trajectories.publish(cloud_msg(columns, TRAJECTORY_FIELDS, now, self._odom_frame))
-        if exploration.shows_costs and self._costs.get_num_connections():
-            x, y, *rest = exploration.cell_costs().T
+        if samples.shows_costs and self._costs.get_num_connections():
+            x, y, *rest = samples.cell_costs().T
             columns = (x, y, np.zeros(len(x)), *rest)
             self._costs.publish(cloud_msg(columns, COST_FIELDS, now, self._odom_frame))

@@ -1,7 +1,11 @@
-"""Which way a robot is to look along a path (global_planner's orientation filter)."""
+"""Headings along a path (global_planner's orientation filter), and what a path costs."""
+
+import math
 
 import numpy as np
 
+from move_base_lite.costmap import INSCRIBED, CostmapWindow
+from move_base_lite.planning.wavefront import FACTOR, NEUTRAL
 from planar import wrap
 
 NONE, FORWARD, INTERPOLATE, FORWARD_THEN_INTERPOLATE, BACKWARD, LEFTWARD, RIGHTWARD = range(7)
@@ -31,3 +35,13 @@ def headings_along(path_xy: np.ndarray, mode: int, start_yaw: float, goal_yaw: f
     if len(yaws):
         yaws[-1] = goal_yaw
     return wrap(yaws)
+
+
+def path_cost(costs: np.ndarray, window: CostmapWindow, path_xy: np.ndarray) -> float:
+    """What navfn would pay for a path (N, 2), in neutral metres; inf where it cannot be driven."""
+    cells = np.floor((path_xy - (window.origin_x, window.origin_y)) / window.resolution).astype(np.int64)
+    below = costs[cells[1:, 1], cells[1:, 0]].astype(float)
+    if (below >= INSCRIBED).any():
+        return math.inf
+    lengths = np.linalg.norm(np.diff(path_xy, axis=0), axis=1)
+    return float((lengths * (1.0 + FACTOR / NEUTRAL * below)).sum())

@@ -1,14 +1,19 @@
-"""Where along the plan the robot is."""
+"""Progress of the robot along its plan."""
 
 import math
 
 import numpy as np
 
+# Stretch of the plan in which the point nearest to the robot is searched [m].
 SEARCH_AHEAD = 1.5
 
 
-class Tracking:
-    """A plan and the robot's progress along it, which never goes back: ``path_xy`` (N, 2), metres."""
+class PathProgress:
+    """A plan and the point of it that the robot has reached, which only moves forward.
+
+    Attributes:
+        path_xy: (N, 2) [m], in the map frame.
+    """
 
     def __init__(self, path_xy: np.ndarray):
         self.path_xy = path_xy
@@ -17,18 +22,19 @@ class Tracking:
         self._index = 0
 
     def advance(self, x: float, y: float) -> None:
-        """Moves on to the nearest point within a stretch ahead."""
+        """Move on to the point nearest to (x, y) within SEARCH_AHEAD."""
         end = int(np.searchsorted(self._travelled, self._travelled[self._index] + SEARCH_AHEAD)) + 1
         ahead = self.path_xy[self._index : end]
         self._index += int(np.argmin((ahead[:, 0] - x) ** 2 + (ahead[:, 1] - y) ** 2))
 
     @property
-    def ahead_xy(self) -> np.ndarray:
-        """What is left of the plan (M, 2), at least its last point."""
+    def remaining_xy(self) -> np.ndarray:
+        """The rest of the plan (M, 2), at least its last point."""
         return self.path_xy[self._index :]
 
     @property
     def distance_left(self) -> float:
+        """Length of the rest of the plan [m]."""
         return float(self._travelled[-1] - self._travelled[self._index])
 
     def heading_error(self, x: float, y: float, yaw: float, lookahead: float) -> float:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from move_base_lite.check import rooms
+from move_base_lite.check import maps
 from move_base_lite.control import Plan
 from move_base_lite.control.mppi.scene import scene_of
 from move_base_lite.costmap import INSCRIBED, CostmapSettings, LayeredCostmap
@@ -26,23 +26,25 @@ START_XY = (0.75, 2.75)
 
 @pytest.fixture
 def walled(monkeypatch):
-    monkeypatch.setitem(rooms.PICTURES, "around_wall", AROUND_WALL)
-    return rooms.room_of("around_wall")
+    monkeypatch.setitem(maps.PICTURES, "around_wall", AROUND_WALL)
+    return maps.check_map("around_wall")
 
 
-def scene_in(room, whole, map_in_local, heeds_remembered=True):
+def scene_in(room, global_costmap, map_in_local, use_global_costmap=True):
     """At the start, driving on a costmap in which there is nothing; and that costmap's window."""
     nothing = OccupancyGrid(np.zeros((400, 400), np.int8), 0.05, Pose2(-10.0, -10.0, 0.0))
-    near = LayeredCostmap(CostmapSettings(static=StaticSettings(), robot_radius=rooms.RADIUS), nothing)
+    near = LayeredCostmap(CostmapSettings(static=StaticSettings(), robot_radius=maps.RADIUS), nothing)
     base = Pose2(*room.start_xy, 0.0)
-    situation = replace(rooms.situation_of(near, map_in_local @ base), base_in_map=base, whole=whole)
-    path_xy = map_in_local.transform_points(rooms.plan_in(room))
-    return scene_of(situation, Plan(path_xy, 6.0), heeds_remembered), near.window
+    context = replace(
+        maps.context_of(near, map_in_local @ base), base_in_map=base, global_costmap=global_costmap
+    )
+    path_xy = map_in_local.transform_points(maps.plan_in(room))
+    return scene_of(context, Plan(path_xy, 6.0), use_global_costmap), near.window
 
 
-def metres_to_go(room, whole, map_in_local, from_xy=START_XY):
+def metres_to_go(room, global_costmap, map_in_local, from_xy=START_XY):
     """To the goal."""
-    scene, window = scene_in(room, whole, map_in_local)
+    scene, window = scene_in(room, global_costmap, map_in_local)
     return scene.to_go[window.cell_of(*map_in_local.transform_points(np.array([from_xy]))[0])]
 
 
@@ -66,8 +68,8 @@ def test_nothing_comes_near_to_a_wall_that_only_the_plan_knows(walled, map_in_lo
 
 
 def test_unless_asked_to_a_robot_goes_by_what_its_sensors_see(walled):
-    scene, _ = scene_in(walled, walled.costmap, Pose2(), heeds_remembered=False)
-    bare, _ = scene_in(walled, nothing_known(walled), Pose2(), heeds_remembered=False)
+    scene, _ = scene_in(walled, walled.costmap, Pose2(), use_global_costmap=False)
+    bare, _ = scene_in(walled, nothing_known(walled), Pose2(), use_global_costmap=False)
     np.testing.assert_array_equal(scene.clearance, bare.clearance)
     np.testing.assert_array_equal(scene.to_go, bare.to_go)
 

@@ -1,11 +1,11 @@
-"""What the dynamic window approach tried in a control period: to choose from, and for people to look at."""
+"""The trajectories that the dynamic window approach evaluated in a control period."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from move_base_lite.control.dwa.arcs import arc
-from move_base_lite.control.dwa.critics import Scene, Ways
+from move_base_lite.control.dwa.critics import ArcSampling, DwaScene
 from move_base_lite.control.dwa.map_grid import UNREACHABLE
 from move_base_lite.control.dwa.settings import DwaSettings
 from move_base_lite.control.local_planner import Trajectory
@@ -15,18 +15,24 @@ from planar import Twist2
 
 
 @dataclass(frozen=True, eq=False)
-class Attempts:
-    """An Exploration: velocities (N, 2), their scores (N,), inf if they must not be driven.
+class DwaTrajectorySamples:
+    """TrajectorySamples of DWA.
 
-    ``ways``: how each was followed; ``scene``: what it was judged by, whose costs go on changing.
+    Attributes:
+        settings: The planner's settings.
+        sampling: How each velocity was simulated.
+        velocities: (N, 2) of v, omega [m/s, rad/s].
+        scores: (N,), inf for an invalid trajectory.
+        window: CostmapWindow of the local costmap.
+        scene: The grids that the trajectories were scored on; its costs change with the costmap.
     """
 
     settings: DwaSettings
-    ways: Ways
+    sampling: ArcSampling
     velocities: np.ndarray
     scores: np.ndarray
     window: CostmapWindow
-    scene: Scene
+    scene: DwaScene
 
     @property
     def shows_trajectories(self) -> bool:
@@ -37,7 +43,7 @@ class Attempts:
         return self.settings.publish_cost_grid_pc
 
     def best(self) -> Trajectory:
-        """The cheapest. Raises ControlError if none may be driven."""
+        """The trajectory with the lowest score. Raises ControlError if none is valid."""
         if not np.isfinite(self.scores).any():
             raise ControlError("every velocity within reach leads into an obstacle", self)
         best = int(np.argmin(self.scores))
@@ -46,7 +52,7 @@ class Attempts:
         return Trajectory(command, self._poses(best), float(self.scores[best]), self)
 
     def trajectory_points(self) -> np.ndarray:
-        """Points (M, 4) of all trajectories that may be driven: x, y, yaw, score."""
+        """Points (M, 4) of all valid trajectories: x, y, yaw, score."""
         points = [np.empty((0, 4))]
         for i in np.flatnonzero(np.isfinite(self.scores)):
             poses = self._poses(int(i))
@@ -54,19 +60,21 @@ class Attempts:
         return np.concatenate(points)
 
     def cell_costs(self) -> np.ndarray:
-        """Cells (M, 6) that can be driven to: x, y, cells to plan and to its end, cost, all three weighed."""
+        """Reachable cells (M, 6): x, y, cells to the plan, cells to its end, cost, weighted sum."""
         window, settings, scene = self.window, self.settings, self.scene
-        is_reached = np.maximum(scene.from_path, scene.from_goal) < UNREACHABLE
+        is_reached = np.maximum(scene.path_map, scene.goal_map) < UNREACHABLE
         rows, cols = np.nonzero(is_reached & (scene.costs < INSCRIBED))
-        to_path, to_goal = scene.from_path[rows, cols], scene.from_goal[rows, cols]
+        to_path, to_goal = scene.path_map[rows, cols], scene.goal_map[rows, cols]
         cost = scene.costs[rows, cols].astype(float)
-        way = settings.path_distance_bias * to_path + settings.goal_distance_bias * to_goal
-        total = window.resolution * way + settings.occdist_scale * cost
+        distance = settings.path_distance_bias * to_path + settings.goal_distance_bias * to_goal
+        total = window.resolution * distance + settings.occdist_scale * cost
         x = window.origin_x + (cols + 0.5) * window.resolution
         y = window.origin_y + (rows + 0.5) * window.resolution
         return np.column_stack((x, y, to_path, to_goal, cost, total))
 
-    def _poses(self, number: int) -> np.ndarray:
-        v, omega = self.velocities[number]
-        ways = self.ways
-        return arc(ways.start, v, omega, ways.seconds, ways.granularity, ways.angular_granularity)
+    def _poses(self, index: int) -> np.ndarray:
+        v, omega = self.velocities[index]
+        sampling = self.sampling
+        return arc(
+            sampling.start, v, omega, sampling.seconds, sampling.granularity, sampling.angular_granularity
+        )

@@ -14,16 +14,16 @@ class Faulty:
     def __init__(self, settings, period):
         self.calls = 0
 
-    def follow(self, situation, plan, limits):
+    def follow(self, context, plan, limits):
         self.calls += 1
-        return self.answer(situation, plan, Twist2())
+        return self.answer(context, plan, Twist2())
 
-    def answer(self, situation, plan, command):
-        return Trajectory(command, situation.base_in_local.as_array()[None, :], 0.0)
+    def answer(self, context, plan, command):
+        return Trajectory(command, context.base_in_local.as_array()[None, :], 0.0)
 
 
 class Raises(Faulty):
-    def answer(self, situation, plan, command):
+    def answer(self, context, plan, command):
         raise ZeroDivisionError("division by zero")
 
 
@@ -33,31 +33,31 @@ class RaisesWhenMade(Faulty):
 
 
 class AnswersNan(Faulty):
-    def answer(self, situation, plan, command):
-        return super().answer(situation, plan, Twist2(np.nan, 0.0))
+    def answer(self, context, plan, command):
+        return super().answer(context, plan, Twist2(np.nan, 0.0))
 
 
 class AnswersNothing(Faulty):
-    def answer(self, situation, plan, command):
+    def answer(self, context, plan, command):
         return None
 
 
 class Rushes(Faulty):
-    def answer(self, situation, plan, command):
-        return super().answer(situation, plan, Twist2(100.0, 0.0))
+    def answer(self, context, plan, command):
+        return super().answer(context, plan, Twist2(100.0, 0.0))
 
 
 class Scribbles(Faulty):
-    def answer(self, situation, plan, command):
-        situation.costmap.costs[:] = 0
-        return super().answer(situation, plan, command)
+    def answer(self, context, plan, command):
+        context.costmap.costs[:] = 0
+        return super().answer(context, plan, command)
 
 
 class Dawdles(Faulty):
-    def answer(self, situation, plan, command):
+    def answer(self, context, plan, command):
         if self.calls > 1:
             time.sleep(1.2)
-        return super().answer(situation, plan, command)
+        return super().answer(context, plan, command)
 
 
 class NoFollow:
@@ -69,7 +69,7 @@ class FollowsLess:
     def __init__(self, settings, period):
         pass
 
-    def follow(self, situation):
+    def follow(self, context):
         pass
 
 

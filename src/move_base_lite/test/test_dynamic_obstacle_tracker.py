@@ -1,4 +1,4 @@
-"""Movers are found with their velocity; what stands still is none, however the robot moves."""
+"""Dynamic obstacles are tracked with their velocity; static ones never are, however the robot moves."""
 
 import math
 
@@ -7,25 +7,25 @@ import pytest
 from robot_in_picture import PERSON_RADIUS, room, scan_with_people, two_rooms, with_block
 
 from move_base_lite.costmap import observation_from_scan
-from move_base_lite.people import Lookout, Movers
+from move_base_lite.dynamic_obstacles import DynamicObstacleTracker, TrackerSettings
 from planar import Pose2
 from planar.geometry.ray_casting import cast_rays
 
 PERIOD = 0.1
 
 
-def watch(grid, base_at, person_at, seconds, seed=0, radius=PERSON_RADIUS, lookout=Lookout()):
+def watch(grid, base_at, person_at, seconds, seed=0, radius=PERSON_RADIUS, settings=TrackerSettings()):
     """[(stamp, rows)]: what a robot at ``base_at(t)`` finds moving while a person is at ``person_at(t)``,
     or several are.
     """
-    rng, movers, found = np.random.default_rng(seed), Movers(), []
+    rng, tracker, found = np.random.default_rng(seed), DynamicObstacleTracker(), []
     for step in range(round(seconds / PERIOD)):
         stamp = step * PERIOD
         base, person = base_at(stamp), person_at(stamp)
         people = person if isinstance(person, list) else [person] if person else []
         scan = scan_with_people(grid, base, stamp, people, rng, radius)
-        movers.look(base, observation_from_scan("scan", scan), lookout)
-        found.append((stamp, movers.at(stamp)))
+        tracker.update(base, observation_from_scan("scan", scan), settings)
+        found.append((stamp, tracker.obstacles_at(stamp)))
     return found
 
 
@@ -72,14 +72,14 @@ def test_what_passes_close_by_is_as_wide_as_from_afar():
 def test_posts_that_hide_each_other_do_not_move():
     rng = np.random.default_rng(5)
     posts = [xy for xy in rng.uniform((1.0, 0.5), (11.0, 7.5), (90, 2)) if abs(xy[1] - 4.0) > 0.6]
-    lookout = Lookout(9.0, True)
+    settings = TrackerSettings(9.0, True)
     found = watch(
         room(12.0, 8.0),
         lambda t: Pose2(1.0 + 1.5 * t, 4.0),
         lambda t: posts,
         5.0,
         radius=0.08,
-        lookout=lookout,
+        settings=settings,
     )
     moving = [len(rows) for _, rows in found]
     print(f"{np.mean(moving):.2f} a look")
@@ -109,7 +109,7 @@ def test_who_comes_out_from_behind_somebody_is_seen_to_move_if_all_is_watched(se
         3.0,
         seed,
         0.4,
-        Lookout(9.0, watches_all=True),
+        TrackerSettings(9.0, track_appearing=True),
     )
     assert min(t for t, rows in found if nearest_to(rows, hidden_at(t)) < 0.3) <= 2.0
 
@@ -118,8 +118,8 @@ def test_who_is_far_off_is_found_within_the_reach_that_is_asked_for():
     def person_at(t):
         return 7.0, 1.0 + 0.8 * t
 
-    for lookout, is_found in ((Lookout(), False), (Lookout(9.0), True)):
-        found = watch(room(9.0, 5.0), lambda t: Pose2(1.0, 2.0), person_at, 2.5, 0, 0.4, lookout)
+    for settings, is_found in ((TrackerSettings(), False), (TrackerSettings(9.0), True)):
+        found = watch(room(9.0, 5.0), lambda t: Pose2(1.0, 2.0), person_at, 2.5, 0, 0.4, settings)
         assert any(len(rows) for _, rows in found) == is_found
 
 
@@ -168,28 +168,33 @@ def test_a_person_who_has_stopped_is_no_mover_any_more():
 
 
 def test_a_jump_back_of_time_forgets_everybody():
-    movers, rng = Movers(), np.random.default_rng(0)
+    tracker, rng = DynamicObstacleTracker(), np.random.default_rng(0)
     for step in range(20):
         scan = scan_with_people(
             room(8.0, 4.0), Pose2(1.0, 2.0), step * PERIOD, [(3.0, 1.0 + 0.06 * step)], rng
         )
-        movers.look(Pose2(1.0, 2.0), observation_from_scan("scan", scan))
-    assert len(movers.at(2.0)) == 1
-    movers.look(
+        tracker.update(Pose2(1.0, 2.0), observation_from_scan("scan", scan))
+    assert len(tracker.obstacles_at(2.0)) == 1
+    tracker.update(
         Pose2(1.0, 2.0),
         observation_from_scan("scan", scan_with_people(room(8.0, 4.0), Pose2(1.0, 2.0), 0.0, [], rng)),
     )
-    assert len(movers.at(0.0)) == 0
+    assert len(tracker.obstacles_at(0.0)) == 0
 
 
 def test_who_walks_or_has_just_stopped_is_left_out_of_what_lasts():
-    movers, rng, grid, base = Movers(), np.random.default_rng(0), room(8.0, 4.0), Pose2(1.0, 2.0)
+    tracker, rng, grid, base = (
+        DynamicObstacleTracker(),
+        np.random.default_rng(0),
+        room(8.0, 4.0),
+        Pose2(1.0, 2.0),
+    )
     for step in range(80):
         person_xy = (3.0, 1.0 + 0.06 * min(step, 20))
         observation = observation_from_scan(
             "scan", scan_with_people(grid, base, step * PERIOD, [person_xy], rng)
         )
-        gone = np.isnan(movers.look(base, observation).ranges)
+        gone = np.isnan(tracker.update(base, observation).ranges)
         on_person = (
             observation.ranges < cast_rays(grid, base, observation.angles, observation.range_max) - 0.1
         )

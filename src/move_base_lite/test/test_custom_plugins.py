@@ -43,11 +43,14 @@ def test_a_global_planner_is_chosen_by_its_dotted_name():
     [
         ("no_such.module/Planner", "there is no module no_such on Python's path"),
         ("planar.errors/Planner", "there is no Planner in "),
-        ("planar.errors/PlanarError", "is no local planner: it has no follow(situation, plan, limits)"),
-        ("own.faulty/NoFollow", "it has no follow(situation, plan, limits)"),
-        ("own.faulty/FollowsLess", "it cannot be called as follow(situation, plan, limits)"),
-        ("own.faulty/StrangeSettings", "its Settings are no dataclass derived from ControllerSettings"),
-        ("own.broken/Planner", "own.broken fails with RuntimeError: no GPU"),
+        ("planar.errors/PlanarError", "is no local planner: it has no follow(context, plan, limits)"),
+        ("custom_plugins.faulty/NoFollow", "it has no follow(context, plan, limits)"),
+        ("custom_plugins.faulty/FollowsLess", "it cannot be called as follow(context, plan, limits)"),
+        (
+            "custom_plugins.faulty/StrangeSettings",
+            "its Settings are no dataclass derived from ControllerSettings",
+        ),
+        ("custom_plugins.broken/Planner", "custom_plugins.broken fails with RuntimeError: no GPU"),
     ],
 )
 def test_what_cannot_be_used_is_refused_with_what_it_lacks(name, reason):
@@ -70,14 +73,18 @@ def test_what_cannot_be_used_is_refused_with_what_it_lacks(name, reason):
     ],
 )
 def test_a_faulty_local_planner_is_named_and_the_goal_given_up_at_a_standstill(name, fault):
-    robot, decisions = drive(base_local_planner=f"own.faulty/{name}", recovery_behavior_enabled=False)
+    robot, decisions = drive(
+        base_local_planner=f"custom_plugins.faulty/{name}", recovery_behavior_enabled=False
+    )
     assert decisions[-1].status is Status.ABORTED
-    assert f"[code=PLUGIN_FAILED: own.faulty/{name} {fault}" in decisions[-1].text
+    assert f"[code=PLUGIN_FAILED: custom_plugins.faulty/{name} {fault}" in decisions[-1].text
     assert robot.pose == Pose2(0.6, 0.6)
 
 
 def test_the_costs_that_a_local_planner_scribbled_over_are_put_right():
-    settings, _ = settings_from_parameters(parameters_with(base_local_planner="own.faulty/Scribbles"))
+    settings, _ = settings_from_parameters(
+        parameters_with(base_local_planner="custom_plugins.faulty/Scribbles")
+    )
     robot, navigator = Robot(GRID, Pose2(0.6, 0.6)), Navigator(settings, GRID)
     navigator.set_goal(Pose2(5.4, 3.4, 1.0))
     for _ in range(5):
@@ -86,36 +93,44 @@ def test_the_costs_that_a_local_planner_scribbled_over_are_put_right():
 
 
 def test_a_faulty_global_planner_is_named():
-    _, decisions = drive(base_global_planner="own.faulty/BadPlan", recovery_behavior_enabled=False)
-    assert "[code=PLUGIN_FAILED: own.faulty/BadPlan gave a path that is not finite]" in decisions[-1].text
+    _, decisions = drive(base_global_planner="custom_plugins.faulty/BadPlan", recovery_behavior_enabled=False)
+    assert (
+        "[code=PLUGIN_FAILED: custom_plugins.faulty/BadPlan gave a path that is not finite]"
+        in decisions[-1].text
+    )
 
 
 def test_a_faulty_recovery_behaviour_is_passed_over():
-    behaviors = [{"name": "mine", "type": "own.faulty/BadRecovery"}]
+    behaviors = [{"name": "mine", "type": "custom_plugins.faulty/BadRecovery"}]
     _, decisions = drive(two_rooms(door=0.0), recovery_behaviors=behaviors)
-    assert any(decision.text.startswith("own.faulty/BadRecovery raised KeyError") for decision in decisions)
+    assert any(
+        decision.text.startswith("custom_plugins.faulty/BadRecovery raised KeyError")
+        for decision in decisions
+    )
     assert decisions[-1].status is Status.ABORTED
 
 
 def test_no_goal_is_pursued_while_a_layer_fails_and_the_robot_stands():
     parameters = parameters_with()
-    parameters["local_costmap"]["plugins"].append({"name": "mine", "type": "own.faulty/BadLayer"})
+    parameters["local_costmap"]["plugins"].append({"name": "mine", "type": "custom_plugins.faulty/BadLayer"})
     settings, _ = settings_from_parameters(parameters)
     robot, navigator = Robot(GRID, Pose2(0.6, 0.6)), Navigator(settings, GRID)
     navigator.set_goal(Pose2(5.4, 3.4, 1.0))
     decisions = drive_to_end(robot, navigator)
     assert decisions[-1].status is Status.ABORTED
-    assert "own.faulty/BadLayer raised IndexError: index 400 is out of bounds" in decisions[-1].text
-    assert robot.tick(navigator).text.startswith("own.faulty/BadLayer raised IndexError")
+    assert (
+        "custom_plugins.faulty/BadLayer raised IndexError: index 400 is out of bounds" in decisions[-1].text
+    )
+    assert robot.tick(navigator).text.startswith("custom_plugins.faulty/BadLayer raised IndexError")
 
 
 def test_the_check_says_what_a_plugin_does_not_do(capsys):
-    assert run_checks("move_base_lite", KITS, ["own.faulty/Rushes"]) == 1
+    assert run_checks("move_base_lite", KITS, ["custom_plugins.faulty/Rushes"]) == 1
     printed = capsys.readouterr().out
     assert "FAIL  It reaches the goal and stops there without a collision" in printed
-    assert "own.faulty/Rushes: 0 of 6 checks passed" in printed
+    assert "custom_plugins.faulty/Rushes: 0 of 6 checks passed" in printed
 
 
 def test_the_check_refuses_what_is_no_plugin(capsys):
-    assert run_checks("move_base_lite", KITS, ["own.faulty/NoFollow"]) == 2
-    assert "is no local planner: it has no follow(situation, plan, limits)" in capsys.readouterr().err
+    assert run_checks("move_base_lite", KITS, ["custom_plugins.faulty/NoFollow"]) == 2
+    assert "is no local planner: it has no follow(context, plan, limits)" in capsys.readouterr().err

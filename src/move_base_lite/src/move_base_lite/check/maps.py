@@ -6,11 +6,11 @@ from typing import Any, List, Tuple
 
 import numpy as np
 
-from move_base_lite.control import Controller, Situation
+from move_base_lite.control import ControlContext, Controller
 from move_base_lite.costmap import CostmapSettings, LayeredCostmap
 from move_base_lite.costmap.layers.inflation import InflationSettings
 from move_base_lite.costmap.layers.static import StaticSettings
-from move_base_lite.people import NO_MOVERS
+from move_base_lite.dynamic_obstacles import NO_DYNAMIC_OBSTACLES
 from move_base_lite.planning import Navfn, NavfnSettings
 from move_base_lite.plugin import Plugin
 from planar import Pose2, Twist2, grid_from_picture
@@ -56,7 +56,7 @@ ANYWHERE = Twist2(math.inf, math.inf)
 
 
 @dataclass(frozen=True)
-class Room:
+class CheckMap:
     """A costmap with a start and a goal, metres in its frame."""
 
     costmap: LayeredCostmap
@@ -64,7 +64,7 @@ class Room:
     goal_xy: Tuple[float, float]
 
 
-def room_of(name: str) -> Room:
+def check_map(name: str) -> CheckMap:
     """The picture of that name in cells of 0.05 m."""
     picture = PICTURES[name].strip()
     coarse = grid_from_picture(picture.replace("S", ".").replace("G", "."), CELL)
@@ -76,7 +76,7 @@ def room_of(name: str) -> Room:
         robot_radius=RADIUS,
         inflation=InflationSettings(inflation_radius=0.5, cost_scaling_factor=5.0),
     )
-    return Room(LayeredCostmap(settings, grid), _centre_of("S", picture), _centre_of("G", picture))
+    return CheckMap(LayeredCostmap(settings, grid), _centre_of("S", picture), _centre_of("G", picture))
 
 
 def _centre_of(mark: str, picture: str) -> Tuple[float, float]:
@@ -86,17 +86,17 @@ def _centre_of(mark: str, picture: str) -> Tuple[float, float]:
     raise ValueError(f"a picture without {mark}")
 
 
-def situation_of(costmap: LayeredCostmap, pose: Pose2, twist: Twist2 = Twist2()) -> Situation:
-    return Situation(pose, pose, twist, costmap, NO_MOVERS, costmap)
+def context_of(costmap: LayeredCostmap, pose: Pose2, twist: Twist2 = Twist2()) -> ControlContext:
+    return ControlContext(pose, pose, twist, costmap, NO_DYNAMIC_OBSTACLES, costmap)
 
 
-def plan_in(room: Room) -> np.ndarray:
+def plan_in(room: CheckMap) -> np.ndarray:
     """Navfn's path (N, 2) from start to goal."""
     costs, window = room.costmap.costs, room.costmap.window
     return Navfn(NavfnSettings()).plan(costs, window, room.start_xy, room.goal_xy)
 
 
-def drive(plugin: Plugin[Any], room: Room, seconds: float = 40.0) -> List[Pose2]:
+def drive(plugin: Plugin[Any], room: CheckMap, seconds: float = 40.0) -> List[Pose2]:
     """The poses of a robot that does at once what a local planner says, until it stands at the goal."""
     settings = plugin.settings()
     controller = Controller(settings, PERIOD, plugin.make(settings, PERIOD))
@@ -106,7 +106,7 @@ def drive(plugin: Plugin[Any], room: Room, seconds: float = 40.0) -> List[Pose2]
         poses.append(pose)
         if controller.is_goal_reached(pose, twist):
             return poses
-        twist = controller.control(situation_of(room.costmap, pose, twist), ANYWHERE).command
+        twist = controller.control(context_of(room.costmap, pose, twist), ANYWHERE).command
         pose = moved(pose, twist)
     raise CheckFailed(f"not at the goal after {seconds:g} s, but at ({pose.x:.2f}, {pose.y:.2f})")
 

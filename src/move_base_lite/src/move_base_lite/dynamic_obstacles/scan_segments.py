@@ -1,4 +1,4 @@
-"""What a laser sees from a place: how far it was free, and things narrow enough to be somebody."""
+"""Segments of a laser scan: groups of neighbouring points that are narrow enough for a person."""
 
 import math
 from typing import List, NamedTuple
@@ -9,72 +9,90 @@ import numpy as np
 from move_base_lite.costmap import Observation
 from planar import Pose2
 
-# Metres between beams of two things, and from corner to corner of what a laser sees of one: a person, a cart,
-# another robot.
-GAP, WIDEST = 0.25, 1.5
-FEWEST_BEAMS = 3
+# Gap between the points of two segments, and the widest segment: a person, a cart, another robot [m].
+SEGMENT_GAP, MAX_SEGMENT_WIDTH = 0.25, 1.5
+MIN_SEGMENT_BEAMS = 3
 FITTING_STEPS = 3
-# Metres behind the hull of neighbouring beams from which on two things meet there.
-HOLLOW = 0.15
-# Metres by which a beam must have gone beyond a place that was free.
-BEYOND = 0.12
+# Depth behind the convex hull of neighbouring points at which a segment is split [m].
+MIN_CONCAVITY = 0.15
+# Distance by which a beam must have passed a point for that to count as free [m].
+FREE_MARGIN = 0.12
+# Sectors of the free range around the sensor.
 DIRECTIONS = 180
-# Of half the angle that a thing fills, from which on it shows whether it is round; the share of a circle's
-# depth that is enough.
-LEAST_SINE, ROUND = 0.2, 0.5
+# Of a round object: least sine of half the angle it subtends, and least share of a circle's depth.
+MIN_SINE, MIN_ROUNDNESS = 0.2, 0.5
 
 
-class View:
-    """A sighting from where it was made: its ends within ``reach``, m, by angle, and how far it was free."""
+class ScanSnapshot:
+    """A scan in the odom frame.
 
-    def __init__(self, sensor_in_odom: Pose2, observation: Observation, reach: float):
+    Attributes:
+        sensor_in_odom: Pose of the sensor.
+        stamp: Stamp of the scan [s].
+        segments: The segments of the scan.
+        beams: (N,) indices of the beams that end within the range, by angle.
+        points_xy: (N, 2) where they end, in the odom frame [m].
+    """
+
+    def __init__(self, sensor_in_odom: Pose2, observation: Observation, max_range: float):
         self.sensor_in_odom, self.stamp = sensor_in_odom, observation.stamp
-        self.things: List[Thing] = []
+        self.segments: List[ScanSegment] = []
         at, ranges = sensor_in_odom, np.asarray(observation.ranges, dtype=float)
-        limits = (observation.range_min, observation.range_max, reach)
-        self.beams, self.points_xy, self._free = _seen(
+        limits = (observation.range_min, observation.range_max, max_range)
+        self.beams, self.points_xy, self._free = _project(
             observation.angles, ranges, limits, (at.x, at.y, at.yaw)
         )
 
-    def share_seen_through(self, points_xy: np.ndarray) -> float:
-        """Which share of points (N, 2) lay in the free then."""
+    def free_share(self, points_xy: np.ndarray) -> float:
+        """Share of the points (N, 2) that lie in the free space of this scan."""
         at = self.sensor_in_odom
         return float(_share_free(points_xy, at.x, at.y, at.yaw, self._free))
 
 
-class Thing(NamedTuple):
-    """Neighbouring beams, ``points_xy`` (N, 2), that end on one thing; its middle lies its radius behind the
-    nearest."""
+class ScanSegment(NamedTuple):
+    """Neighbouring points that may be one object.
+
+    Attributes:
+        points_xy: (N, 2) in the odom frame [m].
+        centre_xy: (2,), one radius behind the nearest point as seen from the sensor.
+        radius: Of the object [m].
+    """
 
     points_xy: np.ndarray
-    middle_xy: np.ndarray
+    centre_xy: np.ndarray
     radius: float
 
 
-def middle_of(points_xy: np.ndarray, expected_xy: np.ndarray, radius: float, prior: float) -> np.ndarray:
-    """The middle (2,) of a thing of which points (N, 2) are seen, perhaps of one side of it alone.
+def fitted_centre(points_xy: np.ndarray, expected_xy: np.ndarray, radius: float, prior: float) -> np.ndarray:
+    """Fit a circle of known radius to points, perhaps of one side of the object only.
 
-    The circle of that radius that fits them best, by least squares; ``prior``: what a metre off where it is
-    ``expected_xy`` weighs beside one of a point.
+    Args:
+        points_xy: (N, 2) [m].
+        expected_xy: (2,) predicted centre.
+        radius: Of the circle [m].
+        prior: Weight of the prediction relative to one point.
+
+    Returns:
+        The centre (2,) of the least-squares circle.
     """
     return _fitted(points_xy, expected_xy, radius, prior)
 
 
-def things_in(view: View) -> List[Thing]:
-    """What is narrow enough to be somebody, of a view; the first and the last beam may be of the same."""
-    if len(view.points_xy) < FEWEST_BEAMS:
+def segments_of(snapshot: ScanSnapshot) -> List[ScanSegment]:
+    """Segments of a snapshot; one may span the first and the last beam."""
+    if len(snapshot.points_xy) < MIN_SEGMENT_BEAMS:
         return []
-    first, groups, middles = _groups(view.points_xy, view.sensor_in_odom.x, view.sensor_in_odom.y)
-    points_xy = np.concatenate((view.points_xy[first:], view.points_xy[:first]))
+    first, groups, centres = _groups(snapshot.points_xy, snapshot.sensor_in_odom.x, snapshot.sensor_in_odom.y)
+    points_xy = np.concatenate((snapshot.points_xy[first:], snapshot.points_xy[:first]))
     return [
-        Thing(points_xy[int(start) : int(end)], middle[:2], float(middle[2]))
-        for (start, end), middle in zip(groups, middles)
+        ScanSegment(points_xy[int(start) : int(end)], centre[:2], float(centre[2]))
+        for (start, end), centre in zip(groups, centres)
     ]
 
 
 @numba.njit(cache=True)
 def _fitted(points_xy, expected_xy, radius, prior):
-    """Gauss-Newton, from where it is expected."""
+    """Gauss-Newton from the predicted centre."""
     x, y = expected_xy
     for _ in range(FITTING_STEPS):
         xx = yy = prior
@@ -93,12 +111,13 @@ def _fitted(points_xy, expected_xy, radius, prior):
 
 
 @numba.njit(cache=True)
-def _seen(angles, ranges, limits, place):
-    """The beams that end within reach by angle, (N,), where, (N, 2), and how far it was free, (DIRECTIONS,).
+def _project(angles, ranges, limits, place):
+    """Project the beams that end within range into the odom frame.
 
-    ``limits``: the laser's and the reach, ``place``: its x, y and yaw.
+    ``limits``: range_min, range_max of the sensor and the maximum range; ``place``: x, y, yaw of the sensor.
+    Returns the beams (N,) by angle, their end points (N, 2) and the free range (DIRECTIONS,).
     """
-    near, free = _near_and_free(angles, ranges, limits)
+    near, free = _beams_and_free_ranges(angles, ranges, limits)
     beams = near
     for i in range(1, near.size):
         if angles[near[i]] < angles[near[i - 1]]:
@@ -116,15 +135,15 @@ def _seen(angles, ranges, limits, place):
 
 
 @numba.njit(cache=True)
-def _near_and_free(angles, ranges, limits):
-    """The beams that end within reach, and how far it was free, (DIRECTIONS,)."""
-    range_min, range_max, reach = limits
+def _beams_and_free_ranges(angles, ranges, limits):
+    """The beams that end within range, and the free range by direction, (DIRECTIONS,)."""
+    range_min, range_max, max_range = limits
     near, count = np.empty(ranges.size, dtype=np.int64), 0
     free = np.full(DIRECTIONS, np.inf)
     for i in range(ranges.size):
         far = ranges[i]
         is_hit = np.isfinite(far) and range_min <= far < range_max
-        if is_hit and far < reach:
+        if is_hit and far < max_range:
             near[count] = i
             count += 1
         if not is_hit:
@@ -139,12 +158,12 @@ def _near_and_free(angles, ranges, limits):
 
 @numba.njit(cache=True)
 def _share_free(points_xy, x, y, yaw, free):
-    """Which share of the points lies nearer to a place than it was free from there."""
+    """Share of the points that are nearer to the sensor than the free range."""
     count = 0
     for i in range(points_xy.shape[0]):
         off_x, off_y = points_xy[i, 0] - x, points_xy[i, 1] - y
         direction = _direction_of(math.atan2(off_y, off_x) - yaw)
-        count += math.hypot(off_x, off_y) + BEYOND < free[direction]
+        count += math.hypot(off_x, off_y) + FREE_MARGIN < free[direction]
     return count / points_xy.shape[0]
 
 
@@ -155,35 +174,37 @@ def _direction_of(angle):
 
 @numba.njit(cache=True)
 def _groups(points_xy, x, y):
-    """The first point after a gap; from there on, where each narrow group starts and ends, (M, 2), and the x,
-    y of its middle and its radius, (M, 3); as seen from (x, y)."""
+    """Split the scan into narrow groups of points.
+
+    Returns the first point after a gap; from there on, start and end of each group (M, 2), and its centre and
+    radius (M, 3), as seen from (x, y).
+    """
     size = points_xy.shape[0]
-    groups, middles = np.empty((size, 2), dtype=np.int64), np.empty((size, 3))
+    groups, centres = np.empty((size, 2), dtype=np.int64), np.empty((size, 3))
     first = 0
-    while first < size and _apart(points_xy, first) <= GAP:
+    while first < size and _gap_before(points_xy, first) <= SEGMENT_GAP:
         first += 1
     start, count = 0, 0
     for end in range(1, size + 1 if first < size else 0):
-        if end < size and _apart(points_xy, (first + end) % size) <= GAP:
+        if end < size and _gap_before(points_xy, (first + end) % size) <= SEGMENT_GAP:
             continue
         cuts, pieces = _cuts(points_xy, first + start, first + end)
         for piece in range(pieces):
             from_, to = cuts[piece], cuts[piece + 1]
             width = _width(points_xy, from_, to)
-            if to - from_ >= FEWEST_BEAMS and width <= WIDEST:
-                middles[count] = _middle(points_xy, from_, to, x, y, width)
+            if to - from_ >= MIN_SEGMENT_BEAMS and width <= MAX_SEGMENT_WIDTH:
+                centres[count] = _centre_and_radius(points_xy, from_, to, x, y, width)
                 groups[count] = from_ - first, to - first
                 count += 1
         start = end
-    return first, groups[:count], middles[:count]
+    return first, groups[:count], centres[:count]
 
 
 @numba.njit(cache=True)
 def _cuts(points_xy, start, end):
-    """Where neighbouring points are to be parted, since two things meet there: (M + 1,), from ``start`` to
-    ``end``, and M.
+    """Split a run of points at its concavities: (M + 1,) cuts from ``start`` to ``end``, and M.
 
-    Things bulge towards who sees them, so that what lies far behind the hull is where one ends.
+    Objects are convex towards the sensor, so a point far behind the hull separates two objects.
     """
     hull, size = np.empty(end - start, dtype=np.int64), 0
     for i in range(start, end):
@@ -194,7 +215,7 @@ def _cuts(points_xy, start, end):
     cuts, count = np.empty(size + 1, dtype=np.int64), 1
     cuts[0] = start
     for edge in range(size - 1):
-        deepest, depth = 0, HOLLOW
+        deepest, depth = 0, MIN_CONCAVITY
         for i in range(hull[edge] + 1, hull[edge + 1]):
             behind = -_ahead(points_xy, hull[edge], hull[edge + 1], i)
             if behind > depth:
@@ -208,7 +229,7 @@ def _cuts(points_xy, start, end):
 
 @numba.njit(cache=True)
 def _ahead(points_xy, a, b, i):
-    """How far, metres, a point lies before the line through two others, as seen from where all were seen."""
+    """Distance of point ``i`` in front of the line through ``a`` and ``b``, as seen from the sensor [m]."""
     size = points_xy.shape[0]
     a_x, a_y = points_xy[a % size]
     along_x, along_y = points_xy[b % size, 0] - a_x, points_xy[b % size, 1] - a_y
@@ -217,14 +238,14 @@ def _ahead(points_xy, a, b, i):
 
 
 @numba.njit(cache=True)
-def _apart(points_xy, i):
-    """Metres between a point and the one before."""
+def _gap_before(points_xy, i):
+    """Distance between a point and the one before [m]."""
     return math.hypot(points_xy[i, 0] - points_xy[i - 1, 0], points_xy[i, 1] - points_xy[i - 1, 1])
 
 
 @numba.njit(cache=True)
 def _width(points_xy, start, end):
-    """Metres from corner to corner; the points go on behind the last with the first."""
+    """Diagonal of the bounding box [m]; indices wrap around."""
     low_x = low_y = np.inf
     high_x = high_y = -np.inf
     for i in range(start, end):
@@ -235,8 +256,8 @@ def _width(points_xy, start, end):
 
 
 @numba.njit(cache=True)
-def _middle(points_xy, start, end, x, y, width):
-    """The middle of a thing, x and y, and its radius: half its width, or more if it is round."""
+def _centre_and_radius(points_xy, start, end, x, y, width):
+    """Centre (x, y) and radius of an object: half its width, or more if it is round."""
     size = points_xy.shape[0]
     nearest, sum_x, sum_y = np.inf, 0.0, 0.0
     for i in range(start, end):
@@ -252,14 +273,15 @@ def _middle(points_xy, start, end, x, y, width):
 
 @numba.njit(cache=True)
 def _radius_if_round(first_x, first_y, last_x, last_y, nearest):
-    """Of the circle that the outermost beams touch, if the nearest lies as far before them as it would; else
-    0. From near, a laser sees far less than half of it.
+    """Radius of the circle that the outermost beams touch, if the nearest point fits a circle, else 0.
+
+    From nearby, a laser sees far less than half of a circle.
     """
     to_first, to_last = math.hypot(first_x, first_y), math.hypot(last_x, last_y)
     angle_c = (first_x * last_x + first_y * last_y) / max(to_first * to_last, 1e-9)
     c, s = math.sqrt(0.5 * max(1.0 + angle_c, 0.0)), math.sqrt(0.5 * max(1.0 - angle_c, 0.0))
-    if s < LEAST_SINE or c < LEAST_SINE:
+    if s < MIN_SINE or c < MIN_SINE:
         return 0.0
     radius = 0.5 * math.hypot(last_x - first_x, last_y - first_y) / c
     before_ends = radius * (c / s - 1.0 / s + 1.0)
-    return radius if min(to_first, to_last) - nearest > ROUND * before_ends else 0.0
+    return radius if min(to_first, to_last) - nearest > MIN_ROUNDNESS * before_ends else 0.0

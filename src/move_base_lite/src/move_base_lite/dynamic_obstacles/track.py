@@ -1,0 +1,118 @@
+"""The track of one object: a Kalman filter with a constant-velocity model."""
+
+import math
+from typing import Tuple
+
+import numpy as np
+
+from move_base_lite.dynamic_obstacles.scan_segments import ScanSegment, ScanSnapshot, fitted_centre
+
+# Standard deviations of a segment's position [m], the acceleration [m/s^2] and the first velocity [m/s].
+MEASUREMENT_SIGMA, ACCELERATION_SIGMA, INITIAL_VELOCITY_SIGMA = 0.03, 3.0, 0.8
+# Gate of the association: standard deviations, and a margin [m].
+GATE_SIGMAS, GATE_MARGIN = 3.0, 0.2
+# Innovation in standard deviations above which the object has manoeuvred and its velocity is uncertain again.
+MANOEUVRE_SIGMAS = 2.0
+# Speed of a moving object [m/s], and the standard deviation below which the velocity counts as known [m/s].
+MIN_MOVING_SPEED, MAX_VELOCITY_SIGMA = 0.15, 0.35
+# Speed [m/s] and displacement [m] of a moving object if it is unknown whether its place was free before.
+MIN_TRAVEL_SPEED, MIN_TRAVEL = 0.5, 0.2
+# Limits of a radius's change from scan to scan: partial occlusion shrinks a segment, a neighbour enlarges it.
+MIN_RADIUS_RATIO, MAX_RADIUS_RATIO = 0.98, 1.1
+# Points within this distance of the object belong to it [m].
+COVER_MARGIN = 0.1
+
+
+class Track:
+    """An object at constant velocity (Kalman filter; x and y share one covariance).
+
+    Attributes:
+        is_moving: When the velocity was last known, the object moved: it was where the space was free before,
+            or it had travelled fast and far since it was first seen and entered free space. The latter
+            excludes static objects, whose segments seem to move as other objects occlude them.
+        is_static: When the velocity was last known, the object stood, and it had never moved.
+        seen_at: Stamp of the last matching segment [s].
+        moved_at: Stamp at which it last moved [s].
+    """
+
+    def __init__(self, segment: ScanSegment, stamp: float):
+        self._position, self._velocity = segment.centre_xy, np.zeros(2)
+        self._covariance = np.diag([MEASUREMENT_SIGMA**2, INITIAL_VELOCITY_SIGMA**2])
+        self._radius, self._stamp, self.seen_at = segment.radius, stamp, stamp
+        self._first_xy = self._position
+        self.is_moving = self.is_static = False
+        self.moved_at = -math.inf
+        self._entered_free_space = False
+
+    def predict(self, stamp: float) -> None:
+        """Predict the state at ``stamp``."""
+        dt = stamp - self._stamp
+        self._stamp = stamp
+        self._position = self._position + dt * self._velocity
+        motion = np.array([[1.0, dt], [0.0, 1.0]])
+        noise = np.array([0.5 * dt * dt, dt])
+        self._covariance = motion @ self._covariance @ motion.T + ACCELERATION_SIGMA**2 * np.outer(
+            noise, noise
+        )
+
+    def can_match(self, segment: ScanSegment, seen_since: float) -> bool:
+        """Whether the segment is within the gate and the track has no segment in this scan yet.
+
+        Tracks that were last seen before ``seen_since`` do not match.
+        """
+        gate = GATE_SIGMAS * math.sqrt(self._covariance[0, 0]) + GATE_MARGIN
+        is_unmatched = seen_since <= self.seen_at < self._stamp
+        return is_unmatched and self.distance_to(segment) < gate
+
+    def distance_to(self, segment: ScanSegment) -> float:
+        """Distance to the segment's centre [m]."""
+        return math.dist(self._position, segment.centre_xy)
+
+    def is_alive(self, snapshot: ScanSnapshot, visible_age: float, occluded_age: float) -> bool:
+        """Whether the track has matched a segment within ``visible_age`` seconds, if the scan shows its place
+        free, else within ``occluded_age`` seconds.
+        """
+        is_free = snapshot.free_share(self._position[None, :]) > 0.0
+        return snapshot.stamp - self.seen_at <= (visible_age if is_free else occluded_age)
+
+    def correct(self, segment: ScanSegment, was_free: bool, was_free_recently: bool) -> None:
+        """Correct the state with a matching segment.
+
+        Args:
+            segment: The segment.
+            was_free: Whether it lies where the space was free in the reference scan.
+            was_free_recently: The same, or in a more recent scan.
+        """
+        self._entered_free_space = self._entered_free_space or was_free_recently
+        self._radius *= min(max(segment.radius / self._radius, MIN_RADIUS_RATIO), MAX_RADIUS_RATIO)
+        prior = MEASUREMENT_SIGMA**2 / self._covariance[0, 0]
+        innovation = fitted_centre(segment.points_xy, self._position, self._radius, prior) - self._position
+        if math.hypot(*innovation) > MANOEUVRE_SIGMAS * math.sqrt(
+            self._covariance[0, 0] + MEASUREMENT_SIGMA**2
+        ):
+            self._covariance[1, 1] += INITIAL_VELOCITY_SIGMA**2
+        gain = self._covariance[:, 0] / (self._covariance[0, 0] + MEASUREMENT_SIGMA**2)
+        self._position = self._position + gain[0] * innovation
+        self._velocity = self._velocity + gain[1] * innovation
+        self._covariance = self._covariance - np.outer(gain, self._covariance[0])
+        self.seen_at = self._stamp
+        if self._covariance[1, 1] < MAX_VELOCITY_SIGMA**2:
+            speed = math.hypot(*self._velocity)
+            has_travelled = (
+                self._entered_free_space
+                and speed >= MIN_TRAVEL_SPEED
+                and math.dist(self._position, self._first_xy) >= MIN_TRAVEL
+            )
+            self.is_moving = (was_free and speed >= MIN_MOVING_SPEED) or has_travelled
+            self.is_static = not was_free and self.moved_at == -math.inf and not self.is_moving
+        if self.is_moving:
+            self.moved_at = self._stamp
+
+    def covers(self, points_xy: np.ndarray) -> np.ndarray:
+        """Mask (N,) of the points (N, 2) on the object."""
+        return np.hypot(*(points_xy - self._position).T) < self._radius + COVER_MARGIN
+
+    def state_at(self, now: float) -> Tuple[float, float, float, float, float]:
+        """Predicted x, y, vx, vy, radius [m, m/s]."""
+        x, y = self._position + (now - self._stamp) * self._velocity
+        return (float(x), float(y), float(self._velocity[0]), float(self._velocity[1]), self._radius)

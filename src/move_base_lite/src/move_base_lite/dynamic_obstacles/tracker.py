@@ -1,0 +1,147 @@
+"""Tracking of dynamic obstacles: scan segments in formerly free space, tracked at constant velocity."""
+
+import math
+from collections import deque
+from dataclasses import replace
+from typing import Deque, List, NamedTuple, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+from move_base_lite.costmap import Observation
+from move_base_lite.dynamic_obstacles.scan_segments import ScanSegment, ScanSnapshot, segments_of
+from move_base_lite.dynamic_obstacles.track import MIN_TRAVEL_SPEED, Track
+from planar import Pose2
+from planar.deprecation import renamed_method
+
+# Age of the scan that segments are compared with [s], and its least age, below which nothing can be detected.
+REFERENCE_AGE, MIN_REFERENCE_AGE = 1.0, 0.3
+# Share of a segment's points that must lie in formerly free space.
+MIN_FREE_SHARE = 0.5
+# Time without a matching segment after which a track is dropped [s]: where the scan shows its place free, and
+# where the place is occluded or out of view.
+MAX_VISIBLE_AGE, MAX_OCCLUDED_AGE = 0.6, 2.5
+# Time without a matching segment after which a track matches newly appeared segments only [s].
+MAX_MATCH_AGE = 0.3
+# Time for which an object that has moved is removed from the scan [s].
+MOVING_MEMORY = 4.0
+# Age of the scan in which a newly appeared segment must be missing [s].
+APPEARANCE_AGE = 0.15
+# An empty result of DynamicObstacleTracker.obstacles_at.
+NO_DYNAMIC_OBSTACLES = np.empty((0, 5))
+
+
+class TrackerSettings(NamedTuple):
+    """Settings of the tracker.
+
+    Attributes:
+        max_range: Range within which obstacles are tracked [m].
+        track_appearing: Also track objects that come into view from behind others.
+    """
+
+    max_range: float = 4.0
+    track_appearing: bool = False
+
+
+class DynamicObstacleTracker:
+    """Detects and tracks moving objects in laser scans, in the odom frame, as that is smooth."""
+
+    def __init__(self) -> None:
+        self._past: Deque[ScanSnapshot] = deque()
+        self._tracks: List[Track] = []
+
+    def update(
+        self, base_in_odom: Pose2, observation: Observation, settings: TrackerSettings = TrackerSettings()
+    ) -> Observation:
+        """Process a scan. A scan older than the last one resets the tracker.
+
+        Args:
+            base_in_odom: Robot pose at the scan's stamp.
+            observation: The scan.
+            settings: Settings of the tracker.
+
+        Returns:
+            The scan without its moving beams: NaN where a beam ends on an object that has moved lately.
+        """
+        if self._past and observation.stamp < self._past[-1].stamp:
+            self._past.clear()
+            self._tracks.clear()
+        snapshot = ScanSnapshot(base_in_odom @ observation.sensor_in_base, observation, settings.max_range)
+        snapshot.segments = segments_of(snapshot)
+        for track in self._tracks:
+            track.predict(snapshot.stamp)
+        self._associate(snapshot, settings.track_appearing)
+        self._tracks = [
+            track
+            for track in self._tracks
+            if track.is_alive(snapshot, MAX_VISIBLE_AGE, MAX_OCCLUDED_AGE) and not track.is_static
+        ]
+        self._past.append(snapshot)
+        return replace(observation, ranges=self._without_moving_beams(snapshot, observation.ranges))
+
+    def obstacles_at(self, now: float) -> NDArray[np.float64]:
+        """Predict the dynamic obstacles.
+
+        Args:
+            now: Time of the prediction [s].
+
+        Returns:
+            Rows (N, 5) of x, y, vx, vy, radius in the odom frame [m, m/s].
+        """
+        moving = [track.state_at(now) for track in self._tracks if track.is_moving]
+        return np.array(moving) if moving else NO_DYNAMIC_OBSTACLES
+
+    look = renamed_method("look", "update")
+    at = renamed_method("at", "obstacles_at")
+
+    def _associate(self, snapshot: ScanSnapshot, track_appearing: bool) -> None:
+        """Correct tracks with the segments that match them, and start tracks of the others."""
+        reference = self._reference_snapshot(snapshot.stamp)
+        recent = self._snapshot_at(snapshot.stamp - MIN_REFERENCE_AGE)
+        last = self._snapshot_at(snapshot.stamp - APPEARANCE_AGE)
+        for segment in snapshot.segments:
+            was_free = _was_free(segment, reference)
+            is_checked = track_appearing or bool(self._tracks)
+            is_new = was_free or (is_checked and _has_appeared(segment, snapshot.stamp, last))
+            track = self._matching_track(segment, -math.inf if is_new else snapshot.stamp - MAX_MATCH_AGE)
+            if track is not None:
+                track.correct(segment, was_free, was_free or _was_free(segment, recent))
+            elif was_free or (is_new and track_appearing):
+                self._tracks.append(Track(segment, snapshot.stamp))
+
+    def _without_moving_beams(self, snapshot: ScanSnapshot, ranges: np.ndarray) -> np.ndarray:
+        """The ranges (N,), NaN where a beam ends on an object that has moved lately."""
+        static = np.array(ranges)
+        for track in self._tracks:
+            if snapshot.stamp - track.moved_at <= MOVING_MEMORY:
+                static[snapshot.beams[track.covers(snapshot.points_xy)]] = np.nan
+        return static
+
+    def _reference_snapshot(self, stamp: float) -> Optional[ScanSnapshot]:
+        """The snapshot that defines what was free, about REFERENCE_AGE old; None if all are too new."""
+        while len(self._past) > 1 and stamp - self._past[1].stamp >= REFERENCE_AGE:
+            self._past.popleft()
+        is_old_enough = self._past and stamp - self._past[0].stamp >= MIN_REFERENCE_AGE
+        return self._past[0] if is_old_enough else None
+
+    def _snapshot_at(self, stamp: float) -> Optional[ScanSnapshot]:
+        """The newest snapshot that is not newer than ``stamp``."""
+        return next((snapshot for snapshot in reversed(self._past) if snapshot.stamp <= stamp), None)
+
+    def _matching_track(self, segment: ScanSegment, seen_since: float) -> Optional[Track]:
+        """The nearest track that the segment may belong to and that no other segment belongs to."""
+        candidates = [track for track in self._tracks if track.can_match(segment, seen_since)]
+        return min(candidates, key=lambda track: track.distance_to(segment)) if candidates else None
+
+
+def _was_free(segment: ScanSegment, before: Optional[ScanSnapshot]) -> bool:
+    """Whether the segment lies in what was free space in an earlier snapshot."""
+    return before is not None and before.free_share(segment.points_xy) >= MIN_FREE_SHARE
+
+
+def _has_appeared(segment: ScanSegment, stamp: float, before: Optional[ScanSnapshot]) -> bool:
+    """Whether no earlier segment was near: the apparent motion of static objects is slower."""
+    if before is None:
+        return False
+    distance = MIN_TRAVEL_SPEED * (stamp - before.stamp)
+    return all(math.dist(segment.centre_xy, other.centre_xy) > distance for other in before.segments)
