@@ -132,8 +132,8 @@ class TestSimBridge(unittest.TestCase):
         said = Heard("/rosout", Log)
         wait_until("the log", said.is_connected)
         for size, x, reason in (
-            (1e30, 2.0, "a box needs positive lengths and a place, got (1e+30,"),
-            (math.nan, 2.0, "a box needs positive lengths and a place, got (nan,"),
+            (1e30, 2.0, "a box needs positive lengths and a valid pose, got (1e+30,"),
+            (math.nan, 2.0, "a box needs positive lengths and a valid pose, got (nan,"),
             (0.4, 1e308, "a pose at 1e+308, 0, 0 means nothing"),
         ):
             box = Marker(type=Marker.CUBE, ns="giant")

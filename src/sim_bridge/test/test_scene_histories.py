@@ -162,7 +162,7 @@ class SceneHistories(RuleBasedStateMachine):
         link = self.scene.models.links_of(name)[0] if name in self.models else name
         start = self.scene.stamp
         try:
-            self.scene.forces.push(
+            self.scene.forces.apply_link_wrench(
                 LinkWrench(link, np.array([force, 0.0, 0.0]), np.zeros(3), start, start + seconds)
             )
         except WorldError:

@@ -1,23 +1,26 @@
-"""What can be wrong with what a simulation is made of."""
+"""Exceptions of the simulator."""
 
 from planar import PlanarError
 
 
 class WorldError(PlanarError):
-    """A world cannot be built; the text names the file and the element."""
+    """A world cannot be loaded or changed as requested.
+
+    The text names the file and the element, or the model or link.
+    """
 
 
 class UnknownEntityError(WorldError):
-    """There is no model, link or robot of that name."""
+    """No model, link, joint or robot has the given name."""
 
 
 class RobotError(PlanarError):
-    """A robot is unknown or its description cannot be used."""
+    """A robot is unknown or its description cannot be used; the text names the file."""
 
 
 class NoDriveError(RobotError):
-    """A description is of something that nothing drives."""
+    """A description has no plugin that drives the robot."""
 
 
 class FaultError(PlanarError):
-    """A kind of fault of somebody's own has failed; the text names it."""
+    """A user-defined fault kind has failed; the text names it."""

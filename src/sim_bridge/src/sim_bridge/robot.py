@@ -1,4 +1,4 @@
-"""A robot in its scene: it is commanded, it moves, it measures."""
+"""A simulated robot: drive, sensors and what they measured."""
 
 import math
 from collections import Counter
@@ -26,7 +26,12 @@ from sim_bridge.views.scene_view import SceneView
 
 @dataclass(frozen=True)
 class RobotWrappers:
-    """What is put before the sensors and the drive of a robot: each function gets one and gives one back."""
+    """Functions that wrap each sensor and the drive of a robot, e.g. to inject faults.
+
+    Attributes:
+        sensor: Gets each sensor before it is mounted; returns it or another of the same contract.
+        drive: The same for the drive.
+    """
 
     sensor: Callable[[Sensor[Any]], Sensor[Any]] = lambda sensor: sensor
     drive: Callable[[WheelDrive], WheelDrive] = lambda drive: drive
@@ -34,11 +39,16 @@ class RobotWrappers:
 
 @dataclass(frozen=True, eq=False)
 class StepResult:
-    """What there is to know after a step.
+    """Sensor readings and ground truth after a step.
 
-    ``stamp``: simulated seconds since the start. ``readings``: what each sensor has told since the last step,
-    by its name; ``scanner`` is that of the first range finder. The rest is the latest of what every robot
-    tells. ``contacts``: names (``model::link``) of what the robot has bumped into since the last step.
+    Attributes:
+        stamp: Simulated time since the start [s].
+        readings: The readings that sensors delivered since the last step, by sensor name.
+        truth: Latest ground truth of pose and velocity.
+        odometry: Latest odometry.
+        wheels: Latest wheel angles and speeds.
+        contacts: Names (``model::link``) of what the robot collided with since the last step.
+        scanner: Name of the first range finder.
     """
 
     stamp: float
@@ -51,49 +61,63 @@ class StepResult:
 
     @property
     def base_in_world(self) -> Pose2:
-        """The truth."""
+        """True pose of the base in the world."""
         return self.truth.base_in_world
 
     @property
     def twist(self) -> Twist2:
-        """The truth."""
+        """True velocity of the base."""
         return self.truth.twist
 
     @property
     def tilt(self) -> float:
-        """Between the robot's axis and the vertical, rad."""
+        """Angle between the robot's z axis and the vertical [rad]."""
         return self.truth.tilt
 
     @property
     def wheel_angles(self) -> Tuple[float, ...]:
-        """Of the driven wheels, those on the left first, rad."""
+        """Angles of the driven wheels, those on the left first [rad]."""
         return self.wheels.angles
 
     @property
     def wheel_speeds(self) -> Tuple[float, ...]:
-        """Of the driven wheels, those on the left first, rad/s."""
+        """Speeds of the driven wheels, those on the left first [rad/s]."""
         return self.wheels.speeds
 
     @property
     def scans(self) -> Tuple[Scan, ...]:
-        """Of all range finders that were due."""
-        return tuple(told.value for told in self.readings.values() if isinstance(told.value, Scan))
+        """New scans of all range finders."""
+        return tuple(reading.value for reading in self.readings.values() if isinstance(reading.value, Scan))
 
     @property
     def scan(self) -> Optional[Scan]:
-        """Of the first range finder, None if it was not due."""
-        told = self.readings.get(self.scanner)
-        return told.value if told else None
+        """New scan of the first range finder; None if there is none."""
+        reading = self.readings.get(self.scanner)
+        return reading.value if reading else None
 
     @property
     def kobuki(self) -> Optional[KobukiReading]:
-        """What a Kobuki base feels, if that is wanted; None of other robots."""
-        told = self.readings.get("kobuki")
-        return told.value if told else None
+        """Bumper, cliff and wheel-drop sensors of a Kobuki base, if enabled; None for other robots."""
+        reading = self.readings.get("kobuki")
+        return reading.value if reading else None
 
 
 class Robot:
-    """The robot ``name``, mounted as ``mounting`` says; ``fitting`` puts wrappers before what it has."""
+    """A robot in a scene.
+
+    Args:
+        engine: The physics engine.
+        view: What its sensors see of the scene.
+        name: Name of the robot's model.
+        profile: Parts, drive and sensors.
+        mounting: Start pose, settings and seed.
+        wrappers: Wrap its sensors and drive.
+
+    Attributes:
+        vehicle: The base and wheels in the engine.
+        specs: Specifications of the described sensors, by sensor name.
+        steps_at_once: Physics steps between which the robot has nothing to do.
+    """
 
     def __init__(
         self,
@@ -112,13 +136,12 @@ class Robot:
             engine, name, *parts, len(drive.left_joints), drive.torque, mounting.base_in_space
         )
         self._context = RobotSensorContext(self.vehicle, view)
-        # What its description has, by the names that they tell by.
         self.specs: Dict[str, SensorSpec] = {}
-        self.begin(mounting)
+        self.reset(mounting)
 
-    def begin(self, mounting: Mounting) -> None:
-        """It stands where it starts: nothing has been commanded, driven or measured yet."""
-        self._time(mounting.settings)
+    def reset(self, mounting: Mounting) -> None:
+        """Reset drive, odometry and sensors for a new start."""
+        self._set_rates(mounting.settings)
         drive, odometry = self.profile.drive, self.profile.odometry
         self._drive = self._wrappers.drive(RampedDrive(drive))
         self._context.refresh(0.0)
@@ -132,7 +155,7 @@ class Robot:
             contacts.name: (),
         }
         self._mounts: Dict[str, MountedSensor] = {}
-        # Before this step of physics nothing is due.
+        # No sensor is due before this physics step.
         self._next_step = 0
         for sensor in (truth, self._odometer, wheels, contacts):
             self._mount(self._wrappers.sensor(sensor))
@@ -143,50 +166,51 @@ class Robot:
         self._count_steps()
 
     def command(self, twist: Twist2) -> None:
-        """A new command; it holds until its time-out."""
+        """Set the velocity command, which holds until the drive's time-out."""
         self._drive.command(twist)
 
     def halt(self) -> None:
-        """Stands still at once, as if switched on anew."""
+        """Stop at once and discard the command."""
         self._drive.halt()
 
     def switch_motors(self, on: bool) -> None:
+        """Switch motor power; without it commands are ignored."""
         self._drive.switch(on)
 
     def reset_odometry(self) -> None:
+        """Reset the odometry to the origin of its frame."""
         self._odometer.reset()
 
     def retime(self, settings: SimulationSettings) -> None:
-        """The rates have changed."""
-        self._time(settings)
+        """Use the rates of other settings."""
+        self._set_rates(settings)
         self._next_step = 0
         for mount in self._mounts.values():
             mount.retime(settings)
         self._count_steps()
 
-    def _time(self, settings: SimulationSettings) -> None:
-        """Motors are set, and bumps are felt, at each interval of so many steps of physics."""
+    def _set_rates(self, settings: SimulationSettings) -> None:
+        """Compute the interval, in physics steps, at which motors are set and contacts read."""
         self._settings = settings
         self._interval = max(settings.physics_rate // BASE_RATE, 1)
         self.vehicle.invalidate_speeds()
 
     def _count_steps(self) -> None:
-        # There is nothing to do here but after a multiple of so many steps of physics.
         each = (mount.steps_at_once for mount in self._mounts.values())
         self.steps_at_once = reduce(math.gcd, each, self._interval)
 
     def want(self, name: str, is_wanted: bool = True) -> None:
-        """A sensor that measures only on demand is to do so from now on, or no longer."""
+        """Enable or disable a sensor that measures only on demand."""
         self._mounts[name].enable(is_wanted)
 
     def begin_steps(self, step: int) -> None:
-        """Before the step of physics number ``step``: sets the motors if it is time to."""
+        """Set the motors if due, before physics step number ``step``."""
         if step % self._interval == 0:
             seconds = self._interval / self._settings.physics_rate
             self.vehicle.drive(*self._drive.wheel_speeds(seconds))
 
     def end_steps(self, step: int, stamp: float) -> None:
-        """At the time ``stamp``, when ``step`` steps of physics are over: what is due measures."""
+        """Let the sensors that are due measure, after ``step`` physics steps, at the time ``stamp``."""
         if step % self._interval == 0:
             self._context.record_contacts()
         if step < self._next_step:
@@ -195,10 +219,10 @@ class Robot:
         self._next_step = min([mount.end_step(step, self._context) for mount in self._mounts.values()])
 
     def observe(self, stamp: float) -> StepResult:
-        """What has been measured since the last call."""
+        """Return what has been measured since the last call."""
         self._context.clear_contacts()
-        told = {name: mount.pop_reading() for name, mount in self._mounts.items()}
-        readings = {name: reading for name, reading in told.items() if reading is not None}
+        delivered = {name: mount.pop_reading() for name, mount in self._mounts.items()}
+        readings = {name: reading for name, reading in delivered.items() if reading is not None}
         self._latest.update({name: readings[name].value for name in self._latest if name in readings})
         return StepResult(
             stamp,
@@ -211,7 +235,7 @@ class Robot:
         )
 
     def _mount(self, sensor: Sensor[Any]) -> str:
-        """Returns the name that the sensor has here: those of the same name get numbers behind it."""
+        """Mount a sensor and return its name, with a number appended if the name is taken."""
         name, count = sensor.name, 1
         while name in self._mounts:
             count += 1
@@ -221,7 +245,7 @@ class Robot:
 
 
 def _built(specs: Sequence[SensorSpec], mounting: Mounting) -> Iterator[Tuple[SensorSpec, Sensor[Any]]]:
-    """Specs and their sensors; each knows how many of its kind came before."""
+    """Yield each specification with its sensor, which knows how many of its kind came before."""
     counts: CounterOf[type] = Counter()
     for spec in specs:
         yield spec, spec.build(replace(mounting, number=counts[type(spec)]))

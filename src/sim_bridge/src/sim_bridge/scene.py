@@ -1,4 +1,4 @@
-"""A world with robots in it, stepped: what Gazebo's server is, without its connections."""
+"""A simulated world with any number of robots: what Gazebo's server is, without its ROS interface."""
 
 import math
 from dataclasses import replace
@@ -27,18 +27,17 @@ from sim_bridge.sensors.base import Mounting
 from sim_bridge.views.scene_view import SceneView
 from sim_bridge.world import Body, Joint, World
 
-# Metres above a robot's start from which on a floor is looked for.
+# Height above a robot's start from which a floor is searched downwards [m].
 FLOOR_SEARCH = 0.1
-# Metres that a robot which would start inside something is moved at most, and in how many steps.
-MENDABLE_DEPTH, MOST_PUSHES = 0.15, 10
+# Distance [m] and number of moves by which a robot that would start inside an obstacle is moved at most.
+MAX_START_SHIFT, MAX_START_MOVES = 0.15, 10
 
 
 class Scene:
-    """Models that stand and move, robots that are commanded. The same seed and calls give the same results.
+    """A world that is stepped, with its robots. The same seed and calls give the same results, bit for bit.
 
-    A model is known by its name; so is a robot. ``models``, ``joints``, ``forces`` tell and change what there
-    is, ``sight`` shows it, ``crowd``: its people. Methods that take a name raise UnknownEntityError if
-    nothing is called so. ``fitting``: what is put before the sensors and drives of the robots.
+    ``models``, ``joints`` and ``forces`` give access to their states, ``view`` to what sensors see of them.
+    Methods that take the name of a model, link or robot raise UnknownEntityError if there is none.
     """
 
     def __init__(
@@ -52,40 +51,40 @@ class Scene:
         self.settings, self._seed, self._wrappers = settings, seed, wrappers
         self.trajectory_player, self.doors = TrajectoryPlayer(world.trajectories), Doors(world.doors)
         self.crowd = Crowd(world.walkers, world)
-        self._begin(world.gravity)
+        self._reset_engine(world.gravity)
         self.add([*world.bodies, *self.crowd.bodies, *self.doors.bodies], world.joints)
 
     @property
     def stamp(self) -> float:
-        """Simulated seconds since the start."""
+        """Simulated time since the start [s]."""
         return self._stamp_at_rate + self._physics_steps / self.settings.physics_rate
 
     @property
     def step_seconds(self) -> float:
-        """Simulated seconds that a step takes: the period of the odometry."""
+        """Simulated duration of a step [s]: the period of the odometry."""
         return 1.0 / self.settings.odometry_rate
 
     @property
     def gravity(self) -> float:
-        """Downwards, m/s^2."""
+        """Downward acceleration [m/s^2]."""
         return self._engine.gravity
 
     def step(self, commands: Mapping[str, Twist2] = {}) -> Dict[str, StepResult]:
-        """What each robot has observed a period of the odometry later; a command holds until its time-out."""
+        """Advance by one period of the odometry; ``commands`` by robot hold until the drive's time-out."""
         for name, command in commands.items():
             self.robot(name).command(command)
-        robots, stamp, is_pushed = self._robots.values(), self.stamp, self.forces.are_pending
-        rate, steps = self.settings.physics_rate, 1 if is_pushed else _steps_at_once(self.settings, robots)
+        robots, stamp, has_forces = self._robots.values(), self.stamp, self.forces.are_pending
+        rate, steps = self.settings.physics_rate, 1 if has_forces else _steps_at_once(self.settings, robots)
         for _ in range(rate // self.settings.odometry_rate // steps):
-            moment = (self._physics_steps, rate, stamp)
+            tick = (self._physics_steps, rate, stamp)
             if self.trajectory_player.trajectories:
-                self.trajectory_player.update(self._engine, *moment)
+                self.trajectory_player.update(self._engine, *tick)
             if self.crowd.links or self.doors.bodies:
-                self.crowd.update(self._engine, *moment, robots)
-                self.doors.update(self._engine, *moment, robots, self.crowd.rows)
+                self.crowd.update(self._engine, *tick, robots)
+                self.doors.update(self._engine, *tick, robots, self.crowd.rows)
             for robot in robots:
                 robot.begin_steps(self._physics_steps)
-            if is_pushed:
+            if has_forces:
                 self.forces.apply(stamp)
             self._engine.step(steps)
             self._physics_steps += steps
@@ -95,34 +94,35 @@ class Scene:
         return {robot.name: robot.observe(stamp) for robot in robots}
 
     def close(self) -> None:
-        """Frees the physics engine."""
+        """Free the physics engine."""
         self._engine.close()
 
     def add_robot(
         self, name: str, profile: RobotProfile, base_in_world: Pose2 = Pose2(), z: float = 0.0
     ) -> Tuple[str, ...]:
-        """Puts a robot on the floor at, or below, the height ``z``.
+        """Put a robot on the floor at, or below, the height ``z`` [m].
 
-        One that would reach into something a little is moved out of it, as Gazebo's contacts would push it.
-        Returns the names of what it is moved out of. Raises WorldError if it cannot stand there or the name
-        is taken.
+        A robot that would slightly overlap an obstacle is moved out of it, as contact forces do in Gazebo.
+
+        Returns the names of the links that it was moved out of. Raises WorldError if it cannot stand there or
+        the name is taken.
         """
         self.models.check_free([name])
         where = f"({base_in_world.x:g}, {base_in_world.y:g})"
         floor = self._engine.collision_queries.floor_below(base_in_world.x, base_in_world.y, z + FLOOR_SEARCH)
         if floor is None:
             raise WorldError(f"the robot would start at {where}, where there is no floor")
-        start, left = base_in_world, Overlap((), 0.0, 0.0)
-        for _ in range(MOST_PUSHES):
+        start, resolved = base_in_world, Overlap((), 0.0, 0.0)
+        for _ in range(MAX_START_MOVES):
             self._add_robot(name, profile, from_pose2(start, z=floor - profile.model.lowest))
             overlap = self._robots[name].vehicle.overlap()
             if overlap is None:
-                return left.links
+                return resolved.links
             self.remove_model(name)
-            left, start = overlap, Pose2(start.x + overlap.x, start.y + overlap.y, start.yaw)
-            if start.distance_to(base_in_world) > MENDABLE_DEPTH:
+            resolved, start = overlap, Pose2(start.x + overlap.x, start.y + overlap.y, start.yaw)
+            if start.distance_to(base_in_world) > MAX_START_SHIFT:
                 break
-        raise WorldError(f"the robot would start at {where}, inside {', '.join(left.links)}")
+        raise WorldError(f"the robot would start at {where}, inside {', '.join(resolved.links)}")
 
     def robot(self, name: str) -> Robot:
         if name not in self._robots:
@@ -130,7 +130,7 @@ class Scene:
         return self._robots[name]
 
     def add(self, bodies: Sequence[Body], joints: Sequence[Joint] = ()) -> None:
-        """Puts models into the world, held together by joints. Raises WorldError if a name is taken."""
+        """Add models and the joints between their bodies. Raises WorldError if a name is taken."""
         self.models.check_free(body.model for body in bodies)
         self._engine.add(bodies, joints)
         self.joints.add(joints)
@@ -144,30 +144,30 @@ class Scene:
         self._robots.pop(name, None)
         self._starts.pop(name, None)
 
-    def set_model_state(self, name: str, motion: KinematicState) -> None:
-        """Puts a model with all its links to another place, and sets its velocity; a robot halts."""
-        self.models.set_state(name, motion)
+    def set_model_state(self, name: str, state: KinematicState) -> None:
+        """Set the pose and velocity of a model with all its links; a robot discards its command."""
+        self.models.set_state(name, state)
         if name in self._robots:
             self._robots[name].halt()
 
     def attach(self, first: str, second: str) -> None:
-        """Holds two links together as they are now; they do not feel each other's touch then."""
+        """Fix two links to each other in their present relative pose; they do not collide while attached."""
         self.models.check_link(first)
         self.models.check_link(second)
         self._engine.attachments.attach(first, second)
 
     def detach(self, first: str, second: str) -> None:
-        """Raises UnknownEntityError if these two are not attached in this order."""
+        """Undo ``attach``. Raises UnknownEntityError if the two are not attached in this order."""
         if not self._engine.attachments.are_attached(first, second):
             raise UnknownEntityError(f"{second} is not attached to {first}")
         self._engine.attachments.detach(first, second)
 
     def set_gravity(self, gravity: float) -> None:
-        """``gravity``: downwards, m/s^2."""
+        """Set the downward acceleration [m/s^2]."""
         self._engine.set_gravity(gravity)
 
     def set_physics_rate(self, rate: int) -> None:
-        """``rate``: steps of physics a second. Raises SettingsError if another rate is no divisor of it."""
+        """Set the physics steps per second. Raises SettingsError if another rate does not divide it."""
         settings = replace(self.settings, physics_rate=rate)
         self._stamp_at_rate, self._physics_steps = self.stamp, 0
         self.settings = settings
@@ -176,7 +176,7 @@ class Scene:
             robot.retime(settings)
 
     def reset_poses(self) -> None:
-        """Puts every model and robot back to where it was first put, at rest. Time and odometry go on."""
+        """Move all models and robots back to their start poses, at rest; time and odometry continue."""
         self._engine.attachments.detach_all()
         self.joints.reset_positions()
         self.models.reset_poses()
@@ -186,25 +186,25 @@ class Scene:
         self.forces.clear()
 
     def reset(self) -> None:
-        """Starts again at time 0, with all models and robots where they were first put, to the same noise."""
+        """Restart at time 0 with the present models and robots at their start poses and the same noise."""
         starts, bodies, joints = self._starts, self.models.bodies(), self.joints.all()
         self._engine.close()
-        self._begin(self.gravity)
+        self._reset_engine(self.gravity)
         self.add(bodies, joints)
         for name, (profile, base_in_space) in starts.items():
             self._add_robot(name, profile, base_in_space)
 
     def mark(self) -> None:
-        """Keeps all as it is now, with its robots at rest, for ``rewind``."""
-        self._marked = self._engine.save_state()
+        """Save the present state, with the robots at rest, for ``rewind``."""
+        self._marked_state = self._engine.save_state()
 
     def rewind(self, seed: int, starts: Mapping[str, Pose2] = {}) -> None:
-        """Starts again at time 0 from what was marked, to the noise of a seed; much faster than ``reset``.
+        """Restart at time 0 from the marked state, with the noise of ``seed``; much faster than ``reset``.
 
-        ``starts``: of robots that begin elsewhere on the same floor, where they must find room. No model may
-        have come or gone since the mark. The same seed, starts and calls give the same results.
+        ``starts``: start poses of robots that differ from the marked ones; they must be free and on the same
+        floor. No model may have been added or removed since the mark.
         """
-        self._engine.restore_state(self._marked)
+        self._engine.restore_state(self._marked_state)
         self._seed, self._stamp_at_rate, self._physics_steps = seed, 0.0, 0
         self.forces.clear()
         for number, (name, robot) in enumerate(self._robots.items()):
@@ -212,12 +212,12 @@ class Scene:
             if name in starts:
                 base_in_space = from_pose2(starts[name], z=float(base_in_space[2, 3]))
                 self.models.set_state(name, at_rest(base_in_space))
-            robot.begin(Mounting(base_in_space, self.settings, seed, number))
+            robot.reset(Mounting(base_in_space, self.settings, seed, number))
         self.view.update()
 
-    def _begin(self, gravity: float) -> None:
-        """An empty world at time 0."""
-        # The second: when the present rate of physics began.
+    def _reset_engine(self, gravity: float) -> None:
+        """Create an engine without bodies, at time 0."""
+        # Steps at the present physics rate, and the time at which it was set.
         self._physics_steps, self._stamp_at_rate = 0, 0.0
         self._engine = Engine(self.settings.physics_rate, gravity)
         self.view = SceneView(self._engine.pose_of)
@@ -226,7 +226,7 @@ class Scene:
         self.forces = Forces(self._engine, self.models, self.joints)
         self._robots: Dict[str, Robot] = {}
         self._starts: Dict[str, Tuple[RobotProfile, np.ndarray]] = {}
-        self._marked = -1
+        self._marked_state = -1
 
     def _add_robot(self, name: str, profile: RobotProfile, base_in_space: np.ndarray) -> None:
         mounting = Mounting(base_in_space, self.settings, self._seed, robot=len(self._robots))
@@ -236,13 +236,13 @@ class Scene:
 
 
 def _steps_at_once(settings: SimulationSettings, robots: Iterable[Robot]) -> int:
-    """How many steps of physics can be made in a row with nothing to be done in between.
+    """Return the number of physics steps between which nothing else has to be done.
 
-    A power of two, by which Bullet divides time without rounding, or it would leave one out at times.
+    It is a power of two: Bullet divides the time step by it, and rounding would make it skip steps.
     """
     rate = settings.physics_rate
     actions = [max(rate // times, 1) for times in (TRAJECTORY_RATE, WALK_RATE, DOOR_RATE)]
-    most = reduce(
+    largest = reduce(
         math.gcd, [*actions, *(robot.steps_at_once for robot in robots)], rate // settings.odometry_rate
     )
-    return most & -most
+    return largest & -largest

@@ -1,4 +1,4 @@
-"""The facade: one robot in one world, stepped."""
+"""The simulator's facade: one robot in one world."""
 
 import warnings
 from typing import Optional, Tuple
@@ -16,14 +16,27 @@ from sim_bridge.robots import ROBOTS, RobotProfile
 from sim_bridge.scene import Scene
 from sim_bridge.world import Body, Collision, World
 
-# Gazebo's TurtleBot is called so.
+# The model name of Gazebo's TurtleBot.
 ROBOT_NAME = "mobile_base"
 
 
 class Simulation:
-    """A robot that starts at ``base_in_world``. The same seed and commands give the same observations.
+    """A simulation of one robot. The same world, seed and commands give the same results, bit for bit.
 
-    ``fitting``: what is put before its sensors and its drive. Raises WorldError if it cannot stand there.
+    Args:
+        world: The world.
+        robot: The robot's parts, drive and sensors.
+        settings: Rates and noise.
+        seed: Seed of all noise.
+        base_in_world: Start pose of the robot's base.
+        wrappers: Wrap the robot's sensors and drive, e.g. to inject faults.
+        fitting: Deprecated name of ``wrappers``.
+
+    Attributes:
+        scene: The world with the robot in it, for everything beyond this facade.
+
+    Raises:
+        WorldError: The robot cannot stand at the start pose.
     """
 
     def __init__(
@@ -44,40 +57,56 @@ class Simulation:
 
     @property
     def base(self) -> str:
-        """The name of the link that the robot's pose is told by."""
+        """Name of the robot's base link, ``model::link``."""
         return self.scene.models.links_of(ROBOT_NAME)[0]
 
     @property
     def step_seconds(self) -> float:
-        """Simulated seconds that a step takes: the period of the odometry."""
+        """Simulated duration of a step [s]: the period of the odometry."""
         return self.scene.step_seconds
 
     def step(self, command: Optional[Twist2] = None) -> StepResult:
-        """Moves on by one period of the odometry; the last ``command`` holds until its time-out."""
+        """Advance the simulation by one period of the odometry.
+
+        Args:
+            command: Velocity command; None keeps the last one, which holds until the drive's time-out.
+
+        Returns:
+            Sensor readings and ground truth at the end of the step.
+        """
         return self.scene.step({} if command is None else {ROBOT_NAME: command})[ROBOT_NAME]
 
     def mark(self) -> None:
-        """Keeps all as it is now, with the robot at rest, for ``rewind``."""
+        """Save the present state, with the robot at rest, for ``rewind``."""
         self.scene.mark()
 
     def rewind(self, seed: int, base_in_world: Optional[Pose2] = None) -> None:
-        """Starts again at time 0 from what was marked, in well under a millisecond; see Scene.rewind.
+        """Restart at time 0 from the state that ``mark`` saved; takes well under a millisecond.
 
-        ``base_in_world``: where the robot starts; None: where it did.
+        Args:
+            seed: Seed of all noise from now on.
+            base_in_world: Start pose of the robot; None for the one in the marked state.
         """
         self.scene.rewind(seed, {} if base_in_world is None else {ROBOT_NAME: base_in_world})
 
     def add_box(
         self, name: str, size: Tuple[float, float, float], pose: Pose2, mass: Optional[float] = None
     ) -> None:
-        """Puts a box on the floor, ``size`` in metres; it stays where it is unless it has a ``mass``, kg.
+        """Put a box on the floor.
 
-        Raises WorldError if the name is taken or the box has no size or place.
+        Args:
+            name: Name of the new model.
+            size: Lengths along x, y and z [m].
+            pose: Pose of its centre in the world.
+            mass: Mass [kg]; None for a static box.
+
+        Raises:
+            WorldError: The name is taken, or the size or pose is not valid.
         """
         self.scene.add([box_on_floor(name, size, pose, mass)])
 
     def close(self) -> None:
-        """Frees the physics engine."""
+        """Free the physics engine."""
         self.scene.close()
 
 
@@ -88,10 +117,19 @@ def box_on_floor(
     mass: Optional[float] = None,
     height: float = 0.0,
 ) -> Body:
-    """A model of one box, ``size`` in metres, whose bottom is at ``height``. Raises WorldError if it has no
-    size or place.
+    """Return the body of a box model.
+
+    Args:
+        name: Name of the model.
+        size: Lengths along x, y and z [m].
+        pose: Pose of its centre in the world.
+        mass: Mass [kg]; None for a static box.
+        height: Height of its bottom [m].
+
+    Raises:
+        WorldError: The size or pose is not valid.
     """
     if not (all(0.0 < length < MAX_COORDINATE for length in size) and pose.is_in_range()):
-        raise WorldError(f"{name}: a box needs positive lengths and a place, got {size} at {pose}")
+        raise WorldError(f"{name}: a box needs positive lengths and a valid pose, got {size} at {pose}")
     in_world = from_pose2(pose, z=height + size[2] / 2.0)
     return Body(f"{name}::link", in_world, (Collision(Box(size), np.eye(4)),), mass)

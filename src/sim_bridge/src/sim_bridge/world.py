@@ -1,4 +1,4 @@
-"""What a simulated world consists of."""
+"""The description of a simulated world: bodies, joints, lights, robots and dynamic obstacles."""
 
 from dataclasses import dataclass, field
 from typing import Any, Optional, Tuple
@@ -17,7 +17,14 @@ DARK: Colour = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, eq=False)
 class Collision:
-    """A solid part of a body, ``pose_in_body``: (4, 4); ``retro``: how brightly it reflects a laser."""
+    """A solid part of a body (SDF <collision>).
+
+    Attributes:
+        shape: The shape.
+        pose_in_body: Pose (4, 4) of the shape in the body frame.
+        laser_retro: Intensity with which it reflects a laser.
+        name: Its name.
+    """
 
     shape: Shape
     pose_in_body: np.ndarray
@@ -27,9 +34,13 @@ class Collision:
 
 @dataclass(frozen=True, eq=False)
 class Visual:
-    """What a camera sees of a body, ``pose_in_body``: (4, 4); no ``colour`` (0 to 1): that of the mesh.
+    """A visible part of a body (SDF <visual>).
 
-    ``glow``: what it shows of itself, without any light.
+    Attributes:
+        shape: The shape.
+        pose_in_body: Pose (4, 4) of the shape in the body frame.
+        colour: Diffuse red, green, blue, 0 to 1; None for the colours of the mesh.
+        emissive: Colour that is shown without any light.
     """
 
     shape: VisualShape
@@ -40,9 +51,11 @@ class Visual:
 
 @dataclass(frozen=True, eq=False)
 class Inertia:
-    """``pose_in_body``: (4, 4), of the centre of mass and the principal axes; ``moments``: (3,), kg m^2.
+    """Where a body's mass is and how it resists rotation (SDF <inertial>).
 
-    Without ``moments`` they follow from the shapes.
+    Attributes:
+        pose_in_body: Pose (4, 4) of the centre of mass and the principal axes.
+        moments: Principal moments of inertia (3,) [kg m^2]; None to compute them from the shapes.
     """
 
     pose_in_body: np.ndarray = field(default_factory=lambda: IDENTITY)
@@ -51,7 +64,7 @@ class Inertia:
 
 @dataclass(frozen=True)
 class SurfaceProperties:
-    """Coulomb's coefficient of ``friction``, and of ``restitution``: how much a thing bounces."""
+    """Contact properties of a body (SDF <surface>): Coulomb ``friction`` and ``restitution``."""
 
     friction: float = 1.0
     restitution: float = 0.0
@@ -59,12 +72,20 @@ class SurfaceProperties:
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A rigid thing; ``name`` is ``model::link``, ``pose_in_world``: (4, 4).
+    """A rigid body, or link.
 
-    One without mass that ``is_on_course`` goes its own way.
-    ``pose_in_model``: (4, 4), of the link in the frame of the outermost model that it belongs to. ``mass`` in
-    kg, None if it never moves. ``damping``: of its linear and angular velocity, 1/s. Without
-    weight it is not drawn down.
+    Attributes:
+        name: ``model::link``.
+        pose_in_world: Pose (4, 4) at the start.
+        collisions: Solid parts.
+        mass: Mass [kg]; None if physics does not move the body.
+        surface: Contact properties.
+        pose_in_model: Pose (4, 4) of the link in the frame of the outermost model that it belongs to.
+        visuals: Visible parts; without any, the collisions are shown.
+        inertia: Centre of mass and moments.
+        damping: Damping of the linear and angular velocity [1/s].
+        has_gravity: Whether gravity acts on the body.
+        is_kinematic: Whether a script moves the body: a trajectory, a pedestrian or a door.
     """
 
     name: str
@@ -81,21 +102,32 @@ class Body:
 
     @property
     def model(self) -> str:
+        """Name of the outermost model."""
         return self.name.split("::", 1)[0]
 
     @property
     def is_static(self) -> bool:
-        """Whether it stays where it is unless it is put elsewhere."""
+        """Whether neither physics nor a script moves the body."""
         return self.mass is None and not self.is_kinematic
 
 
 @dataclass(frozen=True, eq=False)
 class Joint:
-    """Holds the body ``child`` to the body ``parent``, or to the world if that is empty.
+    """A joint between two bodies.
 
-    ``kind``: fixed, revolute or prismatic. ``pose_in_child``: (4, 4); ``axis``: (3,), of length 1, in the
-    joint's frame. Limits and ``start``, the position that it starts at, in rad or m; ``effort``: N m or N
-    that may be applied; ``friction``: N m or N; ``damping``: N m s/rad or N s/m.
+    Attributes:
+        name: ``model::joint``.
+        kind: ``fixed``, ``revolute`` or ``prismatic``.
+        parent: Name of the parent body; empty for the world.
+        child: Name of the child body.
+        pose_in_child: Pose (4, 4) of the joint frame in the child's.
+        axis: Unit vector (3,) in the joint frame.
+        lower: Lower limit [rad or m].
+        upper: Upper limit [rad or m].
+        effort: Largest effort that may be applied [N m or N].
+        damping: Viscous damping [N m s/rad or N s/m].
+        friction: Static friction [N m or N].
+        start: Position at the start [rad or m].
     """
 
     name: str
@@ -113,12 +145,13 @@ class Joint:
 
     @property
     def model(self) -> str:
+        """Name of the outermost model."""
         return self.name.split("::", 1)[0]
 
 
 @dataclass(frozen=True, eq=False)
 class DrivenModel:
-    """A model with a plugin that drives it: a robot, to be read from its ``element`` of SDF."""
+    """A model with a drive plugin, from whose SDF ``element`` a robot is made."""
 
     name: str
     element: Any
@@ -128,7 +161,13 @@ class DrivenModel:
 
 @dataclass(frozen=True)
 class Light:
-    """``diffuse``: red, green, blue, alpha, 0 to 1; ``attenuation``: constant, linear, quadratic."""
+    """A light.
+
+    Attributes:
+        name: Its name.
+        diffuse: Red, green, blue, alpha, 0 to 1.
+        attenuation: Constant, linear and quadratic factors.
+    """
 
     name: str
     diffuse: Tuple[float, float, float, float]
@@ -137,8 +176,19 @@ class Light:
 
 @dataclass(frozen=True)
 class World:
-    """Bodies, joints between them, robots, courses, people, doors, and in words what its file holds that was
-    left out. ``bodies`` are without those of people and doors.
+    """A world, as read from an SDF file or built in Python.
+
+    Attributes:
+        name: Its name.
+        bodies: All bodies except those of ``walkers`` and ``doors``.
+        gravity: Downward acceleration [m/s^2].
+        warnings: A sentence for each kind of content of the file that is ignored.
+        joints: Joints between the bodies.
+        robots: Models with a drive plugin.
+        lights: Lights.
+        trajectories: Trajectories of kinematic bodies.
+        walkers: Pedestrians.
+        doors: Doors.
     """
 
     name: str

@@ -1,1 +1,1 @@
-"""Rigid bodies in PyBullet, and the wheeled robots among them."""
+"""Rigid-body physics in PyBullet: bodies, joints, contacts and wheeled robots."""

@@ -1,4 +1,4 @@
-"""Links that are held together for a while, as by a gripper."""
+"""Temporary fixed constraints between links, as made by a gripper (gazebo_ros_link_attacher)."""
 
 import itertools
 from typing import Dict, Optional, Tuple
@@ -10,48 +10,48 @@ from sim_bridge.physics.registry import BodyRegistry, BulletLink
 
 
 class Attachments:
-    """Pairs of links, the first of which holds the second.
+    """Pairs of links, of which the first holds the second.
 
-    Bullet cannot hold anything to its rigid bodies: what is held to something that stands is held to the
-    world, where that is.
+    Bullet's constraints do not accept rigid bodies without links. A link that is attached to a static body is
+    therefore constrained to the world frame, and the constraint is moved when the static body is.
     """
 
-    def __init__(self, bullet: BulletClient, register: BodyRegistry):
+    def __init__(self, bullet: BulletClient, registry: BodyRegistry):
         self._bullet = bullet
-        self._register = register
+        self._registry = registry
         self._constraints: Dict[Tuple[str, str], Optional[int]] = {}
-        # What stands and holds something, by the number of the constraint.
+        # The static link that holds something, by the constraint's id.
         self._anchors: Dict[int, BulletLink] = {}
 
     def attach(self, first: str, second: str) -> None:
-        """Holds two links together as they are now until they are detached; meanwhile they never collide."""
+        """Fix two links to each other in their present relative pose; they do not collide while attached."""
         if (first, second) in self._constraints:
             self.detach(first, second)
-        one, other = self._register.links[first], self._register.links[second]
+        one, other = self._registry.links[first], self._registry.links[second]
         self._constraints[first, second] = self._create_constraint(one, other)
         self._set_collisions_enabled(one, other, False)
 
     def update(self) -> None:
-        """What is held to something that stands is held to where that is now."""
-        for number, anchor in self._anchors.items():
-            place = centre_of_mass_of(self._bullet, anchor)
-            self._bullet.changeConstraint(number, position(place), quaternion(place))
+        """Move the constraints of static bodies to where these bodies are now."""
+        for constraint_id, anchor in self._anchors.items():
+            pose = centre_of_mass_of(self._bullet, anchor)
+            self._bullet.changeConstraint(constraint_id, position(pose), quaternion(pose))
 
     def _create_constraint(self, one: BulletLink, other: BulletLink) -> Optional[int]:
-        """The number of a new constraint, None if both stand."""
-        if self._register.is_static(one.number):
+        """Return the id of a new constraint, None if both links are static."""
+        if self._registry.is_static(one.body_id):
             one, other = other, one
-        if self._register.is_static(one.number):
+        if self._registry.is_static(one.body_id):
             return None
-        place = centre_of_mass_of(self._bullet, other)
-        other_in_one = inverse(centre_of_mass_of(self._bullet, one)) @ place
-        is_anchored = self._register.is_static(other.number)
-        frame = place if is_anchored else IDENTITY
-        number = self._bullet.createConstraint(
-            one.number,
-            one.index,
-            -1 if is_anchored else other.number,
-            -1 if is_anchored else other.index,
+        pose = centre_of_mass_of(self._bullet, other)
+        other_in_one = inverse(centre_of_mass_of(self._bullet, one)) @ pose
+        is_anchored = self._registry.is_static(other.body_id)
+        frame = pose if is_anchored else IDENTITY
+        constraint_id = self._bullet.createConstraint(
+            one.body_id,
+            one.link_index,
+            -1 if is_anchored else other.body_id,
+            -1 if is_anchored else other.link_index,
             pybullet.JOINT_FIXED,
             [0.0, 0.0, 0.0],
             position(other_in_one),
@@ -60,32 +60,34 @@ class Attachments:
             quaternion(frame),
         )
         if is_anchored:
-            self._anchors[number] = other
-        return int(number)
+            self._anchors[constraint_id] = other
+        return int(constraint_id)
 
     def are_attached(self, first: str, second: str) -> bool:
+        """Return whether ``first`` holds ``second``."""
         return (first, second) in self._constraints
 
     def detach(self, first: str, second: str) -> None:
-        """Lets go what was attached in this order."""
-        number = self._constraints.pop((first, second))
-        if number is not None:
-            self._bullet.removeConstraint(number)
-            self._anchors.pop(number, None)
-        self._set_collisions_enabled(self._register.links[first], self._register.links[second], True)
+        """Remove the constraint of two links that were attached in this order."""
+        constraint_id = self._constraints.pop((first, second))
+        if constraint_id is not None:
+            self._bullet.removeConstraint(constraint_id)
+            self._anchors.pop(constraint_id, None)
+        self._set_collisions_enabled(self._registry.links[first], self._registry.links[second], True)
 
     def detach_all(self) -> None:
+        """Remove all constraints."""
         for pair in list(self._constraints):
             self.detach(*pair)
 
-    def detach_from(self, number: int) -> None:
-        """Lets go all that is attached to what has that number in Bullet."""
+    def detach_from(self, body_id: int) -> None:
+        """Remove all constraints of the links of one Bullet body."""
         for pair in list(self._constraints):
-            if number in (self._register.links[link].number for link in pair):
+            if body_id in (self._registry.links[link].body_id for link in pair):
                 self.detach(*pair)
 
-    def _set_collisions_enabled(self, one: BulletLink, other: BulletLink, may_collide: bool) -> None:
-        """All parts of the one with all parts of the other."""
-        parts = [self._register.parts_of(link.number) for link in (one, other)]
+    def _set_collisions_enabled(self, one: BulletLink, other: BulletLink, enabled: bool) -> None:
+        """Enable or disable collisions between all parts of two Bullet bodies."""
+        parts = [self._registry.parts_of(link.body_id) for link in (one, other)]
         for first, second in itertools.product(*parts):
-            self._bullet.setCollisionFilterPair(one.number, other.number, first, second, int(may_collide))
+            self._bullet.setCollisionFilterPair(one.body_id, other.body_id, first, second, int(enabled))

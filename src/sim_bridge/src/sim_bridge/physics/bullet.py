@@ -1,4 +1,4 @@
-"""PyBullet, without what its C code would print into the output of every program."""
+"""PyBullet without the banner that its C code prints on import."""
 
 import contextlib
 import functools
@@ -8,15 +8,15 @@ from typing import Any, Iterator
 
 @contextlib.contextmanager
 def _quiet_stderr() -> Iterator[None]:
-    """Sends what anyone, C code too, writes to the standard error stream to nowhere."""
+    """Discard what is written to the standard error stream, also by C code."""
     try:
         stderr = os.dup(2)
-    except OSError:  # a program without one
+    except OSError:  # the process has no stderr
         yield
         return
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 2)
-    os.close(nowhere)
+    devnull = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(devnull, 2)
+    os.close(devnull)
     try:
         yield
     finally:
@@ -29,22 +29,22 @@ with _quiet_stderr():
 
 
 class BulletClient:
-    """A physics engine of its own: PyBullet's functions, bound to it."""
+    """A separate physics engine: PyBullet's functions, bound to its client id."""
 
     def __init__(self):
-        # No options, which pybullet_utils' client gives and PyBullet prints.
-        self._number = pybullet.connect(pybullet.DIRECT)
+        # pybullet_utils' client passes options, which PyBullet prints.
+        self._client_id = pybullet.connect(pybullet.DIRECT)
 
     def __getattr__(self, name: str) -> Any:
-        function = functools.partial(getattr(pybullet, name), physicsClientId=self._number)
+        function = functools.partial(getattr(pybullet, name), physicsClientId=self._client_id)
         setattr(self, name, function)
         return function
 
     def disconnect(self) -> None:
-        """Frees the engine; PyBullet gives its number to the next one."""
-        if self._number >= 0:
-            pybullet.disconnect(physicsClientId=self._number)
-            self._number = -1
+        """Free the engine; PyBullet reuses its id for the next one."""
+        if self._client_id >= 0:
+            pybullet.disconnect(physicsClientId=self._client_id)
+            self._client_id = -1
 
     def __del__(self):
         with contextlib.suppress(pybullet.error):

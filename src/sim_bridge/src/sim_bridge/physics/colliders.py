@@ -1,4 +1,4 @@
-"""Solid shapes as Bullet's collision shapes."""
+"""Creates Bullet collision shapes."""
 
 from typing import Any, Dict, List, Sequence, Tuple
 
@@ -9,7 +9,7 @@ from sim_bridge.geometry.shapes import Box, Cylinder, Mesh, Plane, Shape, Sphere
 from sim_bridge.physics.bullet import BulletClient, pybullet
 from sim_bridge.world import Collision
 
-# Bullet's limits: shapes of one compound, and triangles of one mesh (of its 131072 vertices each has three).
+# Bullet's limits: shapes per compound, and triangles per mesh (three vertices each, of at most 131072).
 COMPOUND_SIZE = 16
 MESH_SIZE = 40000
 NO_SHAPE = -1
@@ -18,18 +18,25 @@ NO_SHAPE = -1
 def make_colliders(
     bullet: BulletClient, collisions: Sequence[Collision], moves: bool, origin: np.ndarray
 ) -> List[int]:
-    """Bullet's numbers of shapes that together are the collisions seen from ``origin``, (4, 4).
+    """Create the shapes of a body's collisions.
 
-    There is at least one; that of nothing solid is NO_SHAPE.
+    Args:
+        bullet: The physics engine.
+        collisions: The solid parts of the body.
+        moves: Whether physics moves the body; its meshes are then replaced by their convex hulls.
+        origin: Pose (4, 4) in the body frame of the frame that the shapes are created in.
+
+    Returns:
+        Bullet's shape ids, at least one: NO_SHAPE for a body without collisions.
     """
     to_origin = inverse(origin)
     placed = [(part.shape, to_origin @ part.pose_in_body) for part in collisions]
     meshes = [(shape, pose) for shape, pose in placed if isinstance(shape, Mesh)]
     solids = [(shape, pose) for shape, pose in placed if not isinstance(shape, Mesh)]
     groups = [solids[at : at + COMPOUND_SIZE] for at in range(0, len(solids), COMPOUND_SIZE)]
-    numbers = [_compound(bullet, group) for group in groups]
-    numbers += [number for mesh, pose in meshes for number in _mesh(bullet, mesh, pose, moves)]
-    return numbers or [NO_SHAPE]
+    shape_ids = [_compound(bullet, group) for group in groups]
+    shape_ids += [shape_id for mesh, pose in meshes for shape_id in _mesh(bullet, mesh, pose, moves)]
+    return shape_ids or [NO_SHAPE]
 
 
 def _compound(bullet: BulletClient, group: Sequence[Tuple[Shape, np.ndarray]]) -> int:
@@ -53,7 +60,7 @@ def _compound(bullet: BulletClient, group: Sequence[Tuple[Shape, np.ndarray]]) -
 
 
 def _mesh(bullet: BulletClient, mesh: Mesh, pose: np.ndarray, moves: bool) -> List[int]:
-    """A mesh as it is, in pieces, if it stands still; its convex hull if it moves."""
+    """Create a concave mesh, in pieces, of a static body; the convex hull of one that moves."""
     vertices = transform_points(pose, mesh.vertices)
     if moves:
         from scipy.spatial import ConvexHull  # late: few worlds have meshes

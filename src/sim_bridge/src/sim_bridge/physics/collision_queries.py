@@ -1,4 +1,4 @@
-"""What touches what, and what is below."""
+"""Contacts and downward ray casts."""
 
 import math
 from typing import List, NamedTuple, Optional, Sequence, Tuple
@@ -6,15 +6,22 @@ from typing import List, NamedTuple, Optional, Sequence, Tuple
 from sim_bridge.physics.bullet import BulletClient
 from sim_bridge.physics.registry import BodyRegistry
 
-# Bits of Bullet's collision groups: it puts what moves into 1 and what does not into 2.
+# Bullet's collision filter groups: 1 for dynamic bodies, 2 for static ones.
 WORLD_GROUPS = 1 | 2
 ROBOT_GROUP = 4
-# How far down a floor is looked for, metres.
-DEEPEST_FLOOR = 10.0
+# Depth to which a floor is searched [m].
+FLOOR_SEARCH_DEPTH = 10.0
 
 
 class Contact(NamedTuple):
-    """Where a robot touches ``link``: the unit normal there, out of it, and how deep they overlap, metres."""
+    """A contact of a robot.
+
+    Attributes:
+        link: Name of the other link.
+        point: Position on the robot, in the world frame [m].
+        normal: Unit normal at the contact, pointing away from ``link``.
+        depth: Penetration depth [m]; negative if the two are close but do not touch.
+    """
 
     link: str
     point: Tuple[float, float, float]
@@ -23,37 +30,44 @@ class Contact(NamedTuple):
 
 
 class CollisionQueries:
-    """Contacts, and rays cast downwards."""
+    """Queries of contacts and of the floor height."""
 
-    def __init__(self, bullet: BulletClient, register: BodyRegistry):
+    def __init__(self, bullet: BulletClient, registry: BodyRegistry):
         self._bullet = bullet
-        self._register = register
+        self._registry = registry
 
-    def contacts(self, base: str, steepest: float = math.inf) -> List[Contact]:
-        """What a robot touches, or nearly does (negative depth); abs(normal[2]) is below ``steepest``."""
+    def contacts(self, base: str, max_normal_z: float = math.inf) -> List[Contact]:
+        """Return the contacts of a robot.
+
+        Args:
+            base: Name of the robot's base link.
+            max_normal_z: Contacts whose normal has an absolute z component of at least this are left out.
+        """
         return [
-            Contact(self._register.link_of(told[2], told[4]), told[6], told[7], -told[8])
-            for told in self._bullet.getContactPoints(bodyA=self._register.links[base].number)
-            if abs(told[7][2]) < steepest
+            Contact(self._registry.link_of(point[2], point[4]), point[6], point[7], -point[8])
+            for point in self._bullet.getContactPoints(bodyA=self._registry.links[base].body_id)
+            if abs(point[7][2]) < max_normal_z
         ]
 
     def detect_collisions(self) -> None:
-        """Looks for contacts without a step."""
+        """Update the contacts without a physics step."""
         self._bullet.performCollisionDetection()
 
     def floor_below(self, x: float, y: float, z: float) -> Optional[float]:
-        """The height of the first of the world's bodies below a point, None if there is none."""
+        """Return the height of the nearest body of the world below a point, None if there is none."""
         (floor,) = self.floors_below([(x, y, z)])
         return floor if floor > -math.inf else None
 
     def floors_below(self, points: Sequence[Sequence[float]]) -> List[float]:
-        """The heights of what is below points in space, -inf where there is nothing."""
-        ends = [(x, y, z - DEEPEST_FLOOR) for x, y, z in points]
+        """Return the height of the floor below each of ``points`` (N, 3), -inf where there is none."""
+        ends = [(x, y, z - FLOOR_SEARCH_DEPTH) for x, y, z in points]
         hits = self._bullet.rayTestBatch(points, ends, collisionFilterMask=WORLD_GROUPS)
-        return [point[2] if number >= 0 else -math.inf for number, _, _, point, _ in hits]
+        return [point[2] if body_id >= 0 else -math.inf for body_id, _, _, point, _ in hits]
 
     def set_robot_filter(self, base: str) -> None:
-        """Of what hangs together with a link: it feels the world and other robots, but is no floor."""
-        number = self._register.links[base].number
-        for index in self._register.parts_of(number):
-            self._bullet.setCollisionFilterGroupMask(number, index, ROBOT_GROUP, WORLD_GROUPS | ROBOT_GROUP)
+        """Let a robot collide with the world and with other robots, but not count as a floor."""
+        body_id = self._registry.links[base].body_id
+        for link_index in self._registry.parts_of(body_id):
+            self._bullet.setCollisionFilterGroupMask(
+                body_id, link_index, ROBOT_GROUP, WORLD_GROUPS | ROBOT_GROUP
+            )

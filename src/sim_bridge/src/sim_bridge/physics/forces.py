@@ -1,4 +1,4 @@
-"""Forces on links and efforts on joints that last for a while."""
+"""Wrenches on links and efforts on joints that act for a given time."""
 
 from dataclasses import dataclass
 from typing import List
@@ -12,9 +12,14 @@ from sim_bridge.physics.models import Models
 
 @dataclass(frozen=True, eq=False)
 class LinkWrench:
-    """A ``force``, N, at the centre of a link's mass, and a ``torque``, N m, from ``start`` to ``end``, s.
+    """A wrench on a link (gazebo_msgs/ApplyBodyWrench).
 
-    Both (3,), along the axes of the world.
+    Attributes:
+        link: Name of the link.
+        force: Force (3,) at its centre of mass, in the world frame [N].
+        torque: Torque (3,), in the world frame [N m].
+        start: Simulated time at which it begins [s].
+        end: Simulated time at which it ends [s].
     """
 
     link: str
@@ -26,7 +31,7 @@ class LinkWrench:
 
 @dataclass(frozen=True)
 class JointEffort:
-    """An ``effort``, N m or N, on a joint from ``start`` to ``end``, s."""
+    """An ``effort`` [N m or N] on a joint from ``start`` to ``end`` [s] (gazebo_msgs/ApplyJointEffort)."""
 
     joint: str
     effort: float
@@ -35,50 +40,50 @@ class JointEffort:
 
 
 class Forces:
-    """What pushes, now or later."""
+    """The wrenches and efforts that act now or later."""
 
     def __init__(self, engine: Engine, models: Models, joints: ModelJoints):
         self._engine = engine
         self._models = models
         self._joints = joints
-        self._pushes: List[LinkWrench] = []
-        self._joint_pushes: List[JointEffort] = []
+        self._wrenches: List[LinkWrench] = []
+        self._efforts: List[JointEffort] = []
 
-    def push(self, push: LinkWrench) -> None:
-        """Raises UnknownEntityError."""
-        self._models.check_link(push.link)
-        self._pushes.append(push)
+    def apply_link_wrench(self, wrench: LinkWrench) -> None:
+        """Add a wrench. Raises UnknownEntityError if there is no such link."""
+        self._models.check_link(wrench.link)
+        self._wrenches.append(wrench)
 
-    def apply_joint_effort(self, push: JointEffort) -> None:
-        """Raises UnknownEntityError."""
-        self._joints.get(push.joint)
-        self._joint_pushes.append(push)
+    def apply_joint_effort(self, effort: JointEffort) -> None:
+        """Add an effort. Raises UnknownEntityError if there is no such joint."""
+        self._joints.get(effort.joint)
+        self._efforts.append(effort)
 
     def clear_link_wrenches(self, link: str) -> None:
-        """Ends all pushes on a link."""
-        self._pushes = [push for push in self._pushes if push.link != link]
+        """Remove all wrenches on a link."""
+        self._wrenches = [wrench for wrench in self._wrenches if wrench.link != link]
 
     def clear_joint_efforts(self, joint: str) -> None:
-        """Ends all efforts on a joint."""
-        self._joint_pushes = [push for push in self._joint_pushes if push.joint != joint]
+        """Remove all efforts on a joint."""
+        self._efforts = [effort for effort in self._efforts if effort.joint != joint]
 
     def clear(self) -> None:
-        """Ends everything."""
-        self._pushes.clear()
-        self._joint_pushes.clear()
+        """Remove all wrenches and efforts."""
+        self._wrenches.clear()
+        self._efforts.clear()
 
     @property
     def are_pending(self) -> bool:
-        """Whether anything pushes, or will."""
-        return bool(self._pushes or self._joint_pushes)
+        """Whether any wrench or effort acts now or will act."""
+        return bool(self._wrenches or self._efforts)
 
     def apply(self, stamp: float) -> None:
-        """Before the step of physics that begins at ``stamp``."""
-        for push in self._pushes:
-            if push.start <= stamp < push.end:
-                self._engine.push(push.link, push.force.tolist(), push.torque.tolist())
-        for effort in self._joint_pushes:
+        """Apply what acts at ``stamp``, before the physics step that begins then."""
+        for wrench in self._wrenches:
+            if wrench.start <= stamp < wrench.end:
+                self._engine.apply_wrench(wrench.link, wrench.force.tolist(), wrench.torque.tolist())
+        for effort in self._efforts:
             if effort.start <= stamp < effort.end:
-                self._engine.joints.push(effort.joint, effort.effort)
-        self._pushes = [push for push in self._pushes if stamp < push.end]
-        self._joint_pushes = [effort for effort in self._joint_pushes if stamp < effort.end]
+                self._engine.joints.apply_effort(effort.joint, effort.effort)
+        self._wrenches = [wrench for wrench in self._wrenches if stamp < wrench.end]
+        self._efforts = [effort for effort in self._efforts if stamp < effort.end]

@@ -1,4 +1,4 @@
-"""Poses in Bullet: those of the centres of mass."""
+"""Poses of links from Bullet, which reports those of their centres of mass."""
 
 from typing import Sequence
 
@@ -9,16 +9,16 @@ from sim_bridge.physics.registry import BulletLink
 
 
 def matrix_of(point: Sequence[float], orientation: Sequence[float]) -> np.ndarray:
-    """The pose (4, 4) of a point and a quaternion of Bullet's."""
+    """Return the pose (4, 4) of a position and a quaternion (x, y, z, w)."""
     (x, y, z), r = point, pybullet.getMatrixFromQuaternion(orientation)
     return np.array((r[:3] + (x,), r[3:6] + (y,), r[6:] + (z,), (0.0, 0.0, 0.0, 1.0)))
 
 
 def link_at(link: BulletLink, point: Sequence[float], orientation: Sequence[float]) -> np.ndarray:
-    """The pose (4, 4) of a link whose centre of mass is at a point, turned by a quaternion of Bullet's."""
+    """Return the pose (4, 4) of a link from the position and orientation of its centre of mass."""
     if link.offset is None:
         return matrix_of(point, orientation) @ link.from_centre
-    (x, y, z), (a, b, c) = point, link.offset  # plain numbers are quicker
+    (x, y, z), (a, b, c) = point, link.offset  # plain floats are faster here than numpy
     xx, xy, xz, yx, yy, yz, zx, zy, zz = pybullet.getMatrixFromQuaternion(orientation)
     return np.array(
         (
@@ -31,12 +31,12 @@ def link_at(link: BulletLink, point: Sequence[float], orientation: Sequence[floa
 
 
 def root_pose_of(bullet: BulletClient, link: BulletLink) -> np.ndarray:
-    """Where the centre of mass of the root is that a link hangs on, (4, 4) in the world."""
-    return matrix_of(*bullet.getBasePositionAndOrientation(link.number))
+    """Return the pose (4, 4) in the world of the centre of mass of a link's root."""
+    return matrix_of(*bullet.getBasePositionAndOrientation(link.body_id))
 
 
 def centre_of_mass_of(bullet: BulletClient, link: BulletLink) -> np.ndarray:
-    """Where the centre of a link's mass is, with its principal axes, (4, 4) in the world."""
-    if link.index < 0:
+    """Return the pose (4, 4) in the world of a link's centre of mass and principal axes."""
+    if link.link_index < 0:
         return root_pose_of(bullet, link)
-    return matrix_of(*bullet.getLinkState(link.number, link.index, computeForwardKinematics=1)[:2])
+    return matrix_of(*bullet.getLinkState(link.body_id, link.link_index, computeForwardKinematics=1)[:2])

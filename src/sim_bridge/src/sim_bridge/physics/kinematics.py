@@ -1,4 +1,4 @@
-"""Where things are and how they move."""
+"""Pose and velocity of frames, and the contract of bodies that scripts move."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,9 +12,12 @@ from sim_bridge.geometry.pose3 import cross, to_pose2
 
 @dataclass(frozen=True, eq=False)
 class KinematicState:
-    """Where a frame is and how it moves: ``pose`` (4, 4), velocities ``linear`` and ``angular`` (3,).
+    """Pose and velocity of a frame, in the world frame (as gazebo_msgs/LinkState).
 
-    All in the world; the velocity is that of the frame's origin.
+    Attributes:
+        pose: Pose (4, 4).
+        linear: Velocity (3,) of the frame's origin [m/s].
+        angular: Angular velocity (3,) [rad/s].
     """
 
     pose: np.ndarray
@@ -23,21 +26,21 @@ class KinematicState:
 
     @cached_property
     def pose2(self) -> Pose2:
-        """Where the frame is, seen from above."""
+        """The pose in the plane: x, y and yaw."""
         return to_pose2(self.pose)
 
     def of_frame(self, frame_in_this: np.ndarray) -> "KinematicState":
-        """The motion of a frame that is fixed at ``frame_in_this`` (4, 4)."""
+        """Return the state of a frame that is fixed to this one at ``frame_in_this`` (4, 4)."""
         return self.at(self.pose @ frame_in_this)
 
     def at(self, pose: np.ndarray) -> "KinematicState":
-        """The motion of a frame that moves along with this one and now is at ``pose`` (4, 4) in the world."""
+        """Return the state of a frame that is rigidly attached to this one and is at ``pose`` (4, 4)."""
         arm = pose[:3, 3] - self.pose[:3, 3]
         return KinematicState(pose, self.linear + cross(self.angular, arm), self.angular)
 
 
 def at_rest(pose: np.ndarray) -> KinematicState:
-    """The frame at ``pose``, (4, 4) in the world, stands still."""
+    """Return the state of a frame at rest at ``pose`` (4, 4) in the world."""
     return KinematicState(pose, np.zeros(3), np.zeros(3))
 
 

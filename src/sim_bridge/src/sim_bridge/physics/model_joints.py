@@ -1,4 +1,4 @@
-"""The joints of models, by name."""
+"""Joints of models, by name."""
 
 from dataclasses import replace
 from typing import Dict, Iterable, List, Mapping, Sequence, Set
@@ -11,66 +11,70 @@ from sim_bridge.world import Joint
 
 
 class ModelJoints:
-    """A joint is known by ``model::joint``. What takes a name raises UnknownEntityError if there is none."""
+    """Joints by their names, ``model::joint``.
+
+    Methods that take a name raise UnknownEntityError if there is no such joint.
+    """
 
     def __init__(self, engine: Engine):
         self._engine = engine
         self._joints: Dict[str, Joint] = {}
 
     def all(self) -> List[Joint]:
-        """The joints as they are described now."""
+        """Return all joints with their present limits and damping."""
         return list(self._joints.values())
 
     def add(self, joints: Sequence[Joint]) -> None:
-        """Joints of bodies that are in the engine."""
+        """Add joints whose bodies are in the engine."""
         self._joints.update((joint.name, joint) for joint in joints)
 
     def remove_model(self, model: str) -> List[str]:
-        """A model is gone; returns the names of its joints."""
-        gone = [joint.name for joint in self._joints.values() if joint.model == model]
-        for name in gone:
+        """Remove the joints of a model; returns their names."""
+        removed = [joint.name for joint in self._joints.values() if joint.model == model]
+        for name in removed:
             del self._joints[name]
-        return gone
+        return removed
 
     def movable_joints_of(self, model: str) -> List[str]:
-        """The names of a model's joints that move, ``model::joint``."""
+        """Return the names, ``model::joint``, of a model's joints that are not fixed."""
         return [
             joint.name for joint in self._joints.values() if joint.model == model and joint.kind != "fixed"
         ]
 
     def root_links(self, links: Iterable[str]) -> List[str]:
-        """Those links that no joint holds to another: what hangs on them moves with them."""
-        held: Set[str] = {joint.child for joint in self._joints.values() if joint.parent}
-        return [link for link in links if link not in held]
+        """Return those of ``links`` that are no child of another link; their children move with them."""
+        children: Set[str] = {joint.child for joint in self._joints.values() if joint.parent}
+        return [link for link in links if link not in children]
 
     def full_name(self, name: str) -> str:
-        """The name ``model::joint`` of the first joint that is called so, with its model or without."""
+        """Return ``model::joint`` of the first joint of that name, given with or without its model."""
         for known in self._joints:
             if known == name or known.endswith("::" + name):
                 return known
         raise self._unknown(name)
 
     def get(self, name: str) -> Joint:
+        """Return a joint's description."""
         if name not in self._joints:
             raise self._unknown(name)
         return self._joints[name]
 
     def state(self, name: str) -> JointState:
-        """Of a joint that moves."""
+        """Return the state of a joint that is not fixed."""
         return self._engine.joints.state(self.get(name).name)
 
     def set_positions(self, positions: Mapping[str, float]) -> None:
-        """Puts joints to positions, rad or m, at rest; those that are fixed stay so."""
+        """Set joint positions [rad or m] at zero speed; fixed joints are ignored."""
         for name, position in positions.items():
             if self.get(name).kind != "fixed":
                 self._engine.joints.set_state(name, JointState(position, 0.0))
 
     def reset_positions(self) -> None:
-        """Puts all joints to where they started."""
+        """Set all joints to their start positions."""
         self.set_positions({joint.name: joint.start for joint in self._joints.values()})
 
     def set_limits(self, name: str, lower: float, upper: float, damping: float) -> None:
-        """Limits in rad or m, ``damping`` in N m s/rad or N s/m; a joint that is fixed stays so."""
+        """Set limits [rad or m] and damping [N m s/rad or N s/m]; a fixed joint stays fixed."""
         self._joints[name] = replace(self.get(name), lower=lower, upper=upper, damping=damping)
         if self._joints[name].kind != "fixed":
             self._engine.joints.set_limits(name, lower, upper, damping)

@@ -1,4 +1,4 @@
-"""Models, robots among them, and their links, by name."""
+"""Models, including robots, and their links, by name."""
 
 from typing import Dict, Iterable, List, Sequence
 
@@ -15,9 +15,10 @@ from sim_bridge.world import Body
 
 
 class Models:
-    """What there is in an engine, and in sight; a link is known by ``model::link``, a robot is a model.
+    """The models of a scene; links are named ``model::link``, and a robot is a model.
 
-    What takes a name raises UnknownEntityError if there is nothing of that name.
+    Keeps the engine and the sensors' view of the scene consistent. Methods that take a name raise
+    UnknownEntityError if there is no such model or link.
     """
 
     def __init__(self, engine: Engine, joints: ModelJoints, view: SceneView):
@@ -28,18 +29,18 @@ class Models:
         self._vehicles: Dict[str, Vehicle] = {}
 
     def add(self, bodies: Sequence[Body]) -> None:
-        """Bodies that are in the engine."""
+        """Add bodies that are in the engine."""
         for body in bodies:
             self._bodies[body.name] = body
             self._view.add(body)
 
     def add_vehicle(self, vehicle: Vehicle) -> None:
-        """A robot that is in the engine."""
+        """Add a robot that is in the engine."""
         self._vehicles[vehicle.name] = vehicle
         self._view.add(vehicle.body())
 
     def remove(self, name: str) -> List[str]:
-        """Takes a model out of the engine and out of sight; returns the names of its links."""
+        """Remove a model from the engine and from view; returns the names of its links."""
         links = self.links_of(name)
         vehicle = self._vehicles.pop(name, None)
         for link in [vehicle.base] if vehicle else links:
@@ -51,19 +52,20 @@ class Models:
         return links
 
     def bodies(self) -> List[Body]:
-        """Of all models but robots, as they were put into the world."""
+        """Return the bodies of all models except robots, as they were added."""
         return list(self._bodies.values())
 
     def names(self) -> List[str]:
+        """Return the names of all models."""
         return list(dict.fromkeys([*(body.model for body in self._bodies.values()), *self._vehicles]))
 
     def check_free(self, names: Iterable[str]) -> None:
-        """Raises WorldError if a model has one of these names."""
+        """Raise WorldError if a model has one of these names."""
         for taken in set(names).intersection(self.names()):
             raise WorldError(f"{taken} is in the world already")
 
     def links_of(self, model: str) -> List[str]:
-        """The names of a model's links; the first is the one that its pose is told by."""
+        """Return the names of a model's links; the first is the one whose pose stands for the model's."""
         if model in self._vehicles:
             return list(self._vehicles[model].links)
         links = [body.name for body in self._bodies.values() if body.model == model]
@@ -72,36 +74,36 @@ class Models:
         return links
 
     def collisions_of(self, model: str) -> List[str]:
-        """The names of the collisions of a model."""
+        """Return the names of the collisions of a model."""
         bodies = (body for body in self._bodies.values() if body.model == model)
         return [part.name for body in bodies for part in body.collisions]
 
     def is_static(self, model: str) -> bool:
-        """Whether nothing of a model can move."""
+        """Return whether no link of a model can move."""
         return model not in self._vehicles and all(
             self._bodies[link].mass is None for link in self.links_of(model)
         )
 
     def state(self, name: str) -> KinematicState:
-        """Where a model's frame is and how it moves."""
+        """Return the pose and velocity of a model's frame."""
         link = self.links_of(name)[0]
-        motion = self._engine.state_of(link)
-        return motion.of_frame(inverse(self._bodies[link].pose_in_model)) if link in self._bodies else motion
+        state = self._engine.state_of(link)
+        return state.of_frame(inverse(self._bodies[link].pose_in_model)) if link in self._bodies else state
 
-    def set_state(self, name: str, motion: KinematicState) -> None:
-        """Puts a model with all its links to another place, and sets its velocity."""
-        from_here = motion.pose @ inverse(self.state(name).pose)
+    def set_state(self, name: str, state: KinematicState) -> None:
+        """Set the pose and velocity of a model with all its links."""
+        displacement = state.pose @ inverse(self.state(name).pose)
         vehicle = self._vehicles.get(name)
         for link in [vehicle.base] if vehicle else self._joints.root_links(self.links_of(name)):
-            self._put(link, motion.at(from_here @ self._engine.pose_of(link)))
+            self._set_state(link, state.at(displacement @ self._engine.pose_of(link)))
 
     def reset_poses(self) -> None:
-        """Puts all models but robots back to where they were put into the world, at rest."""
+        """Move all models except robots back to where they were added, at rest."""
         for name in self._joints.root_links(self._bodies):
-            self._put(name, at_rest(self._bodies[name].pose_in_world))
+            self._set_state(name, at_rest(self._bodies[name].pose_in_world))
 
     def full_link_name(self, name: str) -> str:
-        """The name ``model::link`` of the first link that is called so, with its model or without."""
+        """Return ``model::link`` of the first link of that name, given with or without its model."""
         known = self._links()
         for link in known:
             if link == name or link.endswith("::" + name):
@@ -109,27 +111,37 @@ class Models:
         raise _unknown("link", name, known)
 
     def check_link(self, link: str) -> None:
-        """Raises UnknownEntityError."""
+        """Raise UnknownEntityError if there is no such link."""
         model = link.split("::", 1)[0]
         if model not in self.names() or link not in self.links_of(model):
             raise _unknown("link", link, self._links())
 
     def link_state(self, link: str) -> KinematicState:
+        """Return the pose and velocity of a link."""
         self.check_link(link)
         return self._engine.state_of(link)
 
-    def set_link_state(self, link: str, motion: KinematicState) -> None:
+    def set_link_state(self, link: str, state: KinematicState) -> None:
+        """Set the pose and velocity of a link."""
         self.check_link(link)
-        self._put(link, motion)
+        self._set_state(link, state)
 
     def mass_properties(self, link: str) -> MassProperties:
+        """Return the mass properties of a link."""
         self.check_link(link)
         return self._engine.mass_properties(link)
 
     def set_mass(self, link: str, mass: float, moments: Sequence[float], has_gravity: bool) -> None:
-        """``mass`` in kg, ``moments`` (3,) about the link's principal axes, kg m^2, and whether it falls.
+        """Set the mass properties of a link.
 
-        Raises WorldError for what nothing can weigh.
+        Args:
+            link: Name of the link.
+            mass: Mass [kg].
+            moments: Principal moments of inertia (3,) [kg m^2].
+            has_gravity: Whether gravity acts on the link.
+
+        Raises:
+            WorldError: The mass or a moment is not positive or too large.
         """
         self.check_link(link)
         if not all(0.0 < value <= MAX_COORDINATE for value in (mass, *moments)):
@@ -139,9 +151,9 @@ class Models:
     def _links(self) -> List[str]:
         return [link for model in self.names() for link in self.links_of(model)]
 
-    def _put(self, link: str, motion: KinematicState) -> None:
-        self._engine.set_state(link, motion)
-        self._view.move(link, motion.pose)
+    def _set_state(self, link: str, state: KinematicState) -> None:
+        self._engine.set_state(link, state)
+        self._view.move(link, state.pose)
 
 
 def _unknown(kind: str, name: str, known: Iterable[str]) -> UnknownEntityError:

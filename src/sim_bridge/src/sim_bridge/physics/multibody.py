@@ -1,4 +1,4 @@
-"""Bodies and the joints between them as the trees that Bullet wants."""
+"""Groups bodies and joints into kinematic trees, of which Bullet makes multibodies."""
 
 from dataclasses import dataclass, field
 from typing import Dict, List, Optional, Sequence
@@ -10,9 +10,13 @@ from sim_bridge.world import Body, Joint
 
 @dataclass
 class KinematicTree:
-    """Bodies that hang together: body i by ``joints[i]`` on the body number ``parents[i]``; 0 is the root.
+    """Bodies connected by joints; body 0 is the root.
 
-    ``frames``: (4, 4) of each body's own frame in the body: where its joint is.
+    Attributes:
+        bodies: The bodies, parents before children.
+        joints: The joint of each body to its parent; None for the root.
+        parents: Index of each body's parent; -1 for the root.
+        frames: Pose (4, 4) of each body's joint frame in the body frame.
     """
 
     bodies: List[Body]
@@ -21,40 +25,42 @@ class KinematicTree:
     frames: List[np.ndarray] = field(default_factory=lambda: [np.eye(4)])
 
     def is_fixed(self) -> bool:
-        """Whether the root never moves."""
+        """Return whether the root is static."""
         return self.bodies[0].mass is None
 
 
 def kinematic_trees(bodies: Sequence[Body], joints: Sequence[Joint]) -> List[KinematicTree]:
-    """The trees that ``joints``, which close no loops, make of ``bodies``; parents come before children.
+    """Return the trees that ``joints``, which must not form loops, make of ``bodies``.
 
-    A body on a joint to the world hangs on a root of no shape that never moves, named after the joint.
+    A joint to the world gets a static root without shapes, named after the joint.
     """
     by_parent: Dict[str, List[Joint]] = {}
     for joint in joints:
         by_parent.setdefault(joint.parent, []).append(joint)
     by_name = {body.name: body for body in bodies}
-    hanging = {joint.child for joint in joints}
-    roots = [body for body in bodies if body.name not in hanging]
-    trees = [_tree(KinematicTree([root]), by_parent, by_name) for root in roots]
+    children = {joint.child for joint in joints}
+    roots = [body for body in bodies if body.name not in children]
+    trees = [_with_descendants(KinematicTree([root]), by_parent, by_name) for root in roots]
     for joint in by_parent.get("", ()):
         anchor = Body(joint.name, by_name[joint.child].pose_in_world, ())
-        held = KinematicTree([anchor])
-        _hang(held, joint, 0, by_name)
-        trees.append(_tree(held, by_parent, by_name))
+        rooted = KinematicTree([anchor])
+        _add_child(rooted, joint, 0, by_name)
+        trees.append(_with_descendants(rooted, by_parent, by_name))
     return trees
 
 
-def _tree(tree: KinematicTree, by_parent: Dict[str, List[Joint]], by_name: Dict[str, Body]) -> KinematicTree:
+def _with_descendants(
+    tree: KinematicTree, by_parent: Dict[str, List[Joint]], by_name: Dict[str, Body]
+) -> KinematicTree:
     at = 0
     while at < len(tree.bodies):
         for joint in by_parent.get(tree.bodies[at].name, ()):
-            _hang(tree, joint, at, by_name)
+            _add_child(tree, joint, at, by_name)
         at += 1
     return tree
 
 
-def _hang(tree: KinematicTree, joint: Joint, parent: int, by_name: Dict[str, Body]) -> None:
+def _add_child(tree: KinematicTree, joint: Joint, parent: int, by_name: Dict[str, Body]) -> None:
     tree.bodies.append(by_name[joint.child])
     tree.joints.append(joint)
     tree.parents.append(parent)

@@ -1,4 +1,4 @@
-"""Bodies that hang together, robots or models, as one of Bullet's multibodies."""
+"""Creates Bullet multibodies from kinematic trees of bodies."""
 
 from typing import Any, Dict, List, Optional, Tuple
 
@@ -13,63 +13,85 @@ from sim_bridge.physics.multibody import KinematicTree
 from sim_bridge.physics.registry import BodyRegistry, BulletJoint, BulletLink
 from sim_bridge.world import Body, Joint
 
-# Of which one of Bullet's multibodies is made: its root and its links.
-MOST_PARTS = 128
+# Bullet's limit: the root and the links of one multibody.
+MAX_PARTS = 128
 _KINDS = {"revolute": pybullet.JOINT_REVOLUTE, "prismatic": pybullet.JOINT_PRISMATIC}
 
 
 def build_multibody(
-    bullet: BulletClient, register: BodyRegistry, tree: KinematicTree, placement: np.ndarray
+    bullet: BulletClient, registry: BodyRegistry, tree: KinematicTree, placement: np.ndarray
 ) -> int:
-    """Puts a tree, whose poses are seen from ``placement`` (4, 4), into Bullet; returns its number.
+    """Create a multibody from a kinematic tree.
 
-    Each body is a link on its parent's; the shapes that do not fit into one are fixed links on it. Raises
-    WorldError if these are more than Bullet takes.
+    Each body becomes a link of its parent's link. Shapes beyond Bullet's limit for one link become further
+    links that are fixed to it.
+
+    Args:
+        bullet: The physics engine.
+        registry: Receives the ids of the new links and joints.
+        tree: The bodies and the joints between them.
+        placement: Pose (4, 4) in the world of the frame in which the bodies' poses are given.
+
+    Returns Bullet's unique id of the multibody. Raises WorldError if the tree has too many parts.
     """
     root = tree.bodies[0]
     centre = root.inertia.pose_in_body
     root_shape, *more = make_colliders(bullet, root.collisions, root.mass is not None, centre)
-    links, indices = _hanging_links(bullet, tree)
+    links, indices = _child_links(bullet, tree)
     links += [_link(shape, IDENTITY, 0) for shape in more]
-    if len(links) >= MOST_PARTS:
-        raise WorldError(f"{root.name}: {len(links) + 1} parts hang together, {MOST_PARTS} is the most")
+    if len(links) >= MAX_PARTS:
+        raise WorldError(
+            f"{root.name}: {len(links) + 1} parts are connected by joints, at most {MAX_PARTS} are supported"
+        )
     is_static = all(body.mass is None for body in tree.bodies)
     placed = placement @ root.pose_in_world @ centre
-    number = bullet.createMultiBody(
+    body_id = bullet.createMultiBody(
         baseMass=root.mass or 0.0,
         baseCollisionShapeIndex=root_shape,
         basePosition=position(placed),
         baseOrientation=quaternion(placed),
-        # What Bullet calls a rigid body costs next to nothing in each step; it cannot have links.
+        # A Bullet rigid body costs far less per step than a multibody, but cannot have links.
         useMaximalCoordinates=int(is_static and not links),
         **{key: [link[key] for link in links] for key in (links[0] if links else {})},
     )
     if not is_static:
-        register.dynamic_bodies.add(number)
-    for index, body in _owners(tree, indices, links).items():
-        register.assign_link(number, index, body.name)
-        _finish_part(bullet, number, index, body)
+        registry.dynamic_bodies.add(body_id)
+    _configure_parts(bullet, registry, tree, body_id, _bodies_of_links(tree, indices, links), indices)
+    return body_id
+
+
+def _configure_parts(
+    bullet: BulletClient,
+    registry: BodyRegistry,
+    tree: KinematicTree,
+    body_id: int,
+    bodies: Dict[int, Body],
+    indices: List[int],
+) -> None:
+    """Register the links and joints of a multibody and set what createMultiBody does not accept."""
+    for index, body in bodies.items():
+        registry.assign_link(body_id, index, body.name)
+        _set_contact_properties(bullet, body_id, index, body)
     for index, body, joint in zip(indices, tree.bodies, tree.joints):
-        register.links[body.name] = BulletLink(number, index, body.inertia.pose_in_body)
+        registry.links[body.name] = BulletLink(body_id, index, body.inertia.pose_in_body)
         if body.inertia.moments is not None and body.mass is not None:
-            bullet.changeDynamics(number, index, localInertiaDiagonal=body.inertia.moments.tolist())
+            bullet.changeDynamics(body_id, index, localInertiaDiagonal=body.inertia.moments.tolist())
         if joint is not None and joint.kind != "fixed":
-            register.joints[joint.name] = BulletJoint(number, index, joint)
-            _loosen(bullet, number, index, joint)
-    return number
+            registry.joints[joint.name] = BulletJoint(body_id, index, joint)
+            _configure_joint(bullet, body_id, index, joint)
 
 
-def _hanging_links(bullet: BulletClient, tree: KinematicTree) -> Tuple[List[Dict[str, Any]], List[int]]:
-    """Links of all bodies but the root, and the index of each body, the root's first."""
+def _child_links(bullet: BulletClient, tree: KinematicTree) -> Tuple[List[Dict[str, Any]], List[int]]:
+    """Return the links of all bodies but the root, and the link index of each body, the root's first."""
     links: List[Dict[str, Any]] = []
     indices = [-1]
     for body, joint, parent, frame in list(zip(tree.bodies, tree.joints, tree.parents, tree.frames))[1:]:
-        assert joint is not None, "only the root hangs on nothing"
+        assert joint is not None, "only the root has no joint to a parent"
         shape, *more = make_colliders(bullet, body.collisions, True, frame)
-        above = tree.bodies[parent]
-        above_frame = above.inertia.pose_in_body if parent == 0 else tree.frames[parent]
-        in_above = inverse(above.pose_in_world @ above_frame) @ body.pose_in_world @ frame
-        start = in_above @ inverse(_moved(joint, joint.start))
+        parent_body = tree.bodies[parent]
+        parent_frame = parent_body.inertia.pose_in_body if parent == 0 else tree.frames[parent]
+        in_parent = inverse(parent_body.pose_in_world @ parent_frame) @ body.pose_in_world @ frame
+        start = in_parent @ inverse(_displaced(joint, joint.start))
         centre = inverse(frame) @ body.inertia.pose_in_body
         links.append(_link(shape, start, indices[parent] + 1, body.mass or 0.0, centre, joint))
         indices.append(len(links) - 1)
@@ -77,19 +99,19 @@ def _hanging_links(bullet: BulletClient, tree: KinematicTree) -> Tuple[List[Dict
     return links, indices
 
 
-def _owners(tree: KinematicTree, indices: List[int], links: List[Dict[str, Any]]) -> Dict[int, Body]:
-    """Whose each link is; those of the same body hang on its first."""
+def _bodies_of_links(tree: KinematicTree, indices: List[int], links: List[Dict[str, Any]]) -> Dict[int, Body]:
+    """Return the body of each link; further links of a body are children of its first."""
     owners = dict(zip(indices, tree.bodies))
     for index, link in enumerate(links):
         owners.setdefault(index, owners[link["linkParentIndices"] - 1])
     return owners
 
 
-def _finish_part(bullet: BulletClient, number: int, index: int, body: Body) -> None:
-    """Tells Bullet what createMultiBody cannot take."""
+def _set_contact_properties(bullet: BulletClient, body_id: int, link_index: int, body: Body) -> None:
+    """Set friction, restitution and damping, which createMultiBody does not accept."""
     bullet.changeDynamics(
-        number,
-        index,
+        body_id,
+        link_index,
         lateralFriction=body.surface.friction,
         restitution=body.surface.restitution,
         linearDamping=body.damping[0],
@@ -98,21 +120,21 @@ def _finish_part(bullet: BulletClient, number: int, index: int, body: Body) -> N
     )
 
 
-def _loosen(bullet: BulletClient, number: int, index: int, joint: Joint) -> None:
-    """Bullet brakes every joint with a motor; here it only has the joint's own friction."""
-    bullet.setJointMotorControl2(number, index, pybullet.VELOCITY_CONTROL, force=joint.friction)
-    bullet.changeDynamics(number, index, jointDamping=joint.damping)
-    limit_joint(bullet, number, index, joint.lower, joint.upper)
-    bullet.resetJointState(number, index, joint.start)
+def _configure_joint(bullet: BulletClient, body_id: int, link_index: int, joint: Joint) -> None:
+    """Set a joint's friction, damping, limits and position; Bullet enables a motor on it by default."""
+    bullet.setJointMotorControl2(body_id, link_index, pybullet.VELOCITY_CONTROL, force=joint.friction)
+    bullet.changeDynamics(body_id, link_index, jointDamping=joint.damping)
+    limit_joint(bullet, body_id, link_index, joint.lower, joint.upper)
+    bullet.resetJointState(body_id, link_index, joint.start)
 
 
-def _moved(joint: Joint, by: float) -> np.ndarray:
-    """The pose (4, 4) of a joint's frame moved ``by`` rad or m along its axis, seen from where it was."""
+def _displaced(joint: Joint, displacement: float) -> np.ndarray:
+    """Return the pose (4, 4) of a joint frame displaced along its axis, in the frame at position 0."""
     pose = np.eye(4)
     if joint.kind == "prismatic":
-        pose[:3, 3] = by * joint.axis
+        pose[:3, 3] = displacement * joint.axis
     elif joint.kind == "revolute":
-        turn = pybullet.getQuaternionFromAxisAngle(joint.axis.tolist(), by)
+        turn = pybullet.getQuaternionFromAxisAngle(joint.axis.tolist(), displacement)
         pose[:3, :3] = np.reshape(pybullet.getMatrixFromQuaternion(turn), (3, 3))
     return pose
 
@@ -125,7 +147,7 @@ def _link(
     centre: np.ndarray = IDENTITY,
     joint: Optional[Joint] = None,
 ) -> Dict[str, Any]:
-    """createMultiBody's arguments for one link; ``parent``: 0 for the base, else 1 + the index of a link."""
+    """Return createMultiBody's arguments for one link; ``parent``: 0 for the base, else 1 + a link index."""
     return {
         "linkMasses": mass,
         "linkCollisionShapeIndices": shape,

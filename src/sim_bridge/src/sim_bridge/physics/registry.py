@@ -1,4 +1,4 @@
-"""What has which number in Bullet."""
+"""Bullet's ids of links and joints by their names."""
 
 from dataclasses import dataclass, field
 from typing import Dict, List, Optional, Set, Tuple
@@ -11,14 +11,19 @@ from sim_bridge.world import Joint
 
 @dataclass(frozen=True, eq=False)
 class BulletLink:
-    """A link in Bullet's numbers; ``centre`` (4, 4): of its mass and principal axes in its own frame.
+    """A link in Bullet.
 
-    ``index`` is -1 for the root of what hangs together; ``offset``: from the centre to the link's origin if
-    both are turned alike, else None.
+    Attributes:
+        body_id: Bullet's unique id of the body that the link belongs to.
+        link_index: Bullet's index of the link; -1 for the root of the body.
+        centre: Pose (4, 4) of the centre of mass and principal axes in the link frame.
+        from_centre: Pose (4, 4) of the link frame in that of the centre of mass.
+        offset: Position of the link's origin in the frame of the centre of mass, if both have the same
+            orientation, else None.
     """
 
-    number: int
-    index: int
+    body_id: int
+    link_index: int
     centre: np.ndarray
     from_centre: np.ndarray = field(init=False)
     offset: Optional[Tuple[float, ...]] = field(init=False)
@@ -32,44 +37,47 @@ class BulletLink:
 
 @dataclass(frozen=True, eq=False)
 class BulletJoint:
-    """A joint that is not fixed, in Bullet's numbers."""
+    """A movable joint in Bullet: ids of its child link, and its description."""
 
-    number: int
-    index: int
+    body_id: int
+    link_index: int
     joint: Joint
 
 
 class BodyRegistry:
-    """Links and moving joints by their names, and whose each of Bullet's parts is.
+    """Maps names of links and movable joints to Bullet's ids, and Bullet's parts back to link names.
 
-    ``movers``: numbers of what physics moves.
+    Attributes:
+        links: Links by name.
+        joints: Movable joints by name.
+        dynamic_bodies: Ids of the bodies that are moved by physics.
     """
 
     def __init__(self):
         self.links: Dict[str, BulletLink] = {}
         self.joints: Dict[str, BulletJoint] = {}
         self.dynamic_bodies: Set[int] = set()
-        self._owners: Dict[Tuple[int, int], str] = {}
+        self._link_names: Dict[Tuple[int, int], str] = {}
 
-    def is_static(self, number: int) -> bool:
-        """Whether physics moves nothing of what hangs together under a number."""
-        return number not in self.dynamic_bodies
+    def is_static(self, body_id: int) -> bool:
+        """Return whether physics moves no part of a body."""
+        return body_id not in self.dynamic_bodies
 
-    def assign_link(self, number: int, index: int, link: str) -> None:
-        """A part of Bullet's belongs to a link; a large one has several."""
-        self._owners[number, index] = link
+    def assign_link(self, body_id: int, link_index: int, link: str) -> None:
+        """Record that a Bullet link belongs to the link ``link``; one with many shapes has several."""
+        self._link_names[body_id, link_index] = link
 
-    def link_of(self, number: int, index: int) -> str:
-        """The name of the link that a part of Bullet's belongs to."""
-        return self._owners[number, index]
+    def link_of(self, body_id: int, link_index: int) -> str:
+        """Return the name of the link that a Bullet link belongs to."""
+        return self._link_names[body_id, link_index]
 
-    def parts_of(self, number: int) -> List[int]:
-        """The indices of all that hangs together under a number."""
-        return [index for owned, index in self._owners if owned == number]
+    def parts_of(self, body_id: int) -> List[int]:
+        """Return all link indices of a body."""
+        return [link_index for body, link_index in self._link_names if body == body_id]
 
-    def remove(self, number: int) -> None:
-        """All that hangs together under a number is gone."""
-        self.links = {name: link for name, link in self.links.items() if link.number != number}
-        self.joints = {name: joint for name, joint in self.joints.items() if joint.number != number}
-        self._owners = {part: link for part, link in self._owners.items() if part[0] != number}
-        self.dynamic_bodies.discard(number)
+    def remove(self, body_id: int) -> None:
+        """Remove a body with all its links and joints."""
+        self.links = {name: link for name, link in self.links.items() if link.body_id != body_id}
+        self.joints = {name: joint for name, joint in self.joints.items() if joint.body_id != body_id}
+        self._link_names = {part: link for part, link in self._link_names.items() if part[0] != body_id}
+        self.dynamic_bodies.discard(body_id)

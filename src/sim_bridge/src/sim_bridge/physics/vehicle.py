@@ -1,4 +1,4 @@
-"""A wheeled robot among the bodies of an engine."""
+"""A wheeled robot in the physics engine."""
 
 from typing import List, NamedTuple, Optional, Sequence, Tuple
 
@@ -10,16 +10,21 @@ from sim_bridge.physics.engine import Engine
 from sim_bridge.physics.kinematics import KinematicState
 from sim_bridge.world import Body, Joint
 
-# Metres that a robot at its start may reach into what it stands on.
-START_DEPTH = 0.01
-# Metres by which a robot is moved out of what it stands in, a little at a time, before it stands free.
+# Penetration of the floor that is accepted at the start [m].
+MAX_START_DEPTH = 0.01
+# Distance added to the penetration depth when a robot is moved out of an obstacle [m].
 CLEARANCE = 0.001
-# A contact whose normal rises more steeply than this carries the robot; it is no collision.
+# A contact with a normal steeper than this supports the robot and is no collision.
 SUPPORTING_NORMAL_Z = 0.7
 
 
 class Overlap(NamedTuple):
-    """What a robot stands in, and the shortest way out of the worst of it, metres."""
+    """Obstacles that a robot overlaps.
+
+    Attributes:
+        links: Names of the overlapped links.
+        x: Displacement in the world frame that resolves the deepest overlap [m], as is ``y``.
+    """
 
     links: Tuple[str, ...]
     x: float
@@ -27,10 +32,16 @@ class Overlap(NamedTuple):
 
 
 class Vehicle:
-    """The robot ``name``: a base, the first of ``bodies``, and wheels on ``joints``, those on the left first.
+    """A base with driven wheels.
 
-    The base starts at ``base_in_space``, (4, 4), which the bodies' poses are seen from; ``left_count`` wheels
-    are on the left; ``torque``, N m, is what each motor has.
+    Args:
+        engine: The physics engine.
+        name: Name of the robot.
+        bodies: The base, then the wheels; poses are in the base frame.
+        joints: The wheels' joints, those on the left first.
+        left_count: Number of wheels on the left.
+        torque: Largest torque of each motor [N m].
+        base_in_space: Start pose (4, 4) of the base in the world frame.
     """
 
     def __init__(
@@ -56,58 +67,60 @@ class Vehicle:
         self._speeds: Optional[Tuple[float, float]] = None
 
     def drive(self, left_speed: float, right_speed: float) -> None:
-        """The motors aim at these speeds of the wheels on the left and the right, rad/s, until told anew."""
+        """Set the target speeds [rad/s] of the wheels on the left and on the right."""
         if self._speeds != (left_speed, right_speed):
             self._speeds = (left_speed, right_speed)
             speeds = [left_speed] * self._left_count + [right_speed] * self._right_count
             self._motors.set_velocities(speeds, self._efforts)
 
     def invalidate_speeds(self) -> None:
-        """The motors may have been set otherwise, or have to be as physics goes at another rate."""
+        """Send the target speeds again at the next ``drive``, even if they are unchanged."""
         self._speeds = None
 
     def state(self) -> KinematicState:
-        """Of the base frame."""
+        """Return the pose and velocity of the base frame."""
         return self._engine.state_of(self.base)
 
     def wheels(self) -> Tuple[Tuple[float, ...], Tuple[float, ...]]:
-        """Angles, rad, and speeds, rad/s, of the wheels, those on the left first."""
+        """Return the angles [rad] and speeds [rad/s] of the wheels, those on the left first."""
         return self._motors.states()
 
     def body(self) -> Body:
-        """The robot as others see it: its base, where it is now."""
+        """Return the base at its present pose, as the sensors of other robots see it."""
         return Body(self.base, self.state().pose, self._collisions, mass=1.0)
 
     def collision_contacts(self) -> List[Contact]:
-        """Where the robot touches things; what it stands on is not among them."""
-        contacts = self._engine.collision_queries.contacts(self.base, steepest=SUPPORTING_NORMAL_Z)
+        """Return the contacts of the base with obstacles, without those that support it."""
+        contacts = self._engine.collision_queries.contacts(self.base, max_normal_z=SUPPORTING_NORMAL_Z)
         return [contact for contact in contacts if contact.depth >= 0.0]
 
     def floors_below(self, points: Sequence[Sequence[float]]) -> List[float]:
-        """The heights of what is below points in space, -inf where there is nothing."""
+        """Return the height of the floor below each of ``points`` (N, 3), -inf where there is none."""
         return self._engine.collision_queries.floors_below(points)
 
     @property
     def gravity(self) -> float:
-        """Downwards, m/s^2."""
+        """Downward acceleration [m/s^2]."""
         return self._engine.gravity
 
     def overlap(self) -> Optional[Overlap]:
-        """What the robot stands in, None if in nothing."""
+        """Return what the robot overlaps, None if nothing."""
         collision_queries = self._engine.collision_queries
         collision_queries.detect_collisions()
-        sunk = [contact for contact in collision_queries.contacts(self.base) if contact.depth > START_DEPTH]
-        met = sunk + self.collision_contacts()
-        if not met:
+        sunk = [
+            contact for contact in collision_queries.contacts(self.base) if contact.depth > MAX_START_DEPTH
+        ]
+        overlapping = sunk + self.collision_contacts()
+        if not overlapping:
             return None
-        deepest = max(met, key=lambda contact: contact.depth)
-        way = deepest.depth + CLEARANCE
-        links = tuple(sorted({contact.link for contact in met}))
-        return Overlap(links, deepest.normal[0] * way, deepest.normal[1] * way)
+        deepest = max(overlapping, key=lambda contact: contact.depth)
+        distance = deepest.depth + CLEARANCE
+        links = tuple(sorted({contact.link for contact in overlapping}))
+        return Overlap(links, deepest.normal[0] * distance, deepest.normal[1] * distance)
 
 
-def twist_in_base(motion: KinematicState) -> Twist2:
-    """Velocity of the base frame's origin along its own x axis, and turn rate."""
-    linear, pose = motion.linear, motion.pose
-    ahead = linear.item(0) * pose.item(0, 0) + linear.item(1) * pose.item(1, 0)
-    return Twist2(ahead, motion.angular.item(2))
+def twist_in_base(state: KinematicState) -> Twist2:
+    """Return the forward velocity and the turn rate of the base, in the base frame."""
+    linear, pose = state.linear, state.pose
+    forward = linear.item(0) * pose.item(0, 0) + linear.item(1) * pose.item(1, 0)
+    return Twist2(forward, state.angular.item(2))

@@ -41,7 +41,7 @@ class ForceServices:
         if not np.isfinite(np.concatenate((force, torque, arm))).all():
             return answer(False, "ApplyBodyWrench: the wrench is not finite")
         span = self._span(request)
-        self._scene.forces.push(LinkWrench(name, force, torque + cross(arm, force), *span))
+        self._scene.forces.apply_link_wrench(LinkWrench(name, force, torque + cross(arm, force), *span))
         return answer(True, "")
 
     def _on_clear_wrenches(self, request):
