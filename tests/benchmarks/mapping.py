@@ -79,7 +79,7 @@ class MappingRun:
         )
         self._odom_in_map = Pose2()
         self._map_stamp = -np.inf
-        self.true_keys: List[np.ndarray] = []
+        self.true_keyframes: List[np.ndarray] = []
         self.collisions = 0
         self.base_in_world = Pose2()
         self.now = 0.0
@@ -90,7 +90,7 @@ class MappingRun:
         try:
             while outcome is None:
                 grid, odometry, scan = self._sense(command)
-                if len(self.true_keys) == 0:
+                if len(self.true_keyframes) == 0:
                     continue
                 base_in_map = self._odom_in_map @ odometry.base_in_odom
                 order = self._explorer.advance(self.now, grid, base_in_map, event)
@@ -124,8 +124,8 @@ class MappingRun:
         update = self.mapper.insert(seen.odometry.base_in_odom, seen.scan)
         if update is not None:
             self._odom_in_map = update.odom_in_map
-            if update.is_key:
-                self.true_keys.append(seen.base_in_world.as_array())
+            if update.is_keyframe:
+                self.true_keyframes.append(seen.base_in_world.as_array())
         if seen.scan.stamp - self._map_stamp < self._settings.map_update_interval:
             return None
         self._map_stamp = seen.scan.stamp
@@ -147,8 +147,8 @@ def _event_of(decision: Decision):
 
 def judge(run: MappingRun, end: FinishTask, score: MapScore, seed: int, cpu: float, mission) -> Mapped:
     way_home = run.base_in_world.distance_to(Pose2())
-    estimated = run.mapper.key_poses
-    errors = np.hypot(*(estimated[:, :2] - np.array(run.true_keys)[:, :2]).T)
+    estimated = run.mapper.keyframe_poses
+    errors = np.hypot(*(estimated[:, :2] - np.array(run.true_keyframes)[:, :2]).T)
     complaints = [
         (not end.success, end.reason),
         (way_home > ARRIVAL_TOLERANCE, f"{way_home:.2f} m from the start"),

@@ -29,7 +29,7 @@ from planar_ros.node.blas import use_one_blas_thread
 from slam_lite.config import NodeSettings
 from slam_lite.graph.pose_graph import chi_squares
 from slam_lite.mapper import Mapper
-from slam_lite.trajectory import Trajectory
+from slam_lite.scan_trajectory import ScanTrajectory
 
 # How far off a wrong closure is at least: metres, radians, and standard deviations of its own.
 WRONG_XY, WRONG_YAW, WRONG_SIGMAS = 1.0, 0.1, 4.0
@@ -47,7 +47,7 @@ class Closures:
     log: str
     seed: int
     scans: int
-    keys: int
+    keyframes: int
     right: int
     wrong: int
     harmful: int
@@ -78,33 +78,33 @@ def main() -> int:
 
 def judge(name: str, seed: int) -> Closures:
     """Maps one log and compares it with the truth."""
-    _, _, sightings = made(name, seed)
-    mapper, trajectory, true_keys, spent, live = mapped(sightings)
-    measured, real = _closures(mapper, true_keys)
+    _, _, observations = made(name, seed)
+    mapper, trajectory, true_keyframes, spent, live = mapped(observations)
+    measured, real = _closures(mapper, true_keyframes)
     off = measured - real
     off[:, 2] = wrap(off[:, 2])
     is_wrong = (np.hypot(off[:, 0], off[:, 1]) > WRONG_XY) | (np.abs(off[:, 2]) > WRONG_YAW)
     edges = mapper.state().edges
     chi = np.einsum("ni,nij,nj->n", off, edges.information[edges.is_loop], off)
     is_wrong &= chi > WRONG_SIGMAS**2
-    is_followed = chi_squares(mapper.key_poses, edges)[edges.is_loop] < FOLLOWED
-    poses = trajectory.poses(mapper.key_poses, of_laser=True)
+    is_followed = chi_squares(mapper.keyframe_poses, edges)[edges.is_loop] < FOLLOWED
+    poses = trajectory.poses(mapper.keyframe_poses, of_laser=True)
     poses[:, 0] += START
-    errors, _ = relation_errors(poses, relations_of(sightings))
-    ends = np.array([[0, len(true_keys) - 1]])
-    end_off = _seen_from(mapper.key_poses, ends) - _seen_from(true_keys, ends)
+    errors, _ = relation_errors(poses, relations_of(observations))
+    ends = np.array([[0, len(true_keyframes) - 1]])
+    end_off = _seen_from(mapper.keyframe_poses, ends) - _seen_from(true_keyframes, ends)
     return Closures(
         name,
         seed,
-        len(sightings),
-        len(true_keys),
+        len(observations),
+        len(true_keyframes),
         right=int(np.count_nonzero(~is_wrong)),
         wrong=int(np.count_nonzero(is_wrong)),
         harmful=int(np.count_nonzero(is_wrong & is_followed)),
         mean_error=float(errors.mean()),
         median_error=float(np.median(errors)),
         end_off=float(np.hypot(*end_off[0, :2])),
-        farthest_off=float(_positions_off(mapper.key_poses, true_keys).max()),
+        farthest_off=float(_positions_off(mapper.keyframe_poses, true_keyframes).max()),
         cpu_mean=float(spent.mean()),
         cpu_mean_of_last_quarter=float(spent[-len(spent) // 4 :].mean()),
         live_p99=float(np.percentile(live, 99)),
@@ -112,36 +112,36 @@ def judge(name: str, seed: int) -> Closures:
     )
 
 
-def mapped(sightings: List[Sighting]) -> Tuple[Mapper, Trajectory, np.ndarray, np.ndarray, np.ndarray]:
+def mapped(observations: List[Sighting]) -> Tuple[Mapper, ScanTrajectory, np.ndarray, np.ndarray, np.ndarray]:
     """The mapper after a log, where each scan was taken, the true poses (N, 3) of keys, and ms of CPU.
 
     These of each scan, (N,), with the search for closures and without.
     """
-    mapper, trajectory = Mapper(NodeSettings(), deferred=True), Trajectory()
-    true_keys, spent, live = [], [], []
-    for sighting in sightings:
+    mapper, trajectory = Mapper(NodeSettings(), deferred=True), ScanTrajectory()
+    true_keyframes, spent, live = [], [], []
+    for observation in observations:
         start = time.process_time()
-        update = mapper.insert(sighting.base_in_odom, sighting.scan)
-        task = mapper.task()
+        update = mapper.insert(observation.base_in_odom, observation.scan)
+        task = mapper.closure_task()
         inserted = time.process_time()
         result = None if task is None else task.run()
         found = time.process_time()
         if result is not None:
-            mapper.adopt(result)
+            mapper.apply_closures(result)
         end = time.process_time()
         spent.append(1000.0 * (end - start))
         live.append(spent[-1] - 1000.0 * (found - inserted))
-        trajectory.add(sighting.base_in_odom, sighting.scan, update)
-        if update is not None and update.is_key:
-            true_keys.append(sighting.base_in_map.as_array())
-    mapper.settle()
-    return mapper, trajectory, np.array(true_keys), np.array(spent), np.array(live)
+        trajectory.add(observation.base_in_odom, observation.scan, update)
+        if update is not None and update.is_keyframe:
+            true_keyframes.append(observation.base_in_map.as_array())
+    mapper.run_final_optimization()
+    return mapper, trajectory, np.array(true_keyframes), np.array(spent), np.array(live)
 
 
-def _closures(mapper: Mapper, true_keys: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+def _closures(mapper: Mapper, true_keyframes: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
     """What each closure measured, (N, 3), and what it should have."""
     edges = mapper.state().edges
-    return edges.measured[edges.is_loop], _seen_from(true_keys, edges.nodes[edges.is_loop])
+    return edges.measured[edges.is_loop], _seen_from(true_keyframes, edges.nodes[edges.is_loop])
 
 
 def _seen_from(poses: np.ndarray, pairs: np.ndarray) -> np.ndarray:
@@ -162,7 +162,7 @@ def _positions_off(poses: np.ndarray, truth: np.ndarray) -> np.ndarray:
 
 def _line(one: Closures) -> str:
     return (
-        f"{one.log} {one.seed}: {one.scans} scans, {one.keys} kept; "
+        f"{one.log} {one.seed}: {one.scans} scans, {one.keyframes} kept; "
         f"closures {one.right} right, {one.wrong} wrong "
         f"({one.harmful} followed); error {one.mean_error:.3f} m, median {one.median_error:.3f}, "
         f"end off {one.end_off:.2f}, key scans by up to {one.farthest_off:.2f}; "

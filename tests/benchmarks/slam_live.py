@@ -72,17 +72,17 @@ class LiveTest:
         laser = drive[0].scan.laser_in_base
         self._static.sendTransform(transform_msg(laser, "base_footprint", "laser", rospy.Time(BEGIN)))
         began, last_map = time.monotonic(), -np.inf
-        for sighting in drive:
-            time.sleep(max(0.0, began + sighting.scan.stamp - time.monotonic()))
-            stamp = rospy.Time.from_sec(BEGIN + sighting.scan.stamp)
+        for observation in drive:
+            time.sleep(max(0.0, began + observation.scan.stamp - time.monotonic()))
+            stamp = rospy.Time.from_sec(BEGIN + observation.scan.stamp)
             self._clock.publish(Clock(stamp))
-            self._transforms.send(sighting.base_in_odom, "odom", "base_footprint", stamp)
+            self._transforms.send(observation.base_in_odom, "odom", "base_footprint", stamp)
             now = time.monotonic()
             if stamp.to_sec() - last_map >= MAP_INTERVAL:
                 last_map = stamp.to_sec()
                 self._map_due_at.append(now)
             self._published[stamp.to_nsec()] = now
-            self._scans.publish(_message_of(sighting.scan, stamp))
+            self._scans.publish(_message_of(observation.scan, stamp))
         time.sleep(1.0)
 
     def _on_progress(self, message):

@@ -97,7 +97,7 @@ def made(name: str, seed: int) -> Tuple[OccupancyGrid, Drive, List[Sighting]]:
     else:
         site = House(drive.buildings[0], rng)
     poses = true_poses(site.walk(rng), drive, rng)
-    return site.grid, drive, list(sightings_of(site.grid, poses, drive, rng))
+    return site.grid, drive, list(observations_of(site.grid, poses, drive, rng))
 
 
 def true_poses(places: Iterator[np.ndarray], drive: Drive, rng: np.random.Generator) -> Iterator[Pose2]:
@@ -164,7 +164,7 @@ class Person:
             ranges[met] = np.minimum(ranges[met], front)
 
 
-def sightings_of(
+def observations_of(
     grid: OccupancyGrid, poses: Iterator[Pose2], drive: Drive, rng: np.random.Generator
 ) -> Iterator[Sighting]:
     """What the robot measures on its way."""
@@ -185,15 +185,15 @@ def sightings_of(
         yield Sighting(scan, in_odom, pose)
 
 
-def relations_of(sightings: List[Sighting]) -> np.ndarray:
+def relations_of(observations: List[Sighting]) -> np.ndarray:
     """Rows ``t1 t2 x y z roll pitch yaw`` of the laser: to the place before, and to earlier visits."""
     rows: List[Tuple[float, ...]] = []
     places: List[Tuple[float, Pose2]] = []
-    for sighting in sightings:
-        laser = sighting.base_in_map @ sighting.scan.laser_in_base
+    for observation in observations:
+        laser = observation.base_in_map @ observation.scan.laser_in_base
         if places and places[-1][1].distance_to(laser) < RELATION_STEP:
             continue
-        stamp = START + sighting.scan.stamp
+        stamp = START + observation.scan.stamp
         rows += [_relation(place, (stamp, laser)) for place in places[-1:]]
         visits = [place for place in places if place[0] < stamp - REVISIT_SECONDS]
         again = [place for place in visits if place[1].distance_to(laser) < REVISIT_RADIUS]
@@ -216,11 +216,11 @@ def main() -> int:
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)
     for name in [options.only] if options.only else [*DRIVES, "site"]:
-        _, _, sightings = made(name, options.seed)
-        write_bag(options.folder / f"{name}.bag", sightings, base_frame="base_link")
-        relations = relations_of(sightings)
+        _, _, observations = made(name, options.seed)
+        write_bag(options.folder / f"{name}.bag", observations, base_frame="base_link")
+        relations = relations_of(observations)
         np.savetxt(options.folder / f"{name}.relations", relations, fmt="%.6f")
-        print(f"{name}: {len(sightings)} scans, {len(relations)} relations")
+        print(f"{name}: {len(observations)} scans, {len(relations)} relations")
     return 0
 
 

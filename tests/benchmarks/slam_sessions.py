@@ -53,7 +53,7 @@ class Session:
     """One session: what was kept, how far off the new key scans are, and how good the map is."""
 
     session: int
-    keys: int
+    keyframes: int
     kilobytes: float
     found_after: float
     mean_error: float
@@ -153,10 +153,10 @@ def main() -> int:
         start = home.start() if number else Pose2()
         grid = true_map(world, height)
         tour = Tour(grid, *_reachable(grid, places))
-        sightings = drive(
+        observations = drive(
             world, tour, options.seed * 100 + number, options.seconds, start=start, robot=options.robot
         )
-        session, mapped = _map(number, sightings, state)
+        session, mapped = _map(number, observations, state)
         score = score_against_world(mapped, world, robot)
         stale = sum(_is_drawn(mapped, pose) for pose in left)
         session = replace(session, **asdict(score), stale_pieces=stale)
@@ -173,30 +173,30 @@ def main() -> int:
     return 0 if all(verdict.success for verdict in verdicts) else 1
 
 
-def _map(number: int, sightings: List[Sighting], path: Path) -> Tuple[Session, OccupancyGrid]:
+def _map(number: int, observations: List[Sighting], path: Path) -> Tuple[Session, OccupancyGrid]:
     """Maps one session on top of the state at ``path``, if there is one, and saves the new one there."""
     start = time.process_time()
     settings, _ = settings_from_yaml(NodeSettings, SLAM_CONFIG)
     mapper = Mapper(settings)
     if number:
         mapper.resume(load_state(path))
-    true_keys, found_after = [], math.nan
-    for sighting in sightings:
-        update = mapper.insert(sighting.base_in_odom, sighting.scan)
+    true_keyframes, found_after = [], math.nan
+    for observation in observations:
+        update = mapper.insert(observation.base_in_odom, observation.scan)
         if update is None:
             continue
-        if math.isnan(found_after) and update.base_in_map.distance_to(sighting.base_in_map) < FOUND:
-            found_after = sighting.scan.stamp - sightings[0].scan.stamp
-        if update.is_key:
-            true_keys.append(sighting.base_in_map.as_array()[:2])
-    mapper.settle()
+        if math.isnan(found_after) and update.base_in_map.distance_to(observation.base_in_map) < FOUND:
+            found_after = observation.scan.stamp - observations[0].scan.stamp
+        if update.is_keyframe:
+            true_keyframes.append(observation.base_in_map.as_array()[:2])
+    mapper.run_final_optimization()
     grid = mapper.grid()
     cpu_seconds = time.process_time() - start
     save_state(mapper.state(), path)
-    errors = np.hypot(*(mapper.key_poses[-len(true_keys) :, :2] - np.array(true_keys)).T)
+    errors = np.hypot(*(mapper.keyframe_poses[-len(true_keyframes) :, :2] - np.array(true_keyframes)).T)
     session = Session(
         number,
-        len(mapper.key_poses),
+        len(mapper.keyframe_poses),
         path.stat().st_size / 1000.0,
         found_after,
         float(errors.mean()),
@@ -227,7 +227,7 @@ def _is_drawn(grid: OccupancyGrid, piece: Pose2) -> bool:
 
 def _line(one: Session, moved: int) -> str:
     return (
-        f"session {one.session}: {one.keys} key scans, {one.kilobytes:.0f} kB, "
+        f"session {one.session}: {one.keyframes} key scans, {one.kilobytes:.0f} kB, "
         f"found after {one.found_after:.1f} s, "
         f"keys off by {one.mean_error:.3f} m (at most {one.max_error:.3f}), recall {one.recall:.3f}, "
         f"precision {one.precision:.3f}, {one.doubled_walls} doubled walls, "

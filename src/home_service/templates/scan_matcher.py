@@ -4,7 +4,7 @@ from slam_lite.config import MapperSettings
 from slam_lite.matching.local_map import LocalMap, Match
 from slam_lite.matching.refinement import refine
 from slam_lite.matching.scan_matcher import Prediction
-from slam_lite.surface import Surface
+from slam_lite.point_cloud import PointCloud
 
 
 class CLASS:
@@ -13,7 +13,7 @@ class CLASS:
     def __init__(self, settings: MapperSettings):
         pass
 
-    def match(self, surface: Surface, local_map: LocalMap, prediction: Prediction) -> Match:
+    def match(self, cloud: PointCloud, local_map: LocalMap, prediction: Prediction) -> Match:
         """See slam_lite.matching.scan_matcher.ScanMatcher: what is given can only be read."""
         predicted = prediction.base_pose
-        return refine(surface, local_map, predicted, predicted, prediction.information)
+        return refine(cloud, local_map, predicted, predicted, prediction.information)

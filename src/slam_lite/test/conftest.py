@@ -1,4 +1,4 @@
-"""A made-up office to map, and a robot that drives round in it with a laser and drifting odometry."""
+"""A simulated office, and a robot that drives through it with a laser and drifting odometry."""
 
 import math
 from typing import List, NamedTuple
@@ -14,14 +14,16 @@ CORRIDOR = [(2.0, 2.0), (14.0, 2.0), (14.0, 9.0), (2.0, 9.0), (2.0, 2.0)]
 SPEED, PERIOD = 0.5, 0.25
 
 
-class Sighting(NamedTuple):
+class Observation(NamedTuple):
+    """A scan, odometry, and the true pose in the map frame."""
+
     scan: Scan
     base_in_odom: Pose2
     base_in_map: Pose2
 
 
 class Office(NamedTuple):
-    """``truth`` is the true grid; ``drive`` goes ``laps`` times round it and returns sightings."""
+    """The true grid, and the laser and drives in it."""
 
     truth: OccupancyGrid
 
@@ -33,10 +35,10 @@ class Office(NamedTuple):
         ranges[ranges > range_max] = np.inf
         return Scan(stamp, angles[0], angles[1] - angles[0], ranges.astype(np.float32), 0.1, range_max)
 
-    def drive(self, laps=1.2, seed=0, turn_error=0.03, **laser) -> List[Sighting]:
+    def drive(self, laps=1.2, seed=0, turn_error=0.03, **laser) -> List[Observation]:
         rng = np.random.default_rng(seed)
-        sightings, base_in_odom, last = [], Pose2(), None
-        for i, base_in_map in enumerate(_way(laps)):
+        observations, base_in_odom, last = [], Pose2(), None
+        for i, base_in_map in enumerate(_route(laps)):
             if last is not None:
                 motion = last.inverse() @ base_in_map
                 slip = rng.normal(0.0, 0.01, 2)
@@ -45,14 +47,14 @@ class Office(NamedTuple):
                 )
             last = base_in_map
             scan = self.scan(base_in_map, i * PERIOD, rng=rng, **laser)
-            sightings.append(Sighting(scan, base_in_odom, base_in_map))
-        start = sightings[0].base_in_map
-        return [s._replace(base_in_odom=start @ s.base_in_odom) for s in sightings]
+            observations.append(Observation(scan, base_in_odom, base_in_map))
+        start = observations[0].base_in_map
+        return [s._replace(base_in_odom=start @ s.base_in_odom) for s in observations]
 
 
 @pytest.fixture(scope="session")
 def office() -> Office:
-    """16 m x 11 m: a ring of corridors with niches and rooms of different sizes, no two places alike."""
+    """16 m x 11 m: a ring of corridors with niches and rooms of different sizes; every place is unique."""
     cells = np.full((round(11.0 / RESOLUTION), round(16.0 / RESOLUTION)), OCCUPIED, dtype=np.int8)
 
     def fill(value, *box):
@@ -69,7 +71,7 @@ def office() -> Office:
     return Office(OccupancyGrid(cells, RESOLUTION))
 
 
-def _way(laps):
+def _route(laps):
     corners = [np.array(corner) for corner in CORRIDOR]
     legs = round(4 * laps)
     for leg in range(legs):

@@ -7,24 +7,25 @@ import pytest
 from planar import OCCUPIED, OccupancyGrid, Pose2, wrap
 from planar.maps.map_score import score_map
 from slam_lite.config import MapperSettings
-from slam_lite.mapper import Follower, Mapper
+from slam_lite.map_localizer import MapLocalizer
+from slam_lite.mapper import Mapper
 from slam_lite.rendering import Evidence, SessionRenderer, beams_of
 
-# half a cell of the true grid, from which ranges are cast, plus what the front end drifts in a lap
-FOLLOWED = 0.15
+# half a cell of the true grid, from which ranges are cast, plus the drift of the front end in a lap
+TRACKED = 0.15
 
 
 def mapped(drive, settings=MapperSettings(), mapper=None):
     mapper = mapper or Mapper(settings)
-    updates = [mapper.insert(sighting.base_in_odom, sighting.scan) for sighting in drive]
-    mapper.settle()
+    updates = [mapper.insert(observation.base_in_odom, observation.scan) for observation in drive]
+    mapper.run_final_optimization()
     return mapper, updates
 
 
 def worst_error(drive, updates):
     return max(
-        update.base_in_map.distance_to(sighting.base_in_map)
-        for sighting, update in zip(drive, updates)
+        update.base_in_map.distance_to(observation.base_in_map)
+        for observation, update in zip(drive, updates)
         if update is not None
     )
 
@@ -39,13 +40,13 @@ def mapper(drive):
     return mapped(drive)[0]
 
 
-def test_the_robot_is_followed_although_odometry_drifts(drive):
+def test_the_robot_is_tracked_although_odometry_drifts(drive):
     off = drive[-1].base_in_odom.distance_to(drive[-1].base_in_map)
     assert off > 1.0
-    assert worst_error(drive, mapped(drive)[1]) < FOLLOWED
+    assert worst_error(drive, mapped(drive)[1]) < TRACKED
 
 
-def test_the_map_is_as_good_as_one_drawn_from_the_true_poses(office, drive, mapper):
+def test_the_map_is_as_good_as_one_rendered_at_the_true_poses(office, drive, mapper):
     renderer = SessionRenderer(resolution=0.05, occupied_threshold=0.25)
     beams = [beams_of(s.scan, s.scan.range_max, s.scan.range_max) for s in drive]
     renderer.update(Evidence(beams, np.array([s.base_in_map.as_array() for s in drive])))
@@ -53,7 +54,7 @@ def test_the_map_is_as_good_as_one_drawn_from_the_true_poses(office, drive, mapp
         score_map(grid, office.truth, start_in_truth=Pose2(2.0, 2.0, 0.0))
         for grid in (renderer.grid(), mapper.grid())
     )
-    # the robot does not look into every niche, so that even the best misses some walls
+    # not every niche is visible, so that even the best map misses some walls
     assert score.recall > 0.99 * best.recall
     assert score.precision > 0.95
     assert score.doubled_walls == 0
@@ -61,7 +62,7 @@ def test_the_map_is_as_good_as_one_drawn_from_the_true_poses(office, drive, mapp
 
 def test_the_same_drive_gives_the_same_poses_bit_for_bit(drive, mapper):
     again, _ = mapped(drive)
-    assert np.array_equal(again.key_poses, mapper.key_poses)
+    assert np.array_equal(again.keyframe_poses, mapper.keyframe_poses)
 
 
 def test_a_loop_is_closed(mapper):
@@ -70,11 +71,11 @@ def test_a_loop_is_closed(mapper):
 
 def test_deferred_closures_find_the_same_loops(drive, mapper):
     deferred = Mapper(deferred=True)
-    for sighting in drive:
-        deferred.insert(sighting.base_in_odom, sighting.scan)
-        task = deferred.task()
+    for observation in drive:
+        deferred.insert(observation.base_in_odom, observation.scan)
+        task = deferred.closure_task()
         if task is not None:
-            deferred.adopt(task.run())
+            deferred.apply_closures(task.run())
     assert deferred.loop_count == mapper.loop_count
 
 
@@ -82,26 +83,26 @@ def test_a_robot_that_stands_still_adds_nothing(office):
     mapper = Mapper()
     here = Pose2(2.0, 2.0, 0.3)
     updates = [mapper.insert(here, office.scan(here, 0.1 * i)) for i in range(50)]
-    assert len(mapper.key_poses) == 1
+    assert len(mapper.keyframe_poses) == 1
     assert sum(update is not None for update in updates) == 10
 
 
-def test_without_odometry_the_scans_alone_tell_the_way(office):
+def test_without_odometry_the_scans_alone_are_enough(office):
     drive = [s._replace(base_in_odom=Pose2(2.0, 2.0, 0.0)) for s in office.drive(laps=0.5)]
-    assert worst_error(drive, mapped(drive)[1]) < FOLLOWED
+    assert worst_error(drive, mapped(drive)[1]) < TRACKED
 
 
-def test_a_slip_of_the_wheels_is_noticed_and_survived(office):
+def test_a_wheel_slip_is_detected_and_corrected(office):
     drive = office.drive(laps=0.5)
     middle = len(drive) // 2
     slip = Pose2(0.4, -0.3, 0.5)
     slipped = drive[:middle] + [s._replace(base_in_odom=slip @ s.base_in_odom) for s in drive[middle:]]
     _, updates = mapped(slipped)
-    assert updates[middle].surprise > 100.0
-    assert worst_error(slipped, updates) < FOLLOWED
+    assert updates[middle].odometry_chi_square > 100.0
+    assert worst_error(slipped, updates) < TRACKED
 
 
-def test_somebody_who_walks_ahead_in_a_smooth_corridor_does_not_hold_the_robot_back(office, drive):
+def test_a_person_walking_ahead_in_a_smooth_corridor_does_not_hold_the_estimate_back(office, drive):
     cells = np.zeros((60, 500), dtype=np.int8)
     cells[[0, -1], :] = cells[:, [0, -1]] = OCCUPIED
     corridor = office._replace(truth=OccupancyGrid(cells, 0.05))
@@ -112,7 +113,7 @@ def test_somebody_who_walks_ahead_in_a_smooth_corridor_does_not_hold_the_robot_b
         scan.ranges[86:95] = np.minimum(scan.ranges[86:95], 2.0)
         base_in_odom = Pose2(2.0 + 0.101 * i, 1.5, 0.0)
         walk.append(drive[0]._replace(scan=scan, base_in_odom=base_in_odom, base_in_map=base_in_map))
-    # but for odometry, the robot would seem to stand still; a tenth of the way is what the person may take
+    # without odometry the robot would seem to stand still; the person may cost a tenth of the distance
     assert worst_error(walk, mapped(walk)[1]) < 0.1 * 9.9
 
 
@@ -127,15 +128,19 @@ def test_somebody_who_walks_ahead_in_a_smooth_corridor_does_not_hold_the_robot_b
 def test_other_lasers_map_as_well(office, laser):
     drive = office.drive(turn_error=0.01, **laser)
     mapper, updates = mapped(drive)
-    keys = [sighting.base_in_map for sighting, update in zip(drive, updates) if update and update.is_key]
-    for key, pose in zip(keys, mapper.key_poses):
-        assert key.distance_to(Pose2.from_array(pose)) < FOLLOWED
+    keyframes = [
+        observation.base_in_map
+        for observation, update in zip(drive, updates)
+        if update and update.is_keyframe
+    ]
+    for keyframe, pose in zip(keyframes, mapper.keyframe_poses):
+        assert keyframe.distance_to(Pose2.from_array(pose)) < TRACKED
 
 
-def test_a_beam_count_may_change_on_the_way(office):
+def test_the_number_of_beams_may_change(office):
     full, half = office.drive(laps=0.5), office.drive(laps=0.5, beams=91)
     drive = [s._replace(scan=pair[i % 2].scan) for i, (s, pair) in enumerate(zip(full, zip(full, half)))]
-    assert worst_error(drive, mapped(drive)[1]) < FOLLOWED
+    assert worst_error(drive, mapped(drive)[1]) < TRACKED
 
 
 def test_an_upside_down_laser_maps_as_well(office):
@@ -143,47 +148,47 @@ def test_an_upside_down_laser_maps_as_well(office):
         s._replace(scan=dataclasses.replace(s.scan, ranges=s.scan.ranges[::-1].copy(), upside_down=True))
         for s in office.drive(laps=0.4)
     ]
-    assert worst_error(drive, mapped(drive)[1]) < FOLLOWED
+    assert worst_error(drive, mapped(drive)[1]) < TRACKED
 
 
-def test_a_scan_that_sees_nothing_is_survived(office):
+def test_scans_without_returns_are_tolerated(office):
     drive = office.drive(laps=0.4)
     blind = dataclasses.replace(drive[20].scan, ranges=np.full(181, np.nan, dtype=np.float32))
     drive[20:24] = [s._replace(scan=dataclasses.replace(blind, stamp=s.scan.stamp)) for s in drive[20:24]]
-    assert worst_error(drive, mapped(drive)[1]) < FOLLOWED
+    assert worst_error(drive, mapped(drive)[1]) < TRACKED
 
 
-def test_mapping_goes_on_from_a_saved_state(office, mapper):
+def test_mapping_resumes_from_a_saved_state(office, mapper):
     resumed = Mapper()
     resumed.resume(mapper.state(), Pose2(2.3, 1.8, 0.1))
     restarted = Pose2(5.0, 5.0, 1.0)
     drive = [s._replace(base_in_odom=restarted @ s.base_in_odom) for s in office.drive(laps=0.5, seed=1)]
     mapped(drive, mapper=resumed)
-    assert len(resumed.key_poses) > len(mapper.key_poses)
+    assert len(resumed.keyframe_poses) > len(mapper.keyframe_poses)
     score = score_map(resumed.grid(), office.truth, start_in_truth=Pose2(2.0, 2.0, 0.0))
     assert score.precision > 0.95
     assert score.doubled_walls == 0
 
 
-def test_a_follower_follows_in_a_finished_map_and_leaves_it_alone(office, mapper):
+def test_a_localizer_tracks_in_a_finished_map_and_leaves_it_unchanged(office, mapper):
     state = mapper.state()
     poses = state.poses.copy()
     drive = office.drive(laps=0.5, seed=2)
-    follower = Follower(MapperSettings(), state, Pose2(2.2, 1.9, 0.1))
-    updates = [follower.insert(s.base_in_odom, s.scan) for s in drive]
-    assert worst_error(drive[5:], updates[5:]) < FOLLOWED
+    localizer = MapLocalizer(MapperSettings(), state, Pose2(2.2, 1.9, 0.1))
+    updates = [localizer.insert(s.base_in_odom, s.scan) for s in drive]
+    assert worst_error(drive[5:], updates[5:]) < TRACKED
     assert np.array_equal(state.poses, poses)
 
 
-def test_odom_in_map_carries_odometry_to_the_estimate(drive):
+def test_odom_in_map_transforms_odometry_to_the_estimate(drive):
     _, updates = mapped(drive[:40])
-    for sighting, update in zip(drive, updates):
-        there = update.odom_in_map @ sighting.base_in_odom
+    for observation, update in zip(drive, updates):
+        there = update.odom_in_map @ observation.base_in_odom
         assert there.distance_to(update.base_in_map) < 1e-9
         assert abs(wrap(there.yaw - update.base_in_map.yaw)) < 1e-9
 
 
-def test_no_wall_is_drawn_where_nothing_was_met(office):
+def test_no_wall_is_drawn_where_no_beam_ended(office):
     mapper = Mapper()
     here = Pose2(2.0, 2.0, 0.0)
     mapper.insert(here, office.scan(here, range_max=1.05))

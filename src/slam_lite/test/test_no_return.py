@@ -2,21 +2,21 @@ import math
 
 import numpy as np
 
-from slam_lite.no_return import NoReturn
+from slam_lite.no_return import NoReturnDetector
 
 BEAMS = np.linspace(-1.2, 1.2, 140)
 
 
-def test_a_constant_that_a_laser_says_where_it_sees_nothing_is_learned():
-    rng, learned = np.random.default_rng(0), NoReturn()
+def test_a_constant_reading_that_means_no_return_is_learned():
+    rng, learned = np.random.default_rng(0), NoReturnDetector()
     for _ in range(20):
         seen = rng.uniform(1.0, 45.0, 140)
         learned.add(np.append(seen, rng.normal(51.1, 0.03, 40)).astype(np.float32))
     assert 50.8 < learned.distance < 51.05
 
 
-def test_walls_are_not_taken_for_nothing():
-    learned = NoReturn()
+def test_walls_are_not_learned_as_no_return():
+    learned = NoReturnDetector()
     for step in range(200):
         learned.add((60.0 - 0.2 * step) / np.cos(BEAMS))
     assert learned.distance == math.inf

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from planar import Pose2
-from slam_lite.graph.pose_graph import Edge, EdgeList, chi_squares, edges_of, optimise
+from slam_lite.graph.pose_graph import Edge, EdgeList, chi_squares, edges_of, optimize
 
-SURE = np.diag([1e4, 1e4, 1e5])
-DOUBTFUL = np.diag([1e3, 1e3, 1e3])
+PRECISE = np.diag([1e4, 1e4, 1e5])
+VAGUE = np.diag([1e3, 1e3, 1e3])
 
 
 def ring(count=40, radius=5.0):
@@ -16,12 +16,12 @@ def ring(count=40, radius=5.0):
     return [Pose2(radius * math.sin(a), radius * (1.0 - math.cos(a)), a) for a in angles]
 
 
-def edge(poses, first, second, information=SURE, **kwargs):
+def edge(poses, first, second, information=PRECISE, **kwargs):
     return Edge(first, second, poses[first].inverse() @ poses[second], information, **kwargs)
 
 
 def drifting(poses):
-    """What odometry that turns 3 % too much makes of a way."""
+    """Poses by odometry that turns 3 % too much."""
     guessed = [poses[0]]
     for one, other in zip(poses, poses[1:]):
         step = one.inverse() @ other
@@ -29,8 +29,8 @@ def drifting(poses):
     return np.array([pose.as_array() for pose in guessed])
 
 
-def farthest(poses, optimised):
-    return max(math.hypot(p.x - x, p.y - y) for p, (x, y, _) in zip(poses, optimised))
+def farthest(poses, optimized):
+    return max(math.hypot(p.x - x, p.y - y) for p, (x, y, _) in zip(poses, optimized))
 
 
 @pytest.fixture
@@ -46,39 +46,43 @@ def steps(poses):
 def test_poses_that_agree_with_all_edges_are_found(poses, steps):
     start = drifting(poses)
     assert farthest(poses, start) > 0.3
-    optimised = optimise(start, edges_of(*steps, edge(poses, len(poses) - 1, 0)), 1e-6)
-    assert farthest(poses, optimised) < 1e-4
+    optimized = optimize(start, edges_of(*steps, edge(poses, len(poses) - 1, 0)), 1e-6)
+    assert farthest(poses, optimized) < 1e-4
 
 
-def test_a_closure_mends_measured_drift(poses):
+def test_a_loop_closure_corrects_drift(poses):
     start = drifting(poses)
     guesses = [Pose2.from_array(row) for row in start]
-    steps = [edge(guesses, i, i + 1, DOUBTFUL) for i in range(len(poses) - 1)]
-    optimised = optimise(start, edges_of(*steps, edge(poses, len(poses) - 1, 0, is_loop=True)), 1e-6, fresh=1)
-    assert farthest(poses, optimised) < 0.3 * farthest(poses, start)
+    steps = [edge(guesses, i, i + 1, VAGUE) for i in range(len(poses) - 1)]
+    optimized = optimize(
+        start, edges_of(*steps, edge(poses, len(poses) - 1, 0, is_loop=True)), 1e-6, new_count=1
+    )
+    assert farthest(poses, optimized) < 0.3 * farthest(poses, start)
 
 
 def test_a_false_closure_hardly_bends_the_map(poses, steps):
-    false = Edge(0, 20, Pose2(0.5, 0.0, 0.0), SURE, is_loop=True)
+    false = Edge(0, 20, Pose2(0.5, 0.0, 0.0), PRECISE, is_loop=True)
     truth = np.array([pose.as_array() for pose in poses])
-    optimised = optimise(truth, edges_of(*steps, edge(poses, len(poses) - 1, 0, is_loop=True), false), 1e-6)
-    assert farthest(poses, optimised) < 0.05
+    optimized = optimize(truth, edges_of(*steps, edge(poses, len(poses) - 1, 0, is_loop=True), false), 1e-6)
+    assert farthest(poses, optimized) < 0.05
 
 
 def test_false_closures_that_agree_do_not_undo_right_ones(poses, steps):
-    steps[10] = edge(poses, 10, 11, np.diag([1e3, 1e3, 10.0]))  # wheels may have slipped there
+    steps[10] = edge(poses, 10, 11, np.diag([1e3, 1e3, 10.0]))  # as of a wheel slip
     steps[30] = edge(poses, 30, 31, np.diag([1e3, 1e3, 10.0]))
     right = [edge(poses, last, last - 38, is_loop=True) for last in (38, 39)]
     true = np.array([pose.as_array() for pose in poses])
     moved = [Pose2(0.0, 25.0, 0.0) @ pose for pose in poses]
-    false = [Edge(20 + i, i, poses[20 + i].inverse() @ moved[i], 0.1 * SURE, is_loop=True) for i in range(4)]
-    optimised = optimise(true, edges_of(*steps, *right, *false), 1e-6, fresh=len(false))
-    assert farthest(poses, optimised) < 0.1
+    false = [
+        Edge(20 + i, i, poses[20 + i].inverse() @ moved[i], 0.1 * PRECISE, is_loop=True) for i in range(4)
+    ]
+    optimized = optimize(true, edges_of(*steps, *right, *false), 1e-6, new_count=len(false))
+    assert farthest(poses, optimized) < 0.1
 
 
-def test_the_first_node_stays(poses, steps):
-    optimised = optimise(drifting(poses), edges_of(*steps), 1e-6)
-    assert tuple(optimised[0]) == tuple(poses[0].as_array())
+def test_the_first_node_stays_fixed(poses, steps):
+    optimized = optimize(drifting(poses), edges_of(*steps), 1e-6)
+    assert tuple(optimized[0]) == tuple(poses[0].as_array())
 
 
 def test_chi_square_is_the_weighted_squared_error():

@@ -7,14 +7,14 @@ import pytest
 
 from planar import FREE, OCCUPIED, UNKNOWN, Scan
 from slam_lite.rendering import (
-    Beams,
     Evidence,
+    ScanBeams,
     SessionRenderer,
     beams_of,
-    drawn_in_bands,
-    on_canvas,
+    expand_to_extent,
+    render_in_bands,
 )
-from slam_lite.tiles import Box, around
+from slam_lite.tiles import CellBox, bounding_box
 
 
 def scan(*ranges, range_max=10.0, **kwargs):
@@ -28,7 +28,7 @@ def drawn(one_scan, max_range=9.99, usable_range=9.99, times=1):
     return renderer.grid()
 
 
-def test_a_beam_clears_its_way_and_marks_its_end():
+def test_a_beam_clears_cells_and_marks_its_end():
     grid = drawn(scan(2.0))
     assert grid.value_at(1.0, 0.05) == FREE
     assert grid.value_at(2.05, 0.05) == OCCUPIED
@@ -52,7 +52,7 @@ def test_no_return_clears_if_max_range_reaches_the_sensors():
     assert drawn(scan(1.0, np.inf)).value_at(0.05, 3.5) == UNKNOWN
 
 
-def test_nan_and_zero_say_nothing():
+def test_nan_and_zero_are_dropped():
     grid = drawn(scan(1.0, np.nan, 0.0))
     assert grid.value_at(0.05, 1.0) == UNKNOWN
     assert grid.value_at(-1.0, 0.05) == UNKNOWN
@@ -76,7 +76,7 @@ def test_a_moved_scan_leaves_nothing_behind():
     assert moved.grid().origin == fresh.grid().origin
 
 
-def test_two_places_far_apart_take_no_memory_for_what_lies_between():
+def test_two_places_far_apart_take_no_memory_in_between():
     renderer = SessionRenderer(0.05, 0.25)
     beams = [beams_of(scan(2.0, 1.0, 1.5, 3.0), 9.0, 9.0)] * 2
     tracemalloc.start()
@@ -86,45 +86,47 @@ def test_two_places_far_apart_take_no_memory_for_what_lies_between():
     assert peak < 10e6  # counts of all cells would take 3.6e9
 
 
-def test_a_canvas_is_as_large_as_asked_and_grows_by_ten_metres():
-    canvas = on_canvas(Box(5, -30, 25, -10), (-1.0, -1.0, 1.0, 1.0), 0.1)
-    assert (canvas.col, canvas.row) == (-110, -10)
-    assert canvas.shape[0] % 32 == 0 and canvas.shape[1] % 32 == 0
-    assert around(canvas, Box(5, -30, 25, -10)) == canvas
+def test_an_extent_grows_by_ten_metres():
+    expanded = expand_to_extent(CellBox(5, -30, 25, -10), (-1.0, -1.0, 1.0, 1.0), 0.1)
+    assert (expanded.col, expanded.row) == (-110, -10)
+    assert expanded.shape[0] % 32 == 0 and expanded.shape[1] % 32 == 0
+    assert bounding_box(expanded, CellBox(5, -30, 25, -10)) == expanded
 
 
-def test_the_official_canvas_has_the_official_size():
-    assert on_canvas(Box(0, 0, 1, 1), (-100.0, -100.0, 100.0, 100.0), 0.05).shape == (4000, 4000)
+def test_the_official_extent_has_the_official_size():
+    assert expand_to_extent(CellBox(0, 0, 1, 1), (-100.0, -100.0, 100.0, 100.0), 0.05).shape == (4000, 4000)
 
 
-def test_on_a_canvas_the_map_is_the_same():
+def test_an_expanded_map_has_the_same_cells():
     renderer = SessionRenderer(0.1, 0.25)
     renderer.update(Evidence([beams_of(scan(2.0, 1.0, 1.5, 3.0), 9.0, 9.0)], np.zeros((1, 3))))
-    grid, canvas = renderer.grid(), renderer.grid((-1.0, -1.0, 1.0, 1.0))
-    assert (canvas.cells != UNKNOWN).sum() == (grid.cells != UNKNOWN).sum()
+    grid, expanded = renderer.grid(), renderer.grid((-1.0, -1.0, 1.0, 1.0))
+    assert (expanded.cells != UNKNOWN).sum() == (grid.cells != UNKNOWN).sum()
     inside = grid.points_of(np.argwhere(grid.cells != UNKNOWN))
-    assert [canvas.value_at(*xy) for xy in inside] == [grid.value_at(*xy) for xy in inside]
+    assert [expanded.value_at(*xy) for xy in inside] == [grid.value_at(*xy) for xy in inside]
 
 
-def evidence_of(keys, older, seed, farthest=12.0):
-    """Scans at random poses, some of which see nothing."""
+def evidence_of(keyframes, older, seed, farthest=12.0):
+    """Scans at random poses, some without returns."""
     rng = np.random.default_rng(seed)
     angles, beams = np.linspace(-np.pi, np.pi, 60), []
-    for _ in range(keys):
+    for _ in range(keyframes):
         ends = np.column_stack((np.cos(angles), np.sin(angles))) * rng.uniform(0.0, farthest, (60, 1))
         count = rng.choice([0, 1, 60])
-        beams.append(Beams(rng.normal(0.0, 0.1, 2), ends[:count].astype(np.float32), rng.random(count) < 0.7))
-    poses = rng.uniform((-9.0, -20.0, -3.0), (9.0, 30.0, 3.0), (keys, 3))
+        beams.append(
+            ScanBeams(rng.normal(0.0, 0.1, 2), ends[:count].astype(np.float32), rng.random(count) < 0.7)
+        )
+    poses = rng.uniform((-9.0, -20.0, -3.0), (9.0, 30.0, 3.0), (keyframes, 3))
     return Evidence(beams, poses, older)
 
 
 @pytest.mark.parametrize("most_cells", [1, 40_000, 10**9])
-@pytest.mark.parametrize("keys, older", [(40, 0), (40, 15), (12, 12), (1, 0), (0, 0)])
-def test_a_map_in_bands_is_the_map(keys, older, most_cells):
+@pytest.mark.parametrize("keyframes, older", [(40, 0), (40, 15), (12, 12), (1, 0), (0, 0)])
+def test_a_map_in_bands_is_the_map(keyframes, older, most_cells):
     for seed in range(5):
-        evidence, renderer = evidence_of(keys, older, seed), SessionRenderer(0.05, 0.25)
+        evidence, renderer = evidence_of(keyframes, older, seed), SessionRenderer(0.05, 0.25)
         renderer.update(evidence)
-        whole, banded = renderer.grid(), drawn_in_bands(evidence, 0.05, 0.25, most_cells)
+        whole, banded = renderer.grid(), render_in_bands(evidence, 0.05, 0.25, most_cells)
         bands = list(banded.bands)
         assert all(band.size <= max(most_cells, 64 * banded.cols) for band in bands)
         joined = replace(banded, bands=bands).joined()
@@ -137,7 +139,7 @@ def test_a_map_in_bands_never_takes_the_memory_of_all_of_it():
     size = SessionRenderer(0.02, 0.25)
     size.update(evidence)
     tracemalloc.start()
-    cells = sum(band.size for band in drawn_in_bands(evidence, 0.02, 0.25, 500_000).bands)
+    cells = sum(band.size for band in render_in_bands(evidence, 0.02, 0.25, 500_000).bands)
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert cells == size.grid().cells.size

@@ -10,7 +10,7 @@ from slam_lite.config import WITHOUT_EFFECT, NodeSettings
 
 CONFIG = Path(__file__).resolve().parents[1] / "config"
 
-# contracts of gmapping 1.4; maxRange and maxUrange follow the scan there, which 0 stands for
+# gmapping 1.4; there maxRange and maxUrange default to the scan's range, for which 0 stands here
 OFFICIAL = {
     "throttle_scans": 1,
     "base_frame": "base_link",
@@ -36,11 +36,11 @@ def test_every_official_parameter_has_its_official_default():
     assert {name: ours.get(name) for name in OFFICIAL} == OFFICIAL
 
 
-def test_no_parameter_both_has_a_meaning_and_has_none():
+def test_no_used_parameter_is_listed_as_without_effect():
     assert not set(WITHOUT_EFFECT) & set(official_names(NodeSettings))
 
 
-def test_the_turtlebot_preset_is_understood():
+def test_the_turtlebot_preset_is_valid():
     preset = yaml.safe_load((CONFIG / "turtlebot.yaml").read_text())
     settings, unknown = settings_from(NodeSettings, preset, official_names(NodeSettings))
     assert unknown == []
@@ -57,6 +57,18 @@ def test_the_turtlebot_preset_is_understood():
         ({"localization_only": True}, "/slam_gmapping/localization_only must be used with state"),
     ],
 )
-def test_a_senseless_value_is_refused_by_its_official_name(values, complaint):
+def test_an_invalid_value_is_refused_by_its_official_name(values, complaint):
     with pytest.raises(SettingsError, match=complaint):
         settings_from(NodeSettings, values, official_names(NodeSettings), where="/slam_gmapping/")
+
+
+def test_old_names_of_parameters_are_accepted_with_a_warning():
+    old = {"key_distance": 0.3, "key_angle": 0.4, "window_keys": 7}
+    with pytest.warns(
+        FutureWarning, match="/slam_gmapping/key_distance is deprecated; use keyframe_distance"
+    ):
+        settings, unknown = settings_from(
+            NodeSettings, old, official_names(NodeSettings), where="/slam_gmapping/"
+        )
+    assert unknown == []
+    assert (settings.keyframe_distance, settings.keyframe_angle, settings.window_keyframes) == (0.3, 0.4, 7)

@@ -12,36 +12,36 @@ from slam_lite.state import StateFileError, load_state, save_state
 @pytest.fixture(scope="module")
 def state(office):
     mapper = Mapper()
-    for sighting in office.drive(laps=0.25):
-        mapper.insert(sighting.base_in_odom, sighting.scan)
+    for observation in office.drive(laps=0.25):
+        mapper.insert(observation.base_in_odom, observation.scan)
     return mapper.state()
 
 
 @pytest.mark.parametrize("is_compressed", (True, False))
-def test_a_state_comes_back_as_it_was(state, tmp_path, is_compressed):
+def test_a_saved_state_is_loaded_unchanged(state, tmp_path, is_compressed):
     save_state(state, tmp_path / "map.npz", is_compressed)
     back = load_state(tmp_path / "map.npz")
     assert np.array_equal(back.poses, state.poses)
     assert np.array_equal(back.edges.information, state.edges.information)
     assert back.base_in_map == state.base_in_map
-    assert len(back.surfaces) == len(state.surfaces)
-    assert np.array_equal(back.surfaces[-1].normals_xy, state.surfaces[-1].normals_xy)
+    assert len(back.clouds) == len(state.clouds)
+    assert np.array_equal(back.clouds[-1].normals_xy, state.clouds[-1].normals_xy)
     assert np.array_equal(back.beams[-1].ends_xy, state.beams[-1].ends_xy)
 
 
-def test_an_empty_state_comes_back_too(tmp_path):
+def test_an_empty_state_is_loaded_too(tmp_path):
     save_state(Mapper().state(), tmp_path / "map.npz")
-    assert len(load_state(tmp_path / "map.npz").surfaces) == 0
+    assert len(load_state(tmp_path / "map.npz").clouds) == 0
 
 
-def test_an_empty_state_can_be_gone_on_from(office):
+def test_an_empty_state_can_be_resumed(office):
     mapper, place = Mapper(), Pose2(2.0, 2.0)
     mapper.resume(Mapper().state())
     mapper.insert(place, office.scan(place))
-    assert len(mapper.key_poses) == 1
+    assert len(mapper.keyframe_poses) == 1
 
 
-def test_sessions_that_have_seen_nothing_can_be_gone_on_from():
+def test_sessions_without_returns_can_be_resumed():
     mapper = Mapper()
     blind = Scan(0.0, -1.0, 0.1, np.full(20, np.nan, dtype=np.float32), 0.1, 5.0)
     for _ in range(3):
@@ -49,10 +49,10 @@ def test_sessions_that_have_seen_nothing_can_be_gone_on_from():
         state = mapper.state()
         mapper = Mapper()
         mapper.resume(state, Pose2())
-    assert len(mapper.key_poses) == 1
+    assert len(mapper.keyframe_poses) == 1
 
 
-def test_a_session_of_a_single_long_beam_can_be_gone_on_from():
+def test_a_session_of_a_single_long_beam_can_be_resumed():
     mapper = Mapper()
     for ranges in ([np.nan], [4.9]):
         mapper.insert(Pose2(), Scan(0.0, -3.1, 0.1, np.array(ranges, dtype=np.float32), 0.1, 5.0))
@@ -60,20 +60,20 @@ def test_a_session_of_a_single_long_beam_can_be_gone_on_from():
         mapper = Mapper()
         mapper.resume(state, Pose2())
     mapper.resume(mapper.state(), Pose2())
-    assert len(mapper.key_poses) == 1
+    assert len(mapper.keyframe_poses) == 1
 
 
 @pytest.mark.parametrize("place", [Pose2(9e5, 0.0), Pose2(2.0, -500.0), Pose2(np.nan, 2.0), Pose2(2e6, 2.0)])
-def test_a_place_nowhere_near_the_map_is_refused_and_nothing_is_lost(state, place):
+def test_a_pose_far_from_the_map_is_refused_and_the_mapper_unchanged(state, place):
     mapper = Mapper()
     mapper.resume(state)
     with pytest.raises(OutOfRangeError):
         mapper.resume(state, place)
-    assert np.array_equal(mapper.key_poses, state.poses)
+    assert np.array_equal(mapper.keyframe_poses, state.poses)
 
 
-def test_a_map_at_the_end_of_all_space_ends_there_and_can_be_loaded(office, tmp_path):
-    """Odometry begins anew in each session, and so may lead beyond what means anything."""
+def test_a_map_at_the_limit_of_coordinates_stays_within_it_and_can_be_loaded(office, tmp_path):
+    """Odometry starts from zero in each session, and so may lead beyond the limit."""
     scan, rim = office.scan(Pose2(2.0, 2.0)), Pose2(999_998.0, 0.0)
     mapper = Mapper()
     mapper.insert(rim, scan)
@@ -100,7 +100,7 @@ def test_a_folder_that_is_not_there_is_an_error_and_the_old_file_stays(state, tm
     "content, complaint",
     [(None, "no such"), (b"", "not a readable"), (b"PK\x03\x04broken", "not a readable")],
 )
-def test_what_is_no_state_is_refused(content, complaint, tmp_path):
+def test_other_files_are_refused(content, complaint, tmp_path):
     path = tmp_path / "map.npz"
     if content is not None:
         path.write_bytes(content)
@@ -108,7 +108,7 @@ def test_what_is_no_state_is_refused(content, complaint, tmp_path):
         load_state(path)
 
 
-def test_half_a_state_is_refused(state, tmp_path):
+def test_a_truncated_state_is_refused(state, tmp_path):
     path = tmp_path / "map.npz"
     save_state(state, path)
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])

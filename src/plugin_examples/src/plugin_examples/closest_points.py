@@ -11,7 +11,7 @@ from planar import Pose2
 from slam_lite.config import MapperSettings
 from slam_lite.matching.local_map import LocalMap, Match
 from slam_lite.matching.scan_matcher import Prediction
-from slam_lite.surface import Surface
+from slam_lite.point_cloud import PointCloud
 
 STEPS, ENOUGH = 30, 1e-4
 # Metres: how far apart a pair counts a quarter, how far it lies on the map, how far apart it is by chance.
@@ -22,23 +22,23 @@ class ClosestPoints:
     def __init__(self, settings: MapperSettings):
         pass
 
-    def match(self, surface: Surface, local_map: LocalMap, prediction: Prediction) -> Match:
+    def match(self, cloud: PointCloud, local_map: LocalMap, prediction: Prediction) -> Match:
         believed = local_map.to_grid(prediction.base_pose)
         pose = believed.copy()
         for _ in range(STEPS):
-            information, gradient, _ = _pull(surface, local_map, pose)
+            information, gradient, _ = _pull(cloud, local_map, pose)
             to_belief = prediction.information @ (believed - pose)
             step = np.linalg.solve(information + prediction.information, gradient + to_belief)
             pose += step
             if np.abs(step).max() < ENOUGH:
                 break
-        information, _, response = _pull(surface, local_map, pose)
+        information, _, response = _pull(cloud, local_map, pose)
         return Match(local_map.from_grid(pose), information + prediction.information, response)
 
 
-def _pull(surface: Surface, local_map: LocalMap, pose: np.ndarray) -> Tuple[np.ndarray, np.ndarray, float]:
+def _pull(cloud: PointCloud, local_map: LocalMap, pose: np.ndarray) -> Tuple[np.ndarray, np.ndarray, float]:
     """Information (3, 3) and gradient (3,) of all pairs, and the share of the points that are paired."""
-    arms = Pose2(0.0, 0.0, pose[2]).transform_points(surface.points_xy.astype(float))
+    arms = Pose2(0.0, 0.0, pose[2]).transform_points(cloud.points_xy.astype(float))
     points_xy = arms + pose[:2]
     cells = np.floor(points_xy / local_map.resolution).astype(int)
     inside = ((cells >= 0) & (cells < len(local_map.nearest))).all(axis=1)
@@ -57,4 +57,4 @@ def _pull(surface: Surface, local_map: LocalMap, pose: np.ndarray) -> Tuple[np.n
     moves[:, 0, 2], moves[:, 1, 2] = -arms[:, 1], arms[:, 0]
     information = np.einsum("n,nij,nik->jk", weights, moves, moves)
     gradient = np.einsum("n,nij,ni->j", weights, moves, apart)
-    return information, gradient, float((squared < PAIRED**2).sum() / max(len(surface), 1))
+    return information, gradient, float((squared < PAIRED**2).sum() / max(len(cloud), 1))

@@ -1,161 +1,155 @@
-"""The back end: key scans as nodes of a pose graph, and the search for loop closures among them.
+"""The back end: keyframes as nodes of a pose graph, and the search for loop closures among them.
 
-The search is cut out as a task that holds all it needs by value, so that it can run in another thread while
-the front end goes on: ``result = back_end.task().run()``, then ``back_end.adopt(result)``.
+A search is a task that holds all its inputs by value, so that it can run in another thread while the front
+end goes on: ``result = back_end.closure_task().run()``, then ``back_end.apply_closures(result)``.
 """
 
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass
 from typing import Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
 from planar import Pose2, wrap
 from slam_lite.config import MapperSettings
-from slam_lite.graph.certainty import Certainty
-from slam_lite.graph.drift import drift_along, on_average, shortest_ways
-from slam_lite.graph.pose_graph import Edge, EdgeList, Edges, between, chi_squares, edges_of, optimise
-from slam_lite.loops.loop_closure import (
-    Candidate,
-    Closure,
-    agree,
-    are_out_of_reach,
-    candidates,
-    contradict,
-    find_closure,
-    is_confirmed,
-    is_credible,
-    lengths_of,
-    recognised,
+from slam_lite.graph.drift import drift_along, shortest_paths, with_average_slip
+from slam_lite.graph.pose_graph import (
+    COARSE,
+    FINE,
+    Edge,
+    EdgeList,
+    Edges,
+    chi_squares,
+    concatenate,
+    edges_of,
+    inflate,
+    optimize,
+    relative_pose,
 )
+from slam_lite.loops.loop_candidates import (
+    LoopCandidate,
+    are_outside_search_windows,
+    candidate_at_recognized_place,
+    edge_lengths,
+    is_within_drift,
+    loop_candidates,
+)
+from slam_lite.loops.loop_closure import LoopClosure, LoopClosureVerifier
+from slam_lite.loops.loop_search import find_loop_closure
 from slam_lite.loops.place_recognition import (
-    Appearance,
-    Hypothesis,
-    Memory,
-    hypotheses,
-    remembered,
-    ways_along,
+    PlaceDatabase,
+    PlaceDescriptor,
+    PlaceHypothesis,
+    database_of_map,
+    match_places,
+    travelled_distances,
 )
-from slam_lite.loops.relocation import KnownMap
-from slam_lite.loops.ways_back import ways_back
-from slam_lite.matching.local_map import LocalMap, wide_map
-from slam_lite.surface import Surface
+from slam_lite.loops.relocalization import Relocalizer
+from slam_lite.loops.revisited_segments import match_revisited_segments
+from slam_lite.matching.local_map import LocalMap, long_range_map
+from slam_lite.point_cloud import PointCloud
 
-# Errors that a match's own information knows nothing of: between consecutive keys, and across a closure.
+# Errors of a step between consecutive keyframes that its match does not include: metres and radians.
 _STEP_SIGMA_XY, _STEP_SIGMA_YAW = 0.01, 0.003
-_CLOSURE_SIGMA_XY, _CLOSURE_SIGMA_YAW = 0.02, 0.005
-# How well a robot that goes on from a saved map is believed to be placed; and one of which nothing is known.
+# Standard deviations of the pose at which a robot resumes in a saved map, and of an unknown one.
 _GUESS_SIGMA_XY, _GUESS_SIGMA_YAW = 0.5, 0.3
 _LOST_SIGMA_XY, _LOST_SIGMA_YAW = 1e3, 1e2
-# Key scans that are put together to find a lost robot, and how far beside the map it is put until then.
-_LOST_KEYS, _BESIDE = 20, 30.0
-# A new closure with a larger chi-square, or this many smaller ones, are worth an optimisation.
+# Keyframes that are merged to relocalize a lost robot, and its distance from the map until then [m].
+_LOST_KEYFRAMES, _DISTANCE_BESIDE_MAP = 20, 30.0
+# A new loop closure with a larger chi-square, or this many smaller ones, trigger an optimization.
 _NEWS_CHI_SQUARE, _NEWS_COUNT = 10.0, 20
 _MAX_PENDING = 50
-# A closure that differs by so much from what the graph knows, as chi-square, needs a witness: what the graph
-# knows is told cautiously, and of the right ones not one in a hundred does.
-_SURPRISING = 6.0
-# Places that look alike, searched for a closure after one look.
-_MAX_RECOGNISED = 3
-# When to end an optimisation, metres and radians: while mapping, and in the end.
-_ROUGHLY, _EXACTLY = 5e-3, 1e-5
-# How often ways driven again are looked for, and which chi-square says that one was not.
-_LOOKS_BACK, _UNMET_CHI_SQUARE = 2, 16.0
+# Recognized places that are searched for a loop closure, of one query.
+_MAX_RECOGNIZED = 3
+# Passes of the search along revisited segments, and the chi-square from which on a loop closure is dropped.
+_REVISIT_PASSES, _MAX_FINAL_CHI_SQUARE = 2, 16.0
 
 
 @dataclass(frozen=True, eq=False)
 class ClosureResult:
-    """What a task found: new loop ``edges``, the ``poses`` (N, 3) of the keys that it knew.
+    """What a closure task found.
 
-    ``pending``, ``memory``: what the next task is to know; ``moved``: the poses are new.
+    Attributes:
+        edges: New loop edges.
+        poses: (N, 3), of the keyframes that the task knew.
+        pending: Loop closures that are not verified yet, for the next task.
+        places: Place descriptors, for the next task.
+        moved: Whether the poses are new.
     """
 
     edges: Sequence[Edge]
     poses: np.ndarray
-    pending: Sequence[Closure]
-    memory: Memory
+    pending: Sequence[LoopClosure]
+    places: PlaceDatabase
     moved: bool
 
 
 @dataclass(frozen=True, eq=False)
 class ClosureTask:
-    """The search for closures of the newest of some keys, and the optimisation if there is news.
+    """Search for loop closures of the newest keyframe, and optimization if they change the graph.
 
-    ``lost_since``: the first key of a trajectory that is not yet joined with those before, if it is not.
+    Attributes:
+        settings: Of the search.
+        local_map: Is overwritten.
+        clouds: Of all keyframes.
+        poses: (N, 3), of all keyframes in the map frame.
+        edges: Of the pose graph.
+        pending: Loop closures that are not verified yet.
+        places: Place descriptors so far.
+        unsettled: Number of loop edges since the last optimization.
+        lost_since: First keyframe of a trajectory that is not joined with the map yet, None if all are.
     """
 
     settings: MapperSettings
     local_map: LocalMap
-    surfaces: Sequence[Surface]
+    clouds: Sequence[PointCloud]
     poses: np.ndarray
     edges: Edges
-    pending: Sequence[Closure]
-    memory: Memory
+    pending: Sequence[LoopClosure]
+    places: PlaceDatabase
     unsettled: int
     lost_since: Optional[int]
 
     def run(self) -> ClosureResult:
-        """Does the work; touches nothing but ``local_map``."""
-        accepted: List[Closure] = []
+        """Search, verify and optimize; changes nothing but ``local_map``."""
+        accepted: List[LoopClosure] = []
         pending = list(self.pending)
-        memory, alike = self._look()
-        for closure in self._found(alike):
-            witnesses = [other for other in pending if agree(closure, other, self.poses)]
-            believed: Sequence[Closure] = ()
-            if is_confirmed(closure, witnesses, self.poses) and not self._is_disputed(
-                closure, witnesses, pending
-            ):
-                believed = self._believed([closure, *witnesses])
-            if closure in believed:
-                accepted += believed
-                pending = [other for other in pending if other not in believed]
+        verifier = LoopClosureVerifier(self.poses, self.edges)
+        places, recognized = self._recognize_places()
+        for closure in self._find_loop_closures(recognized, verifier):
+            verified = verifier.verify(closure, pending)
+            if verified:
+                accepted += verified
+                pending = [other for other in pending if other not in verified]
             else:
                 pending = [*pending[1 - _MAX_PENDING :], closure]
-        edges = [_told(closure) for closure in accepted]
-        if not self._is_news(edges):
-            return ClosureResult(edges, self.poses, pending, memory, False)
-        poses = optimise(self._joined(edges), _with(self.edges, edges), _ROUGHLY, fresh=len(edges))
-        return ClosureResult(edges, poses, pending, memory, True)
+        edges = [closure.graph_edge for closure in accepted]
+        if not self._needs_optimization(edges):
+            return ClosureResult(edges, self.poses, pending, places, False)
+        poses = optimize(self._joined(edges), concatenate(self.edges, edges), COARSE, new_count=len(edges))
+        return ClosureResult(edges, poses, pending, places, True)
 
-    def _found(self, alike: Sequence[Candidate]) -> Iterator[Closure]:
-        """All closures of the newest key, whether they are believed or not."""
-        near = candidates(len(self.poses) - 1, self.poses, self.edges, self.settings)
-        for candidate in (*near, *alike):
-            closure = find_closure(candidate, self.poses, self.surfaces, self.local_map, self.settings)
+    def _find_loop_closures(
+        self, recognized: Sequence[LoopCandidate], verifier: LoopClosureVerifier
+    ) -> Iterator[LoopClosure]:
+        """All loop closures of the newest keyframe, before they are verified."""
+        nearby = loop_candidates(len(self.poses) - 1, self.poses, self.edges, self.settings)
+        for candidate in (*nearby, *recognized):
+            closure = find_loop_closure(candidate, self.poses, self.clouds, self.local_map, self.settings)
             if closure is not None:
-                yield closure if closure.witnesses_needed else self._weighed(closure)
+                yield verifier.check_against_graph(closure)
         if self.lost_since is not None:
-            known = KnownMap(self.surfaces[: self.lost_since], self.poses[: self.lost_since], self.local_map)
-            closure = known.closure(
-                self.surfaces, self.poses, min(_LOST_KEYS, len(self.poses) - self.lost_since)
-            )
+            known = slice(self.lost_since)
+            relocalizer = Relocalizer(self.clouds[known], self.poses[known], self.local_map)
+            count = min(_LOST_KEYFRAMES, len(self.poses) - self.lost_since)
+            closure = relocalizer.find_loop_closure(self.clouds, self.poses, count)
             if closure is not None:
                 yield closure
-
-    def _weighed(self, closure: Closure) -> Closure:
-        """The closure, and whether it surprises the graph."""
-        return replace(closure, is_surprising=self._certainty.is_surprised_by(_told(closure), _SURPRISING))
-
-    def _believed(self, group: Sequence[Closure]) -> List[Closure]:
-        """Those of some that say the same which surprise the graph no more when it knows the others."""
-        return [one for one in group if not (one.is_surprising and self._surprises_still(one, group))]
-
-    def _surprises_still(self, closure: Closure, group: Sequence[Closure]) -> bool:
-        others = [_told(other) for other in group if other is not closure]
-        edges = _with(self.edges, others)
-        poses = optimise(self.poses, edges, _ROUGHLY, fresh=len(others))
-        return Certainty(poses, edges, closure.edge.second).is_surprised_by(_told(closure), _SURPRISING)
-
-    @cached_property
-    def _certainty(self) -> Certainty:
-        """How surely the graph knows where the newest key is."""
-        return Certainty(self.poses, self.edges, len(self.poses) - 1)
 
     def _joined(self, edges: Sequence[Edge]) -> np.ndarray:
         """The poses (N, 3), with a lost trajectory moved to where one of ``edges`` puts it."""
         for edge in edges:
             if self.lost_since is not None and edge.first < self.lost_since <= edge.second:
-                place, recent = (Pose2.from_array(self.poses[key]) for key in (edge.first, edge.second))
+                place, recent = (Pose2.from_array(self.poses[i]) for i in (edge.first, edge.second))
                 move = place @ edge.second_in_first @ recent.inverse()
                 poses = self.poses.copy()
                 poses[self.lost_since :, :2] = move.transform_points(poses[self.lost_since :, :2])
@@ -163,46 +157,39 @@ class ClosureTask:
                 return poses
         return self.poses
 
-    def _look(self) -> Tuple[Memory, List[Candidate]]:
-        """What to remember of the places passed since the last look, and where it looked alike before."""
-        memory, ways = self.memory, ways_along(self.poses)
-        alike: List[Candidate] = []
-        stretch = memory.next_stretch(ways)
-        while stretch is not None:
-            place = stretch.appearance(self.surfaces, self.poses)
-            look = [] if place is None else self._credible(place, memory)
-            seen = memory.confirmed(look, self.poses)
-            step = between(self.poses, stretch.middle, stretch.last)
-            count = stretch.last - stretch.first + 1
-            alike = [
-                recognised(hypothesis.place, stretch.last, count, hypothesis.recent_in_place @ step)
-                for hypothesis in seen[:_MAX_RECOGNISED]
+    def _recognize_places(self) -> Tuple[PlaceDatabase, List[LoopCandidate]]:
+        """The place descriptors up to the newest keyframe, and candidates where it looks alike."""
+        places, travelled = self.places, travelled_distances(self.poses)
+        candidates: List[LoopCandidate] = []
+        segment = places.next_segment(travelled)
+        while segment is not None:
+            descriptor = segment.descriptor(self.clouds, self.poses)
+            hypotheses = [] if descriptor is None else self._match_credible_places(descriptor, places)
+            confirmed = places.confirmed(hypotheses, self.poses)
+            step = relative_pose(self.poses, segment.middle, segment.last)
+            count = segment.last - segment.first + 1
+            candidates = [
+                candidate_at_recognized_place(one.place, segment.last, count, one.recent_in_place @ step)
+                for one in confirmed[:_MAX_RECOGNIZED]
             ]
-            memory = memory.after(stretch, place, look)
-            stretch = memory.next_stretch(ways)
-        return memory, alike
+            places = places.extended(segment, descriptor, hypotheses)
+            segment = places.next_segment(travelled)
+        return places, candidates
 
-    def _credible(self, recent: Appearance, memory: Memory) -> List[Hypothesis]:
-        """Where the robot may be by what it looks like, among what the other search does not reach."""
-        ways, before = shortest_ways(recent.key, len(self.poses), self.edges, lengths_of(self.edges))
-        drift = np.column_stack(drift_along(ways, before, self.poses, on_average(self.edges)))
-        keys = [place.key for place in memory.places]
-        are_out = are_out_of_reach(ways[keys], drift[keys])
-        places = [place for place, is_out in zip(memory.places, are_out) if is_out]
+    def _match_credible_places(self, recent: PlaceDescriptor, places: PlaceDatabase) -> List[PlaceHypothesis]:
+        """Places that look alike and are possible by the graph, of those that the other search misses."""
+        paths, before = shortest_paths(recent.keyframe, len(self.poses), self.edges, edge_lengths(self.edges))
+        drift = np.column_stack(drift_along(paths, before, self.poses, with_average_slip(self.edges)))
+        keyframes = [descriptor.keyframe for descriptor in places.descriptors]
+        are_outside = are_outside_search_windows(paths[keyframes], drift[keyframes])
+        outside = [each for each, is_outside in zip(places.descriptors, are_outside) if is_outside]
         return [
             hypothesis
-            for hypothesis in hypotheses(recent, places)
-            if is_credible(hypothesis, self.poses, drift[hypothesis.place])
+            for hypothesis in match_places(recent, outside)
+            if is_within_drift(hypothesis, self.poses, drift[hypothesis.place])
         ]
 
-    def _is_disputed(self, closure: Closure, witnesses: Sequence[Closure], others: Sequence[Closure]) -> bool:
-        """Whether too many say that a place that was but recognised is another one."""
-        if not closure.candidate.is_recognised:
-            return False
-        against = sum(contradict(closure, other, self.poses) for other in others)
-        return len(witnesses) < 2 * against
-
-    def _is_news(self, edges: Sequence[Edge]) -> bool:
+    def _needs_optimization(self, edges: Sequence[Edge]) -> bool:
         if not edges:
             return False
         if self.unsettled + len(edges) >= _NEWS_COUNT:
@@ -211,25 +198,25 @@ class ClosureTask:
 
 
 class BackEnd:
-    """Places key scans in the map; every key is a node of the graph."""
+    """Places keyframes in the map; every keyframe is a node of the pose graph."""
 
     def __init__(self, settings: MapperSettings):
         self._settings = settings
-        self._local_map = wide_map()
-        self.surfaces: List[Surface] = []
+        self._local_map = long_range_map()
+        self.clouds: List[PointCloud] = []
         self._edges = EdgeList()
         self._poses = np.empty((0, 3))
-        self._pending: Sequence[Closure] = ()
-        self._memory = Memory()
+        self._pending: Sequence[LoopClosure] = ()
+        self._places = PlaceDatabase()
         self._unsettled = 0
         self._lost_since: Optional[int] = None
 
     def __len__(self) -> int:
-        return len(self.surfaces)
+        return len(self.clouds)
 
     @property
     def poses(self) -> np.ndarray:
-        """Poses (N, 3) of the keys in the map; a view that later calls change."""
+        """Poses (N, 3) of the keyframes in the map frame; a view that later calls change."""
         return self._poses[: len(self)]
 
     @property
@@ -237,123 +224,116 @@ class BackEnd:
         """All edges of the graph."""
         return self._edges.view()
 
-    def pose(self, key: int) -> Pose2:
-        """Where a key lies in the map."""
-        return Pose2.from_array(self._poses[key])
+    def pose(self, keyframe: int) -> Pose2:
+        """Pose of a keyframe in the map frame."""
+        return Pose2.from_array(self._poses[keyframe])
 
-    def place_of(self, surface: Surface, believed: Pose2, only_near: bool) -> Optional[Pose2]:
-        """Where a scan was taken, looked for around ``believed`` first; None if it cannot be told."""
-        known = KnownMap(self.surfaces, self.poses, self._local_map)
-        recent = [(surface, Pose2())]
-        return known.find_near(recent, believed) if only_near else known.find(recent, believed)
+    def relocalize(self, cloud: PointCloud, prior: Pose2, only_near: bool) -> Optional[Pose2]:
+        """Find the pose of a scan in the map.
 
-    def beside(self, surface: Surface) -> Pose2:
-        """A pose from which a scan sees nothing of what was seen so far."""
-        ends = [(pose[0] + _reach(known), pose[1]) for known, pose in zip(self.surfaces, self.poses)]
+        Args:
+            cloud: The scan's points.
+            prior: Where to search first.
+            only_near: Whether to search nowhere else.
+
+        Returns:
+            The pose, None if there is no unique match.
+        """
+        relocalizer = Relocalizer(self.clouds, self.poses, self._local_map)
+        recent = [(cloud, Pose2())]
+        return (
+            relocalizer.find_pose_near(recent, prior) if only_near else relocalizer.find_pose(recent, prior)
+        )
+
+    def pose_beside(self, cloud: PointCloud) -> Pose2:
+        """A pose beside the map, from which a scan covers nothing of it."""
+        ends = [(pose[0] + _reach(other), pose[1]) for other, pose in zip(self.clouds, self.poses)]
         end, y = max(ends, default=(0.0, 0.0))
-        return Pose2(end + _BESIDE + _reach(surface), y, 0.0)
+        return Pose2(end + _DISTANCE_BESIDE_MAP + _reach(cloud), y, 0.0)
 
-    def add_first(self, surface: Surface, base_in_map: Pose2, is_lost: bool = False) -> None:
-        """Adds the first key of a trajectory.
+    def add_first(self, cloud: PointCloud, base_in_map: Pose2, is_lost: bool = False) -> None:
+        """Add the first keyframe of a trajectory.
 
-        Its tie to the key before, if there is one, is but a guess, or nothing at all if the robot is lost.
+        Its edge to the keyframe before, if there is one, is only a guess, without information if ``is_lost``.
         """
         last_in_map = self.pose(len(self) - 1) if len(self) else None
-        self._append(surface, base_in_map)
+        self._append(cloud, base_in_map)
         if last_in_map is not None:
             last = len(self) - 2
             xy, yaw = (_LOST_SIGMA_XY, _LOST_SIGMA_YAW) if is_lost else (_GUESS_SIGMA_XY, _GUESS_SIGMA_YAW)
-            tie = np.diag([xy**-2, xy**-2, yaw**-2])
-            self._edges.append(Edge(last, last + 1, last_in_map.inverse() @ base_in_map, tie))
+            information = np.diag([xy**-2, xy**-2, yaw**-2])
+            self._edges.append(Edge(last, last + 1, last_in_map.inverse() @ base_in_map, information))
             self._lost_since = last + 1 if is_lost else None
-            self._memory = self._memory.anew(len(self) - 1)
+            self._places = self._places.with_new_trajectory(len(self) - 1)
 
-    def restore(self, surfaces: Sequence[Surface], poses: np.ndarray, edges: Edges) -> None:
-        """Takes over the keys and edges of a saved graph, while there are none."""
-        self.surfaces = list(surfaces)
+    def restore(self, clouds: Sequence[PointCloud], poses: np.ndarray, edges: Edges) -> None:
+        """Load the keyframes and edges of a saved graph into an empty one."""
+        self.clouds = list(clouds)
         self._poses = poses.copy()
         self._edges = EdgeList(edges)
-        self._memory = remembered(self.surfaces, self.poses)
+        self._places = database_of_map(self.clouds, self.poses)
 
-    def _append(self, surface: Surface, base_in_map: Pose2) -> None:
+    def _append(self, cloud: PointCloud, base_in_map: Pose2) -> None:
         n = len(self)
         if n == len(self._poses):
             self._poses = np.concatenate((self._poses, np.empty((max(n, 64), 3))))
         self._poses[n] = base_in_map.as_array()
-        self.surfaces.append(surface)
+        self.clouds.append(cloud)
 
-    def add(self, surface: Surface, base_in_last: Pose2, information: np.ndarray) -> None:
-        """Adds a key seen from the last key at ``base_in_last``; ``information`` (3, 3) along last's axes."""
+    def add(self, cloud: PointCloud, base_in_last: Pose2, information: np.ndarray) -> None:
+        """Add a keyframe at ``base_in_last`` of the last one; ``information`` (3, 3) along last's axes."""
         last = len(self) - 1
-        self._append(surface, self.pose(last) @ base_in_last)
+        self._append(cloud, self.pose(last) @ base_in_last)
         edge = Edge(last, last + 1, base_in_last, information)
-        self._edges.append(_widened(edge, _STEP_SIGMA_XY, _STEP_SIGMA_YAW))
+        self._edges.append(inflate(edge, _STEP_SIGMA_XY, _STEP_SIGMA_YAW))
 
-    def task(self) -> ClosureTask:
-        """The search for closures of the newest key, as of now. One at a time: they share a local map."""
+    def closure_task(self) -> ClosureTask:
+        """Return the loop closure search for the newest keyframe. One at a time: they share a local map."""
         return ClosureTask(
             self._settings,
             self._local_map,
-            tuple(self.surfaces),
+            tuple(self.clouds),
             self.poses.copy(),
             self.edges,
             self._pending,
-            self._memory,
+            self._places,
             self._unsettled,
             self._lost_since,
         )
 
-    def adopt(self, result: ClosureResult) -> None:
-        """Takes over what a task found; keys added since move along with the last one that it knew."""
+    def apply_closures(self, result: ClosureResult) -> None:
+        """Apply a task's result; keyframes added since move along with the last one that it knew."""
         known = len(result.poses)
         if result.moved:
             last = known - 1
             moved = Pose2.from_array(result.poses[last]) @ self.pose(last).inverse()
-            for key in range(known, len(self)):
-                self._poses[key] = (moved @ self.pose(key)).as_array()
+            for i in range(known, len(self)):
+                self._poses[i] = (moved @ self.pose(i)).as_array()
             self._poses[:known] = result.poses
         for edge in result.edges:
             self._edges.append(edge)
             if self._lost_since is not None and edge.first < self._lost_since <= edge.second:
                 self._lost_since = None
         self._pending = result.pending
-        if known > self._memory.start:  # otherwise a new way has begun since
-            self._memory = result.memory
+        if known > self._places.start:  # otherwise a new trajectory has started since
+            self._places = result.places
         self._unsettled = 0 if result.moved else self._unsettled + len(result.edges)
 
-    def settle(self) -> None:
-        """Optimises to the end, and ties ways that were driven again."""
-        poses, found = optimise(self.poses, self.edges, _EXACTLY), []
-        for _ in range(_LOOKS_BACK if self._settings.close_loops else 0):
-            found = ways_back(poses, self.edges, self.surfaces, self._local_map)
+    def run_final_optimization(self) -> None:
+        """Optimize to convergence, and close loops along revisited segments."""
+        poses, found = optimize(self.poses, self.edges, FINE), []
+        for _ in range(_REVISIT_PASSES if self._settings.close_loops else 0):
+            found = match_revisited_segments(poses, self.edges, self.clouds, self._local_map)
             if not found:
                 break
-            poses = optimise(poses, _with(self.edges, found), _EXACTLY, fresh=len(found))
+            poses = optimize(poses, concatenate(self.edges, found), FINE, new_count=len(found))
         for edge, chi in zip(found, chi_squares(poses, edges_of(*found))):
-            if chi < _UNMET_CHI_SQUARE:
+            if chi < _MAX_FINAL_CHI_SQUARE:
                 self._edges.append(edge)
         self._poses[: len(self)] = poses
         self._unsettled = 0
 
 
-def _reach(surface: Surface) -> float:
-    """How far a scan sees, metres."""
-    return float(np.sqrt((surface.points_xy**2).sum(axis=1).max(initial=0.0)))
-
-
-def _with(edges: Edges, more: Sequence[Edge]) -> Edges:
-    pairs = zip(vars(edges).values(), vars(edges_of(*more)).values())
-    return Edges(*(np.concatenate(pair) for pair in pairs))
-
-
-def _told(closure: Closure) -> Edge:
-    return _widened(closure.edge, _CLOSURE_SIGMA_XY, _CLOSURE_SIGMA_YAW)
-
-
-def _widened(edge: Edge, sigma_xy: float, sigma_yaw: float) -> Edge:
-    """The edge with independent errors of its own added to those of the match."""
-    own = np.diag([sigma_xy**-2, sigma_xy**-2, sigma_yaw**-2])
-    # Woodbury's identity: what the match knows nothing of has no covariance to add to.
-    told = edge.information
-    told = told - told @ np.linalg.solve(own + told, told)
-    return Edge(edge.first, edge.second, edge.second_in_first, told, edge.is_loop)
+def _reach(cloud: PointCloud) -> float:
+    """Distance of the farthest point [m]."""
+    return float(np.sqrt((cloud.points_xy**2).sum(axis=1).max(initial=0.0)))

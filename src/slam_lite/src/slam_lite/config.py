@@ -1,17 +1,17 @@
-"""Settings of mapping: every parameter once, with its official name, default, bounds and meaning.
+"""Settings of mapping: every parameter with its official name, default, bounds and meaning.
 
 Names and defaults are those of gmapping 1.4 where it has the parameter.
 """
 
 from dataclasses import dataclass
-from typing import Tuple
+from typing import ClassVar, Mapping, Tuple
 
 from planar.config.listing import Section
 from planar.config.parameters import Interval, check_parameters, parameter
 from planar.config.settings import check
 from planar.plugins import check_plugin_name
 
-# Parameters of gmapping that steer its particle filter and have no counterpart in a pose graph.
+# Parameters of gmapping's particle filter, which have no counterpart in a pose graph.
 WITHOUT_EFFECT = (
     "sigma",
     "kernelSize",
@@ -36,7 +36,14 @@ WITHOUT_EFFECT = (
 
 @dataclass(frozen=True)
 class MapperSettings:
-    """How scans are matched, loops closed and the map drawn; metres and radians."""
+    """Settings of scan matching, loop closure and rendering; metres and radians."""
+
+    # Old names of parameters, which are still accepted.
+    DEPRECATED_PARAMETERS: ClassVar[Mapping[str, str]] = {
+        "key_distance": "keyframe_distance",
+        "key_angle": "keyframe_angle",
+        "window_keys": "window_keyframes",
+    }
 
     resolution: float = parameter(0.05, "size of a cell", "m", Interval(0.01, 1.0), name="delta")
     occupied_threshold: float = parameter(
@@ -47,50 +54,58 @@ class MapperSettings:
     )
     max_range: float = parameter(
         0.0,
-        "readings above this are dropped; 0: range_max - 0.01, or what is read where nothing is seen",
+        "readings above this are dropped; 0: range_max - 0.01, or the reading that means no return",
         "m",
         Interval(0.0),
         name="maxRange",
     )
     usable_range: float = parameter(
         0.0,
-        "readings above this clear the way so far and mark nothing; 0: as maxRange",
+        "readings above this clear up to it and mark nothing; 0: as maxRange",
         "m",
         Interval(0.0),
         name="maxUrange",
     )
     odom_xy_per_distance: float = parameter(
-        0.1, "odometry's position error", "m per m", Interval(0.0), name="srr"
+        0.1, "position error of odometry", "m per m", Interval(0.0), name="srr"
     )
     odom_yaw_per_distance: float = parameter(
-        0.2, "odometry's heading error", "rad per m", Interval(0.0), name="srt"
+        0.2, "heading error of odometry", "rad per m", Interval(0.0), name="srt"
     )
     odom_xy_per_turn: float = parameter(
-        0.1, "odometry's position error", "m per rad", Interval(0.0), name="str"
+        0.1, "position error of odometry", "m per rad", Interval(0.0), name="str"
     )
     odom_yaw_per_turn: float = parameter(
-        0.2, "odometry's heading error", "rad per rad", Interval(0.0), name="stt"
+        0.2, "heading error of odometry", "rad per rad", Interval(0.0), name="stt"
     )
-    key_distance: float = parameter(0.2, "way after which a scan is kept", "m", Interval(0.01))
-    key_angle: float = parameter(0.2, "turn after which a scan is kept", "rad", Interval(0.01))
+    keyframe_distance: float = parameter(
+        0.2, "distance from the last keyframe after which a scan becomes a keyframe", "m", Interval(0.01)
+    )
+    keyframe_angle: float = parameter(
+        0.2, "turn since the last keyframe after which a scan becomes a keyframe", "rad", Interval(0.01)
+    )
     still_interval: float = parameter(
-        0.5, "how often scans are matched while the robot stands still", "s", Interval(0.0)
+        0.5, "period of scan matching while the robot stands still", "s", Interval(0.0)
     )
-    window_keys: int = parameter(50, "most kept scans that a new one is matched to", bounds=Interval(2))
-    point_spacing: float = parameter(0.03, "least distance between a scan's points", "m", Interval(0.0))
+    window_keyframes: int = parameter(
+        50, "largest number of recent keyframes that a scan is matched to", bounds=Interval(2)
+    )
+    point_spacing: float = parameter(0.03, "least distance between the points of a scan", "m", Interval(0.0))
     min_response: float = parameter(
-        0.2, "share of a scan that must fit; otherwise odometry is believed", bounds=Interval(0.0, 1.0)
+        0.2,
+        "least share of a scan that matches; below it odometry is used instead",
+        bounds=Interval(0.0, 1.0),
     )
-    matcher_plugin: str = parameter("", "your own matcher of scans, package.module/Matcher")
-    close_loops: bool = parameter(True, "recognise places seen before and mend the map")
+    matcher_plugin: str = parameter("", "custom scan matcher, package.module/Matcher")
+    close_loops: bool = parameter(True, "whether to close loops at places seen before")
     closure_interval: int = parameter(
-        3, "kept scans from one search for closures to the next", bounds=Interval(1)
+        3, "keyframes from one search for loop closures to the next", bounds=Interval(1)
     )
     closure_min_response: float = parameter(
-        0.6, "share of the recent scans that must fit for a closure", bounds=Interval(0.0, 1.0)
+        0.6, "least share of the recent keyframes that matches for a loop closure", bounds=Interval(0.0, 1.0)
     )
     closure_min_detour: float = parameter(
-        4.0, "way since a place was seen from which on a closure is worth while", "m", Interval(0.0)
+        4.0, "least path length since a place was seen for a loop closure", "m", Interval(0.0)
     )
 
     def __post_init__(self):
@@ -99,36 +114,36 @@ class MapperSettings:
             within = f"at most maxRange ({self.max_range:g})"
             check(self.usable_range <= self.max_range, "usable_range", within, self.usable_range)
         if self.matcher_plugin:
-            from slam_lite.matching.scan_matcher import CONTRACT  # late: it is made of these settings
+            from slam_lite.matching.scan_matcher import CONTRACT  # imports this module
 
             check_plugin_name("matcher_plugin", self.matcher_plugin, CONTRACT)
 
 
 @dataclass(frozen=True)
 class NodeSettings(MapperSettings):
-    """What the node needs besides."""
+    """Settings of the node: those of the mapper, frames, topics and files."""
 
     map_frame: str = parameter("map", "frame of the map")
     odom_frame: str = parameter("odom", "frame of the odometry")
     base_frame: str = parameter("base_link", "frame of the robot")
-    throttle_scans: int = parameter(1, "process one of so many scans", bounds=Interval(1))
+    throttle_scans: int = parameter(1, "one of so many scans is processed", bounds=Interval(1))
     transform_publish_period: float = parameter(
-        0.05, "how often map->odom is published; 0: not at all", "s", Interval(0.0)
+        0.05, "period of the transform map->odom; 0: it is not published", "s", Interval(0.0)
     )
     tf_delay: float = parameter(
-        -1.0, "how far map->odom is post-dated; -1: transform_publish_period", "s", Interval(-1.0)
+        -1.0, "time by which map->odom is post-dated; -1: transform_publish_period", "s", Interval(-1.0)
     )
-    map_update_interval: float = parameter(5.0, "time of scans from one map to the next", "s", Interval(0.0))
+    map_update_interval: float = parameter(
+        5.0, "time from one published map to the next, by the stamps of scans", "s", Interval(0.0)
+    )
     xmin: float = parameter(-100.0, "least extent of the published map", "m")
     ymin: float = parameter(-100.0, "least extent of the published map", "m")
     xmax: float = parameter(100.0, "least extent of the published map", "m")
     ymax: float = parameter(100.0, "least extent of the published map", "m")
-    state: str = parameter("", "file of a saved state to go on from; empty: a new map")
-    localization_only: bool = parameter(
-        False, "follow the robot in the loaded map and leave the map as it is"
-    )
+    state: str = parameter("", "state file to resume from; empty: a new map")
+    localization_only: bool = parameter(False, "whether to localize in the loaded map and leave it unchanged")
     resume: bool = parameter(
-        False, "for a node that is respawned: whether to keep the map as it grows, and to go on with it"
+        False, "whether to save checkpoints of the map, and resume from them when the node is respawned"
     )
 
     def __post_init__(self):
@@ -148,6 +163,6 @@ CONFIG_FILES = {
         "",
         NodeSettings,
         about="Every parameter of slam_lite with its default: the official gmapping's names and values, "
-        "then its own.",
+        "then those of slam_lite.",
     )
 }

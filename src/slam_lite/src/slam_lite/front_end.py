@@ -1,74 +1,84 @@
-"""The front end: follows the robot from scan to scan against a local map of scans whose poses it trusts."""
+"""The front end: tracks the robot from scan to scan by matching each scan to a local map of keyframes."""
 
-import math
 from collections import deque
 from dataclasses import dataclass
-from typing import Deque, Optional, Sequence, Tuple
+from typing import Deque, Optional, Protocol, Sequence, Tuple
 
 import numpy as np
 
 from planar import Pose2
+from slam_lite.angular_coverage import AngularCoverage
 from slam_lite.config import MapperSettings
-from slam_lite.matching.correlative import Window, search_far
-from slam_lite.matching.local_map import Match, wide_map
+from slam_lite.matching.correlative import SearchWindow, search_branch_and_bound
+from slam_lite.matching.local_map import LocalMap, Match, long_range_map
 from slam_lite.matching.refinement import refine
 from slam_lite.matching.scan_matcher import Prediction, scan_matcher_of
-from slam_lite.odometry import Odometry
-from slam_lite.surface import Surface
-from slam_lite.view import View
+from slam_lite.odometry_checks import has_moved
+from slam_lite.odometry_model import OdometryModel
+from slam_lite.point_cloud import PointCloud
 
-# A match with a smaller response than this is searched again in a wide window, as after a slip of the wheels.
+# A match with a lower response is searched again in a wide window, as after a wheel slip.
 _POOR_RESPONSE = 0.4
-_WIDE_WINDOW = Window(distance=0.8, angle=0.8)
-_SURE_RESPONSE = 0.7
-# Known scans are matched to out to this distance, metres, and gathered anew after half of it.
-_KNOWN_RADIUS = 10.0
-_NO_BELIEF = np.zeros((3, 3))
-
-
-# Odometry of less than this, metres or radians, counts as standing still; scans err by less than that.
-_STILL, _STUCK = 1e-3, 0.03
-# Odometry that was off by so much, in units of its variance, may be off by as much again.
-_SURPRISING = 25.0
-# A match of so many points says more than odometry, and, with this information, of each direction, 1 / m^2.
-_SURE_POINTS, _SURE_INFORMATION = 60, 4e3
-# Variance of a robot's motion from one scan to the next, if it moves on as it did: (3,), m^2, m^2, rad^2.
+_WIDE_WINDOW = SearchWindow(distance=0.8, angle=0.8)
+# Response of a match in the wide window that is accepted.
+_GOOD_RESPONSE = 0.7
+# Radius around the robot within which keyframes of a finished map are matched to [m]; they are collected
+# again after half of it.
+_NEARBY_RADIUS = 10.0
+_NO_PRIOR = np.zeros((3, 3))
+# Motion of the scans, metres or radians, while odometry stands still, from which on odometry is stuck.
+_STUCK_MOTION = 0.03
+# Squared error of odometry, in units of its variance, after which it may be off by as much again.
+_SLIP_CHI_SQUARE = 25.0
+# Points of a match that outweigh odometry, and the information [1 / m^2] that it then has in each direction.
+_MIN_POINTS, _MIN_INFORMATION = 60, 4e3
+# Variance (3,), m^2, m^2, rad^2, of a robot's motion between two scans if it moves on as before.
 _STEADY_MOTION_VARIANCE = np.array([0.1**2, 0.1**2, 0.15**2])
 
 
-def moves(motion: Pose2, least: float = _STILL) -> bool:
-    """Whether a motion is one of at least ``least`` metres or radians."""
-    return math.hypot(motion.x, motion.y) >= least or abs(motion.yaw) >= least
-
-
 @dataclass(frozen=True, eq=False)
-class Tracked:
-    """One scan followed: ``base_in_track`` drifts, but never jumps.
+class TrackedPose:
+    """The pose of a scan in the track frame, which drifts but never jumps.
 
-    ``information``: (3, 3), of the pose relative to the local map, along the track's axes. ``response``:
-    share of the scan explained by the local map; ``surprise``: squared deviation of the matched from the
-    odometric motion in units of its variance.
+    Attributes:
+        base_in_track: Pose of the base.
+        information: (3, 3), of the pose relative to the local map, along the track's axes.
+        response: Fraction of the scan that the local map explains, 0 to 1.
+        odometry_chi_square: Squared difference of matched and odometric motion in units of its variance.
     """
 
     base_in_track: Pose2
     information: np.ndarray
     response: float
-    surprise: float
+    odometry_chi_square: float
 
 
-class RecentScans:
-    """The local map of the last key scans: grows to ``window_keys``, then leaves out the older half."""
+class KeyframeWindow(Protocol):
+    """The keyframes that scans are matched to."""
 
-    def __init__(self, window_keys: int):
-        self.local_map = wide_map()
-        self._window_keys = window_keys
-        self._window: Deque[Tuple[Surface, Pose2]] = deque()
-        self._last_view: Optional[View] = None
+    local_map: LocalMap
 
-    def add(self, surface: Surface, base_in_track: Pose2) -> None:
-        """Adds a key scan."""
-        self._last_view = View(surface, base_in_track)
-        if len(self._window) >= self._window_keys:
+    def update_around(self, base_in_track: Pose2) -> None:
+        """Make ``local_map`` hold the keyframes around a pose."""
+
+    def unseen_fraction(self, cloud: PointCloud, base_in_track: Pose2) -> float:
+        """Fraction of a scan, 0 to 1, that cannot match because the map never covered its directions."""
+        ...
+
+
+class RecentKeyframes:
+    """The local map of the last keyframes: when ``window_keyframes`` are in it, the older half is dropped."""
+
+    def __init__(self, window_keyframes: int):
+        self.local_map = long_range_map()
+        self._window_keyframes = window_keyframes
+        self._window: Deque[Tuple[PointCloud, Pose2]] = deque()
+        self._last_coverage: Optional[AngularCoverage] = None
+
+    def add(self, cloud: PointCloud, base_in_track: Pose2) -> None:
+        """Add a keyframe."""
+        self._last_coverage = AngularCoverage(cloud, base_in_track)
+        if len(self._window) >= self._window_keyframes:
             for _ in range(len(self._window) // 2):
                 self._window.popleft()
             self.local_map.clear(base_in_track)
@@ -76,130 +86,148 @@ class RecentScans:
                 self.local_map.add(old, old_in_track)
         elif not self._window:
             self.local_map.clear(base_in_track)
-        self._window.append((surface, base_in_track))
-        self.local_map.add(surface, base_in_track)
+        self._window.append((cloud, base_in_track))
+        self.local_map.add(cloud, base_in_track)
 
-    def gather(self, base_in_track: Pose2) -> None:
-        """Nothing to do: the scans around the robot are those it has just made."""
+    def update_around(self, base_in_track: Pose2) -> None:
+        """Do nothing: the keyframes around the robot are the last ones."""
 
-    def new_share(self, surface: Surface, base_in_track: Pose2) -> float:
-        """Share of a scan, 0 to 1, that looks where the last key scan did not."""
-        return 0.0 if self._last_view is None else self._last_view.new_share(surface, base_in_track)
+    def unseen_fraction(self, cloud: PointCloud, base_in_track: Pose2) -> float:
+        """Fraction of a scan, 0 to 1, in directions that the last keyframe does not cover."""
+        return (
+            0.0 if self._last_coverage is None else self._last_coverage.unseen_fraction(cloud, base_in_track)
+        )
 
 
-class KnownScans:
-    """The local map of a finished map's scans around the robot; the track frame is the map frame."""
+class NearbyKeyframes:
+    """The local map of a finished map's keyframes around the robot; the track frame is the map frame."""
 
-    def __init__(self, surfaces: Sequence[Surface], poses: np.ndarray):
-        self.local_map = wide_map()
-        self._surfaces, self._poses = surfaces, poses
+    def __init__(self, clouds: Sequence[PointCloud], poses: np.ndarray):
+        self.local_map = long_range_map()
+        self._clouds, self._poses = clouds, poses
         self._center: Optional[Pose2] = None
 
-    def gather(self, base_in_track: Pose2) -> None:
-        """Takes the scans around the robot, if it has left the middle of those taken last."""
-        if self._center is not None and self._center.distance_to(base_in_track) < 0.5 * _KNOWN_RADIUS:
+    def update_around(self, base_in_track: Pose2) -> None:
+        """Collect the keyframes around the robot, if it has left the middle of the last collection."""
+        if self._center is not None and self._center.distance_to(base_in_track) < 0.5 * _NEARBY_RADIUS:
             return
         self._center = base_in_track
         self.local_map.clear(base_in_track)
         distances = np.hypot(self._poses[:, 0] - base_in_track.x, self._poses[:, 1] - base_in_track.y)
-        for key in np.flatnonzero(distances < _KNOWN_RADIUS):
-            self.local_map.add(self._surfaces[key], Pose2.from_array(self._poses[key]))
+        for i in np.flatnonzero(distances < _NEARBY_RADIUS):
+            self.local_map.add(self._clouds[i], Pose2.from_array(self._poses[i]))
 
-    def new_share(self, surface: Surface, base_in_track: Pose2) -> float:
-        """A finished map has nothing new."""
+    def unseen_fraction(self, cloud: PointCloud, base_in_track: Pose2) -> float:
+        """Return 0: a finished map covers all directions."""
         return 0.0
 
 
 class FrontEnd:
     """Matches scans to a local map, with odometry as prediction and prior.
 
-    ``odometry_is_stuck``: odometry stands still while the scans move; then the robot is predicted to move on
-    as it did.
+    Attributes:
+        odometry_is_stuck: Odometry stands still while the scans move; the motion is then predicted to go on
+            as before.
     """
 
-    def __init__(self, settings: MapperSettings, scans, base_in_track: Optional[Pose2] = None):
-        """``scans``: RecentScans or KnownScans. ``base_in_track``: at the start; default: as in odometry.
+    def __init__(
+        self, settings: MapperSettings, keyframes: KeyframeWindow, base_in_track: Optional[Pose2] = None
+    ):
+        """Create the scan matcher.
 
-        Raises MatchingError if a matcher of somebody's own cannot be made.
+        Args:
+            settings: Of the matcher and of odometry's errors.
+            keyframes: What scans are matched to.
+            base_in_track: Pose at the first scan; default: the odometry pose.
+
+        Raises:
+            MatchingError: If a custom matcher cannot be created.
         """
         self._settings = settings
         self._matcher = scan_matcher_of(settings)
-        self._scans = scans
-        self._odometry = Odometry(settings)
+        self._keyframes = keyframes
+        self._odometry = OdometryModel(settings)
         self._last_in_odom: Optional[Pose2] = None
         self._last_in_track = base_in_track
         self._matched_motion = Pose2()
         self._last_error: np.ndarray = np.zeros(3)
-        self._found_again: Optional[Pose2] = None
+        self._relocalized: Optional[Pose2] = None
         self.odometry_is_stuck = False
 
-    def track(self, base_in_odom: Pose2, surface: Surface) -> Tracked:
-        """Follows one scan, taken where odometry believed ``base_in_odom``.
+    def track(self, base_in_odom: Pose2, cloud: PointCloud) -> TrackedPose:
+        """Match one scan.
 
-        Raises MatchingError, and is as it was then, for what goes wrong in a matcher of somebody's own.
+        Args:
+            base_in_odom: Odometry at the scan.
+            cloud: The scan's points in the base frame.
+
+        Raises:
+            MatchingError: If a custom matcher fails; the front end is unchanged then.
         """
         last_in_track = base_in_odom if self._last_in_track is None else self._last_in_track
         motion = Pose2() if self._last_in_odom is None else self._last_in_odom.inverse() @ base_in_odom
-        mended, variance = self._odometry.mended(motion), self._odometry.variance(motion) + self._last_error
-        if self._found_again is not None:
-            match = self._match(surface, self._found_again, Pose2(), _STEADY_MOTION_VARIANCE)
-            self._found_again = None
-        elif self.odometry_is_stuck and not moves(motion):
-            match = self._match(surface, last_in_track, self._matched_motion, _STEADY_MOTION_VARIANCE)
+        corrected = self._odometry.corrected(motion)
+        variance = self._odometry.variance(motion) + self._last_error
+        if self._relocalized is not None:
+            match = self._match(cloud, self._relocalized, Pose2(), _STEADY_MOTION_VARIANCE)
+            self._relocalized = None
+        elif self.odometry_is_stuck and not has_moved(motion):
+            match = self._match(cloud, last_in_track, self._matched_motion, _STEADY_MOTION_VARIANCE)
         else:
-            match = self._match(surface, last_in_track, mended, variance)
+            match = self._match(cloud, last_in_track, corrected, variance)
         self._matched_motion = last_in_track.inverse() @ match.base_pose
-        deviation = (motion.inverse() @ self._matched_motion).as_array()
-        believed = self._odometry.believed_variance(motion)
-        surprise = float(np.sum(deviation**2 / believed))
-        is_sure, information = match.response * len(surface) > _SURE_POINTS, match.information
-        self._last_error = deviation**2 if is_sure and surprise > _SURPRISING else np.zeros(3)
-        if not is_sure:  # the wheels may have slipped unseen
-            information = np.diag(1.0 / believed)
-        elif moves(motion) and np.diag(information).min() > _SURE_INFORMATION:
+        error = (motion.inverse() @ self._matched_motion).as_array()
+        nominal = self._odometry.nominal_variance(motion)
+        chi_square = float(np.sum(error**2 / nominal))
+        is_reliable, information = match.response * len(cloud) > _MIN_POINTS, match.information
+        self._last_error = error**2 if is_reliable and chi_square > _SLIP_CHI_SQUARE else np.zeros(3)
+        if not is_reliable:  # the wheels may have slipped without the scans showing it
+            information = np.diag(1.0 / nominal)
+        elif has_moved(motion) and np.diag(information).min() > _MIN_INFORMATION:
             self._odometry.learn(motion, self._matched_motion)
-        self.odometry_is_stuck = not moves(motion) and moves(self._matched_motion, _STUCK)
+        self.odometry_is_stuck = not has_moved(motion) and has_moved(self._matched_motion, _STUCK_MOTION)
         self._last_in_odom, self._last_in_track = base_in_odom, match.base_pose
-        return Tracked(match.base_pose, information, match.response, surprise)
+        return TrackedPose(match.base_pose, information, match.response, chi_square)
 
-    def finds_again(self, surface: Surface) -> bool:
-        """Whether a scan shows that the robot is still where it was; it is tracked from there then."""
+    def relocalize(self, cloud: PointCloud) -> bool:
+        """Whether a scan shows that the robot is still where it was; if so, it is tracked from there."""
         last_in_track = self._last_in_track
-        if last_in_track is None or self._scans.local_map.is_empty:
+        if last_in_track is None or self._keyframes.local_map.is_empty:
             return False
-        unknown = Match(last_in_track, _NO_BELIEF, 0.0)
-        match = self._search_wide(surface, (last_in_track,), unknown)
+        unknown = Match(last_in_track, _NO_PRIOR, 0.0)
+        match = self._search_wide(cloud, (last_in_track,), unknown)
         if match is unknown:
             return False
-        self._found_again = match.base_pose
+        self._relocalized = match.base_pose
         return True
 
-    def _match(self, surface: Surface, last_in_track: Pose2, motion: Pose2, variance: np.ndarray) -> Match:
+    def _match(self, cloud: PointCloud, last_in_track: Pose2, motion: Pose2, variance: np.ndarray) -> Match:
         predicted = last_in_track @ motion
-        self._scans.gather(predicted)
-        local_map = self._scans.local_map
-        doubt = variance if moves(motion) else _STEADY_MOTION_VARIANCE
-        new_share = self._scans.new_share(surface, predicted)
-        prediction = Prediction(predicted, variance, doubt, new_share)
+        self._keyframes.update_around(predicted)
+        local_map = self._keyframes.local_map
+        search_variance = variance if has_moved(motion) else _STEADY_MOTION_VARIANCE
+        unseen_fraction = self._keyframes.unseen_fraction(cloud, predicted)
+        prediction = Prediction(predicted, variance, search_variance, unseen_fraction)
         if local_map.is_empty:
             return Match(predicted, prediction.information, 1.0)
-        match = self._matcher.match(surface, local_map, prediction)
-        if match.response < _POOR_RESPONSE and len(surface) > _SURE_POINTS:
-            match = self._search_wide(surface, (predicted, last_in_track), match)
+        match = self._matcher.match(cloud, local_map, prediction)
+        if match.response < _POOR_RESPONSE and len(cloud) > _MIN_POINTS:
+            match = self._search_wide(cloud, (predicted, last_in_track), match)
         if match.response < self._settings.min_response:
             return Match(predicted, prediction.information, match.response)
         return match
 
-    def _search_wide(self, surface: Surface, centers: Tuple[Pose2, ...], match: Match) -> Match:
-        """A good and only match around one of ``centers``, if there is one; else ``match``.
+    def _search_wide(self, cloud: PointCloud, centers: Tuple[Pose2, ...], fallback: Match) -> Match:
+        """A good and unique match around one of ``centers``, else ``fallback``.
 
-        What is seen for the first time matches poorly too, and must not be taken for something else.
+        Areas seen for the first time match poorly too, and must not be matched to something else.
         """
-        local_map = self._scans.local_map
+        local_map = self._keyframes.local_map
+        min_score = _GOOD_RESPONSE - 0.1
         for center in centers:
-            peak = search_far(surface, local_map, center, _WIDE_WINDOW, _SURE_RESPONSE - 0.1, apart=0.5)
-            if peak is not None and peak.is_unique and not peak.slide.any():
-                wide = refine(surface, local_map, peak.base_pose, peak.base_pose, _NO_BELIEF)
-                if wide.response > _SURE_RESPONSE:
+            peak = search_branch_and_bound(cloud, local_map, center, _WIDE_WINDOW, min_score, apart=0.5)
+            if peak is not None and peak.is_unique and not peak.degenerate_direction.any():
+                wide = refine(cloud, local_map, peak.base_pose, peak.base_pose, _NO_PRIOR)
+                if wide.response > _GOOD_RESPONSE:
                     return wide
-        return match
+        return fallback

@@ -12,302 +12,295 @@ from planar.geometry.limits import OutOfRangeError
 from planar.geometry.pose import check_pose
 from slam_lite.back_end import BackEnd, ClosureResult, ClosureTask
 from slam_lite.config import MapperSettings
-from slam_lite.continuity import Continuity, Pause
-from slam_lite.front_end import FrontEnd, KnownScans, RecentScans, Tracked
-from slam_lite.loops.relocation import KnownMap
-from slam_lite.matching.local_map import LocalMap
-from slam_lite.no_return import NoReturn
-from slam_lite.rendering import Beams, Evidence, beams_of, drawn_in_bands
-from slam_lite.sessions import renewed
+from slam_lite.front_end import FrontEnd, RecentKeyframes, TrackedPose
+from slam_lite.keyframes import is_keyframe, prune_keyframes
+from slam_lite.no_return import NoReturnDetector
+from slam_lite.odometry_checks import DiscontinuityDetector, MotionFilter
+from slam_lite.point_cloud import PointCloud, point_cloud_of
+from slam_lite.rendering import Evidence, ScanBeams, beams_of, render_in_bands
 from slam_lite.state import MapState
-from slam_lite.surface import Surface, surface_of
 
-# Metres off the map that somebody may say the robot is; both have to be drawn as one picture.
-_FARTHEST_OFF = 200.0
+# Largest distance [m] of a given robot pose from the map; both have to be drawn as one picture.
+_MAX_DISTANCE_FROM_MAP = 200.0
 
 
 @dataclass(frozen=True, eq=False)
 class PoseUpdate:
-    """Where a scan was taken.
+    """The pose at which a scan was taken.
 
-    ``information``: (3, 3), of the pose relative to the scans around. ``response``: share of the scan that
-    those explain; ``surprise``: squared deviation of the matched from the odometric motion in units of its
-    variance, 3 on average for odometry as good as its settings say.
+    Attributes:
+        base_in_map: Robot pose in the map frame.
+        odom_in_map: Odometry frame in the map frame.
+        information: (3, 3), of the pose relative to the keyframes around, 1 / (m, m, rad)^2.
+        response: Fraction of the scan that these keyframes explain, 0 to 1.
+        odometry_chi_square: Squared difference of matched and odometric motion in units of its variance: 3 on
+            average if odometry is as accurate as its settings state.
     """
 
     base_in_map: Pose2
     odom_in_map: Pose2
     information: np.ndarray
     response: float
-    surprise: float
+    odometry_chi_square: float
 
 
 @dataclass(frozen=True, eq=False)
 class MapUpdate(PoseUpdate):
-    """``base_in_key``: the pose relative to the key scan ``key``, which stays true when keys are moved later.
+    """The pose at which a scan was taken, also relative to a keyframe.
 
-    ``is_key``: the scan itself became that key.
+    Attributes:
+        keyframe: Index of the latest keyframe.
+        base_in_keyframe: Robot pose in that keyframe; stays valid when loop closures move the keyframes.
+        is_keyframe: Whether the scan itself became that keyframe.
     """
 
-    key: int
-    base_in_key: Pose2
-    is_key: bool
+    keyframe: int
+    base_in_keyframe: Pose2
+    is_keyframe: bool
 
 
 class Mapper:
     """Graph SLAM with a planar laser.
 
-    A front end follows the robot against its recent scans; key scans become nodes of a pose graph, in which a
-    back end closes loops; the map is drawn from all key scans at their present poses. The map frame is the
-    odometry frame as it was at the first scan. Without ``deferred``, loops are closed inside ``insert``; with
-    it, somebody has to run ``task()`` and ``adopt`` its result now and then.
+    A front end tracks the robot by matching scans to recent keyframes; keyframes become nodes of a pose
+    graph, in which a back end closes loops; the map is rendered from all keyframes at their present poses.
+    The map frame is the odometry frame at the first scan.
     """
 
     def __init__(self, settings: MapperSettings = MapperSettings(), deferred: bool = False):
+        """Create a mapper without keyframes.
+
+        Args:
+            settings: Of matching, loop closure and rendering.
+            deferred: Whether the caller closes loops, by running ``closure_task()`` and passing its result to
+                ``apply_closures``, for example in another thread. By default ``insert`` does it.
+        """
         self._settings = settings
         self._deferred = deferred
-        self._recent = RecentScans(settings.window_keys)
+        self._recent = RecentKeyframes(settings.window_keyframes)
         self._front_end = FrontEnd(settings, self._recent)
         self._back_end = BackEnd(settings)
-        self._beams: List[Beams] = []
-        self._searched = 0
-        self._key_in_track: Optional[Pose2] = None
-        self._pause, self._continuity = Pause(settings.still_interval), Continuity()
-        self._last_in_key = Pose2()
-        self._no_return = NoReturn()
+        self._beams: List[ScanBeams] = []
+        # Number of keyframes at the last search for loop closures.
+        self._searched_count = 0
+        self._keyframe_in_track: Optional[Pose2] = None
+        self._motion_filter = MotionFilter(settings.still_interval)
+        self._discontinuity = DiscontinuityDetector()
+        self._base_in_keyframe = Pose2()
+        self._no_return = NoReturnDetector()
         self._session = 0
         self._sessions: List[int] = []
-        # Whether the robot has to be found in the map; where it is believed to be, and whether it is near.
-        self._is_to_be_found, self._is_lost = False, False
-        self._believed: Optional[Pose2] = None
-        self._is_near = False
+        # Whether the next scan has to be located in the map, from which pose on, and only near it.
+        self._needs_relocalization, self._is_lost = False, False
+        self._prior_pose: Optional[Pose2] = None
+        self._search_near_prior_only = False
 
     def insert(self, base_in_odom: Pose2, scan: Scan) -> Optional[MapUpdate]:
-        """Takes one scan in; None if it says nothing new because the robot stands still.
+        """Insert one scan.
 
-        Raises OutOfRangeError for odometry at which no robot can be, or which leads to such a place in the
-        map, MatchingError if a matcher of somebody's own fails; the scan leaves nothing in the map then.
+        Args:
+            base_in_odom: Odometry at the scan.
+            scan: The scan.
+
+        Returns:
+            The scan's pose; None if it was dropped because the robot stands still.
+
+        Raises:
+            OutOfRangeError: If odometry is out of range, or leads to a pose in the map that is; the scan
+                leaves nothing in the map then.
+            MatchingError: If a custom matcher fails; likewise.
         """
         check_pose(base_in_odom, "odometry")
-        if self._pause.lasts(base_in_odom, scan.stamp) and not self._front_end.odometry_is_stuck:
+        if self._motion_filter.is_similar(base_in_odom, scan.stamp) and not self._front_end.odometry_is_stuck:
             return None
         max_range, usable_range = ranges_of(scan, self._settings, self._no_return)
-        surface = surface_of(scan, usable_range, self._settings.point_spacing)
-        if self._continuity.breaks(base_in_odom, scan.stamp):
-            self._is_to_be_found = not self._front_end.finds_again(surface)
-        if self._is_to_be_found:
-            self._find(surface)
-        tracked = self._front_end.track(base_in_odom, surface)
+        cloud = point_cloud_of(scan, usable_range, self._settings.point_spacing)
+        if self._discontinuity.is_discontinuous(base_in_odom, scan.stamp):
+            self._needs_relocalization = not self._front_end.relocalize(cloud)
+        if self._needs_relocalization:
+            self._relocalize(cloud)
+        tracked = self._front_end.track(base_in_odom, cloud)
         check_pose(self._in_map(tracked.base_in_track), "a robot in the map")
-        is_key = self._is_key(tracked.base_in_track)
-        if is_key:
+        is_new_keyframe = is_keyframe(self._in_last_keyframe(tracked.base_in_track), self._settings)
+        if is_new_keyframe:
             self._no_return.add(scan.ranges)
-            self._add_key(tracked, surface, beams_of(scan, max_range, usable_range))
-        assert self._key_in_track is not None
-        base_in_key = self._key_in_track.inverse() @ tracked.base_in_track
-        key = len(self._back_end) - 1
-        base_in_map = self._back_end.pose(key) @ base_in_key
-        self._last_in_key = base_in_key
+            self._add_keyframe(tracked, cloud, beams_of(scan, max_range, usable_range))
+        return self._update(base_in_odom, tracked, is_new_keyframe)
+
+    def closure_task(self) -> Optional[ClosureTask]:
+        """Return the search for loop closures that is due, None if none is."""
+        settings = self._settings
+        if not settings.close_loops or len(self._back_end) < self._searched_count + settings.closure_interval:
+            return None
+        self._searched_count = len(self._back_end)
+        return self._back_end.closure_task()
+
+    def apply_closures(self, result: ClosureResult) -> None:
+        """Apply the result of a closure task."""
+        self._back_end.apply_closures(result)
+
+    def run_final_optimization(self) -> None:
+        """Optimize to convergence, and close loops along revisited segments, after the last scan."""
+        self._back_end.run_final_optimization()
+
+    @property
+    def keyframe_poses(self) -> np.ndarray:
+        """Poses (N, 3) of all keyframes in the map frame."""
+        return self._back_end.poses
+
+    @property
+    def base_in_map(self) -> Pose2:
+        """Robot pose at the last scan."""
+        count = len(self._back_end)
+        return self._back_end.pose(count - 1) @ self._base_in_keyframe if count else Pose2()
+
+    @property
+    def loop_count(self) -> int:
+        """Number of loop closures in the graph."""
+        return int(self._back_end.edges.is_loop.sum())
+
+    def evidence(self) -> Evidence:
+        """Return the input of a SessionRenderer: the beams of all keyframes and their present poses."""
+        older = int(np.searchsorted(self._sessions, self._session))
+        return Evidence(list(self._beams), self._back_end.poses.copy(), older)
+
+    def grid(self) -> OccupancyGrid:
+        """Render the map of all keyframes at their present poses from scratch."""
+        return self.grid_in_bands().joined()
+
+    def grid_in_bands(self) -> BandedGrid:
+        """Return the same map, rendered band by band on use: it never takes the memory of all its cells."""
+        return render_in_bands(self.evidence(), self._settings.resolution, self._settings.occupied_threshold)
+
+    def state(self) -> MapState:
+        """Return all that is needed to resume later."""
+        return MapState(
+            tuple(self._back_end.clouds),
+            tuple(self._beams),
+            self._back_end.poses.copy(),
+            self._back_end.edges,
+            self.base_in_map,
+            np.array(self._sessions, dtype=np.int64),
+        )
+
+    def resume(self, state: MapState, base_in_map: Optional[Pose2] = None) -> None:
+        """Resume from a state in a new session.
+
+        Args:
+            state: Of an earlier mapper.
+            base_in_map: Approximate robot pose. By default the first scan is searched in the map, first near
+                the robot's last pose. If that fails, a separate trajectory starts beside the map, to be
+                joined with it when a place is recognized.
+
+        Raises:
+            OutOfRangeError: If ``base_in_map`` is too far from all keyframes; the mapper is unchanged then.
+        """
+        state = prune_keyframes(state)
+        if base_in_map is not None:
+            _check_near(base_in_map, state.poses)
+        self._back_end = BackEnd(self._settings)
+        self._back_end.restore(state.clouds, state.poses, state.edges)
+        self._beams = list(state.beams)
+        self._searched_count = 0
+        self._sessions = list(state.sessions)
+        self._session = self._sessions[-1] + 1 if self._sessions else 0
+        self._discontinuity = DiscontinuityDetector()
+        self._prior_pose, self._is_lost, self._search_near_prior_only = state.base_in_map, False, False
+        self._needs_relocalization = base_in_map is None and len(state.poses) > 0
+        start = base_in_map or state.base_in_map
+        if len(state.poses):
+            self._base_in_keyframe = Pose2.from_array(state.poses[-1]).inverse() @ start
+        self._start_trajectory(start)
+
+    def resume_near(self, state: MapState, base_in_map: Pose2) -> None:
+        """Resume from a recent state, with the robot within decimetres of ``base_in_map``, as after a crash.
+
+        The first scan refines the pose, if it matches there.
+        """
+        self.resume(replace(state, base_in_map=base_in_map))
+        self._search_near_prior_only = True
+
+    def _relocalize(self, cloud: PointCloud) -> None:
+        """Start a trajectory where the scan matches the map, or beside the map.
+
+        One scan is enough in a finished map; in one that grows, it may match elsewhere as well.
+        """
+        found = None
+        if self._prior_pose is not None:
+            found = self._back_end.relocalize(cloud, self._prior_pose, only_near=self._search_near_prior_only)
+        if self._search_near_prior_only:
+            found = found or self._prior_pose
+        self._needs_relocalization, self._is_lost = False, found is None
+        self._prior_pose, self._search_near_prior_only = None, False
+        self._start_trajectory(found or self._back_end.pose_beside(cloud))
+
+    def _start_trajectory(self, base_in_track: Pose2) -> None:
+        self._keyframe_in_track = None
+        self._recent = RecentKeyframes(self._settings.window_keyframes)
+        self._front_end = FrontEnd(self._settings, self._recent, base_in_track)
+
+    def _in_last_keyframe(self, base_in_track: Pose2) -> Optional[Pose2]:
+        """A pose relative to the last keyframe of this trajectory, None if there is none yet."""
+        return None if self._keyframe_in_track is None else self._keyframe_in_track.inverse() @ base_in_track
+
+    def _in_map(self, base_in_track: Pose2) -> Pose2:
+        """A tracked pose in the map frame, by the last keyframe if there is one."""
+        base_in_keyframe = self._in_last_keyframe(base_in_track)
+        if base_in_keyframe is None:
+            return base_in_track
+        return self._back_end.pose(len(self._back_end) - 1) @ base_in_keyframe
+
+    def _add_keyframe(self, tracked: TrackedPose, cloud: PointCloud, beams: ScanBeams) -> None:
+        if self._keyframe_in_track is None:
+            self._back_end.add_first(cloud, tracked.base_in_track, self._is_lost)
+        else:
+            base_in_last = self._keyframe_in_track.inverse() @ tracked.base_in_track
+            rotated = _rotated(tracked.information, -self._keyframe_in_track.yaw)
+            self._back_end.add(cloud, base_in_last, rotated)
+        self._keyframe_in_track = tracked.base_in_track
+        self._recent.add(cloud, tracked.base_in_track)
+        self._beams.append(beams)
+        self._sessions.append(self._session)
+        if not self._deferred:
+            task = self.closure_task()
+            if task is not None:
+                self.apply_closures(task.run())
+
+    def _update(self, base_in_odom: Pose2, tracked: TrackedPose, is_new_keyframe: bool) -> MapUpdate:
+        assert self._keyframe_in_track is not None
+        self._base_in_keyframe = self._keyframe_in_track.inverse() @ tracked.base_in_track
+        keyframe = len(self._back_end) - 1
+        base_in_map = self._back_end.pose(keyframe) @ self._base_in_keyframe
         return MapUpdate(
             base_in_map,
             base_in_map @ base_in_odom.inverse(),
             tracked.information,
             tracked.response,
-            tracked.surprise,
-            key,
-            base_in_key,
-            is_key,
+            tracked.odometry_chi_square,
+            keyframe,
+            self._base_in_keyframe,
+            is_new_keyframe,
         )
 
-    def task(self) -> Optional[ClosureTask]:
-        """The loop closure search that is due, if one is."""
-        settings = self._settings
-        if not settings.close_loops or len(self._back_end) < self._searched + settings.closure_interval:
-            return None
-        self._searched = len(self._back_end)
-        return self._back_end.task()
 
-    def adopt(self, result: ClosureResult) -> None:
-        """Takes over what a task found."""
-        self._back_end.adopt(result)
-
-    def settle(self) -> None:
-        """Brings the poses of all keys to rest, as after the last scan."""
-        self._back_end.settle()
-
-    @property
-    def key_poses(self) -> np.ndarray:
-        """Poses (N, 3) in the map of all key scans."""
-        return self._back_end.poses
-
-    @property
-    def last_in_map(self) -> Pose2:
-        """Where the robot was at the last scan."""
-        keys = len(self._back_end)
-        return self._back_end.pose(keys - 1) @ self._last_in_key if keys else Pose2()
-
-    @property
-    def loop_count(self) -> int:
-        """How many loop closures tie the graph."""
-        return int(self._back_end.edges.is_loop.sum())
-
-    def evidence(self) -> Evidence:
-        """What a SessionRenderer draws: the beams of all key scans and their present poses."""
-        older = int(np.searchsorted(self._sessions, self._session))
-        return Evidence(list(self._beams), self._back_end.poses.copy(), older)
-
-    def grid(self) -> OccupancyGrid:
-        """The map of all key scans at their present poses, drawn from scratch."""
-        return self.grid_in_bands().joined()
-
-    def grid_in_bands(self) -> BandedGrid:
-        """The same map, drawn band by band while it is used: it never takes the memory of all its cells."""
-        return drawn_in_bands(self.evidence(), self._settings.resolution, self._settings.occupied_threshold)
-
-    def state(self) -> MapState:
-        """All that is needed to go on later."""
-        return MapState(
-            tuple(self._back_end.surfaces),
-            tuple(self._beams),
-            self._back_end.poses.copy(),
-            self._back_end.edges,
-            self.last_in_map,
-            np.array(self._sessions, dtype=np.int64),
-        )
-
-    def resume(self, state: MapState, base_in_map: Optional[Pose2] = None) -> None:
-        """Goes on from a state in a new session, with the robot near ``base_in_map``.
-
-        By default the first scan tells where it is: where it was last, or anywhere else in the map. If that
-        cannot be told, a trajectory beside the map begins, to be joined with it when a place is recognised.
-        Raises OutOfRangeError, and is as it was then, if ``base_in_map`` is too far from all of the map.
-        """
-        state = renewed(state)
-        if base_in_map is not None:
-            _check_near(base_in_map, state.poses)
-        self._back_end = BackEnd(self._settings)
-        self._back_end.restore(state.surfaces, state.poses, state.edges)
-        self._beams = list(state.beams)
-        self._searched = 0
-        self._sessions = list(state.sessions)
-        self._session = self._sessions[-1] + 1 if self._sessions else 0
-        self._continuity = Continuity()
-        self._believed, self._is_lost, self._is_near = state.base_in_map, False, False
-        self._is_to_be_found = base_in_map is None and len(state.poses) > 0
-        start = base_in_map or state.base_in_map
-        if len(state.poses):
-            self._last_in_key = Pose2.from_array(state.poses[-1]).inverse() @ start
-        self._begin(start)
-
-    def resume_near(self, state: MapState, base_in_map: Pose2) -> None:
-        """Goes on from a state of moments ago, with the robot within some decimetres of ``base_in_map``.
-
-        The first scan tells more exactly where, if it can.
-        """
-        self.resume(replace(state, base_in_map=base_in_map))
-        self._is_near = True
-
-    def _find(self, surface: Surface) -> None:
-        """Begins a trajectory where the scan says that the robot is, or beside the map.
-
-        One scan is enough in a finished map; in one that grows, it may look the same elsewhere.
-        """
-        found = None
-        if self._believed is not None:
-            found = self._back_end.place_of(surface, self._believed, only_near=self._is_near)
-        if self._is_near:
-            found = found or self._believed
-        self._is_to_be_found, self._is_lost, self._believed, self._is_near = False, found is None, None, False
-        self._begin(found or self._back_end.beside(surface))
-
-    def _begin(self, base_in_track: Pose2) -> None:
-        self._key_in_track = None
-        self._recent = RecentScans(self._settings.window_keys)
-        self._front_end = FrontEnd(self._settings, self._recent, base_in_track)
-
-    def _in_map(self, base_in_track: Pose2) -> Pose2:
-        """As the latest key has it, if there is one."""
-        if self._key_in_track is None:
-            return base_in_track
-        return self._back_end.pose(len(self._back_end) - 1) @ (self._key_in_track.inverse() @ base_in_track)
-
-    def _is_key(self, base_in_track: Pose2) -> bool:
-        if self._key_in_track is None:
-            return True
-        moved = self._key_in_track.inverse() @ base_in_track
-        far = math.hypot(moved.x, moved.y) >= self._settings.key_distance
-        return far or abs(moved.yaw) >= self._settings.key_angle
-
-    def _add_key(self, tracked: Tracked, surface: Surface, beams: Beams) -> None:
-        if self._key_in_track is None:
-            self._back_end.add_first(surface, tracked.base_in_track, self._is_lost)
-        else:
-            base_in_last = self._key_in_track.inverse() @ tracked.base_in_track
-            turned = _rotated(tracked.information, -self._key_in_track.yaw)
-            self._back_end.add(surface, base_in_last, turned)
-        self._key_in_track = tracked.base_in_track
-        self._recent.add(surface, tracked.base_in_track)
-        self._beams.append(beams)
-        self._sessions.append(self._session)
-        if not self._deferred:
-            task = self.task()
-            if task is not None:
-                self.adopt(task.run())
-
-
-class Follower:
-    """Follows the robot in a finished map, which stays as it is.
-
-    Without ``base_in_map`` the first scan tells where the robot is, if it can, or else the last pose does.
-    """
-
-    def __init__(self, settings: MapperSettings, state: MapState, base_in_map: Optional[Pose2] = None):
-        self._settings = settings
-        self._state = state
-        self._pause = Pause(settings.still_interval)
-        self._no_return = NoReturn()
-        self.place(base_in_map or state.base_in_map)
-        self._is_to_be_found = base_in_map is None
-
-    def place(self, base_in_map: Pose2) -> None:
-        """Says where the robot is; it may be a few decimetres off."""
-        known = KnownScans(self._state.surfaces, self._state.poses)
-        self._front_end = FrontEnd(self._settings, known, base_in_map)
-        self._is_to_be_found = False
-
-    def insert(self, base_in_odom: Pose2, scan: Scan) -> Optional[PoseUpdate]:
-        """Follows one scan; None if the robot stands still. Raises what ``Mapper.insert`` raises."""
-        check_pose(base_in_odom, "odometry")
-        if self._pause.lasts(base_in_odom, scan.stamp) and not self._front_end.odometry_is_stuck:
-            return None
-        self._no_return.add(scan.ranges)
-        _, usable_range = ranges_of(scan, self._settings, self._no_return)
-        surface = surface_of(scan, usable_range, self._settings.point_spacing)
-        if self._is_to_be_found:
-            known = KnownMap(self._state.surfaces, self._state.poses, LocalMap())
-            found = known.find([(surface, Pose2())], self._state.base_in_map)
-            self.place(found or self._state.base_in_map)
-        tracked = self._front_end.track(base_in_odom, surface)
-        base_in_map = tracked.base_in_track
-        odom_in_map = base_in_map @ base_in_odom.inverse()
-        return PoseUpdate(base_in_map, odom_in_map, tracked.information, tracked.response, tracked.surprise)
-
-
-def ranges_of(scan: Scan, settings: MapperSettings, no_return: NoReturn) -> Tuple[float, float]:
-    """maxRange and maxUrange for a scan, metres."""
+def ranges_of(scan: Scan, settings: MapperSettings, no_return: NoReturnDetector) -> Tuple[float, float]:
+    """Return maxRange and maxUrange for a scan, metres."""
     max_range = settings.max_range or min(scan.range_max - 0.01, no_return.distance)
     return max_range, settings.usable_range or max_range
 
 
 def _check_near(base_in_map: Pose2, poses: np.ndarray) -> None:
-    """Raises OutOfRangeError for a pose that is nowhere near any of ``poses`` (N, 3), if there are any."""
+    """Raise OutOfRangeError for a pose that is far from all of ``poses`` (N, 3), if there are any."""
     check_pose(base_in_map, "a robot")
     distances = np.hypot(poses[:, 0] - base_in_map.x, poses[:, 1] - base_in_map.y)
-    if len(poses) and distances.min() > _FARTHEST_OFF:
-        raise OutOfRangeError(f"a robot {distances.min():.0f} m away from all that is mapped means nothing")
+    if len(poses) and distances.min() > _MAX_DISTANCE_FROM_MAP:
+        raise OutOfRangeError(
+            f"the robot pose ({base_in_map.x:.1f}, {base_in_map.y:.1f}) is {distances.min():.0f} m away from "
+            f"the map; at most {_MAX_DISTANCE_FROM_MAP:.0f} m are allowed"
+        )
 
 
 def _rotated(information: np.ndarray, angle: float) -> np.ndarray:
     c, s = math.cos(angle), math.sin(angle)
-    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    return turn @ information @ turn.T
+    rotation = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    return rotation @ information @ rotation.T

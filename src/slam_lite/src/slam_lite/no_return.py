@@ -1,25 +1,26 @@
-"""What a laser says where it sees nothing, learned from what it says too often.
+"""Range readings that stand for "no return", learned from how often they occur.
 
-Some say more than their ``range_max``, some a little less, and some another constant. Taken for walls, such
-readings are a circle that moves along with the robot.
+Some lasers report more than their ``range_max`` where nothing is hit, some a little less, and some another
+constant. Taken as hits, such readings form a circle that moves along with the robot.
 """
 
 import math
 
 import numpy as np
 
-# Readings are counted in bins of this size, metres, from here on: nearer ones are seldom nothing.
+# Bin size of the histogram of readings [m], which starts here: nearer readings are seldom "no return".
 _BIN, _NEAREST = 0.1, 15.0
-# No laser sees farther, metres.
+# Farthest reading of any laser [m].
 _FARTHEST = 1000.0
-# A constant is said at least so often, and is this share of all far readings; it varies by some bins.
-_OFTEN, _SHARE, _BINS_BESIDE = 200, 0.1, 1
+# Least count of the constant, its least share of all far readings, and bins by which it varies.
+_MIN_COUNT, _MIN_SHARE, _BINS_BESIDE = 200, 0.1, 1
 
 
-class NoReturn:
-    """Counts far readings of scans made at different places.
+class NoReturnDetector:
+    """Histogram of the far readings of scans made at different places.
 
-    ``distance``: readings from there on, metres, mean that nothing was seen; infinite if there are no such.
+    Attributes:
+        distance: Readings from this range on mean "no return" [m]; infinite if there is no such constant.
     """
 
     def __init__(self) -> None:
@@ -27,14 +28,14 @@ class NoReturn:
         self.distance = math.inf
 
     def add(self, ranges: np.ndarray) -> None:
-        """Counts the readings (N,), metres, of one scan."""
+        """Count the readings (N,), metres, of one scan."""
         far = ranges[np.isfinite(ranges) & (ranges > _NEAREST) & (ranges < _FARTHEST)]
         if len(far) == 0:
             return
-        seen = np.bincount(np.floor(far / _BIN).astype(np.int64), minlength=len(self._counts))
-        seen[: len(self._counts)] += self._counts
-        self._counts = seen
-        around = np.convolve(seen, np.ones(2 * _BINS_BESIDE + 1, dtype=np.int64), mode="same")
+        counts = np.bincount(np.floor(far / _BIN).astype(np.int64), minlength=len(self._counts))
+        counts[: len(self._counts)] += self._counts
+        self._counts = counts
+        around = np.convolve(counts, np.ones(2 * _BINS_BESIDE + 1, dtype=np.int64), mode="same")
         most = int(np.argmax(around))
-        if around[most] >= max(_OFTEN, _SHARE * seen.sum()):
+        if around[most] >= max(_MIN_COUNT, _MIN_SHARE * counts.sum()):
             self.distance = (most - _BINS_BESIDE) * _BIN

@@ -1,4 +1,4 @@
-"""Saved maps: key scans, their poses and the graph between them, in one versioned file."""
+"""Saved maps: keyframes, their poses and the pose graph, in one versioned file."""
 
 import io
 from dataclasses import dataclass
@@ -10,26 +10,32 @@ from planar import PlanarError, Pose2, write_atomically
 from planar.files.reading import read_arrays
 from planar.geometry.limits import MAX_COORDINATE
 from slam_lite.graph.pose_graph import Edges
-from slam_lite.rendering import Beams
-from slam_lite.surface import Surface
+from slam_lite.point_cloud import PointCloud
+from slam_lite.rendering import ScanBeams
 
 FORMAT = "slam_lite state"
 VERSION = 2
 
 
 class StateFileError(PlanarError):
-    """A state file cannot be read; the text says why."""
+    """A state file cannot be read; the text names the file and the reason."""
 
 
 @dataclass(frozen=True, eq=False)
 class MapState:
-    """All that is needed to go on mapping: ``poses`` (N, 3) of the keys, and where the robot was last.
+    """All that is needed to resume mapping.
 
-    ``sessions``: (N,), the number of the session in which each was seen, growing.
+    Attributes:
+        clouds: Points of all keyframes, N.
+        beams: Beams of all keyframes.
+        poses: (N, 3), of all keyframes in the map frame.
+        edges: Of the pose graph.
+        base_in_map: Robot pose at the last scan.
+        sessions: (N,), number of each keyframe's session, ascending.
     """
 
-    surfaces: Sequence[Surface]
-    beams: Sequence[Beams]
+    clouds: Sequence[PointCloud]
+    beams: Sequence[ScanBeams]
     poses: np.ndarray
     edges: Edges
     base_in_map: Pose2
@@ -37,9 +43,15 @@ class MapState:
 
 
 def save_state(state: MapState, path, is_compressed: bool = True) -> None:
-    """Writes a state, whole or not at all. Raises FileWriteError.
+    """Write a state file, whole or not at all.
 
-    Not ``is_compressed``, it takes a tenth of the time, and a fifth more room.
+    Args:
+        state: To write.
+        path: Of the file.
+        is_compressed: Without compression it takes a tenth of the time, and a fifth more space.
+
+    Raises:
+        FileWriteError: If it cannot be written.
     """
     file = io.BytesIO()
     save = np.savez_compressed if is_compressed else np.savez
@@ -47,9 +59,9 @@ def save_state(state: MapState, path, is_compressed: bool = True) -> None:
         file,
         format=FORMAT,
         version=VERSION,
-        points_xy=_joined([surface.points_xy for surface in state.surfaces], (0, 2)),
-        normals_xy=_joined([surface.normals_xy for surface in state.surfaces], (0, 2)),
-        point_counts=[len(surface) for surface in state.surfaces],
+        points_xy=_joined([cloud.points_xy for cloud in state.clouds], (0, 2)),
+        normals_xy=_joined([cloud.normals_xy for cloud in state.clouds], (0, 2)),
+        point_counts=[len(cloud) for cloud in state.clouds],
         ends_xy=_joined([beams.ends_xy for beams in state.beams], (0, 2)),
         marks=np.concatenate([np.zeros(0, dtype=bool), *(beams.marks for beams in state.beams)]),
         lasers_xy=np.array([beams.laser_xy for beams in state.beams]).reshape(-1, 2),
@@ -63,7 +75,7 @@ def save_state(state: MapState, path, is_compressed: bool = True) -> None:
 
 
 def load_state(path) -> MapState:
-    """Reads what ``save_state`` wrote. Raises StateFileError."""
+    """Read a file of ``save_state``. Raises StateFileError."""
     try:
         table = read_arrays(path)
     except FileNotFoundError:
@@ -74,7 +86,9 @@ def load_state(path) -> MapState:
         raise StateFileError(f"{path}: not a state file of slam_lite")
     version = table.get("version", np.array(0))
     if version.shape != () or version != VERSION:
-        raise StateFileError(f"{path}: version {version}, but this program reads {VERSION}")
+        raise StateFileError(
+            f"{path}: version {version} of the format is not supported, only version {VERSION}"
+        )
     table.setdefault("sessions", np.zeros(len(np.atleast_1d(table.get("poses", ()))), dtype=np.int64))
     problem = _problem_of(table)
     if problem:
@@ -84,8 +98,8 @@ def load_state(path) -> MapState:
     ends = _split(table["ends_xy"], table["beam_counts"])
     marks = _split(table["marks"], table["beam_counts"])
     return MapState(
-        [Surface(*pair) for pair in zip(points, normals)],
-        [Beams(*parts) for parts in zip(table["lasers_xy"], ends, marks)],
+        [PointCloud(*pair) for pair in zip(points, normals)],
+        [ScanBeams(*parts) for parts in zip(table["lasers_xy"], ends, marks)],
         table["poses"],
         Edges(*(table["edge_" + name] for name in ("nodes", "measured", "information", "is_loop"))),
         Pose2.from_array(table["base_in_map"]),
@@ -93,7 +107,7 @@ def load_state(path) -> MapState:
     )
 
 
-# The arrays of a file: their kinds as numpy names them, and shapes, in which equal letters are equal lengths.
+# The arrays of a file: numpy kinds, and shapes in which equal letters are equal lengths.
 _LAYOUT = {
     "points_xy": ("f", "p2"),
     "normals_xy": ("f", "p2"),
@@ -113,25 +127,25 @@ _LAYOUT = {
 
 
 def _problem_of(table: Mapping[str, np.ndarray]) -> str:
-    """Why the arrays are no map, for people; empty if they are one."""
+    """What is wrong with the arrays, for people; empty if they are a map."""
     lengths: Dict[str, int] = {}
     for name, (kinds, shape) in _LAYOUT.items():
         array = table.get(name)
         if array is None or array.dtype.kind not in kinds or array.ndim != len(shape):
-            return f"{name} is missing, or not what it should be"
+            return f"{name} is missing, or has the wrong type or number of dimensions"
         for size, letter in zip(array.shape, shape):
             if size != (int(letter) if letter.isdigit() else lengths.setdefault(letter, size)):
-                return f"{name} has not the length it should have"
+                return f"{name} has the wrong shape {array.shape}"
         if name != "edge_information" and not (np.abs(array.astype(float)) <= MAX_COORDINATE).all():
-            return f"{name} holds numbers that mean nothing"
+            return f"{name} has values out of range"
     if not np.isfinite(table["edge_information"]).all():
-        return "edge_information holds numbers that mean nothing"
+        return "edge_information has values that are not finite"
     for counts, total in (("point_counts", "points_xy"), ("beam_counts", "ends_xy")):
         if (table[counts] < 0).any() or table[counts].sum() != len(table[total]):
-            return f"{counts} does not count {total}"
+            return f"{counts} does not add up to the length of {total}"
     nodes = table["edge_nodes"]
     if (nodes < 0).any() or (nodes >= len(table["poses"])).any():
-        return "an edge leads to a key that is not there"
+        return "edge_nodes refers to a keyframe that does not exist"
     return ""
 
 

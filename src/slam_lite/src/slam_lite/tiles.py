@@ -1,4 +1,4 @@
-"""Counts of beams per cell, in tiles, and only where a beam has been: of a large site little is ever seen."""
+"""Beam counts per cell, in tiles that exist only where beams have been: of a large site little is seen."""
 
 import math
 from typing import NamedTuple, Optional, Tuple
@@ -8,12 +8,12 @@ import numpy as np
 
 from planar import FREE, OCCUPIED
 
-# Side of a tile, cells, and how many there is room for at first.
+# Side of a tile, cells, and initial capacity in tiles.
 TILE, _FIRST_TILES = 64, 256
 
 
-class Box(NamedTuple):
-    """Some cells of a map: first row and column, from the map's origin, and the ones after the last."""
+class CellBox(NamedTuple):
+    """A rectangle of cells: first row and column, from the map's origin, and the ones after the last."""
 
     row: int
     col: int
@@ -22,36 +22,40 @@ class Box(NamedTuple):
 
     @property
     def shape(self) -> Tuple[int, int]:
-        """Rows and columns."""
+        """Number of rows and columns."""
         return self.end_row - self.row, self.end_col - self.col
 
 
-def around(*boxes: Optional[Box]) -> Optional[Box]:
-    """The least box that holds all that there are."""
+def bounding_box(*boxes: Optional[CellBox]) -> Optional[CellBox]:
+    """The smallest box around all boxes that are not None."""
     firsts, ends = [box[:2] for box in boxes if box], [box[2:] for box in boxes if box]
-    return Box(*map(min, *firsts, *firsts), *map(max, *ends, *ends)) if firsts else None
+    return CellBox(*map(min, *firsts, *firsts), *map(max, *ends, *ends)) if firsts else None
 
 
 class TileCounts:
-    """How many beams reached each cell, and how many met something there.
+    """Number of beams that reached each cell (visits), and of those that ended there (hits).
 
-    Beams are told and followed in cells from ``corner``: (2,) column and row, tiles from the map's origin.
+    Attributes:
+        corner: (2,), column and row of the first tile, in tiles from the map's origin.
     """
 
     def __init__(self, corner: np.ndarray, shape: Tuple[int, int], first_row: int = 0):
-        """There are places for ``shape``: rows and columns of tiles, the first row that many from the corner.
+        """Create counts of 0.
 
-        What beams meet outside of them is not counted.
+        Args:
+            corner: As the attribute.
+            shape: Rows and columns of tiles; beams outside of them are not counted.
+            first_row: Of the tiles, from the corner.
         """
         self.corner = corner
         self._first_row = first_row
-        # Hits and visits (tiles, 2, rows, cols), and the number of each place's tile or -1.
+        # Hits and visits (tiles, 2, rows, cols), and the tile at each position or -1.
         self._tiles = np.zeros((0, 2, TILE, TILE), dtype=np.uint16)
         self._used = 0
         self._index = np.full(shape, -1, dtype=np.int32)
 
     def cover(self, lowest: np.ndarray, highest: np.ndarray) -> None:
-        """Makes places from the tile ``lowest`` (2,), column and row, to the one before ``highest`` (2,)."""
+        """Extend the area to the tiles from ``lowest`` (2,), column and row, to before ``highest`` (2,)."""
         if self._index.size:
             end = self.corner + self._index.shape[::-1]
             lowest, highest = np.minimum(lowest, self.corner), np.maximum(highest, end)
@@ -63,9 +67,13 @@ class TileCounts:
         self.corner, self._index = lowest, index
 
     def count(self, start: np.ndarray, ends: np.ndarray, marks: np.ndarray, amount: int) -> None:
-        """Counts beams from ``start`` (2,) to ``ends`` (N, 2), cells from the map's origin, ``amount`` times.
+        """Count the beams of a scan.
 
-        ``marks``: (N,), whether they met something there.
+        Args:
+            start: (2,), of all beams, cells from the map's origin.
+            ends: (N, 2), the same.
+            marks: (N,), whether each beam marks an obstacle at its end.
+            amount: 1 to add the beams, -1 to remove them.
         """
         start, ends = start - self.corner * TILE, ends - self.corner * TILE
         first = 0
@@ -82,30 +90,34 @@ class TileCounts:
             )
             first += traced
             if first < len(ends):
-                self._tiles = _with_room(self._tiles)
+                self._tiles = _enlarged(self._tiles)
 
     @property
-    def box(self) -> Optional[Box]:
-        """All cells that a beam has reached, if there is one."""
+    def box(self) -> Optional[CellBox]:
+        """All cells that beams have reached, None if there are none."""
         row, col, end_row, end_col = _extent(self._tiles, self._index)
         if end_row <= row:
             return None
         first_col, first_row = (self.corner + [0, self._first_row]) * TILE
-        return Box(
+        return CellBox(
             int(first_row + row), int(first_col + col), int(first_row + end_row), int(first_col + end_col)
         )
 
-    def judge(self, cells: np.ndarray, box: Box, threshold: float, least_visits: int) -> None:
-        """Writes FREE or OCCUPIED into the ``cells`` of a box that at least so many beams speak of.
+    def classify(self, cells: np.ndarray, box: CellBox, threshold: float, min_visits: int) -> None:
+        """Classify the cells of a box that were visited often enough.
 
-        ``threshold``: share of hits among them above which one is occupied.
+        Args:
+            cells: (rows, cols) of the box; FREE or OCCUPIED is written into them.
+            box: Of the cells.
+            threshold: Share of hits above which a cell is occupied.
+            min_visits: Cells with fewer visits are not changed.
         """
         col, row = (box.col, box.row) - (self.corner + [0, self._first_row]) * TILE
-        _judge(self._tiles, self._index, threshold, least_visits, row, col, cells)
+        _classify(self._tiles, self._index, threshold, min_visits, row, col, cells)
 
 
-def _with_room(tiles: np.ndarray) -> np.ndarray:
-    """The tiles and at least as many empty ones, which take no memory until they are counted in."""
+def _enlarged(tiles: np.ndarray) -> np.ndarray:
+    """The tiles with at least as many empty ones added, which take no memory until they are used."""
     larger = np.zeros((2 * len(tiles) + _FIRST_TILES, *tiles.shape[1:]), dtype=tiles.dtype)
     larger[: len(tiles)] = tiles
     return larger
@@ -161,7 +173,7 @@ def _add(tiles, index, used, row, col, which, amount):
 
 @numba.njit(cache=True, nogil=True)
 def _extent(tiles, index):
-    """First row and column that were visited, and the ones after the last."""
+    """First visited row and column, and the ones after the last."""
     row, col, end_row, end_col = 2**31, 2**31, 0, 0
     for i in range(index.shape[0]):
         for j in range(index.shape[1]):
@@ -176,8 +188,8 @@ def _extent(tiles, index):
 
 
 @numba.njit(cache=True, nogil=True)
-def _judge(tiles, index, threshold, least_visits, first_row, first_col, cells):
-    """Judges ``cells``, the first of which lies ``first_row`` and ``first_col`` from the tiles' first."""
+def _classify(tiles, index, threshold, min_visits, first_row, first_col, cells):
+    """Classify ``cells``, the first of which lies ``first_row`` and ``first_col`` from the tiles' first."""
     rows, cols = index.shape[0] * TILE, index.shape[1] * TILE
     for row in range(max(0, first_row), min(rows, first_row + cells.shape[0])):
         for col in range(max(0, first_col), min(cols, first_col + cells.shape[1])):
@@ -185,5 +197,5 @@ def _judge(tiles, index, threshold, least_visits, first_row, first_col, cells):
             if tile < 0:
                 continue
             hits, visits = tiles[tile, 0, row % TILE, col % TILE], tiles[tile, 1, row % TILE, col % TILE]
-            if visits >= least_visits:
+            if visits >= min_visits:
                 cells[row - first_row, col - first_col] = OCCUPIED if hits > threshold * visits else FREE

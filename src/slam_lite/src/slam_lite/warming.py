@@ -1,4 +1,4 @@
-"""Compiles the kernels ahead, so that the first scans do not wait for the compiler."""
+"""Ahead-of-time compilation of the kernels, so that the first scans do not wait for numba."""
 
 import math
 
@@ -12,9 +12,13 @@ _RADIUS = 3.0
 
 
 def warm_up(matcher_plugin: str = "") -> None:
-    """Maps a small made-up room, walked around once, so that each kernel has run.
+    """Map a small simulated room, so that each kernel runs once.
 
-    Raises MatchingError if a matcher of somebody's own fails already there.
+    Args:
+        matcher_plugin: Custom scan matcher to run.
+
+    Raises:
+        MatchingError: If the custom matcher fails here.
     """
     mapper = Mapper(MapperSettings(closure_min_detour=1.0, matcher_plugin=matcher_plugin))
     angles = np.linspace(-math.pi, math.pi, 181)
@@ -24,5 +28,5 @@ def warm_up(matcher_plugin: str = "") -> None:
         wall = _RADIUS / np.maximum(np.abs(np.cos(facing)), np.abs(np.sin(facing)))
         scan = Scan(float(step), angles[0], angles[1] - angles[0], wall.astype(np.float32), 0.1, 10.0)
         mapper.insert(Pose2(0.0, 0.0, turn), scan)
-    mapper.settle()
+    mapper.run_final_optimization()
     mapper.grid()

@@ -3,6 +3,7 @@
 import dataclasses
 import math
 import typing
+import warnings
 from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple, Type, TypeVar, Union
 
 from planar.errors import SettingsError
@@ -24,18 +25,24 @@ def settings_from(
     Returns the settings and the names that ``kind`` does not know. Raises SettingsError for a value of a
     wrong type, or tells it to ``complain``, if that is given, and goes on as if the value were not there;
     ``kind.__post_init__`` may raise it for a senseless one.
+    Old names of parameters are accepted with a FutureWarning if ``kind.DEPRECATED_PARAMETERS`` maps them to
+    the fields that replace them.
     """
     place_of = where if callable(where) else lambda _name: where
     types = typing.get_type_hints(kind)
     fields = {field.name for field in dataclasses.fields(kind) if field.init}  # type: ignore[arg-type]
     renamed = set(names.values())
-    table = {**{name: name for name in fields if name not in renamed}, **names}
+    deprecated: Mapping[str, str] = getattr(kind, "DEPRECATED_PARAMETERS", {})
+    table = {**deprecated, **{name: name for name in fields if name not in renamed}, **names}
     known: Dict[str, Any] = {}
     unknown = []
     for name, value in values.items():
         if name not in table:
             unknown.append(name)
             continue
+        if name in deprecated:
+            text = f"{place_of(name)}{name} is deprecated; use {deprecated[name]}"
+            warnings.warn(text, FutureWarning, stacklevel=2)
         try:
             known[table[name]] = _converted(types[table[name]], value, place_of(name) + name)
         except SettingsError as error:

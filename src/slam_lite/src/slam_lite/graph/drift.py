@@ -1,4 +1,4 @@
-"""How far the graph may be off between two of its nodes, from the errors along the shortest way."""
+"""Drift of the graph between two of its nodes, from the errors along the shortest path."""
 
 from typing import Tuple
 
@@ -9,27 +9,35 @@ from scipy.sparse.csgraph import dijkstra
 
 from slam_lite.graph.pose_graph import Edges
 
-# Nothing is known less surely than this, 1 / m^2.
+# Lower bound of an information [1 / m^2].
 _LEAST_INFORMATION = 1e-6
-# Steps on which wheels may have slipped unseen are tied loosely, for the graph to bend there; but few have.
-# Standard deviation of heading of one on the average, radians; and of what is no step, but a guess of where a
-# new trajectory begins, from which on.
+# Edges of steps on which wheels may have slipped unnoticed are loose, for the graph to bend there; but few
+# have. Standard deviation of heading [rad] of such a step on average; and from which on an edge is no step,
+# but a guess of where a new trajectory starts.
 _AVERAGE_YAW, _GUESSED_YAW = 0.024, 0.2
 
 
-def shortest_ways(
+def shortest_paths(
     start: int, count: int, edges: Edges, lengths: np.ndarray, limit: float = np.inf
 ) -> Tuple[np.ndarray, np.ndarray]:
-    """Length (N,) of the shortest way from ``start`` to each of ``count`` nodes, and the node before on it.
+    """Find the shortest paths from one node to all (Dijkstra).
 
-    ``lengths``: (E,) of the edges. Ways longer than ``limit`` are not followed and count as infinite.
+    Args:
+        start: Index of the node.
+        count: Number of nodes, N.
+        edges: Of the graph.
+        lengths: (E,), of the edges.
+        limit: Longer paths count as infinite.
+
+    Returns:
+        Lengths (N,), and the predecessor (N,) of each node on its path.
     """
     graph = csr_matrix((lengths, tuple(edges.nodes.T)), shape=(count, count))
     return dijkstra(graph, directed=False, indices=start, return_predecessors=True, limit=limit)
 
 
-def on_average(edges: Edges) -> Edges:
-    """The edges, with loose steps as sure as many of them are together, of which a few have slipped."""
+def with_average_slip(edges: Edges) -> Edges:
+    """Return the edges with the average covariance of loose steps, of which few have slipped."""
     information, yaw = edges.information.copy(), edges.information[:, 2, 2]
     is_loose = ~edges.is_loop & (yaw < _AVERAGE_YAW**-2) & (yaw > _GUESSED_YAW**-2)
     information[is_loose, 2, 2] = _AVERAGE_YAW**-2
@@ -37,30 +45,38 @@ def on_average(edges: Edges) -> Edges:
 
 
 def variances_xy(edges: Edges) -> np.ndarray:
-    """Variances (E,) of position in the direction, whichever it is, of which each edge knows least."""
+    """Largest variance (E,) of position over all directions, of each edge [m^2]."""
     along_x, along_y, mixed = (edges.information[:, i, j] for i, j in ((0, 0), (1, 1), (0, 1)))
     least = 0.5 * (along_x + along_y) - np.hypot(0.5 * (along_x - along_y), mixed)
     return 1.0 / np.maximum(least, _LEAST_INFORMATION)
 
 
 def drift_along(
-    ways: np.ndarray, before: np.ndarray, poses: np.ndarray, edges: Edges
+    paths: np.ndarray, before: np.ndarray, poses: np.ndarray, edges: Edges
 ) -> Tuple[np.ndarray, np.ndarray]:
-    """Standard deviations (N,) of position, metres, and heading, radians, as seen from the ways' start.
+    """Propagate errors along the shortest paths.
 
-    ``ways``, ``before``: of ``shortest_ways``; ``poses``: (N, 3). An error in heading swings all that lies
-    behind it: it counts as often as the straight way from there is long.
+    An error in heading rotates all that follows: it counts in proportion to the straight distance from there.
+
+    Args:
+        paths: (N,), lengths by ``shortest_paths``.
+        before: (N,), predecessors by ``shortest_paths``.
+        poses: (N, 3).
+        edges: Of the graph.
+
+    Returns:
+        Standard deviations (N,) of position [m] and heading [rad] relative to the paths' start.
     """
     first, second = edges.nodes.T
     xy = variances_xy(edges)
     yaw = 1.0 / edges.information[:, 2, 2]
-    # The best edge between each node and the one before, if several tie them.
+    # The best edge between each node and its predecessor, if there are several.
     best_xy, best_yaw = np.full(len(poses), np.inf), np.full(len(poses), np.inf)
     for one, other in ((first, second), (second, first)):
         used = before[one] == other
         np.minimum.at(best_xy, one[used], xy[used])
         np.minimum.at(best_yaw, one[used], yaw[used])
-    order = np.argsort(ways, kind="stable")[: np.count_nonzero(np.isfinite(ways))]
+    order = np.argsort(paths, kind="stable")[: np.count_nonzero(np.isfinite(paths))]
     variances = np.full((len(poses), 2), np.inf)
     _accumulate(order, before, poses, best_xy, best_yaw, variances)
     return np.sqrt(variances[:, 0]), np.sqrt(variances[:, 1])
@@ -68,7 +84,7 @@ def drift_along(
 
 @numba.njit(cache=True, nogil=True)
 def _accumulate(order, before, poses, xy, yaw, variances):
-    """Sums of the variances from the start on, and of heading's with its moments about the origin."""
+    """Sum the variances from the start on, that of heading with its moments about the origin."""
     sums = np.zeros((len(poses), 5))
     for node in order:
         last = before[node]
@@ -79,6 +95,6 @@ def _accumulate(order, before, poses, xy, yaw, variances):
                 (xy[node], yaw[node], yaw[node] * x, yaw[node] * y, yaw[node] * (x * x + y * y))
             )
         x, y = poses[node, 0], poses[node, 1]
-        way, turn, tx, ty, squared = sums[node]
-        variances[node, 0] = way + max(0.0, turn * (x * x + y * y) - 2.0 * (tx * x + ty * y) + squared)
+        xy_sum, turn, tx, ty, squared = sums[node]
+        variances[node, 0] = xy_sum + max(0.0, turn * (x * x + y * y) - 2.0 * (tx * x + ty * y) + squared)
         variances[node, 1] = turn

@@ -1,4 +1,4 @@
-"""Sparse pose-graph optimisation with robust loop edges.
+"""Sparse pose graph optimization with robust loop edges.
 
 G. Grisetti et al., "A tutorial on graph-based SLAM", IEEE ITS Magazine 2010 (Gauss-Newton on the sparse
 normal equations); P. Agarwal et al., "Robust map optimization using dynamic covariance scaling", ICRA 2013.
@@ -6,7 +6,7 @@ normal equations); P. Agarwal et al., "Robust map optimization using dynamic cov
 
 import math
 from dataclasses import dataclass
-from typing import Optional, Tuple
+from typing import Optional, Sequence, Tuple
 
 import numba
 import numpy as np
@@ -16,20 +16,26 @@ from scipy.sparse.linalg import SuperLU, splu
 from planar import Pose2, wrap
 
 _MAX_STEPS = 20
-# Phi of dynamic covariance scaling: the chi-square of a loop edge at which its influence starts to fade.
-_FREE_CHI_SQUARE = 10.0
-# From this one on it has as good as none.
-_FADED_CHI_SQUARE = 100.0
-# A new edge's influence is narrowed down by this factor at a time.
+# Phi of dynamic covariance scaling: the chi-square of a loop edge from which on it is down-weighted.
+_PHI = 10.0
+# Chi-square from which on a loop edge is an outlier, with next to no weight.
+_OUTLIER_CHI_SQUARE = 100.0
+# Factor by which phi of new edges is reduced at a time.
 _RELAXATION = 0.1
+# Tolerances of an optimization, metres and radians: while mapping, and at the end.
+COARSE, FINE = 5e-3, 1e-5
 
 
 @dataclass(frozen=True, eq=False)
 class Edge:
-    """A measurement of node ``second``'s pose in node ``first``'s frame.
+    """A measurement of one node's pose in another's frame.
 
-    ``information``: (3, 3), of x, y, yaw along first's axes. ``is_loop``: it may be wrong, and is weighed
-    robustly.
+    Attributes:
+        first: Index of the node in whose frame it is.
+        second: Index of the measured node.
+        second_in_first: The measured pose.
+        information: (3, 3), of x, y, yaw along first's axes, 1 / (m, m, rad)^2.
+        is_loop: Whether it is a loop closure, which may be wrong and is weighted robustly.
     """
 
     first: int
@@ -41,7 +47,14 @@ class Edge:
 
 @dataclass(frozen=True, eq=False)
 class Edges:
-    """Edges as arrays: ``nodes`` (E, 2), ``measured`` (E, 3), ``information`` (E, 3, 3), ``is_loop`` (E,)."""
+    """Edges as arrays.
+
+    Attributes:
+        nodes: (E, 2), indices of first and second node.
+        measured: (E, 3), pose of second in first.
+        information: (E, 3, 3), of ``measured``.
+        is_loop: (E,), whether each is a loop closure.
+    """
 
     nodes: np.ndarray
     measured: np.ndarray
@@ -58,7 +71,7 @@ class Edges:
 
 
 class EdgeList:
-    """A list of edges that only grows, kept as arrays; what it has given out does not change."""
+    """An append-only list of edges, stored as arrays; earlier views stay valid."""
 
     def __init__(self, edges: Optional[Edges] = None) -> None:
         self._arrays = edges or Edges(
@@ -73,10 +86,10 @@ class EdgeList:
         return self._count
 
     def append(self, edge: Edge) -> None:
-        """Adds one edge."""
+        """Append one edge."""
         i, arrays = self._count, self._arrays
         if i == len(arrays):
-            self._arrays = arrays = Edges(*(_room(array, 2 * i + 64) for array in vars(arrays).values()))
+            self._arrays = arrays = Edges(*(_enlarged(array, 2 * i + 64) for array in vars(arrays).values()))
         arrays.nodes[i] = edge.first, edge.second
         arrays.measured[i] = edge.second_in_first.as_array()
         arrays.information[i] = edge.information
@@ -84,61 +97,84 @@ class EdgeList:
         self._count += 1
 
     def view(self) -> Edges:
-        """The edges so far."""
+        """Return the edges so far."""
         return Edges(*(array[: self._count] for array in vars(self._arrays).values()))
 
 
-def between(poses: np.ndarray, first: int, second: int) -> Pose2:
-    """One of ``poses`` (N, 3) as seen from another."""
+def relative_pose(poses: np.ndarray, first: int, second: int) -> Pose2:
+    """Pose of node ``second`` in the frame of node ``first``; ``poses`` (N, 3)."""
     return Pose2.from_array(poses[first]).inverse() @ Pose2.from_array(poses[second])
 
 
 def edges_of(*edges: Edge) -> Edges:
-    """Some edges as arrays."""
+    """Return edges as arrays."""
     table = EdgeList()
     for edge in edges:
         table.append(edge)
     return table.view()
 
 
-def optimise(poses: np.ndarray, edges: Edges, tolerance: float, fresh: int = 0) -> np.ndarray:
-    """Poses (N, 3) that agree best with the edges, starting from ``poses``; node 0 stays where it is.
+def concatenate(edges: Edges, more: Sequence[Edge]) -> Edges:
+    """Return edges followed by some more."""
+    pairs = zip(vars(edges).values(), vars(edges_of(*more)).values())
+    return Edges(*(np.concatenate(pair) for pair in pairs))
 
-    The last ``fresh`` edges are new: the poses do not yet know of them, so they are believed at first however
-    badly they are met, and less and less so (graduated non-convexity, H. Yang et al., RA-L 2020). Those that
-    are not met in the end may have pulled others apart for nothing: all begins anew, without believing in
-    them at first. Ends when no pose moves more than ``tolerance`` (metres, radians) in a step.
+
+def inflate(edge: Edge, sigma_xy: float, sigma_yaw: float) -> Edge:
+    """Return an edge with an independent error added, of these standard deviations in metres and radians."""
+    added = np.diag([sigma_xy**-2, sigma_xy**-2, sigma_yaw**-2])
+    # Woodbury's identity, as a degenerate match has no covariance to add to.
+    information = edge.information
+    information = information - information @ np.linalg.solve(added + information, information)
+    return Edge(edge.first, edge.second, edge.second_in_first, information, edge.is_loop)
+
+
+def optimize(poses: np.ndarray, edges: Edges, tolerance: float, new_count: int = 0) -> np.ndarray:
+    """Find the poses that agree best with the edges; node 0 stays fixed.
+
+    The poses do not fit new edges yet, so these get full weight at first, whatever their error, and less and
+    less of it (graduated non-convexity, H. Yang et al., RA-L 2020). If some of them are outliers at the end,
+    they may have pulled others apart: the optimization starts again without full weight for them.
+
+    Args:
+        poses: (N, 3), initial poses.
+        edges: Of the graph.
+        tolerance: Largest change of a pose in the last step, metres and radians.
+        new_count: Number of new edges, which are the last ones.
+
+    Returns:
+        (N, 3), the optimized poses.
     """
     if len(edges) == 0:
         return poses.copy()
-    is_fresh = np.arange(len(edges)) >= len(edges) - fresh
+    is_new = np.arange(len(edges)) >= len(edges) - new_count
     while True:
-        found = _descend_believing(poses, edges, is_fresh, tolerance)
-        is_unmet = is_fresh & (chi_squares(found, edges) > _FADED_CHI_SQUARE)
-        if not is_unmet.any():
+        found = _descend_relaxed(poses, edges, is_new, tolerance)
+        is_outlier = is_new & (chi_squares(found, edges) > _OUTLIER_CHI_SQUARE)
+        if not is_outlier.any():
             return np.column_stack((found[:, :2], wrap(found[:, 2])))
-        is_fresh &= ~is_unmet
+        is_new &= ~is_outlier
 
 
-def _descend_believing(poses: np.ndarray, edges: Edges, is_fresh: np.ndarray, tolerance: float) -> np.ndarray:
-    """Descends to where the edges agree best; those that are ``is_fresh`` (E,) are believed at first."""
-    free = np.full(len(edges), _FREE_CHI_SQUARE)
-    relaxed = chi_squares(poses, edges)[is_fresh].max(initial=_FREE_CHI_SQUARE)
-    while relaxed > _FREE_CHI_SQUARE:
-        free[is_fresh] = relaxed
-        poses = _descend(poses, edges, free, 10.0 * tolerance)
+def _descend_relaxed(poses: np.ndarray, edges: Edges, is_new: np.ndarray, tolerance: float) -> np.ndarray:
+    """Descend to the minimum; edges that are ``is_new`` (E,) get full weight at first."""
+    phi = np.full(len(edges), _PHI)
+    relaxed = chi_squares(poses, edges)[is_new].max(initial=_PHI)
+    while relaxed > _PHI:
+        phi[is_new] = relaxed
+        poses = _descend(poses, edges, phi, 10.0 * tolerance)
         relaxed *= _RELAXATION
-    free[is_fresh] = _FREE_CHI_SQUARE
-    return _descend(poses, edges, free, tolerance)
+    phi[is_new] = _PHI
+    return _descend(poses, edges, phi, tolerance)
 
 
-def _descend(poses: np.ndarray, edges: Edges, free: np.ndarray, tolerance: float) -> np.ndarray:
-    """Levenberg-Marquardt; ``free`` (E,): chi-square at which each loop edge's influence starts to fade."""
-    damping, cost = 0.0, _cost(poses, edges, free)
+def _descend(poses: np.ndarray, edges: Edges, phi: np.ndarray, tolerance: float) -> np.ndarray:
+    """Levenberg-Marquardt; ``phi`` (E,) of each loop edge."""
+    damping, cost = 0.0, _cost(poses, edges, phi)
     for _ in range(_MAX_STEPS):
-        step = _step(poses, edges, free, damping)
+        step = _step(poses, edges, phi, damping)
         moved = poses + step
-        moved_cost = _cost(moved, edges, free)
+        moved_cost = _cost(moved, edges, phi)
         if moved_cost <= cost:
             poses, cost, damping = moved, moved_cost, 0.1 * damping
         else:
@@ -149,46 +185,52 @@ def _descend(poses: np.ndarray, edges: Edges, free: np.ndarray, tolerance: float
 
 
 def chi_squares(poses: np.ndarray, edges: Edges) -> np.ndarray:
-    """How badly each edge is met: its squared error weighted by its information, (E,)."""
+    """Squared error (E,) of each edge, weighted by its information; ``poses`` (N, 3)."""
     return _chi_squares(poses, edges.nodes, edges.measured, edges.information)
 
 
-def _room(array: np.ndarray, rows: int) -> np.ndarray:
+def _enlarged(array: np.ndarray, rows: int) -> np.ndarray:
     larger = np.empty((rows, *array.shape[1:]), dtype=array.dtype)
     larger[: len(array)] = array
     return larger
 
 
-def _cost(poses: np.ndarray, edges: Edges, free: np.ndarray) -> float:
+def _cost(poses: np.ndarray, edges: Edges, phi: np.ndarray) -> float:
     chi = chi_squares(poses, edges)
-    faded = free * (3.0 * chi - free) / (chi + free)
-    return math.fsum(np.where(edges.is_loop & (chi > free), faded, chi))
+    faded = phi * (3.0 * chi - phi) / (chi + phi)
+    return math.fsum(np.where(edges.is_loop & (chi > phi), faded, chi))
 
 
-def _step(poses: np.ndarray, edges: Edges, free: np.ndarray, damping: float) -> np.ndarray:
-    """One Gauss-Newton step (N, 3) with loop edges weighed by how well they are met."""
-    matrix, gradient = normal_equations(poses, edges, free)
-    matrix = matrix[3:, 3:]  # before it is solved, so that the whole one takes no memory then
-    step = factors_of(matrix, damping).solve(gradient[3:])
+def _step(poses: np.ndarray, edges: Edges, phi: np.ndarray, damping: float) -> np.ndarray:
+    """One Gauss-Newton step (N, 3) with robustly weighted loop edges."""
+    matrix, gradient = normal_equations(poses, edges, phi)
+    matrix = matrix[3:, 3:]  # a new name would keep the whole one in memory while it is solved
+    step = factorize(matrix, damping).solve(gradient[3:])
     return np.vstack((np.zeros((1, 3)), -step.reshape(-1, 3)))
 
 
 def normal_equations(
-    poses: np.ndarray, edges: Edges, free: Optional[np.ndarray] = None
+    poses: np.ndarray, edges: Edges, phi: Optional[np.ndarray] = None
 ) -> Tuple[csc_matrix, np.ndarray]:
-    """The information matrix (3 N, 3 N) of all poses, and the gradient (3 N,).
+    """Build the normal equations.
 
-    ``free`` (E,): chi-square at which each loop edge's influence starts to fade; default: as in the end.
+    Args:
+        poses: (N, 3).
+        edges: Of the graph.
+        phi: (E,), of each loop edge; default: its final value.
+
+    Returns:
+        The information matrix (3 N, 3 N) of all poses, and the gradient (3 N,).
     """
-    free = np.full(len(edges), _FREE_CHI_SQUARE) if free is None else free
+    phi = np.full(len(edges), _PHI) if phi is None else phi
     rows, cols, values, gradient = _linearize(
-        poses, edges.nodes, edges.measured, edges.information, edges.is_loop, free
+        poses, edges.nodes, edges.measured, edges.information, edges.is_loop, phi
     )
     return coo_matrix((values, (rows, cols)), shape=(3 * len(poses), 3 * len(poses))).tocsc(), gradient
 
 
-def factors_of(matrix: csc_matrix, damping: float = 0.0) -> SuperLU:
-    """Those of an information matrix, which is changed, without the rows and columns of one node."""
+def factorize(matrix: csc_matrix, damping: float = 0.0) -> SuperLU:
+    """Factorize an information matrix without the fixed node's rows and columns; ``matrix`` is changed."""
     matrix.setdiag(matrix.diagonal() * (1.0 + damping) + 1e-9)
     return splu(
         matrix,
@@ -201,7 +243,7 @@ def factors_of(matrix: csc_matrix, damping: float = 0.0) -> SuperLU:
 
 @numba.njit(cache=True, nogil=True)
 def _error(poses, first, second, measured):
-    """Error (3,) of an edge, and first's heading as cosine and sine with the way to second, (4,)."""
+    """Error (3,) of an edge; cosine and sine of first's heading and the offset to second, (4,)."""
     c, s = math.cos(poses[first, 2]), math.sin(poses[first, 2])
     dx, dy = poses[second, 0] - poses[first, 0], poses[second, 1] - poses[first, 1]
     turn = poses[second, 2] - poses[first, 2] - measured[2]
@@ -228,7 +270,7 @@ def _chi_squares(poses, nodes, measured, information):
 
 
 @numba.njit(cache=True, nogil=True)
-def _linearize(poses, nodes, measured, information, is_loop, free):
+def _linearize(poses, nodes, measured, information, is_loop, phi):
     """The normal equations: rows, columns and values (36 E,) of the matrix, and the gradient (3 N,)."""
     rows, cols = np.empty(36 * len(nodes), dtype=np.int32), np.empty(36 * len(nodes), dtype=np.int32)
     values, gradient = np.empty(36 * len(nodes)), np.zeros(3 * len(poses))
@@ -239,7 +281,7 @@ def _linearize(poses, nodes, measured, information, is_loop, free):
         scale = 1.0
         if is_loop[e]:
             chi = _chi_square(error, information[e])
-            scale = min(1.0, 2.0 * free[e] / (free[e] + chi)) ** 2
+            scale = min(1.0, 2.0 * phi[e] / (phi[e] + chi)) ** 2
         jacobian[0, 0], jacobian[0, 1], jacobian[0, 2] = -c, -s, -s * dx + c * dy
         jacobian[1, 0], jacobian[1, 1], jacobian[1, 2] = s, -c, -c * dx - s * dy
         jacobian[0, 3], jacobian[0, 4], jacobian[1, 3], jacobian[1, 4] = c, s, -s, c

@@ -1,1 +1,1 @@
-"""Loops: places that were seen before, told by their looks and by the graph."""
+"""Loop closure: candidates, search, verification, place recognition and relocalization."""

@@ -1,270 +1,179 @@
-"""Loop closures: recognising a place seen before, and being slow to believe it.
+"""Loop closures and their verification.
 
-Where to look follows from the graph: a place is a candidate if the way to it along the graph, on which errors
-add up, is much longer than the straight way (E. Olson, "Recognizing places using spectrally clustered local
-matches", RAS 2009). What a search finds must be a good match, the only good one in the window, and - unless
-the graph already knew the place to within a small window - be confirmed by a second closure nearby that says
-the same; by two more if the place was but recognised.
+A loop closure counts at once only if the graph already knew the place to within a small window. Otherwise it
+has to be confirmed by a second one nearby that is consistent with it, and by two more if the place was found
+by place recognition alone.
 """
 
 import math
-from dataclasses import dataclass
-from typing import List, Optional, Sequence, Tuple
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Sequence, Tuple
 
 import numpy as np
 
-from planar import Pose2, wrap
-from slam_lite.config import MapperSettings
-from slam_lite.graph.drift import shortest_ways, variances_xy
-from slam_lite.graph.pose_graph import Edge, Edges
-from slam_lite.loops.cycle import cycle_error, turned
-from slam_lite.loops.lasting import lasting
-from slam_lite.loops.place_recognition import Hypothesis
-from slam_lite.loops.sight import Placed, clash
-from slam_lite.loops.sliding import PARALLEL, known_of, refined
-from slam_lite.matching.correlative import Window, search_far
-from slam_lite.matching.local_map import LocalMap, Match
-from slam_lite.surface import Surface, thinned
+from slam_lite.graph.node_covariance import NodeCovariance
+from slam_lite.graph.pose_graph import COARSE, Edge, Edges, concatenate, inflate, optimize, relative_pose
+from slam_lite.loops.cycle_consistency import cycle_error, rotated
+from slam_lite.loops.degeneracy import PARALLEL
+from slam_lite.loops.loop_candidates import RECENT_PATH, LoopCandidate
 
-# Growth of the search window with the way along the graph: metres and radians per metre.
-_DRIFT_DISTANCE, _DRIFT_ANGLE = 0.04, 0.008
-# The size of windows that are searched once an interval.
-_OFTEN_DISTANCE = 8.0
-_MIN_WINDOW, _MAX_WINDOW = Window(0.3, 0.1), Window(12.0, 0.8)
-# From this way on the window does not grow any more, metres.
-_FARTHEST = _MAX_WINDOW.distance / _DRIFT_DISTANCE
-# By how many standard deviations the graph may be off; those that matches tell of themselves are cautious.
-_CREDIBLE = 1.5
-# Share of the walls that may be seen through where a place is doubtful, as by people who have gone on.
-_MAX_CLASH = 0.025
-# Two closures that differ by more than this, metres, put the robot to different places.
-_ELSEWHERE = 3.0
-# How far off the pose may be at which two places look alike.
-_LIKENESS_WINDOW = Window(4.0, 0.15)
-# Closures found in windows up to this size need no second witness.
+# Loop closures found in windows up to this size [m] need no confirmation.
 _FAMILIAR_DISTANCE = 1.0
-# Key scans of the place (to each side) and of the robot's recent way that are put together for a match,
-# and out to which distance: in windows up to the given size; in wider ones in proportion, up to so many times
-# as many, for there it takes more to tell one corridor from another.
-_PLACE_KEYS, _RECENT_KEYS = 20, 12
-_PLACE_RADIUS, _RECENT_WAY = 6.0, 4.0
-_ENOUGH_FOR_DISTANCE, _MAX_SCALE = 2.0, 3.0
-_GUESS_WAY = 5.0
-# How far from each other two closures are made that share no scan and yet speak of the same stretch, metres.
-_MAX_WITNESS_WAY = 15.0
-# How long a place that was but recognised has to go on alike, metres: corridors' crossings are much the same.
-_LONG_WAY = 11.0
-_MAX_POINTS = 500
-_MAX_CANDIDATES = 3
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """Key ``place``, perhaps near key ``recent``, seen from it in the ``window`` around ``guess``.
-
-    ``recent_keys``: how many keys up to recent are put together. ``scale``: how much more is needed than in
-    a small window. ``is_recognised``: the guess is not the graph's, but what the place looks like.
-    """
-
-    place: int
-    recent: int
-    recent_keys: int
-    window: Window
-    scale: float
-    guess: Pose2
-    is_recognised: bool = False
-
-    @property
-    def is_doubtful(self) -> bool:
-        """Whether the robot may as well be somewhere else that looks much the same."""
-        return self.is_recognised or self.scale >= _MAX_SCALE
+# Largest distance between two loop closures that share no scan and yet concern the same segment [m].
+_MAX_WITNESS_DISTANCE = 15.0
+# Distance over which a recognized place has to look alike [m]: crossings of corridors are much the same.
+_MIN_RECOGNIZED_DISTANCE = 11.0
+# Two loop closures that differ by more than this [m] put the robot to different places.
+_CONTRADICTION = 3.0
+# Errors of a loop closure that its match does not include: metres and radians.
+_SIGMA_XY, _SIGMA_YAW = 0.02, 0.005
+# Chi-square, by the graph's covariance, from which on a loop closure needs confirmation: the covariance is
+# pessimistic, and of right ones not one in a hundred exceeds it.
+_MAX_CHI_SQUARE = 6.0
 
 
 @dataclass(frozen=True, eq=False)
-class Closure:
-    """An edge from a place seen before to a recent key, and the candidate that it was found at.
+class LoopClosure:
+    """A measurement of a recent keyframe's pose in an older keyframe.
 
-    ``slide``: unit vector (2,), along first's axes, in which the edge knows nothing, or zeros.
-    ``is_surprising``: whether the graph believed something else.
+    Attributes:
+        edge: From the older keyframe to the recent one.
+        candidate: Where it was searched.
+        degenerate_direction: Unit vector (2,), along the axes of ``edge.first``, in which the edge has no
+            information, as along a smooth corridor; zeros if there is none.
+        contradicts_graph: Whether it is an outlier by the graph's covariance.
     """
 
     edge: Edge
-    candidate: Candidate
-    slide: np.ndarray
-    is_surprising: bool = False
+    candidate: LoopCandidate
+    degenerate_direction: np.ndarray
+    contradicts_graph: bool = False
+
+    @property
+    def graph_edge(self) -> Edge:
+        """The edge to add to the graph, with errors that the match does not include."""
+        return inflate(self.edge, _SIGMA_XY, _SIGMA_YAW)
 
     @property
     def witnesses_needed(self) -> int:
-        """How many others have to say the same; none if the graph knew the place well beforehand."""
-        if self.candidate.is_recognised:
+        """Number of consistent loop closures that it takes for confirmation."""
+        if self.candidate.is_recognized:
             return 2
-        return 0 if self.candidate.window.distance <= _FAMILIAR_DISTANCE and not self.is_surprising else 1
+        return 0 if self.candidate.window.distance <= _FAMILIAR_DISTANCE and not self.contradicts_graph else 1
 
 
-def candidates(recent: int, poses: np.ndarray, edges: Edges, settings: MapperSettings) -> List[Candidate]:
-    """Places worth searching for key ``recent``, most likely first; ``poses`` (N, 3) of all keys."""
-    straight = np.hypot(poses[:, 0] - poses[recent, 0], poses[:, 1] - poses[recent, 1])
-    if np.count_nonzero(straight < _MAX_WINDOW.distance + 2.0) <= _RECENT_KEYS:
-        return []
-    detours, _ = shortest_ways(recent, len(poses), edges, lengths_of(edges), _FARTHEST)
-    windows = np.clip(_DRIFT_DISTANCE * detours, _MIN_WINDOW.distance, _MAX_WINDOW.distance)
-    possible = (detours > settings.closure_min_detour + 2.0 * straight) & (straight < windows + 2.0)
-    # A wide window is searched more seldom: it stays much the same while the robot goes on.
-    intervals = np.maximum(1, np.rint(windows / _OFTEN_DISTANCE)) * settings.closure_interval
-    possible &= recent % intervals < settings.closure_interval
-    keys = np.flatnonzero(possible)
-    if len(keys) == 0:
-        return []
-    stretches = np.split(keys, np.flatnonzero(np.diff(keys) > 5) + 1)
-    nearest = [int(stretch[np.argmin(straight[stretch])]) for stretch in stretches]
-    nearest.sort(key=lambda key: straight[key])
-    return [
-        _candidate(key, recent, detours, float(windows[key]), _between(poses[key], poses[recent]))
-        for key in nearest[:_MAX_CANDIDATES]
-    ]
+class LoopClosureVerifier:
+    """Decides which loop closures to the newest keyframe are added to the graph."""
+
+    def __init__(self, poses: np.ndarray, edges: Edges):
+        """``poses``: (N, 3), of all keyframes in the map frame."""
+        self._poses, self._edges = poses, edges
+
+    def check_against_graph(self, closure: LoopClosure) -> LoopClosure:
+        """Return the loop closure with ``contradicts_graph`` set, unless it needs confirmation anyway."""
+        if closure.witnesses_needed:
+            return closure
+        is_outlier = self._covariance.is_outlier(closure.graph_edge, _MAX_CHI_SQUARE)
+        return replace(closure, contradicts_graph=is_outlier)
+
+    def verify(self, closure: LoopClosure, pending: Sequence[LoopClosure]) -> Sequence[LoopClosure]:
+        """Verify a loop closure by earlier ones.
+
+        Args:
+            closure: The new one.
+            pending: Earlier ones that are not verified yet.
+
+        Returns:
+            The loop closures to accept: the new one with those that confirm it, or none.
+        """
+        witnesses = [other for other in pending if agree(closure, other, self._poses)]
+        if not _is_confirmed(closure, witnesses, self._poses):
+            return ()
+        if self._is_disputed(closure, witnesses, pending):
+            return ()
+        group = [closure, *witnesses]
+        accepted = [
+            one for one in group if not (one.contradicts_graph and self._still_contradicts(one, group))
+        ]
+        return accepted if closure in accepted else ()
+
+    @cached_property
+    def _covariance(self) -> NodeCovariance:
+        """Of the newest keyframe."""
+        return NodeCovariance(self._poses, self._edges, len(self._poses) - 1)
+
+    def _still_contradicts(self, closure: LoopClosure, group: Sequence[LoopClosure]) -> bool:
+        """Whether a loop closure is an outlier also in a graph with the others of its group."""
+        others = [other.graph_edge for other in group if other is not closure]
+        edges = concatenate(self._edges, others)
+        poses = optimize(self._poses, edges, COARSE, new_count=len(others))
+        covariance = NodeCovariance(poses, edges, closure.edge.second)
+        return covariance.is_outlier(closure.graph_edge, _MAX_CHI_SQUARE)
+
+    def _is_disputed(
+        self, closure: LoopClosure, witnesses: Sequence[LoopClosure], others: Sequence[LoopClosure]
+    ) -> bool:
+        """Whether too many others contradict the place of a recognized loop closure."""
+        if not closure.candidate.is_recognized:
+            return False
+        contradicting = sum(contradict(closure, other, self._poses) for other in others)
+        return len(witnesses) < 2 * contradicting
 
 
-def recognised(place: int, recent: int, recent_keys: int, recent_in_place: Pose2) -> Candidate:
-    """The candidate at a place that looks like where ``recent`` is, whatever the graph says."""
-    return Candidate(place, recent, recent_keys, _LIKENESS_WINDOW, _MAX_SCALE, recent_in_place, True)
+def agree(one: LoopClosure, other: LoopClosure, poses: np.ndarray) -> bool:
+    """Whether two loop closures between the same two segments are consistent.
 
-
-def _candidate(place: int, recent: int, detours: np.ndarray, distance: float, guess: Pose2) -> Candidate:
-    scale = float(np.clip(distance / _ENOUGH_FOR_DISTANCE, 1.0, _MAX_SCALE))
-    latest = detours[max(0, recent - round(scale * _RECENT_KEYS) + 1) : recent + 1][::-1]
-    recent_keys = int(np.argmax(latest > scale * _RECENT_WAY)) or len(latest)
-    angle = float(np.clip(_DRIFT_ANGLE * detours[place], _MIN_WINDOW.angle, _MAX_WINDOW.angle))
-    return Candidate(place, recent, recent_keys, Window(distance, angle), scale, guess)
-
-
-def find_closure(
-    candidate: Candidate,
-    poses: np.ndarray,
-    surfaces: Sequence[Surface],
-    local_map: LocalMap,
-    settings: MapperSettings,
-) -> Optional[Closure]:
-    """The closure at a candidate, if a good and unambiguous match is there. ``local_map`` is overwritten."""
-    place, recent = candidate.place, candidate.recent
-    first_recent = recent - candidate.recent_keys + 1
-    there = _around(place, candidate.scale, first_recent, poses, surfaces)
-    local_map.clear(Pose2())
-    for placed in there:
-        local_map.add(*placed)
-    here = [(surfaces[key], _between(poses[recent], poses[key])) for key in range(first_recent, recent + 1)]
-    recent_surface = thinned(lasting(here), _MAX_POINTS)
-    if len(recent_surface) < 50:
-        return None
-    min_score = 0.7 * settings.closure_min_response
-    sample, searched = thinned(recent_surface, 200), local_map.fit_for(recent_surface)
-    peak = search_far(sample, searched, candidate.guess, candidate.window, min_score, apart=0.6)
-    if peak is None or not peak.is_unique or (candidate.is_recognised and peak.slide.any()):
-        return None
-
-    def fit(start: Pose2) -> Optional[Match]:
-        match = refined(recent_surface, local_map, start, settings.closure_min_response)
-        if match is None or not candidate.is_doubtful:
-            return match
-        return match if clash(there, here, match.base_pose) <= _MAX_CLASH else None
-
-    known = known_of(peak, candidate.guess, recent_surface, local_map, fit)
-    if known is None:
-        return None
-    edge = Edge(place, recent, known.base_in_place, known.information, is_loop=True)
-    return Closure(edge, candidate, known.slide)
-
-
-def _around(
-    place: int, scale: float, end: int, poses: np.ndarray, surfaces: Sequence[Surface]
-) -> List[Placed]:
-    """The scans near a place on the way through it, before key ``end``, each with its pose seen from it."""
-    reach = round(scale * _PLACE_KEYS)
-    keys = range(max(0, place - reach), min(end, place + reach + 1))
-    seen = [(surfaces[key], _between(poses[place], poses[key])) for key in keys]
-    return [(surface, pose) for surface, pose in seen if math.hypot(pose.x, pose.y) < scale * _PLACE_RADIUS]
-
-
-def are_out_of_reach(ways: np.ndarray, drift: np.ndarray) -> np.ndarray:
-    """Which places (N,), so many metres along the graph, may lie elsewhere than ``candidates`` looks for.
-
-    ``drift``: standard deviations (N, 2) of position and heading.
+    Around the cycle place - recent - other recent - other place - place the errors must cancel, up to the
+    drift of the front end between them, and up to the direction in which both may be degenerate. A degenerate
+    one cannot confirm one that is not: it does not measure how far along the corridor the robot is.
     """
-    windows = np.clip(_DRIFT_DISTANCE * ways, _MIN_WINDOW.distance, _MAX_WINDOW.distance)
-    return (_CREDIBLE * drift[:, 0] > windows + 2.0) | (_CREDIBLE * drift[:, 1] > _MAX_WINDOW.angle)
-
-
-def is_credible(hypothesis: Hypothesis, poses: np.ndarray, drift: np.ndarray) -> bool:
-    """Whether the graph may be so much off as a hypothesis says; ``drift`` (2,) as above."""
-    told = hypothesis.recent_in_place.inverse()
-    believed = _between(poses[hypothesis.recent], poses[hypothesis.place])
-    near = told.distance_to(believed) < _CREDIBLE * drift[0] + _LIKENESS_WINDOW.distance
-    return bool(near and abs(wrap(told.yaw - believed.yaw)) < _CREDIBLE * drift[1] + _LIKENESS_WINDOW.angle)
-
-
-def agree(one: Closure, other: Closure, poses: np.ndarray) -> bool:
-    """Whether two closures between the same two stretches of the way tell the same story.
-
-    Around the cycle place - recent - other recent - other place - place the errors must cancel, up to what
-    the front end may have drifted between them, and across a corridor that both may slide along. One that
-    slides is no witness for one that does not: it cannot tell how far along the robot is.
-    """
-    recent_way, place_way, error, turn = _disagreement(one, other, poses)
-    if not _RECENT_WAY <= recent_way <= _MAX_WITNESS_WAY:
+    recent_distance, place_distance, error, turn = _disagreement(one, other, poses)
+    if not RECENT_PATH <= recent_distance <= _MAX_WITNESS_DISTANCE:
         return False
-    if one.slide.any() != other.slide.any():
+    direction = one.degenerate_direction
+    if direction.any() != other.degenerate_direction.any():
         return False
-    if one.slide.any() and abs(one.slide @ _slide_of(other, one, poses)) < PARALLEL:
+    if direction.any() and abs(direction @ _degenerate_direction_in(one, other, poses)) < PARALLEL:
         return False
-    way = recent_way + place_way
-    return error < 0.15 + 0.02 * way and turn < 0.05 + 0.005 * way
+    distance = recent_distance + place_distance
+    return error < 0.15 + 0.02 * distance and turn < 0.05 + 0.005 * distance
 
 
-def is_confirmed(closure: Closure, witnesses: Sequence[Closure], poses: np.ndarray) -> bool:
-    """Whether enough others that agree say the same; of a place that was but recognised, also from far on."""
+def contradict(one: LoopClosure, other: LoopClosure, poses: np.ndarray) -> bool:
+    """Whether two loop closures of the same segment put it to different places."""
+    recent_distance, place_distance, error, turn = _disagreement(one, other, poses)
+    if recent_distance > _MAX_WITNESS_DISTANCE:
+        return False
+    distance = recent_distance + place_distance
+    return error > _CONTRADICTION + 0.1 * distance or turn > 0.3
+
+
+def _is_confirmed(closure: LoopClosure, witnesses: Sequence[LoopClosure], poses: np.ndarray) -> bool:
+    """Whether enough others are consistent; for a recognized place, one of them must be far away."""
     if len(witnesses) < closure.witnesses_needed:
         return False
-    ways = [_disagreement(closure, other, poses)[0] for other in witnesses]
-    return not closure.candidate.is_recognised or max(ways) >= _LONG_WAY
+    distances = [_disagreement(closure, other, poses)[0] for other in witnesses]
+    return not closure.candidate.is_recognized or max(distances) >= _MIN_RECOGNIZED_DISTANCE
 
 
-def contradict(one: Closure, other: Closure, poses: np.ndarray) -> bool:
-    """Whether two closures of the same stretch of the way put it to different places."""
-    recent_way, place_way, error, turn = _disagreement(one, other, poses)
-    if recent_way > _MAX_WITNESS_WAY:
-        return False
-    way = recent_way + place_way
-    return error > _ELSEWHERE + 0.1 * way or turn > 0.3
+def _disagreement(
+    one: LoopClosure, other: LoopClosure, poses: np.ndarray
+) -> Tuple[float, float, float, float]:
+    """Distances between the recent keyframes and between the places, and the error around their cycle.
 
-
-def _disagreement(one: Closure, other: Closure, poses: np.ndarray) -> Tuple[float, float, float, float]:
-    """How far the recent keys and the places of two closures lie apart, and the error around their cycle.
-
-    Along a corridor in which one of them slides, there is none.
+    Errors along a degenerate direction do not count.
     """
     a, b = one.edge, other.edge
-    recent_step = _between(poses[a.second], poses[b.second])
-    place_step = _between(poses[a.first], poses[b.first])
-    error, turn = cycle_error(a, b, recent_step, place_step, one.slide, other.slide)
-    recent_way, place_way = (math.hypot(step.x, step.y) for step in (recent_step, place_step))
-    return recent_way, place_way, error, turn
+    recent_step = relative_pose(poses, a.second, b.second)
+    place_step = relative_pose(poses, a.first, b.first)
+    directions = one.degenerate_direction, other.degenerate_direction
+    error, turn = cycle_error(a, b, recent_step, place_step, *directions)
+    recent_distance, place_distance = (math.hypot(step.x, step.y) for step in (recent_step, place_step))
+    return recent_distance, place_distance, error, turn
 
 
-def _slide_of(closure: Closure, seen_from: Closure, poses: np.ndarray) -> np.ndarray:
-    """The slide of a closure along the axes of another one's place, (2,)."""
-    place_step = _between(poses[seen_from.edge.first], poses[closure.edge.first])
-    return turned(closure.slide, place_step.yaw)
-
-
-def lengths_of(edges: Edges) -> np.ndarray:
-    """How long each edge is, (E,): metres, with a radian counted as one.
-
-    A closure, and a step that is but a guess, is as long as the way on which the front end would err as much.
-    """
-    steps = edges.measured
-    lengths = np.hypot(steps[:, 0], steps[:, 1]) + np.abs(steps[:, 2])
-    doubts = np.sqrt(variances_xy(edges)) / _DRIFT_DISTANCE
-    return np.where(edges.is_loop | (doubts > _GUESS_WAY), doubts, lengths)
-
-
-def _between(first: np.ndarray, second: np.ndarray) -> Pose2:
-    return Pose2.from_array(first).inverse() @ Pose2.from_array(second)
+def _degenerate_direction_in(frame: LoopClosure, closure: LoopClosure, poses: np.ndarray) -> np.ndarray:
+    """The degenerate direction (2,) of a loop closure along the axes of another one's place."""
+    place_step = relative_pose(poses, frame.edge.first, closure.edge.first)
+    return rotated(closure.degenerate_direction, place_step.yaw)

@@ -1,11 +1,11 @@
-"""Recognising places by what they look like, wherever the graph believes them to be.
+"""Place recognition: places that look alike, wherever the graph has them.
 
-The surroundings of a place are told by profiles along their own two main directions: how much wall faces each
-of the four ways at each distance. Two places are compared by sliding their profiles along each other, for
-each quarter turn, which tells how alike they are and where one lies in the other (A. Censi et al., "Scan
-matching in the Hough domain", ICRA 2005; T. Roefer, "Using histogram correlation to create consistent laser
-scan maps", IROS 2002). Profiles need no guess, and are compared so fast, as Fourier transforms, that a place
-is compared with all others. What looks alike is but a hypothesis, for a closure to be searched there.
+A place descriptor holds profiles of the walls along the place's two main directions: how much wall faces each
+of the four ways at each distance. Two places are compared by shifting their profiles along each other, for
+each quarter turn, which gives their similarity and their relative pose (A. Censi et al., "Scan matching in
+the Hough domain", ICRA 2005; T. Roefer, "Using histogram correlation to create consistent laser scan maps",
+IROS 2002). Profiles need no guess, and as Fourier transforms they are compared so fast that a place is
+compared with all others. Places that look alike are hypotheses only, at which a loop closure is searched.
 """
 
 import math
@@ -16,140 +16,172 @@ import numpy as np
 from scipy.fft import irfft
 
 from planar import Pose2, wrap
-from slam_lite.graph.pose_graph import between
-from slam_lite.surface import Surface, joined
+from slam_lite.graph.pose_graph import relative_pose
+from slam_lite.point_cloud import PointCloud, merge_clouds
 
-# Width of a profile's bins, metres, and how many there are; the outer half stays empty, so that profiles can
-# be slid along each other as far as the inner half is wide.
+# Bin width of a profile [m], and number of bins; the outer half stays empty, so that profiles can be shifted
+# along each other as far as the inner half is wide.
 _BIN, _BINS = 0.25, 256
 _REACH = 0.25 * _BIN * _BINS
-# Walls are measured in pieces of this size, metres, however often they were seen.
+# Walls are measured in pieces of this size [m], however often they were seen.
 _PIECE = 0.1
-# A wall counts for a direction from this cosine on; how many pieces a place needs, and how much its axes
-# stand out, 0 to 1.
-_ALONG, _MIN_PIECES, _MIN_STRENGTH = 0.9, 60, 0.3
-# How far apart two places may be and still be told from each other's surroundings, metres.
+# Cosine from which on a wall faces a direction; least number of pieces of a place, and least strength of its
+# axes, 0 to 1.
+_FACING_COSINE, _MIN_PIECES, _MIN_STRENGTH = 0.9, 60, 0.3
+# Largest distance between two descriptions of the same place [m].
 _MAX_SHIFT = 12.0
-# Places compared in one go, for the memory that it takes.
-_AT_ONCE = 128
-# Hypotheses taken from one comparison, and how alike the places must be at least, 0 to 1.
-_MAX_HYPOTHESES, _MIN_LIKENESS = 40, 0.3
-# The way of the robot on which it sees one place, and from one to the next, metres; and in how many of the
-# last looks a hypothesis is to be found again.
-_PLACE_WAY, _LOOK_WAY, _LOOKS = 12.0, 3.0, 4
-# Two hypotheses say the same if they differ by no more than this, in metres and radians, and by what the
-# front end may have drifted on the way between them.
+# Places compared in one batch, to limit memory.
+_BATCH = 128
+# Hypotheses of one query, and least similarity, 0 to 1.
+_MAX_HYPOTHESES, _MIN_SIMILARITY = 40, 0.3
+# Path on which one place is seen, and from one to the next [m]; and the number of last queries in which a
+# hypothesis has to be found again.
+_SEGMENT_LENGTH, _QUERY_DISTANCE, _QUERIES = 12.0, 3.0, 4
+# Largest difference of two consistent hypotheses, metres and radians, and the front end's drift per metre of
+# path between them.
 _SAME_PLACE, _SAME_HEADING, _DRIFT = 1.5, 0.15, 0.03
 
 
 @dataclass(frozen=True, eq=False)
-class Appearance:
-    """What the surroundings of key scan ``key`` look like.
+class PlaceDescriptor:
+    """Descriptor of the surroundings of a keyframe.
 
-    ``axis``: direction, radians in the key's frame, of the x axis of ``spectra``: (4, F) complex, the Fourier
-    transforms of the profiles of walls that face +x, -x, +y and -y. Those of both directions have length 1.
+    Attributes:
+        keyframe: Index of the keyframe.
+        axis: Direction of the place's x axis in the keyframe [rad].
+        spectra: (4, F) complex, Fourier transforms of the profiles of walls that face +x, -x, +y and -y.
+            Those of both directions have length 1.
     """
 
-    key: int
+    keyframe: int
     axis: float
     spectra: np.ndarray
 
 
 @dataclass(frozen=True)
-class Hypothesis:
-    """Key ``recent`` perhaps lies at ``recent_in_place`` of key ``place``; ``likeness``: 0 to 1."""
+class PlaceHypothesis:
+    """Two keyframes that may see the same place.
+
+    Attributes:
+        place: Index of the older keyframe.
+        recent: Index of the recent keyframe.
+        recent_in_place: Pose of the recent one in the older one.
+        similarity: Of the two places, 0 to 1.
+    """
 
     place: int
     recent: int
     recent_in_place: Pose2
-    likeness: float
+    similarity: float
 
 
 @dataclass(frozen=True)
-class Stretch:
-    """The key scans of a stretch of the way, from ``first`` to ``last``, with ``middle`` in its middle."""
+class TrajectorySegment:
+    """Consecutive keyframes that see one place.
+
+    Attributes:
+        first: Index of the first keyframe.
+        middle: Index of the one in the middle, whose frame is that of the place.
+        last: Index of the last one.
+    """
 
     first: int
     middle: int
     last: int
 
-    def appearance(self, surfaces: Sequence[Surface], poses: np.ndarray) -> Optional[Appearance]:
-        """What it looks like there, if that can be told."""
-        origin = _pose(poses, self.middle).inverse()
-        keys = range(self.first, self.last + 1)
-        return appearance_of(
-            self.middle, joined([(surfaces[key], origin @ _pose(poses, key)) for key in keys])
-        )
+    def descriptor(self, clouds: Sequence[PointCloud], poses: np.ndarray) -> Optional[PlaceDescriptor]:
+        """Describe the place; None if it has no main directions. ``poses`` (N, 3)."""
+        keyframes = range(self.first, self.last + 1)
+        merged = merge_clouds([(clouds[i], relative_pose(poses, self.middle, i)) for i in keyframes])
+        return place_descriptor(self.middle, merged)
 
 
 @dataclass(frozen=True, eq=False)
-class Memory:
-    """What is remembered of ``places`` seen so far, and the hypotheses of the last ``looks``.
+class PlaceDatabase:
+    """The place descriptors of a map, and the state of the queries along the present trajectory.
 
-    ``last``: the key at the last look's end; ``start``: the key at which the robot's present way began.
+    Attributes:
+        descriptors: Of all places so far.
+        queries: Hypotheses of each of the last queries.
+        last: Last keyframe of the last query's segment.
+        start: First keyframe of the present trajectory.
     """
 
-    places: Tuple[Appearance, ...] = ()
-    looks: Tuple[Tuple[Hypothesis, ...], ...] = ()
+    descriptors: Tuple[PlaceDescriptor, ...] = ()
+    queries: Tuple[Tuple[PlaceHypothesis, ...], ...] = ()
     last: int = 0
     start: int = 0
 
-    def next_stretch(self, ways: np.ndarray) -> Optional[Stretch]:
-        """The stretch to look at next, if there is one; ``ways`` (N,): from the first key to each, metres."""
-        if self.start >= len(ways):
+    def next_segment(self, travelled: np.ndarray) -> Optional[TrajectorySegment]:
+        """The segment to query next, None if the robot has not driven far enough.
+
+        Args:
+            travelled: (N,), path length from the first keyframe to each [m].
+        """
+        if self.start >= len(travelled):
             return None
-        reached = int(np.searchsorted(ways, max(ways[self.start] + _PLACE_WAY, ways[self.last] + _LOOK_WAY)))
-        if reached == len(ways):
+        due = max(travelled[self.start] + _SEGMENT_LENGTH, travelled[self.last] + _QUERY_DISTANCE)
+        end = int(np.searchsorted(travelled, due))
+        if end == len(travelled):
             return None
         first, middle = (
-            int(np.searchsorted(ways, ways[reached] - share * _PLACE_WAY)) for share in (1.0, 0.5)
+            int(np.searchsorted(travelled, travelled[end] - share * _SEGMENT_LENGTH)) for share in (1.0, 0.5)
         )
-        return Stretch(max(first, self.start), middle, reached)
+        return TrajectorySegment(max(first, self.start), middle, end)
 
-    def after(self, stretch: Stretch, place: Optional[Appearance], look: Sequence[Hypothesis]) -> "Memory":
-        """The memory with one more place and look."""
-        places = self.places if place is None else (*self.places, place)
-        return Memory(places, (*self.looks, tuple(look))[-_LOOKS:], stretch.last, self.start)
+    def extended(
+        self,
+        segment: TrajectorySegment,
+        descriptor: Optional[PlaceDescriptor],
+        hypotheses: Sequence[PlaceHypothesis],
+    ) -> "PlaceDatabase":
+        """Return the database with one more place and the hypotheses of its query."""
+        descriptors = self.descriptors if descriptor is None else (*self.descriptors, descriptor)
+        queries = (*self.queries, tuple(hypotheses))[-_QUERIES:]
+        return PlaceDatabase(descriptors, queries, segment.last, self.start)
 
-    def anew(self, key: int) -> "Memory":
-        """The memory of a robot whose present way begins at ``key``."""
-        return Memory(self.places, (), key, key)
+    def with_new_trajectory(self, start: int) -> "PlaceDatabase":
+        """Return the database for a trajectory that starts at keyframe ``start``."""
+        return PlaceDatabase(self.descriptors, (), start, start)
 
-    def confirmed(self, look: Sequence[Hypothesis], poses: np.ndarray) -> List[Hypothesis]:
-        """Those of a look's hypotheses that one of the last looks said, too."""
-        seen = np.zeros(len(look), dtype=bool)
-        for earlier in self.looks:
-            seen |= say_the_same(look, earlier, poses).any(axis=1)
-        return [hypothesis for hypothesis, is_seen in zip(look, seen) if is_seen]
-
-
-def remembered(surfaces: Sequence[Surface], poses: np.ndarray) -> Memory:
-    """The memory of a finished map, before the robot goes on in it."""
-    return Memory(places_along(surfaces, poses, ways_along(poses)), (), len(poses), len(poses))
-
-
-def places_along(surfaces: Sequence[Surface], poses: np.ndarray, ways: np.ndarray) -> Tuple[Appearance, ...]:
-    """What the stretches of a way look like, in their order; ``ways`` (N,): as above."""
-    memory = Memory()
-    stretch = memory.next_stretch(ways)
-    while stretch is not None:
-        memory = memory.after(stretch, stretch.appearance(surfaces, poses), ())
-        stretch = memory.next_stretch(ways)
-    return memory.places
+    def confirmed(self, hypotheses: Sequence[PlaceHypothesis], poses: np.ndarray) -> List[PlaceHypothesis]:
+        """Those of a query's hypotheses that are consistent with one of the last queries."""
+        is_confirmed = np.zeros(len(hypotheses), dtype=bool)
+        for earlier in self.queries:
+            is_confirmed |= are_consistent(hypotheses, earlier, poses).any(axis=1)
+        return [hypothesis for hypothesis, confirmed in zip(hypotheses, is_confirmed) if confirmed]
 
 
-def ways_along(poses: np.ndarray) -> np.ndarray:
-    """The way (N,) that the robot has gone at each of its poses (N, 3), metres."""
+def database_of_map(clouds: Sequence[PointCloud], poses: np.ndarray) -> PlaceDatabase:
+    """Describe all places of a finished map, before a new trajectory starts in it."""
+    descriptors = descriptors_along(clouds, poses, travelled_distances(poses))
+    return PlaceDatabase(descriptors, (), len(poses), len(poses))
+
+
+def descriptors_along(
+    clouds: Sequence[PointCloud], poses: np.ndarray, travelled: np.ndarray
+) -> Tuple[PlaceDescriptor, ...]:
+    """Describe all places along a trajectory, in order; ``poses`` (N, 3), ``travelled`` (N,) as above."""
+    database = PlaceDatabase()
+    segment = database.next_segment(travelled)
+    while segment is not None:
+        database = database.extended(segment, segment.descriptor(clouds, poses), ())
+        segment = database.next_segment(travelled)
+    return database.descriptors
+
+
+def travelled_distances(poses: np.ndarray) -> np.ndarray:
+    """Path length (N,) from the first of some poses (N, 3) to each [m]."""
     if len(poses) == 0:
         return np.empty(0)
     return np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(poses[:, :2], axis=0).T))))
 
 
-def appearance_of(key: int, surface: Surface) -> Optional[Appearance]:
-    """The appearance of what was seen around a key, in its frame; None if nothing has a direction there."""
-    pieces = np.floor(surface.points_xy / _PIECE).astype(np.int64)
+def place_descriptor(keyframe: int, cloud: PointCloud) -> Optional[PlaceDescriptor]:
+    """Describe the points around a keyframe, in its frame; None if they have no main directions."""
+    pieces = np.floor(cloud.points_xy / _PIECE).astype(np.int64)
     _, kept = np.unique(pieces[:, 0] * 2**20 + pieces[:, 1], return_index=True)
-    points, normals = surface.points_xy[kept], surface.normals_xy[kept]
+    points, normals = cloud.points_xy[kept], cloud.normals_xy[kept]
     flat = normals.any(axis=1)
     if np.count_nonzero(flat) < _MIN_PIECES:
         return None
@@ -163,64 +195,75 @@ def appearance_of(key: int, surface: Surface) -> Optional[Appearance]:
     pairs = profiles.reshape(2, 2, _BINS)
     lengths = np.sqrt((pairs**2).sum(axis=(1, 2), keepdims=True))
     spectra = np.fft.rfft(pairs / np.maximum(lengths, 1e-9), axis=-1).reshape(4, -1)
-    return Appearance(key, axis, spectra.astype(np.complex64))
+    return PlaceDescriptor(keyframe, axis, spectra.astype(np.complex64))
 
 
-def hypotheses(recent: Appearance, places: Sequence[Appearance]) -> List[Hypothesis]:
-    """Where ``recent`` may lie among other places, most likely first."""
-    turns = [recent.spectra]
+def match_places(recent: PlaceDescriptor, places: Sequence[PlaceDescriptor]) -> List[PlaceHypothesis]:
+    """Find the places that look like ``recent``, most similar first."""
+    rotated = [recent.spectra]
     for _ in range(3):
-        turns.append(_quarter_turned(turns[-1]))
-    alike = np.empty((4, len(places)), dtype=np.float32)
+        rotated.append(_quarter_turned(rotated[-1]))
+    similarity = np.empty((4, len(places)), dtype=np.float32)
     best = np.empty((4, len(places), 2), dtype=np.int64)
-    for start in range(0, len(places), _AT_ONCE):
-        block = slice(start, start + _AT_ONCE)
+    for start in range(0, len(places), _BATCH):
+        block = slice(start, start + _BATCH)
         stacked = np.stack([place.spectra for place in places[block]])
-        for quarters, turned in enumerate(turns):
-            alike[quarters, block], best[quarters, block] = _compared(stacked, turned)
+        for quarters, spectra in enumerate(rotated):
+            similarity[quarters, block], best[quarters, block] = _compare(stacked, spectra)
     found = [
-        _hypothesis(places[i], recent, quarters, _SHIFTS[best[quarters, i]] * _BIN, alike[quarters, i])
+        _hypothesis(places[i], recent, quarters, _SHIFTS[best[quarters, i]] * _BIN, similarity[quarters, i])
         for quarters in range(4)
-        for i in np.argsort(-alike[quarters])[:_MAX_HYPOTHESES]
-        if alike[quarters, i] > _MIN_LIKENESS
+        for i in np.argsort(-similarity[quarters])[:_MAX_HYPOTHESES]
+        if similarity[quarters, i] > _MIN_SIMILARITY
     ]
-    return sorted(found, key=lambda hypothesis: -hypothesis.likeness)[:_MAX_HYPOTHESES]
+    return sorted(found, key=lambda hypothesis: -hypothesis.similarity)[:_MAX_HYPOTHESES]
 
 
-def _compared(stacked: np.ndarray, turned: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-    """How alike to a place some others are, (N,), and at which of ``_SHIFTS`` along both directions, (N, 2).
+def _compare(stacked: np.ndarray, spectra: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """Similarity (N,) of a place to others, and the best of ``_SHIFTS`` along both directions (N, 2).
 
-    ``stacked``: spectra (N, 4, F) of the others; ``turned``: (4, F).
+    ``stacked``: spectra (N, 4, F) of the others; ``spectra``: (4, F).
     """
-    correlated = (stacked * turned.conj()).reshape(len(stacked), 2, 2, -1).sum(axis=2)
-    likeness = irfft(correlated, _BINS, axis=-1)[:, :, _SHIFTS]
-    best = likeness.argmax(axis=2)
-    return np.take_along_axis(likeness, best[:, :, None], axis=2)[:, :, 0].prod(axis=1), best
+    correlated = (stacked * spectra.conj()).reshape(len(stacked), 2, 2, -1).sum(axis=2)
+    correlation = irfft(correlated, _BINS, axis=-1)[:, :, _SHIFTS]
+    best = correlation.argmax(axis=2)
+    return np.take_along_axis(correlation, best[:, :, None], axis=2)[:, :, 0].prod(axis=1), best
 
 
 _SHIFTS = np.arange(-round(_MAX_SHIFT / _BIN), round(_MAX_SHIFT / _BIN) + 1)
 
 
-def say_the_same(look: Sequence[Hypothesis], other: Sequence[Hypothesis], poses: np.ndarray) -> np.ndarray:
-    """Which hypotheses of two looks place the way alike: (N, M) booleans; ``poses`` (K, 3) of the keys."""
-    if not look or not other:
-        return np.zeros((len(look), len(other)), dtype=bool)
-    step = between(poses, look[0].recent, other[0].recent)
-    told, retold = compounded(_told(look, poses), step.as_array()[None]), _told(other, poses)
-    way = math.hypot(step.x, step.y)
-    away = told[:, None] - retold[None]
-    near = np.hypot(away[..., 0], away[..., 1]) < _SAME_PLACE + _DRIFT * way
-    return near & (np.abs(wrap(away[..., 2])) < _SAME_HEADING)
+def are_consistent(
+    hypotheses: Sequence[PlaceHypothesis], others: Sequence[PlaceHypothesis], poses: np.ndarray
+) -> np.ndarray:
+    """Which hypotheses of two queries put the trajectory to the same place.
+
+    Args:
+        hypotheses: Of one query, N.
+        others: Of the other query, M.
+        poses: (K, 3), of all keyframes in the map frame.
+
+    Returns:
+        (N, M) booleans.
+    """
+    if not hypotheses or not others:
+        return np.zeros((len(hypotheses), len(others)), dtype=bool)
+    step = relative_pose(poses, hypotheses[0].recent, others[0].recent)
+    expected = compose_poses(_recent_in_map(hypotheses, poses), step.as_array()[None])
+    difference = expected[:, None] - _recent_in_map(others, poses)[None]
+    drift = _DRIFT * math.hypot(step.x, step.y)
+    is_near = np.hypot(difference[..., 0], difference[..., 1]) < _SAME_PLACE + drift
+    return is_near & (np.abs(wrap(difference[..., 2])) < _SAME_HEADING)
 
 
-def _told(look: Sequence[Hypothesis], poses: np.ndarray) -> np.ndarray:
-    """Where each hypothesis of a look (N, 3) puts the recent key."""
-    places = [hypothesis.place for hypothesis in look]
-    return compounded(poses[places], np.array([each.recent_in_place.as_array() for each in look]))
+def _recent_in_map(hypotheses: Sequence[PlaceHypothesis], poses: np.ndarray) -> np.ndarray:
+    """Pose (N, 3) of the recent keyframe in the map by each hypothesis of a query."""
+    places = [hypothesis.place for hypothesis in hypotheses]
+    return compose_poses(poses[places], np.array([each.recent_in_place.as_array() for each in hypotheses]))
 
 
-def compounded(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Poses (N, 3) that are seen from the ``first`` ones (N, 3) at the ``second`` (N, 3), or (1, 3)."""
+def compose_poses(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Compose poses ``first`` (N, 3) with relative poses ``second`` (N, 3) or (1, 3), to (N, 3)."""
     c, s = np.cos(first[:, 2]), np.sin(first[:, 2])
     x = first[:, 0] + c * second[:, 0] - s * second[:, 1]
     y = first[:, 1] + s * second[:, 0] + c * second[:, 1]
@@ -228,8 +271,8 @@ def compounded(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 
 def _profile(points: np.ndarray, normals: np.ndarray, along: int, sign: float) -> np.ndarray:
-    """How much wall (_BINS,) faces one way at each distance along that axis, as a square root."""
-    facing = (sign * normals[:, along] > _ALONG) & (np.abs(points) < _REACH).all(axis=1)
+    """Square root (_BINS,) of how much wall faces one way at each distance along that axis."""
+    facing = (sign * normals[:, along] > _FACING_COSINE) & (np.abs(points) < _REACH).all(axis=1)
     bins = np.rint(points[facing, along] / _BIN).astype(np.int64) % _BINS
     counts = np.bincount(bins, minlength=_BINS).astype(np.float64)
     blurred = 0.5 * counts + 0.25 * (np.roll(counts, 1) + np.roll(counts, -1))
@@ -237,15 +280,13 @@ def _profile(points: np.ndarray, normals: np.ndarray, along: int, sign: float) -
 
 
 def _quarter_turned(spectra: np.ndarray) -> np.ndarray:
-    """The spectra of surroundings turned by 90 degrees: what faced +x faces +y, what faced +y faces -x."""
+    """Spectra of a place rotated by 90 degrees: walls that faced +x face +y, those that faced +y face -x."""
     return np.stack((spectra[3].conj(), spectra[2].conj(), spectra[0], spectra[1]))
 
 
-def _hypothesis(place: Appearance, recent: Appearance, quarters: int, shift, alike: float) -> Hypothesis:
+def _hypothesis(
+    place: PlaceDescriptor, recent: PlaceDescriptor, quarters: int, shift, similarity: float
+) -> PlaceHypothesis:
     turn = Pose2(float(shift[0]), float(shift[1]), 0.5 * math.pi * quarters)
     in_place = Pose2(0.0, 0.0, place.axis) @ turn @ Pose2(0.0, 0.0, -recent.axis)
-    return Hypothesis(place.key, recent.key, in_place, float(alike))
-
-
-def _pose(poses: np.ndarray, key: int) -> Pose2:
-    return Pose2.from_array(poses[key])
+    return PlaceHypothesis(place.keyframe, recent.keyframe, in_place, float(similarity))

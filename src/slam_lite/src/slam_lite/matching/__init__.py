@@ -1,1 +1,1 @@
-"""Matching the surface seen by a scan to a local map: a coarse search, then continuous refinement."""
+"""Scan matching to a local map: correlative search, then continuous refinement."""

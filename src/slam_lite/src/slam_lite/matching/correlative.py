@@ -1,9 +1,9 @@
-"""Correlative scan matching: the best pose of a whole window, found coarse to fine.
+"""Correlative scan matching: the best pose of a whole window.
 
-E. Olson, "Real-time correlative scan matching", ICRA 2009: a coarse grid that holds maxima bounds from above
-what any pose inside a coarse cell can score, so that only promising cells are searched finely. With a grid
-for each halving of the cell this is the branch and bound of W. Hess et al., "Real-time loop closure in 2D
-LIDAR SLAM", ICRA 2016.
+E. Olson, "Real-time correlative scan matching", ICRA 2009: a coarse grid of maxima bounds the score of all
+poses inside a coarse cell from above, so that only promising cells are searched finely. With a grid for each
+halving of the cell this is the branch and bound of W. Hess et al., "Real-time loop closure in 2D LIDAR SLAM",
+ICRA 2016.
 """
 
 import math
@@ -15,12 +15,17 @@ import numpy as np
 
 from planar import Pose2, wrap
 from slam_lite.matching.local_map import OPPOSED, LocalMap, are_far, cell_of, turned_cosine
-from slam_lite.surface import Surface
+from slam_lite.point_cloud import PointCloud
 
 
 @dataclass(frozen=True)
-class Window:
-    """Poses to search: ``distance`` metres to each side in x and y, ``angle`` radians to each side."""
+class SearchWindow:
+    """Poses to search around a guess.
+
+    Attributes:
+        distance: To each side in x and y [m].
+        angle: To each side [rad].
+    """
 
     distance: float
     angle: float
@@ -28,64 +33,77 @@ class Window:
 
 @dataclass(frozen=True)
 class Peak:
-    """The best pose of a window and its ``score``, the mean likelihood, 0 to 1, of the surface's points.
+    """The best pose of a window.
 
-    ``is_unique``: no pose elsewhere in the window scores nearly as well, unless ``slide``, a unit vector (2,)
-    along the map's axes or zeros, says along which line there are such poses, as in a smooth corridor.
+    Attributes:
+        base_pose: Pose of the base in the local map's frame.
+        score: Mean likelihood of the points, 0 to 1.
+        is_unique: Whether no pose elsewhere in the window scores nearly as well, except along
+            ``degenerate_direction``.
+        degenerate_direction: Unit vector (2,), along the map's axes, along which other poses score nearly as
+            well, as in a smooth corridor; zeros if there is none.
     """
 
     base_pose: Pose2
     score: float
     is_unique: bool
-    slide: np.ndarray
+    degenerate_direction: np.ndarray
 
 
-def search_near(
-    surface: Surface,
+def search_exhaustively(
+    cloud: PointCloud,
     local_map: LocalMap,
     guess: Pose2,
-    window: Window,
+    window: SearchWindow,
     variance: np.ndarray,
-    new_share: float = 0.0,
+    unseen_fraction: float = 0.0,
 ) -> Pose2:
-    """The best pose of a small window, in steps of two cells.
+    """Find the best pose of a small window, in steps of two cells.
 
-    ``variance``: (3,) of the guess, m^2, m^2, rad^2. To overrule it takes a share of the scan: somebody who
-    walks ahead of the robot is but a few beams, wheels that slip are seen by all. ``new_share``: the share
-    that nothing in the map can fit and that is likely to fit something else when it is elsewhere.
+    To overrule the guess takes a share of the scan: a person who walks ahead of the robot covers a few beams,
+    whereas all beams show a wheel slip.
+
+    Args:
+        cloud: The scan's points in the base frame.
+        local_map: To match to.
+        guess: Expected pose of the base.
+        window: Around the guess.
+        variance: (3,), m^2, m^2, rad^2, of the guess.
+        unseen_fraction: Fraction of the scan, 0 to 1, that the map does not cover, and that is likely to
+            match something else at another pose.
     """
-    best = _search_near(
+    best = _search_exhaustively(
         local_map.layers,
-        surface.points_xy,
+        cloud.points_xy,
         local_map.to_grid(guess),
         max(1, round(window.distance / (2.0 * local_map.resolution))),
         max(1, round(window.angle / _NEAR_ANGLE_STEP)),
         (2.0 * local_map.resolution) ** 2 / variance[0],
         _NEAR_ANGLE_STEP**2 / variance[2],
-        max(_OVERRULING_SHARE, _OVERRULING_POINTS / max(len(surface), 1)) + new_share,
+        max(_OVERRULING_SHARE, _OVERRULING_POINTS / max(len(cloud), 1)) + unseen_fraction,
     )
     return local_map.from_grid(best)
 
 
 _NEAR_ANGLE_STEP = 0.02
-# The share of a scan that overrules the guess, how many points at least (who walks beside the robot may be
-# all that it sees), and the chi-square at which half of that is needed.
+# Share of a scan that overrules the guess, least number of points (a person may be all that the robot sees),
+# and the chi-square at which half of that is needed.
 _OVERRULING_SHARE, _OVERRULING_POINTS, _HALF_CHI_SQUARE = 0.15, 12.0, 9.0
 
 
-def scores(
-    surface: Surface, local_map: LocalMap, poses: Sequence[Pose2], is_sided: bool = False
+def score_poses(
+    cloud: PointCloud, local_map: LocalMap, poses: Sequence[Pose2], match_sides: bool = False
 ) -> np.ndarray:
-    """Mean likelihood (N,), 0 to 1, of the surface's points at each pose of the base.
+    """Mean likelihood (N,), 0 to 1, of the points at each pose of the base.
 
-    If ``is_sided``, a point that lies on the other side of a wall, as near as that may be, is on nothing.
+    If ``match_sides``, a point on the other side of a wall scores nothing, however near it is.
     """
     in_grid = np.array([local_map.to_grid(pose) for pose in poses])
-    return _scores(local_map.layers, surface.points_xy, surface.normals_xy, in_grid, is_sided)
+    return _scores(local_map.layers, cloud.points_xy, cloud.normals_xy, in_grid, match_sides)
 
 
 @numba.njit(cache=True, nogil=True)
-def _scores(layers, points, normals, poses, is_sided):
+def _scores(layers, points, normals, poses, match_sides):
     found = np.empty(len(poses))
     for i in range(len(poses)):
         total, c, s = 0, math.cos(poses[i, 2]), math.sin(poses[i, 2])
@@ -95,7 +113,7 @@ def _scores(layers, points, normals, poses, is_sided):
                 poses[i, 1] + s * points[p, 0] + c * points[p, 1],
             )
             number, row, col = cell_of(layers, x, y)
-            if number >= 0 and not (is_sided and _is_opposed(layers[number], row, col, normals[p], c, s)):
+            if number >= 0 and not (match_sides and _is_opposed(layers[number], row, col, normals[p], c, s)):
                 total += layers[number][1][row, col]
         found[i] = total / (255.0 * len(points))
     return found
@@ -103,15 +121,15 @@ def _scores(layers, points, normals, poses, is_sided):
 
 @numba.njit(cache=True, nogil=True)
 def _is_opposed(layer, row, col, normal, c, s):
-    """Whether the map's nearest point is on the other side of a wall from one of a ``normal``, turned."""
+    """Whether the nearest map point is on the other side of a wall from a point of a rotated ``normal``."""
     nearest, _, _, map_normals, _, _ = layer
     i = nearest[row, col]
     return i >= 0 and turned_cosine(normal, map_normals[i], c, s) < OPPOSED
 
 
 @numba.njit(cache=True, nogil=True)
-def _search_near(layers, points, guess, steps, angle_steps, step_chi, angle_chi, share):
-    (_, likelihood, _, _, resolution, _), (_, beyond, _, _, coarse, shift) = layers
+def _search_exhaustively(layers, points, guess, steps, angle_steps, step_chi, angle_chi, share):
+    (_, likelihood, _, _, resolution, _), (_, coarse_likelihood, _, _, coarse, shift) = layers
     rows, cols = likelihood.shape
     is_far = are_far(layers, points, guess)
     near, far = points[~is_far], points[is_far]
@@ -124,7 +142,7 @@ def _search_near(layers, points, guess, steps, angle_steps, step_chi, angle_chi,
         for j in range(-steps, steps + 1):
             for i in range(-steps, steps + 1):
                 x, y = guess[0] + 2 * i * resolution, guess[1] + 2 * j * resolution
-                total = _sum_at(beyond, far, x + shift[0], y + shift[1], yaw, coarse)
+                total = _sum_at(coarse_likelihood, far, x + shift[0], y + shift[1], yaw, coarse)
                 for p in range(n):
                     q, r = col[p] + 2 * i, row[p] + 2 * j
                     if 0 <= q < cols and 0 <= r < rows:
@@ -140,7 +158,7 @@ def _search_near(layers, points, guess, steps, angle_steps, step_chi, angle_chi,
 
 @numba.njit(cache=True, nogil=True)
 def _sum_at(grid, points, x, y, yaw, resolution):
-    """Sum of a grid's cells that the points lie in, seen from a pose, metres from its corner."""
+    """Sum of the grid's cells that the points lie in, for a pose in metres from its corner."""
     total = 0
     c, s = math.cos(yaw), math.sin(yaw)
     for p in range(len(points)):
@@ -151,17 +169,26 @@ def _sum_at(grid, points, x, y, yaw, resolution):
     return total
 
 
-def search_far(
-    surface: Surface, local_map: LocalMap, guess: Pose2, window: Window, min_score: float, apart: float
+def search_branch_and_bound(
+    cloud: PointCloud, local_map: LocalMap, guess: Pose2, window: SearchWindow, min_score: float, apart: float
 ) -> Optional[Peak]:
-    """The best pose of a wide window, to one cell and about one cell's width at the far points.
+    """Find the best pose of a wide window, to one cell and about one cell's width at the far points.
 
-    None if no pose scores ``min_score``. Poses less than ``apart`` metres and 0.5 rad away are no rivals.
+    Args:
+        cloud: The scan's points in the base frame.
+        local_map: To match to.
+        guess: Middle of the window.
+        window: Around the guess.
+        min_score: Least score, 0 to 1.
+        apart: Poses nearer than this [m] and 0.5 rad to the best one are no rivals of it.
+
+    Returns:
+        The best pose, None if none scores ``min_score``.
     """
-    if len(surface) == 0:
+    if len(cloud) == 0:
         return None
     resolution = local_map.resolution
-    radius = float(np.sqrt(np.mean(np.sum(surface.points_xy.astype(np.float64) ** 2, axis=1))))
+    radius = float(np.sqrt(np.mean(np.sum(cloud.points_xy.astype(np.float64) ** 2, axis=1))))
     angle_step = 1.5 * resolution / max(radius, 1.0)
     angle_steps = math.ceil(window.angle / angle_step)
     cells = math.ceil(window.distance / resolution)
@@ -169,7 +196,7 @@ def search_far(
     likelihood, corner = _cropped(local_map.likelihood)
     start[:2] -= corner * resolution
     maxima = _maxima(likelihood)
-    cols, rows = _rotated_cells(resolution, surface.points_xy, start, angle_step, angle_steps)
+    cols, rows = _rotated_cells(resolution, cloud.points_xy, start, angle_step, angle_steps)
     bounds = _coarse_bounds(maxima[-1], cols, rows, cells)
     promising = np.flatnonzero(bounds > min_score)
     order = promising[np.argsort(-bounds.ravel()[promising], kind="stable")]
@@ -180,20 +207,20 @@ def search_far(
     enough = _RIVAL_SHARE * score
     apart_angles = math.ceil(0.5 / angle_step)
     is_far = apart / resolution, apart_angles, round(2.0 * math.pi / angle_step)
-    slide = np.zeros(2)
-    rival, rival_score = _climb(*search, enough, enough, best, is_far, slide)
+    direction = np.zeros(2)
+    rival, rival_score = _climb(*search, enough, enough, best, is_far, direction)
     is_unique = rival_score <= enough
     if not is_unique and abs(rival[2] - best[2]) < apart_angles:
-        slide = (rival - best)[:2] / np.hypot(*(rival - best)[:2])
-        _, rival_score = _climb(*search, enough, enough, best, is_far, slide)
+        direction = (rival - best)[:2] / np.hypot(*(rival - best)[:2])
+        _, rival_score = _climb(*search, enough, enough, best, is_far, direction)
         is_unique = rival_score <= enough
     x, y = start[:2] + (best[:2] + corner) * resolution
     yaw = wrap(start[2] + (best[2] - angle_steps) * angle_step)
     base_pose = local_map.from_grid(np.array([x, y, yaw]))
-    return Peak(base_pose, score, is_unique, slide)
+    return Peak(base_pose, score, is_unique, direction)
 
 
-# A pose elsewhere that scores this share of the best one makes it doubtful.
+# Share of the best score from which on a pose elsewhere is a rival.
 _RIVAL_SHARE = 0.9
 _LEVELS = 4
 _COARSE = 2**_LEVELS
@@ -208,16 +235,18 @@ def _project(points, x, y, yaw, resolution, col, row):
 
 
 def _cropped(likelihood: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-    """The part of a grid that holds something, with an empty border, and its first (col, row)."""
+    """The non-empty part of a grid, with an empty border, and its first (col, row)."""
     bounds = [np.flatnonzero(likelihood.any(axis=axis)) for axis in (0, 1)]
     if len(bounds[0]) == 0:
         return likelihood[:1, :1], np.zeros(2)
-    (left, right), (low, high) = ((filled[0] - _COARSE, filled[-1] + 1 + _COARSE) for filled in bounds)
+    (left, right), (low, high) = (
+        (interpolated[0] - _COARSE, interpolated[-1] + 1 + _COARSE) for interpolated in bounds
+    )
     return likelihood[low:high, left:right], np.array([left, low])
 
 
 def _maxima(likelihood: np.ndarray) -> np.ndarray:
-    """(levels + 1, rows, cols): at level k the maximum of the 2^k x 2^k cells from each cell on."""
+    """(levels + 1, rows, cols): at level k the maximum over the 2^k x 2^k cells from each cell on."""
     maxima = np.empty((_LEVELS + 1, *likelihood.shape), dtype=np.uint8)
     maxima[0] = likelihood
     for level in range(_LEVELS):
@@ -257,7 +286,7 @@ def _coarse_bounds(coarse: np.ndarray, cols: np.ndarray, rows: np.ndarray, cells
     return _bounds_of_many(_phases(coarse), cols, rows, cells)
 
 
-# From so many coarse shifts on it pays to lay their cells side by side.
+# From so many coarse shifts on it is faster to store their cells side by side.
 _MANY_SHIFTS = 5
 
 
@@ -308,10 +337,10 @@ def _bounds_of_many(phases, cols, rows, cells):
 
 
 @numba.njit(cache=True, nogil=True)
-def _climb(maxima, bounds, order, cols, rows, cells, min_score, enough, excluded, is_far, slide):
+def _climb(maxima, bounds, order, cols, rows, cells, min_score, enough, excluded, is_far, direction):
     """Best (col shift, row shift, angle index) above ``min_score``, and its score, by branch and bound.
 
-    Poses near the ``excluded`` one, or near the line through it along ``slide``, do not count. Ends early
+    Poses near the ``excluded`` one, or near the line through it along ``direction``, do not count. Ends early
     when a score exceeds ``enough``.
     """
     side = bounds.shape[1]
@@ -335,7 +364,7 @@ def _climb(maxima, bounds, order, cols, rows, cells, min_score, enough, excluded
                 depth += 4
                 continue
             is_inside = abs(u) <= cells and abs(v) <= cells
-            if is_inside and _is_apart(u - excluded[0], v - excluded[1], k - excluded[2], is_far, slide):
+            if is_inside and _is_apart(u - excluded[0], v - excluded[1], k - excluded[2], is_far, direction):
                 best_score = stack_bounds[depth]
                 best[0], best[1], best[2] = u, v, k
     return best, best_score
@@ -343,7 +372,7 @@ def _climb(maxima, bounds, order, cols, rows, cells, min_score, enough, excluded
 
 @numba.njit(cache=True, nogil=True)
 def _split(finer, cols, rows, stack, stack_bounds, first):
-    """Puts the four quarters of the cell at ``first`` on top of the stack in its place, the best one last."""
+    """Replace the cell at ``first`` on top of the stack by its four quarters, the best one last."""
     level, u, v = stack[first]
     half = 2 ** (level - 1)
     for quarter in range(4):
@@ -358,12 +387,12 @@ def _split(finer, cols, rows, stack, stack_bounds, first):
 
 
 @numba.njit(cache=True, nogil=True)
-def _is_apart(du, dv, dk, is_far, slide):
-    """Whether poses that differ by (du, dv, dk) are far from each other, also across the direction ``slide``.
+def _is_apart(du, dv, dk, is_far, direction):
+    """Whether poses that differ by (du, dv, dk) are far from each other, also across ``direction``.
 
     ``is_far``: from how many cells or angle steps on, and how many of these make a full turn.
     """
     cells, angles, full_turn = is_far
-    along = slide[0] * du + slide[1] * dv
+    along = direction[0] * du + direction[1] * dv
     turn = min(abs(dk), full_turn - abs(dk))
     return du * du + dv * dv - along * along >= cells * cells or turn >= angles

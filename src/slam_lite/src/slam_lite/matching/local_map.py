@@ -1,10 +1,11 @@
-"""A local map: the surface points of some scans, indexed by a grid of nearest points, and a coarser one.
+"""The local map: the points of some scans, indexed by a grid of nearest points, and a coarser one.
 
-Two grids as in W. Hess et al., "Real-time loop closure in 2D LIDAR SLAM", ICRA 2016, and its successor in
-space: a fine one around the robot, and one that reaches as far as lasers do outdoors.
+Two grids as in W. Hess et al., "Real-time loop closure in 2D LIDAR SLAM", ICRA 2016, and its 3D version: a
+fine one around the robot, and a coarse one with the range of lasers outdoors.
 """
 
 import math
+import warnings
 from dataclasses import dataclass
 from typing import Optional, Tuple
 
@@ -12,41 +13,52 @@ import numba
 import numpy as np
 
 from planar import Pose2
-from slam_lite.surface import Surface, filled
+from planar.deprecation import renamed_method
+from slam_lite.point_cloud import PointCloud, interpolated
 
-# How far from a surface a point may lie and still be drawn to it, cells.
+# Largest distance of a point from a map point that it is matched to, cells.
 _REACH_CELLS = 6
-# Standard deviation of the likelihood of a point given its distance from the surface, cells.
+# Standard deviation of the likelihood of a point by its distance from the nearest map point, cells.
 _SIGMA_CELLS = 2.0
-# A point nearer than this to one that the map has adds nothing, cells.
+# A point nearer than this to one of the map is not added, cells.
 _SAME = 0.5
-# Cells along the border that stay empty, so that a search may look past it without missing anything.
+# Cells along the border that stay empty, so that a search window may extend past it.
 BORDER_CELLS = 16
-# What lies farther off than this, metres, is soon out of the fine grid; which share of it is too much.
+# Points farther away than this [m] soon leave the fine grid; the share of them from which on the coarse one
+# is searched.
 _NEAR, _FAR_SHARE = 15.0, 0.2
-# The coarser grid of maps that reach far: size of a cell and reach, metres.
-_WIDE_RESOLUTION, _WIDE_REACH = 0.2, 85.0
+# The coarse grid: cell size and reach [m].
+_COARSE_RESOLUTION, _COARSE_REACH = 0.2, 85.0
 
 # Two normals whose cosine is less than this belong to the two sides of a wall.
 OPPOSED = -0.5
 
-# A local map's four arrays, its resolution, and how far its corner lies below the finest one's, (2,).
+# A local map's four arrays, its resolution, and the offset (2,) of its corner from the finest one's.
 Layer = Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float, np.ndarray]
 
 
 class LocalMap:
-    """Surface points around a centre; each grid cell knows the nearest one and how likely a hit there is.
+    """Points around a centre; each grid cell stores the nearest one and the likelihood of a hit.
 
-    The grid is square, ``2 * reach`` metres wide, in the frame in which the poses given to ``add`` are.
-    ``beyond``: a coarser one of the same points, and of those that lie farther off.
-    ``nearest``: indices, -1 for none near, into ``points_xy`` and ``normals_xy``, float32 (N, 2), metres from
-    the grid's corner, of which the first ``count`` count. ``likelihood``: 0 to 255.
+    The grid is square, ``2 * reach`` metres wide, in the frame of the poses given to ``add``.
+
+    Attributes:
+        resolution: Cell size [m].
+        coarse_map: A coarser map of the same points and of those farther away, if there is one.
+        corner: (2,), lower left corner of the grid [m].
+        nearest: int32 (rows, cols), index of the nearest point of each cell, -1 if none is near.
+        likelihood: uint8 (rows, cols), likelihood of a hit in each cell, 0 to 255.
+        points_xy: float32 (M, 2), metres from the corner; the first ``count`` are used.
+        normals_xy: float32 (M, 2), surface normals of the points, or (0, 0).
+        count: Number of points.
     """
 
-    def __init__(self, resolution: float = 0.05, reach: float = 25.0, beyond: "Optional[LocalMap]" = None):
+    def __init__(
+        self, resolution: float = 0.05, reach: float = 25.0, coarse_map: "Optional[LocalMap]" = None
+    ):
         cells = math.ceil(2.0 * reach / resolution) + 2 * BORDER_CELLS
         self.resolution = resolution
-        self.beyond = beyond
+        self.coarse_map = coarse_map
         self.corner = np.zeros(2)
         self.nearest = np.full((cells, cells), -1, dtype=np.int32)
         self.likelihood = np.zeros((cells, cells), dtype=np.uint8)
@@ -55,18 +67,18 @@ class LocalMap:
         self.count = 0
 
     def clear(self, center: Pose2) -> None:
-        """Forgets all points and moves the grid so that ``center`` lies in its middle."""
+        """Remove all points and move the grid so that ``center`` lies in its middle."""
         half = 0.5 * len(self.nearest) * self.resolution
         self.corner = np.array([center.x - half, center.y - half])
         self.nearest.fill(-1)
         self.likelihood.fill(0)
         self.count = 0
-        if self.beyond is not None:
-            self.beyond.clear(center)
+        if self.coarse_map is not None:
+            self.coarse_map.clear(center)
 
-    def add(self, surface: Surface, base_pose: Pose2) -> None:
-        """Adds the surface seen from ``base_pose``; points beyond the grid are left out."""
-        needed = self.count + len(surface)
+    def add(self, cloud: PointCloud, base_pose: Pose2) -> None:
+        """Add a scan at ``base_pose``; points outside of the grid are dropped."""
+        needed = self.count + len(cloud)
         if needed > len(self.points_xy):
             self.points_xy = _grown(self.points_xy, needed)
             self.normals_xy = _grown(self.normals_xy, needed)
@@ -76,52 +88,61 @@ class LocalMap:
             self.points_xy,
             self.normals_xy,
             self.count,
-            surface.points_xy,
-            surface.normals_xy,
+            cloud.points_xy,
+            cloud.normals_xy,
             base_pose.x - self.corner[0],
             base_pose.y - self.corner[1],
             base_pose.yaw,
             self.resolution,
             _LIKELIHOOD,
         )
-        if self.beyond is not None:
-            self.beyond.add(filled(surface, 1.5 * self.beyond.resolution), base_pose)
+        if self.coarse_map is not None:
+            self.coarse_map.add(interpolated(cloud, 1.5 * self.coarse_map.resolution), base_pose)
 
     @property
     def is_empty(self) -> bool:
-        """Whether it has no points, near or far."""
-        return self.count == 0 and (self.beyond is None or self.beyond.is_empty)
+        """Whether there are no points, in the coarse map neither."""
+        return self.count == 0 and (self.coarse_map is None or self.coarse_map.is_empty)
 
-    def fit_for(self, surface: Surface) -> "LocalMap":
-        """The one to search a surface in: itself, or the one beyond if too much of it lies there."""
-        far = np.hypot(surface.points_xy[:, 0], surface.points_xy[:, 1]) > _NEAR
-        return self.beyond if self.beyond is not None and np.mean(far) > _FAR_SHARE else self
+    def layer_for(self, cloud: PointCloud) -> "LocalMap":
+        """The map to search a cloud in: this one, or the coarse one if too many points are far away."""
+        far = np.hypot(cloud.points_xy[:, 0], cloud.points_xy[:, 1]) > _NEAR
+        return self.coarse_map if self.coarse_map is not None and np.mean(far) > _FAR_SHARE else self
+
+    # Deprecated names, for matchers written for an earlier version.
+    fit_for = renamed_method("fit_for", "layer_for")
+
+    @property
+    def beyond(self) -> "Optional[LocalMap]":
+        """Deprecated name of ``coarse_map``."""
+        warnings.warn("LocalMap.beyond is deprecated; use coarse_map", DeprecationWarning, stacklevel=2)
+        return self.coarse_map
 
     @property
     def layers(self) -> Tuple[Layer, Layer]:
-        """The grid itself and the one beyond, if there is one, for kernels."""
-        return _layer(self, self), _layer(self.beyond or _NOTHING, self)
+        """This map and the coarse one, if there is one, for kernels."""
+        return _layer(self, self), _layer(self.coarse_map or _EMPTY, self)
 
     def to_grid(self, pose: Pose2) -> np.ndarray:
-        """A pose as ``[x, y, yaw]``, metres from the grid's corner."""
+        """Return a pose as ``[x, y, yaw]``, metres from the grid's corner."""
         return np.array([pose.x - self.corner[0], pose.y - self.corner[1], pose.yaw])
 
     def from_grid(self, pose: np.ndarray) -> Pose2:
-        """The inverse of ``to_grid``."""
+        """Return the pose of ``[x, y, yaw]``, metres from the grid's corner; the inverse of ``to_grid``."""
         return Pose2(float(pose[0] + self.corner[0]), float(pose[1] + self.corner[1]), float(pose[2]))
 
 
-_NOTHING = LocalMap(1.0, 0.0)
+_EMPTY = LocalMap(1.0, 0.0)
 
 
-def _layer(grid: LocalMap, seen_from: LocalMap) -> Layer:
+def _layer(grid: LocalMap, finest: LocalMap) -> Layer:
     arrays = (grid.nearest, grid.likelihood, grid.points_xy, grid.normals_xy)
     nearest, likelihood, points_xy, normals_xy = (_read_only(array) for array in arrays)
-    return nearest, likelihood, points_xy, normals_xy, grid.resolution, seen_from.corner - grid.corner
+    return nearest, likelihood, points_xy, normals_xy, grid.resolution, finest.corner - grid.corner
 
 
 def _read_only(array: np.ndarray) -> np.ndarray:
-    """The same, so that maps that may be written and others are one type for kernels."""
+    """A read-only view, so that writable and read-only maps are one type for kernels."""
     view = array.view()
     view.flags.writeable = False
     return view
@@ -129,10 +150,12 @@ def _read_only(array: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Match:
-    """Where a surface fits: ``base_pose`` in the local map's frame.
+    """The result of matching a scan to a local map.
 
-    ``information``: (3, 3), 1 / (m, m, rad)^2, of base_pose's x, y, yaw along the map's axes.
-    ``response``: share of the surface's points, 0 to 1, that lie on the map's surfaces.
+    Attributes:
+        base_pose: Pose of the base in the local map's frame.
+        information: (3, 3), 1 / (m, m, rad)^2, of base_pose's x, y, yaw along the map's axes.
+        response: Fraction of the scan's points, 0 to 1, that lie on the map's surfaces.
     """
 
     base_pose: Pose2
@@ -140,16 +163,16 @@ class Match:
     response: float
 
 
-def wide_map() -> LocalMap:
-    """An empty local map that reaches as far as lasers do outdoors."""
-    return LocalMap(beyond=LocalMap(_WIDE_RESOLUTION, _WIDE_REACH))
+def long_range_map() -> LocalMap:
+    """Return an empty local map with a coarse map that has the range of lasers outdoors."""
+    return LocalMap(coarse_map=LocalMap(_COARSE_RESOLUTION, _COARSE_REACH))
 
 
 @numba.njit(cache=True, nogil=True)
 def cell_of(layers, x, y):
-    """The number of the layer that knows of a point at (x, y) metres, and the point's row and column there.
+    """Number of the finest layer that contains a point at (x, y) metres, with the point's row and column.
 
-    The layer is -1 for a point that lies beyond both.
+    The number is -1 for a point outside of both.
     """
     for number in range(2):
         nearest, _, _, _, resolution, shift = layers[number]
@@ -162,7 +185,7 @@ def cell_of(layers, x, y):
 
 @numba.njit(cache=True, nogil=True)
 def are_far(layers, points, pose):
-    """Which points (N,) only the coarser layer may know of."""
+    """Which points (N,) are outside of the finest layer."""
     is_far = np.empty(len(points), dtype=np.bool_)
     c, s = math.cos(pose[2]), math.sin(pose[2])
     for p in range(len(points)):
@@ -173,7 +196,7 @@ def are_far(layers, points, pose):
 
 @numba.njit(cache=True, nogil=True, inline="always")
 def turned_cosine(normal, map_normal, c, s):
-    """Of the angle between a normal, turned by the angle whose cosine and sine are c and s, and another."""
+    """Cosine between a normal, rotated by the angle of cosine c and sine s, and a normal of the map."""
     nx, ny = map_normal[0], map_normal[1]
     return c * (normal[0] * nx + normal[1] * ny) + s * (normal[0] * ny - normal[1] * nx)
 

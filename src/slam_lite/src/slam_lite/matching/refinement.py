@@ -1,8 +1,8 @@
 """Continuous refinement of a pose: point-to-line ICP against a local map.
 
-A. Censi, "An ICP variant using a point-to-line metric", ICRA 2008; the map's points and their normals stand
-for the lines, and each residual is weighted by Geman and McClure's robust cost. Points are not drawn to the
-other side of a wall: that would make two rooms one wall's thickness too close.
+A. Censi, "An ICP variant using a point-to-line metric", ICRA 2008; the map's points and their normals define
+the lines, and each residual is weighted by Geman and McClure's robust cost. Points are not matched to the
+other side of a wall: that would bring the spaces on its two sides closer by the wall's thickness.
 """
 
 import math
@@ -12,39 +12,43 @@ import numpy as np
 
 from planar import Pose2
 from slam_lite.matching.local_map import OPPOSED, LocalMap, Match, are_far, cell_of, turned_cosine
-from slam_lite.surface import Surface
+from slam_lite.point_cloud import PointCloud
 
 _MAX_STEPS = 20
-# Scale of the robust cost, metres: a residual of this size has a quarter of its weight left.
+# Scale of the robust cost [m]: a residual of this size keeps a quarter of its weight.
 _OUTLIER_SCALE = 0.07
-# The same of points far off, at first: there a small turn is a long way. It is halved from step to step.
+# Initial scale of distant points [m], which a small rotation moves far. It is halved from step to step.
 _FAR_SCALE = 0.56
-# A point is on a surface if it is not farther from it than this, metres.
+# Largest residual of a point that counts for the response [m].
 _ON_SURFACE = 0.1
-# Standard deviation, metres, of one residual; larger than the laser's noise because neighbours err together.
+# Standard deviation of a residual [m]; larger than the laser's noise as errors of neighbours are correlated.
 _SIGMA = 0.05
-# Chi-square at which the belief in the prior is halved.
-_FREE_CHI_SQUARE = 9.0
-# Two normals whose cosine is more than this belong to one wall. Only these pull in the fine grid, and corners
-# only corners: the points of a wall's end would pull one side to the other. In the coarse one a tree or a car
-# is of no kind for sure.
-_ALIKE = 0.5
-# Weight of a point that has no line to be drawn to, only a point.
+# Chi-square at which the prior's weight is halved.
+_PRIOR_CHI_SQUARE = 9.0
+# Two normals whose cosine is more than this belong to one wall. In the fine grid lines are matched only to
+# these, and corners only to corners: the points at a wall's end would pull one side to the other. In the
+# coarse grid, trees and cars have no reliable normals.
+_SAME_WALL = 0.5
+# Weight of a point that is matched to a point instead of a line.
 _CORNER_WEIGHT = 0.2
 
 
 def refine(
-    surface: Surface, local_map: LocalMap, start: Pose2, prior: Pose2, prior_information: np.ndarray
+    cloud: PointCloud, local_map: LocalMap, start: Pose2, prior: Pose2, prior_information: np.ndarray
 ) -> Match:
-    """The pose near ``start`` at which ``surface`` lies best on the map's surfaces.
+    """Find the pose near ``start`` at which the points lie best on the map's surfaces.
 
-    ``prior``: where the base is believed to be, with ``prior_information`` (3, 3), zeros for no belief at
-    all.
+    Args:
+        cloud: The scan's points in the base frame.
+        local_map: To match to.
+        start: Initial pose of the base in the local map's frame.
+        prior: Expected pose of the base.
+        prior_information: (3, 3), of ``prior``; zeros for no prior.
     """
     pose, information, response = _refine(
         local_map.layers,
-        surface.points_xy,
-        surface.normals_xy,
+        cloud.points_xy,
+        cloud.normals_xy,
         local_map.to_grid(start),
         local_map.to_grid(prior),
         prior_information * _SIGMA**2,
@@ -53,19 +57,19 @@ def refine(
 
 
 @numba.njit(cache=True, nogil=True)
-def _refine(layers, points, normals, start, believed, prior):
+def _refine(layers, points, normals, start, expected, prior):
     pose = start.copy()
     weighted_prior = prior.copy()
     far_scale = _FAR_SCALE if are_far(layers, points, start).any() else _OUTLIER_SCALE
     for _ in range(_MAX_STEPS):
         information, gradient, _ = _linearize(layers, points, normals, pose, far_scale)
-        deviation = pose - believed
+        deviation = pose - expected
         deviation[2] = (deviation[2] + math.pi) % (2.0 * math.pi) - math.pi
-        # Cauchy's weight: wheels that slipped must not pull the pose off what is seen.
-        weighted_prior = prior / (1.0 + deviation @ prior @ deviation / (_FREE_CHI_SQUARE * _SIGMA**2))
+        # Cauchy's weight: the prior must not outweigh the scan after a wheel slip.
+        weighted_prior = prior / (1.0 + deviation @ prior @ deviation / (_PRIOR_CHI_SQUARE * _SIGMA**2))
         information += weighted_prior
         gradient -= weighted_prior @ deviation
-        # A hair of damping keeps the system solvable where nothing is seen.
+        # Damping keeps the system solvable without points.
         step = np.linalg.solve(information + 1e-6 * np.eye(3), gradient)
         pose += step
         is_small = abs(step[0]) < 1e-4 and abs(step[1]) < 1e-4 and abs(step[2]) < 1e-5
@@ -98,7 +102,7 @@ def _linearize(layers, points, normals, pose, far_scale):
         scale = _OUTLIER_SCALE if number == 0 else far_scale
         if nx != 0.0 or ny != 0.0:
             error = ex * nx + ey * ny
-            w = 1.0 / (1.0 + (error / scale) ** 2) ** 2 if cosine > _ALIKE or number > 0 else 0.0
+            w = 1.0 / (1.0 + (error / scale) ** 2) ** 2 if cosine > _SAME_WALL or number > 0 else 0.0
             jt = ny * rx - nx * ry
             g0, g1, g2 = g0 - w * nx * error, g1 - w * ny * error, g2 - w * jt * error
             h00, h01, h02 = h00 + w * nx * nx, h01 + w * nx * ny, h02 + w * nx * jt

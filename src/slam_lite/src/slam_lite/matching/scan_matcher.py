@@ -1,11 +1,12 @@
-"""The contract of a matcher of scans to the scans before, and which one the settings choose.
+"""The contract of scan matchers, and the choice of one by the settings.
 
-One of somebody's own is chosen by ``matcher_plugin: my_package.my_module/MyMatcher``. Places are recognised
-and loops are closed without it.
+A custom matcher is chosen by ``matcher_plugin: my_package.my_module/MyMatcher``. Place recognition and loop
+closure do not use it.
 """
 
 import copy
 import math
+import warnings
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -14,49 +15,73 @@ import numpy as np
 from planar import PlanarError, Pose2
 from planar.plugins import PluginContract, errors_raised_as, load_plugin
 from slam_lite.config import MapperSettings
-from slam_lite.matching.correlative import Window, search_near
+from slam_lite.matching.correlative import SearchWindow, search_exhaustively
 from slam_lite.matching.local_map import LocalMap, Match
 from slam_lite.matching.refinement import refine
-from slam_lite.surface import Surface
+from slam_lite.point_cloud import PointCloud
 
-# What is less than this share of the largest entry of an information matrix is rounding.
+# Rounding error of an information matrix, as a share of its largest entry.
 _ROUNDING = 1e-6
 
 
 class MatchingError(PlanarError):
-    """A scan could not be matched, because of a matcher of somebody's own."""
+    """A custom scan matcher failed."""
 
 
 @dataclass(frozen=True, eq=False)
 class Prediction:
-    """Where a scan is believed to have been taken: ``base_pose`` in the local map's frame.
+    """The pose at which a scan is expected, by odometry.
 
-    ``variance``: (3,), m^2, m^2, rad^2, of what odometry told; ``doubt``: the same, but larger where odometry
-    told of no motion and may be wrong in that. ``new_share``: share of the scan, 0 to 1, that looks where the
-    last one that was kept did not, and fits nothing in the map.
+    Attributes:
+        base_pose: Pose of the base in the local map's frame.
+        variance: (3,), m^2, m^2, rad^2, of odometry.
+        search_variance: (3,), the same, but larger where odometry reports no motion and may be stuck.
+        unseen_fraction: Fraction of the scan, 0 to 1, in directions that the last keyframe does not cover,
+            and that matches nothing in the map.
     """
 
     base_pose: Pose2
     variance: np.ndarray
-    doubt: np.ndarray
-    new_share: float = 0.0
+    search_variance: np.ndarray
+    unseen_fraction: float = 0.0
 
     @property
     def information(self) -> np.ndarray:
-        """(3, 3), of what odometry told."""
+        """Information (3, 3) of odometry."""
         return np.diag(1.0 / self.variance)
+
+    @property
+    def doubt(self) -> np.ndarray:
+        """Deprecated name of ``search_variance``."""
+        warnings.warn("Prediction.doubt is deprecated; use search_variance", DeprecationWarning, stacklevel=2)
+        return self.search_variance
+
+    @property
+    def new_share(self) -> float:
+        """Deprecated name of ``unseen_fraction``."""
+        message = "Prediction.new_share is deprecated; use unseen_fraction"
+        warnings.warn(message, DeprecationWarning, stacklevel=2)
+        return self.unseen_fraction
 
 
 class ScanMatcher(Protocol):
-    """Made for each trajectory: at the start, and where the robot is found anew."""
+    """Matches scans to a local map. One is created for each trajectory, also after relocalization."""
 
     def __init__(self, settings: MapperSettings): ...
 
-    def match(self, surface: Surface, local_map: LocalMap, prediction: Prediction) -> Match:
-        """Where the scan fits the map, near the prediction and not without regard to it.
+    def match(self, cloud: PointCloud, local_map: LocalMap, prediction: Prediction) -> Match:
+        """Find the pose near the prediction at which a scan matches the map.
 
-        A response that is poor is tried again in a wide window; with less than ``min_response`` odometry is
-        believed.
+        A match with a poor response is searched again in a wide window; below ``min_response`` odometry is
+        used instead. The arguments are read-only.
+
+        Args:
+            cloud: The scan's points and surface normals in the base frame.
+            local_map: Of the keyframes around.
+            prediction: By odometry; to be weighted against the scan.
+
+        Returns:
+            The pose of the base, its information and the response.
         """
         ...
 
@@ -65,70 +90,72 @@ CONTRACT = PluginContract("scan matcher", ScanMatcher, MapperSettings, "slam_lit
 
 
 def scan_matcher_of(settings: MapperSettings) -> ScanMatcher:
-    """Raises MatchingError if one of somebody's own cannot be made."""
+    """Create the matcher that the settings choose. Raises MatchingError if a custom one cannot be created."""
     return GuardedMatcher(settings) if settings.matcher_plugin else CorrelativeMatcher(settings)
 
 
 class CorrelativeMatcher:
-    """The project's own: the best pose of a window, then the lines that its points lie on."""
+    """The default matcher: exhaustive search of a window, then point-to-line refinement."""
 
     def __init__(self, settings: MapperSettings):
         pass
 
-    def match(self, surface: Surface, local_map: LocalMap, prediction: Prediction) -> Match:
+    def match(self, cloud: PointCloud, local_map: LocalMap, prediction: Prediction) -> Match:
         predicted, variance = prediction.base_pose, prediction.variance
-        window = Window(
+        window = SearchWindow(
             float(np.clip(3.0 * math.sqrt(variance[0]), 0.1, 0.4)),
             float(np.clip(3.0 * math.sqrt(variance[2]), 0.1, 0.5)),
         )
-        start = search_near(surface, local_map, predicted, window, prediction.doubt, prediction.new_share)
-        return refine(surface, local_map, start, predicted, prediction.information)
+        start = search_exhaustively(
+            cloud, local_map, predicted, window, prediction.search_variance, prediction.unseen_fraction
+        )
+        return refine(cloud, local_map, start, predicted, prediction.information)
 
 
 class GuardedMatcher:
-    """One of other people: it can change nothing, what it gives is checked, what goes wrong is its fault."""
+    """A custom matcher with read-only arguments, checked results, and errors that name it."""
 
     def __init__(self, settings: MapperSettings):
-        """Raises SettingsError with what it lacks, MatchingError if it cannot be made."""
+        """Raises SettingsError with what it lacks, MatchingError if it cannot be created."""
         self._name = settings.matcher_plugin
         make: Any = load_plugin(self._name, CONTRACT)
         with errors_raised_as(self._name, MatchingError):
             self._matcher = make(settings)
 
-    def match(self, surface: Surface, local_map: LocalMap, prediction: Prediction) -> Match:
-        """Raises MatchingError."""
+    def match(self, cloud: PointCloud, local_map: LocalMap, prediction: Prediction) -> Match:
+        """Call the custom matcher. Raises MatchingError for what goes wrong in it."""
         with errors_raised_as(self._name, MatchingError):
-            match = self._matcher.match(_to_read(surface), _to_read(local_map), _to_read(prediction))
-            complaint = _complaint_about(match)
-        if complaint:
-            raise MatchingError(f"{self._name} gave {complaint}")
+            match = self._matcher.match(_read_only(cloud), _read_only(local_map), _read_only(prediction))
+            problem = _problem_of(match)
+        if problem:
+            raise MatchingError(f"{self._name} returned {problem}")
         return match
 
 
-def _to_read(lent: Any) -> Any:
-    """The same with arrays that cannot be written."""
-    shown = copy.copy(lent)
-    for name, value in vars(lent).items():
+def _read_only(value_object: Any) -> Any:
+    """A shallow copy with read-only arrays."""
+    copied = copy.copy(value_object)
+    for name, value in vars(value_object).items():
         if isinstance(value, np.ndarray):
             view = value.view()
             view.flags.writeable = False
-            object.__setattr__(shown, name, view)
+            object.__setattr__(copied, name, view)
         elif isinstance(value, LocalMap):
-            object.__setattr__(shown, name, _to_read(value))
-    return shown
+            object.__setattr__(copied, name, _read_only(value))
+    return copied
 
 
-def _complaint_about(match: Any) -> str:
-    """What is wrong with an answer, for people; nothing if it can be used."""
+def _problem_of(match: Any) -> str:
+    """What is wrong with a result, for people; empty if it can be used."""
     if not isinstance(match, Match):
         return f"a {type(match).__name__}, not a Match"
     if not (isinstance(match.base_pose, Pose2) and match.base_pose.is_in_range()):
-        return f"a base_pose at which no robot can be: {match.base_pose}"
+        return f"a base_pose that is not a Pose2 in range: {match.base_pose}"
     information = np.asarray(match.information)
     if information.shape != (3, 3) or not np.isfinite(information).all():
-        return "an information that is no 3 by 3 finite numbers"
+        return "an information that is not a (3, 3) array of finite numbers"
     rounding = _ROUNDING * np.abs(information).max()
     is_symmetric = np.allclose(information, information.T, rtol=0.0, atol=rounding)
     if not (is_symmetric and np.linalg.eigvalsh(information)[0] >= -rounding):
-        return "an information that is not symmetric, or negative in some direction"
-    return "" if 0.0 <= match.response <= 1.0 else f"a response of {match.response:g}, not of 0 to 1"
+        return "an information that is not symmetric and positive semi-definite"
+    return "" if 0.0 <= match.response <= 1.0 else f"a response of {match.response:g}, not between 0 and 1"

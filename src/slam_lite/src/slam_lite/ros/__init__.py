@@ -1,1 +1,1 @@
-"""The ROS side of this package: messages in, values to the core, messages out."""
+"""ROS adapters of slam_lite: messages in, values to the core, messages out."""

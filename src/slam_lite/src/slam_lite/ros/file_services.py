@@ -1,4 +1,4 @@
-"""The services that write files and read them."""
+"""The services save_map, save_state and load_state."""
 
 from typing import Callable, Dict
 
@@ -6,16 +6,16 @@ import rospy
 
 from planar import PlanarError, save_map
 from planar_ros.calls.load_map import LoadMap, LoadMapResult, advertise_services
-from slam_lite.ros.map_topics import MapTopics
-from slam_lite.ros.mapping import Mapping
+from slam_lite.ros.map_publisher import MapPublisher
+from slam_lite.ros.thread_safe_mapper import ThreadSafeMapper
 from slam_lite.state import save_state
 
 
 class FileServices:
-    """Saves the map and the state of a mapping, and loads a state, when asked."""
+    """Offers services that save the map and the state, and load a state."""
 
-    def __init__(self, mapping: Mapping, maps: MapTopics):
-        self._mapping = mapping
+    def __init__(self, mapper: ThreadSafeMapper, maps: MapPublisher):
+        self._mapper = mapper
         self._maps = maps
         handlers = {
             "~save_map": self._on_save_map,
@@ -27,14 +27,14 @@ class FileServices:
     def _on_save_map(self, request):
         grid = self._maps.grid()
         if grid is None:
-            raise rospy.ServiceException("there is no map yet")
+            raise rospy.ServiceException("there is no map yet: no scan has been received")
         return _answer(save_map, grid, _stem(request.map_url))
 
     def _on_save_state(self, request):
-        return _answer(save_state, self._mapping.state(), request.map_url)
+        return _answer(save_state, self._mapper.state(), request.map_url)
 
     def _on_load_state(self, request):
-        return _answer(self._mapping.load, request.map_url)
+        return _answer(self._mapper.load, request.map_url)
 
 
 def _answer(act: Callable[..., object], *arguments) -> Dict[str, LoadMapResult]:

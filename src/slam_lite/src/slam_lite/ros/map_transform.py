@@ -1,4 +1,4 @@
-"""The transform from the map to the odometry."""
+"""Broadcaster of the transform map -> odom."""
 
 from typing import Optional
 
@@ -8,15 +8,15 @@ from planar_ros.messages.conversion import frame_name
 from planar_ros.messages.transforms import Transforms
 from planar_ros.step import LockstepClient
 from slam_lite.config import NodeSettings
-from slam_lite.ros.mapping import Mapping
+from slam_lite.ros.thread_safe_mapper import ThreadSafeMapper
 
 
-class MapTransform:
-    """Sends where the odometry frame is in the map, at a steady rate unless its period is 0."""
+class MapTransformBroadcaster:
+    """Broadcasts map -> odom every ``transform_publish_period``, unless that is 0."""
 
-    def __init__(self, settings: NodeSettings, mapping: Mapping, transforms: Transforms):
+    def __init__(self, settings: NodeSettings, mapper: ThreadSafeMapper, transforms: Transforms):
         self._settings = settings
-        self._mapping = mapping
+        self._mapper = mapper
         self._transforms = transforms
         self._stamp: Optional[rospy.Time] = None
         if settings.transform_publish_period > 0.0:
@@ -30,7 +30,7 @@ class MapTransform:
         delay = settings.tf_delay if settings.tf_delay >= 0.0 else settings.transform_publish_period
         stamp = rospy.Time.now() + rospy.Duration(delay)
         if stamp == self._stamp:
-            return  # a simulated clock may stand still, and tf complains of what it has been told before
+            return  # a simulated clock may stand still, and tf warns of repeated stamps
         self._stamp = stamp
         map_frame, odom_frame = frame_name(settings.map_frame), frame_name(settings.odom_frame)
-        self._transforms.send(self._mapping.odom_in_map, map_frame, odom_frame, stamp)
+        self._transforms.send(self._mapper.odom_in_map, map_frame, odom_frame, stamp)

@@ -1,4 +1,4 @@
-"""The node ``slam_gmapping``: between ROS and a Mapper, with the names and habits of gmapping 1.4."""
+"""The node ``slam_gmapping``, with the interface of gmapping 1.4."""
 
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
@@ -15,45 +15,45 @@ from planar_ros.node.shell import run
 from planar_ros.node.waiting import ReadinessMonitor
 from planar_ros.step import LockstepClient
 from slam_lite.config import WITHOUT_EFFECT, NodeSettings
-from slam_lite.ros.alarms import ALARM_SECONDS, MountingAlarm, OdometryAlarm
 from slam_lite.ros.file_services import FileServices
-from slam_lite.ros.map_topics import MapTopics
-from slam_lite.ros.map_transform import MapTransform
-from slam_lite.ros.mapping import Mapping
-from slam_lite.ros.state_keeper import StateKeeper
+from slam_lite.ros.input_checks import WARNING_SECONDS, LaserMountingCheck, OdometryCheck
+from slam_lite.ros.map_publisher import MapPublisher
+from slam_lite.ros.map_transform import MapTransformBroadcaster
+from slam_lite.ros.state_checkpoint import StateCheckpointer
+from slam_lite.ros.thread_safe_mapper import ThreadSafeMapper
 from slam_lite.warming import warm_up
 
 SCAN_QUEUE_SIZE = 5
 
 
 class SlamNode:
-    """Hands scans, which are dealt with in the queue's thread, to a mapping, whose outcome others publish."""
+    """Passes scans from the queue's thread to the mapper, whose results other objects publish."""
 
     def __init__(self):
         self._step = LockstepClient.of_node()
         settings = self._settings = read_settings(
             NodeSettings, official_names(NodeSettings), ignore=[*WITHOUT_EFFECT, "seed"]
         )
-        _tell_without_effect()
-        self._mapping = Mapping(settings)
-        self._odometry_alarm = OdometryAlarm()
+        _log_ignored_parameters()
+        self._mapper = ThreadSafeMapper(settings)
+        self._odometry_check = OdometryCheck()
         self._is_paused = False
         self._scan_count = 0
         if settings.state:
-            self._mapping.load(settings.state)
-        self._keeper = StateKeeper(self._mapping) if settings.resume else None
+            self._mapper.load(settings.state)
+        self._checkpointer = StateCheckpointer(self._mapper) if settings.resume else None
         warm_up(settings.matcher_plugin)
         self._connect()
 
     def _connect(self):
         settings = self._settings
         self._transforms = Transforms()
-        self._mounting_alarm = MountingAlarm(self._transforms, settings.base_frame)
-        self._maps = MapTopics(settings, self._mapping)
+        self._mounting_check = LaserMountingCheck(self._transforms, settings.base_frame)
+        self._maps = MapPublisher(settings, self._mapper)
         rospy.Service("~pause", SetBool, self._on_pause)
-        FileServices(self._mapping, self._maps)
+        FileServices(self._mapper, self._maps)
         subscribe("initialpose", PoseWithCovarianceStamped, self._on_initial_pose, queue_size=2)
-        self._mapping.start()
+        self._mapper.start_closing_loops()
         self._scans = ScanQueue(
             self._transforms,
             settings.odom_frame,
@@ -62,9 +62,9 @@ class SlamNode:
             self._on_skipped_scan,
             size=SCAN_QUEUE_SIZE,
         )
-        self._step.at_moments(self._mapping.close_loops)
-        self._step.at_moments(self._maps.draw_if_due)
-        MapTransform(settings, self._mapping, self._transforms)
+        self._step.at_moments(self._mapper.close_loops)
+        self._step.at_moments(self._maps.publish_if_due)
+        MapTransformBroadcaster(settings, self._mapper, self._transforms)
         self._step.join()
         ReadinessMonitor(
             {
@@ -76,13 +76,13 @@ class SlamNode:
     def _on_scan(self, message, scan, base_in_odom):
         self._scan_count += 1
         due = (self._scan_count - 1) % self._settings.throttle_scans == 0
-        if due and not self._is_paused and self._mounting_alarm.is_planar(message.header.frame_id):
-            update = self._mapping.insert(base_in_odom, scan)
+        if due and not self._is_paused and self._mounting_check.is_planar(message.header.frame_id):
+            update = self._mapper.insert(base_in_odom, scan)
             if update is not None:
-                self._odometry_alarm.note(update.surprise)
-            self._maps.note_scan(scan.stamp)
-            if self._keeper is not None:
-                self._keeper.note_scan(scan.stamp)
+                self._odometry_check.update(update.odometry_chi_square)
+            self._maps.on_scan(scan.stamp)
+            if self._checkpointer is not None:
+                self._checkpointer.on_scan(scan.stamp)
         self._step.report(message.header.stamp)
 
     def _on_skipped_scan(self, message, reason):
@@ -90,7 +90,7 @@ class SlamNode:
         mounting = self._transforms.mounting(settings.base_frame, message.header.frame_id)
         if mounting is not None and not self._has_odometry():
             rospy.logwarn_throttle(
-                ALARM_SECONDS,
+                WARNING_SECONDS,
                 "no odometry (no transform %s -> %s): mapping from the scans alone",
                 settings.odom_frame,
                 settings.base_frame,
@@ -100,7 +100,7 @@ class SlamNode:
                 return
             except PlanarError as error:
                 reason = str(error)
-        rospy.logwarn_throttle(ALARM_SECONDS, "skipping a scan: %s", reason)
+        rospy.logwarn_throttle(WARNING_SECONDS, "skipping a scan: %s", reason)
         self._step.report(message.header.stamp)
 
     def _on_pause(self, request):
@@ -109,10 +109,14 @@ class SlamNode:
 
     def _on_initial_pose(self, message):
         if frame_name(message.header.frame_id) != frame_name(self._settings.map_frame):
-            rospy.logwarn("ignoring an initial pose in frame %r", message.header.frame_id)
+            rospy.logwarn(
+                "ignoring an initial pose in frame %r: it has to be in %r",
+                message.header.frame_id,
+                self._settings.map_frame,
+            )
             return
         try:
-            self._mapping.place(pose2_from_msg(message.pose.pose))
+            self._mapper.set_pose(pose2_from_msg(message.pose.pose))
         except PlanarError as error:
             rospy.logwarn("ignoring an initial pose: %s", error)
 
@@ -120,11 +124,12 @@ class SlamNode:
         return self._transforms.latest_stamp(self._settings.odom_frame, self._settings.base_frame) is not None
 
 
-def _tell_without_effect():
+def _log_ignored_parameters():
     given = [name for name in WITHOUT_EFFECT if rospy.has_param("~" + name)]
     if given:
         rospy.loginfo(
-            "no particle filter, so no effect of %s (key_distance, key_angle say which scans are kept)",
+            "ignoring the particle filter's parameters %s: slam_lite optimizes a pose graph "
+            "(keyframe_distance and keyframe_angle choose its keyframes)",
             ", ".join(given),
         )
 

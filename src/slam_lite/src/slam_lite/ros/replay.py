@@ -1,4 +1,4 @@
-"""Maps a recorded bag, offline, as fast as the machine allows: ``slam_lite_replay BAG --map OUT``."""
+"""Offline mapping of a recorded bag: ``slam_lite_replay BAG --map OUT``."""
 
 import argparse
 from pathlib import Path
@@ -17,17 +17,17 @@ from planar_ros.bags.replaying import (
 from planar_ros.bags.scan_log import LoggedScan, ScanLog
 from slam_lite.config import NodeSettings
 from slam_lite.mapper import Mapper
-from slam_lite.trajectory import Trajectory
+from slam_lite.scan_trajectory import ScanTrajectory
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
-    """Returns 0; 1 if the bag broke off, and what was mapped is saved; 2 if nothing was mapped."""
+    """Return 0; 1 if the bag is truncated and the part before is saved; 2 if nothing was mapped."""
     return run_replay(_parser(), _replay, arguments)
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog="slam_lite_replay", description="Map a recorded bag, without a master."
+        prog="slam_lite_replay", description="Map a recorded bag, without a ROS master."
     )
     add_replay_options(parser, "slam_gmapping")
     parser.add_argument("--map", metavar="OUT", type=Path, help="write OUT.pgm and OUT.yaml")
@@ -36,7 +36,7 @@ def _parser() -> argparse.ArgumentParser:
         "--pose-of",
         choices=("laser", "base"),
         default="laser",
-        help="what the trajectory tells the pose of (default: the laser, where the scans were taken)",
+        help="frame of the trajectory's poses (default: laser, where the scans were taken)",
     )
     parser.add_argument("--base_frame", default="base_link", help="default: base_link")
     parser.add_argument("--odom_frame", default="odom", help="default: odom")
@@ -44,18 +44,20 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _replay(options: argparse.Namespace) -> int:
-    mapper, trajectory = Mapper(load_settings(NodeSettings, options.config)), Trajectory()
+    mapper, trajectory = Mapper(load_settings(NodeSettings, options.config)), ScanTrajectory()
     exit_code = _work_through(options, mapper, trajectory)
     if len(trajectory) == 0:
-        raise BagError(f"{options.bag}: no scans on {options.scan_topic} could be used")
-    mapper.settle()
+        raise BagError(f"{options.bag}: no usable scan on {options.scan_topic}")
+    mapper.run_final_optimization()
     _save(options, mapper, trajectory)
-    print(f"{len(trajectory)} scans, {len(mapper.key_poses)} kept, {mapper.loop_count} loop closures")
+    print(
+        f"{len(trajectory)} scans, {len(mapper.keyframe_poses)} keyframes, {mapper.loop_count} loop closures"
+    )
     return exit_code
 
 
-def _work_through(options: argparse.Namespace, mapper: Mapper, trajectory: Trajectory) -> int:
-    """Maps all scans; the bag's index takes no memory any more then."""
+def _work_through(options: argparse.Namespace, mapper: Mapper, trajectory: ScanTrajectory) -> int:
+    """Map all scans, and free the bag's index."""
     log = ScanLog(options.bag, options.scan_topic, options.base_frame, options.odom_frame, warn)
 
     def insert(logged: LoggedScan) -> None:
@@ -69,12 +71,12 @@ def _work_through(options: argparse.Namespace, mapper: Mapper, trajectory: Traje
     return process_scans(log, insert, "mapping", options.progress)
 
 
-def _save(options: argparse.Namespace, mapper: Mapper, trajectory: Trajectory) -> None:
-    """Writes what was asked for; the map also when the trajectory cannot be written."""
+def _save(options: argparse.Namespace, mapper: Mapper, trajectory: ScanTrajectory) -> None:
+    """Write the requested files; the map also when the trajectory cannot be written."""
     try:
         if options.trajectory:
             of_laser = options.pose_of == "laser"
-            write_trajectory(options.trajectory, trajectory.poses(mapper.key_poses, of_laser=of_laser))
+            write_trajectory(options.trajectory, trajectory.poses(mapper.keyframe_poses, of_laser=of_laser))
     finally:
         if options.map:
             save_map(mapper.grid_in_bands(), options.map)

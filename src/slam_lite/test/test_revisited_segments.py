@@ -1,4 +1,4 @@
-"""A robot comes back through a yard of trees, of which each of its scans sees but a few points."""
+"""A robot returns through a yard of trees, of which each scan sees only a few points."""
 
 import math
 
@@ -9,14 +9,14 @@ from planar import Pose2, Scan
 from slam_lite.back_end import BackEnd
 from slam_lite.config import MapperSettings
 from slam_lite.graph.pose_graph import Edge, Edges, chi_squares, edges_of
-from slam_lite.loops.way import way_of
-from slam_lite.loops.ways_back import ways_back
-from slam_lite.matching.local_map import wide_map
-from slam_lite.surface import surface_of
+from slam_lite.loops.revisited_segments import match_revisited_segments
+from slam_lite.loops.tracked_trajectory import tracked_trajectory
+from slam_lite.matching.local_map import long_range_map
+from slam_lite.point_cloud import point_cloud_of
 
-KEYS, STEP, BEAMS, SIGHT = 200, 0.4, 181, 30.0
+KEYFRAMES, STEP, BEAMS, RANGE = 200, 0.4, 181, 30.0
 FIRM, LOOSE = np.diag([40.0**2, 40.0**2, 200.0**2]), np.diag([25.0**2, 25.0**2, 14.0**2])
-# Where wheels have slipped, and by how much: metres and radians.
+# Wheel slips by keyframe: metres and radians.
 SLIPS = {60: Pose2(0.1, 0.15, 0.1), 300: Pose2(-0.1, 0.1, -0.12)}
 
 
@@ -35,9 +35,9 @@ def seen_from(pose, world, rng):
     depth = world[:, 2:] ** 2 - beside**2
     hits = np.where((depth > 0.0) & (along > 0.0), along - np.sqrt(np.maximum(depth, 0.0)), np.inf)
     ranges = hits.min(axis=0) + rng.normal(0.0, 0.02, BEAMS)
-    ranges[ranges > SIGHT] = np.inf
+    ranges[ranges > RANGE] = np.inf
     scan = Scan(0.0, angles[0], angles[1] - angles[0], ranges.astype(np.float32), 0.1, 80.0)
-    return surface_of(scan, 80.0, 0.05)
+    return point_cloud_of(scan, 80.0, 0.05)
 
 
 class Yard:
@@ -46,33 +46,33 @@ class Yard:
     def __init__(self, seed, there_again=True):
         rng = np.random.default_rng(seed)
         world = trees(rng)
-        self.true = [Pose2(STEP * i, 0.0, 0.0) for i in range(KEYS)]
+        self.true = [Pose2(STEP * i, 0.0, 0.0) for i in range(KEYFRAMES)]
         self.true += [Pose2(pose.x, 0.5, math.pi) for pose in reversed(self.true)]
         elsewhere = world if there_again else trees(rng)
-        worlds = [world] * KEYS + [elsewhere] * KEYS
-        self.surfaces = [seen_from(pose, each, rng) for pose, each in zip(self.true, worlds)]
+        worlds = [world] * KEYFRAMES + [elsewhere] * KEYFRAMES
+        self.clouds = [seen_from(pose, each, rng) for pose, each in zip(self.true, worlds)]
         steps = [a.inverse() @ b for a, b in zip(self.true, self.true[1:])]
-        for key, slip in SLIPS.items():
-            steps[key] = steps[key] @ slip
+        for keyframe, slip in SLIPS.items():
+            steps[keyframe] = steps[keyframe] @ slip
         steps = [step @ Pose2(*rng.normal(0.0, (0.01, 0.01, 0.001))) for step in steps]
         self.edges = edges_of(*(Edge(i, i + 1, step, LOOSE) for i, step in enumerate(steps)))
-        self.poses = way_of(np.zeros(3), self.edges).poses
-        self.poses[KEYS:, :2] += [1.0, -1.2]
+        self.poses = tracked_trajectory(np.zeros(3), self.edges).poses
+        self.poses[KEYFRAMES:, :2] += [1.0, -1.2]
 
     def chi_squares(self, edges):
-        """How badly the truth meets them."""
+        """Chi-square of each edge at the true poses."""
         return chi_squares(np.array([pose.as_array() for pose in self.true]), edges_of(*edges))
 
 
 @pytest.mark.parametrize("seed", [60, 61, 62])
-def test_the_way_back_is_tied_but_where_wheels_have_slipped(seed):
+def test_loops_are_closed_on_the_return_despite_wheel_slips(seed):
     yard = Yard(seed)
-    found = ways_back(yard.poses, yard.edges, yard.surfaces, wide_map())
+    found = match_revisited_segments(yard.poses, yard.edges, yard.clouds, long_range_map())
     assert len(found) > 12
     chi = yard.chi_squares(found)
     assert np.median(chi) < 4.0
     assert np.mean(chi > 16.0) < 0.2
-    assert all(edge.is_loop and edge.first < KEYS < edge.second for edge in found)
+    assert all(edge.is_loop and edge.first < KEYFRAMES < edge.second for edge in found)
 
 
 def with_loop(yard, first, second):
@@ -83,33 +83,35 @@ def with_loop(yard, first, second):
 
 
 @pytest.mark.parametrize("seed", [60, 68])
-def test_the_last_tie_tells_where_the_robot_is_however_far_off_the_graph_is(seed):
+def test_the_nearest_loop_closure_predicts_the_pose_however_wrong_the_graph_is(seed):
     yard = Yard(seed)
-    yard.poses[KEYS:, 1] += 12.0
-    assert ways_back(yard.poses, yard.edges, yard.surfaces, wide_map()) == []
-    edges = with_loop(yard, KEYS - 30, KEYS + 30)
-    found = ways_back(yard.poses, edges, yard.surfaces, wide_map())
+    yard.poses[KEYFRAMES:, 1] += 12.0
+    assert match_revisited_segments(yard.poses, yard.edges, yard.clouds, long_range_map()) == []
+    edges = with_loop(yard, KEYFRAMES - 30, KEYFRAMES + 30)
+    found = match_revisited_segments(yard.poses, edges, yard.clouds, long_range_map())
     assert len(found) > 12
     assert np.mean(yard.chi_squares(found) > 16.0) < 0.2
 
 
 @pytest.mark.parametrize("seed", [63, 64])
-def test_another_yard_is_no_way_back(seed):
+def test_another_yard_does_not_match(seed):
     yard = Yard(seed, there_again=False)
-    assert ways_back(yard.poses, yard.edges, yard.surfaces, wide_map()) == []
+    assert match_revisited_segments(yard.poses, yard.edges, yard.clouds, long_range_map()) == []
 
 
-def settled(yard, settings=MapperSettings()):
+def optimized(yard, settings=MapperSettings()):
     back_end = BackEnd(settings)
-    back_end.restore(yard.surfaces, yard.poses, yard.edges)
-    back_end.settle()
+    back_end.restore(yard.clouds, yard.poses, yard.edges)
+    back_end.run_final_optimization()
     return back_end
 
 
-def misses(poses):
-    """How far beside the way there the way back lies, (N,)."""
+def return_errors(poses):
+    """Position errors (N, 2) of the return relative to the way there [m]."""
     poses = [Pose2.from_array(pose) for pose in poses]
-    there_and_back = [(poses[key], poses[2 * KEYS - 1 - key]) for key in range(10, KEYS, 10)]
+    there_and_back = [
+        (poses[keyframe], poses[2 * KEYFRAMES - 1 - keyframe]) for keyframe in range(10, KEYFRAMES, 10)
+    ]
     return np.array(
         [
             there.inverse().transform_points([[back.x, back.y]])[0] - [0.0, 0.5]
@@ -119,28 +121,29 @@ def misses(poses):
 
 
 @pytest.mark.parametrize("seed", [65, 67])
-def test_a_settled_map_is_true_there_and_stays_so(seed):
+def test_the_final_optimization_corrects_the_return_and_is_stable(seed):
     yard = Yard(seed)
-    back_end = settled(yard)
-    before, after = (np.hypot(*misses(poses).T).mean() for poses in (yard.poses, back_end.poses))
+    back_end = optimized(yard)
+    before, after = (np.hypot(*return_errors(poses).T).mean() for poses in (yard.poses, back_end.poses))
     assert before > 1.0
     assert after < 0.3
     found = len(back_end.edges) - len(yard.edges)
-    back_end.settle()
+    back_end.run_final_optimization()
     assert len(back_end.edges) - len(yard.edges) - found < 0.3 * found
 
 
-def test_who_wants_no_loops_closed_gets_none():
+def test_close_loops_switches_it_off():
     yard = Yard(66)
-    assert len(settled(yard, MapperSettings(close_loops=False)).edges) == len(yard.edges)
+    assert len(optimized(yard, MapperSettings(close_loops=False)).edges) == len(yard.edges)
 
 
-def test_a_robot_that_was_put_down_anew_has_driven_no_way_in_between():
+def test_a_break_of_the_trajectory_counts_as_a_long_path():
     steps = [Edge(i, i + 1, Pose2(1.0, 0.0, 0.1), FIRM) for i in range(40)]
     steps[20] = Edge(20, 21, Pose2(1.0, 0.0, 0.1), np.diag([4.0, 4.0, 10.0]))
-    way = way_of(np.array([1.0, 2.0, 0.3]), edges_of(*steps))
+    trajectory = tracked_trajectory(np.array([1.0, 2.0, 0.3]), edges_of(*steps))
     np.testing.assert_allclose(
-        way.poses[2], (Pose2(1.0, 2.0, 0.3) @ Pose2(1.0, 0.0, 0.1) @ steps[1].second_in_first).as_array()
+        trajectory.poses[2],
+        (Pose2(1.0, 2.0, 0.3) @ Pose2(1.0, 0.0, 0.1) @ steps[1].second_in_first).as_array(),
     )
-    assert way.around(18, 14.5) == (4, 20)
-    assert way.around(24, 14.5) == (21, 38)
+    assert trajectory.within(18, 14.5) == (4, 20)
+    assert trajectory.within(24, 14.5) == (21, 38)

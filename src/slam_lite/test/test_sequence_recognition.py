@@ -1,4 +1,4 @@
-"""A street of houses that is driven again, after a way on which nothing was seen."""
+"""A street of houses that is driven again, after a path without scans."""
 
 import math
 
@@ -7,15 +7,15 @@ import pytest
 
 from planar import Pose2, wrap
 from slam_lite.graph.pose_graph import Edge, edges_of
-from slam_lite.loops.recollection import recollected
-from slam_lite.loops.way import way_of
-from slam_lite.surface import Surface
+from slam_lite.loops.sequence_recognition import recognize_sequences
+from slam_lite.loops.tracked_trajectory import tracked_trajectory
+from slam_lite.point_cloud import PointCloud
 
-KEYS, STEP, SIGHT = 250, 0.4, 15.0
+KEYFRAMES, STEP, SIGHT = 250, 0.4, 15.0
 FIRM, LOOSE = np.diag([100.0**2, 100.0**2, 1000.0**2]), np.diag([30.0**-2, 30.0**-2, 0.5**-2])
 SLIPPERY, SEEN = np.diag([10.0**2, 10.0**2, 10.0**2]), np.diag([1.0, 1.0, 50.0**2])
-STREET = [Pose2(STEP * i, 0.0, 0.0) for i in range(KEYS)]
-# From the end of the street back to its beginning, as it was measured, wrongly.
+STREET = [Pose2(STEP * i, 0.0, 0.0) for i in range(KEYFRAMES)]
+# Wrong measurement from the end of the street back to its beginning.
 MEASURED = Pose2(-80.0, 30.0, 0.6)
 
 
@@ -56,14 +56,14 @@ def seen_from(pose, world, rng):
     seen = (np.hypot(*toward.T) < SIGHT) & ((toward * normals).sum(axis=1) > 0.0)
     seen &= rng.uniform(size=len(points)) < 0.2
     points = pose.inverse().transform_points(points[seen]) + rng.normal(0.0, 0.02, (seen.sum(), 2))
-    return Surface(
+    return PointCloud(
         points.astype(np.float32),
         Pose2(0.0, 0.0, -pose.yaw).transform_points(normals[seen]).astype(np.float32),
     )
 
 
 def steps_along(true, rng):
-    """Edges of what was measured from each pose to the next."""
+    """Measured edges from each pose to the next."""
     steps = [a.inverse() @ b @ Pose2(*rng.normal(0.0, (0.01, 0.01, 0.001))) for a, b in zip(true, true[1:])]
     return [Edge(i, i + 1, step, FIRM) for i, step in enumerate(steps)]
 
@@ -74,74 +74,76 @@ class Street:
         world = walls(houses(rng, period))
         again = world if there_again else walls(houses(rng, period))
         self.true = 2 * STREET
-        worlds = KEYS * [world] + KEYS * [again]
-        self.surfaces = [seen_from(pose, each, rng) for pose, each in zip(self.true, worlds)]
+        worlds = KEYFRAMES * [world] + KEYFRAMES * [again]
+        self.clouds = [seen_from(pose, each, rng) for pose, each in zip(self.true, worlds)]
         steps = steps_along(self.true, rng)
-        steps[KEYS - 1] = Edge(KEYS - 1, KEYS, MEASURED, back)
+        steps[KEYFRAMES - 1] = Edge(KEYFRAMES - 1, KEYFRAMES, MEASURED, back)
         self.edges = edges_of(*steps)
-        self.way = way_of(np.zeros(3), self.edges)
+        self.trajectory = tracked_trajectory(np.zeros(3), self.edges)
 
-    def recollected(self):
-        return recollected(self.way.poses, self.edges, self.surfaces, self.way)
+    def recognized(self):
+        return recognize_sequences(self.trajectory.poses, self.edges, self.clouds, self.trajectory)
 
 
-def recollected_of_twins(seed):
-    """Two streets of the same houses; between them wheels slip, nothing is seen; one end sees the other."""
+def recognized_in_identical_streets(seed):
+    """Two streets of the same houses, between them wheel slips without scans; one end sees the other."""
     rng = np.random.default_rng(seed)
     world = walls(houses(rng))
-    nothing = Surface(np.zeros((0, 2), dtype=np.float32), np.zeros((0, 2), dtype=np.float32))
-    street, twin = ([seen_from(pose, world, rng) for pose in STREET] for _ in range(2))
+    empty = PointCloud(np.zeros((0, 2), dtype=np.float32), np.zeros((0, 2), dtype=np.float32))
+    street, copy = ([seen_from(pose, world, rng) for pose in STREET] for _ in range(2))
     way = [Pose2(STREET[-1].x - share * 40.0, -share * 40.0, 0.0) for share in np.linspace(0.0, 1.0, 100)]
     true = [*STREET, *way[1:-1], *(way[-1] @ pose for pose in STREET)]
     steps = steps_along(true, rng)
-    for i in range(KEYS - 1, len(true) - KEYS):
+    for i in range(KEYFRAMES - 1, len(true) - KEYFRAMES):
         steps[i] = Edge(i, i + 1, steps[i].second_in_first, SLIPPERY)
-    ends = Edge(KEYS - 1, len(true) - 1, true[KEYS - 1].inverse() @ true[-1], SEEN, is_loop=True)
+    ends = Edge(KEYFRAMES - 1, len(true) - 1, true[KEYFRAMES - 1].inverse() @ true[-1], SEEN, is_loop=True)
     edges = edges_of(*steps, ends)
-    surfaces = [*street, *(len(way) - 2) * [nothing], *twin]
+    clouds = [*street, *(len(way) - 2) * [empty], *copy]
     poses = np.array([pose.as_array() for pose in true])
-    return recollected(poses, edges, surfaces, way_of(np.zeros(3), edges))
+    return recognize_sequences(poses, edges, clouds, tracked_trajectory(np.zeros(3), edges))
 
 
 @pytest.mark.parametrize("seed", [80, 81, 82])
-def test_a_way_driven_again_is_told_by_its_looks(seed):
+def test_a_revisited_street_is_recognized(seed):
     street = Street(seed)
-    found = street.recollected()
+    found = street.recognized()
     assert len(found) >= 5
     for each in found:
         true = street.true[each.place].inverse() @ street.true[each.recent]
-        assert each.place < KEYS <= each.recent
+        assert each.place < KEYFRAMES <= each.recent
         assert each.recent_in_place.distance_to(true) < 1.0
         assert abs(wrap(each.recent_in_place.yaw - true.yaw)) < 0.05
 
 
 @pytest.mark.parametrize("seed", [80, 81, 82])
-def test_equal_houses_tell_nothing(seed):
-    assert Street(seed, period=12.0).recollected() == []
+def test_a_street_of_identical_houses_is_not_recognized(seed):
+    assert Street(seed, period=12.0).recognized() == []
 
 
 @pytest.mark.parametrize("seed", [80, 81, 82])
-def test_another_street_tells_nothing(seed):
-    assert Street(seed, there_again=False).recollected() == []
+def test_another_street_is_not_recognized(seed):
+    assert Street(seed, there_again=False).recognized() == []
 
 
-def test_a_graph_that_is_sure_of_another_place_is_believed():
-    assert Street(80, back=FIRM).recollected() == []
+def test_a_graph_with_little_covariance_rules_a_hypothesis_out():
+    assert Street(80, back=FIRM).recognized() == []
 
 
 @pytest.mark.parametrize("seed", [80, 81, 82])
-def test_a_street_of_the_same_houses_elsewhere_is_another_one(seed):
-    assert recollected_of_twins(seed) == []
+def test_an_identical_street_elsewhere_is_not_recognized(seed):
+    assert recognized_in_identical_streets(seed) == []
 
 
-def test_what_the_graph_knows_is_no_news():
+def test_hypotheses_that_the_graph_agrees_with_are_dropped():
     street = Street(80)
     true = np.array([pose.as_array() for pose in street.true])
-    assert recollected(true, street.edges, street.surfaces, street.way) == []
+    assert recognize_sequences(true, street.edges, street.clouds, street.trajectory) == []
 
 
-def test_without_keys_nothing_is_recollected():
+def test_without_keyframes_nothing_is_recognized():
     assert (
-        recollected(np.zeros((1, 3)), edges_of(), [Street(80).surfaces[0]], way_of(np.zeros(3), edges_of()))
+        recognize_sequences(
+            np.zeros((1, 3)), edges_of(), [Street(80).clouds[0]], tracked_trajectory(np.zeros(3), edges_of())
+        )
         == []
     )

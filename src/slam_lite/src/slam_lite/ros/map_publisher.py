@@ -1,4 +1,4 @@
-"""The map as topics and a service."""
+"""Publisher of the map: topics and a service."""
 
 import math
 import threading
@@ -14,24 +14,24 @@ from planar import OccupancyGrid
 from planar_ros.messages.conversion import GetMapArrays, OccupancyGridArrays, frame_name, grid_to_msg
 from planar_ros.step import LockstepClient
 from slam_lite.config import NodeSettings
-from slam_lite.ros.mapping import Mapping
+from slam_lite.ros.thread_safe_mapper import ThreadSafeMapper
 
-# The entropy is that of the pose told to this much: 1 cm, 1 cm and 0.01 rad.
+# Resolution of the pose of which the entropy is published: 1 cm, 1 cm and 0.01 rad.
 ENTROPY_CELL = 1e-6
-# Wall seconds between two looks whether the node is still in step.
+# Wall seconds between two checks whether the node is still synchronised.
 IN_STEP_SECONDS = 0.2
 
 
-class MapTopics:
-    """Draws the map and publishes it, in a thread of its own, so that it keeps no scan waiting.
+class MapPublisher:
+    """Renders and publishes the map in its own thread, so that scans do not wait for it.
 
-    In step it does so at moments.
+    In a synchronised node it does so when the callbacks of a tick are done.
     """
 
-    def __init__(self, settings: NodeSettings, mapping: Mapping):
+    def __init__(self, settings: NodeSettings, mapper: ThreadSafeMapper):
         self._settings = settings
-        self._mapping = mapping
-        self._drawing = threading.Lock()
+        self._mapper = mapper
+        self._rendering = threading.Lock()
         self._is_due = threading.Event()
         self._stamp = -math.inf
         self._message: Optional[OccupancyGridArrays] = None
@@ -39,41 +39,42 @@ class MapTopics:
         self._metadata_publisher = rospy.Publisher("map_metadata", MapMetaData, queue_size=1, latch=True)
         self._entropy_publisher = rospy.Publisher("~entropy", Float64, queue_size=1, latch=True)
         rospy.Service("dynamic_map", GetMapArrays, self._on_dynamic_map)
-        threading.Thread(target=self._draw_maps, daemon=True).start()
+        threading.Thread(target=self._publish_maps, daemon=True).start()
         rospy.on_shutdown(self._is_due.set)
 
-    def note_scan(self, stamp: float) -> None:
-        """There is a scan of this time: a map is due when the last one is old enough."""
+    def on_scan(self, stamp: float) -> None:
+        """A scan was inserted: the next map is due ``map_update_interval`` after the last, by the stamps."""
         if not 0.0 <= stamp - self._stamp < self._settings.map_update_interval:
             self._stamp = stamp
             self._is_due.set()
 
     def grid(self) -> Optional[OccupancyGrid]:
-        """The map as far as it is known now, None before the first scan."""
-        renderer, evidence, _ = self._mapping.drawing()
-        with self._drawing:
+        """Render the present map; None before the first scan."""
+        renderer, evidence, _ = self._mapper.render_job()
+        with self._rendering:
             renderer.update(evidence)
             grid = renderer.grid()
         return grid if len(evidence.poses) else None
 
-    def draw_if_due(self) -> None:
+    def publish_if_due(self) -> None:
+        """Render and publish the map if it is due."""
         if self._is_due.is_set() and not rospy.is_shutdown():
             self._is_due.clear()
             self._publish()
 
-    def _draw_maps(self) -> None:
+    def _publish_maps(self) -> None:
         step = LockstepClient.of_node()
         while not rospy.is_shutdown():
             self._is_due.wait()
             if step.is_on:
                 time.sleep(IN_STEP_SECONDS)
             else:
-                self.draw_if_due()
+                self.publish_if_due()
 
     def _publish(self) -> None:
         settings = self._settings
-        renderer, evidence, information = self._mapping.drawing()
-        with self._drawing:
+        renderer, evidence, information = self._mapper.render_job()
+        with self._rendering:
             renderer.update(evidence)
             grid = renderer.grid(settings.extent)
         message = grid_to_msg(grid, rospy.Time.now(), frame_name(settings.map_frame))
@@ -86,14 +87,14 @@ class MapTopics:
 
     def _on_dynamic_map(self, request):
         if self._message is None:
-            raise rospy.ServiceException("there is no map yet")
+            raise rospy.ServiceException("there is no map yet: no scan has been received")
         response = GetMapArrays._response_class()
         response.map = self._message
         return response
 
 
 def _entropy(information: Optional[np.ndarray]) -> float:
-    """Entropy, nats, of a pose of this information when told to the cell of ENTROPY_CELL."""
+    """Entropy [nats] of a pose with this information, at a resolution of ENTROPY_CELL."""
     if information is None or np.linalg.det(information) <= 0.0:
         return 0.0
     log_volume = 1.5 * math.log(2.0 * math.pi * math.e) - 0.5 * math.log(np.linalg.det(information))

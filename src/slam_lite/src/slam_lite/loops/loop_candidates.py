@@ -1,0 +1,152 @@
+"""Loop candidates: pairs of keyframes that may see the same place, to be searched for a loop closure.
+
+A place is a candidate if the path to it along the pose graph, on which errors accumulate, is much longer than
+the straight line (E. Olson, "Recognizing places using spectrally clustered local matches", RAS 2009). Beyond
+the search windows of these, candidates come from place recognition.
+"""
+
+from dataclasses import dataclass
+from typing import List
+
+import numpy as np
+
+from planar import Pose2, wrap
+from slam_lite.config import MapperSettings
+from slam_lite.graph.drift import shortest_paths, variances_xy
+from slam_lite.graph.pose_graph import Edges, relative_pose
+from slam_lite.loops.place_recognition import PlaceHypothesis
+from slam_lite.matching.correlative import SearchWindow
+
+# Growth of the search window with the path along the graph: metres and radians per metre.
+_DRIFT_DISTANCE, _DRIFT_ANGLE = 0.04, 0.008
+# Size of windows that are searched once an interval [m].
+_OFTEN_DISTANCE = 8.0
+_MIN_WINDOW, _MAX_WINDOW = SearchWindow(0.3, 0.1), SearchWindow(12.0, 0.8)
+# Path from which on the window does not grow any more [m].
+_MAX_PATH = _MAX_WINDOW.distance / _DRIFT_DISTANCE
+# Standard deviations by which the graph may be off; those that matches state are pessimistic.
+_MAX_SIGMAS = 1.5
+# Error of the pose at which two places look alike.
+_RECOGNITION_WINDOW = SearchWindow(4.0, 0.15)
+# Keyframes and path [m] up to the recent one that are merged for a match in windows up to the given size [m];
+# in wider ones in proportion, up to so many times as many: there it takes more to distinguish corridors.
+_RECENT_KEYFRAMES, RECENT_PATH = 12, 4.0
+_UNSCALED_DISTANCE, _MAX_SCALE = 2.0, 3.0
+# Standard deviation, as a path length [m], from which on a step is a guess.
+_GUESS_PATH = 5.0
+_MAX_CANDIDATES = 3
+
+
+@dataclass(frozen=True)
+class LoopCandidate:
+    """Two keyframes that may see the same place.
+
+    Attributes:
+        place: Index of the older keyframe.
+        recent: Index of the recent keyframe.
+        recent_keyframes: Number of keyframes up to the recent one that are merged for the match.
+        window: Window to search, around ``guess``.
+        scale: How many times more keyframes than in a small window are needed.
+        guess: Pose of the recent keyframe in the older one.
+        is_recognized: Whether the guess comes from place recognition instead of the graph.
+    """
+
+    place: int
+    recent: int
+    recent_keyframes: int
+    window: SearchWindow
+    scale: float
+    guess: Pose2
+    is_recognized: bool = False
+
+    @property
+    def is_ambiguous(self) -> bool:
+        """Whether the robot may be somewhere else that looks much the same."""
+        return self.is_recognized or self.scale >= _MAX_SCALE
+
+
+def loop_candidates(
+    recent: int, poses: np.ndarray, edges: Edges, settings: MapperSettings
+) -> List[LoopCandidate]:
+    """Find the candidates that the graph suggests for a keyframe.
+
+    Args:
+        recent: Index of the keyframe.
+        poses: (N, 3), of all keyframes in the map frame.
+        edges: Of the pose graph.
+        settings: ``closure_min_detour`` and ``closure_interval``.
+
+    Returns:
+        At most three candidates, nearest first.
+    """
+    straight = np.hypot(poses[:, 0] - poses[recent, 0], poses[:, 1] - poses[recent, 1])
+    if np.count_nonzero(straight < _MAX_WINDOW.distance + 2.0) <= _RECENT_KEYFRAMES:
+        return []
+    paths, _ = shortest_paths(recent, len(poses), edges, edge_lengths(edges), _MAX_PATH)
+    windows = np.clip(_DRIFT_DISTANCE * paths, _MIN_WINDOW.distance, _MAX_WINDOW.distance)
+    possible = (paths > settings.closure_min_detour + 2.0 * straight) & (straight < windows + 2.0)
+    # A wide window is searched less often: it stays much the same while the robot drives on.
+    intervals = np.maximum(1, np.rint(windows / _OFTEN_DISTANCE)) * settings.closure_interval
+    possible &= recent % intervals < settings.closure_interval
+    keyframes = np.flatnonzero(possible)
+    if len(keyframes) == 0:
+        return []
+    segments = np.split(keyframes, np.flatnonzero(np.diff(keyframes) > 5) + 1)
+    nearest = [int(segment[np.argmin(straight[segment])]) for segment in segments]
+    nearest.sort(key=lambda place: straight[place])
+    return [
+        _candidate(place, recent, paths, float(windows[place]), relative_pose(poses, place, recent))
+        for place in nearest[:_MAX_CANDIDATES]
+    ]
+
+
+def candidate_at_recognized_place(
+    place: int, recent: int, recent_keyframes: int, recent_in_place: Pose2
+) -> LoopCandidate:
+    """Make the candidate at a place that looks like where ``recent`` is, wherever the graph has it."""
+    return LoopCandidate(
+        place, recent, recent_keyframes, _RECOGNITION_WINDOW, _MAX_SCALE, recent_in_place, True
+    )
+
+
+def _candidate(place: int, recent: int, paths: np.ndarray, distance: float, guess: Pose2) -> LoopCandidate:
+    scale = float(np.clip(distance / _UNSCALED_DISTANCE, 1.0, _MAX_SCALE))
+    latest = paths[max(0, recent - round(scale * _RECENT_KEYFRAMES) + 1) : recent + 1][::-1]
+    recent_keyframes = int(np.argmax(latest > scale * RECENT_PATH)) or len(latest)
+    angle = float(np.clip(_DRIFT_ANGLE * paths[place], _MIN_WINDOW.angle, _MAX_WINDOW.angle))
+    return LoopCandidate(place, recent, recent_keyframes, SearchWindow(distance, angle), scale, guess)
+
+
+def are_outside_search_windows(paths: np.ndarray, drift: np.ndarray) -> np.ndarray:
+    """Which places may lie farther off than ``loop_candidates`` searches.
+
+    Args:
+        paths: (N,), length of the path along the graph to each place [m].
+        drift: (N, 2), standard deviations of position [m] and heading [rad].
+
+    Returns:
+        (N,) booleans.
+    """
+    windows = np.clip(_DRIFT_DISTANCE * paths, _MIN_WINDOW.distance, _MAX_WINDOW.distance)
+    return (_MAX_SIGMAS * drift[:, 0] > windows + 2.0) | (_MAX_SIGMAS * drift[:, 1] > _MAX_WINDOW.angle)
+
+
+def is_within_drift(hypothesis: PlaceHypothesis, poses: np.ndarray, drift: np.ndarray) -> bool:
+    """Whether the graph may be off by as much as a hypothesis implies; ``drift`` (2,) as above."""
+    measured = hypothesis.recent_in_place.inverse()
+    estimated = relative_pose(poses, hypothesis.recent, hypothesis.place)
+    is_near = measured.distance_to(estimated) < _MAX_SIGMAS * drift[0] + _RECOGNITION_WINDOW.distance
+    turn = abs(wrap(measured.yaw - estimated.yaw))
+    return bool(is_near and turn < _MAX_SIGMAS * drift[1] + _RECOGNITION_WINDOW.angle)
+
+
+def edge_lengths(edges: Edges) -> np.ndarray:
+    """Length (E,) of each edge: metres, with a radian counted as one.
+
+    A loop closure, and a step that is only a guess, is as long as the path on which the front end drifts by
+    its standard deviation.
+    """
+    steps = edges.measured
+    lengths = np.hypot(steps[:, 0], steps[:, 1]) + np.abs(steps[:, 2])
+    equivalent = np.sqrt(variances_xy(edges)) / _DRIFT_DISTANCE
+    return np.where(edges.is_loop | (equivalent > _GUESS_PATH), equivalent, lengths)

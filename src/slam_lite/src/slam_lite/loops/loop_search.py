@@ -1,0 +1,84 @@
+"""Search for a loop closure at a candidate: a good match, and the only good one in the window."""
+
+import math
+from typing import List, Optional, Sequence
+
+import numpy as np
+
+from planar import Pose2
+from slam_lite.config import MapperSettings
+from slam_lite.graph.pose_graph import Edge, relative_pose
+from slam_lite.loops.degeneracy import constraint_at_peak, refine_at
+from slam_lite.loops.loop_candidates import LoopCandidate
+from slam_lite.loops.loop_closure import LoopClosure
+from slam_lite.loops.static_points import static_points
+from slam_lite.loops.visibility import PosedCloud, visibility_conflict
+from slam_lite.matching.correlative import search_branch_and_bound
+from slam_lite.matching.local_map import LocalMap, Match
+from slam_lite.point_cloud import PointCloud, downsampled
+
+# Keyframes of the place, to each side, and their distance from it [m], that are merged for a match in a small
+# window.
+_PLACE_KEYFRAMES, _PLACE_RADIUS = 20, 6.0
+# Fraction of the walls that may be seen through where a candidate is ambiguous, as by people who have left.
+_MAX_VISIBILITY_CONFLICT = 0.025
+_MIN_POINTS, _MAX_POINTS = 50, 500
+
+
+def find_loop_closure(
+    candidate: LoopCandidate,
+    poses: np.ndarray,
+    clouds: Sequence[PointCloud],
+    local_map: LocalMap,
+    settings: MapperSettings,
+) -> Optional[LoopClosure]:
+    """Match the recent keyframes of a candidate to those around its place.
+
+    Args:
+        candidate: Where to search.
+        poses: (N, 3), of all keyframes in the map frame.
+        clouds: Of all keyframes.
+        local_map: Is overwritten.
+        settings: ``closure_min_response``.
+
+    Returns:
+        The loop closure, None if there is no good and unambiguous match. It still has to be verified.
+    """
+    place, recent = candidate.place, candidate.recent
+    first_recent = recent - candidate.recent_keyframes + 1
+    place_clouds = _clouds_around(place, candidate.scale, first_recent, poses, clouds)
+    local_map.clear(Pose2())
+    for posed in place_clouds:
+        local_map.add(*posed)
+    recent_clouds = [(clouds[i], relative_pose(poses, recent, i)) for i in range(first_recent, recent + 1)]
+    recent_cloud = downsampled(static_points(recent_clouds), _MAX_POINTS)
+    if len(recent_cloud) < _MIN_POINTS:
+        return None
+    min_score = 0.7 * settings.closure_min_response
+    sample, layer = downsampled(recent_cloud, 200), local_map.layer_for(recent_cloud)
+    peak = search_branch_and_bound(sample, layer, candidate.guess, candidate.window, min_score, apart=0.6)
+    if peak is None or not peak.is_unique or (candidate.is_recognized and peak.degenerate_direction.any()):
+        return None
+
+    def match_at(start: Pose2) -> Optional[Match]:
+        match = refine_at(start, recent_cloud, local_map, settings.closure_min_response)
+        if match is None or not candidate.is_ambiguous:
+            return match
+        conflict = visibility_conflict(place_clouds, recent_clouds, match.base_pose)
+        return match if conflict <= _MAX_VISIBILITY_CONFLICT else None
+
+    constraint = constraint_at_peak(peak, candidate.guess, recent_cloud, local_map, match_at)
+    if constraint is None:
+        return None
+    edge = Edge(place, recent, constraint.base_in_place, constraint.information, is_loop=True)
+    return LoopClosure(edge, candidate, constraint.degenerate_direction)
+
+
+def _clouds_around(
+    place: int, scale: float, end: int, poses: np.ndarray, clouds: Sequence[PointCloud]
+) -> List[PosedCloud]:
+    """The keyframes near a place, before keyframe ``end``, each with its pose in that of the place."""
+    reach = round(scale * _PLACE_KEYFRAMES)
+    keyframes = range(max(0, place - reach), min(end, place + reach + 1))
+    posed = [(clouds[i], relative_pose(poses, place, i)) for i in keyframes]
+    return [(cloud, pose) for cloud, pose in posed if math.hypot(pose.x, pose.y) < scale * _PLACE_RADIUS]

@@ -1,0 +1,79 @@
+"""Visibility check: scans must not see through what others measured as walls."""
+
+import math
+from typing import Iterable, Sequence, Tuple
+
+import numba
+import numpy as np
+
+from planar import Pose2
+from slam_lite.point_cloud import PointCloud, downsampled, merge_clouds
+
+# The points of a scan, with its pose.
+PosedCloud = Tuple[PointCloud, Pose2]
+
+# Sectors of the circle by which beams are compared.
+_SECTORS = 360
+# A point is seen through if the beams beside it end so much behind it, hit if they end so near to it [m].
+_BEHIND, _AT = 0.4, 0.2
+# Points of a segment that are checked, and one of how many scans of the other that checks them.
+_MAX_POINTS, _SCAN_STEP = 500, 4
+
+
+def seen_through_fraction(walls: PointCloud, scans: Iterable[PosedCloud]) -> float:
+    """Fraction, 0 to 1, of the points visible from some scans, each with its pose, that these see through."""
+    through, hit = 0, 0
+    for scan, base_pose in scans:
+        inverse = base_pose.inverse()
+        counts = _count_visible(inverse.transform_points(walls.points_xy), scan.points_xy)
+        through, hit = through + counts[0], hit + counts[1]
+    return through / max(through + hit, 1)
+
+
+def visibility_conflict(
+    place: Sequence[PosedCloud], recent: Sequence[PosedCloud], recent_in_place: Pose2
+) -> float:
+    """Fraction, 0 to 1, of the walls of one segment that the scans of the other see through; the larger one.
+
+    Args:
+        place: Scans of one segment, with their poses in its frame.
+        recent: Scans of the other segment, with their poses in its frame.
+        recent_in_place: Frame of the second segment in that of the first.
+    """
+    recent = [(cloud, recent_in_place @ pose) for cloud, pose in recent]
+    return max(
+        seen_through_fraction(downsampled(merge_clouds(walls), _MAX_POINTS), scans[::_SCAN_STEP])
+        for walls, scans in ((place, recent), (recent, place))
+    )
+
+
+@numba.njit(cache=True, nogil=True)
+def _count_visible(points, ends):
+    """How many points beams from the origin to ``ends`` see through, and how many they hit."""
+    nearest, farthest = np.full(_SECTORS, np.inf), np.zeros(_SECTORS)
+    for i in range(len(ends)):
+        sector, distance = _polar(ends[i])
+        nearest[sector] = min(nearest[sector], distance)
+        farthest[sector] = max(farthest[sector], distance)
+    through, hit = 0, 0
+    for i in range(len(points)):
+        sector, distance = _polar(points[i])
+        least, most, is_visible = np.inf, 0.0, True
+        for neighbour in (-1, 0, 1):
+            at = (sector + neighbour) % _SECTORS
+            is_visible = is_visible and farthest[at] > 0.0
+            least, most = min(least, nearest[at]), max(most, farthest[at])
+        if not is_visible:
+            continue
+        if least > distance + _BEHIND:
+            through += 1
+        elif least < distance + _AT and most > distance - _AT:
+            hit += 1
+    return through, hit
+
+
+@numba.njit(cache=True, nogil=True)
+def _polar(point):
+    """Sector and distance of a point."""
+    turn = (math.atan2(point[1], point[0]) / (2.0 * math.pi)) % 1.0
+    return int(turn * _SECTORS) % _SECTORS, math.hypot(point[0], point[1])

@@ -1,0 +1,71 @@
+"""Error model of odometry: its variance by the settings, and its bias as scan matching reveals it.
+
+The bias (heading per metre and per radian, distance per metre) is estimated by least squares and removed; the
+remaining random error by its mean square (after A. Censi et al., "Simultaneous calibration of odometry and
+sensor parameters for mobile robots", IEEE T-RO 2013). So the robot keeps its heading where there is little to
+match.
+"""
+
+import math
+
+import numpy as np
+
+from planar import Pose2, wrap
+from slam_lite.config import MapperSettings
+
+# Motion, metres and radians, over which errors of odometry are correlated, and its error at rest.
+_LEG_DISTANCE, _LEG_TURN, _FLOOR = 0.3, 0.3, 0.005
+# Standard deviations of the bias before anything is learned: rad/m, rad/rad, m/m.
+_PRIOR = np.array([0.01, 0.05, 0.05])
+# Random error as a share of the variance in the settings, at least (at most all of it), and the number of
+# motions that this prior counts as.
+_MIN_SHARE, _PRIOR_COUNT = 0.02, 50.0
+# Errors of more standard deviations are wheel slips, from which nothing is learned.
+_SLIP_SIGMAS = 5.0
+
+
+class OdometryModel:
+    """Removes the learned bias of odometry from motions, and gives the variance of the rest."""
+
+    def __init__(self, settings: MapperSettings):
+        self._settings = settings
+        # Normal equations of the bias: of heading by distance and turn, and of distance.
+        self._yaw_information, self._distance_information = np.diag(_PRIOR[:2] ** -2), _PRIOR[2] ** -2
+        self._yaw_sum, self._distance_sum = np.zeros(2), 0.0
+        # Sums (2,) of the squared random error, distance and heading, in units of the settings' variance.
+        self._squares, self._count = np.full(2, _PRIOR_COUNT), _PRIOR_COUNT
+
+    def corrected(self, motion: Pose2) -> Pose2:
+        """Return a motion without the learned bias."""
+        per_distance, per_turn = np.linalg.solve(self._yaw_information, self._yaw_sum)
+        x = motion.x * (1.0 + self._distance_sum / self._distance_information)
+        return Pose2(x, motion.y, motion.yaw + per_distance * motion.x + per_turn * motion.yaw)
+
+    def variance(self, motion: Pose2) -> np.ndarray:
+        """Variances (3,), m^2, m^2, rad^2, of a corrected motion."""
+        xy, yaw = np.clip(self._squares / self._count, _MIN_SHARE, 1.0)
+        floor = _FLOOR**2
+        return (self.nominal_variance(motion) - floor) * [xy, xy, yaw] + floor
+
+    def nominal_variance(self, motion: Pose2) -> np.ndarray:
+        """Variances (3,), m^2, m^2, rad^2, by the settings: correlated within a leg, independent beyond."""
+        settings = self._settings
+        distance, turn = math.hypot(motion.x, motion.y), abs(motion.yaw)
+        by_distance, by_turn = distance * max(distance, _LEG_DISTANCE), turn * max(turn, _LEG_TURN)
+        xy = settings.odom_xy_per_distance**2 * by_distance + settings.odom_xy_per_turn**2 * by_turn
+        yaw = settings.odom_yaw_per_distance**2 * by_distance + settings.odom_yaw_per_turn**2 * by_turn
+        return np.array([xy, xy, yaw]) + _FLOOR**2
+
+    def learn(self, motion: Pose2, matched: Pose2) -> None:
+        """Update bias and random error by a ``motion`` of odometry that scan matching measured reliably."""
+        residual = (self.corrected(motion).inverse() @ matched).as_array()
+        variance, nominal = self.variance(motion), self.nominal_variance(motion)
+        if (residual**2 > _SLIP_SIGMAS**2 * nominal).any():
+            return
+        regressors = np.array([motion.x, motion.yaw])
+        self._yaw_information += np.outer(regressors, regressors) / variance[2]
+        self._yaw_sum += regressors * wrap(matched.yaw - motion.yaw) / variance[2]
+        self._distance_information += motion.x**2 / variance[0]
+        self._distance_sum += motion.x * (matched.x - motion.x) / variance[0]
+        self._squares += residual[[0, 2]] ** 2 / nominal[[0, 2]]
+        self._count += 1.0

@@ -1,0 +1,58 @@
+"""Checks of the input that log warnings, throttled."""
+
+from typing import Dict
+
+import rospy
+
+from planar_ros.messages.conversion import frame_name
+from planar_ros.messages.transforms import Transforms
+
+WARNING_SECONDS = 15.0
+# Mean chi-square of odometry from which on a warning is logged (3 is normal), and scans it is averaged over.
+MAX_MEAN_CHI_SQUARE = 30.0
+AVERAGED_SCANS = 100
+# Tolerance of the z coordinate of a laser's axis, by gmapping.
+PLANAR_TOLERANCE = 1e-3
+
+
+class LaserMountingCheck:
+    """Rejects lasers that are not mounted planar."""
+
+    def __init__(self, transforms: Transforms, base_frame: str):
+        self._transforms = transforms
+        self._base_frame = base_frame
+        self._heights: Dict[str, float] = {}
+
+    def is_planar(self, laser_frame: str) -> bool:
+        """Whether the laser's axis points straight up or down; otherwise log a warning."""
+        if laser_frame not in self._heights:
+            mounting = self._transforms.matrix(self._base_frame, laser_frame)
+            self._heights[laser_frame] = 1.0 if mounting is None else float(mounting[2, 2])
+        height = self._heights[laser_frame]
+        if abs(abs(height) - 1.0) <= PLANAR_TOLERANCE:
+            return True
+        rospy.logwarn_throttle(
+            WARNING_SECONDS,
+            "laser %s has to be mounted planar: the z coordinate of its axis has to be 1 or -1, not %.5f",
+            frame_name(laser_frame),
+            height,
+        )
+        return False
+
+
+class OdometryCheck:
+    """Warns of odometry with larger errors than its settings state."""
+
+    def __init__(self) -> None:
+        self._mean_chi_square = 0.0
+
+    def update(self, chi_square: float) -> None:
+        """Add the ``odometry_chi_square`` of one scan (see PoseUpdate)."""
+        self._mean_chi_square += (min(chi_square, 1e3) - self._mean_chi_square) / AVERAGED_SCANS
+        if self._mean_chi_square > MAX_MEAN_CHI_SQUARE:
+            rospy.logwarn_throttle(
+                WARNING_SECONDS,
+                "odometry disagrees with the scans (%.0f times the variance by srr, srt, str, stt): the map "
+                "may be distorted where few walls are visible; check odometry, or raise these parameters",
+                self._mean_chi_square / 3.0,
+            )

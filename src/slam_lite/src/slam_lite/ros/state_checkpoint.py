@@ -1,0 +1,58 @@
+"""Checkpoints of the map, for a node that resumes after a crash."""
+
+import math
+import threading
+import time
+from dataclasses import asdict
+from functools import partial
+
+import rospy
+
+from planar import Pose2
+from planar_ros.node.kept_file import FileCheckpoint
+from slam_lite.ros.thread_safe_mapper import ThreadSafeMapper
+from slam_lite.state import StateFileError, save_state
+
+# Time between checkpoints by the stamps of scans [s], and the largest share of the time to spend on them.
+CHECKPOINT_SECONDS, MAX_TIME_SHARE = 2.0, 0.05
+
+
+class StateCheckpointer:
+    """Saves the mapper's state in its own thread, and first recovers what a crashed node has left."""
+
+    def __init__(self, mapper: ThreadSafeMapper):
+        self._mapper = mapper
+        self._kept_file = FileCheckpoint()
+        self._is_due = threading.Event()
+        self._stamp = -math.inf
+        self._recover()
+        threading.Thread(target=self._save_when_due, daemon=True).start()
+        rospy.on_shutdown(self._is_due.set)
+
+    def on_scan(self, stamp: float) -> None:
+        """A scan was inserted: the state is saved if the last checkpoint is old enough."""
+        if not 0.0 <= stamp - self._stamp < CHECKPOINT_SECONDS:
+            self._stamp = stamp
+            self._is_due.set()
+
+    def _recover(self) -> None:
+        found = self._kept_file.found
+        if found is None:
+            return
+        try:
+            self._mapper.recover(str(found.path), Pose2(**found.value))
+        except StateFileError as error:
+            rospy.logwarn("cannot recover the map from before the crash, starting a new one: %s", error)
+
+    def _save_when_due(self) -> None:
+        while not rospy.is_shutdown():
+            self._is_due.wait()
+            self._is_due.clear()
+            begin = time.monotonic()
+            self._save()
+            time.sleep((time.monotonic() - begin) / MAX_TIME_SHARE)
+
+    def _save(self) -> None:
+        state, odom_in_map = self._mapper.snapshot()
+        if len(state.poses) > 0:
+            self._kept_file.keep(partial(save_state, state, is_compressed=False), asdict(odom_in_map))
