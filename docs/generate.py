@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Write src/*/config/*.yaml from the settings of packages, and code into docs/how_to/examples/*.md.
+"""Write what follows from the code: src/*/config/*.yaml, and the generated parts of the pages in docs/.
 
-With --check only says which are stale.
+A page has two kinds of generated parts: the source behind a comment that names a module, and the table or
+text between ``<!-- generated: NAME -->`` and ``<!-- end -->``. With --check, only name the stale files.
 """
 
 import argparse
@@ -9,7 +10,7 @@ import importlib
 import re
 import sys
 from pathlib import Path
-from typing import Dict
+from typing import Callable, Dict, List
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(path) for path in ROOT.glob("src/*/src")]
@@ -19,13 +20,14 @@ from planar.config.listing import Section, render_yaml  # noqa: E402
 MADE_BY = "Made by docs/generate.py; do not edit."
 # A comment that names a module, on a line of its own, and the listing behind it, once there is one.
 LISTING = re.compile(r"^<!-- (\S+\.py) -->\n(?:\n```python\n.*?^```\n)?", re.MULTILINE | re.DOTALL)
+GENERATED = re.compile(r"^<!-- generated: (\w+) -->\n.*?^<!-- end -->$", re.MULTILINE | re.DOTALL)
+USAGE = re.compile(r"^# (Usage: .*?)^(?!#)", re.MULTILINE | re.DOTALL)
 
 
 def main() -> int:
+    """Write the stale files, or name them. Return 1 if ``--check`` finds one."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument(
-        "--check", action="store_true", help="exit with 1 if a file is not as it would be written"
-    )
+    parser.add_argument("--check", action="store_true", help="exit with 1 if a file is stale")
     options = parser.parse_args()
     stale = {path: text for path, text in files().items() if not is_written(path, text)}
     for path, text in stale.items():
@@ -39,27 +41,59 @@ def main() -> int:
 
 
 def is_written(path: Path, text: str) -> bool:
+    """Return whether the file has this text already."""
     return path.is_file() and path.read_text(encoding="utf-8") == text
 
 
 def files() -> Dict[Path, str]:
-    """Every file that is made, in whole or in part, and its text."""
+    """Return every generated or partly generated file with its text."""
     configs = {path: f"# {MADE_BY}\n{render_yaml(section)}" for path, section in declared_files().items()}
-    pages = {path: with_listings(path.read_text("utf-8")) for path in ROOT.glob("docs/how_to/examples/*.md")}
+    pages = {path: with_generated(path.read_text("utf-8")) for path in ROOT.glob("docs/**/*.md")}
     return {**configs, **pages}
 
 
-def with_listings(page: str) -> str:
-    """A page, with the code as it is now behind each comment that names a module."""
-    return LISTING.sub(lambda found: f"<!-- {found[1]} -->\n\n```python\n{code_of(found[1])}```\n", page)
+def with_generated(page: str) -> str:
+    """Return a page with its generated parts as they follow from the code now."""
+    page = LISTING.sub(lambda found: f"<!-- {found[1]} -->\n\n```python\n{code_of(found[1])}```\n", page)
+    return GENERATED.sub(
+        lambda found: f"<!-- generated: {found[1]} -->\n\n{PARTS[found[1]]()}\n<!-- end -->", page
+    )
 
 
 def code_of(name: str) -> str:
+    """Return the source of a module."""
     return (ROOT / name).read_text("utf-8")
 
 
+def scripts() -> str:
+    """Return a section for each script: its usage."""
+    sections: List[str] = []
+    for path in sorted(ROOT.glob("scripts/*.sh")):
+        usage = USAGE.search(path.read_text("utf-8"))
+        if usage:
+            lines = [line[2:] for line in f"# {usage[1]}".splitlines() if not line.startswith("# shellcheck")]
+            text = "\n".join(lines).strip()
+            sections.append(f"## {path.name}\n\n```text\n{text}\n```\n")
+    return "\n".join(sections)
+
+
+def faults() -> str:
+    """Return a table of the kinds of faults."""
+    from sim_bridge.faults import KINDS
+
+    rows = ["| kind | what goes wrong | usual strength | survivable |", "| --- | --- | --- | --- |"]
+    for name, kind in KINDS.items():
+        summary = (kind.__doc__ or "").partition("\n")[0].rstrip(".")
+        strength = f"{kind.strength[0]:g} {kind.unit}" if kind.unit else ""
+        rows.append(f"| `{name}` | {summary} | {strength} | {'yes' if kind.survivable else 'no'} |")
+    return "\n".join(rows) + "\n"
+
+
+PARTS: Dict[str, Callable[[], str]] = {"scripts": scripts, "faults": faults}
+
+
 def declared_files() -> Dict[Path, Section]:
-    """The YAML files that packages declare in their ``config`` (see planar.config.listing)."""
+    """Return the YAML files that packages declare in their ``config`` (see planar.config.listing)."""
     found = {}
     for package in sorted(path.parent for path in ROOT.glob("src/*/config")):
         if (package / "src" / package.name / "config.py").is_file():

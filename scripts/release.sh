@@ -3,7 +3,7 @@
 #
 # Makes the archive of the version in CITATION.cff from the commit that is checked out, the same to the last byte
 # whenever and wherever it is made, and prints its SHA-256. Refuses a tree with changes, and versions that differ
-# between CITATION.cff, CHANGELOG.md and the package.xml files. To publish: git tag -a vVERSION, then this.
+# between CITATION.cff, CHANGELOG.md, the package.xml files and the Dockerfile. To publish: git tag -a vVERSION, then this.
 # Exit code: 0 success, 1 failure, 2 bad input.
 #
 #   --output FOLDER  where the archive goes (default: ./dist)
@@ -17,6 +17,7 @@ version_of_release() {
     version=$(sed -n 's/^version: *//p' CITATION.cff)
     grep -q "^## \[$version\]" CHANGELOG.md || fail "CHANGELOG.md has no section of version $version"
     others=$(git ls-files 'src/*package.xml' tests/package.xml | xargs grep -L "<version>$version</version>" || true)
+    grep -qF "image.version=\"$version\"" docker/Dockerfile || others+=" docker/Dockerfile"
     [[ -z $others ]] || fail "not of version $version: ${others//$'\n'/ }"
     say "$version"
 }
