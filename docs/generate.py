@@ -6,11 +6,12 @@ text between ``<!-- generated: NAME -->`` and ``<!-- end -->``. With --check, on
 """
 
 import argparse
+import ast
 import importlib
 import re
 import sys
 from pathlib import Path
-from typing import Callable, Dict, List
+from typing import Callable, Dict, Iterator, List, Tuple
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(path) for path in ROOT.glob("src/*/src")]
@@ -89,7 +90,33 @@ def faults() -> str:
     return "\n".join(rows) + "\n"
 
 
-PARTS: Dict[str, Callable[[], str]] = {"scripts": scripts, "faults": faults}
+def aliases() -> str:
+    """Return a table of the deprecated Python names and their replacements."""
+    rows = ["| old | new |", "| --- | --- |"]
+    for path in sorted(ROOT.glob("src/**/src/**/*.py")):
+        text = path.read_text("utf-8")
+        if "deprecated_names(" in text or "renamed_method(" in text:
+            rows += [f"| `{old}` | `{new}` |" for old, new in aliases_of(path, ast.parse(text))]
+    return "\n".join(rows) + "\n"
+
+
+def aliases_of(path: Path, tree: ast.Module) -> Iterator[Tuple[str, str]]:
+    """Yield the deprecated names that a module declares, with their replacements."""
+    parts = path.with_suffix("").parts
+    module = ".".join(parts[len(parts) - parts[::-1].index("src") :]).replace(".__init__", "")
+    for call in ast.walk(tree):
+        if isinstance(call, ast.Call) and getattr(call.func, "id", "") == "deprecated_names":
+            for old, new in ast.literal_eval(call.args[1]).items():
+                yield f"{module}.{old}", new.replace(":", ".") if ":" in new else f"{module}.{new}"
+    for scope in ast.walk(tree):
+        for line in scope.body if isinstance(scope, ast.ClassDef) else ():
+            value = line.value if isinstance(line, ast.Assign) else None
+            if isinstance(value, ast.Call) and getattr(value.func, "id", "") == "renamed_method":
+                old, new = (ast.literal_eval(argument) for argument in value.args)
+                yield f"{module}.{scope.name}.{old}()", f"{new}()"
+
+
+PARTS: Dict[str, Callable[[], str]] = {"aliases": aliases, "faults": faults, "scripts": scripts}
 
 
 def declared_files() -> Dict[Path, Section]:
