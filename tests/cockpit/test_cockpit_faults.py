@@ -28,7 +28,7 @@ class CockpitFaultsTest(unittest.TestCase):
         cls.browser = Browser()
         cls.page = cls.browser.open(cls.cockpit.url, 1400, 900)
         wait_until("scans", lambda: cls.scans, 60.0)
-        cls.page.wait_for("The laser says nothing any more.", "Let it go wrong", seconds=90.0)
+        cls.page.wait_for("The laser publishes nothing.", "Let it go wrong", seconds=90.0)
 
     @classmethod
     def tearDownClass(cls):

@@ -130,7 +130,7 @@ def test_an_imu_says_how_noisy_its_plugin_makes_it():
     <topicName>imu/data</topicName><updateRate>50</updateRate><gaussianNoise>0.1</gaussianNoise></plugin></gazebo>"""
     (read,) = read_urdf_robot(urdf(DRIVE.format(more="") + imu), "mine.urdf").sensors_of(ImuProfile)
     assert (read.topic, read.frame, read.rate, read.noise) == ("imu/data", "chassis", 50.0, 0.1)
-    assert read.turn_variances == read.orientation_variances == pytest.approx((0.01, 0.01, 0.01))
+    assert read.angular_velocity_variances == read.orientation_variances == pytest.approx((0.01, 0.01, 0.01))
 
 
 def test_an_unknown_plugin_is_named_once():

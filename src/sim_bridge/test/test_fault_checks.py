@@ -1,4 +1,4 @@
-"""The project's own kinds of faults pass the checks that other people's have to; what errs does not."""
+"""The project's kinds of faults pass the checks of user-defined ones; faulty kinds fail them."""
 
 import sys
 from dataclasses import replace
@@ -14,19 +14,19 @@ from sim_bridge.faults import KINDS
 from sim_bridge.faults.kind import FaultKind
 
 
-class Nameless(FaultKind):
+class Undocumented(FaultKind):
     pass
 
 
-class Misshapen(FaultKind):
-    """Odometry is told as a pose."""
+class WrongType(FaultKind):
+    """Returns a pose as odometry."""
 
     def odometry(self, odometry):
         return Pose2()
 
 
-class OnlyWeak(FaultKind):
-    """Fails where it is strongest."""
+class FailsAtLargest(FaultKind):
+    """Fails at its largest strength."""
 
     def wheel_speeds(self, left, right):
         return left / (1.0 - self._strength), right
@@ -34,23 +34,23 @@ class OnlyWeak(FaultKind):
     strength = (0.5, 0.0, 1.0)
 
 
-class Scribbles(FaultKind):
-    """Halves the ranges where they are."""
+class ChangesInPlace(FaultKind):
+    """Halves the ranges in place."""
 
     def scan(self, scan):
         scan.ranges[:] *= 0.5
         return scan
 
 
-class ByChance(FaultKind):
-    """Adds noise of its own."""
+class Unseeded(FaultKind):
+    """Adds noise of an unseeded generator."""
 
     def scan(self, scan):
         return replace(scan, ranges=scan.ranges + np.random.default_rng().random(len(scan.ranges)) * 0.1)
 
 
 @pytest.fixture(autouse=True)
-def module(monkeypatch):
+def custom_module(monkeypatch):
     monkeypatch.setitem(sys.modules, "custom.faulty", sys.modules[__name__])
 
 
@@ -60,15 +60,15 @@ def test_a_kind_of_the_project_passes(kind, check):
 
 
 @pytest.mark.parametrize(
-    ("kind", "said"),
+    ("kind", "report"),
     [
-        ("Nameless", "FAIL  Its docstring says in a line what goes wrong."),
-        ("Misshapen", "FAIL  With its usual, least and largest strength"),
-        ("OnlyWeak", "FAIL  With its usual, least and largest strength"),
-        ("Scribbles", "FAIL  What it is given stays as it was"),
-        ("ByChance", "FAIL  All chance comes from rng"),
+        ("Undocumented", "FAIL  The first line of its docstring states the effect."),
+        ("WrongType", "FAIL  It returns valid values at its default, least and largest strength."),
+        ("FailsAtLargest", "FAIL  It returns valid values at its default, least and largest strength."),
+        ("ChangesInPlace", "FAIL  It does not change its arguments"),
+        ("Unseeded", "FAIL  Its randomness is from rng"),
     ],
 )
-def test_what_a_kind_does_not_do_is_said(kind, said, capsys):
+def test_a_failed_check_is_reported(kind, report, capsys):
     assert run_checks("sim_bridge", KITS, [f"custom.faulty/{kind}"]) == 1
-    assert said in capsys.readouterr().out
+    assert report in capsys.readouterr().out

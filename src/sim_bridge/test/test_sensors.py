@@ -157,7 +157,7 @@ def at_rest(pose):
 
 def test_an_imu_at_rest_feels_what_keeps_it_from_falling():
     imu = Imu(ImuSettings(), np.random.default_rng(0), AT_BASE)
-    reading = imu.feel(at_rest(pose3(pitch=0.1)), 0.02, 9.8)
+    reading = imu.read(at_rest(pose3(pitch=0.1)), 0.02, 9.8)
     assert reading.acceleration == pytest.approx([-9.8 * math.sin(0.1), 0.0, 9.8 * math.cos(0.1)])
     assert reading.angular_velocity == pytest.approx(np.zeros(3))
 
@@ -165,16 +165,16 @@ def test_an_imu_at_rest_feels_what_keeps_it_from_falling():
 def test_an_imu_feels_turning_and_speeding_up_in_its_own_frame():
     imu = Imu(ImuSettings(), np.random.default_rng(0), AT_BASE)
     turned = pose3(yaw=math.pi / 2.0)
-    imu.feel(KinematicState(turned, np.zeros(3), np.zeros(3)), 0.1, 9.8)
-    reading = imu.feel(KinematicState(turned, np.array([0.0, 0.2, 0.0]), np.array([0.0, 0.0, 0.7])), 0.1, 9.8)
+    imu.read(KinematicState(turned, np.zeros(3), np.zeros(3)), 0.1, 9.8)
+    reading = imu.read(KinematicState(turned, np.array([0.0, 0.2, 0.0]), np.array([0.0, 0.0, 0.7])), 0.1, 9.8)
     assert reading.acceleration == pytest.approx([2.0, 0.0, 9.8])
     assert reading.angular_velocity == pytest.approx([0.0, 0.0, 0.7])
 
 
 def test_an_imu_errs_as_asked_for():
     def readings(seed):
-        imu = Imu(ImuSettings(turn_noise=0.01, acceleration_noise=0.1), np.random.default_rng(seed), AT_BASE)
-        return [imu.feel(at_rest(np.eye(4)), 0.02, 9.8) for _ in range(2000)]
+        imu = Imu(ImuSettings(gyro_noise=0.01, acceleration_noise=0.1), np.random.default_rng(seed), AT_BASE)
+        return [imu.read(at_rest(np.eye(4)), 0.02, 9.8) for _ in range(2000)]
 
     assert np.std([reading.angular_velocity for reading in readings(0)]) == pytest.approx(0.01, rel=0.05)
     accelerations = [reading.acceleration - (0.0, 0.0, 9.8) for reading in readings(0)]

@@ -1,4 +1,4 @@
-"""What a kind of fault of somebody's own has to do: ``python3 -m sim_bridge.check NAME``.
+"""Contract check of a user-defined kind of fault: ``python3 -m sim_bridge.check NAME``.
 
 Each check is given the name of a kind.
 """
@@ -21,14 +21,14 @@ from sim_bridge.world import Body, Collision, World
 SPEED, SECONDS, BEGIN, END = Twist2(0.3, 0.4), 1.0, 0.3, 0.7
 
 
-def says_what_goes_wrong(kind: str) -> None:
-    """Its docstring says in a line what goes wrong."""
-    own = kind_named(kind).__dict__.get("__doc__") or ""
-    expect(bool(own.strip()), "it has none")
+def has_a_docstring(kind: str) -> None:
+    """The first line of its docstring states the effect."""
+    docstring = kind_named(kind).__dict__.get("__doc__") or ""
+    expect(bool(docstring.strip()), "it has no docstring")
 
 
-def answers_at_any_strength(kind: str) -> None:
-    """With its usual, least and largest strength it gives what robots can have."""
+def accepts_any_strength(kind: str) -> None:
+    """It returns valid values at its default, least and largest strength."""
     for strength in kind_named(kind).strength:
         fault = make_fault(kind, strength, np.random.default_rng(0))
         for number in range(10):
@@ -38,18 +38,18 @@ def answers_at_any_strength(kind: str) -> None:
             fault.wheel_speeds(5.0, 6.0)
 
 
-def leaves_scans_as_they_are(kind: str) -> None:
-    """What it is given stays as it was: a changed scan is another one."""
+def does_not_change_arguments(kind: str) -> None:
+    """It does not change its arguments: a faulty scan is a new object."""
     fault, scan = make_fault(kind, kind_named(kind).strength[0], np.random.default_rng(0)), _scan(0.0)
     before = scan.ranges.copy()
     fault.scan(scan)
-    expect(np.array_equal(scan.ranges, before, equal_nan=True), "the scan is another after the call")
+    expect(np.array_equal(scan.ranges, before, equal_nan=True), "it has changed the scan in place")
 
 
-def repeats_itself(kind: str) -> None:
-    """All chance comes from rng: the same seeds give the same run, in which it begins and ends."""
+def is_repeatable(kind: str) -> None:
+    """Its randomness is from rng: the same seed gives the same run, in which it begins and ends."""
     first, second = (_run(kind) for _ in range(2))
-    expect(first == second, "another run with the same seed")
+    expect(first == second, "two runs with the same seed differ")
 
 
 def _scan(stamp: float) -> Scan:
@@ -57,32 +57,31 @@ def _scan(stamp: float) -> Scan:
 
 
 def _run(kind: str) -> List[Tuple[str, bytes]]:
-    """What a robot tells that drives past a box while the fault begins and ends."""
+    """Return what a robot measures that drives past a box while the fault begins and ends."""
     faults = FaultInjector([Fault(kind, BEGIN, END, kind_named(kind).strength[0], seed=1)])
     floor = Body("floor::link", np.eye(4), (Collision(Plane(), np.eye(4)),))
     world = World("room", (floor, box_on_floor("box", (0.5, 0.5, 1.0), Pose2(2.0, 0.3))))
-    simulation, told = Simulation(world, wrappers=faults.wrappers), []
+    simulation, measured = Simulation(world, wrappers=faults.wrappers), []
     try:
-        observation = simulation.step(SPEED)
-        while observation.stamp < SECONDS:
-            faults.update(
-                observation.stamp, FaultContext(simulation.scene, ROBOT_NAME, observation.base_in_world)
-            )
-            observation = simulation.step(SPEED)
-            scans = b"".join(scan.ranges.tobytes() for scan in observation.scans)
-            told.append((repr((observation.truth, observation.odometry)), scans))
+        result = simulation.step(SPEED)
+        while result.stamp < SECONDS:
+            context = FaultContext(simulation.scene, ROBOT_NAME, result.base_in_world)
+            faults.update(result.stamp, context)
+            result = simulation.step(SPEED)
+            scans = b"".join(scan.ranges.tobytes() for scan in result.scans)
+            measured.append((repr((result.truth, result.odometry)), scans))
     finally:
         simulation.close()
-    return told
+    return measured
 
 
-def _is_own(name: str) -> str:
+def _check_name(name: str) -> str:
     kind_named(name)
     return name
 
 
-CHECKS = (says_what_goes_wrong, answers_at_any_strength, leaves_scans_as_they_are, repeats_itself)
-KITS = {"fault": CheckSuite(plugin_finder(CONTRACT, _is_own), CHECKS)}
+CHECKS = (has_a_docstring, accepts_any_strength, does_not_change_arguments, is_repeatable)
+KITS = {"fault": CheckSuite(plugin_finder(CONTRACT, _check_name), CHECKS)}
 
 
 if __name__ == "__main__":

@@ -147,7 +147,7 @@ class Robot:
         self._context.refresh(0.0)
         self._context.clear_contacts()
         truth, wheels, contacts = GroundTruth(), WheelEncoders(), ContactSensor()
-        self._odometer = Odometer(odometry, odometry.odometry_model(drive, mounting))
+        self._odometer = Odometer(odometry, odometry.build(drive, mounting))
         self._latest: Dict[str, Any] = {
             truth.name: truth.measure(self._context),
             self._odometer.name: Odometry(),

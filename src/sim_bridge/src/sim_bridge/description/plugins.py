@@ -175,7 +175,7 @@ def _read_kobuki(plugin: Element, structure: RobotStructure, equipment: PluginPr
             "base_link",
             IDENTITY,
             orientation_variances=KOBUKI_IMU_VARIANCES,
-            turn_variances=KOBUKI_IMU_VARIANCES,
+            angular_velocity_variances=KOBUKI_IMU_VARIANCES,
         )
     )
     hubs = [structure.pose_in_base(structure.joints[name].child)[:3, 3] for name in equipment.drive.joints]

@@ -1,1 +1,1 @@
-"""The parts of sim_bridge's node: each translates one side of a Scene to ROS."""
+"""ROS interface of the simulation: topics, services, parameters and time of a Scene."""

@@ -1,4 +1,4 @@
-"""A camera's topics: pictures, their calibration and the points that they show."""
+"""Topics of a camera: images, camera info and point cloud."""
 
 from typing import Callable, List, Tuple
 
@@ -9,7 +9,7 @@ from sensor_msgs.msg import CameraInfo, Image, PointCloud2, PointField
 from sim_bridge.ros.publishers import RobotPublishers
 from sim_bridge.sensors.camera import CameraImage, CameraProfile, CameraSettings, depth_to_points
 
-# As gazebo_plugins' openni_kinect lays out its points.
+# Layout of points in gazebo_plugins' openni_kinect.
 POINT_OFFSETS = {"x": 0, "y": 4, "z": 8, "rgb": 16}
 POINT: np.dtype = np.dtype(
     {
@@ -19,13 +19,13 @@ POINT: np.dtype = np.dtype(
         "itemsize": 32,
     }
 )
-# Ten clouds of points would be 100 MB.
+# Ten point clouds would take 100 MB.
 QUEUE_SIZE = 2
 POINT_FIELDS = [PointField(name, offset, PointField.FLOAT32, 1) for name, offset in POINT_OFFSETS.items()]
 
 
 class CameraTopics:
-    """Publishes of a camera's pictures what somebody has subscribed to."""
+    """Publishes the images of a camera on the topics that have subscribers."""
 
     def __init__(self, profile: CameraProfile, publishers: RobotPublishers):
         self._settings = profile.settings
@@ -44,24 +44,24 @@ class CameraTopics:
         ]
 
     def has_subscribers(self) -> bool:
-        """Whether anybody has subscribed."""
+        """Return whether any topic has subscribers."""
         return any(topic.get_num_connections() for topic, _ in self._topics)
 
-    def publish(self, picture: CameraImage, stamp: rospy.Time) -> None:
+    def publish(self, image: CameraImage, stamp: rospy.Time) -> None:
         for topic, message_of in self._topics:
             if topic.get_num_connections():
-                message = message_of(picture, self._settings)
+                message = message_of(image, self._settings)
                 message.header.stamp, message.header.frame_id = stamp, self._frame
                 topic.publish(message)
 
 
-def _colour_msg(picture: CameraImage, _settings: CameraSettings) -> Image:
-    return _image_msg(picture.rgb, "rgb8")
+def _colour_msg(image: CameraImage, _settings: CameraSettings) -> Image:
+    return _image_msg(image.rgb, "rgb8")
 
 
-def _depth_msg(picture: CameraImage, _settings: CameraSettings) -> Image:
-    """In metres (REP 118)."""
-    return _image_msg(picture.depth, "32FC1")
+def _depth_msg(image: CameraImage, _settings: CameraSettings) -> Image:
+    """Make a depth image in metres (REP 118)."""
+    return _image_msg(image.depth, "32FC1")
 
 
 def _image_msg(pixels: np.ndarray, encoding: str) -> Image:
@@ -71,7 +71,7 @@ def _image_msg(pixels: np.ndarray, encoding: str) -> Image:
     )
 
 
-def _info_msg(_picture: CameraImage, settings: CameraSettings) -> CameraInfo:
+def _info_msg(_image: CameraImage, settings: CameraSettings) -> CameraInfo:
     (x, y), scale = settings.centre, settings.focal_length
     return CameraInfo(
         height=settings.height,
@@ -84,13 +84,13 @@ def _info_msg(_picture: CameraImage, settings: CameraSettings) -> CameraInfo:
     )
 
 
-def _points_msg(picture: CameraImage, settings: CameraSettings) -> PointCloud2:
-    height, width = picture.depth.shape
+def _points_msg(image: CameraImage, settings: CameraSettings) -> PointCloud2:
+    height, width = image.depth.shape
     cloud = np.zeros((height, width), dtype=POINT)
-    points = depth_to_points(picture.depth, settings)
+    points = depth_to_points(image.depth, settings)
     for axis, name in enumerate("xyz"):
         cloud[name] = points[..., axis]
-    red, green, blue = np.moveaxis(picture.rgb.astype(np.uint32), -1, 0)
+    red, green, blue = np.moveaxis(image.rgb.astype(np.uint32), -1, 0)
     cloud["rgb"] = red << 16 | green << 8 | blue
     return PointCloud2(
         height=height,

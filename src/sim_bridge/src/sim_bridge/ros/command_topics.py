@@ -1,4 +1,4 @@
-"""The topics that a robot takes its velocity from."""
+"""Topics of velocity commands of a robot."""
 
 from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
@@ -21,12 +21,18 @@ from sim_bridge.driving.mux import (
 MUX = "cmd_vel_mux"
 MUX_FILE, MUX_TEXT = "yaml_cfg_file", "yaml_cfg_data"
 RAW_TOPIC = "navigation_velocity_smoother/raw_cmd_vel"
-# What smoothed commands count as.
+# The input of the mux that smoothed commands belong to.
 SMOOTHED_INPUT = "input/navi"
 
 
 class CommandTopics:
-    """The last command on any of some plain topics."""
+    """Keeps the latest command received on any of some topics.
+
+    Args:
+        robot: Name of the robot, for the log.
+        namespace: Of the topics.
+        topics: Their names.
+    """
 
     def __init__(self, robot: str, namespace: str, topics):
         self._robot = robot
@@ -35,8 +41,8 @@ class CommandTopics:
         for topic in topics:
             self._connections.append(self._subscribed(namespace, topic, self._on_command))
 
-    def take(self, _now: float) -> Optional[Twist2]:
-        """The command that has come since the last call, if any."""
+    def pop(self, _now: float) -> Optional[Twist2]:
+        """Return the command received since the last call, if any; ``_now`` is simulated time [s]."""
         command, self._command = self._command, None
         return command
 
@@ -62,10 +68,14 @@ class CommandTopics:
 
 
 class MuxTopics(CommandTopics):
-    """Beside plain topics the inputs of cmd_vel_mux, those of the file that its parameter names if it is set.
+    """Topics of commands with the inputs of cmd_vel_mux (yocs_cmd_vel_mux) and the velocity smoother.
 
-    What comes on the smoother's topic counts as navigation's. As with the official mux dynamic_reconfigure
-    brings other inputs, of a file or a text. Raises SettingsError.
+    The inputs are those of the file that the mux's parameter names, else a TurtleBot's. Smoothed commands
+    belong to navigation's input. As with the official mux, dynamic_reconfigure replaces the inputs by those
+    of a file or a text.
+
+    Raises:
+        SettingsError: The file has an error.
     """
 
     def __init__(self, robot: str, namespace: str, topics):
@@ -75,21 +85,21 @@ class MuxTopics(CommandTopics):
         self._smoother = VelocitySmoother()
         self._arrived: Dict[str, Twist2] = {}
         self._raw: Optional[Twist2] = None
-        self._told = ""
+        self._published_active = ""
         self._active = rospy.Publisher(f"{where}/active", String, queue_size=1, latch=True)
         self._inputs: List[rospy.Subscriber] = []
-        self._listen_to(self._inputs_of(file))
+        self._subscribe_inputs(self._inputs_of(file))
         self._connections += [self._active, self._subscribed(namespace, RAW_TOPIC, self._on_raw)]
-        self._tuning = self._tuned({MUX_FILE: file, MUX_TEXT: ""})
+        self._tuning = self._reconfigure_server({MUX_FILE: file, MUX_TEXT: ""})
 
     def close(self) -> None:
         super().close()
         if self._tuning is not None:
             self._tuning.close()
-        for one in self._inputs:
-            one.unregister()
+        for subscriber in self._inputs:
+            subscriber.unregister()
 
-    def take(self, now: float) -> Optional[Twist2]:
+    def pop(self, now: float) -> Optional[Twist2]:
         arrived, self._arrived = self._arrived, {}
         raw, self._raw = self._raw, None
         if raw is not None:
@@ -99,38 +109,38 @@ class MuxTopics(CommandTopics):
             arrived[self._smoothed_name] = smoothed
         chosen = self._mux.choose(now, arrived)
         active = self._mux.active(now)
-        if active != self._told:
-            self._told = active
+        if active != self._published_active:
+            self._published_active = active
             self._active.publish(active)
-        return chosen or super().take(now)
+        return chosen or super().pop(now)
 
-    def _tuned(self, values: Dict[str, str]) -> Optional[ReconfigureServer]:
+    def _reconfigure_server(self, values: Dict[str, str]) -> Optional[ReconfigureServer]:
         tunables = (
             DynamicParameter(MUX_FILE, "", "path of a YAML file of the mux's inputs"),
             DynamicParameter(MUX_TEXT, "", "the inputs as YAML, instead of a file"),
         )
         try:
             return ReconfigureServer(tunables, values, self._on_reconfigure, self._where)
-        except rospy.ServiceException:  # there is one for all robots of a namespace
+        except rospy.ServiceException:  # another robot of the namespace has it already
             return None
 
-    def _listen_to(self, inputs: Sequence[MuxInput]) -> None:
-        for one in self._inputs:
-            one.unregister()
+    def _subscribe_inputs(self, inputs: Sequence[MuxInput]) -> None:
+        for subscriber in self._inputs:
+            subscriber.unregister()
         self._mux = VelocityMux(inputs)
         self._smoothed_name = next((one.name for one in inputs if one.topic == SMOOTHED_INPUT), "")
         self._inputs = [self._subscribed(self._where, one.topic, self._on_input, one.name) for one in inputs]
 
     def _on_reconfigure(self, values: Dict[str, Any]) -> Dict[str, Any]:
-        """Goes on with the inputs there are if the new ones make no sense."""
+        """Replace the inputs; keep them if the new ones have an error."""
         try:
-            self._listen_to(self._inputs_of(values[MUX_FILE], values[MUX_TEXT]))
+            self._subscribe_inputs(self._inputs_of(values[MUX_FILE], values[MUX_TEXT]))
         except SettingsError as error:
             rospy.logerr("%s", error)
         return values
 
     def _inputs_of(self, file: str, text: str = "") -> Tuple[MuxInput, ...]:
-        """Those of the text, else of the file, else a TurtleBot's."""
+        """Return the inputs of the text, else of the file, else a TurtleBot's."""
         if text:
             return parse_inputs(text, f"{self._where}/{MUX_TEXT}")
         return read_inputs(file) if file else TURTLEBOT_INPUTS

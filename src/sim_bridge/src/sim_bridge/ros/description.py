@@ -1,4 +1,4 @@
-"""What a robot is: its description, and the files that one names."""
+"""Robot descriptions, and the files that they refer to."""
 
 import argparse
 import os
@@ -15,13 +15,13 @@ from sim_bridge.sdf.includes import parts_of, resolve
 
 
 def model_folders() -> List[Path]:
-    """Where Gazebo looks for models: the folders of GAZEBO_MODEL_PATH, then the user's own."""
+    """Return the folders of models: those of GAZEBO_MODEL_PATH, then ~/.gazebo/models."""
     listed = [Path(folder) for folder in os.environ.get("GAZEBO_MODEL_PATH", "").split(":") if folder]
     return [*listed, Path("~/.gazebo/models").expanduser()]
 
 
 def find_file(uri: str) -> Optional[Path]:
-    """The file that a robot's description names: ``package://``, ``model://``, ``file://`` or a path."""
+    """Return the file of a URI (``package://``, ``model://``, ``file://``) or path; None if there is none."""
     parts = parts_of(uri)
     if parts is None or parts.scheme != "package":
         return resolve(uri, Path.cwd(), model_folders())
@@ -33,12 +33,14 @@ def find_file(uri: str) -> Optional[Path]:
 
 
 def robot_description() -> None:
-    """Prints the URDF of a robot."""
+    """Print the URDF of a robot (script robot_description)."""
     parser = argparse.ArgumentParser(
         prog="robot_description", description="Prints the URDF of a robot that sim_bridge simulates."
     )
     parser.add_argument("robot", metavar="ROBOT", help=", ".join(ROBOTS) + "; or a .urdf or .xacro file")
-    parser.add_argument("--frames", metavar="NAME", help="puts NAME/ before the names of its frames")
+    parser.add_argument(
+        "--frames", metavar="NAME", help="prefix of its frames: NAME/base_link instead of base_link"
+    )
     arguments = parser.parse_args()
     try:
         urdf = robot_named(arguments.robot, find_file).description()

@@ -1,4 +1,4 @@
-"""Poses and motions in space as messages, and back."""
+"""Conversion of 3D poses and kinematic states to messages and back."""
 
 import math
 from typing import List, Sequence, Tuple
@@ -11,7 +11,7 @@ from sim_bridge.errors import WorldError
 from sim_bridge.geometry.pose3 import from_quaternion, position, quaternion
 from sim_bridge.physics.kinematics import KinematicState
 
-# Below it a quaternion is as good as zero, which messages hold that nobody has filled in.
+# A quaternion shorter than this counts as zero, as in messages with default values.
 SHORTEST_QUATERNION = 1e-6
 
 
@@ -20,7 +20,14 @@ def pose3_to_msg(pose: np.ndarray) -> Pose:
 
 
 def pose3_from_msg(message: Pose) -> np.ndarray:
-    """The pose (4, 4); a quaternion of length 0 means not turned. Raises WorldError if it is not finite."""
+    """Convert a pose; a zero quaternion is the identity.
+
+    Returns:
+        The pose, (4, 4).
+
+    Raises:
+        WorldError: A number is not finite, or too large for a coordinate.
+    """
     q, at = message.orientation, message.position
     values = (q.x, q.y, q.z, q.w, at.x, at.y, at.z)
     if not all(math.isfinite(value) for value in values):
@@ -38,7 +45,7 @@ def state_to_msgs(motion: KinematicState) -> Tuple[Pose, Twist]:
 
 
 def state_from_msgs(pose: Pose, twist: Twist) -> KinematicState:
-    """Raises WorldError if a number is not finite."""
+    """Convert a pose and a twist. Raises WorldError if a number is not finite or too large."""
     linear, angular = vector_from_msg(twist.linear), vector_from_msg(twist.angular)
     if not (np.isfinite(linear).all() and np.isfinite(angular).all()):
         raise WorldError("the twist is not finite")
@@ -48,10 +55,10 @@ def state_from_msgs(pose: Pose, twist: Twist) -> KinematicState:
 
 
 def vector_from_msg(message) -> np.ndarray:
-    """(3,) of a Vector3 or Point."""
+    """Convert a Vector3 or Point to (3,)."""
     return np.array([message.x, message.y, message.z])
 
 
 def covariance_of(variances: Sequence[float]) -> List[float]:
-    """(N * N,) of N values that err independently, row by row."""
+    """Return the covariance (N * N,), row by row, of N independent values."""
     return np.diag(variances).ravel().tolist()

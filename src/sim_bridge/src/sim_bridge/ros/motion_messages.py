@@ -1,4 +1,4 @@
-"""Odometry and transforms, serialized in one go: they are sent at every step, mostly with the same text."""
+"""Odometry and transforms with fast serialization: they are sent each step with the same frames."""
 
 import struct
 
@@ -15,7 +15,7 @@ _STAMP = struct.Struct("<3I")
 
 
 class OdometryMsg(Odometry):
-    """A nav_msgs/Odometry filled and sent again and again; ``covariance``: (36,), of pose and twist."""
+    """A reusable nav_msgs/Odometry; ``covariance``: (36,), of pose and twist."""
 
     def __init__(self, frame: str, base_frame: str, covariance):
         super().__init__()
@@ -40,7 +40,7 @@ class OdometryMsg(Odometry):
 
 
 class TransformMsg(TransformStamped):
-    """A geometry_msgs/TransformStamped that is filled and sent again and again."""
+    """A reusable geometry_msgs/TransformStamped."""
 
     def __init__(self, parent: str, child: str):
         super().__init__()

@@ -1,4 +1,4 @@
-"""How fast the simulation is, and which messages get lost."""
+"""Performance of the simulation: real-time factor, rates of topics, dropped messages."""
 
 import time
 from typing import Callable, Dict, Iterable
@@ -10,12 +10,12 @@ from std_msgs.msg import Float64
 
 from sim_bridge.ros.publishers import CountingPublisher
 
-# Wall seconds between two reports.
+# Time between two reports [wall s].
 REPORT_PERIOD = 1.0
 
 
 class Performance:
-    """Reports once a second of the wall clock, by /gazebo/performance_metrics and /diagnostics too."""
+    """Publishes ~real_time_factor, /gazebo/performance_metrics and /diagnostics once a wall second."""
 
     def __init__(self):
         self._factor = rospy.Publisher("~real_time_factor", Float64, queue_size=10)
@@ -25,7 +25,12 @@ class Performance:
         self._published: Dict[str, int] = {}
 
     def report(self, stamp: float, publishers_of: Callable[[], Iterable[CountingPublisher]]) -> None:
-        """To be called after every step, at the time ``stamp``; ``publishers_of`` gives all there are."""
+        """Publish a report if it is due; to be called after each step.
+
+        Args:
+            stamp: Simulated time [s].
+            publishers_of: Returns all publishers of robots.
+        """
         elapsed = time.monotonic() - self._wall
         if elapsed < REPORT_PERIOD:
             return

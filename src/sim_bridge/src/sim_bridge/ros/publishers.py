@@ -1,4 +1,4 @@
-"""Where a robot's topics and frames are."""
+"""Publishers of a robot's topics."""
 
 from typing import List
 
@@ -7,7 +7,7 @@ from rospy.impl.tcpros_pubsub import QueuedConnection
 
 
 class CountingPublisher(rospy.Publisher):
-    """Counts its messages, and those that are lost because a subscriber is too slow for its queue."""
+    """Counts published messages, and those that are dropped because a subscriber's queue is full."""
 
     def __init__(self, *arguments, **named):
         super().__init__(*arguments, **named)
@@ -20,7 +20,12 @@ class CountingPublisher(rospy.Publisher):
 
 
 class RobotPublishers:
-    """Opens topics below ``namespace``; before the names of frames comes ``tf_prefix``."""
+    """Creates publishers below a namespace, and frame names with a prefix.
+
+    Args:
+        namespace: Of the topics.
+        tf_prefix: Of the frames; empty for none.
+    """
 
     def __init__(self, namespace: str, tf_prefix: str):
         self._namespace = namespace
@@ -30,22 +35,24 @@ class RobotPublishers:
     def publisher(
         self, topic: str, kind: type, queue_size: int = 10, latch: bool = False
     ) -> CountingPublisher:
+        """Advertise a topic, relative to the namespace."""
         name = rospy.names.ns_join(self._namespace, topic)
         publisher = CountingPublisher(name, kind, queue_size=queue_size, latch=latch, tcp_nodelay=True)
         self.publishers.append(publisher)
         return publisher
 
     def frame(self, name: str) -> str:
+        """Return the name of a frame with the prefix."""
         return self._tf_prefix + name.lstrip("/")
 
     def close(self) -> None:
-        """Ends the topics."""
+        """Unregister all publishers."""
         for publisher in self.publishers:
             publisher.unregister()
 
 
 def _is_full(connection) -> bool:
-    """Whether the oldest message of a connection's queue is about to be thrown away."""
+    """Return whether the next message drops the oldest one of a connection's queue."""
     if not isinstance(connection, QueuedConnection):
         return False
     return 0 < connection._queue_size <= len(connection._queue)

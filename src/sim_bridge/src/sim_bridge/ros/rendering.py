@@ -1,4 +1,4 @@
-"""What a world looks like from above: its true map, and a picture."""
+"""The script render_map: the true map of a world, and an image of it from above."""
 
 import argparse
 import io
@@ -16,14 +16,14 @@ from sim_bridge.views.true_map import true_map
 
 
 def render_map() -> None:
-    """Writes the true map of a world file, and a picture of it."""
+    """Write the true map of a world file, and optionally an image of it."""
     parser = argparse.ArgumentParser(
         prog="render_map",
         description="Renders the occupancy grid of a world file, as a perfect mapper would.",
     )
     parser.add_argument("world", metavar="WORLD", help="SDF world file")
     parser.add_argument("stem", metavar="STEM", help="writes STEM.yaml and STEM.pgm")
-    parser.add_argument("--height", type=float, default=0.3, help="of the cut, metres (default: 0.3)")
+    parser.add_argument("--height", type=float, default=0.3, help="of the section, metres (default: 0.3)")
     parser.add_argument("--resolution", type=float, default=0.05, help="metres per cell (default: 0.05)")
     parser.add_argument(
         "--inside",
@@ -31,11 +31,11 @@ def render_map() -> None:
         nargs=2,
         default=(0.0, 0.0),
         metavar=("X", "Y"),
-        help="a point of free space; what can be reached from it is free (default: 0 0)",
+        help="a point in free space; cells reachable from it are free (default: 0 0)",
     )
-    parser.add_argument("--picture", metavar="PNG", help="writes a picture of the world from above there too")
+    parser.add_argument("--picture", metavar="PNG", help="also writes an image of the world from above")
     parser.add_argument(
-        "--below", type=float, default=2.0, help="what the picture leaves out is higher, metres (default: 2)"
+        "--below", type=float, default=2.0, help="greatest height shown in the image, metres (default: 2)"
     )
     parser.add_argument("--strict", action="store_true", help="a mesh or model that is missing is an error")
     arguments = parser.parse_args()

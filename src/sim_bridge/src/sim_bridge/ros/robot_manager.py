@@ -1,4 +1,4 @@
-"""The robots of a scene and their topics."""
+"""Robots of a scene and their topics."""
 
 from typing import Dict, List, Mapping
 
@@ -16,7 +16,13 @@ from sim_bridge.scene import Scene
 
 
 class RobotManager:
-    """Steps a scene: hands its robots the commands that have come, tells what they observe."""
+    """Steps a scene with the commands received by its robots, and publishes what they measure.
+
+    Args:
+        scene: The simulated world.
+        calls: Queue of the thread that owns the scene.
+        joint_steps: Default of the steps between two joint states of a robot.
+    """
 
     def __init__(self, scene: Scene, calls: CallQueue, joint_steps: int):
         self._scene = scene
@@ -28,50 +34,59 @@ class RobotManager:
     def add(
         self, name: str, profile: RobotProfile, base_in_world: Pose2, z: float = 0.0, namespace: str = ""
     ) -> None:
-        """Puts a robot on the floor at, or below, the height ``z``.
+        """Add a robot to the scene, on the floor at or below a height, and advertise its topics.
 
-        Its topics are where its description says, else below ``namespace``. Raises WorldError, RobotError.
+        Args:
+            name: Of the robot.
+            profile: Its description.
+            base_in_world: Its initial pose.
+            z: The height [m].
+            namespace: Of its topics, if its description has none.
+
+        Raises:
+            WorldError: It cannot stand there, or the name is taken.
+            RobotError: The description cannot be used.
         """
         for warning in profile.warnings:
             rospy.logwarn("%s", warning)
-        met = self._scene.add_robot(name, profile, base_in_world, z)
-        if met:
-            rospy.logwarn("%s would start a little inside %s: moved out of it", name, ", ".join(met))
+        overlapping = self._scene.add_robot(name, profile, base_in_world, z)
+        if overlapping:
+            rospy.logwarn("%s would start a little inside %s: moved out of it", name, ", ".join(overlapping))
         namespace = "/" + (profile.namespace or namespace.strip("/"))
         self._robots[name] = RobotTopics(
             self._scene, name, self._calls, self._joint_steps, namespace, _tf_prefix(namespace)
         )
 
     def remove(self, name: str) -> None:
-        """Takes a model out of the scene, and its topics if it is a robot. Raises UnknownEntityError."""
+        """Remove a model from the scene, and its topics if it is a robot. Raises UnknownEntityError."""
         self._scene.remove_model(name)
         topics = self._robots.pop(name, None)
         if topics is not None:
             topics.close()
 
     def publishers(self) -> List[CountingPublisher]:
-        """Of all topics of the robots."""
+        """Return the publishers of all topics of the robots."""
         return [publisher for topics in self._robots.values() for publisher in topics.publishers()]
 
     @property
     def odometry_seconds(self) -> float:
-        """Of all robots, the most simulated seconds between two messages of odometry."""
+        """Longest time between two odometry messages of a robot [simulated s]."""
         return max((topics.odometry_seconds for topics in self._robots.values()), default=0.0)
 
     def step(self) -> Mapping[str, StepResult]:
-        """Moves on by one period of the odometry; what each robot observes."""
-        commands = {name: topics.take_command() for name, topics in self._robots.items()}
-        seen = self._scene.step({name: command for name, command in commands.items() if command})
+        """Step the scene by one odometry period; return the result of each robot."""
+        commands = {name: topics.pop_command() for name, topics in self._robots.items()}
+        results = self._scene.step({name: command for name, command in commands.items() if command})
         transforms = [
-            transform for name, topics in self._robots.items() for transform in topics.publish(seen[name])
+            transform for name, topics in self._robots.items() for transform in topics.publish(results[name])
         ]
         if transforms:
             self._tf.publish(TransformsMsg(transforms))
-        return seen
+        return results
 
 
 def _tf_prefix(namespace: str) -> str:
-    """The parameter tf_prefix of a namespace or of the nearest around it, else itself, as in Gazebo."""
+    """Return tf_prefix of the nearest enclosing namespace that has it, else the namespace, as in Gazebo."""
     where = namespace.strip("/").split("/")
     for depth in range(len(where), -1, -1):
         name = "/".join(["", *where[:depth], "tf_prefix"])

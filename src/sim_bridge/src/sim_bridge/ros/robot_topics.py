@@ -1,4 +1,4 @@
-"""A robot's topics and transforms."""
+"""Topics and transforms of a robot."""
 
 from typing import List, Optional, Tuple
 
@@ -17,7 +17,7 @@ from sim_bridge.ros.kobuki.commands import KobukiCommands
 from sim_bridge.ros.messages import covariance_of
 from sim_bridge.ros.motion_messages import OdometryMsg, TransformMsg
 from sim_bridge.ros.publishers import CountingPublisher, RobotPublishers
-from sim_bridge.ros.sensor_topics import RobotSensors
+from sim_bridge.ros.sensor_topics import RobotSensorTopics
 from sim_bridge.scene import Scene
 from sim_bridge.sensors.base import Reading
 from sim_bridge.sensors.kobuki import KobukiProfile
@@ -25,15 +25,20 @@ from sim_bridge.sensors.odometry import Odometer
 
 # The frame of the world file; it coincides with a map made or rendered of that world.
 WORLD_FRAME = "world"
-# Messages of the truth that wait for a judge who is held up; its verdict and the run's hash need every one.
+# Queue of the ground truth: a referee that is delayed needs every message for its verdict and the run's hash.
 TRUTH_QUEUE = 1000
 
 
 class RobotTopics:
-    """Tells what a robot observes and takes its commands; its topics are below ``namespace``.
+    """Publishes a robot's readings and subscribes to its commands.
 
-    ``tf_prefix`` is put before the names of its frames. ``joint_steps``: steps between two states of the
-    joints, if the robot does not say how many.
+    Args:
+        scene: The simulated world.
+        name: Of the robot in the scene.
+        calls: Queue of the thread that owns the scene.
+        joint_steps: Steps between two joint states, if the robot's description has no rate.
+        namespace: Of the topics.
+        tf_prefix: Of the frames.
     """
 
     def __init__(
@@ -52,8 +57,8 @@ class RobotTopics:
         self._odom_msg = OdometryMsg(odom_frame, base_frame, covariance_of(profile.odometry.variances))
         self._truth_msg = OdometryMsg(WORLD_FRAME, base_frame, [0.0] * 36)
         self._transform = TransformMsg(odom_frame, base_frame)
-        self._sensors = RobotSensors(scene.robot(name), publishers)
-        self._touches = publishers.publisher("contacts", String, latch=True)
+        self._sensors = RobotSensorTopics(scene.robot(name), publishers)
+        self._contacts_topic = publishers.publisher("contacts", String, latch=True)
         if profile.joint_states is not None:
             self._joints = publishers.publisher(profile.joint_states.topic, JointState)
             self._joint_steps = self._steps_of(profile.joint_states.rate, joint_steps)
@@ -64,16 +69,16 @@ class RobotTopics:
 
     @property
     def odometry_seconds(self) -> float:
-        """Simulated seconds between two messages of odometry."""
+        """Time between two odometry messages [simulated s]."""
         return self._odom_steps * self._scene.step_seconds
 
-    def take_command(self) -> Optional[Twist2]:
-        """Before a step: the command that has come since the last call, if any."""
-        self._sensors.ask()
-        return self._commands.take(self._scene.stamp)
+    def pop_command(self) -> Optional[Twist2]:
+        """Return the command received since the last call, if any; to be called before a step."""
+        self._sensors.enable_subscribed()
+        return self._commands.pop(self._scene.stamp)
 
     def publish(self, observation: StepResult) -> List[TransformMsg]:
-        """Tells what was observed, but for the transforms, which it returns."""
+        """Publish the readings of a step, and return its transforms."""
         self._steps += 1
         stamp = time_of(observation.stamp)
         joint_states = self._profile.joint_states
@@ -81,7 +86,7 @@ class RobotTopics:
             self._joints.publish(self._joint_state_msg(joint_states, observation, stamp))
         if observation.contacts != self._contacts:
             self._contacts = observation.contacts
-            self._touches.publish("\n".join(observation.contacts))
+            self._contacts_topic.publish("\n".join(observation.contacts))
         self._sensors.publish(observation)
         for text in self._scene.view.warnings:
             rospy.logwarn_once(text)
@@ -90,11 +95,11 @@ class RobotTopics:
         return self._publish_motion(observation, stamp)
 
     def publishers(self) -> List[CountingPublisher]:
-        """Of all topics of the robot."""
+        """Return the publishers of all topics of the robot."""
         return self._publishers.publishers
 
     def close(self) -> None:
-        """Ends the topics."""
+        """Unregister all topics."""
         self._publishers.close()
         self._commands.close()
         if self._kobuki is not None:
@@ -107,10 +112,10 @@ class RobotTopics:
             self._truth.publish(self._truth_msg)
         return transforms
 
-    def _publish_odometry(self, told: Optional[Reading]) -> List[TransformMsg]:
-        if told is None:
+    def _publish_odometry(self, reading: Optional[Reading]) -> List[TransformMsg]:
+        if reading is None:
             return []
-        odometry, stamp = told.value, time_of(told.stamp)
+        odometry, stamp = reading.value, time_of(reading.stamp)
         if self._odom.get_num_connections():
             self._odom_msg.fill(odometry.base_in_odom, odometry.twist, stamp)
             self._odom.publish(self._odom_msg)
@@ -120,7 +125,7 @@ class RobotTopics:
         return [self._transform]
 
     def _steps_of(self, rate: Optional[float], default: int) -> int:
-        """Steps of the scene between two messages that come ``rate`` times a second."""
+        """Return the steps of the scene between two messages of a rate [Hz]."""
         return default if rate is None else max(round(1.0 / self._scene.step_seconds / rate), 1)
 
     def _joints_are_due(self) -> bool:
@@ -129,7 +134,7 @@ class RobotTopics:
     def _joint_state_msg(
         self, profile: JointStateProfile, observation: StepResult, stamp: rospy.Time
     ) -> JointState:
-        """Joints that do not move are at zero."""
+        """Make the state of all joints; those that are not driven are at 0."""
         driven = self._profile.drive.joints
         angles = dict(zip(driven, observation.wheel_angles))
         speeds = dict(zip(driven, observation.wheel_speeds))

@@ -1,4 +1,4 @@
-"""What single sensors tell, as messages; who publishes them fills in the header."""
+"""Conversion of readings to messages; the publisher fills in the header."""
 
 from geometry_msgs.msg import Quaternion, Vector3
 from sensor_msgs.msg import Imu
@@ -28,7 +28,7 @@ def imu_to_msg(reading: ImuReading, profile: ImuProfile) -> Imu:
         orientation=Quaternion(*quaternion(reading.orientation)),
         orientation_covariance=covariance_of(profile.orientation_variances),
         angular_velocity=Vector3(*reading.angular_velocity),
-        angular_velocity_covariance=covariance_of(profile.turn_variances),
+        angular_velocity_covariance=covariance_of(profile.angular_velocity_variances),
         linear_acceleration=Vector3(*reading.acceleration),
         linear_acceleration_covariance=covariance_of(profile.acceleration_variances),
     )

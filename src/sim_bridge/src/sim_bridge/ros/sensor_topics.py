@@ -1,4 +1,4 @@
-"""What ROS makes of sensors: which topics a description's sensor has, and the contract of such topics."""
+"""Topics of sensors: their contract, and which a sensor of a robot's description has."""
 
 from typing import Any, Callable, Dict, List, Protocol, Tuple
 
@@ -19,17 +19,17 @@ from sim_bridge.sensors.lidar import LaserProfile
 
 
 class SensorTopics(Protocol):
-    """The topics of one sensor; made of its spec and an Outlet, which opens them."""
+    """Topics of one sensor; made from its spec and the robot's publishers."""
 
     def has_subscribers(self) -> bool:
-        """Whether anybody has subscribed; a sensor that takes long measures only then."""
+        """Return whether there are subscribers; a sensor on demand measures only then."""
 
     def publish(self, value: Any, stamp: rospy.Time) -> None:
-        """Tells what was measured at ``stamp`` to those who have subscribed."""
+        """Publish what was measured at ``stamp`` on the topics with subscribers."""
 
 
-class OneTopic:
-    """All that a sensor tells, on the ``topic`` and in the ``frame`` of its spec; ``to_msg`` translates."""
+class SingleTopic:
+    """Publishes readings on the ``topic`` and in the ``frame`` of a spec; ``to_msg`` converts them."""
 
     def __init__(
         self,
@@ -57,11 +57,17 @@ class OneTopic:
 def one_topic(
     kind: type, to_msg: Callable[[Any, Any], Any], queue_size: int = 10
 ) -> Callable[[Any, RobotPublishers], SensorTopics]:
-    """What makes the topic, of messages of a ``kind``, of a sensor that has just one."""
-    return lambda spec, publishers: OneTopic(spec, publishers, kind, to_msg, queue_size)
+    """Return a factory of the topic of a sensor that has just one.
+
+    Args:
+        kind: Type of its messages.
+        to_msg: Converts a value and the spec to a message; the header is filled in later.
+        queue_size: Of the publisher.
+    """
+    return lambda spec, publishers: SingleTopic(spec, publishers, kind, to_msg, queue_size)
 
 
-# By the class of a sensor's spec (see sim_bridge.sensors.registry).
+# Factories of topics by the class of a sensor's spec (see sim_bridge.sensors.registry).
 TOPICS: Dict[type, Callable[[Any, RobotPublishers], SensorTopics]] = {
     LaserProfile: one_topic(LaserScanArrays, scan_to_msg),
     CameraProfile: CameraTopics,
@@ -70,8 +76,8 @@ TOPICS: Dict[type, Callable[[Any, RobotPublishers], SensorTopics]] = {
 }
 
 
-class RobotSensors:
-    """The topics of all sensors of a robot's description that have some."""
+class RobotSensorTopics:
+    """Topics of all sensors of a robot's description."""
 
     def __init__(self, robot: Robot, publishers: RobotPublishers):
         self._robot = robot
@@ -81,15 +87,16 @@ class RobotSensors:
             if type(spec) in TOPICS
         ]
 
-    def ask(self) -> None:
-        """Before a step: what takes long is measured only if it is wanted."""
+    def enable_subscribed(self) -> None:
+        """Enable the sensors on demand that have subscribers; to be called before a step."""
         for name, topics in self._topics:
             self._robot.want(name, topics.has_subscribers())
 
     def publish(self, observation: StepResult) -> None:
+        """Publish the readings of a step."""
         for name, topics in self._topics:
             reading = observation.readings.get(name)
             if reading is not None:
-                # A scan has a stamp of its own; that it comes late, or is misdated, is told by it.
+                # A scan has its own stamp, which faults may shift.
                 stamp = reading.value.stamp if isinstance(reading.value, Scan) else reading.stamp
                 topics.publish(reading.value, time_of(max(stamp, 0.0)))

@@ -1,4 +1,4 @@
-"""Cameras for colour and depth, as Gazebo's camera and openni_kinect plugins have them."""
+"""Colour and depth cameras, as of Gazebo's camera and openni_kinect plugins."""
 
 import math
 from dataclasses import dataclass, replace
@@ -17,20 +17,29 @@ from sim_bridge.sensors.lidar import LaserProfile
 from sim_bridge.views.rasterizer import Projection, rasterize
 
 STREAM = 100
-# Of a side.
+# Pixels of a side at most.
 MOST_PIXELS = 8192
-# From the frame that a camera looks along x of to the optical frame (REP 103): z ahead, x right, y down.
+# Optical frame (REP 103: z ahead, x right, y down) in a frame whose x axis points ahead.
 OPTICAL_IN_CAMERA = np.array(
     [[0.0, 0.0, 1.0, 0.0], [-1.0, 0.0, 0.0, 0.0], [0.0, -1.0, 0.0, 0.0], [0, 0, 0, 1.0]]
 )
 
-# Radians that a flat picture can hold; fish eyes of descriptions see more.
+# Widest field of view of a flat image [rad]; that of a fisheye lens is cut to it.
 WIDEST = 3.0
 
 
 @dataclass(frozen=True)
 class CameraSettings:
-    """``horizontal_fov`` in rad, ``near``, ``far`` in m, ``noise``: standard deviation of colour, 0 to 1."""
+    """Settings of a camera.
+
+    Attributes:
+        width: Columns.
+        height: Rows.
+        horizontal_fov: Field of view [rad].
+        near: Near clip plane [m].
+        far: Far clip plane [m].
+        noise: Standard deviation of colours, of 0 to 1.
+    """
 
     width: int = 640
     height: int = 480
@@ -48,12 +57,12 @@ class CameraSettings:
 
     @property
     def focal_length(self) -> float:
-        """Pixels."""
+        """Focal length [pixels]."""
         return self.width / 2.0 / math.tan(self.horizontal_fov / 2.0)
 
     @property
     def centre(self) -> Tuple[float, float]:
-        """Column and row of the optical axis."""
+        """Principal point: column and row of the optical axis."""
         return ((self.width - 1) / 2.0, (self.height - 1) / 2.0)
 
     def projection(self) -> Projection:
@@ -62,10 +71,13 @@ class CameraSettings:
 
 @dataclass(frozen=True)
 class DepthCameraSettings(CameraSettings):
-    """Depths outside ``min_depth`` to ``max_depth``, m, read NaN (REP 118).
+    """Settings of a depth camera.
 
-    ``depth_noise``: standard deviation, m, at 1 m; it grows with the square of the depth, as a Kinect's does
-    (Khoshelham and Elberink, Sensors 12, 2012).
+    Attributes:
+        min_depth: Depths below are NaN (REP 118) [m].
+        max_depth: Depths above are NaN [m].
+        depth_noise: Standard deviation at 1 m [m]; it grows with the square of the depth, as of a Kinect
+            (Khoshelham and Elberink, Sensors 12, 2012).
     """
 
     min_depth: float = 0.4
@@ -85,7 +97,12 @@ class DepthCameraSettings(CameraSettings):
 
 @dataclass(frozen=True, eq=False)
 class CameraImage:
-    """``rgb``: (H, W, 3), uint8; ``depth``: (H, W), float32, metres along the optical axis."""
+    """What a camera measures.
+
+    Attributes:
+        rgb: (H, W, 3), uint8.
+        depth: (H, W), float32, along the optical axis [m].
+    """
 
     rgb: np.ndarray
     depth: np.ndarray
@@ -93,10 +110,18 @@ class CameraImage:
 
 @dataclass(frozen=True, eq=False)
 class CameraProfile:
-    """A camera that looks along x of ``pose_in_base`` (4, 4), ``rate`` times a second.
+    """A camera of a robot's description.
 
-    ``frame`` is the optical one. Topics of the colour picture and, if it measures depth, of the depth picture
-    and the points; a topic that is empty is not there.
+    Attributes:
+        frame: Its optical frame.
+        pose_in_base: (4, 4); the camera faces along the x axis.
+        settings: Lens and noise.
+        rate: [Hz].
+        image_topic: Of colour images.
+        info_topic: Of their camera info.
+        depth_topic: Of depth images; empty for none, as the following.
+        depth_info_topic: Of their camera info.
+        points_topic: Of point clouds.
     """
 
     frame: str
@@ -118,7 +143,7 @@ class CameraProfile:
 
 
 class Camera:
-    """Takes pictures of triangles."""
+    """Renders images of the world's triangles."""
 
     on_demand = True
 
@@ -132,7 +157,7 @@ class Camera:
         return every(self._profile.rate, settings)
 
     def measure(self, context: SensorContext) -> CameraImage:
-        """What is seen along the x axis of the camera's place on the robot."""
+        """Render the world from the camera's pose on the robot."""
         return self.render(*context.triangles(), context.base.pose @ self._profile.pose_in_base)
 
     def render(
@@ -146,8 +171,8 @@ class Camera:
             camera_in_world: (4, 4); the camera faces along its x axis.
         """
         world_in_optical = inverse(camera_in_world @ OPTICAL_IN_CAMERA)
-        seen = triangles_xyz @ world_in_optical[:3, :3].T + world_in_optical[:3, 3]
-        rgb, depth = rasterize(seen, shades, self._settings.projection())
+        in_optical = triangles_xyz @ world_in_optical[:3, :3].T + world_in_optical[:3, 3]
+        rgb, depth = rasterize(in_optical, shades, self._settings.projection())
         if self._settings.noise > 0.0:
             noisy = rgb + 255.0 * self._rng.normal(0.0, self._settings.noise, rgb.shape)
             rgb = np.clip(np.rint(noisy), 0, 255).astype(np.uint8)
@@ -167,27 +192,27 @@ class Camera:
 
 
 def depth_to_points(depth: np.ndarray, settings: CameraSettings) -> np.ndarray:
-    """The points (H, W, 3), float32, in the optical frame that a depth picture (H, W) shows."""
+    """Return the points of a depth image (H, W) in the optical frame, (H, W, 3), float32 [m]."""
     (centre_x, centre_y), scale = settings.centre, settings.focal_length
     columns = (np.arange(settings.width, dtype=np.float32) - np.float32(centre_x)) / np.float32(scale)
     rows = (np.arange(settings.height, dtype=np.float32) - np.float32(centre_y)) / np.float32(scale)
     return np.stack((columns[None, :] * depth, rows[:, None] * depth, depth), axis=2)
 
 
-def read_camera(found: SensorElement) -> CameraProfile:
-    """Of gazebo_ros_camera. Raises WorldError."""
-    values, topics = _values_of(found)
+def read_camera(element: SensorElement) -> CameraProfile:
+    """Read gazebo_ros_camera. Raises WorldError."""
+    values, topics = _values_of(element)
     try:
         settings = CameraSettings(**values)
     except SettingsError as error:
-        raise found.sensor.error(str(error)) from None
+        raise element.sensor.error(str(error)) from None
     return CameraProfile(settings=settings, **topics)
 
 
-def read_depth_camera(found: SensorElement) -> CameraProfile:
-    """Of gazebo_ros_openni_kinect. Raises WorldError."""
-    plugin, prefix = found.plugin, _prefix(found)
-    values, topics = _values_of(found)
+def read_depth_camera(element: SensorElement) -> CameraProfile:
+    """Read gazebo_ros_openni_kinect. Raises WorldError."""
+    plugin, prefix = element.plugin, _prefix(element)
+    values, topics = _values_of(element)
     try:
         settings = DepthCameraSettings(
             **values,
@@ -195,7 +220,7 @@ def read_depth_camera(found: SensorElement) -> CameraProfile:
             max_depth=number(plugin, "pointCloudCutoffMax", 5.0),
         )
     except SettingsError as error:
-        raise found.sensor.error(str(error)) from None
+        raise element.sensor.error(str(error)) from None
     return CameraProfile(
         settings=settings,
         depth_topic=prefix + text(plugin, "depthImageTopicName", "depth/image_raw"),
@@ -205,9 +230,9 @@ def read_depth_camera(found: SensorElement) -> CameraProfile:
     )
 
 
-def _values_of(found: SensorElement) -> Tuple[Dict[str, Any], Dict[str, Any]]:
-    """What all cameras say: values of CameraSettings, and the rest of their profile."""
-    sensor, plugin, prefix = found.sensor, found.plugin, _prefix(found)
+def _values_of(element: SensorElement) -> Tuple[Dict[str, Any], Dict[str, Any]]:
+    """Read what all cameras have: values of CameraSettings, and the rest of their profile."""
+    sensor, plugin, prefix = element.sensor, element.plugin, _prefix(element)
     camera = sensor.child("camera") or sensor
     values = {
         "width": camera.count("image", "width", most=MOST_PIXELS, default=640),
@@ -217,25 +242,24 @@ def _values_of(found: SensorElement) -> Tuple[Dict[str, Any], Dict[str, Any]]:
         "far": camera.number("clip", "far", default=100.0),
     }
     topics = {
-        "frame": text(plugin, "frameName", found.link),
-        "pose_in_base": found.pose_in_base,
-        "rate": number(plugin, "updateRate", 0.0) or found.update_rate or 10.0,
+        "frame": text(plugin, "frameName", element.link),
+        "pose_in_base": element.pose_in_base,
+        "rate": number(plugin, "updateRate", 0.0) or element.update_rate or 10.0,
         "image_topic": prefix + text(plugin, "imageTopicName", "image_raw"),
         "info_topic": prefix + text(plugin, "cameraInfoTopicName", "camera_info"),
     }
     return values, topics
 
 
-def _prefix(found: SensorElement) -> str:
-    namespace = text(found.plugin, "cameraName", "").strip("/")
+def _prefix(element: SensorElement) -> str:
+    namespace = text(element.plugin, "cameraName", "").strip("/")
     return f"{namespace}/" if namespace else ""
 
 
 def scan_of(camera: CameraProfile) -> LaserProfile:
-    """The level scan that depthimage_to_laserscan makes of a depth camera, with a TurtleBot's defaults.
+    """Return the range finder that depthimage_to_laserscan makes of a depth camera, as on a TurtleBot.
 
-    Its frame is beside the optical one and named after it: ``camera_depth_frame`` for
-    ``camera_depth_optical_frame``.
+    Its frame is named after the optical one: ``camera_depth_frame`` for ``camera_depth_optical_frame``.
     """
     settings = camera.settings
     assert isinstance(settings, DepthCameraSettings)

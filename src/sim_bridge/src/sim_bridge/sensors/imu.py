@@ -1,4 +1,4 @@
-"""An inertial measurement unit."""
+"""Inertial measurement unit (REP 145)."""
 
 import math
 from dataclasses import dataclass
@@ -18,26 +18,31 @@ STREAM = 200
 
 @dataclass(frozen=True)
 class ImuSettings:
-    """Standard deviations, of each axis: ``turn_noise``, rad/s, ``acceleration_noise``, m/s^2.
+    """Errors of an IMU, the same for each axis.
 
-    ``turn_bias``: of what each turn rate is wrong by all the time, rad/s.
+    Attributes:
+        gyro_noise: Standard deviation of the angular velocity [rad/s].
+        gyro_bias: Standard deviation of its constant bias, drawn once [rad/s].
+        acceleration_noise: Standard deviation of the linear acceleration [m/s^2].
     """
 
-    turn_noise: float = 0.0
-    turn_bias: float = 0.0
+    gyro_noise: float = 0.0
+    gyro_bias: float = 0.0
     acceleration_noise: float = 0.0
 
     def __post_init__(self):
-        for name in ("turn_noise", "turn_bias", "acceleration_noise"):
+        for name in ("gyro_noise", "gyro_bias", "acceleration_noise"):
             check(getattr(self, name) >= 0.0, name, "not negative", getattr(self, name))
 
 
 @dataclass(frozen=True, eq=False)
 class ImuReading:
-    """``orientation``: (4, 4), of the sensor in the world; ``turn_rates`` (3,), rad/s, along its axes.
+    """What an IMU measures.
 
-    ``acceleration``: (3,), m/s^2, along its axes. A sensor at rest feels the acceleration that keeps it from
-    falling: +g upwards (REP 145).
+    Attributes:
+        orientation: Rotation of the sensor in the world, (4, 4).
+        angular_velocity: (3,), along its axes [rad/s].
+        acceleration: (3,), along its axes [m/s^2]; +g upwards at rest (REP 145).
     """
 
     orientation: np.ndarray
@@ -47,11 +52,17 @@ class ImuReading:
 
 @dataclass(frozen=True, eq=False)
 class ImuProfile:
-    """An inertial sensor at ``pose_in_base`` (4, 4).
+    """Settings of an IMU.
 
-    ``rate`` in hertz and ``noise``, the standard deviation of what it measures in SI units, are None where
-    the simulation's settings decide. Variances, (3,) each, about and along its axes, are only told; 0 means
-    unknown (sensor_msgs/Imu).
+    Attributes:
+        topic: Where it publishes.
+        frame: Of its measurements.
+        pose_in_base: (4, 4).
+        rate: [Hz]; None for that of odometry.
+        noise: Standard deviation of all measurements, in SI units; None for that of the simulation.
+        orientation_variances: Published variances about its axes, (3,); 0 is unknown (sensor_msgs/Imu).
+        angular_velocity_variances: The same of the angular velocity.
+        acceleration_variances: The same of the acceleration.
     """
 
     topic: str
@@ -60,22 +71,22 @@ class ImuProfile:
     rate: Optional[float] = None
     noise: Optional[float] = None
     orientation_variances: Tuple[float, ...] = (0.0, 0.0, 0.0)
-    turn_variances: Tuple[float, ...] = (0.0, 0.0, 0.0)
+    angular_velocity_variances: Tuple[float, ...] = (0.0, 0.0, 0.0)
     acceleration_variances: Tuple[float, ...] = (0.0, 0.0, 0.0)
 
     def build(self, mounting: Mounting) -> "Imu":
-        """White noise of the turn rate is stronger the shorter it is looked at."""
+        """Make the sensor; the standard deviation of white noise grows with the root of the rate."""
         settings = mounting.settings
         rate = self.rate or settings.odometry_rate
-        turn_noise, acceleration_noise = settings.gyro_noise * math.sqrt(rate), settings.acceleration_noise
-        if self.noise is not None and turn_noise > 0.0:  # else sensors are meant to be ideal
-            turn_noise = acceleration_noise = self.noise
-        errors = ImuSettings(turn_noise, settings.gyro_bias, acceleration_noise)
+        gyro_noise, acceleration_noise = settings.gyro_noise * math.sqrt(rate), settings.acceleration_noise
+        if self.noise is not None and gyro_noise > 0.0:  # 0: an ideal simulation has no noise
+            gyro_noise = acceleration_noise = self.noise
+        errors = ImuSettings(gyro_noise, settings.gyro_bias, acceleration_noise)
         return Imu(errors, mounting.rng(STREAM), self)
 
 
 class Imu:
-    """Feels how it turns and how its velocity changes from one reading to the next."""
+    """Measures angular velocity, and acceleration as the change of velocity between two readings."""
 
     on_demand = True
 
@@ -85,7 +96,7 @@ class Imu:
         self._seconds = 0.0
         self._settings = settings
         self._rng = rng
-        self._bias = rng.normal(0.0, settings.turn_bias, 3)
+        self._bias = rng.normal(0.0, settings.gyro_bias, 3)
         self._velocity: Optional[np.ndarray] = None
 
     def schedule(self, settings: SimulationSettings) -> Schedule:
@@ -95,39 +106,45 @@ class Imu:
 
     def measure(self, context: SensorContext) -> ImuReading:
         sensor = context.base.of_frame(self._profile.pose_in_base)
-        return self.feel(sensor, self._seconds, context.gravity)
+        return self.read(sensor, self._seconds, context.gravity)
 
-    def feel(self, sensor: KinematicState, seconds: float, gravity: float) -> ImuReading:
-        """``sensor``: its motion in the world; ``seconds`` since the last reading; ``gravity``: downwards."""
+    def read(self, sensor: KinematicState, seconds: float, gravity: float) -> ImuReading:
+        """Measure.
+
+        Args:
+            sensor: State of the sensor in the world.
+            seconds: Time since the last reading [s].
+            gravity: Acceleration downwards [m/s^2].
+        """
         before = sensor.linear if self._velocity is None else self._velocity
         self._velocity = sensor.linear
-        felt = (sensor.linear - before) / seconds + (0.0, 0.0, gravity)
+        proper_acceleration = (sensor.linear - before) / seconds + (0.0, 0.0, gravity)
         to_sensor = sensor.pose[:3, :3].T
         orientation = np.eye(4)
         orientation[:3, :3] = sensor.pose[:3, :3]
         return ImuReading(
             orientation,
-            to_sensor @ sensor.angular + self._bias + self._noise(self._settings.turn_noise),
-            to_sensor @ felt + self._noise(self._settings.acceleration_noise),
+            to_sensor @ sensor.angular + self._bias + self._noise(self._settings.gyro_noise),
+            to_sensor @ proper_acceleration + self._noise(self._settings.acceleration_noise),
         )
 
     def _noise(self, deviation: float) -> np.ndarray:
         return self._rng.normal(0.0, deviation, 3)
 
 
-def read_imu(found: SensorElement) -> ImuProfile:
-    """Of gazebo_ros_imu and its like, in a <sensor> or below the model. Raises WorldError."""
-    plugin = found.plugin
+def read_imu(element: SensorElement) -> ImuProfile:
+    """Read gazebo_ros_imu or hector_gazebo_ros_imu, in a <sensor> or below the model. Raises WorldError."""
+    plugin = element.plugin
     noise = plugin.child("gaussianNoise")
     deviation = noise.numbers(1)[0] if noise is not None else None
     variances = ((deviation or 0.0) ** 2,) * 3
     return ImuProfile(
         topic=text(plugin, "topicName", "imu"),
-        frame=text(plugin, "frameName", "") or text(plugin, "frameId", "") or found.link,
-        pose_in_base=found.pose_in_base,
+        frame=text(plugin, "frameName", "") or text(plugin, "frameId", "") or element.link,
+        pose_in_base=element.pose_in_base,
         rate=number(plugin, "updateRateHZ", 0.0) or number(plugin, "updateRate", 0.0) or None,
         noise=deviation,
         orientation_variances=variances,
-        turn_variances=variances,
+        angular_velocity_variances=variances,
         acceleration_variances=variances,
     )

@@ -1,4 +1,4 @@
-"""A planar range finder (Probabilistic Robotics, section 6.3, p_hit and p_max)."""
+"""Planar range finder (Probabilistic Robotics, section 6.3, p_hit and p_max)."""
 
 import math
 from dataclasses import dataclass, replace
@@ -21,11 +21,23 @@ STREAM = 1
 
 @dataclass(frozen=True, eq=False)
 class LaserProfile:
-    """A planar range finder, fixed at ``pose_in_base`` (4, 4); its readings are told in ``frame``.
+    """Settings of a planar range finder.
 
-    A beam that meets nothing within ``sight`` metres reads ``no_return``, one that meets something nearer
-    than ``range_min`` reads ``too_near`` (REP 117). ``rate`` in hertz and ``noise``, the standard deviation
-    of a range in metres, are None where the simulation's settings decide. ``scan_time``, s, is only told.
+    Attributes:
+        frame: Of its scans.
+        topic: Where it publishes.
+        pose_in_base: (4, 4).
+        beams: Number of beams.
+        angle_min: Bearing of the first beam [rad].
+        angle_increment: Between two beams [rad].
+        range_min: Published range_min [m].
+        range_max: Published range_max [m].
+        sight: Range within which obstacles are measured [m].
+        no_return: Range of a beam that hits nothing within ``sight`` (REP 117).
+        too_near: Range of a beam that hits an obstacle nearer than ``range_min`` (REP 117).
+        scan_time: Published scan_time [s].
+        rate: [Hz]; None for that of the simulation.
+        noise: Standard deviation of a range [m]; None for that of the simulation.
     """
 
     frame: str
@@ -45,15 +57,21 @@ class LaserProfile:
 
     def build(self, mounting: Mounting) -> "Lidar":
         noise = mounting.settings
-        if self.noise is not None and noise.range_noise > 0.0:  # else sensors are meant to be ideal
+        if self.noise is not None and noise.range_noise > 0.0:  # 0: an ideal simulation has no noise
             noise = replace(noise, range_noise=self.noise)
         return Lidar(self, noise, mounting.rng(STREAM), float(mounting.base_in_space[2, 3]))
 
 
 class Lidar:
-    """Sweeps a level section of the world; ``base_height``: of the base frame above the world's origin, m.
+    """Measures ranges in a horizontal section of the world.
 
-    Its beams stay level: on a floor the robot tilts by less than a fifth of a degree.
+    Its beams stay horizontal: on a floor the robot tilts by less than a fifth of a degree.
+
+    Args:
+        profile: Settings.
+        noise: Errors of ranges.
+        rng: Random generator of the noise.
+        base_height: Height of the base frame above the world's origin [m].
     """
 
     on_demand = False
@@ -68,7 +86,7 @@ class Lidar:
         self._is_upside_down = profile.pose_in_base[2, 2] < 0.0
         self._noise = noise
         self._rng = rng
-        self._retros, self._shines = np.empty(0), False
+        self._retros, self._has_retros = np.empty(0), False
 
     def schedule(self, settings: SimulationSettings) -> Schedule:
         rate = self._profile.rate or settings.scan_rate
@@ -78,14 +96,18 @@ class Lidar:
         return self.sweep(context.stamp, *context.section(self._height), context.base.pose2)
 
     def sweep(self, stamp: float, segments: np.ndarray, retros: np.ndarray, base_in_world: Pose2) -> Scan:
-        """All beams at one moment.
+        """Measure all beams at one instant.
 
-        ``segments``: (N, 4), what there is to see, as x, y, x, y; ``retros``: (N,), how brightly it reflects.
+        Args:
+            stamp: Time of the scan [simulated s].
+            segments: Sides of obstacles, (N, 4), as x, y, x, y in the world [m].
+            retros: Laser retro of the sides, (N,).
+            base_in_world: Pose of the robot.
         """
         profile = self._profile
         laser = base_in_world @ self._laser_in_base
         first = profile.angle_min
-        if self._is_upside_down:  # the sweep goes the other way round, so its last beam is the first here
+        if self._is_upside_down:  # beams are in reverse order
             first = -profile.angle_min - profile.angle_increment * (profile.beams - 1)
         true_ranges, nearest = cast_beams(
             segments,
@@ -98,7 +120,7 @@ class Lidar:
         )
         if self._is_upside_down:
             true_ranges, nearest = true_ranges[::-1], nearest[::-1]
-        ranges = self._told(true_ranges)
+        ranges = self._noisy(true_ranges)
         return Scan(
             stamp=stamp,
             angle_min=profile.angle_min,
@@ -108,11 +130,11 @@ class Lidar:
             range_max=profile.range_max,
             laser_in_base=self._laser_in_base,
             upside_down=self._is_upside_down,
-            intensities=self._brightness(retros, nearest, ranges),
+            intensities=self._intensities(retros, nearest, ranges),
         )
 
-    def _told(self, true_ranges: np.ndarray) -> np.ndarray:
-        """What it tells of true ranges, float32 (N,): with noise, and some beams fail."""
+    def _noisy(self, true_ranges: np.ndarray) -> np.ndarray:
+        """Return ranges with noise and failed beams, float32 (N,)."""
         from sim_bridge.views.kernels import measure_ranges  # late: it brings numba
 
         profile, noise, count = self._profile, self._noise, len(true_ranges)
@@ -130,18 +152,18 @@ class Lidar:
             profile.range_max,
         )
 
-    def _brightness(self, retros: np.ndarray, nearest: np.ndarray, ranges: np.ndarray) -> np.ndarray:
-        """How much light comes back along each beam, float32 (N,); from most worlds none."""
-        if retros is not self._retros:  # else the world is as it was
-            self._retros, self._shines = retros, bool(retros.any())
-        if not self._shines:
+    def _intensities(self, retros: np.ndarray, nearest: np.ndarray, ranges: np.ndarray) -> np.ndarray:
+        """Return the intensity of each beam, float32 (N,); 0 in worlds without laser_retro."""
+        if retros is not self._retros:  # the section has changed
+            self._retros, self._has_retros = retros, bool(retros.any())
+        if not self._has_retros:
             return np.zeros(len(ranges), dtype=np.float32)
         return np.where(np.isfinite(ranges), np.append(retros, 0.0)[nearest], 0.0).astype(np.float32)
 
 
-def read_laser(found: SensorElement) -> LaserProfile:
-    """Of gazebo_ros_laser. Raises WorldError."""
-    sensor = found.sensor
+def read_laser(element: SensorElement) -> LaserProfile:
+    """Read gazebo_ros_laser. Raises WorldError."""
+    sensor = element.sensor
     ray = sensor.child("ray") or sensor.required("lidar")
     horizontal = ray.required("scan").required("horizontal")
     horizontal.required("samples")
@@ -153,15 +175,15 @@ def read_laser(found: SensorElement) -> LaserProfile:
         raise sensor.error("a range finder needs two samples, min_angle < max_angle and 0 <= min < max range")
     deviation = ray.child("noise", "stddev")
     return LaserProfile(
-        frame=text(found.plugin, "frameName", found.link),
-        topic=found.topic("topicName", "scan"),
-        pose_in_base=found.pose_in_base,
+        frame=text(element.plugin, "frameName", element.link),
+        topic=element.topic("topicName", "scan"),
+        pose_in_base=element.pose_in_base,
         beams=beams,
         angle_min=first,
         angle_increment=(last - first) / (beams - 1),
         range_min=nearest,
         range_max=farthest,
         sight=farthest,
-        rate=found.update_rate,
+        rate=element.update_rate,
         noise=deviation.numbers(1)[0] if deviation is not None else None,
     )

@@ -1,4 +1,4 @@
-"""How a robot measures where it is: from its wheels and a gyro, with the errors both have, or truly."""
+"""Odometry: dead reckoning from wheels and gyro, with their errors, or the true pose."""
 
 import math
 from dataclasses import dataclass, field
@@ -12,13 +12,19 @@ from sim_bridge.driving.drive import DriveProfile
 from sim_bridge.sensors.base import Mounting, Schedule, SensorContext, every
 
 STREAM = 0
-# x, y and yaw are measured, the rest is not (kobuki_gazebo_plugins).
+# Variances of x, y, z [m^2], roll, pitch and yaw [rad^2]; large ones are not measured
+# (kobuki_gazebo_plugins).
 KOBUKI_VARIANCES = (0.1, 0.1, 1e6, 1e6, 1e6, 0.05)
 
 
 @dataclass(frozen=True)
 class Odometry:
-    """Where the robot believes to be since its start, and how fast it believes to go."""
+    """An odometry estimate.
+
+    Attributes:
+        base_in_odom: Pose.
+        twist: Velocity in the base frame.
+    """
 
     base_in_odom: Pose2 = field(default_factory=Pose2)
     twist: Twist2 = field(default_factory=Twist2)
@@ -26,7 +32,14 @@ class Odometry:
 
 @dataclass(frozen=True)
 class TrueMotion:
-    """The truth after a period: where the robot is, how it moves, and its wheels' angles, left ones first."""
+    """True motion of a robot in one period.
+
+    Attributes:
+        base_in_world: Pose at its end.
+        twist: Velocity at its end, in the base frame.
+        wheel_angles: Of the driven wheels at its end, left ones first [rad].
+        seconds: Length of the period [s].
+    """
 
     base_in_world: Pose2
     twist: Twist2
@@ -35,22 +48,28 @@ class TrueMotion:
 
 
 class OdometryModel(Protocol):
-    """Tells from how a robot moves where it believes to be."""
+    """Estimates the pose of a robot from its motion."""
 
     def reset(self) -> None:
-        """The odometry begins anew."""
+        """Reset the pose to the origin."""
 
-    def update(self, moved: TrueMotion) -> Odometry:
-        """Moves on by one period."""
+    def update(self, motion: TrueMotion) -> Odometry:
+        """Integrate the motion of one period, and return the estimate."""
 
 
 @dataclass(frozen=True)
 class OdometryProfile:
-    """How a robot measures where it is.
+    """Settings of a robot's odometry.
 
-    ``source``: ``gyro`` (distance from the wheels, heading from a gyro), ``encoder`` (both from the wheels)
-    or ``world`` (the truth, in the frame of the world). ``rate`` in hertz, None for the simulation's.
-    ``variances``, which are only told: of x, y, z, m^2, roll, pitch and yaw, rad^2.
+    Attributes:
+        source: ``gyro`` (distance from the wheels, heading from a gyro), ``encoder`` (both from the wheels)
+            or ``world`` (the true pose in the world).
+        topic: Where it is published.
+        frame: Parent frame.
+        base_frame: Child frame.
+        sends_transform: Whether the transform is published, too.
+        rate: [Hz]; None for that of the simulation.
+        variances: Published variances of x, y, z [m^2], roll, pitch and yaw [rad^2].
     """
 
     source: str = "encoder"
@@ -61,25 +80,25 @@ class OdometryProfile:
     rate: Optional[float] = None
     variances: Tuple[float, ...] = KOBUKI_VARIANCES
 
-    def odometry_model(self, drive: DriveProfile, mounting: Mounting) -> OdometryModel:
-        """How the robot with this drive measures."""
+    def build(self, drive: DriveProfile, mounting: Mounting) -> OdometryModel:
+        """Make the odometry model of a robot with this drive."""
         if self.source == "world":
             return TrueOdometry()
         return DeadReckoning(drive, self.source == "gyro", mounting.settings, mounting.rng(STREAM))
 
 
 class Odometer:
-    """Measures where the robot is, once a period."""
+    """The odometry sensor of a robot; it measures once a period."""
 
     name, on_demand = "odometry", False
 
-    def __init__(self, profile: OdometryProfile, odometry_model: OdometryModel):
+    def __init__(self, profile: OdometryProfile, model: OdometryModel):
         self.frame = profile.frame
-        self._reckoning = odometry_model
+        self._model = model
         self._seconds = 0.0
 
     def reset(self) -> None:
-        self._reckoning.reset()
+        self._model.reset()
 
     def schedule(self, settings: SimulationSettings) -> Schedule:
         self._seconds = 1.0 / settings.odometry_rate
@@ -87,26 +106,32 @@ class Odometer:
 
     def measure(self, context: SensorContext) -> Odometry:
         angles, _ = context.wheels
-        return self._reckoning.update(TrueMotion(context.base.pose2, context.twist, angles, self._seconds))
+        return self._model.update(TrueMotion(context.base.pose2, context.twist, angles, self._seconds))
 
 
 class TrueOdometry:
-    """The truth, in the frame of the world, as Gazebo's plugins tell it with the source ``world``."""
+    """The true pose in the world, as of Gazebo's plugins with the source ``world``."""
 
     def reset(self) -> None:
-        """The frame of the world stays where it is."""
+        """Do nothing: the world frame is fixed."""
 
-    def update(self, moved: TrueMotion) -> Odometry:
-        return Odometry(moved.base_in_world, moved.twist)
+    def update(self, motion: TrueMotion) -> Odometry:
+        return Odometry(motion.base_in_world, motion.twist)
 
 
 class DeadReckoning:
-    """Distance from the encoders, heading from the encoders too or, as Kobuki does, from a gyro.
+    """Dead reckoning: distance from the encoders, heading from them or, as on a Kobuki, from a gyro.
 
-    Encoder error: a scale for each side, drawn once; without a gyro one for both, as an unequal pair would
-    only ever be used after calibration. Wheels slip: what they turn and what the robot travels differ by
-    noise that grows with the root of the distance. Gyro error: scale and bias, drawn once, and white noise.
-    Besides, the noise of odometry of Probabilistic Robotics (table 5.6), alpha 1 to 4.
+    Errors of encoders: a scale for each side, drawn once; without a gyro one for both, because an
+    uncalibrated pair would not be used. Wheel slip: noise of the distance that grows with its root. Errors of
+    the gyro: scale and bias, drawn once, and white noise. In addition, the odometry noise of Probabilistic
+    Robotics (table 5.6), alpha 1 to 4.
+
+    Args:
+        drive: Geometry of the wheels.
+        has_gyro: Whether the heading is from a gyro.
+        settings: Noise.
+        rng: Random generator.
     """
 
     def __init__(
@@ -121,18 +146,18 @@ class DeadReckoning:
         self._separation = drive.wheel_separation
         self._has_gyro = has_gyro
         self._settings = settings
-        self._alphas = _MotionNoise(settings, rng)
+        self._motion_noise = _MotionNoise(settings, rng)
         self._rng = rng
         self._angles = (0.0, 0.0)
         self._pose = Pose2()
 
     def reset(self) -> None:
-        """The robot's present place becomes the origin of odometry."""
+        """Make the present pose the origin of the odometry frame."""
         self._pose = Pose2()
 
-    def update(self, moved: TrueMotion) -> Odometry:
-        """Moves on by one period."""
-        left, right = moved.wheel_angles[: self._left_count], moved.wheel_angles[self._left_count :]
+    def update(self, motion: TrueMotion) -> Odometry:
+        """Integrate the motion of one period, and return the estimate."""
+        left, right = motion.wheel_angles[: self._left_count], motion.wheel_angles[self._left_count :]
         sides = (sum(left) / len(left), sum(right) / len(right))
         rolled = tuple(
             (angle - before) * radius for angle, before, radius in zip(sides, self._angles, self._radii)
@@ -140,45 +165,45 @@ class DeadReckoning:
         self._angles = sides
         distance = 0.5 * sum(rolled)
         slip = self._settings.wheel_slip * math.sqrt(abs(distance)) * self._rng.standard_normal()
-        rate = self._measured_rate(moved, rolled)
-        self._pose = self._pose @ self._alphas.disturbed(_arc(distance + slip, rate * moved.seconds))
-        return Odometry(self._pose, Twist2(distance / moved.seconds, rate))
+        rate = self._measured_rate(motion, rolled)
+        self._pose = self._pose @ self._motion_noise.apply(_arc(distance + slip, rate * motion.seconds))
+        return Odometry(self._pose, Twist2(distance / motion.seconds, rate))
 
-    def _measured_rate(self, moved: TrueMotion, rolled: Tuple[float, ...]) -> float:
-        """The turn rate, rad/s, by the gyro or by the distances that the left and right side have rolled."""
+    def _measured_rate(self, motion: TrueMotion, rolled: Tuple[float, ...]) -> float:
+        """Return the turn rate [rad/s] from the gyro, or from the rolled distances (left, right) [m]."""
         draw = self._rng.standard_normal()
         if self._has_gyro:
-            noise = self._settings.gyro_noise / math.sqrt(moved.seconds) * draw
-            return self._gyro_scale * moved.twist.omega + self._gyro_bias + noise
+            noise = self._settings.gyro_noise / math.sqrt(motion.seconds) * draw
+            return self._gyro_scale * motion.twist.omega + self._gyro_bias + noise
         left, right = rolled
         slip = self._settings.wheel_slip * math.sqrt(0.5 * (abs(left) + abs(right))) * draw
-        return (right - left + slip) / self._separation / moved.seconds
+        return (right - left + slip) / self._separation / motion.seconds
 
 
 class _MotionNoise:
-    """Noise of heading and distance that grows with both, by the four alphas.
+    """Noise of heading and distance by alpha 1 to 4 (Probabilistic Robotics, table 5.6).
 
-    Over a metre or a radian the variances are those of the table, of two metres twice that: so the noise does
-    not depend on the length of the steps.
+    Variances are proportional to distance and angle, unlike the table's, so that they do not depend on the
+    period.
     """
 
     def __init__(self, settings: SimulationSettings, rng: np.random.Generator):
         self._alphas = (settings.alpha1, settings.alpha2, settings.alpha3, settings.alpha4)
         self._rng = rng
 
-    def disturbed(self, step: Pose2) -> Pose2:
-        """A motion of one period with noise added."""
+    def apply(self, step: Pose2) -> Pose2:
+        """Return the motion of one period with noise."""
         if not any(self._alphas):
             return step
-        turn_by_turn, turn_by_way, way_by_way, way_by_turn = self._alphas
+        alpha1, alpha2, alpha3, alpha4 = self._alphas
         distance, angle = math.hypot(step.x, step.y), abs(step.yaw)
-        turn = math.sqrt(turn_by_turn * angle + turn_by_way * distance) * self._rng.standard_normal()
-        way = math.sqrt(way_by_way * distance + way_by_turn * angle) * self._rng.standard_normal()
-        return step @ Pose2(way, 0.0, turn)
+        turn = math.sqrt(alpha1 * angle + alpha2 * distance) * self._rng.standard_normal()
+        advance = math.sqrt(alpha3 * distance + alpha4 * angle) * self._rng.standard_normal()
+        return step @ Pose2(advance, 0.0, turn)
 
 
 def _arc(distance: float, angle: float) -> Pose2:
-    """The pose reached along an arc from the origin."""
+    """Return the pose at the end of an arc from the origin."""
     if abs(angle) < 1e-9:
         return Pose2(distance, 0.0, angle)
     radius = distance / angle

@@ -1,4 +1,4 @@
-"""Which sensor is behind which of Gazebo's plugins; sim_bridge.ros.sensor_topics has their topics."""
+"""Readers of sensors by Gazebo plugin; their topics are in sim_bridge.ros.sensor_topics."""
 
 from typing import Callable, Dict
 
@@ -8,7 +8,7 @@ from sim_bridge.sensors.element import SensorElement
 from sim_bridge.sensors.imu import read_imu
 from sim_bridge.sensors.lidar import read_laser
 
-# By the plugin's name (gazebo_plugins 2.9).
+# By the name of the plugin (gazebo_plugins 2.9).
 SENSORS: Dict[str, Callable[[SensorElement], SensorSpec]] = {
     "gazebo_ros_laser": read_laser,
     "gazebo_ros_gpu_laser": read_laser,
@@ -20,5 +20,5 @@ SENSORS: Dict[str, Callable[[SensorElement], SensorSpec]] = {
     "gazebo_ros_imu": read_imu,
     "hector_gazebo_ros_imu": read_imu,
 }
-# These may also be directly below a model and name the link that they are fixed to.
+# Plugins that may also be directly below a model, with the name of their link.
 BODY_SENSORS = ("gazebo_ros_imu_sensor", "gazebo_ros_imu", "hector_gazebo_ros_imu")

@@ -1,4 +1,4 @@
-"""Gazebo's services and topics below /gazebo (gazebo_ros 2.9), with its status texts, and a plugin's."""
+"""Gazebo's services and topics below /gazebo (gazebo_ros 2.9) with its status texts, and a link attacher."""
 
 from sim_bridge.ros.call_queue import CallQueue
 from sim_bridge.ros.gazebo.forces import ForceServices
@@ -18,7 +18,7 @@ __all__ = ["GazeboInterface"]
 
 
 class GazeboInterface:
-    """Serves a scene as Gazebo does; ``model_folders`` are searched for the models of spawned ones."""
+    """Services and topics of Gazebo; ``model_folders`` are searched for models that spawned ones include."""
 
     def __init__(
         self, scene: Scene, robots: RobotManager, time_control: TimeControl, calls: CallQueue, model_folders
@@ -34,5 +34,5 @@ class GazeboInterface:
         AttachServices(scene, server)
 
     def publish(self) -> None:
-        """Where all models and links are, for those who have subscribed."""
+        """Publish model_states and link_states if they have subscribers."""
         self._states.publish()

@@ -1,4 +1,4 @@
-"""Forces on links and efforts on joints."""
+"""Services that apply wrenches to links and efforts to joints."""
 
 import contextlib
 
@@ -60,12 +60,12 @@ class ForceServices:
         return answer(True, "ApplyJointEffort: effort set")
 
     def _on_clear_efforts(self, request):
-        # The service has no way to tell that there is no such joint.
+        # The response has no field for an error.
         with contextlib.suppress(UnknownEntityError):
             self._scene.forces.clear_joint_efforts(self._scene.joints.full_name(request.joint_name))
         return srv.JointRequestResponse()
 
     def _span(self, request):
-        """When a push starts, not before now, and when it ends; one of negative duration never does."""
+        """Return start, not before now, and end [simulated s]; a negative duration has no end."""
         start, duration = max(request.start_time.to_sec(), self._scene.stamp), request.duration.to_sec()
         return start, np.inf if duration < 0.0 else start + duration

@@ -1,4 +1,4 @@
-"""Joints, told and set."""
+"""Services that get and set properties and positions of joints."""
 
 import gazebo_msgs.srv as srv
 import numpy as np
@@ -15,7 +15,7 @@ KINDS = {
 
 
 class JointServices:
-    """Joints are known by their own name or as ``model::joint``, as in Gazebo."""
+    """Joints are named ``joint`` or ``model::joint``, as in Gazebo."""
 
     def __init__(self, scene: Scene, server: GazeboServer):
         self._scene = scene
@@ -40,7 +40,7 @@ class JointServices:
         return response
 
     def _on_set(self, request):
-        """Damping and limits; what else ODE's joints have is without meaning here."""
+        """Set damping and limits; other properties of ODE are ignored."""
         answer, config = srv.SetJointPropertiesResponse, request.ode_joint_config
         try:
             name = self._scene.joints.full_name(request.joint_name)

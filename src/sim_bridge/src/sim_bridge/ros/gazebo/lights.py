@@ -1,4 +1,4 @@
-"""Lights: they are known, told and set, but light nothing: cameras see by a light of their own."""
+"""Services that get, set and delete lights; rendering does not use lights."""
 
 from dataclasses import replace
 

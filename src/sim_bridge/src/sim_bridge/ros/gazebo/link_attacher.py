@@ -1,4 +1,4 @@
-"""Links that are held together and let go: the services of gazebo_ros_link_attacher."""
+"""Services of gazebo_ros_link_attacher: attach links to each other and detach them."""
 
 from typing import Callable
 
@@ -12,11 +12,11 @@ from sim_bridge.scene import Scene
 
 class AttachServices:
     def __init__(self, scene: Scene, server: GazeboServer):
-        server.serve("/link_attacher_node/attach", Attach, lambda request: _do(scene.attach, request))
-        server.serve("/link_attacher_node/detach", Attach, lambda request: _do(scene.detach, request))
+        server.serve("/link_attacher_node/attach", Attach, lambda request: _call(scene.attach, request))
+        server.serve("/link_attacher_node/detach", Attach, lambda request: _call(scene.detach, request))
 
 
-def _do(change: Callable[[str, str], None], request) -> AttachResponse:
+def _call(change: Callable[[str, str], None], request) -> AttachResponse:
     first = f"{request.model_name_1}::{request.link_name_1}"
     second = f"{request.model_name_2}::{request.link_name_2}"
     try:

@@ -1,4 +1,4 @@
-"""Time, gravity and the world as a whole."""
+"""Services for time, gravity and the world as a whole."""
 
 from typing import Any, Dict
 
@@ -18,7 +18,7 @@ from sim_bridge.ros.gazebo.server import NAMESPACE, GazeboServer
 from sim_bridge.ros.timing.time_control import TimeControl
 from sim_bridge.scene import Scene
 
-# What dynamic_reconfigure offers (Physics.cfg of gazebo_ros), but for ODE's own.
+# Dynamic parameters (Physics.cfg of gazebo_ros) without those of ODE.
 TUNABLES = (
     DynamicParameter("time_step", 0.005, "s of simulated time in a step of physics", 0.0, 10.0),
     DynamicParameter(
@@ -77,7 +77,7 @@ class PhysicsServices:
         return srv.SetPhysicsPropertiesResponse(True, "physics engine updated")
 
     def _on_reconfigure(self, values: Dict[str, Any]) -> Dict[str, Any]:
-        """Goes on as before if the values make no sense."""
+        """Set new values; keep the old ones if they are invalid."""
         gravity = Vector3(*(values[f"gravity_{axis}"] for axis in "xyz"))
 
         def change():
@@ -90,7 +90,7 @@ class PhysicsServices:
         return self._server.between_steps(change)
 
     def _set(self, time_step: float, max_update_rate: float, gravity: Vector3) -> None:
-        """A target of 0 updates a second means as fast as possible, here as there. Raises PlanarError."""
+        """Set rates and gravity; max_update_rate 0 is as fast as possible. Raises PlanarError."""
         if gravity.x or gravity.y or not np.isfinite(gravity.z):
             raise WorldError("gravity must point along the z axis")
         if not (time_step * HIGHEST_PHYSICS_RATE >= 1.0 and 0.0 <= max_update_rate < np.inf):

@@ -1,4 +1,4 @@
-"""What models and links are made of."""
+"""Services that get and set properties of models and links."""
 
 import gazebo_msgs.srv as srv
 import numpy as np
@@ -10,7 +10,7 @@ from sim_bridge.ros.gazebo.server import SCOPE_HINT, GazeboServer
 from sim_bridge.ros.messages import vector_from_msg
 from sim_bridge.scene import Scene
 
-# Of moments of inertia, and metres of a centre of mass, below which two are the same.
+# Relative difference of moments of inertia, and distance of centres of mass [m], that count as equal.
 NEGLIGIBLE = 1e-6
 
 
@@ -63,7 +63,7 @@ class PropertyServices:
         )
 
     def _on_set_link(self, request):
-        """Mass, moments about the axes that the link has, and weight; its centre of mass stays."""
+        """Set mass, principal moments and gravity; axes and centre of mass must stay."""
         answer = srv.SetLinkPropertiesResponse
         try:
             link = self._scene.models.full_link_name(request.link_name)
@@ -92,5 +92,5 @@ class PropertyServices:
 
 
 def _inside(model: str, name: str) -> str:
-    """A full name without that of its model."""
+    """Return a full name without its model."""
     return name[len(model) + 2 :]

@@ -1,4 +1,4 @@
-"""How Gazebo's services are offered, and in which frames they are told of."""
+"""Advertises Gazebo's services and subscribes to its topics; reference frames of requests."""
 
 from typing import Callable, Optional, TypeVar
 
@@ -14,38 +14,41 @@ from sim_bridge.scene import Scene
 T = TypeVar("T")
 
 NAMESPACE = "/gazebo/"
-# Names that all mean the world.
+# Names of the world frame.
 WORLD_NAMES = ("", "world", "map", "/map")
 SCOPE_HINT = "did you forget to scope the link by model name?"
 
 
 class GazeboServer:
-    """Answers calls, and takes what comes by topic, between two steps of the simulation."""
+    """Handles service calls and messages between two steps of the simulation."""
 
     def __init__(self, calls: CallQueue):
         self._calls = calls
 
     def serve(self, name: str, kind, answer: Callable) -> None:
-        """The service ``name``, below /gazebo unless it begins with a slash."""
+        """Advertise a service, below /gazebo unless its name starts with a slash."""
         full_name = rospy.names.ns_join(NAMESPACE, name)
         rospy.Service(full_name, kind, lambda request: self.between_steps(lambda: answer(request)))
 
     def serve_in_thread(self, name: str, kind, answer: Callable) -> None:
-        """The same for an ``answer`` that takes its time: it runs in a thread beside the simulation.
-
-        What it does to the scene it has done ``between_steps``.
-        """
+        """Advertise a service whose slow ``answer`` runs in its own thread; it must use ``between_steps``."""
         rospy.Service(rospy.names.ns_join(NAMESPACE, name), kind, answer)
 
-    def between_steps(self, do: Callable[[], T]) -> T:
-        """Has ``do`` called between two steps and returns what it returns."""
-        return self._calls.call(do)
+    def between_steps(self, function: Callable[[], T]) -> T:
+        """Run a function between two steps and return its result."""
+        return self._calls.call(function)
 
-    def listen(self, name: str, kind, take: Callable) -> None:
-        """The topic /gazebo/``name``; ``take`` is called with a message and what tells a failure."""
+    def subscribe(self, name: str, kind, callback: Callable) -> None:
+        """Subscribe to /gazebo/``name``.
+
+        Args:
+            name: Of the topic.
+            kind: Type of its messages.
+            callback: Called with a message and a function (success, text) that logs a failure.
+        """
 
         def on_message(message):
-            self._calls.submit(lambda: take(message, _tell_failure))
+            self._calls.submit(lambda: callback(message, _log_failure))
 
         rospy.Subscriber(NAMESPACE + name, kind, on_message, queue_size=10)
 
@@ -78,6 +81,6 @@ def absolute(motion: KinematicState, frame: KinematicState) -> KinematicState:
     return KinematicState(frame.pose @ motion.pose, turned @ motion.linear, turned @ motion.angular)
 
 
-def _tell_failure(success: bool, text: str) -> None:
+def _log_failure(success: bool, text: str) -> None:
     if not success:
         rospy.logwarn("%s", text)

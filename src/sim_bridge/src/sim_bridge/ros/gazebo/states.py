@@ -1,4 +1,4 @@
-"""Where models and links are, told and set."""
+"""Services and topics that get and set poses and twists of models and links."""
 
 from collections import Counter
 
@@ -15,7 +15,7 @@ from sim_bridge.scene import Scene
 class StateServices:
     def __init__(self, scene: Scene, server: GazeboServer):
         self._scene = scene
-        self._asked: Counter = Counter()
+        self._request_counts: Counter = Counter()
         self._models = rospy.Publisher(NAMESPACE + "model_states", ModelStates, queue_size=10)
         self._links = rospy.Publisher(NAMESPACE + "link_states", LinkStates, queue_size=10)
         server.serve("get_model_state", srv.GetModelState, self._on_get_model)
@@ -30,11 +30,11 @@ class StateServices:
             srv.SetLinkState,
             lambda request: self._set_link(request.link_state, srv.SetLinkStateResponse),
         )
-        server.listen("set_model_state", ModelState, self._set_model)
-        server.listen("set_link_state", LinkState, self._set_link)
+        server.subscribe("set_model_state", ModelState, self._set_model)
+        server.subscribe("set_link_state", LinkState, self._set_link)
 
     def publish(self) -> None:
-        """Where all models and links are, for those who have subscribed."""
+        """Publish model_states and link_states if they have subscribers."""
         scene = self._scene
         if self._models.get_num_connections():
             message = ModelStates(name=scene.models.names())
@@ -56,8 +56,8 @@ class StateServices:
         except UnknownEntityError:
             response.status_message = "GetModelState: model does not exist"
             return response
-        self._asked[request.model_name] += 1
-        response.header.seq = self._asked[request.model_name]
+        self._request_counts[request.model_name] += 1
+        response.header.seq = self._request_counts[request.model_name]
         frame = frame_named(self._scene, request.relative_entity_name)
         if frame is None:
             response.status_message = (

@@ -1,1 +1,1 @@
-"""A Kobuki base below mobile_base: what it feels and what it is told (kobuki_gazebo_plugins)."""
+"""Topics of a Kobuki base, below mobile_base (kobuki_gazebo_plugins)."""

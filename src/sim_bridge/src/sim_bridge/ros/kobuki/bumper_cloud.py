@@ -1,4 +1,4 @@
-"""What a Kobuki's bumper and cliff sensors feel, as points that costmaps can mark (kobuki_bumper2pc)."""
+"""Point cloud of pressed bumpers and detected cliffs, for costmaps (kobuki_bumper2pc)."""
 
 import math
 from typing import FrozenSet
@@ -11,26 +11,26 @@ from planar_ros.messages.clouds import cloud_msg
 from sim_bridge.sensors.kobuki import CENTRE, LEFT, RIGHT, KobukiReading
 
 FRAME = "base_link"
-# As turtlebot_bringup sets it, and how far off a point lies that means "nothing there", m.
+# Position of a point as set by turtlebot_bringup, and the distance of the point of an inactive sector [m].
 RADIUS, HEIGHT, FAR = 0.24, 0.04, 100.0
 BEARINGS = {LEFT: math.radians(70.0), CENTRE: 0.0, RIGHT: -math.radians(70.0)}
 
 
 class BumperCloud:
-    """Makes a message as long as something is felt, and one more when nothing is any longer."""
+    """Makes a message while a sector is active, and one more when none is any more."""
 
     def __init__(self):
-        self._felt: FrozenSet[int] = frozenset()
+        self._active: FrozenSet[int] = frozenset()
 
     def is_due(self, reading: KobukiReading) -> bool:
-        before, self._felt = self._felt, reading.bumpers | reading.cliffs
-        return bool(before or self._felt)
+        before, self._active = self._active, reading.bumpers | reading.cliffs
+        return bool(before or self._active)
 
     @staticmethod
     def message(reading: KobukiReading, stamp: rospy.Time, frame: str) -> PointCloud2:
-        """Three points: left, centre, right."""
-        felt = reading.bumpers | reading.cliffs
-        reach = np.array([RADIUS if sector in felt else FAR for sector in BEARINGS])
+        """Make a cloud of three points: left, centre, right."""
+        active = reading.bumpers | reading.cliffs
+        reach = np.array([RADIUS if sector in active else FAR for sector in BEARINGS])
         bearings = np.array(list(BEARINGS.values()))
         columns = (reach * np.cos(bearings), reach * np.sin(bearings), np.full(len(reach), HEIGHT))
         return cloud_msg(columns, "xyz", stamp, frame)

@@ -1,4 +1,4 @@
-"""What a Kobuki base is told below mobile_base (kobuki_gazebo_plugins), but for its velocity."""
+"""Commands of a Kobuki base other than its velocity, below mobile_base (kobuki_gazebo_plugins)."""
 
 import rospy
 from kobuki_msgs.msg import Led, MotorPower, Sound
@@ -10,7 +10,7 @@ from sim_bridge.scene import Scene
 
 
 class KobukiCommands:
-    """Commands for the motors and the odometry of the robot ``name``, below ``namespace``."""
+    """Subscribes to commands for motors, odometry, LEDs and sound of a robot."""
 
     def __init__(self, scene: Scene, name: str, namespace: str, calls: CallQueue):
         self._scene = scene
@@ -20,7 +20,7 @@ class KobukiCommands:
         self._subscribers = [
             self._subscriber("motor_power", MotorPower, self._on_motor_power),
             self._subscriber("reset_odometry", Empty, self._on_reset_odometry),
-            # There is nothing to light or to sound, but those who do so wait for somebody to listen.
+            # Ignored, but their publishers wait for a subscriber.
             *(self._subscriber(f"led{number}", Led, _ignore) for number in (1, 2)),
             self._subscriber("sound", Sound, _ignore),
         ]

@@ -1,4 +1,4 @@
-"""What a Kobuki base feels, as topics below mobile_base (kobuki_gazebo_plugins)."""
+"""Topics of the sensors of a Kobuki base, below mobile_base (kobuki_gazebo_plugins)."""
 
 import rospy
 from kobuki_msgs.msg import BumperEvent, CliffEvent, SensorState, WheelDropEvent
@@ -9,13 +9,13 @@ from sim_bridge.ros.publishers import RobotPublishers
 from sim_bridge.sensors.kobuki import CENTRE, LEFT, RIGHT, KobukiProfile, KobukiReading
 
 NAMESPACE = "mobile_base"
-# Bits of SensorState; wheels are numbered otherwise than sectors.
+# Bits of SensorState; wheels have other numbers than sectors.
 SECTOR_BITS = {RIGHT: 1, CENTRE: 2, LEFT: 4}
 WHEEL_BITS = {WheelDropEvent.RIGHT: 1, WheelDropEvent.LEFT: 2}
 
 
 class KobukiTopics:
-    """Events when something changes, the state as often as it is told."""
+    """Publishes events when a sensor changes, and the state at each reading."""
 
     def __init__(self, _profile: KobukiProfile, publishers: RobotPublishers):
         self._last = KobukiReading()
