@@ -13,7 +13,7 @@ import time
 from typing import Dict, List, Optional, Tuple
 
 import numpy as np
-from helpers.drives import Sighting, random_drive
+from helpers.drives import Observation, random_drive
 from helpers.localization_cases import NOISES, PARAMETERS, TURTLEBOT, Place, installed_nodes, places
 from helpers.lockstep import Master, Node, Player
 
@@ -127,7 +127,7 @@ def _fixed(count: int, distance: float) -> Dict[str, float]:
     }
 
 
-def _costs(player: Player, command: str, parameters: dict, drive: List[Sighting]) -> Tuple[float, float]:
+def _costs(player: Player, command: str, parameters: dict, drive: List[Observation]) -> Tuple[float, float]:
     """Mean seconds a scan: from publishing it to the answer, and of CPU."""
     waiting: List[float] = []
     _, cpu = _measure(player, command, parameters, drive, waiting)
@@ -172,7 +172,7 @@ def _recover(player: Player, kind: str, drives, deadline: int, rng) -> Optional[
             player.show(sighting)
         # Odometry does not notice.
         jump = before[-1].base_in_odom @ sightings[0].base_in_odom.inverse()
-        sightings = [Sighting(s.scan, jump @ s.base_in_odom, s.base_in_map) for s in sightings]
+        sightings = [Observation(s.scan, jump @ s.base_in_odom, s.base_in_map) for s in sightings]
     else:
         bearing, side = rng.uniform(-np.pi, np.pi), rng.choice((-1.0, 1.0))
         off = Pose2(np.cos(bearing), np.sin(bearing), side * np.radians(30.0))
@@ -192,13 +192,13 @@ def _recover(player: Player, kind: str, drives, deadline: int, rng) -> Optional[
     return None
 
 
-def _piece(drives: List[List[Sighting]], rng, length: int) -> List[Sighting]:
+def _piece(drives: List[List[Observation]], rng, length: int) -> List[Observation]:
     drive = drives[rng.integers(len(drives))]
     first = int(rng.integers(len(drive) - length))
     return drive[first : first + length]
 
 
-def memory(player: Player, commands: Dict[str, str], drive: List[Sighting]) -> None:
+def memory(player: Player, commands: Dict[str, str], drive: List[Observation]) -> None:
     """Resident memory with a map of 2000 x 2000 cells."""
     cells = np.full((2000, 2000), FREE, dtype=np.int8)
     cells[::40, ::40] = OCCUPIED
@@ -216,7 +216,7 @@ def memory(player: Player, commands: Dict[str, str], drive: List[Sighting]) -> N
 
 
 def _measure(
-    player: Player, command: str, parameters: dict, drive: List[Sighting], waiting: Optional[list] = None
+    player: Player, command: str, parameters: dict, drive: List[Observation], waiting: Optional[list] = None
 ):
     """Errors (N, 2) of position and heading, and CPU seconds a scan; ``waiting`` gets the wall seconds."""
     node: Node = player.start_node([command], parameters)

@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import List, Tuple
 
 import numpy as np
-from helpers.drives import Sighting, random_drive
+from helpers.drives import Observation, random_drive
 from helpers.localization_cases import Place, places
 from scipy.stats import rankdata
 
@@ -55,7 +55,7 @@ def main():
         )
 
 
-def _judged(place: Place, sightings: List[Sighting], rng) -> List[Tuple[float, bool]]:
+def _judged(place: Place, sightings: List[Observation], rng) -> List[Tuple[float, bool]]:
     """The quality of poses, and whether they are right."""
     field = likelihood_field(place.grid, SETTINGS.sigma_hit, SETTINGS.likelihood_max_distance)
     free_space, rows = FreeSpace(place.grid), []

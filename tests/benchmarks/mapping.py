@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""How well a robot maps a world by itself: what map_home.sh does, in one process, one seed after the other.
+"""Autonomous mapping of a world: map_home.sh in one process, for several seeds.
 
 Simulation, Mapper, Explorer and Navigator are stepped together; each map is scored against the true grid, and
-a mission is rehearsed on it.
+a mission is simulated on it.
 
     python3 tests/benchmarks/mapping.py --seeds 100-119 --mission map/mission.yaml
     python3 tests/benchmarks/mapping.py --world FILE --robot turtlebot_kinect --maps runs/maps
@@ -44,8 +44,8 @@ EXPLORE_PERIOD = 0.1
 
 
 @dataclass(frozen=True)
-class Mapped:
-    """One run: how it ended, how good the map is, and how far off the mapper was. Metres, seconds."""
+class MappingResult:
+    """One run: its result, the quality of the map, and the errors of the mapper. Metres, seconds."""
 
     seed: int
     success: bool
@@ -63,7 +63,7 @@ class Mapped:
 
 
 class MappingRun:
-    """Explores one world with one seed; a map every ``map_update_interval``, as the node does it."""
+    """Explores one world with one seed, with a map every ``map_update_interval`` as in the node."""
 
     def __init__(self, world: World, robot: RobotProfile, seed: int):
         self._simulation = Simulation(world, robot, seed=seed)
@@ -85,7 +85,7 @@ class MappingRun:
         self.now = 0.0
 
     def run(self) -> FinishTask:
-        """Explores to the end and returns how it ended."""
+        """Explore to the end and return the result."""
         command, event, outcome = Twist2(), None, None
         try:
             while outcome is None:
@@ -109,7 +109,7 @@ class MappingRun:
         return outcome
 
     def _sense(self, command: Twist2):
-        """Moves on by one control period; returns a new map or None, the odometry and the newest scan."""
+        """Step by one control period; return a new map or None, the odometry and the newest scan."""
         grid = scan = None
         for _ in range(self._steps_per_tick):
             seen = self._simulation.step(command)
@@ -134,7 +134,7 @@ class MappingRun:
         return grid
 
     def grid(self, extent: Optional[Extent] = None) -> OccupancyGrid:
-        """The map as it is now; with an ``extent`` on a canvas, as the node publishes it."""
+        """Render the present map; with an ``extent`` as the node publishes it."""
         self._renderer.update(self.mapper.evidence())
         return self._renderer.grid(extent)
 
@@ -145,7 +145,7 @@ def _event_of(decision: Decision):
     return GoalFailed(decision.text) if decision.status is Status.ABORTED else None
 
 
-def judge(run: MappingRun, end: FinishTask, score: MapScore, seed: int, cpu: float, mission) -> Mapped:
+def judge(run: MappingRun, end: FinishTask, score: MapScore, seed: int, cpu: float, mission) -> MappingResult:
     way_home = run.base_in_world.distance_to(Pose2())
     estimated = run.mapper.keyframe_poses
     errors = np.hypot(*(estimated[:, :2] - np.array(run.true_keyframes)[:, :2]).T)
@@ -159,7 +159,7 @@ def judge(run: MappingRun, end: FinishTask, score: MapScore, seed: int, cpu: flo
         (mission is False, "the mission on its map"),
     ]
     reasons = [text for is_wrong, text in complaints if is_wrong]
-    return Mapped(
+    return MappingResult(
         seed,
         not reasons,
         "; ".join(reasons) or end.reason,
@@ -192,7 +192,7 @@ def main() -> int:
     return 0 if successes == len(results) else 1
 
 
-def _one(options, world: World, robot: RobotProfile, seed: int) -> Mapped:
+def _one(options, world: World, robot: RobotProfile, seed: int) -> MappingResult:
     start = time.process_time()
     run = MappingRun(world, robot, seed)
     end = run.run()
@@ -212,7 +212,7 @@ def _one(options, world: World, robot: RobotProfile, seed: int) -> Mapped:
         f"  {result.simulated_seconds:.0f} s simulated, {cpu:.0f} s of CPU, recall {result.recall:.3f}, "
         f"precision {result.precision:.3f}, {result.doubled_walls} doubled walls, "
         f"back {result.way_home:.2f} m from the start, {result.collisions} collisions, "
-        f"keys off by {result.mean_error:.3f} m (at most {result.max_error:.3f})",
+        f"keyframes off by {result.mean_error:.3f} m (at most {result.max_error:.3f})",
         flush=True,
     )
     return result
@@ -223,7 +223,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--seeds", type=seeds, default=range(10), help="such as 0-9 (default) or 7")
     parser.add_argument("--world", type=Path, default=ROOT / "map/home.world", help="default: the home")
     parser.add_argument("--robot", default="turtlebot_lidar", help="profile (default: turtlebot_lidar)")
-    parser.add_argument("--maps", type=Path, metavar="FOLDER", help="keep the maps there")
+    parser.add_argument("--maps", type=Path, metavar="FOLDER", help="write the maps there")
     parser.add_argument("--json", type=Path, help="write the figures here")
     parser.add_argument("--mission", type=Path, metavar="FILE", help="drive this on each map")
     return parser.parse_args()

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Scores slam_lite on logs of the Freiburg SLAM benchmark by their hand-verified relations.
+"""Score slam_lite on logs of the Freiburg SLAM benchmark by their hand-verified relations.
 
 R. Kuemmerle et al., "On measuring the accuracy of SLAM algorithms", Autonomous Robots 27, 2009. A relation is
-the pose at one time seen from the pose at another; the error of a trajectory is how far it is off, over all
+the pose at one time relative to that at another; the error of a trajectory is its mean difference over all
 relations. A folder of logs holds pairs NAME.relations and NAME*.bag; each is replayed by the command
-slam_lite_replay, whose CPU time and memory are counted whole, with start-up and reading.
+slam_lite_replay; its CPU time and memory include start-up and reading.
 
     python3 tests/benchmarks/slam.py LOGS --out runs/slam
 """
@@ -36,7 +36,7 @@ SAME_STAMP = 1e-4
 
 @dataclass(frozen=True)
 class Score:
-    """Errors over all relations of one log, metres and radians, and what the replay took."""
+    """Errors over all relations of one log, metres and radians, and the cost of the replay."""
 
     log: str
     relations: int
@@ -59,7 +59,7 @@ def main() -> int:
         return 2
     options.out.mkdir(parents=True, exist_ok=True)
     scores = [score_log(bag, relations, options.out, options.config) for bag, relations in logs]
-    for _, relations in logs:  # not before, as the memory of who starts a replay counts as the replay's
+    for _, relations in logs:  # after all replays, whose memory would otherwise include this process's
         draw(options.out / relations.stem)
     (options.out / "slam.json").write_text(json.dumps([asdict(score) for score in scores], indent=2) + "\n")
     Console(width=120).print(_table(scores))
@@ -76,7 +76,7 @@ def find_logs(folder: Path) -> List[Tuple[Path, Path]]:
 
 
 def score_log(bag: Path, relations_path: Path, out: Path, config: Optional[Path] = None) -> Score:
-    """Replays a bag, keeps its map and trajectory in ``out``, and scores the trajectory."""
+    """Replay a bag, write its map and trajectory to ``out``, and score the trajectory."""
     stem = out / relations_path.stem
     tum = stem.with_suffix(".tum")
     command = [sys.executable, str(REPLAY), str(bag), "--map", str(stem), "--trajectory", str(tum)]
@@ -105,7 +105,7 @@ def score_log(bag: Path, relations_path: Path, out: Path, config: Optional[Path]
 
 
 def read_trajectory(tum: Path) -> np.ndarray:
-    """Rows ``t x y yaw``, (N, 4), of a trajectory file."""
+    """Read a trajectory file: (N, 4), rows ``t x y yaw``."""
     rows = np.loadtxt(tum)
     return np.column_stack((rows[:, :3], 2.0 * np.arctan2(rows[:, 6], rows[:, 7])))
 
@@ -116,8 +116,8 @@ def relation_errors(trajectory: np.ndarray, relations: np.ndarray) -> Tuple[np.n
     ``trajectory``: (N, 4), rows ``t x y yaw``; ``relations``: (M, 8), rows ``t1 t2 x y z roll pitch yaw``.
     """
     first, second = (_poses_at(trajectory, relations[:, column]) for column in (0, 1))
-    estimated = _seen_from(first, second)
-    error = _seen_from(relations[:, [2, 3, 7]], estimated)
+    estimated = _relative_poses(first, second)
+    error = _relative_poses(relations[:, [2, 3, 7]], estimated)
     return np.hypot(error[:, 0], error[:, 1]), np.abs(wrap(error[:, 2]))
 
 
@@ -131,7 +131,7 @@ def _poses_at(trajectory: np.ndarray, stamps: np.ndarray) -> np.ndarray:
     return found[:, 1:]
 
 
-def _seen_from(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+def _relative_poses(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """Poses (N, 3) ``second`` in the frames of ``first``."""
     c, s = np.cos(first[:, 2]), np.sin(first[:, 2])
     dx, dy = second[:, 0] - first[:, 0], second[:, 1] - first[:, 1]
@@ -139,7 +139,7 @@ def _seen_from(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 
 def draw(stem: Path) -> None:
-    """Writes a map with the trajectory on it as a picture beside the map."""
+    """Plot a map with the trajectory, as a picture beside the map."""
     trajectory = read_trajectory(stem.with_suffix(".tum"))
     grid = load_map(stem.with_name(stem.name + ".yaml"))
     shade = np.full(grid.cells.shape, 0.8)

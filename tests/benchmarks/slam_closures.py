@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Counts right and wrong loop closures on made logs, by the truth that they were made with.
+"""Count right and wrong loop closures on simulated logs, by ground truth.
 
     python3 tests/benchmarks/slam_closures.py repetitive --seeds 100-109
     python3 tests/benchmarks/slam_closures.py site --seeds 100-109 --json runs/closures.json
 
-A closure is wrong if it is off by more than a metre or 0.1 rad, and by more than it says that it may be, as
-along a smooth corridor; it does harm if the graph follows it. Seeds below 100 are for choosing settings, from
-100 on for judging them.
+A closure is wrong if its error exceeds a metre or 0.1 rad, and also what its information allows, as along a
+smooth corridor; it is harmful if the graph agrees with it. Seeds below 100 are for choosing settings, from
+100 on for evaluation.
 """
 
 import argparse
@@ -20,9 +20,9 @@ from typing import List, Tuple
 import numpy as np
 from helpers.bags import START
 from helpers.command_line import seeds
-from helpers.drives import Sighting
+from helpers.drives import Observation
 from slam import relation_errors
-from slam_logs import DRIVES, made, relations_of
+from slam_logs import DRIVES, relations_of, simulate
 
 from planar import wrap
 from planar_ros.node.blas import use_one_blas_thread
@@ -31,17 +31,17 @@ from slam_lite.graph.pose_graph import chi_squares
 from slam_lite.mapper import Mapper
 from slam_lite.scan_trajectory import ScanTrajectory
 
-# How far off a wrong closure is at least: metres, radians, and standard deviations of its own.
+# Least error of a wrong closure: metres, radians, and standard deviations by its information.
 WRONG_XY, WRONG_YAW, WRONG_SIGMAS = 1.0, 0.1, 4.0
-# A closure is followed if the graph meets it to this chi-square.
-FOLLOWED = 10.0
+# The graph agrees with a closure up to this chi-square.
+AGREES = 10.0
 
 
 @dataclass(frozen=True)
 class Closures:
     """One log: its closures, the error over its relations, the CPU time of a scan. Metres, milliseconds.
 
-    ``live``: without the search for closures, which the node does beside, so that it keeps no scan waiting.
+    ``live``: without the search for closures, for which scans do not wait in the node.
     """
 
     log: str
@@ -66,7 +66,7 @@ def main() -> int:
     options = _options()
     results = []
     for seed in options.seeds:
-        results.append(judge(options.log, seed))
+        results.append(evaluate(options.log, seed))
         print(_line(results[-1]), flush=True)
     right, wrong = sum(one.right for one in results), sum(one.wrong for one in results)
     mean = np.mean([one.mean_error for one in results])
@@ -76,10 +76,10 @@ def main() -> int:
     return 0
 
 
-def judge(name: str, seed: int) -> Closures:
-    """Maps one log and compares it with the truth."""
-    _, _, observations = made(name, seed)
-    mapper, trajectory, true_keyframes, spent, live = mapped(observations)
+def evaluate(name: str, seed: int) -> Closures:
+    """Map one log and compare it with the truth."""
+    _, _, observations = simulate(name, seed)
+    mapper, trajectory, true_keyframes, cpu_ms, live_ms = mapped(observations)
     measured, real = _closures(mapper, true_keyframes)
     off = measured - real
     off[:, 2] = wrap(off[:, 2])
@@ -87,12 +87,12 @@ def judge(name: str, seed: int) -> Closures:
     edges = mapper.state().edges
     chi = np.einsum("ni,nij,nj->n", off, edges.information[edges.is_loop], off)
     is_wrong &= chi > WRONG_SIGMAS**2
-    is_followed = chi_squares(mapper.keyframe_poses, edges)[edges.is_loop] < FOLLOWED
+    is_agreed = chi_squares(mapper.keyframe_poses, edges)[edges.is_loop] < AGREES
     poses = trajectory.poses(mapper.keyframe_poses, of_laser=True)
     poses[:, 0] += START
     errors, _ = relation_errors(poses, relations_of(observations))
     ends = np.array([[0, len(true_keyframes) - 1]])
-    end_off = _seen_from(mapper.keyframe_poses, ends) - _seen_from(true_keyframes, ends)
+    end_off = _relative_poses(mapper.keyframe_poses, ends) - _relative_poses(true_keyframes, ends)
     return Closures(
         name,
         seed,
@@ -100,25 +100,29 @@ def judge(name: str, seed: int) -> Closures:
         len(true_keyframes),
         right=int(np.count_nonzero(~is_wrong)),
         wrong=int(np.count_nonzero(is_wrong)),
-        harmful=int(np.count_nonzero(is_wrong & is_followed)),
+        harmful=int(np.count_nonzero(is_wrong & is_agreed)),
         mean_error=float(errors.mean()),
         median_error=float(np.median(errors)),
         end_off=float(np.hypot(*end_off[0, :2])),
         farthest_off=float(_positions_off(mapper.keyframe_poses, true_keyframes).max()),
-        cpu_mean=float(spent.mean()),
-        cpu_mean_of_last_quarter=float(spent[-len(spent) // 4 :].mean()),
-        live_p99=float(np.percentile(live, 99)),
-        live_p99_of_last_quarter=float(np.percentile(live[-len(live) // 4 :], 99)),
+        cpu_mean=float(cpu_ms.mean()),
+        cpu_mean_of_last_quarter=float(cpu_ms[-len(cpu_ms) // 4 :].mean()),
+        live_p99=float(np.percentile(live_ms, 99)),
+        live_p99_of_last_quarter=float(np.percentile(live_ms[-len(live_ms) // 4 :], 99)),
     )
 
 
-def mapped(observations: List[Sighting]) -> Tuple[Mapper, ScanTrajectory, np.ndarray, np.ndarray, np.ndarray]:
-    """The mapper after a log, where each scan was taken, the true poses (N, 3) of keys, and ms of CPU.
+def mapped(
+    observations: List[Observation],
+) -> Tuple[Mapper, ScanTrajectory, np.ndarray, np.ndarray, np.ndarray]:
+    """Map a log.
 
-    These of each scan, (N,), with the search for closures and without.
+    Returns:
+        The mapper, the trajectory, the true poses (K, 3) of keyframes, and the CPU time (N,) of each scan
+        [ms], with the search for closures and without.
     """
     mapper, trajectory = Mapper(NodeSettings(), deferred=True), ScanTrajectory()
-    true_keyframes, spent, live = [], [], []
+    true_keyframes, cpu_ms, live_ms = [], [], []
     for observation in observations:
         start = time.process_time()
         update = mapper.insert(observation.base_in_odom, observation.scan)
@@ -129,23 +133,23 @@ def mapped(observations: List[Sighting]) -> Tuple[Mapper, ScanTrajectory, np.nda
         if result is not None:
             mapper.apply_closures(result)
         end = time.process_time()
-        spent.append(1000.0 * (end - start))
-        live.append(spent[-1] - 1000.0 * (found - inserted))
+        cpu_ms.append(1000.0 * (end - start))
+        live_ms.append(cpu_ms[-1] - 1000.0 * (found - inserted))
         trajectory.add(observation.base_in_odom, observation.scan, update)
         if update is not None and update.is_keyframe:
             true_keyframes.append(observation.base_in_map.as_array())
     mapper.run_final_optimization()
-    return mapper, trajectory, np.array(true_keyframes), np.array(spent), np.array(live)
+    return mapper, trajectory, np.array(true_keyframes), np.array(cpu_ms), np.array(live_ms)
 
 
 def _closures(mapper: Mapper, true_keyframes: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-    """What each closure measured, (N, 3), and what it should have."""
+    """The pose that each closure measured, (N, 3), and the true one."""
     edges = mapper.state().edges
-    return edges.measured[edges.is_loop], _seen_from(true_keyframes, edges.nodes[edges.is_loop])
+    return edges.measured[edges.is_loop], _relative_poses(true_keyframes, edges.nodes[edges.is_loop])
 
 
-def _seen_from(poses: np.ndarray, pairs: np.ndarray) -> np.ndarray:
-    """For pairs (N, 2) of poses (M, 3) the second one as seen from the first, (N, 3)."""
+def _relative_poses(poses: np.ndarray, pairs: np.ndarray) -> np.ndarray:
+    """For pairs (N, 2) of poses (M, 3) the second one relative to the first, (N, 3)."""
     first, step = poses[pairs[:, 0]], poses[pairs[:, 1]] - poses[pairs[:, 0]]
     c, s = np.cos(first[:, 2]), np.sin(first[:, 2])
     ahead, left = c * step[:, 0] + s * step[:, 1], c * step[:, 1] - s * step[:, 0]
@@ -153,7 +157,7 @@ def _seen_from(poses: np.ndarray, pairs: np.ndarray) -> np.ndarray:
 
 
 def _positions_off(poses: np.ndarray, truth: np.ndarray) -> np.ndarray:
-    """How far positions (N,) are off once both have been laid over each other as well as they can be."""
+    """Position errors (N,) after optimal alignment of both trajectories."""
     mine, real = (each[:, 0] + 1j * each[:, 1] for each in (poses, truth))
     mine, real = mine - mine.mean(), real - real.mean()
     turn = np.vdot(mine, real)
@@ -162,10 +166,10 @@ def _positions_off(poses: np.ndarray, truth: np.ndarray) -> np.ndarray:
 
 def _line(one: Closures) -> str:
     return (
-        f"{one.log} {one.seed}: {one.scans} scans, {one.keyframes} kept; "
+        f"{one.log} {one.seed}: {one.scans} scans, {one.keyframes} keyframes; "
         f"closures {one.right} right, {one.wrong} wrong "
-        f"({one.harmful} followed); error {one.mean_error:.3f} m, median {one.median_error:.3f}, "
-        f"end off {one.end_off:.2f}, key scans by up to {one.farthest_off:.2f}; "
+        f"({one.harmful} agreed with); error {one.mean_error:.3f} m, median {one.median_error:.3f}, "
+        f"end off {one.end_off:.2f}, keyframes off by up to {one.farthest_off:.2f}; "
         f"a scan {one.cpu_mean:.1f} ms, in the last quarter {one.cpu_mean_of_last_quarter:.1f}; "
         f"live, 99 of 100 within {one.live_p99:.1f} ms, there {one.live_p99_of_last_quarter:.1f}"
     )

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""How soon slam_lite's node has a scan in its graph, and its map drawn anew, while a robot drives about.
+"""Measure the latency of slam_lite's node: from a scan to its insertion, and to the updated map.
 
-A made-up office of 20 m x 20 m, a lidar of 360 beams ten times a second, wall time. What is measured is what
-another node sees: from publishing a scan to the node's report that it is done with it, and from the scan that
-a map is due at to the map's arrival.
+A simulated office of 20 m x 20 m, a lidar of 360 beams at 10 Hz, wall time. Latencies are those that another
+node observes: from publishing a scan to the node's progress report, and from the scan at which a map is due
+to the map's arrival.
 
     python3 tests/benchmarks/slam_live.py --seconds 120 --json runs/slam_live.json
 """
@@ -18,7 +18,7 @@ from typing import Any, Dict, List
 
 import numpy as np
 import rospy
-from helpers.drives import Sighting, random_drive
+from helpers.drives import Observation, random_drive
 from helpers.lockstep import Master, Node
 from helpers.worlds import OFFICE, world_from_picture
 from rich.console import Console
@@ -41,13 +41,13 @@ PARAMETERS.update({"xmin": -10.0, "ymin": -10.0, "xmax": 10.0, "ymax": 10.0})
 
 
 def big_office() -> str:
-    """OFFICE two and a half times over: 20 m x 20 m."""
+    """OFFICE repeated two and a half times: 20 m x 20 m."""
     top, *inside, bottom = OFFICE.strip().splitlines()
     return "\n".join([top, *(3 * inside)[:38], bottom])
 
 
 class LiveTest:
-    """Plays a drive to the node, and notes when it answers, in seconds after the scan was published."""
+    """Plays a drive to the node, and records its latencies [s]."""
 
     def __init__(self):
         self._published: Dict[int, float] = {}
@@ -68,7 +68,7 @@ class LiveTest:
                 raise SystemExit("error: the node does not start")
             time.sleep(0.1)
 
-    def play(self, drive: List[Sighting]) -> None:
+    def play(self, drive: List[Observation]) -> None:
         laser = drive[0].scan.laser_in_base
         self._static.sendTransform(transform_msg(laser, "base_footprint", "laser", rospy.Time(BEGIN)))
         began, last_map = time.monotonic(), -np.inf
@@ -113,11 +113,11 @@ def main() -> int:
             test.wait_for_node()
             cpu = node.cpu_seconds()
             test.play(drive)
-            _tell(test, drive, node.cpu_seconds() - cpu, node.resident_megabytes(), options.json)
+            _report(test, drive, node.cpu_seconds() - cpu, node.resident_megabytes(), options.json)
     return 0
 
 
-def _tell(test: LiveTest, drive: List[Sighting], cpu: float, memory_mb: float, path: Path) -> None:
+def _report(test: LiveTest, drive: List[Observation], cpu: float, memory_mb: float, path: Path) -> None:
     table = Table(title=f"{len(drive)} scans of {len(drive[0].scan.ranges)} beams, ms")
     for heading in ("", "count", "median", "p99", "max"):
         table.add_column(heading, justify="right")

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Makes long logs of large buildings and sites, with relations from the truth, for ``slam.py`` to score.
+"""Simulate long logs of large buildings and sites, with relations from ground truth, for ``slam.py``.
 
 As in the logs of the Freiburg benchmark, a laser of 180 degrees and 180 beams measures to the centimetre,
-people walk by, and the odometry's heading drifts. Relations tie each place to the next one and to the ones
-where the robot had been before.
+people walk by, and the odometry's heading drifts. Relations connect each place with the next one and with
+earlier visits.
 
     python3 tests/benchmarks/slam_logs.py runs/long_logs --seed 0
     python3 tests/benchmarks/slam.py runs/long_logs --out runs/slam_long
 
-Seeds below 100 are for choosing settings, from 100 on for judging them.
+Seeds below 100 are for choosing settings, from 100 on for evaluation.
 """
 
 import argparse
@@ -20,7 +20,7 @@ from typing import Dict, Iterator, List, Optional, Tuple, Union
 
 import numpy as np
 from helpers.bags import START, write_bag
-from helpers.drives import Sighting
+from helpers.drives import Observation
 from helpers.sites import Building, Campus, House
 
 from planar import OccupancyGrid, Pose2, Scan, wrap
@@ -29,34 +29,41 @@ from planar.geometry.ray_casting import cast_rays
 SPEED, TURN_SPEED = 0.5, 0.7
 LASER_IN_BASE = Pose2(0.1, 0.0, 0.0)
 BEAMS, RANGE_MAX, RANGE_NOISE = 180, 80.0, 0.015
-# Who walks by: how wide, how fast at most, how near at first, for how many scans, one of how many may come.
+# A person who walks by: radius, largest speed, initial range, number of scans, and one of how many appears.
 PERSON_RADIUS, PERSON_SPEED, PERSON_RANGES, PERSON_SCANS, PERSON_ODDS = 0.25, 1.2, (1.0, 5.0), 25, 3
-# A slip of the wheels: how much of the way, metres, and of the heading, radians, odometry misses.
-SLIP_WAY, SLIP_TURN = 0.3, 0.15
+# A wheel slip: largest error of distance [m] and heading [rad].
+SLIP_DISTANCE, SLIP_TURN = 0.3, 0.15
 RELATION_STEP, REVISIT_RADIUS, REVISIT_SECONDS = 1.0, 2.0, 60.0
 SITE_SIZE, SITE_SLOTS = (500.0, 300.0), (3, 2)
 
 
 @dataclass(frozen=True)
 class Drive:
-    """How far a robot goes in ``buildings``, several of them on a campus, and how well it measures.
+    """A simulated drive.
 
-    Odometry's heading errs by ``turn_error`` radians per radian, ``way_error`` radians per metre, and at
-    random; wheels slip once in ``slip_way`` metres. The laser meets nothing beyond ``sight`` metres.
+    Attributes:
+        buildings: One building, or several on a campus.
+        scans: Number of scans.
+        turn_error: Bias of odometry's heading [rad/rad].
+        distance_error: Bias of odometry's heading [rad/m].
+        period: Time between scans [s].
+        max_range: Range beyond which the laser has no return [m].
+        people: Number of people who walk by.
+        slip_distance: Mean distance between wheel slips [m].
     """
 
     buildings: Tuple[Building, ...]
     scans: int
     turn_error: float
-    way_error: float
+    distance_error: float
     period: float = 0.2
-    sight: float = 30.0
+    max_range: float = 30.0
     people: int = 1
-    slip_way: float = math.inf
+    slip_distance: float = math.inf
 
     @property
     def is_campus(self) -> bool:
-        """Whether there is a yard to cross."""
+        """Whether there are several buildings."""
         return len(self.buildings) > 1
 
 
@@ -71,7 +78,7 @@ DRIVES: Dict[str, Drive] = {
 
 
 def site_drive(rng: np.random.Generator) -> Drive:
-    """A drive of some 2.5 km over a site of 500 m x 300 m with four to six buildings, drawn at random."""
+    """A drive of some 2.5 km over a random site of 500 m x 300 m with four to six buildings."""
     buildings = [
         Building(
             int(rng.integers(1, 4)),
@@ -83,12 +90,14 @@ def site_drive(rng: np.random.Generator) -> Drive:
         for _ in range(rng.integers(4, 7))
     ]
     errors = rng.uniform(0.02, 0.06), rng.uniform(0.002, 0.006)
-    sight = float(rng.choice([20.0, 50.0, 80.0]))
-    return Drive(tuple(buildings), 20000, *errors, period=0.7, sight=sight, people=3, slip_way=300.0)
+    max_range = float(rng.choice([20.0, 50.0, 80.0]))
+    return Drive(
+        tuple(buildings), 20000, *errors, period=0.7, max_range=max_range, people=3, slip_distance=300.0
+    )
 
 
-def made(name: str, seed: int) -> Tuple[OccupancyGrid, Drive, List[Sighting]]:
-    """The truth, the plan and the measurements of the log ``name``; a "site" is another one for each seed."""
+def simulate(name: str, seed: int) -> Tuple[OccupancyGrid, Drive, List[Observation]]:
+    """Return the true grid, the drive and the observations of a log; each seed is another "site"."""
     rng = np.random.default_rng([seed, len(name)])
     drive = DRIVES[name] if name in DRIVES else site_drive(rng)
     site: Union[Campus, House]
@@ -101,7 +110,7 @@ def made(name: str, seed: int) -> Tuple[OccupancyGrid, Drive, List[Sighting]]:
 
 
 def true_poses(places: Iterator[np.ndarray], drive: Drive, rng: np.random.Generator) -> Iterator[Pose2]:
-    """The way of a robot that turns on the spot and drives straight on, swaying a little."""
+    """Poses of a robot that turns in place and drives straight, swaying a little."""
     x, y = next(places)
     yaw, n = 0.0, 0
     for goal_x, goal_y in places:
@@ -118,26 +127,26 @@ def true_poses(places: Iterator[np.ndarray], drive: Drive, rng: np.random.Genera
 
 
 class DriftingOdometry:
-    """Wheel odometry with errors in proportion to turn and way, random ones, and slips."""
+    """Wheel odometry with bias, random errors and slips."""
 
     def __init__(self, drive: Drive, rng: np.random.Generator):
         self._drive, self._rng, self._pose = drive, rng, Pose2()
 
     def move(self, motion: Pose2) -> Pose2:
-        """The pose believed after a true ``motion``."""
-        way = math.hypot(motion.x, motion.y)
+        """Return the odometry pose after a true ``motion``."""
+        distance = math.hypot(motion.x, motion.y)
         slip = 1.0 + self._rng.normal(0.02, 0.05)
-        drift = self._drive.turn_error * motion.yaw + self._drive.way_error * way
-        drift += self._rng.normal(0.0, 0.01 * math.sqrt(way + abs(motion.yaw)))
-        if self._drive.slip_way < math.inf and self._rng.random() * self._drive.slip_way < way:
-            motion = motion @ Pose2(-self._rng.uniform(0.0, SLIP_WAY), 0.0)
+        drift = self._drive.turn_error * motion.yaw + self._drive.distance_error * distance
+        drift += self._rng.normal(0.0, 0.01 * math.sqrt(distance + abs(motion.yaw)))
+        if self._drive.slip_distance < math.inf and self._rng.random() * self._drive.slip_distance < distance:
+            motion = motion @ Pose2(-self._rng.uniform(0.0, SLIP_DISTANCE), 0.0)
             drift += self._rng.uniform(-SLIP_TURN, SLIP_TURN)
         self._pose = self._pose @ Pose2(slip * motion.x, slip * motion.y, motion.yaw + drift)
         return self._pose
 
 
 class Person:
-    """Somebody who walks straight on through the robot's sight for a while; then perhaps another."""
+    """A person who walks straight past the robot for a while; then perhaps another."""
 
     def __init__(self, period: float, rng: np.random.Generator):
         self._period, self._rng = period, rng
@@ -145,7 +154,7 @@ class Person:
         self._is_there = False
 
     def hide(self, ranges: np.ndarray, laser: Pose2, angles: np.ndarray) -> None:
-        """Shortens the readings (N,) of the beams that the person is in the way of; one scan goes by."""
+        """Shorten the readings (N,) of the beams that hit the person, and advance by one scan."""
         if self._scans_left == 0:
             self._scans_left = PERSON_SCANS
             self._is_there = self._rng.integers(PERSON_ODDS) == 0
@@ -166,8 +175,8 @@ class Person:
 
 def observations_of(
     grid: OccupancyGrid, poses: Iterator[Pose2], drive: Drive, rng: np.random.Generator
-) -> Iterator[Sighting]:
-    """What the robot measures on its way."""
+) -> Iterator[Observation]:
+    """Simulate the laser and odometry along the true poses."""
     angles = -0.5 * math.pi + math.pi / BEAMS * np.arange(BEAMS)
     odometry, people = DriftingOdometry(drive, rng), [Person(drive.period, rng) for _ in range(drive.people)]
     last: Optional[Pose2] = None
@@ -178,15 +187,15 @@ def observations_of(
         for person in people:
             person.hide(ranges, laser, angles)
         ranges += rng.normal(0.0, RANGE_NOISE, BEAMS)
-        ranges[ranges > drive.sight] = RANGE_MAX
+        ranges[ranges > drive.max_range] = RANGE_MAX
         readings = np.round(ranges, 2).astype(np.float32)
         step = angles[1] - angles[0]
         scan = Scan(i * drive.period, angles[0], step, readings, 0.1, RANGE_MAX, laser_in_base=LASER_IN_BASE)
-        yield Sighting(scan, in_odom, pose)
+        yield Observation(scan, in_odom, pose)
 
 
-def relations_of(observations: List[Sighting]) -> np.ndarray:
-    """Rows ``t1 t2 x y z roll pitch yaw`` of the laser: to the place before, and to earlier visits."""
+def relations_of(observations: List[Observation]) -> np.ndarray:
+    """Rows ``t1 t2 x y z roll pitch yaw`` of the laser: to the last place, and to earlier visits."""
     rows: List[Tuple[float, ...]] = []
     places: List[Tuple[float, Pose2]] = []
     for observation in observations:
@@ -210,13 +219,13 @@ def _relation(earlier: Tuple[float, Pose2], later: Tuple[float, Pose2]) -> Tuple
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("folder", type=Path, help="where the bags and relations go")
-    parser.add_argument("--seed", type=int, default=0, help="of building, way and noise (default: 0)")
-    parser.add_argument("--only", choices=[*DRIVES, "site"], help="make this one")
+    parser.add_argument("folder", type=Path, help="output folder of bags and relations")
+    parser.add_argument("--seed", type=int, default=0, help="of building, route and noise (default: 0)")
+    parser.add_argument("--only", choices=[*DRIVES, "site"], help="simulate only this one")
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)
     for name in [options.only] if options.only else [*DRIVES, "site"]:
-        _, _, observations = made(name, options.seed)
+        _, _, observations = simulate(name, options.seed)
         write_bag(options.folder / f"{name}.bag", observations, base_frame="base_link")
         relations = relations_of(observations)
         np.savetxt(options.folder / f"{name}.relations", relations, fmt="%.6f")

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""How a map lives on: session after session in a home whose furniture moves, and missions on the last map.
+"""Multi-session mapping in a home whose furniture moves, and missions on the last map.
 
-Each session begins somewhere else, without a start pose, with half of the furniture at other places, and goes
-on in the state that the one before has saved.
+Each session starts at another place, without an initial pose, with half of the furniture moved, and resumes
+the state saved by the one before.
 
     python3 tests/benchmarks/slam_sessions.py --sessions 10 --seed 100 --mission map/mission.yaml
 
-Seeds below 100 are for choosing settings, from 100 on for judging them.
+Seeds below 100 are for choosing settings, from 100 on for evaluation.
 """
 
 import argparse
@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Iterator, List, Sequence, Tuple
 
 import numpy as np
-from helpers.drives import Sighting, Tour, drive
+from helpers.drives import Observation, Tour, drive
 from scipy.ndimage import label
 
 from home_service.judging.map_truth import score_against_world
@@ -39,18 +39,19 @@ from slam_lite.state import load_state, save_state
 
 ROOT = Path(__file__).resolve().parents[2]
 SLAM_CONFIG = ROOT / "src/slam_lite/config/turtlebot.yaml"
-# Furniture: how many pieces, how large, how likely each is moved, and how far off walls and places, metres.
+# Furniture: number of pieces, sizes [m], probability of a move, and distances from walls, places and pieces
+# [m].
 PIECES, SIZES, MOVES, TO_WALL, TO_PLACES, TO_OTHERS = 8, (0.3, 0.7), 0.5, 0.55, 1.0, 1.1
-# Room that a way needs to each side, metres; the least share of the home that can be gone to; how many places
-# are tried for a piece of furniture.
-WAY, OPEN_SHARE, TRIES = 0.35, 0.98, 200
-# The mapper has found itself where it is off by less than this, metres.
+# Free space that a path needs to each side [m]; least share of the home that stays reachable; number of
+# places tried for a piece of furniture.
+PATH_CLEARANCE, OPEN_SHARE, TRIES = 0.35, 0.98, 200
+# Error up to which the mapper counts as localized [m].
 FOUND = 0.3
 
 
 @dataclass(frozen=True)
 class Session:
-    """One session: what was kept, how far off the new key scans are, and how good the map is."""
+    """One session: size of the state, errors of the new keyframes, and quality of the map."""
 
     session: int
     keyframes: int
@@ -69,20 +70,20 @@ Piece = Tuple[Pose2, Tuple[float, float, float]]
 
 
 class Home:
-    """A world with pieces of furniture that move from session to session, and never shut a part of it."""
+    """A world with furniture that moves between sessions, and never blocks a part of it."""
 
     def __init__(self, world: World, height: float, places: Sequence[Pose2], seed: int):
         self._world, self._rng = world, np.random.default_rng([seed, 18])
         self._grid = true_map(world, height)
         self._clearance = distance_field(self._grid.cells != FREE, self._grid.resolution)
         self._places = [(place.x, place.y) for place in places]
-        self._ways = self._reached(self._clearance > WAY)
+        self._reachable_cells = self._reached(self._clearance > PATH_CLEARANCE)
         self._pieces: List[Piece] = []
         for _ in range(PIECES):
             self._pieces.append(self._placed([pose for pose, _ in self._pieces], self._pieces))
 
     def move(self) -> List[Pose2]:
-        """Moves some pieces; returns where they stood."""
+        """Move some pieces; return their former poses."""
         left: List[Pose2] = []
         for i, (pose, _) in enumerate(self._pieces):
             if self._rng.random() < MOVES:
@@ -92,16 +93,16 @@ class Home:
         return left
 
     def world(self) -> World:
-        """The home as it is furnished now."""
+        """Return the world with the furniture."""
         boxes = [box_on_floor(f"piece_{i}", size, pose) for i, (pose, size) in enumerate(self._pieces)]
         return replace(self._world, bodies=(*self._world.bodies, *boxes))
 
     def start(self) -> Pose2:
-        """A free place to begin at."""
+        """Return a free pose to start at."""
         return self._free_place([pose for pose, _ in self._pieces])
 
     def _placed(self, others: Sequence[Pose2], standing: Sequence[Piece]) -> Piece:
-        """A new piece, off ``others``, that with those ``standing`` leaves the ways open."""
+        """Place a new piece, away from ``others``, that blocks no path together with those ``standing``."""
         width, depth = (float(side) for side in self._rng.uniform(*SIZES, size=2))
         for _ in range(TRIES):
             piece = self._free_place(others), (width, depth, 0.6)
@@ -110,17 +111,19 @@ class Home:
         raise SystemExit(f"error: no place for a piece of furniture in {TRIES} tries")
 
     def _is_open(self, pieces: Sequence[Piece]) -> bool:
-        """Whether a way leads to nearly all that is left free."""
-        free = self._ways.copy()
+        """Whether nearly all free cells stay reachable."""
+        free = self._reachable_cells.copy()
         ways = np.argwhere(free)
         points_xy = self._grid.points_of(ways)
         for pose, (width, depth, _) in pieces:
-            is_shut = np.hypot(*(points_xy - (pose.x, pose.y)).T) < WAY + 0.5 * math.hypot(width, depth)
-            free[tuple(ways[is_shut].T)] = False
+            is_blocked = np.hypot(*(points_xy - (pose.x, pose.y)).T) < PATH_CLEARANCE + 0.5 * math.hypot(
+                width, depth
+            )
+            free[tuple(ways[is_blocked].T)] = False
         return np.count_nonzero(self._reached(free)) > OPEN_SHARE * np.count_nonzero(free)
 
     def _reached(self, free: np.ndarray) -> np.ndarray:
-        """The cells, of those that are ``free``, to which a way leads from the home's origin."""
+        """The ``free`` cells that are reachable from the home's origin."""
         parts, _ = label(free)
         row, col = self._grid.cells_of([(0.0, 0.0)])[0]
         return (parts == parts[row, col]) & free
@@ -173,8 +176,8 @@ def main() -> int:
     return 0 if all(verdict.success for verdict in verdicts) else 1
 
 
-def _map(number: int, observations: List[Sighting], path: Path) -> Tuple[Session, OccupancyGrid]:
-    """Maps one session on top of the state at ``path``, if there is one, and saves the new one there."""
+def _map(number: int, observations: List[Observation], path: Path) -> Tuple[Session, OccupancyGrid]:
+    """Map one session, resuming the state at ``path`` if there is one, and save the new one there."""
     start = time.process_time()
     settings, _ = settings_from_yaml(NodeSettings, SLAM_CONFIG)
     mapper = Mapper(settings)
@@ -211,7 +214,7 @@ def _map(number: int, observations: List[Sighting], path: Path) -> Tuple[Session
 
 
 def _reachable(grid: OccupancyGrid, places: Sequence[Pose2]) -> Iterator[Tuple[float, float]]:
-    """For each place the nearest one where there is room for the driver."""
+    """For each place the nearest one with enough clearance for the driver."""
     clearance = distance_field(grid.cells == OCCUPIED, grid.resolution)
     free = grid.points_of(np.argwhere((clearance > 0.35) & (grid.cells == FREE)))
     for place in places:
@@ -220,15 +223,15 @@ def _reachable(grid: OccupancyGrid, places: Sequence[Pose2]) -> Iterator[Tuple[f
 
 
 def _is_drawn(grid: OccupancyGrid, piece: Pose2) -> bool:
-    """Whether the map shows something where a piece of furniture has stood."""
+    """Whether the map still has obstacles at the former pose of a piece of furniture."""
     occupied = grid.points_of(np.argwhere(grid.cells == OCCUPIED))
     return bool((np.hypot(*(occupied - (piece.x, piece.y)).T) < TO_WALL - 0.1).any())
 
 
 def _line(one: Session, moved: int) -> str:
     return (
-        f"session {one.session}: {one.keyframes} key scans, {one.kilobytes:.0f} kB, "
-        f"found after {one.found_after:.1f} s, "
+        f"session {one.session}: {one.keyframes} keyframes, {one.kilobytes:.0f} kB, "
+        f"localized after {one.found_after:.1f} s, "
         f"keys off by {one.mean_error:.3f} m (at most {one.max_error:.3f}), recall {one.recall:.3f}, "
         f"precision {one.precision:.3f}, {one.doubled_walls} doubled walls, "
         f"{one.stale_pieces} of {moved} moved pieces still drawn, {one.cpu_seconds:.0f} s of CPU"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""map_server and map_saver of map_lite keep the contract of map_server 1.17."""
+"""map_server and map_saver of map_lite have the interface of map_server 1.17."""
 
 import shutil
 import subprocess
@@ -28,7 +28,7 @@ def command(name, *arguments):
 
 
 def outcome(name, *arguments):
-    """Exit code and output of a run that ends by itself."""
+    """Exit code and output of a run to its end."""
     run = subprocess.run(
         command(name, *arguments),
         stdout=subprocess.PIPE,
@@ -74,7 +74,7 @@ class MapLiteTest(unittest.TestCase):
         self.assert_same(rospy.ServiceProxy("static_map", GetMap)().map, HOME)
 
     @unittest.skipIf(LoadMap is None, "this nav_msgs has no LoadMap")
-    def test_change_map_answers_with_the_map_or_the_reason(self):
+    def test_change_map_returns_the_map_or_the_reason(self):
         self.start("map_server", self.yaml)
         rospy.wait_for_service("change_map", START_SECONDS)
         change_map = rospy.ServiceProxy("change_map", LoadMap)
@@ -125,13 +125,13 @@ class MapLiteTest(unittest.TestCase):
             (self.folder / f"saved.{ending}").rename(elsewhere / f"saved.{ending}")
         self.assertEqual(load_map(elsewhere / "saved.yaml").cells.tolist(), HOME.cells.tolist())
 
-    def test_the_saver_gives_up_when_no_map_comes_in_time(self):
+    def test_the_saver_exits_if_no_map_arrives_in_time(self):
         code, output = outcome("map_saver", "-f", self.folder / "saved", "--timeout", 1, "map:=nobody")
         self.assertEqual(code, 1)
         self.assertIn("no map on /nobody within 1 s", output)
         self.assertFalse((self.folder / "saved.yaml").exists())
 
-    def test_the_saver_refuses_a_map_of_which_nothing_is_known_unless_forced(self):
+    def test_the_saver_refuses_an_unknown_map_unless_forced(self):
         unknown = grid_from_picture("??\n??")
         publisher = rospy.Publisher("blank", OccupancyGridArrays, queue_size=1, latch=True)
         publisher.publish(grid_to_msg(unknown, rospy.Time.now(), "map"))
@@ -142,15 +142,15 @@ class MapLiteTest(unittest.TestCase):
         self.assertEqual(code, 0, output)
         self.assertTrue((load_map(self.folder / "saved.yaml").cells == UNKNOWN).all())
 
-    def test_the_saver_says_when_it_cannot_write(self):
+    def test_the_saver_reports_that_it_cannot_write(self):
         publisher = rospy.Publisher("room", OccupancyGridArrays, queue_size=1, latch=True)
         publisher.publish(grid_to_msg(HOME, rospy.Time.now(), "map"))
         code, output = outcome("map_saver", "-f", self.folder / "no/such/folder", "map:=room")
         self.assertEqual(code, 1)
         self.assertIn("cannot be written", output)
 
-    def test_who_has_ended_is_unknown_to_the_master(self):
-        """Else the next one of that name would have it shut down, and with it who has its port by then."""
+    def test_nodes_that_have_ended_are_unregistered(self):
+        """Otherwise the next node of that name would shut down whatever listens on the old port by then."""
         server = self.start("map_server", self.yaml)
         rospy.wait_for_message("map", OccupancyGrid, START_SECONDS)
         code, output = outcome("map_saver", "-f", self.folder / "saved")

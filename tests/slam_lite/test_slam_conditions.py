@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The node slam_gmapping under conditions that are not the usual ones; each robot has a tf of its own."""
+"""The node slam_gmapping in unusual conditions; each robot has its own tf topic."""
 
 import math
 import shutil
@@ -23,14 +23,14 @@ from planar_ros.calls.load_map import LoadMap
 from planar_ros.messages.conversion import LaserScanArrays, frame_name, transform_msg, yaw_of
 
 STEPS, STEP = 24, 0.15
-# Scans at the end of a drive, so that those that wait in vain for a transform are overtaken by as many.
+# Scans at the end of a drive, so that the queue drops scans whose transform does not arrive.
 STAND = 6
 WAIT_SECONDS = 20.0
-FOLLOWED = 0.06
+TRACKED = 0.06
 
 
 class Robot:
-    """Drives a circle and tells its slam_gmapping in the namespace ``name`` what it senses."""
+    """Drives a circle and publishes its scans and transforms to slam_gmapping in the namespace ``name``."""
 
     def __init__(
         self, name: str, has_odometry: bool = True, upside_down: bool = False, changes_beams: bool = False
@@ -45,7 +45,7 @@ class Robot:
         rospy.Subscriber(f"/{name}/map", rospy.AnyMsg, self._on_map)
 
     @property
-    def is_heard(self) -> bool:
+    def is_connected(self) -> bool:
         return self._scans.get_num_connections() > 0 and self._tf.get_num_connections() > 1
 
     def sense(self, grid, step: int, stamp):
@@ -66,7 +66,7 @@ class Robot:
 
     @property
     def error(self) -> float:
-        """How far off the node believes the robot to be, metres."""
+        """Error of the node's estimate [m]."""
         return (self.odom_in_map @ self.base_in_odom).distance_to(self.base_in_map)
 
     def _on_map(self, message):
@@ -103,16 +103,16 @@ class SlamConditionsTest(unittest.TestCase):
         end = rospy.get_time() + WAIT_SECONDS
         while not condition():
             if rospy.get_time() > end or rospy.is_shutdown():
-                raise AssertionError(f"waited in vain for {what}")
+                raise AssertionError(f"{what} did not happen within {WAIT_SECONDS:g} s")
             rospy.sleep(0.05)
 
     @classmethod
     def drive(cls, robots, first, earlier=0.0):
-        """STEPS scans from step ``first`` on, stamped ``earlier`` seconds earlier than they are.
+        """Publish STEPS scans from step ``first`` on, with stamps ``earlier`` seconds in the past.
 
-        They stand until each has a map, whose origin is where the first scan was made.
+        The robots stand still until each has a map, whose origin is the pose of the first scan.
         """
-        cls.wait_for(lambda: all(robot.is_heard for robot in robots), "the nodes")
+        cls.wait_for(lambda: all(robot.is_connected for robot in robots), "the nodes")
 
         def sense_all(step):
             for robot in robots:
@@ -132,51 +132,51 @@ class SlamConditionsTest(unittest.TestCase):
         proxy.wait_for_service(WAIT_SECONDS)
         return proxy(str(path))
 
-    def assert_followed(self, robot):
-        """Once the node has worked in the last scans."""
-        self.wait_for(lambda: robot.error < FOLLOWED, f"{robot.name} to be followed")
+    def assert_tracked(self, robot):
+        """After the node has processed the last scans."""
+        self.wait_for(lambda: robot.error < TRACKED, f"tracking of {robot.name}")
 
-    def told(self, name, text):
+    def has_logged(self, name, text):
         return any(node == f"/{name}/slam_gmapping" and text in line for node, line in self.log)
 
     def test_a_laser_upside_down_is_read_the_right_way_round(self):
-        self.assert_followed(self.robot("hanging"))
+        self.assert_tracked(self.robot("hanging"))
 
     def test_the_number_of_beams_may_change_from_scan_to_scan(self):
-        self.assert_followed(self.robot("changing"))
+        self.assert_tracked(self.robot("changing"))
 
-    def test_without_odometry_the_scans_are_followed_and_the_missing_transform_named(self):
-        self.assert_followed(self.robot("lost"))
+    def test_without_odometry_scans_are_matched_and_the_missing_transform_is_named(self):
+        self.assert_tracked(self.robot("lost"))
         text = "no odometry (no transform odom -> base_link): mapping from the scans alone"
-        self.wait_for(lambda: self.told("lost", text), "a warning")
+        self.wait_for(lambda: self.has_logged("lost", text), "a warning")
 
-    def test_without_odometry_a_scan_whose_directions_are_no_numbers_is_left_out(self):
+    def test_without_odometry_a_scan_with_nan_angles_is_skipped(self):
         lost = self.robot("lost")
         words = "skipping a scan: a scan with angle_increment nan means nothing"
 
-        def is_told():
+        def is_logged():
             scan = sweep(self.grid, lost.base_in_map, rospy.Time.now(), "laser")
             scan.angle_increment = math.nan
             lost.publish(scan)
             return ("/lost/slam_gmapping", words) in self.log
 
-        self.wait_for(is_told, "what is told of it")
+        self.wait_for(is_logged, "a warning")
 
     def test_mapping_goes_on_after_time_has_gone_back(self):
         robot = self.robot("changing")
         self.drive([robot], STEPS, earlier=100.0)
-        self.assert_followed(robot)
-        self.wait_for(lambda: self.told("changing", "time has jumped back"), "a warning")
+        self.assert_tracked(robot)
+        self.wait_for(lambda: self.has_logged("changing", "time has jumped back"), "a warning")
 
     @unittest.skipIf(LoadMap is None, "this nav_msgs has no LoadMap")
     def test_a_saved_state_can_be_localized_in_and_stays_as_it_is(self):
         state, again = self.folder / "state.npz", self.folder / "again.npz"
         self.call("plain", "save_state", state)
-        with self.follower_in(state):
-            follower = Robot("follower")
-            self.drive([follower], STEPS)
-            self.assert_followed(follower)
-            self.call("follower", "save_state", again)
+        with self.localizer_in(state):
+            localizer = Robot("localizer")
+            self.drive([localizer], STEPS)
+            self.assert_tracked(localizer)
+            self.call("localizer", "save_state", again)
         first, second = (np.load(str(path))["poses"] for path in (state, again))
         np.testing.assert_array_equal(first, second)
 
@@ -184,8 +184,8 @@ class SlamConditionsTest(unittest.TestCase):
     def test_a_full_disk_is_an_error_and_leaves_the_old_files_as_they_are(self):
         state, stem = self.folder / "full.npz", self.folder / "full"
         self.call("plain", "save_state", state)
-        with self.follower_in(state) as node:
-            self.call("follower", "save_map", stem)
+        with self.localizer_in(state) as node:
+            self.call("localizer", "save_map", stem)
             files = sorted(self.folder.glob("full.*"))
             self.assertEqual(len(files), 3)
             before = [path.read_bytes() for path in files]
@@ -193,19 +193,19 @@ class SlamConditionsTest(unittest.TestCase):
             psutil.Process(node.pid).rlimit(psutil.RLIMIT_FSIZE, (1000, 1000))
             for service, path, file in (("save_map", stem, "full.pgm"), ("save_state", state, "full.npz")):
                 with self.assertRaisesRegex(rospy.ServiceException, f"{file}: cannot be written"):
-                    self.call("follower", service, path)
+                    self.call("localizer", service, path)
         self.assertEqual(sorted(self.folder.glob("full.*")), files)
         self.assertEqual([path.read_bytes() for path in files], before)
 
     @contextmanager
-    def follower_in(self, state):
-        """A node that localizes in a state, and whose words cannot be written anywhere."""
+    def localizer_in(self, state):
+        """A node that localizes in a state, with stdout and stderr on a full disk."""
         command = [find_node("slam_lite", "slam_gmapping")[0], f"_state:={state}", "_localization_only:=true"]
-        remaps = ["__ns:=/follower", "/tf:=/follower/tf", "__name:=slam_gmapping"]
+        remaps = ["__ns:=/localizer", "/tf:=/localizer/tf", "__name:=slam_gmapping"]
         with Path("/dev/full").open("w") as full:
             node = subprocess.Popen([*command, *remaps], stdout=full, stderr=full)
         try:
-            rospy.wait_for_service("/follower/slam_gmapping/save_map", WAIT_SECONDS)
+            rospy.wait_for_service("/localizer/slam_gmapping/save_map", WAIT_SECONDS)
             yield node
         finally:
             node.terminate()

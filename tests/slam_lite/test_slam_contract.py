@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The node slam_gmapping of slam_lite keeps the contract of gmapping 1.4, and offers what is its own."""
+"""The node slam_gmapping of slam_lite has the interface of gmapping 1.4, and services in addition."""
 
 import itertools
 import math
@@ -33,7 +33,7 @@ from planar_ros.messages.transforms import Transforms
 
 WAIT_SECONDS = 20.0
 STEPS = 24
-FOLLOWED, LATENESS = 0.06, rospy.Duration(0.15)
+TRACKED, LATENESS = 0.06, rospy.Duration(0.15)
 
 
 class SlamContractTest(unittest.TestCase):
@@ -44,24 +44,24 @@ class SlamContractTest(unittest.TestCase):
         cls.truth = room()
         cls.transforms = Transforms()
         cls.scans = rospy.Publisher("scan", LaserScanArrays, queue_size=10)
-        cls.words = []
-        rospy.Subscriber("/rosout", Log, lambda message: cls.words.append(message.msg))
+        cls.log_texts = []
+        rospy.Subscriber("/rosout", Log, lambda message: cls.log_texts.append(message.msg))
         cls.first_odom_in_map = cls.wait_for(lambda: cls.transforms.lookup("map", "odom"))
         cls.early_map = cls.call_dynamic_map()
         cls.wait_for(lambda: cls.scans.get_num_connections() > 0)
         for step in range(STEPS):
             cls.sense(step)
-        cls.is_followed = cls.wait_for(cls.follows_one_that_stands)
+        cls.is_tracked = cls.wait_for(cls.tracks_standing_robot)
 
     @classmethod
     def tearDownClass(cls):
         shutil.rmtree(str(cls.folder))
 
     @classmethod
-    def follows_one_that_stands(cls):
-        """Whether the last scan has been worked in; a busy machine may have lost it, so it comes again."""
+    def tracks_standing_robot(cls):
+        """Whether the last scan has been processed; it is sent again in case the node dropped it."""
         cls.sense(STEPS - 1)
-        return cls.transforms.lookup("map", "base_link").distance_to(cls.base_in_map) < FOLLOWED
+        return cls.transforms.lookup("map", "base_link").distance_to(cls.base_in_map) < TRACKED
 
     @staticmethod
     def wait_for(condition):
@@ -71,7 +71,7 @@ class SlamContractTest(unittest.TestCase):
             if found:
                 return found
             rospy.sleep(0.05)
-        raise AssertionError("waited in vain")
+        raise AssertionError(f"not within {WAIT_SECONDS:g} s")
 
     @staticmethod
     def call_dynamic_map():
@@ -83,7 +83,7 @@ class SlamContractTest(unittest.TestCase):
 
     @classmethod
     def sense(cls, step):
-        """The robot drives a circle; its odometry turns 2 % too little."""
+        """Publish the next scan of a circle, with odometry that turns 2 % too little."""
         cls.base_in_map = circle(0.15 * step)
         base_in_odom = Pose2(cls.base_in_map.x, cls.base_in_map.y, 0.147 * step)
         stamp = rospy.Time.now()
@@ -125,7 +125,7 @@ class SlamContractTest(unittest.TestCase):
         self.assertGreater(rospy.wait_for_message("/slam_gmapping/entropy", Float64, WAIT_SECONDS).data, 0.0)
 
     def test_the_transform_corrects_odometry_and_is_post_dated(self):
-        self.assertTrue(self.is_followed)
+        self.assertTrue(self.is_tracked)
         self.wait_for(lambda: self.transforms.latest_stamp("map", "odom") > rospy.Time.now() - LATENESS)
 
     @unittest.skipIf(LoadMap is None, "this nav_msgs has no LoadMap")
@@ -143,7 +143,7 @@ class SlamContractTest(unittest.TestCase):
         with self.assertRaisesRegex(rospy.ServiceException, "no such state file"):
             self.call("load_state", self.folder / "none.npz")
 
-    def test_a_pause_leaves_scans_out(self):
+    def test_scans_are_dropped_during_a_pause(self):
         pause = rospy.ServiceProxy("/slam_gmapping/pause", SetBool)
         self.assertTrue(pause(True).success)
         before = self.newest_map().header.stamp
@@ -152,14 +152,14 @@ class SlamContractTest(unittest.TestCase):
         self.assertEqual(self.newest_map().header.stamp, before)
         self.assertTrue(pause(False).success)
 
-    def test_a_scan_whose_directions_are_no_numbers_is_left_out_and_mapping_goes_on(self):
+    def test_a_scan_with_nan_angles_is_skipped_and_mapping_continues(self):
         stamp = rospy.Time.now()
         self.transforms.send(circle(0.0), "odom", "base_link", stamp)
         scan = sweep(self.truth, circle(0.0), stamp, "laser")
         scan.angle_increment = math.nan
         self.scans.publish(scan)
         words = "skipping a scan: a scan with angle_increment nan means nothing"
-        self.wait_for(lambda: words in self.words)
+        self.wait_for(lambda: words in self.log_texts)
         before = self.newest_map().header.stamp
         steps = itertools.count(STEPS)
 
@@ -178,10 +178,10 @@ class SlamContractTest(unittest.TestCase):
         self.transforms.send(circle(0.0), "odom", "base_link", stamp)
         self.scans.publish(sweep(self.truth, circle(0.0), stamp, "tilted"))
         reason = "the z coordinate of its axis has to be 1 or -1, not 0.00000"
-        self.wait_for(lambda: f"laser tilted has to be mounted planar: {reason}" in self.words)
+        self.wait_for(lambda: f"laser tilted has to be mounted planar: {reason}" in self.log_texts)
         self.assertEqual(self.newest_map().header.stamp, before)
 
-    def test_a_senseless_parameter_ends_the_node_with_its_name(self):
+    def test_an_invalid_parameter_ends_the_node_and_is_named(self):
         run = subprocess.run(
             ["rosrun", "slam_lite", "slam_gmapping", "__name:=other", "_delta:=0"],
             stdout=subprocess.PIPE,

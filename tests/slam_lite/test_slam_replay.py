@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""slam_lite_replay maps bags without a master, good ones and broken ones."""
+"""slam_lite_replay maps bags without a master, intact and broken ones."""
 
 import math
 import os
@@ -60,7 +60,7 @@ class SlamReplayTest(unittest.TestCase):
         self.trajectory = self.folder / "drive.tum"
 
     def replay(self, *arguments):
-        """Exit code and output; the master that it must not need is one that is not there."""
+        """Exit code and output; the URI is of a master that does not exist, as none is needed."""
         command = ["rosrun", "slam_lite", "slam_lite_replay", self.bag, "--map", self.map]
         run = subprocess.run(
             [*map(str, command), "--trajectory", str(self.trajectory), *arguments],
@@ -118,7 +118,7 @@ class SlamReplayTest(unittest.TestCase):
             self.assertIn(f"warning: {self.bag}: {sentence}, at stamp 1000.000, 0 % into the bag\n", text)
         self.assert_mapped()
 
-    def test_time_that_goes_back_is_told_with_its_position(self):
+    def test_a_jump_back_in_time_is_reported_with_its_position(self):
         write_bag(self.bag, back_at=60)
         code, text = self.replay()
         self.assertEqual(code, 0)
@@ -127,7 +127,7 @@ class SlamReplayTest(unittest.TestCase):
         )
         self.assertEqual(len(self.poses()), SCANS - 1)
 
-    def test_after_a_jump_back_as_of_a_bag_in_a_loop_mapping_goes_on(self):
+    def test_mapping_continues_after_a_jump_back_as_of_a_looped_bag(self):
         write_bag(self.bag, back_at=60, back_by=30.0)
         code, text = self.replay()
         self.assertEqual(code, 0)
@@ -136,7 +136,7 @@ class SlamReplayTest(unittest.TestCase):
         )
         self.assert_mapped()
 
-    def test_scans_that_mean_nothing_are_left_out_with_a_sentence(self):
+    def test_invalid_scans_are_skipped_with_a_warning(self):
         """They once ended the program by a signal."""
         write_bag(self.folder / "whole.bag")
         break_scans(self.folder / "whole.bag", self.bag)
@@ -167,7 +167,7 @@ class SlamReplayTest(unittest.TestCase):
         self.assertRegex(text, rf"warning: {self.bag}: broken \d+\.\d s after its start \(.+\)\n")
         self.assert_mapped()
 
-    def test_what_is_no_bag_is_an_error(self):
+    def test_a_file_that_is_no_bag_is_an_error(self):
         for content in (b"", b"not a bag\n", b"#ROSBAG V2.0\n"):
             self.bag.write_bytes(content)
             code, text = self.replay()
@@ -176,7 +176,7 @@ class SlamReplayTest(unittest.TestCase):
         self.bag.unlink()
         self.assertRegex(self.replay()[1], "error: .*No such file")
 
-    def test_what_cannot_be_written_is_an_error_and_the_rest_is_written(self):
+    def test_an_unwritable_file_is_an_error_and_the_others_are_written(self):
         write_bag(self.bag)
         self.trajectory = self.folder / "nowhere" / "drive.tum"
         code, text = self.replay()

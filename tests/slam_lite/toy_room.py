@@ -1,4 +1,4 @@
-"""A small room, and a robot that drives a circle in it, for the tests of slam_lite."""
+"""A small room with a robot that drives a circle, for the tests of slam_lite."""
 
 import math
 
@@ -12,21 +12,21 @@ RESOLUTION, RANGE_MAX = 0.05, 10.0
 
 
 def room() -> OccupancyGrid:
-    """6 m x 4 m with a pillar, its middle at (0, 0)."""
+    """6 m x 4 m with a pillar, centred at (0, 0)."""
     cells = np.zeros((82, 122), dtype=np.int8)
     cells[[0, -1], :] = cells[:, [0, -1]] = cells[50:56, 80:90] = OCCUPIED
     return OccupancyGrid(cells, RESOLUTION, Pose2(-3.05, -2.05, 0.0))
 
 
 def circle(angle: float) -> Pose2:
-    """Where the robot is after ``angle`` radians of its circle, which starts at (0, 0)."""
+    """Robot pose after ``angle`` radians of its circle, which starts at (0, 0)."""
     return Pose2(0.8 * math.sin(angle), 0.8 - 0.8 * math.cos(angle), angle)
 
 
 def sweep(
     grid: OccupancyGrid, base_in_map: Pose2, stamp, frame: str, beams: int = 360, upside_down: bool = False
 ):
-    """The message of a laser in the middle of the base that sees all around."""
+    """Message of a 360 degree laser at the origin of the base."""
     scan = LaserScanArrays()
     scan.header.stamp, scan.header.frame_id = stamp, frame
     scan.angle_min, scan.angle_increment = -math.pi, 2.0 * math.pi / beams

@@ -1,4 +1,4 @@
-"""TITLE: a matcher of scans for slam_lite."""
+"""TITLE: a scan matcher for slam_lite."""
 
 from slam_lite.config import MapperSettings
 from slam_lite.matching.local_map import LocalMap, Match
@@ -8,12 +8,12 @@ from slam_lite.point_cloud import PointCloud
 
 
 class CLASS:
-    """Moves a scan from where odometry has it onto the lines of the map, without a search."""
+    """Refines the pose predicted by odometry by point-to-line matching, without a search."""
 
     def __init__(self, settings: MapperSettings):
         pass
 
     def match(self, cloud: PointCloud, local_map: LocalMap, prediction: Prediction) -> Match:
-        """See slam_lite.matching.scan_matcher.ScanMatcher: what is given can only be read."""
+        """See slam_lite.matching.scan_matcher.ScanMatcher; the arguments are read-only."""
         predicted = prediction.base_pose
         return refine(cloud, local_map, predicted, predicted, prediction.information)

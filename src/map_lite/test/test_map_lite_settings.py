@@ -10,6 +10,6 @@ def test_the_defaults_are_the_official_ones():
 
 
 @pytest.mark.parametrize("occupied_at, free_at", [(20, 20), (0, 0), (101, 25), (65, -1)])
-def test_senseless_thresholds_are_refused(occupied_at, free_at):
+def test_invalid_thresholds_are_refused(occupied_at, free_at):
     with pytest.raises(SettingsError):
         SaverSettings(occupied_at, free_at)

@@ -12,7 +12,7 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
 from tf2_msgs.msg import TFMessage
 
-from helpers.drives import Sighting
+from helpers.drives import Observation
 from planar import OccupancyGrid, Pose2
 from planar.geometry.ray_casting import cast_rays
 from planar_ros.messages.conversion import pose2_to_msg, time_of, transform_msg
@@ -34,7 +34,7 @@ class Laser:
 
 def write_bag(
     path: str,
-    sightings: List[Sighting],
+    sightings: List[Observation],
     scan_topic: str = "scan",
     grid: Optional[OccupancyGrid] = None,
     lasers: Sequence[Laser] = (),
@@ -76,7 +76,7 @@ def _mounting(laser: Laser, base_frame: str) -> TransformStamped:
     return transform
 
 
-def _own_scan(sighting: Sighting, laser: Laser, stamp) -> LaserScan:
+def _own_scan(sighting: Observation, laser: Laser, stamp) -> LaserScan:
     scan = sighting.scan
     message = LaserScan(angle_min=scan.angle_min, angle_increment=scan.angle_increment)
     message.range_min, message.range_max = scan.range_min, scan.range_max

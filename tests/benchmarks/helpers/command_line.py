@@ -1,7 +1,7 @@
-"""What several benchmarks are told."""
+"""Command line options of several benchmarks."""
 
 
 def seeds(text: str) -> range:
-    """Those of "0-9", or of "7" alone. Raises ValueError."""
+    """Parse "0-9" or "7" into a range. Raises ValueError."""
     first, _, last = text.partition("-")
     return range(int(first), int(last or first) + 1)

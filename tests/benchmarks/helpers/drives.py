@@ -20,7 +20,7 @@ CRAZY_TURN_SPEED = 2.5
 
 
 @dataclass(frozen=True, eq=False)
-class Sighting:
+class Observation:
     """One scan of a drive, with odometry and truth at its stamp.
 
     ``odometry_before``: stamps and poses of the odometry between the scan before and this one.
@@ -122,7 +122,7 @@ def drive(
     settings: SimulationSettings = SimulationSettings(),
     robot: str = "turtlebot_lidar",
     start: Optional[Pose2] = None,
-) -> List[Sighting]:
+) -> List[Observation]:
     """Drives for some simulated seconds as ``driver.command`` says; the map frame is the world frame."""
     simulation = Simulation(world, robot_named(robot), settings, seed, start or Pose2())
     sightings, before, command = [], [], None
@@ -133,13 +133,13 @@ def drive(
             if seen.scan is None:
                 before.append((seen.stamp, base_in_odom))
             else:
-                sightings.append(Sighting(seen.scan, base_in_odom, seen.base_in_world, tuple(before)))
+                sightings.append(Observation(seen.scan, base_in_odom, seen.base_in_world, tuple(before)))
                 before, command = [], driver.command(seen.base_in_world)
     finally:
         simulation.close()
     return sightings
 
 
-def random_drive(world: World, grid: OccupancyGrid, seed: int, seconds: float, **others) -> List[Sighting]:
+def random_drive(world: World, grid: OccupancyGrid, seed: int, seconds: float, **others) -> List[Observation]:
     """Drives about, to random places; ``others`` as in ``drive``."""
     return drive(world, RandomDriver(grid, np.random.default_rng([seed, 99])), seed, seconds, **others)

@@ -17,7 +17,7 @@ from std_srvs.srv import Empty
 from tf2_msgs.msg import TFMessage
 from tf2_ros import StaticTransformBroadcaster
 
-from helpers.drives import Sighting
+from helpers.drives import Observation
 from planar import OccupancyGrid, Pose2
 from planar_ros.messages.conversion import (
     GetMapArrays,
@@ -86,7 +86,7 @@ class Player:
             time.sleep(0.05)
         return node
 
-    def wake(self, sighting: Sighting) -> None:
+    def wake(self, sighting: Observation) -> None:
         """Shows the node a scan until it answers for the first time."""
         deadline = time.monotonic() + START_SECONDS
         while time.monotonic() < deadline:
@@ -94,7 +94,7 @@ class Player:
                 return
         raise RuntimeError("the node does not answer")
 
-    def show(self, sighting: Sighting, patience: float = ANSWER_SECONDS) -> Optional[Pose2]:
+    def show(self, sighting: Observation, patience: float = ANSWER_SECONDS) -> Optional[Pose2]:
         """Publishes one sighting, 0.1 s after the one before; returns odom in map, None if no answer came."""
         self._now += 0.1
         stamp = rospy.Time.from_sec(round(self._now, 3))

@@ -1,1 +1,1 @@
-"""Serves and saves maps; the nodes are in ``map_server_node`` and ``map_saver_node``."""
+"""Map server and map saver; the nodes are in ``map_lite.ros``."""

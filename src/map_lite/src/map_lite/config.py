@@ -9,7 +9,7 @@ from planar.config.settings import check
 
 @dataclass(frozen=True)
 class ServerSettings:
-    """``frame_id``, and how an image given without YAML (deprecated) is understood."""
+    """Settings of the map server; all but ``frame_id`` are of an image given without YAML (deprecated)."""
 
     frame_id: str = parameter("map", "frame of the map")
     negate: int = parameter(
@@ -18,8 +18,8 @@ class ServerSettings:
         bounds=Interval(0, 1, words="0 or 1"),
         heading="Of an image given without YAML (deprecated).",
     )
-    occupied_thresh: float = parameter(0.65, "share of black from which on a cell is occupied")
-    free_thresh: float = parameter(0.196, "share of black below which a cell is free")
+    occupied_thresh: float = parameter(0.65, "darkness, 0 to 1, from which on a pixel is occupied")
+    free_thresh: float = parameter(0.196, "darkness, 0 to 1, below which a pixel is free")
 
     def __post_init__(self):
         check_parameters(self)
@@ -27,10 +27,10 @@ class ServerSettings:
 
 @dataclass(frozen=True)
 class SaverSettings:
-    """From which values, percent, a cell counts as occupied or free; the options of the map saver."""
+    """Options of the map saver: thresholds of occupied and free cells, in percent."""
 
-    occupied_at: int = parameter(65, "from this on occupied", "percent", name="--occ")
-    free_at: int = parameter(25, "up to this free", "percent", name="--free")
+    occupied_at: int = parameter(65, "cells from this value on are occupied", "percent", name="--occ")
+    free_at: int = parameter(25, "cells up to this value are free", "percent", name="--free")
 
     def __post_init__(self):
         check(1 <= self.occupied_at <= 100, "--occ", "between 1 and 100", self.occupied_at)

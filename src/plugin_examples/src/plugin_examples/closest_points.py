@@ -1,6 +1,6 @@
-"""A matcher of scans: each point is drawn to the nearest one of the map (Besl and McKay, 1992: ICP).
+"""A scan matcher: each point is matched to the nearest one of the map (Besl and McKay, 1992: ICP).
 
-Pairs that are far apart count less the farther apart they are, and odometry is believed as far as it is sure.
+The weight of a pair falls with its distance; odometry is a prior with its information.
 """
 
 from typing import Tuple
@@ -13,8 +13,9 @@ from slam_lite.matching.local_map import LocalMap, Match
 from slam_lite.matching.scan_matcher import Prediction
 from slam_lite.point_cloud import PointCloud
 
-STEPS, ENOUGH = 30, 1e-4
-# Metres: how far apart a pair counts a quarter, how far it lies on the map, how far apart it is by chance.
+STEPS, CONVERGED = 30, 1e-4
+# Distances of a pair [m]: at which its weight is a quarter, up to which it counts for the response, and its
+# standard deviation.
 OUTLIER, PAIRED, SIGMA = 0.1, 0.1, 0.05
 
 
@@ -23,21 +24,23 @@ class ClosestPoints:
         pass
 
     def match(self, cloud: PointCloud, local_map: LocalMap, prediction: Prediction) -> Match:
-        believed = local_map.to_grid(prediction.base_pose)
-        pose = believed.copy()
+        predicted = local_map.to_grid(prediction.base_pose)
+        pose = predicted.copy()
         for _ in range(STEPS):
-            information, gradient, _ = _pull(cloud, local_map, pose)
-            to_belief = prediction.information @ (believed - pose)
-            step = np.linalg.solve(information + prediction.information, gradient + to_belief)
+            information, gradient, _ = _linearize(cloud, local_map, pose)
+            to_prior = prediction.information @ (predicted - pose)
+            step = np.linalg.solve(information + prediction.information, gradient + to_prior)
             pose += step
-            if np.abs(step).max() < ENOUGH:
+            if np.abs(step).max() < CONVERGED:
                 break
-        information, _, response = _pull(cloud, local_map, pose)
+        information, _, response = _linearize(cloud, local_map, pose)
         return Match(local_map.from_grid(pose), information + prediction.information, response)
 
 
-def _pull(cloud: PointCloud, local_map: LocalMap, pose: np.ndarray) -> Tuple[np.ndarray, np.ndarray, float]:
-    """Information (3, 3) and gradient (3,) of all pairs, and the share of the points that are paired."""
+def _linearize(
+    cloud: PointCloud, local_map: LocalMap, pose: np.ndarray
+) -> Tuple[np.ndarray, np.ndarray, float]:
+    """Information (3, 3) and gradient (3,) of all pairs, and the fraction of the points that are paired."""
     arms = Pose2(0.0, 0.0, pose[2]).transform_points(cloud.points_xy.astype(float))
     points_xy = arms + pose[:2]
     cells = np.floor(points_xy / local_map.resolution).astype(int)
@@ -51,7 +54,7 @@ def _pull(cloud: PointCloud, local_map: LocalMap, pose: np.ndarray) -> Tuple[np.
     apart = local_map.points_xy[nearest] - points_xy
     squared = (apart**2).sum(axis=1)
     weights = (1.0 + squared / OUTLIER**2) ** -2 / SIGMA**2
-    # How a point moves with x, y and yaw of the base.
+    # Jacobians of the points by x, y and yaw of the base.
     moves = np.zeros((len(arms), 2, 3))
     moves[:, 0, 0] = moves[:, 1, 1] = 1.0
     moves[:, 0, 2], moves[:, 1, 2] = -arms[:, 1], arms[:, 0]

@@ -14,7 +14,7 @@ from slam_lite.matching.local_map import LocalMap, Match, long_range_map
 from slam_lite.matching.refinement import refine
 from slam_lite.matching.scan_matcher import Prediction, scan_matcher_of
 from slam_lite.odometry_checks import has_moved
-from slam_lite.odometry_model import OdometryModel
+from slam_lite.odometry_error_model import OdometryErrorModel
 from slam_lite.point_cloud import PointCloud
 
 # A match with a lower response is searched again in a wide window, as after a wheel slip.
@@ -146,7 +146,7 @@ class FrontEnd:
         self._settings = settings
         self._matcher = scan_matcher_of(settings)
         self._keyframes = keyframes
-        self._odometry = OdometryModel(settings)
+        self._odometry = OdometryErrorModel(settings)
         self._last_in_odom: Optional[Pose2] = None
         self._last_in_track = base_in_track
         self._matched_motion = Pose2()

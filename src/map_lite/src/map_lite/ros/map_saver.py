@@ -1,10 +1,10 @@
-"""The node ``map_saver``: writes the map on the topic ``map`` to NAME.pgm and NAME.yaml, as map_saver 1.17.
+"""The node ``map_saver``: writes the map on the topic ``map`` to NAME.pgm and NAME.yaml.
 
     map_saver [--occ 65] [--free 25] [-f NAME] [--timeout SECONDS] [--force]
 
-Unlike the official one it names the image without a folder, so that the pair loads from anywhere, writes
-whole files or none, and ends with exit code 1 and a reason when there is no map in time, or nothing worth
-saving in it, or it cannot be written; with 130 if it is interrupted before.
+Unlike the official one it writes the image path relative to the YAML file, so that the pair loads from
+anywhere, and writes whole files or none. It exits with code 1 and a reason if there is no map in time,
+nothing is known in it, or it cannot be written; with 130 if it is interrupted before.
 """
 
 import argparse
@@ -23,7 +23,7 @@ from supervision.interruption import INTERRUPTED
 
 
 class NothingToSaveError(PlanarError):
-    """No map arrived, or one of which nothing is known."""
+    """No map arrived, or one with unknown cells only."""
 
 
 def main():
@@ -56,7 +56,9 @@ def _save(arguments, settings: SaverSettings):
     )
     grid = grid_from_msg(message)
     if not arguments.force and (grid.cells == UNKNOWN).all():
-        raise NothingToSaveError("nothing is known in this map; --force saves it all the same")
+        raise NothingToSaveError(
+            "nothing is known in this map: all cells are unknown; use --force to save it"
+        )
     return save_map(grid, arguments.name, settings.occupied_at, settings.free_at)
 
 
@@ -77,7 +79,7 @@ def _await_map(timeout):
 
 def _parser() -> argparse.ArgumentParser:
     parser = _Parser(
-        prog="map_saver", description="Saves the map on the topic map to a .pgm and a .yaml file."
+        prog="map_saver", description="Save the map on the topic map to a .pgm and a .yaml file."
     )
     for each in parameters_of(SaverSettings):
         text = f"{each.meaning} (%(default)s)"
@@ -85,17 +87,17 @@ def _parser() -> argparse.ArgumentParser:
             each.name, dest=each.field, type=int, default=each.default, metavar=each.unit.upper(), help=text
         )
     parser.add_argument(
-        "-f", dest="name", default="map", help="path of the files without ending (%(default)s)"
+        "-f", dest="name", default="map", help="path of the files without extension (%(default)s)"
     )
     parser.add_argument(
         "--timeout", type=float, metavar="SECONDS", help="give up after this time, wall clock"
     )
-    parser.add_argument("--force", action="store_true", help="save even a map of which nothing is known")
+    parser.add_argument("--force", action="store_true", help="save also a map with unknown cells only")
     return parser
 
 
 class _Parser(argparse.ArgumentParser):
-    """Wrong arguments are exit code 1, as the official map_saver has it."""
+    """Exits with code 1 for wrong arguments, as the official map_saver."""
 
     def error(self, message):
         self.print_usage(sys.stderr)

@@ -1,9 +1,9 @@
-"""The node ``map_server``: serves a map file, as map_server 1.17 does.
+"""The node ``map_server``, with the interface of map_server 1.17.
 
     map_server MAP.yaml
     map_server IMAGE RESOLUTION      (deprecated)
 
-A map that cannot be loaded ends it with exit code 2 (the official one: 255) and a line naming file and key.
+If the map cannot be loaded, it exits with code 2 (the official one: 255) and an error naming file and key.
 """
 
 import numpy as np
@@ -11,9 +11,8 @@ import rospkg
 import rospy
 from nav_msgs.msg import MapMetaData
 
-from map_lite.command_line import parse
 from map_lite.config import ServerSettings
-from map_lite.map_url import path_of
+from map_lite.map_source import parse_arguments, resolve_map_url
 from planar import MapFileError, OccupancyGrid, Pose2, load_map
 from planar.maps.map_file import MapDescriptionError, MapImageError, MapMissingError, cells_from_image
 from planar_ros.calls.load_map import LoadMapArrays, LoadMapResult, advertise_services
@@ -29,29 +28,29 @@ RESULTS = {
 
 
 class MapServerNode:
-    """Publishes one map, latched, and serves it; change_map puts another in its place."""
+    """Publishes one map, latched, and serves it; the service change_map replaces it."""
 
     def __init__(self, arguments):
         self._settings = read_settings(ServerSettings)
         grid = self._load(arguments)
         self._map_publisher = rospy.Publisher("map", OccupancyGridArrays, queue_size=1, latch=True)
         self._metadata_publisher = rospy.Publisher("map_metadata", MapMetaData, queue_size=1, latch=True)
-        self._show(grid)
+        self._publish(grid)
         rospy.Service("static_map", GetMapArrays, lambda request: {"map": self._map})
         advertise_services(LoadMapArrays, {"change_map": self._on_change_map})
 
     def _load(self, arguments) -> OccupancyGrid:
-        path = path_of(arguments.map, _package_folder)
+        path = resolve_map_url(arguments.map, _package_folder)
         if arguments.resolution is None:
             return load_map(path)
-        rospy.logwarn("an image and a resolution for a map are deprecated: write a YAML file")
+        rospy.logwarn("an image and a resolution instead of a map are deprecated: write a YAML file")
         settings = self._settings
         cells = cells_from_image(
             path, bool(settings.negate), settings.occupied_thresh, settings.free_thresh, "trinary"
         )
         return OccupancyGrid(cells, arguments.resolution, Pose2())
 
-    def _show(self, grid: OccupancyGrid):
+    def _publish(self, grid: OccupancyGrid):
         self._map = grid_to_msg(grid, rospy.Time.now(), self._settings.frame_id)
         self._map.info.map_load_time = self._map.header.stamp
         self._map_publisher.publish(self._map)
@@ -60,11 +59,11 @@ class MapServerNode:
 
     def _on_change_map(self, request):
         try:
-            self._show(load_map(path_of(request.map_url, _package_folder)))
+            self._publish(load_map(resolve_map_url(request.map_url, _package_folder)))
         except MapFileError as error:
             rospy.logerr("%s", error)
-            nothing = OccupancyGridArrays(data=np.zeros(0, dtype=np.int8))
-            return {"map": nothing, "result": RESULTS.get(type(error), LoadMapResult.UNDEFINED_FAILURE)}
+            empty = OccupancyGridArrays(data=np.zeros(0, dtype=np.int8))
+            return {"map": empty, "result": RESULTS.get(type(error), LoadMapResult.UNDEFINED_FAILURE)}
         return {"map": self._map, "result": LoadMapResult.SUCCESS}
 
 
@@ -76,5 +75,5 @@ def _package_folder(package: str) -> str:
 
 
 def main():
-    arguments = parse(rospy.myargv()[1:])
+    arguments = parse_arguments(rospy.myargv()[1:])
     run("map_server", lambda: MapServerNode(arguments))

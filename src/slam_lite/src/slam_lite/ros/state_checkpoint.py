@@ -22,7 +22,7 @@ class StateCheckpointer:
 
     def __init__(self, mapper: ThreadSafeMapper):
         self._mapper = mapper
-        self._kept_file = FileCheckpoint()
+        self._checkpoint = FileCheckpoint()
         self._is_due = threading.Event()
         self._stamp = -math.inf
         self._recover()
@@ -36,7 +36,7 @@ class StateCheckpointer:
             self._is_due.set()
 
     def _recover(self) -> None:
-        found = self._kept_file.found
+        found = self._checkpoint.found
         if found is None:
             return
         try:
@@ -55,4 +55,4 @@ class StateCheckpointer:
     def _save(self) -> None:
         state, odom_in_map = self._mapper.snapshot()
         if len(state.poses) > 0:
-            self._kept_file.keep(partial(save_state, state, is_compressed=False), asdict(odom_in_map))
+            self._checkpoint.keep(partial(save_state, state, is_compressed=False), asdict(odom_in_map))

@@ -5,13 +5,13 @@ import pytest
 
 from planar import Pose2
 from slam_lite.config import MapperSettings
-from slam_lite.odometry_model import OdometryModel
+from slam_lite.odometry_error_model import OdometryErrorModel
 
 PER_DISTANCE, PER_TURN, SCALE = 0.006, 0.04, 0.03
 
 
 def learned(noise=0.002, motions=600, slips=0):
-    rng, odometry = np.random.default_rng(0), OdometryModel(MapperSettings())
+    rng, odometry = np.random.default_rng(0), OdometryErrorModel(MapperSettings())
     for i in range(motions):
         true = Pose2(0.3, 0.0, rng.choice([0.0, 0.0, 0.3, -0.2]))
         yaw = true.yaw * (1.0 + PER_TURN) + PER_DISTANCE * true.x + rng.normal(0.0, noise)
@@ -39,7 +39,7 @@ def test_nothing_is_learned_from_slips():
 
 
 def test_the_variance_of_random_errors_is_learned_and_never_exceeds_the_settings():
-    motion, settings = Pose2(0.3, 0.0, 0.0), OdometryModel(MapperSettings())
+    motion, settings = Pose2(0.3, 0.0, 0.0), OdometryErrorModel(MapperSettings())
     nominal = settings.nominal_variance(motion)
     np.testing.assert_allclose(settings.variance(motion), nominal)
     assert 0.002 < np.sqrt(learned(noise=0.006).variance(motion)[2]) < 0.02
@@ -48,11 +48,11 @@ def test_the_variance_of_random_errors_is_learned_and_never_exceeds_the_settings
 
 def test_without_data_odometry_is_not_corrected():
     motion = Pose2(0.3, 0.01, -0.1)
-    assert OdometryModel(MapperSettings()).corrected(motion) == motion
+    assert OdometryErrorModel(MapperSettings()).corrected(motion) == motion
 
 
 def test_a_half_turn_across_the_wrap_is_no_error():
-    odometry = OdometryModel(MapperSettings())
+    odometry = OdometryErrorModel(MapperSettings())
     for _ in range(20):
         odometry.learn(Pose2(0.3, 0.0, np.pi - 0.01), Pose2(0.3, 0.0, -np.pi + 0.01))
     assert odometry.corrected(Pose2(0.3, 0.0, 0.5)).yaw == pytest.approx(0.5, abs=0.02)

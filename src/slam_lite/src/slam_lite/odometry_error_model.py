@@ -24,7 +24,7 @@ _MIN_SHARE, _PRIOR_COUNT = 0.02, 50.0
 _SLIP_SIGMAS = 5.0
 
 
-class OdometryModel:
+class OdometryErrorModel:
     """Removes the learned bias of odometry from motions, and gives the variance of the rest."""
 
     def __init__(self, settings: MapperSettings):
