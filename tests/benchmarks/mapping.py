@@ -20,7 +20,7 @@ from typing import List, Optional
 import numpy as np
 from helpers.command_line import seeds
 
-from explorer_lite import Explorer, ExplorerSettings, FinishTask, GoalFailed, GoalReached, GoTo
+from explorer_lite import Explorer, ExplorerSettings, FinishTask, GoalFailed, GoalReached, SendGoal
 from home_service.judging.map_truth import LEAST_PRECISION, LEAST_RECALL, score_against_world
 from home_service.judging.verdict import ARRIVAL_TOLERANCE
 from home_service.rehearsal import NAVIGATION_CONFIG, Rehearsal
@@ -94,7 +94,7 @@ class MappingRun:
                     continue
                 base_in_map = self._odom_in_map @ odometry.base_in_odom
                 order = self._explorer.advance(self.now, grid, base_in_map, event)
-                if isinstance(order, GoTo):
+                if isinstance(order, SendGoal):
                     self._navigator.set_goal(order.pose)
                 decision = self._navigator.tick(
                     self.now, base_in_map, odometry.base_in_odom, odometry.twist, scan

@@ -2,7 +2,15 @@ import math
 
 import pytest
 
-from explorer_lite import Explorer, ExplorerSettings, ExplorerState, FinishTask, GoalFailed, GoalReached, GoTo
+from explorer_lite import (
+    Explorer,
+    ExplorerSettings,
+    ExplorerState,
+    FinishTask,
+    GoalFailed,
+    GoalReached,
+    SendGoal,
+)
 from planar import Pose2, SettingsError, grid_from_picture
 
 SETTINGS = ExplorerSettings(
@@ -44,17 +52,17 @@ def test_an_explorer_that_takes_over_returns_to_where_the_one_before_began():
     start = Pose2(2.25, 1.25)
     task = Explorer(SETTINGS, start=start)
     task.advance(0.0, grid(OPEN_TO_THE_RIGHT), ROBOT)
-    assert task.advance(5.0, grid(CLOSED), Pose2(3.0, 1.25)) == GoTo(start)
+    assert task.advance(5.0, grid(CLOSED), Pose2(3.0, 1.25)) == SendGoal(start)
     assert task.start == start
 
 
 def test_the_robot_is_sent_to_the_frontier_and_home_when_all_is_known():
     task = explorer()
     order = task.advance(0.0, grid(OPEN_TO_THE_RIGHT), ROBOT)
-    assert isinstance(order, GoTo)
+    assert isinstance(order, SendGoal)
     assert order.pose.x == pytest.approx(3.25)
     assert task.advance(0.5, None, ROBOT) is None
-    assert task.advance(5.0, grid(CLOSED), Pose2(3.0, 1.25)) == GoTo(ROBOT)
+    assert task.advance(5.0, grid(CLOSED), Pose2(3.0, 1.25)) == SendGoal(ROBOT)
     assert task.state is ExplorerState.RETURNING
     end = task.advance(20.0, None, ROBOT, GoalReached())
     assert end == FinishTask(True, "explored 6.0 m2")
@@ -117,7 +125,7 @@ def test_at_a_goal_a_map_is_waited_for_but_not_for_ever():
     task.advance(10.0, None, first.pose, GoalReached())
     assert task.advance(10.5, grid(OPEN_TO_THE_RIGHT), first.pose) is None
     assert task.advance(15.9, None, first.pose) is None
-    assert isinstance(task.advance(16.0, None, first.pose), GoTo)
+    assert isinstance(task.advance(16.0, None, first.pose), SendGoal)
 
 
 def test_a_refused_goal_is_followed_by_another_at_once():
@@ -141,24 +149,24 @@ def test_a_robot_that_does_not_get_away_ends_the_exploration():
     task = explorer(attempts=100, blacklist_radius=0.1)
     task.advance(0.0, grid(OPEN_TO_THE_RIGHT), ROBOT)
     orders = [task.advance(1.0 + i, None, ROBOT, GoalFailed("blocked")) for i in range(8)]
-    assert orders[-1] == FinishTask(False, "the robot does not get away from here: blocked")
+    assert orders[-1] == FinishTask(False, "the robot is stuck, all goals from here were refused: blocked")
 
 
 def test_a_frontier_that_opens_on_the_way_home_is_explored_too():
     task = explorer()
     task.advance(0.0, grid(CLOSED), Pose2(1.25, 1.25))
     order = task.advance(5.0, grid(OPEN_TO_THE_RIGHT), Pose2(1.75, 1.25))
-    assert isinstance(order, GoTo)
+    assert isinstance(order, SendGoal)
     assert task.state is ExplorerState.EXPLORING
 
 
 def test_the_way_home_is_tried_again_before_it_fails():
     task = explorer(attempts=2)
     task.advance(0.0, grid(CLOSED), ROBOT)
-    assert task.advance(1.0, None, ROBOT, GoalFailed("blocked")) == GoTo(ROBOT)
-    assert task.advance(2.0, None, ROBOT, GoalFailed("blocked")) == GoTo(ROBOT)
+    assert task.advance(1.0, None, ROBOT, GoalFailed("blocked")) == SendGoal(ROBOT)
+    assert task.advance(2.0, None, ROBOT, GoalFailed("blocked")) == SendGoal(ROBOT)
     end = task.advance(3.0, None, ROBOT, GoalFailed("blocked"))
-    assert end == FinishTask(False, "explored 6.0 m2, but there is no way back to the start: blocked")
+    assert end == FinishTask(False, "explored 6.0 m2, but the robot cannot return to the start: blocked")
 
 
 def test_a_robot_in_no_free_space_waits_for_a_better_map_but_not_for_ever():
@@ -175,7 +183,7 @@ def test_a_robot_that_took_long_to_arrive_may_look_about_there():
     order = task.advance(0.0, grid(OPEN_AT_BOTH_ENDS), ROBOT)
     assert task.advance(19.0, None, order.pose, GoalReached()) is None
     order = task.advance(21.0, grid(OPEN_AT_BOTH_ENDS), order.pose)
-    assert isinstance(order, GoTo)
+    assert isinstance(order, SendGoal)
 
 
 @pytest.mark.parametrize("name, value", [("attempts", 0), ("reach", 0.0), ("max_frontier_size", 0.1)])
@@ -189,4 +197,4 @@ def test_a_clock_that_jumps_forth_and_back_keeps_the_robot_from_nothing():
     task.advance(0.0, grid(OPEN_TO_THE_RIGHT), ROBOT)
     task.advance(1e6, grid(OPEN_TO_THE_RIGHT), ROBOT)
     assert task.advance(5.0, grid(CLOSED), Pose2(3.0, 1.25)) is None
-    assert task.advance(10.0, None, Pose2(3.0, 1.25)) == GoTo(ROBOT)
+    assert task.advance(10.0, None, Pose2(3.0, 1.25)) == SendGoal(ROBOT)

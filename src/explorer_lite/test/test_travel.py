@@ -69,11 +69,11 @@ def test_a_robot_far_from_all_that_is_free_cannot_go_anywhere():
     assert np.isinf(distances_in("...", Pose2(-5.0, 0.5), 0.1)).all()
 
 
-def view(picture, middle_xy, robot=Pose2(0.5, 0.5), reach=3.0, shunned=()):
+def view(picture, middle_xy, robot=Pose2(0.5, 0.5), reach=3.0, excluded=()):
     grid = grid_from_picture(picture)
     distances = distances_in(picture, robot, 0.5)
     frontier = Frontier(np.array([middle_xy]), 1.0)
-    return viewpoint_of(frontier, grid, distances, robot, reach, list(shunned), 0.5)
+    return viewpoint_of(frontier, grid, distances, robot, reach, list(excluded), 0.5)
 
 
 def test_an_open_frontier_is_driven_to_and_faced_from_there_on():
@@ -81,7 +81,7 @@ def test_an_open_frontier_is_driven_to_and_faced_from_there_on():
 
 
 def test_a_frontier_that_cannot_be_entered_is_looked_at_from_the_nearest_place():
-    pose = view("......\n.....#\n......", [5.5, 0.5], robot=Pose2(0.5, 0.5), shunned=[Pose2(5.5, 0.5)])
+    pose = view("......\n.....#\n......", [5.5, 0.5], robot=Pose2(0.5, 0.5), excluded=[Pose2(5.5, 0.5)])
     assert (pose.x, pose.y) == (4.5, 0.5)
     assert pose.yaw == pytest.approx(0.0)
 

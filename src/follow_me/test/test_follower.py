@@ -1,10 +1,10 @@
-"""A follower stays behind its leader, on the leader's own way."""
+"""A follower stays behind its leader, on the leader's path."""
 
 import math
 
 import pytest
 
-from follow_me import Follower, FollowSettings
+from follow_me import FollowSettings, LeaderFollower
 from planar import Pose2
 
 GAP, SLACK = 0.8, 0.2
@@ -12,10 +12,10 @@ BEHIND = Pose2(-1.0, 0.0, 0.0)
 
 
 def follower():
-    return Follower(FollowSettings(gap=GAP, slack=SLACK))
+    return LeaderFollower(FollowSettings(gap=GAP, slack=SLACK))
 
 
-def test_a_leader_that_is_near_is_not_pursued():
+def test_a_leader_that_is_near_is_not_followed():
     assert follower().goal(Pose2(), Pose2(-0.5, 0.0, 0.0)) is None
 
 
@@ -37,7 +37,7 @@ def test_a_leader_that_stands_is_approached_in_a_line_up_to_the_gap():
     assert (goal.x, goal.y, goal.yaw) == pytest.approx((3.0 - GAP, 0.0, 0.0))
 
 
-def test_the_goal_lies_on_the_leaders_way_behind_it_and_looks_at_it():
+def test_the_goal_lies_on_the_leaders_path_behind_it_and_looks_at_it():
     guide = follower()
     for step in range(61):  # 3 m straight on, then 3 m to the left
         guide.goal(Pose2(0.05 * step, 0.0, 0.0), BEHIND)
@@ -48,14 +48,14 @@ def test_the_goal_lies_on_the_leaders_way_behind_it_and_looks_at_it():
     assert 3.0 - last.y == pytest.approx(GAP, abs=FollowSettings().goal_shift + 0.1)
 
 
-def test_a_goal_is_given_anew_only_when_it_has_moved():
+def test_a_goal_is_sent_again_only_when_it_has_moved():
     guide = follower()
     assert guide.goal(Pose2(3.0, 0.0, 0.0), BEHIND) is not None
     assert guide.goal(Pose2(3.01, 0.0, 0.0), BEHIND) is None
     assert guide.goal(Pose2(3.5, 0.0, 0.0), BEHIND) is not None
 
 
-def test_a_leader_that_turns_round_does_not_call_the_follower_upon_itself():
+def test_a_leader_that_turns_round_is_not_run_into():
     guide = follower()
     for step in range(20):
         guide.goal(Pose2(0.1 * step, 0.0, 0.0), BEHIND)

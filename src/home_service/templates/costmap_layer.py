@@ -10,13 +10,13 @@ from planar.config.parameters import Interval, parameter
 
 @dataclass(frozen=True)
 class Settings(LayerSettings):
-    """Parameters of its own; in the namespace that plugins names."""
+    """Parameters, read from the layer's namespace (its name in ``plugins``)."""
 
-    least: int = parameter(30, "cost of any cell", bounds=Interval(0, 252, "0 to 252"))
+    least: int = parameter(30, "minimum cost of a cell", bounds=Interval(0, 252, "0 to 252"))
 
 
 class CLASS(Layer):
-    """No place is for nothing: short ways count for more."""
+    """Raises all costs to a minimum, so that shorter paths are preferred."""
 
     Settings = Settings
 

@@ -8,13 +8,13 @@ from sim_bridge.faults.kind import FaultKind
 
 
 class CLASS(FaultKind):
-    """Some beams of each scan, drawn anew, meet nothing, as with dust on the window."""
+    """A random share of the beams of each scan has no echo, as with dust on the lens."""
 
     strength = (0.3, 0.0, 1.0)
     unit = "share of the beams"
 
     def scan(self, scan: Scan) -> Optional[Scan]:
-        """See sim_bridge.faults.kind.FaultKind: what the laser tells instead."""
+        """See sim_bridge.faults.kind.FaultKind: the scan that is published instead."""
         ranges = scan.ranges.copy()
         ranges[self._rng.random(len(ranges)) < self._strength] = float("inf")
         return replace(scan, ranges=ranges)

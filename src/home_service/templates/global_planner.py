@@ -10,20 +10,22 @@ from scipy.sparse.csgraph import dijkstra
 from move_base_lite import CostmapWindow, GoalBlocked, NoPath, OutOfMap, PlannerSettings
 from planar.config.parameters import at_least, parameter
 
-# From this cost on the robot touches something.
+# Cost from which on the robot is in collision (INSCRIBED).
 BLOCKED = 253
 STEPS = ((0, 1), (1, 0), (1, 1), (1, -1))
 
 
 @dataclass(frozen=True)
 class Settings(PlannerSettings):
-    """Parameters of its own, beside those that every global planner has; in the namespace CLASS."""
+    """Parameters in addition to those of every global planner, read from the namespace CLASS."""
 
-    caution: float = parameter(3.0, "how much longer a way may be to keep clear of things", "", at_least(0.0))
+    caution: float = parameter(
+        3.0, "weight of the costs: higher values keep farther from obstacles", "", at_least(0.0)
+    )
 
 
 class CLASS:
-    """Dijkstra's shortest way over the cells and their diagonals."""
+    """Dijkstra's algorithm on the cells and their eight neighbours."""
 
     Settings = Settings
     potential = None
@@ -39,7 +41,7 @@ class CLASS:
         goal_xy: Tuple[float, float],
         tolerance: float = 0.0,
     ) -> np.ndarray:
-        """See move_base_lite.GlobalPlanner: (N, 2), or OutOfMap, StartBlocked, GoalBlocked, NoPath."""
+        """See move_base_lite.GlobalPlanner; raises OutOfMap, StartBlocked, GoalBlocked or NoPath."""
         if not (window.contains(*start_xy) and window.contains(*goal_xy)):
             raise OutOfMap(f"{start_xy} or {goal_xy} is outside of the map")
         start, goal = (np.ravel_multi_index(window.cell_of(*xy), costs.shape) for xy in (start_xy, goal_xy))
@@ -50,22 +52,22 @@ class CLASS:
         while before[cells[-1]] >= 0:
             cells.append(before[cells[-1]])
         if cells[-1] != start:
-            raise NoPath(f"nothing connects {start_xy} and {goal_xy}")
+            raise NoPath(f"no path from {start_xy} to {goal_xy}")
         rows, cols = np.unravel_index(cells[::-1], costs.shape)
         centres_xy = np.column_stack((cols, rows)) * window.resolution + 0.5 * window.resolution
         path_xy = centres_xy + (window.origin_x, window.origin_y)
         return np.vstack([start_xy, path_xy[1:-1], goal_xy])
 
     def _graph(self, costs: np.ndarray) -> coo_matrix:
-        """What neighbouring free cells are apart, weighed by what they cost."""
+        """Distances between neighbouring free cells, weighted by their costs."""
         number, free = np.arange(costs.size).reshape(costs.shape), costs < BLOCKED
         weight = 1.0 + self._settings.caution * costs / 255.0
         ends = []
         for rows, cols in STEPS:
             one = np.s_[: costs.shape[0] - rows, max(-cols, 0) : costs.shape[1] - max(cols, 0)]
             other = np.s_[rows:, max(cols, 0) : costs.shape[1] + min(cols, 0)]
-            is_way = free[one] & free[other]
+            is_free = free[one] & free[other]
             length = np.hypot(rows, cols) * 0.5 * (weight[one] + weight[other])
-            ends.append((number[one][is_way], number[other][is_way], length[is_way]))
+            ends.append((number[one][is_free], number[other][is_free], length[is_free]))
         first, second, lengths = map(np.concatenate, zip(*ends))
         return coo_matrix((lengths, (first, second)), shape=(costs.size, costs.size))

@@ -10,20 +10,20 @@ from planar.config.parameters import POSITIVE, parameter
 
 @dataclass(frozen=True)
 class Settings(RecoverySettings):
-    """Parameters of its own; in the namespace that recovery_behaviors names."""
+    """Parameters, read from the behaviour's namespace (its name in ``recovery_behaviors``)."""
 
-    seconds: float = parameter(2.0, "how long to wait", "s", POSITIVE)
+    seconds: float = parameter(2.0, "time to wait", "s", POSITIVE)
 
 
 class CLASS:
-    """Waits: what is in the way may go."""
+    """Waits for a dynamic obstacle to leave."""
 
     Settings = Settings
 
     def __init__(self, settings: Settings):
-        self._left = settings.seconds
+        self._remaining = settings.seconds
 
     def step(self, context: RecoveryContext) -> Optional[Twist2]:
-        """See move_base_lite.RecoveryBehavior: the velocity, None at the end."""
-        self._left -= context.period
-        return Twist2() if self._left > 0.0 else None
+        """See move_base_lite.RecoveryBehavior; returns the velocity, None at the end."""
+        self._remaining -= context.period
+        return Twist2() if self._remaining > 0.0 else None

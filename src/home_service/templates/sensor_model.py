@@ -7,12 +7,12 @@ from amcl_lite.sensor.beams import Beams
 from planar import OCCUPIED, OccupancyGrid
 from planar.geometry.distance_field import distance_field
 
-# Metres: how far from a wall a beam may end, and what is as bad as any. A beam says less than it seems.
-SIGMA, FARTHEST, TRUST = 0.1, 0.5, 0.2
+# Standard deviation and maximum of the distance from a wall [m]; weight of a beam, as beams are correlated.
+SIGMA, FARTHEST, BEAM_WEIGHT = 0.1, 0.5, 0.2
 
 
 class CLASS:
-    """The nearer to a wall beams end, the likelier they are."""
+    """Likelihood field: the closer to an obstacle a beam ends, the likelier it is."""
 
     def __init__(self, grid: OccupancyGrid, settings: LocalizerSettings):
         self._grid = grid
@@ -27,6 +27,6 @@ class CLASS:
         y = poses[:, 1:2] + sin * ends[:, 0] + cos * ends[:, 1]
         cells = self._grid.cells_of(np.column_stack((x.ravel(), y.ravel())))
         inside = self._grid.contains(cells)
-        told = np.full(x.size, self._logarithms.min())
-        told[inside] = self._logarithms[tuple(cells[inside].T)]
-        return TRUST * told.reshape(x.shape).sum(axis=1)
+        log_density = np.full(x.size, self._logarithms.min())
+        log_density[inside] = self._logarithms[tuple(cells[inside].T)]
+        return BEAM_WEIGHT * log_density.reshape(x.shape).sum(axis=1)

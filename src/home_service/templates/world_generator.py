@@ -1,4 +1,4 @@
-"""TITLE: a generator of worlds for the laboratory."""
+"""TITLE: a world generator for the laboratory."""
 
 from dataclasses import dataclass
 
@@ -12,13 +12,13 @@ from sim_bridge.world import World
 
 @dataclass(frozen=True)
 class CLASS:
-    """A walled yard, ``size`` metres wide, with posts; the robot begins in its middle."""
+    """A walled yard, ``size`` metres wide, with posts; the robot starts at its centre."""
 
     size: float = 8.0
     posts: int = 6
 
     def arena(self, seed: int) -> Arena:
-        """See laboratory.worlds.own.Generator: the same for the same seed."""
+        """See laboratory.worlds.own.Generator; one seed always gives the same world."""
         rng, half = np.random.default_rng(seed), 0.5 * self.size
         sides = [
             wall("north", 0.0, half, self.size, 0.1),

@@ -1,4 +1,4 @@
-"""A drive through rooms is followed by the closest points, with odometry that turns too far."""
+"""ICP tracks a drive through rooms with biased odometry."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ START, STEP = Pose2(1.0, 1.75), Pose2(0.08, 0.0, 0.0)
 
 
 def errors_of(seed, matcher):
-    """How far off odometry and the map's pose are at the end of a drive of 60 scans."""
+    """Position errors of odometry and of the mapper after a drive of 60 scans [m]."""
     grid = OccupancyGrid(np.kron(grid_from_picture(ROOM).cells, np.ones((10, 10), np.int8)), 0.05)
     rng = np.random.default_rng(seed)
     mapper, true, odometry = Mapper(MapperSettings(matcher_plugin=matcher)), START, START
@@ -39,7 +39,7 @@ def errors_of(seed, matcher):
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_a_drive_is_followed_to_centimetres_where_odometry_is_off_by_decimetres(seed):
+def test_a_drive_is_tracked_within_centimetres_with_odometry_errors_of_decimetres(seed):
     off, error = errors_of(seed, "plugin_examples.closest_points/ClosestPoints")
     assert off > 0.5
     assert error < 0.08

@@ -1,4 +1,4 @@
-"""Among people, who cut a beam in two short, the robot is found where it is."""
+"""Localization among people who shorten every second beam."""
 
 import numpy as np
 
@@ -50,6 +50,6 @@ def error_of(seed):
     return estimate.distance_to(true)
 
 
-def test_a_robot_among_people_is_found_where_it_is():
+def test_a_robot_among_people_is_localized():
     errors = [error_of(seed) for seed in range(5)]
     assert np.median(errors) < 0.06 and max(errors) < 0.15, errors

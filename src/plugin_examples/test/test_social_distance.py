@@ -1,4 +1,4 @@
-"""Costs go with somebody who walks, farther ahead than behind, and are gone when nobody is there."""
+"""Costs follow a walking person, reach farther ahead than behind, and vanish when nobody walks."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ ANGLES = np.linspace(-np.pi, np.pi, 360, endpoint=False)
 
 
 def scan_of(stamp, walks=True):
-    """A round room with somebody who walks past, a metre and a half to the left of the robot."""
+    """A round room in which a person walks past, 1.5 m to the left of the robot."""
     x, y = (START + SPEED * stamp, 1.5) if walks else (START, 1.5)
     along = x * np.cos(ANGLES) + y * np.sin(ANGLES)
     aside = y * np.cos(ANGLES) - x * np.sin(ANGLES)
@@ -44,21 +44,21 @@ def cost_at(costs, x, y):
     return int(costs[WINDOW.cell_of(x, y)])
 
 
-def test_who_walks_has_more_room_ahead_than_behind():
+def test_a_walking_person_has_more_clearance_ahead_than_behind():
     costs = costs_after(2.5)
     x = START + SPEED * 2.4
     assert cost_at(costs, x, 1.5) > 200
     assert cost_at(costs, x + 1.0, 1.5) > 80 > 25 > cost_at(costs, x - 1.0, 1.5)
-    assert costs.max() < 253, "it is dear to be there, not forbidden"
+    assert costs.max() < 253, "expensive, not lethal"
 
 
-def test_the_costs_go_along_and_nothing_is_left_behind():
+def test_the_costs_follow_the_person_and_leave_no_trace():
     costs = costs_after(3.5)
     assert cost_at(costs, START + 0.2, 1.5) == 0
     assert cost_at(costs, START + SPEED * 3.4, 1.5) > 200
 
 
-def test_who_stands_costs_nothing():
+def test_a_standing_person_costs_nothing():
     assert costs_after(2.5, walks=False).max() == 0
 
 

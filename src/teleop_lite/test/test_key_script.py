@@ -1,19 +1,19 @@
 import pytest
 
-from teleop_lite.key_script import KeyScript, KeyScriptError, Stroke, parse
+from teleop_lite.key_script import KeyScript, KeyScriptError, KeyStroke, parse
 
 
 @pytest.mark.parametrize("text", ["i:2.0 j:1.5", "i:2,j:1.5", " i:2.0\n\nj:1.5\n", "i:2. , j:1.50,"])
 def test_strokes_are_separated_by_blanks_newlines_or_commas(text):
-    assert parse(text) == [Stroke("i", 2.0), Stroke("j", 1.5)]
+    assert parse(text) == [KeyStroke("i", 2.0), KeyStroke("j", 1.5)]
 
 
 def test_a_comma_before_a_colon_is_the_key_for_going_back():
-    assert parse("i:1,,:2,k:.5") == [Stroke("i", 1.0), Stroke(",", 2.0), Stroke("k", 0.5)]
+    assert parse("i:1,,:2,k:.5") == [KeyStroke("i", 1.0), KeyStroke(",", 2.0), KeyStroke("k", 0.5)]
 
 
 def test_a_key_without_a_time_is_a_single_press():
-    assert parse("q q i:1") == [Stroke("q"), Stroke("q"), Stroke("i", 1.0)]
+    assert parse("q q i:1") == [KeyStroke("q"), KeyStroke("q"), KeyStroke("i", 1.0)]
 
 
 @pytest.mark.parametrize(

@@ -1,8 +1,9 @@
-"""Frontier exploration: drives a robot until the map has no reachable unknown left; pure but for node.py."""
+"""Frontier exploration: drives the robot until no reachable frontier is left. ROS is in ``ros/`` only."""
 
 from explorer_lite.config import ExplorerSettings
-from explorer_lite.explorer import Explorer, ExplorerState, FinishTask, GoalFailed, GoalReached, GoTo
+from explorer_lite.explorer import Explorer, ExplorerState, FinishTask, GoalFailed, GoalReached, SendGoal
 from explorer_lite.frontiers import Frontier, find_frontiers
+from planar.deprecation import deprecated_names
 
 __all__ = [
     "Explorer",
@@ -10,8 +11,12 @@ __all__ = [
     "ExplorerState",
     "FinishTask",
     "Frontier",
-    "GoTo",
     "GoalReached",
     "GoalFailed",
+    "SendGoal",
     "find_frontiers",
 ]
+
+__getattr__ = deprecated_names(
+    __name__, {"Finish": "FinishTask", "GoTo": "SendGoal", "GoalRefused": "GoalFailed"}
+)

@@ -1,5 +1,7 @@
-"""Frontiers: where the free meets the unknown (Yamauchi, "A frontier-based approach for autonomous
-exploration", 1997)."""
+"""Frontiers between free and unknown space.
+
+Yamauchi, "A frontier-based approach for autonomous exploration", 1997.
+"""
 
 from dataclasses import dataclass
 from typing import List
@@ -9,6 +11,7 @@ from scipy.ndimage import binary_dilation, find_objects, label
 
 from planar import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 
+# Occupancy [%] up to which a cell is free and from which on it is occupied.
 FREE_AT = 25
 OCCUPIED_AT = 65
 EIGHT_NEIGHBOURS = np.ones((3, 3), dtype=bool)
@@ -16,26 +19,31 @@ EIGHT_NEIGHBOURS = np.ones((3, 3), dtype=bool)
 
 @dataclass(frozen=True, eq=False)
 class Frontier:
-    """Neighbouring free cells that touch the unknown: ``points_xy`` (N, 2), metres, in the map."""
+    """Neighbouring free cells at the border of unknown space.
+
+    Attributes:
+        points_xy: (N, 2) cell centres in the map frame [m].
+        size: Number of cells times the resolution [m].
+    """
 
     points_xy: np.ndarray
     size: float
 
     @property
     def middle_xy(self) -> np.ndarray:
-        """The one of its points (2,) that lies nearest to their mean."""
+        """The point (2,) nearest to the mean of all points."""
         offsets = self.points_xy - self.points_xy.mean(axis=0)
         return self.points_xy[np.argmin((offsets**2).sum(axis=1))]
 
     def distance_to(self, point_xy: np.ndarray) -> float:
-        """From a point (2,) to the nearest of its own, metres."""
+        """Distance from a point (2,) to the nearest point of the frontier [m]."""
         return float(np.sqrt(((self.points_xy - point_xy) ** 2).sum(axis=1).min()))
 
 
 def known_part(grid: OccupancyGrid) -> OccupancyGrid:
-    """The part of a grid that holds all that is known, with a rim of the unknown; free, occupied or unknown.
+    """Crop a map to its known cells plus one unknown cell on each side, and threshold the occupancy.
 
-    A SLAM's grid may reach far beyond: gmapping starts with 200 x 200 m.
+    A SLAM map may be much larger than its known part: gmapping starts with 200 x 200 m.
     """
     rows, cols = (np.flatnonzero((grid.cells != UNKNOWN).any(axis=axis)) for axis in (1, 0))
     if len(rows) == 0:
@@ -51,9 +59,12 @@ def known_part(grid: OccupancyGrid) -> OccupancyGrid:
 
 
 def find_frontiers(grid: OccupancyGrid, min_size: float, max_size: float) -> List[Frontier]:
-    """The frontiers of at least ``min_size`` metres; those of more than ``max_size`` in parts.
+    """Find the frontiers of a map.
 
-    ``grid`` holds free, occupied and unknown cells only (see known_part); beyond it all is unknown.
+    Args:
+        grid: Free, occupied and unknown cells (see known_part); space outside of it is unknown.
+        min_size: Minimum length [m].
+        max_size: Length above which a frontier is split [m].
     """
     beside_unknown = binary_dilation(grid.cells == UNKNOWN, EIGHT_NEIGHBOURS, border_value=1)
     labels, _ = label((grid.cells == FREE) & beside_unknown, EIGHT_NEIGHBOURS)
@@ -68,7 +79,7 @@ def find_frontiers(grid: OccupancyGrid, min_size: float, max_size: float) -> Lis
 
 
 def _split(cells: np.ndarray, max_extent: float) -> List[np.ndarray]:
-    """Halves cells (N, 2) across their longer side until none reaches further than ``max_extent``."""
+    """Halve cells (N, 2) across their longer side until no part is longer than ``max_extent``."""
     extents = np.ptp(cells, axis=0)
     axis = int(np.argmax(extents))
     if extents[axis] < max_extent:

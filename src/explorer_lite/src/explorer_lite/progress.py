@@ -1,16 +1,20 @@
-"""Whether a robot gets on with what it was told to do."""
+"""Progress of the robot towards its goal."""
 
 import math
 
 from planar import Pose2
 
 PROGRESS_DISTANCE = 0.1
-STRANDED_REFUSALS = 8
-"""So many goals refused at the same place say more about the robot than about the goals."""
+# Goals refused at one place after which the robot counts as stranded.
+MAX_REFUSALS_IN_PLACE = 8
 
 
-class ProgressWatch:
-    """Notices when a robot comes no nearer to its goal for ``timeout`` seconds, or never gets away."""
+class GoalProgressChecker:
+    """Detects that the robot makes no progress towards its goal, or that all goals are refused.
+
+    Args:
+        timeout: Time without progress after which the robot is stuck [s].
+    """
 
     def __init__(self, timeout: float):
         self._timeout = timeout
@@ -20,23 +24,23 @@ class ProgressWatch:
         self._refused_here = 0
 
     def restart(self, now: float) -> None:
-        """There is a new goal."""
+        """Start with a new goal."""
         self._nearest, self._progress_at = math.inf, now
 
-    def goal_moved(self) -> None:
-        """The goal is elsewhere now: that the robot is nearer or farther is not its doing."""
+    def on_goal_moved(self) -> None:
+        """Take the next distance as the reference: the goal has moved, not the robot."""
         self._nearest = math.inf
 
     def is_stuck(self, now: float, distance: float) -> bool:
-        """Whether the robot, now at this distance from its goal, has come no nearer for too long."""
+        """Whether the robot, at ``distance`` from its goal [m], has come no nearer within the timeout."""
         if distance < self._nearest - PROGRESS_DISTANCE:
             if math.isfinite(self._nearest):
                 self._progress_at = now
             self._nearest = distance
         return now - self._progress_at > self._timeout
 
-    def note_refusal(self, robot: Pose2) -> None:
-        """A goal was refused while the robot was there."""
+    def on_goal_refused(self, robot: Pose2) -> None:
+        """Count a refused goal at the robot's pose."""
         if self._refused_at.distance_to(robot) > PROGRESS_DISTANCE:
             self._refused_at, self._refused_here = robot, 0
         self._refused_here += 1
@@ -44,4 +48,4 @@ class ProgressWatch:
     @property
     def is_stranded(self) -> bool:
         """Whether too many goals were refused at the same place."""
-        return self._refused_here >= STRANDED_REFUSALS
+        return self._refused_here >= MAX_REFUSALS_IN_PLACE

@@ -1,4 +1,4 @@
-"""Frontiers as targets: from where to look at each, what it costs to go there, and what was tried in vain."""
+"""Frontiers as targets: viewpoint and cost of each, and the targets that failed."""
 
 import math
 from dataclasses import dataclass
@@ -10,20 +10,24 @@ from explorer_lite.config import ExplorerSettings
 from explorer_lite.frontiers import Frontier, find_frontiers
 from explorer_lite.progress import PROGRESS_DISTANCE
 from explorer_lite.travel import travel_distances
-from explorer_lite.viewpoints import view_from_here, viewpoint_of
+from explorer_lite.viewpoints import viewpoint_in_place, viewpoint_of
 from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, wrap
 from planar.geometry.distance_field import distance_field
 
-ALL_AROUND = math.radians(300.0)
-"""A sensor that sees this much at once sees beside the robot, too, when it faces a frontier."""
+# Field of view above which a sensor covers the surroundings of the robot at any heading.
+PANORAMIC_VIEW = math.radians(300.0)
 
 
 @dataclass(frozen=True, eq=False)
-class Reach:
-    """How far it is for ``robot`` to the cells of ``grid``.
+class ReachableSpace:
+    """Path lengths from the robot to the cells of the map.
 
-    ``distances``: (rows, cols), metres of way, inf where there is none. ``goals``: the same for where the
-    robot may be sent, well within the known, or else beside the unknown.
+    Attributes:
+        grid: The known part of the map.
+        robot: Robot pose in the map frame.
+        distances: (rows, cols) path length [m], inf for unreachable cells.
+        goals: Two arrays like ``distances`` of the cells that may be goals: those with goal_clearance to
+            obstacles and unknown space, and those with goal_clearance to obstacles only.
     """
 
     grid: OccupancyGrid
@@ -32,38 +36,46 @@ class Reach:
     goals: List[np.ndarray]
 
     def distance_to(self, pose: Pose2) -> float:
-        """Metres of way, inf where there is none."""
+        """Path length to a pose [m], inf if it is unreachable."""
         cell = self.grid.cells_of([[pose.x, pose.y]])
         return float(self.distances[tuple(cell[0])]) if self.grid.contains(cell)[0] else math.inf
 
 
-def reach_of(robot: Pose2, grid: OccupancyGrid, settings: ExplorerSettings) -> Reach:
-    """Where the robot gets to in this map."""
-    room = distance_field(grid.cells == OCCUPIED, grid.resolution)
-    distances = travel_distances(grid, room, robot, settings.clearance)
-    known_room = distance_field(grid.cells != FREE, grid.resolution)
-    goals = [np.where(space > settings.goal_clearance, distances, np.inf) for space in (known_room, room)]
-    return Reach(grid, robot, distances, goals)
+def reachable_space(robot: Pose2, grid: OccupancyGrid, settings: ExplorerSettings) -> ReachableSpace:
+    """Compute what the robot can reach in a map."""
+    obstacle_distance = distance_field(grid.cells == OCCUPIED, grid.resolution)
+    distances = travel_distances(grid, obstacle_distance, robot, settings.clearance)
+    unknown_distance = distance_field(grid.cells != FREE, grid.resolution)
+    goals = [
+        np.where(field > settings.goal_clearance, distances, np.inf)
+        for field in (unknown_distance, obstacle_distance)
+    ]
+    return ReachableSpace(grid, robot, distances, goals)
 
 
 @dataclass(frozen=True, eq=False)
 class Target:
-    """A frontier and from where it is to be looked at; ``cost`` in metres of way.
+    """A frontier and the viewpoint to drive to.
 
-    ``in_passing``: the robot was there when it took notice of the frontier.
+    Attributes:
+        frontier: The frontier.
+        viewpoint: Goal pose in the map frame, facing the frontier.
+        cost: In metres of path.
+        in_place: The viewpoint is the robot's position when the target was found: it only has to turn.
     """
 
     frontier: Frontier
     viewpoint: Pose2
     cost: float
-    in_passing: bool
+    in_place: bool
 
 
 class TargetFinder:
-    """Finds the targets of a map, but for those that were refused too often.
+    """Finds the targets in a map, without those that failed too often.
 
-    ``frontiers`` are those of the last map still worth going to, ``unreachable`` those that are not or have
-    been given up.
+    Attributes:
+        frontiers: Frontiers of the last map with a viewpoint.
+        unreachable: Frontiers of the last map without one.
     """
 
     def __init__(self, settings: ExplorerSettings):
@@ -73,51 +85,53 @@ class TargetFinder:
         self.unreachable: List[Frontier] = []
 
     def refuse(self, target: Target) -> None:
-        """The frontier was tried in vain from the viewpoint, or, in passing, only by a turn on the spot."""
+        """Mark a target as failed; one that only took a turn in place does not count as an attempt."""
         self._refused.append(target)
 
-    def find(self, reach: Reach) -> List[Target]:
-        """The frontiers that can be looked at from one of the goals, the earlier ones first."""
+    def find(self, space: ReachableSpace) -> List[Target]:
+        """The frontiers that have a viewpoint, in the order of find_frontiers."""
         settings = self._settings
         self.frontiers, self.unreachable = [], []
         targets = []
-        for frontier in find_frontiers(reach.grid, settings.min_frontier_size, settings.max_frontier_size):
-            viewpoint = self._viewpoint(frontier, reach)
+        for frontier in find_frontiers(space.grid, settings.min_frontier_size, settings.max_frontier_size):
+            viewpoint = self._viewpoint(frontier, space)
             if viewpoint is None:
                 self.unreachable.append(frontier)
                 continue
             self.frontiers.append(frontier)
-            cost = settings.potential_scale * reach.distance_to(viewpoint)
-            cost += settings.orientation_scale * _turn(reach.robot, viewpoint)
+            cost = settings.potential_scale * space.distance_to(viewpoint)
+            cost += settings.orientation_scale * _turn(space.robot, viewpoint)
             cost -= settings.gain_scale * frontier.size
-            in_passing = reach.robot.distance_to(viewpoint) < PROGRESS_DISTANCE
-            targets.append(Target(frontier, viewpoint, cost, in_passing))
+            in_place = space.robot.distance_to(viewpoint) < PROGRESS_DISTANCE
+            targets.append(Target(frontier, viewpoint, cost, in_place))
         return targets
 
-    def _viewpoint(self, frontier: Frontier, reach: Reach) -> Optional[Pose2]:
+    def _viewpoint(self, frontier: Frontier, space: ReachableSpace) -> Optional[Pose2]:
         settings, middle_xy = self._settings, frontier.middle_xy
-        gaps = [float(np.hypot(*(refused.frontier.middle_xy - middle_xy))) for refused in self._refused]
+        offsets = [float(np.hypot(*(refused.frontier.middle_xy - middle_xy))) for refused in self._refused]
         attempts = [
-            gap <= settings.blacklist_radius and not refused.in_passing
-            for refused, gap in zip(self._refused, gaps)
+            offset <= settings.blacklist_radius and not refused.in_place
+            for refused, offset in zip(self._refused, offsets)
         ]
         if sum(attempts) >= settings.attempts:
             return None
-        shunned = [refused.viewpoint for refused, gap in zip(self._refused, gaps) if gap <= settings.reach]
-        limits = settings.reach, shunned, settings.blacklist_radius
-        if 0.0 < settings.field_of_view < ALL_AROUND:
-            viewpoint = view_from_here(frontier, reach.grid, reach.robot, *limits)
+        excluded = [
+            refused.viewpoint for refused, offset in zip(self._refused, offsets) if offset <= settings.reach
+        ]
+        limits = settings.reach, excluded, settings.blacklist_radius
+        if 0.0 < settings.field_of_view < PANORAMIC_VIEW:
+            viewpoint = viewpoint_in_place(frontier, space.grid, space.robot, *limits)
             if viewpoint is not None:
                 return viewpoint
-        for goal_distances in reach.goals:
-            viewpoint = viewpoint_of(frontier, reach.grid, goal_distances, reach.robot, *limits)
+        for goal_distances in space.goals:
+            viewpoint = viewpoint_of(frontier, space.grid, goal_distances, space.robot, *limits)
             if viewpoint is not None:
                 return viewpoint
         return None
 
 
 def _turn(robot: Pose2, goal: Pose2) -> float:
-    """By how much the robot has to turn to drive straight to a goal, or to face it on the spot, radians."""
+    """Angle to turn before driving straight to a goal, or to its heading if the robot is there [rad]."""
     if robot.distance_to(goal) < PROGRESS_DISTANCE:
         return abs(wrap(goal.yaw - robot.yaw))
     return abs(wrap(math.atan2(goal.y - robot.y, goal.x - robot.x) - robot.yaw))

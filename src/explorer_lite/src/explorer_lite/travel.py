@@ -1,4 +1,4 @@
-"""How far it is to everywhere that a robot can get."""
+"""Path lengths from the robot to all cells that it can reach."""
 
 import heapq
 import math
@@ -9,29 +9,42 @@ import numpy as np
 
 from planar import FREE, OCCUPIED, OccupancyGrid, Pose2
 
-SET_OUT_RADIUS = 1.0
-SET_OUT_SHARE = 0.6
+# Radius around the robot in which paths may start with less clearance [m], and the share of it needed.
+ESCAPE_RADIUS = 1.0
+ESCAPE_CLEARANCE_SHARE = 0.6
 
 
-def travel_distances(grid: OccupancyGrid, room: np.ndarray, robot: Pose2, clearance: float) -> np.ndarray:
-    """Length of the way, metres, from the robot to each cell: float32 (rows, cols), inf where there is none.
+def travel_distances(
+    grid: OccupancyGrid, obstacle_distance: np.ndarray, robot: Pose2, clearance: float
+) -> np.ndarray:
+    """Compute the path length from the robot to each cell.
 
-    ``room``: (rows, cols), metres to the next obstacle. The way leads through known free cells with more than
-    ``clearance`` of it. The first metre is judged more kindly: there the robot, which got there, may leave
-    through the unknown (its laser may not see the floor around it) and with less room.
+    Paths lead through known free cells with more than ``clearance``. Within ESCAPE_RADIUS of the robot,
+    unknown cells and less clearance are accepted: the laser may not see the floor around the robot.
+
+    Args:
+        grid: Free, occupied and unknown cells.
+        obstacle_distance: (rows, cols) distance to the nearest obstacle [m].
+        robot: Robot pose in the grid's frame.
+        clearance: Least distance to obstacles along a path [m].
+
+    Returns:
+        Distances (rows, cols) [m], float32, inf for unreachable cells.
     """
-    passable = (grid.cells == FREE) & (room > clearance)
+    passable = (grid.cells == FREE) & (obstacle_distance > clearance)
     near = _cells_near(grid, robot)
-    passable[near] |= (grid.cells[near] != OCCUPIED) & (room[near] > SET_OUT_SHARE * clearance)
+    passable[near] |= (grid.cells[near] != OCCUPIED) & (
+        obstacle_distance[near] > ESCAPE_CLEARANCE_SHARE * clearance
+    )
     start = _nearest_passable(grid, passable, robot)
     if start is None:
         return np.full(grid.cells.shape, np.inf, dtype=np.float32)
-    return _spread(passable, *start) * np.float32(grid.resolution)
+    return _dijkstra(passable, *start) * np.float32(grid.resolution)
 
 
 def _cells_near(grid, robot) -> Tuple[slice, slice]:
     ((row, col),) = grid.cells_of([[robot.x, robot.y]])
-    reach = math.ceil(SET_OUT_RADIUS / grid.resolution)
+    reach = math.ceil(ESCAPE_RADIUS / grid.resolution)
     return slice(max(row - reach, 0), max(row + reach + 1, 0)), slice(
         max(col - reach, 0), max(col + reach + 1, 0)
     )
@@ -43,11 +56,11 @@ def _nearest_passable(grid, passable, robot) -> Optional[Tuple[int, int]]:
         return None
     distances = np.hypot(*(grid.points_of(cells) - [robot.x, robot.y]).T)
     best = int(np.argmin(distances))
-    return (int(cells[best, 0]), int(cells[best, 1])) if distances[best] <= SET_OUT_RADIUS else None
+    return (int(cells[best, 0]), int(cells[best, 1])) if distances[best] <= ESCAPE_RADIUS else None
 
 
 @numba.njit(cache=True)
-def _spread(passable, start_row, start_col):
+def _dijkstra(passable, start_row, start_col):
     """Dijkstra's algorithm on cells with eight neighbours, not cutting corners; distances in cells."""
     rows, cols = passable.shape
     distances = np.full((rows, cols), np.inf, dtype=np.float32)

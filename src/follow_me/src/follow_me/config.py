@@ -1,4 +1,4 @@
-"""Settings of following."""
+"""Settings of follow_me."""
 
 from dataclasses import dataclass
 
@@ -8,15 +8,17 @@ from planar.config.parameters import Interval, check_parameters, parameter
 
 @dataclass(frozen=True)
 class FollowSettings:
-    """Metres, radians and seconds."""
+    """Settings of the follower."""
 
-    gap: float = parameter(0.6, "how far behind the leader to stay, along its way", "m", Interval(0.1))
+    gap: float = parameter(0.6, "distance to keep behind the leader, along its path", "m", Interval(0.1))
     slack: float = parameter(
-        0.1, "how much farther a leader may go before one sets off after it", "m", Interval(0.0)
+        0.1, "additional distance at which a standing follower starts to drive", "m", Interval(0.0)
     )
-    goal_shift: float = parameter(0.1, "a goal that has moved by this is sent anew", "m", Interval(0.01))
-    goal_turn: float = parameter(0.5, "a goal that has turned by this is sent anew", "rad", Interval(0.05))
-    goal_period: float = parameter(0.2, "how often to look where the leader is", "s", Interval(0.05))
+    goal_shift: float = parameter(
+        0.1, "displacement of the goal at which it is sent again", "m", Interval(0.01)
+    )
+    goal_turn: float = parameter(0.5, "rotation of the goal at which it is sent again", "rad", Interval(0.05))
+    goal_period: float = parameter(0.2, "period of goal updates", "s", Interval(0.05))
 
     def __post_init__(self):
         check_parameters(self)
@@ -24,11 +26,11 @@ class FollowSettings:
 
 @dataclass(frozen=True)
 class NodeSettings(FollowSettings):
-    """What the node needs besides."""
+    """Settings of the node: those of the follower, and frames."""
 
     map_frame: str = parameter("map", "frame of the goals")
-    base_frame: str = parameter("base_footprint", "frame of the robot that follows")
-    leader_frame: str = parameter("leader/base_footprint", "frame of the robot it follows")
+    base_frame: str = parameter("base_footprint", "frame of the follower")
+    leader_frame: str = parameter("leader/base_footprint", "frame of the leader")
 
 
 CONFIG_FILES = {

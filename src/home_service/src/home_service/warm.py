@@ -1,7 +1,7 @@
 """Compiles the kernels of every node ahead of time, so that none stalls when it is needed first."""
 
-import explorer_lite.warming
 import slam_lite.warming
+from explorer_lite.explorer import warm_up as warm_up_explorer
 from home_service.commands.rehearse import Rehearse
 from home_service.nursery import load_kernels
 from home_service.rehearsal import NAVIGATION_CONFIG, Conditions
@@ -13,7 +13,7 @@ def main() -> int:
     """Does what each node does when it starts, then plays the mission."""
     load_kernels()
     warm_up_local_planners()
-    explorer_lite.warming.warm_up()
+    warm_up_explorer()
     slam_lite.warming.warm_up()
     return Rehearse().run()
 

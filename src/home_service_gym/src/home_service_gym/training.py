@@ -8,7 +8,7 @@ import numpy as np
 
 from home_service_gym.environments import PointGoal
 from planar import Scan
-from plugin_examples.learned import LOOKAHEAD, SECTORS, SIGHT, Policy, Seen
+from plugin_examples.learned import LOOKAHEAD, SECTORS, VIEW_RANGE, Policy, PolicyObservation
 
 # Seeds of the homes that are trained in, control periods of an episode, spread and step of the weights.
 HOMES = tuple(range(12))
@@ -22,7 +22,7 @@ def clear_in_scan(scan: Scan) -> np.ndarray:
     """How far it is in each sector to what the scan has met, (SECTORS,), m."""
     points = scan.hit_points_in_base()
     turns = np.arctan2(points[:, 1], points[:, 0]) / (2.0 * math.pi) + 0.5
-    clear = np.full(SECTORS, SIGHT)
+    clear = np.full(SECTORS, VIEW_RANGE)
     np.minimum.at(clear, (turns * SECTORS).astype(int) % SECTORS, np.hypot(points[:, 0], points[:, 1]))
     return clear
 
@@ -34,7 +34,7 @@ def play(env: PointGoal, policy: Policy, seed: int) -> Tuple[float, str]:
     for _ in range(PERIODS):
         x, y = observation["waypoint"].tolist()
         v, omega = (observation["velocity"] / (0.6, 1.8)).tolist()
-        shares = policy.act(Seen(clear_in_scan(env.moment.scan), x, y, v, omega)) * LIMITS
+        shares = policy.act(PolicyObservation(clear_in_scan(env.moment.scan), x, y, v, omega)) * LIMITS
         observation, reward, is_over, _, info = env.step(shares.astype(np.float32))
         total += reward
         if is_over:
@@ -59,12 +59,12 @@ def evolve(
     Each generation tries ``pairs`` of opposite changes on the same ``episodes``.
     """
     rng = np.random.default_rng(seed)
-    weights = np.zeros(Policy.COUNT)
-    weights[: -Policy.LAST] = rng.normal(0.0, 0.3, Policy.COUNT - Policy.LAST)
+    weights = np.zeros(Policy.WEIGHT_COUNT)
+    weights[: -Policy.LAST_LAYER_SIZE] = rng.normal(0.0, 0.3, Policy.WEIGHT_COUNT - Policy.LAST_LAYER_SIZE)
     with get_context("spawn").Pool(workers) as pool:
         for generation in range(generations):
             seeds = tuple(rng.integers(2**31, size=episodes).tolist())
-            changes = rng.normal(0.0, 1.0, (pairs, Policy.COUNT))
+            changes = rng.normal(0.0, 1.0, (pairs, Policy.WEIGHT_COUNT))
             tried = np.concatenate((weights + SPREAD * changes, weights - SPREAD * changes))
             played = pool.map(_play_all, [(one, seeds) for one in tried], chunksize=1)
             returns = np.array([total for total, _ in played])

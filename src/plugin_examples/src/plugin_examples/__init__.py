@@ -1,1 +1,1 @@
-"""Plugins to begin with; ``base_local_planner: plugin_examples.pure_pursuit/PurePursuit`` chooses one."""
+"""Example plugins, selected as ``base_local_planner: plugin_examples.pure_pursuit/PurePursuit``."""

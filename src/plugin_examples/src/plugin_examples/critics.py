@@ -1,7 +1,7 @@
-"""Critics: each scores all that can be driven, and the best of all together is.
+"""A dynamic window planner built from critics (Fox, Burgard, Thrun, 1997), structured as dwb_local_planner.
 
-The dynamic window (Fox, Burgard, Thrun, 1997), cut as dwb_local_planner is. To add an opinion: a function
-like those below in ``CRITICS``, and its weight, a parameter of its name.
+Each critic scores all sampled arcs; the arc with the lowest weighted sum is driven. To add one: a function in
+``CRITICS``, and its weight as a parameter of the same name.
 """
 
 from dataclasses import dataclass
@@ -15,40 +15,47 @@ from move_base_lite.costmap import INSCRIBED
 from planar import Pose2, Twist2
 from planar.config.parameters import POSITIVE, at_least, parameter
 
-# Samples of both velocities, and poses of an arc.
+# Samples of speed and turn rate, and poses of an arc.
 SPEEDS, TURNS, STEPS = 5, 15, 8
-# Slower, m/s, the robot does not get on.
-SLOWEST = 0.05
-# Metres ahead of the robot to what is to lie on the plan, and along the plan to what it is to come near to.
-NOSE, LOOKAHEAD = 0.3, 0.8
+# Minimum sampled speed [m/s].
+MIN_SPEED = 0.05
+# Distance of the forward point that path_align scores, and lookahead along the plan of goal_distance [m].
+FORWARD_POINT_DISTANCE, LOOKAHEAD = 0.3, 0.8
 
 
 @dataclass(frozen=True)
 class CriticsSettings(ControllerSettings):
-    sim_time: float = parameter(1.2, "how long arcs are looked ahead", "s", POSITIVE, dynamic=5.0)
-    obstacles: float = parameter(0.4, "weight of an arc's highest cost", "", at_least(0.0), dynamic=5.0)
+    sim_time: float = parameter(1.2, "time that each arc is simulated", "s", POSITIVE, dynamic=5.0)
+    obstacles: float = parameter(0.4, "weight of the highest cost on the arc", "", at_least(0.0), dynamic=5.0)
     path_distance: float = parameter(
-        1.0, "weight of its end's way to the plan", "", at_least(0.0), dynamic=5.0
+        1.0, "weight of the end's distance to the plan", "", at_least(0.0), dynamic=5.0
     )
-    path_align: float = parameter(1.0, "weight of its nose's way to the plan", "", at_least(0.0), dynamic=5.0)
+    path_align: float = parameter(
+        1.0, "weight of the forward point's distance to the plan", "", at_least(0.0), dynamic=5.0
+    )
     goal_distance: float = parameter(
-        1.0, "weight of its end's way to what is ahead", "", at_least(0.0), dynamic=5.0
+        1.0, "weight of the end's distance to a lookahead point", "", at_least(0.0), dynamic=5.0
     )
 
 
 @dataclass(frozen=True, eq=False)
-class Arcs:
-    """What can be driven: ``commands`` (N, 2), m/s and rad/s, and where they lead, ``poses`` (N, T, 3)."""
+class SampledArcs:
+    """Sampled arcs.
+
+    Attributes:
+        commands: (N, 2) of v, omega [m/s, rad/s].
+        poses: (N, T, 3) of x, y, yaw in the local frame.
+    """
 
     commands: np.ndarray
     poses: np.ndarray
 
 
-Critic = Callable[[Arcs, ControlContext, Plan], np.ndarray]
+Critic = Callable[[SampledArcs, ControlContext, Plan], np.ndarray]
 
 
-def obstacles(arcs: Arcs, context: ControlContext, _plan: Plan) -> np.ndarray:
-    """The highest cost under each arc, as a share; infinite where the robot would touch something."""
+def obstacles(arcs: SampledArcs, context: ControlContext, _plan: Plan) -> np.ndarray:
+    """Highest cost on each arc, 0 to 1; inf in collision."""
     window = context.costmap.window
     cells = np.floor((arcs.poses[..., :2] - (window.origin_x, window.origin_y)) / window.resolution).astype(
         int
@@ -58,21 +65,21 @@ def obstacles(arcs: Arcs, context: ControlContext, _plan: Plan) -> np.ndarray:
     return np.where(highest < INSCRIBED, highest / INSCRIBED, np.inf)
 
 
-def path_distance(arcs: Arcs, _context: ControlContext, plan: Plan) -> np.ndarray:
-    """Metres from each end to the plan."""
-    return _way(arcs.poses[:, -1, :2], plan.path_xy).min(axis=1)
+def path_distance(arcs: SampledArcs, _context: ControlContext, plan: Plan) -> np.ndarray:
+    """Distance from each end to the plan [m]."""
+    return _distances(arcs.poses[:, -1, :2], plan.path_xy).min(axis=1)
 
 
-def path_align(arcs: Arcs, _context: ControlContext, plan: Plan) -> np.ndarray:
-    """Metres from a nose ahead of each end to the plan, so that the robot looks along it."""
-    return _way(_nose(arcs), plan.path_xy).min(axis=1)
+def path_align(arcs: SampledArcs, _context: ControlContext, plan: Plan) -> np.ndarray:
+    """Distance from each end's forward point to the plan [m]: aligns the robot with the plan."""
+    return _distances(_forward_points(arcs), plan.path_xy).min(axis=1)
 
 
-def goal_distance(arcs: Arcs, _context: ControlContext, plan: Plan) -> np.ndarray:
-    """Metres from each end to a point of the plan a little ahead."""
+def goal_distance(arcs: SampledArcs, _context: ControlContext, plan: Plan) -> np.ndarray:
+    """Distance from each end to a lookahead point of the plan [m]."""
     steps = np.hypot(*np.diff(plan.path_xy, axis=0, prepend=plan.path_xy[:1]).T)
     ahead = plan.path_xy[min(int(np.searchsorted(np.cumsum(steps), LOOKAHEAD)), len(steps) - 1)]
-    return _way(arcs.poses[:, -1, :2], ahead[None, :])[:, 0]
+    return _distances(arcs.poses[:, -1, :2], ahead[None, :])[:, 0]
 
 
 CRITICS: Tuple[Critic, ...] = (obstacles, path_distance, path_align, goal_distance)
@@ -97,13 +104,13 @@ class Critics:
                 return Trajectory(Twist2(*arcs.commands[best].tolist()), poses, float(scores[best]))
         raise ControlError("every arc leads into an obstacle")
 
-    def _arcs(self, context: ControlContext, limits: Twist2) -> Arcs:
-        """Of the velocities within reach, those that lead on; as circles, not as chords of them."""
+    def _arcs(self, context: ControlContext, limits: Twist2) -> SampledArcs:
+        """Arcs of the reachable velocities that move the robot forward."""
         reach = [
             self._settings.reachable(context.twist, Twist2(sign * 100.0, sign * 100.0), limits, self._period)
             for sign in (-1.0, 1.0)
         ]
-        slowest = min(max(reach[0].v, SLOWEST), reach[1].v)
+        slowest = min(max(reach[0].v, MIN_SPEED), reach[1].v)
         speeds = np.linspace(slowest, reach[1].v, SPEEDS)
         turns = np.linspace(reach[0].omega, reach[1].omega, TURNS)
         commands = np.array(list(product(speeds, turns)))
@@ -112,14 +119,14 @@ class Critics:
         driven = np.outer(commands[:, 0], np.linspace(0.0, self._settings.sim_time, STEPS + 1))
         chord, heading = driven * np.sinc(turned / (2.0 * np.pi)), base.yaw + 0.5 * turned
         x, y = base.x + chord * np.cos(heading), base.y + chord * np.sin(heading)
-        return Arcs(commands, np.stack([x, y, base.yaw + turned], axis=-1))
+        return SampledArcs(commands, np.stack([x, y, base.yaw + turned], axis=-1))
 
 
-def _nose(arcs: Arcs) -> np.ndarray:
+def _forward_points(arcs: SampledArcs) -> np.ndarray:
     ends = arcs.poses[:, -1]
-    return ends[:, :2] + NOSE * np.column_stack([np.cos(ends[:, 2]), np.sin(ends[:, 2])])
+    return ends[:, :2] + FORWARD_POINT_DISTANCE * np.column_stack([np.cos(ends[:, 2]), np.sin(ends[:, 2])])
 
 
-def _way(points_xy: np.ndarray, path_xy: np.ndarray) -> np.ndarray:
-    """Metres (N, M) from each of the points to each of the path's."""
+def _distances(points_xy: np.ndarray, path_xy: np.ndarray) -> np.ndarray:
+    """Distances (N, M) from each point to each point of the path [m]."""
     return np.hypot(*(points_xy[:, None, :] - path_xy[None, :, :]).transpose(2, 0, 1))

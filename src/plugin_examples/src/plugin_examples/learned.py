@@ -1,8 +1,8 @@
-"""Pure pursuit with what evolution has added: a small network that was trained in Gymnasium's PointGoal-v0.
+"""Pure pursuit corrected by a small neural network (residual policy learning, Silver et al., 2018).
 
-It steers for a point of the plan; the network sees how far it is to what is solid all around, where that
-point lies and how fast the robot goes, and changes speed and turn ("residual policy learning", Silver et al.,
-2018). ``scripts/train.sh`` trains the weights, learned.npz; at run time there is numpy and nothing else.
+Input: the clearance in each sector, the lookahead point and the velocity; output: changes of speed and turn
+rate. ``scripts/train.sh`` trains the weights, learned.npz, in the environment PointGoal-v0 with an evolution
+strategy; at run time only numpy is needed.
 """
 
 import math
@@ -18,22 +18,27 @@ from planar.geometry.ray_casting import cast_rays
 from plugin_examples.pure_pursuit import arc
 
 WEIGHTS = Path(__file__).with_name("learned.npz")
-# Sectors around the robot and beams in each, how far is looked, and along the plan to what is steered for, m.
-SECTORS, BEAMS, SIGHT, LOOKAHEAD = 24, 5, 1.5, 0.6
-# Shares of the highest turn rate for a radian that the robot looks away; of speeds that are tried in turn.
-TURN_GAIN, SLOWER = 1.2, (1.0, 0.5, 0.2)
+# Sectors around the robot, rays per sector, range of the clearance and lookahead along the plan [m].
+SECTORS, BEAMS, VIEW_RANGE, LOOKAHEAD = 24, 5, 1.5, 0.6
+# Share of the maximum turn rate per radian of bearing, and the speeds that are tried in turn.
+TURN_GAIN, SPEED_SHARES = 1.2, (1.0, 0.5, 0.2)
 HIDDEN, INPUTS, OUTPUTS = 16, SECTORS + 5, 2
-FARTHEST, STEPS = 0.3, 6
+MAX_ARC_LENGTH, STEPS = 0.3, 6
 ANGLES = (np.arange(SECTORS * BEAMS) + 0.5) * (2.0 * math.pi / (SECTORS * BEAMS)) - math.pi
 
 
-class Seen(NamedTuple):
-    """``clear``: (SECTORS,), m, from the one behind on the right round to the left.
+class PolicyObservation(NamedTuple):
+    """Input of the policy.
 
-    ``x``, ``y``: of the point to steer for, seen from the base. ``v``, ``omega``: as shares of the highest.
+    Attributes:
+        clearances: (SECTORS,) [m], counter-clockwise from behind the robot.
+        x: Lookahead point in the base frame [m]; so is ``y``.
+        y: See ``x``.
+        v: Speed as a share of the maximum.
+        omega: Turn rate as a share of the maximum.
     """
 
-    clear: np.ndarray
+    clearances: np.ndarray
     x: float
     y: float
     v: float
@@ -41,21 +46,25 @@ class Seen(NamedTuple):
 
 
 class Policy:
-    """``weights``: (COUNT,), all of the network's in a row; with the LAST zero it is pure pursuit."""
+    """A network with one hidden layer; with a zero output layer it is pure pursuit.
 
-    LAST = OUTPUTS * (HIDDEN + 1)
-    COUNT = HIDDEN * (INPUTS + 1) + LAST
+    Args:
+        weights: (WEIGHT_COUNT,), hidden layer first.
+    """
+
+    LAST_LAYER_SIZE = OUTPUTS * (HIDDEN + 1)
+    WEIGHT_COUNT = HIDDEN * (INPUTS + 1) + LAST_LAYER_SIZE
 
     def __init__(self, weights: np.ndarray):
         first, last = np.split(weights, [HIDDEN * (INPUTS + 1)])
         self._first, self._last = first.reshape(HIDDEN, -1), last.reshape(OUTPUTS, -1)
 
-    def act(self, seen: Seen) -> np.ndarray:
-        """Shares of the highest speed, from 0, and turn rate, from -1, to 1: (2,)."""
-        bearing = math.atan2(seen.y, seen.x)
-        reach = min(math.hypot(seen.x, seen.y), 1.0)
-        told = (math.cos(bearing), math.sin(bearing), reach, seen.v, seen.omega)
-        inputs = np.concatenate((1.0 - np.minimum(seen.clear, SIGHT) / SIGHT, told))
+    def act(self, observation: PolicyObservation) -> np.ndarray:
+        """Speed in [0, 1] and turn rate in [-1, 1] as shares of the maximum: (2,)."""
+        bearing = math.atan2(observation.y, observation.x)
+        reach = min(math.hypot(observation.x, observation.y), 1.0)
+        rest = (math.cos(bearing), math.sin(bearing), reach, observation.v, observation.omega)
+        inputs = np.concatenate((1.0 - np.minimum(observation.clearances, VIEW_RANGE) / VIEW_RANGE, rest))
         hidden = np.tanh(self._first[:, :-1] @ inputs + self._first[:, -1])
         faster, left = self._last[:, :-1] @ hidden + self._last[:, -1]
         ahead = max(math.cos(bearing), 0.0) ** 2
@@ -72,20 +81,22 @@ class Learned:
         apart = np.hypot(plan.path_xy[:, 0] - base.x, plan.path_xy[:, 1] - base.y)
         ahead = plan.path_xy[int(np.argmax(apart >= LOOKAHEAD)) or -1]
         x, y = base.inverse().transform_points(ahead[None, :])[0].tolist()
-        seen = Seen(clear_around(context), x, y, twist.v / limits.v, twist.omega / limits.omega)
-        v, omega = (self._policy.act(seen) * (limits.v, limits.omega)).tolist()
-        for share in SLOWER:
+        observation = PolicyObservation(
+            sector_clearances(context), x, y, twist.v / limits.v, twist.omega / limits.omega
+        )
+        v, omega = (self._policy.act(observation) * (limits.v, limits.omega)).tolist()
+        for share in SPEED_SHARES:
             command = self._settings.reachable(twist, Twist2(share * v, omega), limits, self._period)
-            poses = arc(base, command, min(FARTHEST, math.hypot(x, y)) / max(command.v, 0.1), STEPS)
+            poses = arc(base, command, min(MAX_ARC_LENGTH, math.hypot(x, y)) / max(command.v, 0.1), STEPS)
             if not any(context.costmap.collides(Pose2(*pose)) for pose in poses[1:].tolist()):
                 return Trajectory(command, poses, math.hypot(x, y))
-        raise ControlError("the way to the plan leads into an obstacle")
+        raise ControlError("the arc to the plan leads into an obstacle")
 
 
-def clear_around(context: ControlContext) -> np.ndarray:
-    """How far it is in each sector to what the costmap has as solid, (SECTORS,), m."""
+def sector_clearances(context: ControlContext) -> np.ndarray:
+    """Distance to the nearest lethal cell in each sector (SECTORS,) [m]."""
     costmap = context.costmap
     cells = np.where(costmap.costs == LETHAL, OCCUPIED, 0).astype(np.int8)
     window = costmap.window
     grid = OccupancyGrid(cells, window.resolution, Pose2(window.origin_x, window.origin_y))
-    return cast_rays(grid, context.base_in_local, ANGLES, SIGHT).reshape(SECTORS, BEAMS).min(axis=1)
+    return cast_rays(grid, context.base_in_local, ANGLES, VIEW_RANGE).reshape(SECTORS, BEAMS).min(axis=1)

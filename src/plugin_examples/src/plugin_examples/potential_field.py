@@ -1,4 +1,4 @@
-"""An artificial potential field (Khatib, 1986): the plan draws, the costs push."""
+"""An artificial potential field (Khatib, 1986): the plan attracts, costs repel."""
 
 import math
 from dataclasses import dataclass
@@ -10,16 +10,18 @@ from planar import Pose2, Twist2, wrap
 from planar.config.parameters import POSITIVE, at_least, parameter
 from plugin_examples.pure_pursuit import arc
 
-# Metres and steps of the way that is looked at.
-FARTHEST, STEPS = 0.3, 6
-# How eagerly the robot turns towards the force, 1/s.
+# Length and steps of the predicted arc [m].
+MAX_ARC_LENGTH, STEPS = 0.3, 6
+# Turn rate per radian off the direction of the force [1/s].
 TURN_GAIN = 2.0
 
 
 @dataclass(frozen=True)
 class PotentialFieldSettings(ControllerSettings):
-    lookahead: float = parameter(0.5, "along the plan to what draws", "m", POSITIVE, dynamic=5.0)
-    repulsion: float = parameter(0.6, "of the highest costs, beside a draw of one", "", at_least(0.0))
+    lookahead: float = parameter(
+        0.5, "distance along the plan to the attracting point", "m", POSITIVE, dynamic=5.0
+    )
+    repulsion: float = parameter(0.6, "maximum repulsion, relative to the attraction", "", at_least(0.0))
 
 
 class PotentialField:
@@ -31,20 +33,20 @@ class PotentialField:
     def follow(self, context: ControlContext, plan: Plan, limits: Twist2) -> Trajectory:
         base = context.base_in_local
         apart = np.hypot(plan.path_xy[:, 0] - base.x, plan.path_xy[:, 1] - base.y)
-        drawn_xy = plan.path_xy[int(np.argmax(apart >= self._settings.lookahead)) or -1] - (base.x, base.y)
-        force_x, force_y = drawn_xy / max(np.hypot(*drawn_xy), 1e-6) - self._push(context)
+        target_xy = plan.path_xy[int(np.argmax(apart >= self._settings.lookahead)) or -1] - (base.x, base.y)
+        force_x, force_y = target_xy / max(np.hypot(*target_xy), 1e-6) - self._repulsion(context)
         error = wrap(math.atan2(force_y, force_x) - base.yaw)
         v = limits.v * max(math.cos(error), 0.0) ** 2
         omega = max(-limits.omega, min(limits.omega, TURN_GAIN * error))
         command = self._settings.reachable(context.twist, Twist2(v, omega), limits, self._period)
-        reach = min(FARTHEST, float(np.hypot(*drawn_xy)))
+        reach = min(MAX_ARC_LENGTH, float(np.hypot(*target_xy)))
         poses = arc(base, command, reach / max(command.v, 0.1), STEPS)
         if any(context.costmap.collides(Pose2(*pose)) for pose in poses[1:].tolist()):
-            raise ControlError("the way to the plan leads into an obstacle")
+            raise ControlError("the arc to the plan leads into an obstacle")
         return Trajectory(command, poses, 1.0 - math.cos(error))
 
-    def _push(self, context: ControlContext) -> np.ndarray:
-        """Up the slope of the costs around the robot: (2,), at most the settings' repulsion long."""
+    def _repulsion(self, context: ControlContext) -> np.ndarray:
+        """Gradient of the costs around the robot (2,), clipped and scaled by ``repulsion``."""
         costs, window = context.costmap.costs, context.costmap.window
         row, col = window.cell_of(context.base_in_local.x, context.base_in_local.y)
         if not (3 <= row < window.rows - 3 and 3 <= col < window.cols - 3):

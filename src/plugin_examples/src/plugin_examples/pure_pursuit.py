@@ -1,4 +1,4 @@
-"""Pure pursuit (Coulter, 1992): an arc to a point of the plan a little ahead."""
+"""Pure pursuit (Coulter, 1992): an arc to a lookahead point of the plan."""
 
 import math
 from dataclasses import dataclass
@@ -9,13 +9,13 @@ from move_base_lite import ControlContext, ControlError, ControllerSettings, Pla
 from planar import Pose2, Twist2
 from planar.config.parameters import POSITIVE, parameter
 
-# Metres and steps of the arc that is looked at.
-FARTHEST, STEPS = 0.3, 6
+# Length and steps of the predicted arc [m].
+MAX_ARC_LENGTH, STEPS = 0.3, 6
 
 
 @dataclass(frozen=True)
 class PurePursuitSettings(ControllerSettings):
-    lookahead: float = parameter(0.4, "along the plan to what is steered for", "m", POSITIVE, dynamic=5.0)
+    lookahead: float = parameter(0.4, "distance to the lookahead point", "m", POSITIVE, dynamic=5.0)
 
 
 class PurePursuit:
@@ -32,14 +32,14 @@ class PurePursuit:
         curvature = 2.0 * y / max(x * x + y * y, 1e-6)
         v = min(limits.v, limits.omega / max(abs(curvature), 1e-6))
         command = self._settings.reachable(context.twist, Twist2(v, v * curvature), limits, self._period)
-        poses = arc(base, command, min(FARTHEST, math.hypot(x, y)) / max(command.v, 0.1), STEPS)
+        poses = arc(base, command, min(MAX_ARC_LENGTH, math.hypot(x, y)) / max(command.v, 0.1), STEPS)
         if any(context.costmap.collides(Pose2(*pose)) for pose in poses[1:].tolist()):
-            raise ControlError("the way to the plan leads into an obstacle")
+            raise ControlError("the arc to the plan leads into an obstacle")
         return Trajectory(command, poses, math.hypot(x, y))
 
 
 def arc(base: Pose2, command: Twist2, seconds: float, steps: int) -> np.ndarray:
-    """Poses (steps + 1, 3) of a robot that keeps to a command."""
+    """Poses (steps + 1, 3) of a robot that drives a constant command."""
     poses, dt = [base], seconds / steps
     for _ in range(steps):
         poses.append(poses[-1] @ Pose2(command.v * dt, 0.0, command.omega * dt))

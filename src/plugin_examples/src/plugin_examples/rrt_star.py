@@ -1,4 +1,4 @@
-"""RRT* (Karaman and Frazzoli, 2011): a tree of random points, rewired towards shorter ways."""
+"""RRT* (Karaman and Frazzoli, 2011): a tree of random points, rewired towards shorter paths."""
 
 from dataclasses import dataclass
 from typing import Optional, Tuple
@@ -13,12 +13,10 @@ from planar.config.parameters import POSITIVE, Interval, parameter
 
 @dataclass(frozen=True)
 class RrtStarSettings(PlannerSettings):
-    samples: int = parameter(6000, "of the tree", bounds=Interval(10, 100000, "10 to 100000"))
-    steer: float = parameter(1.0, "the longest branch", "m", POSITIVE)
-    goal_bias: float = parameter(
-        0.05, "share of the samples at the goal", bounds=Interval(0.0, 1.0, "0 to 1")
-    )
-    seed: int = parameter(0, "of all chance")
+    samples: int = parameter(6000, "number of samples", bounds=Interval(10, 100000, "10 to 100000"))
+    steer: float = parameter(1.0, "maximum length of a branch", "m", POSITIVE)
+    goal_bias: float = parameter(0.05, "share of samples at the goal", bounds=Interval(0.0, 1.0, "0 to 1"))
+    seed: int = parameter(0, "of the random samples")
 
 
 class RrtStar:
@@ -41,14 +39,14 @@ class RrtStar:
         for cell, kind in ((start, StartBlocked), (goal, GoalBlocked)):
             if not is_free[int(cell[0]), int(cell[1])]:
                 raise kind(f"({cell[1]:g}, {cell[0]:g}) is blocked")
-        way = self._way(is_free, np.array(start), np.array(goal), window.resolution)
-        if way is None:
-            raise NoPath(f"{self._settings.samples} samples found no way to {goal_xy}")
-        corners_xy = (way[:, ::-1]) * window.resolution + (window.origin_x, window.origin_y)
+        path_cells = self._find_path(is_free, np.array(start), np.array(goal), window.resolution)
+        if path_cells is None:
+            raise NoPath(f"{self._settings.samples} samples found no path to {goal_xy}")
+        corners_xy = (path_cells[:, ::-1]) * window.resolution + (window.origin_x, window.origin_y)
         corners_xy[0], corners_xy[-1] = start_xy, goal_xy
         return _in_small_steps(corners_xy, window.resolution)
 
-    def _way(
+    def _find_path(
         self, is_free: np.ndarray, start: np.ndarray, goal: np.ndarray, resolution: float
     ) -> Optional[np.ndarray]:
         settings = self._settings
@@ -63,7 +61,7 @@ class RrtStar:
         return np.vstack([nodes[indices[::-1]], goal])
 
     def _cell(self, xy: Tuple[float, float], window: CostmapWindow) -> Tuple[float, float]:
-        """In cells: row and column, with what is behind the point."""
+        """Row and column as fractional cells."""
         if not window.contains(*xy):
             raise OutOfMap(f"({xy[0]:g}, {xy[1]:g}) is outside of the map")
         return (xy[1] - window.origin_y) / window.resolution, (xy[0] - window.origin_x) / window.resolution
@@ -92,7 +90,7 @@ def _is_clear(is_free, first, second):
 
 @numba.njit(cache=True)
 def _grow(is_free, start, goal, draws, reach):
-    """Nodes (N, 2), their parents, and the node that the shortest way to the goal comes from, or -1."""
+    """Nodes (N, 2), their parents, and the last node of the shortest path to the goal, or -1."""
     nodes = np.empty((len(draws) + 1, 2))
     parents = np.full(len(draws) + 1, -1)
     lengths = np.zeros(len(draws) + 1)

@@ -1,7 +1,7 @@
-"""A sensor model for rooms full of people: a beam that is cut short says little, one that is too long a lot.
+"""A sensor model for crowded rooms: a beam that is too short weighs little, one that is too long a lot.
 
-The likelihood field (Probabilistic Robotics, table 6.3) with the short readings of table 6.1, which it lacks:
-a beam that ends where the map shows free floor may have met somebody; none ends inside a wall.
+The likelihood field (Probabilistic Robotics, table 6.3) plus the short readings of table 6.1: a beam that
+ends in free space may have hit a person; none ends inside of a wall.
 """
 
 import numpy as np
@@ -12,16 +12,16 @@ from amcl_lite.sensor.beams import Beams
 from planar import FREE, OCCUPIED, OccupancyGrid
 from planar.geometry.distance_field import distance_field
 
-# Densities, 1/m, of a beam that meets what the map shows (its peak), is cut short, or cannot be explained.
+# Densities of a hit (at its peak), of a short and of an unexplained reading [1/m].
 HIT, SHORT, UNEXPLAINED = 2.4, 0.17, 0.006
-# Metres: the standard deviation of a hit. Beams are no witnesses of their own: a person cuts many of them.
-SIGMA, TRUST = 0.1, 0.2
+# Standard deviation of a hit [m], and weight of a beam: beams are correlated, as one person shortens many.
+SIGMA, BEAM_WEIGHT = 0.1, 0.2
 
 
 class ShortReadings:
     def __init__(self, grid: OccupancyGrid, settings: LocalizerSettings):
         self._grid = grid
-        # A wall is met at its face; the likelihood field takes all of a thick one for as good.
+        # Beams end at the surface of a wall; a plain likelihood field also accepts its inside.
         faces = (grid.cells == OCCUPIED) & binary_dilation(grid.cells == FREE)
         near = np.exp(-0.5 * (distance_field(faces, grid.resolution) / SIGMA) ** 2)
         self._logarithms = np.log(HIT * near + SHORT * (grid.cells == FREE) + UNEXPLAINED)
@@ -33,6 +33,6 @@ class ShortReadings:
         y = poses[:, 1:2] + sin * ends[:, 0] + cos * ends[:, 1]
         cells = self._grid.cells_of(np.column_stack((x.ravel(), y.ravel())))
         inside = self._grid.contains(cells)
-        told = np.full(x.size, np.log(UNEXPLAINED))
-        told[inside] = self._logarithms[tuple(cells[inside].T)]
-        return TRUST * told.reshape(x.shape).sum(axis=1)
+        log_density = np.full(x.size, np.log(UNEXPLAINED))
+        log_density[inside] = self._logarithms[tuple(cells[inside].T)]
+        return BEAM_WEIGHT * log_density.reshape(x.shape).sum(axis=1)

@@ -1,7 +1,7 @@
-"""A costmap layer that keeps its distance from people who walk (Kirby, Simmons and Forlizzi, 2009).
+"""A costmap layer that keeps the robot away from walking people (Kirby, Simmons and Forlizzi, 2009).
 
-Around each the costs fall as a Gaussian does, which reaches farther where they are going. It belongs into the
-local costmap, which sees what moves.
+The cost around each person is a Gaussian, longer in the direction of walking. The layer belongs in the local
+costmap.
 """
 
 import math
@@ -16,16 +16,18 @@ from move_base_lite.dynamic_obstacles import NO_DYNAMIC_OBSTACLES, DynamicObstac
 from planar import Pose2
 from planar.config.parameters import POSITIVE, at_least, parameter
 
-# Standard deviations within which a Gaussian counts, and the cost in its middle, short of an obstacle's.
+# Standard deviations at which a Gaussian is cut off, and the cost at its centre, below an obstacle's.
 REACH, HIGHEST = 2.0, INSCRIBED - 1
 
 
 @dataclass(frozen=True)
 class SocialDistanceSettings(LayerSettings):
-    topic: str = parameter("scan", "of the laser that sees them")
-    spread: float = parameter(0.4, "standard deviation beside and behind them", "m", POSITIVE, dynamic=2.0)
+    topic: str = parameter("scan", "topic of the laser")
+    spread: float = parameter(
+        0.4, "standard deviation beside and behind a person", "m", POSITIVE, dynamic=2.0
+    )
     foresight: float = parameter(
-        1.0, "how much farther ahead, for each m/s that they walk", "s", at_least(0.0), dynamic=5.0
+        1.0, "additional standard deviation ahead per m/s of walking speed", "s", at_least(0.0), dynamic=5.0
     )
 
 
@@ -34,22 +36,22 @@ class SocialDistance(Layer):
 
     def __init__(self, settings: SocialDistanceSettings, site: LayerContext):
         self._settings = settings
-        self._obstacle_tracker, self._seen_at = DynamicObstacleTracker(), 0.0
+        self._tracker, self._stamp = DynamicObstacleTracker(), 0.0
         self._people, self._bounds = NO_DYNAMIC_OBSTACLES, NO_CELLS
 
     def add_observation(self, observation: Observation, base_in_frame: Pose2) -> None:
         if observation.topic == self._settings.topic:
-            self._obstacle_tracker.update(base_in_frame, observation)
-            self._seen_at = observation.stamp
+            self._tracker.update(base_in_frame, observation)
+            self._stamp = observation.stamp
 
     def update(self, placement: CostmapPlacement) -> CellBounds:
         before, self._people, self._bounds = (
             self._bounds,
-            self._obstacle_tracker.obstacles_at(self._seen_at),
+            self._tracker.obstacles_at(self._stamp),
             NO_CELLS,
         )
         for x, y, along_x, along_y, _ in self._people:
-            reach = REACH * self._ahead(math.hypot(along_x, along_y))
+            reach = REACH * self._forward_spread(math.hypot(along_x, along_y))
             self._bounds = union(
                 self._bounds, placement.window.cut(placement.window.bounds_around(x, y, reach))
             )
@@ -63,27 +65,27 @@ class SocialDistance(Layer):
         y = window.origin_y + (rows + 0.5) * window.resolution
         block = costs[bounds.slices]
         for person in self._people:
-            added = (HIGHEST * self._share(person, x, y)).astype(np.uint8)
+            added = (HIGHEST * self._cost_share(person, x, y)).astype(np.uint8)
             np.maximum(block, added, out=block, where=block < added)
 
     def clear_outside(self, bounds: CellBounds, window: CostmapWindow) -> CellBounds:
         before = self._bounds
-        self._obstacle_tracker, self._people, self._bounds = (
+        self._tracker, self._people, self._bounds = (
             DynamicObstacleTracker(),
             NO_DYNAMIC_OBSTACLES,
             NO_CELLS,
         )
         return before
 
-    def _ahead(self, speed: float) -> float:
+    def _forward_spread(self, speed: float) -> float:
         return self._settings.spread + self._settings.foresight * speed
 
-    def _share(self, person: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Of the highest cost, at each cell."""
+    def _cost_share(self, person: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Share of HIGHEST at each cell."""
         middle_x, middle_y, along_x, along_y, _ = person
         speed, heading = math.hypot(along_x, along_y), math.atan2(along_y, along_x)
         ahead = (x - middle_x) * math.cos(heading) + (y - middle_y) * math.sin(heading)
         aside = (y - middle_y) * math.cos(heading) - (x - middle_x) * math.sin(heading)
-        spread = np.where(ahead > 0.0, self._ahead(speed), self._settings.spread)
+        spread = np.where(ahead > 0.0, self._forward_spread(speed), self._settings.spread)
         squares = (ahead / spread) ** 2 + (aside / self._settings.spread) ** 2
         return np.where(squares <= REACH**2, np.exp(-0.5 * squares), 0.0)

@@ -1,4 +1,4 @@
-"""Keyboard teleop with turtlebot_teleop's keys; pure but for node.py and terminal.py."""
+"""Keyboard teleoperation with the keys of turtlebot_teleop. ROS is in ``ros/`` only."""
 
 from teleop_lite.config import TeleopSettings
 from teleop_lite.key_script import KeyScript, KeyScriptError

@@ -11,10 +11,10 @@ _SPEED = POSITIVE._replace(high=sys.float_info.max)
 
 @dataclass(frozen=True)
 class TeleopSettings:
-    """Speeds that full forward and full left mean at the start."""
+    """Initial full speed and turn rate."""
 
-    scale_linear: float = parameter(0.2, "speed at the start", "m/s", _SPEED)
-    scale_angular: float = parameter(1.0, "turn rate at the start", "rad/s", _SPEED)
+    scale_linear: float = parameter(0.2, "initial speed", "m/s", _SPEED)
+    scale_angular: float = parameter(1.0, "initial turn rate", "rad/s", _SPEED)
 
     def __post_init__(self):
         check_parameters(self)

@@ -1,4 +1,4 @@
-"""Keys held for a while, written as text: ``i:2.0 j:1.5``."""
+"""Scripts of keys and their durations: ``i:2.0 j:1.5``."""
 
 import re
 from collections import deque
@@ -16,21 +16,26 @@ TIME_TOLERANCE = 1e-6
 
 
 class KeyScriptError(PlanarError):
-    """A text is not a script of keys; the error shows the part that is not."""
+    """A text is not a key script; the message shows the invalid part."""
 
 
 @dataclass(frozen=True)
-class Stroke:
-    """A key held for ``seconds``; 0 is a single press."""
+class KeyStroke:
+    """A key held for ``seconds``; 0: pressed once."""
 
     key: str
     seconds: float = 0.0
 
 
-def parse(text: str, keys: Collection[str] = KEYS) -> List[Stroke]:
-    """The strokes of a script such as ``i:2.0 j:1.5``, separated by blanks, newlines or commas.
+def parse(text: str, keys: Collection[str] = KEYS) -> List[KeyStroke]:
+    """Parse a script such as ``i:2.0 j:1.5``, separated by blanks, newlines or commas.
 
-    A key without a time (``q``) is pressed once. ``keys``: those there are. Raises KeyScriptError.
+    Args:
+        text: The script; a key without a time (``q``) is pressed once.
+        keys: The valid keys.
+
+    Raises:
+        KeyScriptError: A part of the text is not a key with a time.
     """
     strokes = []
     position = SEPARATORS.match(text).end()  # type: ignore[union-attr]
@@ -39,20 +44,20 @@ def parse(text: str, keys: Collection[str] = KEYS) -> List[Stroke]:
         key = (match["key"] or match["tap"]) if match else ""
         if not match or key not in keys:
             raise KeyScriptError(f"'{text[position:].split()[0]}' is not a key with a time, such as i:2.0")
-        strokes.append(Stroke(key, float(match["seconds"] or 0.0)))
+        strokes.append(KeyStroke(key, float(match["seconds"] or 0.0)))
         position = SEPARATORS.match(text, match.end()).end()  # type: ignore[union-attr]
     return strokes
 
 
 class KeyScript:
-    """Strokes played one after the other; more may be added while they are."""
+    """A queue of key strokes that are executed one after the other."""
 
-    def __init__(self, strokes: List[Stroke]):
-        self._strokes: Deque[Stroke] = deque(strokes)
+    def __init__(self, strokes: List[KeyStroke]):
+        self._strokes: Deque[KeyStroke] = deque(strokes)
         self._held_since: Optional[float] = None
 
-    def add(self, strokes: List[Stroke]) -> None:
-        """Puts strokes behind those that are still to be played."""
+    def add(self, strokes: List[KeyStroke]) -> None:
+        """Append key strokes."""
         self._strokes.extend(strokes)
 
     @property
@@ -60,7 +65,7 @@ class KeyScript:
         return not self._strokes
 
     def keys_at(self, now: float) -> str:
-        """The keys down at a time, seconds, which must not decrease; empty when there is nothing left."""
+        """Keys that are down at time ``now`` [s], which must not decrease; empty at the end."""
         keys = ""
         start = now if self._held_since is None else self._held_since
         while self._strokes:

@@ -1,4 +1,4 @@
-"""From keys to velocities, as turtlebot_teleop does it (turtlebot 2.4, turtlebot_teleop_key)."""
+"""Velocity commands from keys, as turtlebot_teleop computes them (turtlebot 2.4, turtlebot_teleop_key)."""
 
 from typing import Optional
 
@@ -28,15 +28,19 @@ SPEED_KEYS = {
 STOP_KEYS = "k "
 
 TICK_SECONDS = 0.1
+# Maximum change of the velocity per tick [m/s, rad/s].
 RAMP = Twist2(0.02, 0.1)
-"""The most that the velocity changes in a tick, m/s and rad/s."""
+# Time without repetition after which a key counts as released; keyboards repeat a held key faster [s].
 RELEASE_SECONDS = 0.5
-"""A key counts as held until it has been silent for this long; keyboards repeat a held key after less."""
 TIME_TOLERANCE = 1e-6
 
 
 class Teleop:
-    """Velocities that follow the pressed keys in ramps, and come to rest when no key is held."""
+    """Ramps the velocity towards that of the pressed key, and to zero when no key is held.
+
+    Attributes:
+        full: Full speed and turn rate [m/s, rad/s].
+    """
 
     def __init__(self, settings: TeleopSettings = TeleopSettings()):
         self.full = Twist2(settings.scale_linear, settings.scale_angular)
@@ -46,7 +50,7 @@ class Teleop:
         self._pressed_at: Optional[float] = None
 
     def press(self, key: str) -> None:
-        """Takes in a key; one without a meaning lets the robot come to rest."""
+        """Process a key; an unknown one stops the robot smoothly."""
         if key in SPEED_KEYS:
             factor = SPEED_KEYS[key]
             self.full = Twist2(self.full.v * factor.v, self.full.omega * factor.omega)
@@ -57,7 +61,7 @@ class Teleop:
         self._is_pressed = True
 
     def tick(self, now: float) -> Twist2:
-        """The velocity for the coming TICK_SECONDS; ``now``: seconds, by any steady clock."""
+        """Velocity command for the next TICK_SECONDS; ``now``: time of a monotonic clock [s]."""
         if self._is_pressed:
             self._is_pressed, self._pressed_at = False, now
         elif self._pressed_at is not None and now - self._pressed_at > RELEASE_SECONDS - TIME_TOLERANCE:

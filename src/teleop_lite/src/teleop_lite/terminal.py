@@ -1,4 +1,4 @@
-"""Where keys come from: a terminal or a pipe, read without ever blocking for long."""
+"""Sources of keys: a terminal or a pipe, read without blocking for long."""
 
 import contextlib
 import os
@@ -13,21 +13,27 @@ CHUNK_BYTES = 4096
 
 
 class NoKeysError(PlanarError):
-    """There is neither a keyboard nor a script."""
+    """Standard input is neither a terminal nor a script."""
 
 
 class Terminal:
-    """Context in which the keys of a terminal arrive one by one and unseen; leaving it restores all.
+    """Context that switches a terminal to raw mode: single keys, no echo. The old mode is restored on exit.
 
-    Ctrl-C is a key as well, except on another session's terminal, as under roslaunch: it is meant for that.
+    Ctrl-C is read as a key, except on another session's terminal, as under roslaunch, which handles it.
+
+    Args:
+        descriptor: File descriptor of the terminal.
+
+    Raises:
+        NoKeysError: It is not a terminal, or not of the foreground process.
     """
 
     def __init__(self, descriptor: int):
         self._descriptor = descriptor
         if not os.isatty(descriptor):
-            raise NoKeysError("there is no keyboard here: standard input is no terminal")
-        self._is_ours = _is_of_this_session(descriptor)
-        if self._is_ours and os.tcgetpgrp(descriptor) != os.getpgrp():
+            raise NoKeysError("there is no keyboard here: standard input is not a terminal")
+        self._is_own_session = _is_of_this_session(descriptor)
+        if self._is_own_session and os.tcgetpgrp(descriptor) != os.getpgrp():
             raise NoKeysError("the terminal belongs to another process: start this in the foreground")
 
     def __enter__(self) -> "Terminal":
@@ -35,7 +41,7 @@ class Terminal:
         tty.setraw(self._descriptor, termios.TCSANOW)
         raw = termios.tcgetattr(self._descriptor)
         raw[1] |= termios.OPOST  # keep "\n" a new line for whatever this process prints
-        if not self._is_ours:
+        if not self._is_own_session:
             raw[3] |= termios.ISIG
         termios.tcsetattr(self._descriptor, termios.TCSANOW, raw)
         return self
@@ -45,12 +51,16 @@ class Terminal:
             termios.tcsetattr(self._descriptor, termios.TCSADRAIN, self._attributes)
 
     def read(self, timeout: float) -> str:
-        """Keys, as soon as there are any within ``timeout`` seconds; Ctrl-C if the terminal is gone."""
+        """Read keys, waiting at most ``timeout`` seconds; Ctrl-C if the terminal was closed."""
         return _read(self._descriptor, timeout, at_end=CTRL_C)
 
 
 class Pipe:
-    """Lines that arrive on a pipe or file."""
+    """Lines from a pipe or file.
+
+    Attributes:
+        is_at_end: Whether the end of the input was reached.
+    """
 
     def __init__(self, descriptor: int):
         self._descriptor = descriptor
@@ -58,7 +68,7 @@ class Pipe:
         self.is_at_end = False
 
     def read(self) -> str:
-        """Whole lines that have arrived since the last call; at the end of the input also what is left."""
+        """Read the complete lines available; at the end of the input also an incomplete one."""
         while not self.is_at_end and select.select([self._descriptor], [], [], 0.0)[0]:
             text = _read(self._descriptor, 0.0, at_end="")
             self.is_at_end = not text

@@ -1,8 +1,8 @@
-"""From keys to velocities, as turtlebot3_teleop does it (turtlebot3 1.2, turtlebot3_teleop_key)."""
+"""Velocity commands from keys, as turtlebot3_teleop computes them (turtlebot3 1.2, turtlebot3_teleop_key)."""
 
 from planar import Twist2
 
-# The fastest of each model; the burger's of an unknown one.
+# Maximum velocity of each model; an unknown one has the burger's.
 LIMITS = {
     "burger": Twist2(0.22, 2.84),
     "waffle": Twist2(0.26, 1.82),
@@ -15,7 +15,11 @@ KEYS = {*MOVE_KEYS, *STOP_KEYS}
 
 
 class SteppedTeleop:
-    """Each key changes the velocity by a step; it is kept until another key is pressed."""
+    """Changes the velocity by a step per key and keeps it until the next key.
+
+    Args:
+        model: TurtleBot3 model.
+    """
 
     def __init__(self, model: str = "burger"):
         self._limit = LIMITS.get(model, LIMITS["burger"])
@@ -23,17 +27,17 @@ class SteppedTeleop:
         self._command = Twist2()
 
     def press(self, key: str) -> None:
-        """Takes in a key; one without a meaning does nothing."""
+        """Process a key; an unknown one does nothing."""
         if key in STOP_KEYS:
             self.full = self._command = Twist2()
-        way = MOVE_KEYS.get(key, Twist2())
+        direction = MOVE_KEYS.get(key, Twist2())
         self.full = Twist2(
-            _within(self.full.v + way.v * STEP.v, self._limit.v),
-            _within(self.full.omega + way.omega * STEP.omega, self._limit.omega),
+            _within(self.full.v + direction.v * STEP.v, self._limit.v),
+            _within(self.full.omega + direction.omega * STEP.omega, self._limit.omega),
         )
 
     def tick(self, now: float) -> Twist2:
-        """The velocity until the next tick, half a step nearer to what the keys want."""
+        """Velocity command until the next tick, half a step closer to the target."""
         self._command = Twist2(
             self._command.v + _within(self.full.v - self._command.v, STEP.v / 2.0),
             self._command.omega + _within(self.full.omega - self._command.omega, STEP.omega / 2.0),

@@ -1,4 +1,4 @@
-"""Frontiers as rviz shows them."""
+"""Frontiers as markers for rviz."""
 
 from typing import Iterable, List
 
@@ -12,9 +12,11 @@ POINT_SIZE = 0.05
 BLUE, RED = ColorRGBA(0.1, 0.3, 1.0, 1.0), ColorRGBA(1.0, 0.2, 0.1, 1.0)
 
 
-def frontier_markers(open_ones: List[Frontier], unreachable: List[Frontier], frame_id: str) -> MarkerArray:
-    """Frontiers still worth going to in blue, those that are not in red."""
-    return MarkerArray([_points(0, open_ones, BLUE, frame_id), _points(1, unreachable, RED, frame_id)])
+def frontier_markers(
+    open_frontiers: List[Frontier], unreachable: List[Frontier], frame_id: str
+) -> MarkerArray:
+    """Markers of open frontiers in blue and of unreachable ones in red."""
+    return MarkerArray([_points(0, open_frontiers, BLUE, frame_id), _points(1, unreachable, RED, frame_id)])
 
 
 def _points(number: int, frontiers: Iterable[Frontier], color: ColorRGBA, frame_id: str) -> Marker:

@@ -1,4 +1,4 @@
-"""The ROS node of explorer_lite: the action ``explore``, carried out with move_base on the growing map."""
+"""The ROS node of explorer_lite: serves the action ``explore`` with goals for move_base."""
 
 import time
 from dataclasses import asdict, replace
@@ -10,9 +10,16 @@ from home_service_msgs.msg import ExploreAction, ExploreActionGoal, ExploreFeedb
 from visualization_msgs.msg import MarkerArray
 
 from explorer_lite.config import ExplorerSettings, NodeSettings
-from explorer_lite.explorer import Explorer, ExplorerState, FinishTask, GoalFailed, GoalReached, GoTo
+from explorer_lite.explorer import (
+    Explorer,
+    ExplorerState,
+    FinishTask,
+    GoalFailed,
+    GoalReached,
+    SendGoal,
+    warm_up,
+)
 from explorer_lite.ros.markers import frontier_markers
-from explorer_lite.warming import warm_up
 from planar import OccupancyGrid, Pose2
 from planar_ros.calls.actions import ActionServer
 from planar_ros.calls.move_base import MoveBaseClient
@@ -31,9 +38,9 @@ STOP_SECONDS = 2.0
 
 
 class Autostart:
-    """Has the node explore as if somebody had asked for it, and, after a crash, go on with that.
+    """Sends the node an ``explore`` goal of its own, and resumes the exploration after a crash.
 
-    The goal goes the way of all messages, so that whoever follows the action sees nothing special.
+    The goal is published on the action's topic, so other clients of the action see a normal goal.
     """
 
     def __init__(self, return_to_start: bool):
@@ -41,24 +48,26 @@ class Autostart:
         self._goal.goal.return_to_start = return_to_start
         self._goals = rospy.Publisher("explore/goal", ExploreActionGoal, queue_size=1)
         self._keepsake = ParameterCheckpoint()
-        self._has_begun = False
+        self._is_sent = False
 
     @property
     def start(self) -> Optional[Pose2]:
-        """Where the robot returns to, as far as it is known."""
+        """Pose to return to, if it was saved by an earlier process."""
         return None if self._keepsake.found is None else Pose2(**self._keepsake.found)
 
-    def keep(self, start: Pose2) -> None:
+    def save(self, start: Pose2) -> None:
+        """Save the pose to return to."""
         self._keepsake.keep(asdict(start))
 
-    def begin(self) -> None:
-        if not self._has_begun and self._goals.get_num_connections() > 0:
-            self._has_begun = True
+    def send_goal(self) -> None:
+        """Send the goal once the action server is connected."""
+        if not self._is_sent and self._goals.get_num_connections() > 0:
+            self._is_sent = True
             self._goals.publish(self._goal)
 
 
 class Explore:
-    """Serves the action ``explore``; orders of the explorer become move_base goals."""
+    """Serves the action ``explore``; sends the explorer's orders to move_base."""
 
     def __init__(self):
         node_fields, explorer_fields = (
@@ -73,8 +82,8 @@ class Explore:
         self._transforms = Transforms()
         self._markers = rospy.Publisher("~frontiers", MarkerArray, queue_size=1, latch=True)
         self._move_base = MoveBaseClient(self._settings.global_frame)
-        subscribe("map", OccupancyGridArrays, self._keep_map, queue_size=1, tcp_nodelay=True)
-        self._scans = subscribe("scan", LaserScanArrays, self._measure_view, queue_size=1)
+        subscribe("map", OccupancyGridArrays, self._on_map, queue_size=1, tcp_nodelay=True)
+        self._scans = subscribe("scan", LaserScanArrays, self._on_scan, queue_size=1)
         self._move_base.cancel_at_end()
         frames = f"{self._settings.global_frame} to {self._settings.robot_base_frame}"
         self._conditions = {
@@ -88,11 +97,11 @@ class Explore:
         self._autostart = Autostart(self._settings.return_to_start) if self._settings.autostart else None
 
     def serve(self) -> None:
-        """Until shutdown."""
+        """Execute goals until shutdown."""
         self._step.join(takes_turns=True)
         while not rospy.is_shutdown():
             if self._autostart is not None and all(is_met() for is_met in self._conditions.values()):
-                self._autostart.begin()
+                self._autostart.send_goal()
             if self._server.is_new_goal_available():
                 self._execute(self._server.accept_new_goal())
             self._step.pause(POLL_SECONDS)
@@ -127,8 +136,8 @@ class Explore:
             self._server.set_aborted(result, end.reason)
 
     def _explore(self, explorer: Explorer) -> Optional[FinishTask]:
-        """Explores to the end; None if it was cancelled before."""
-        seen_map, event, goal = None, None, None
+        """Explore to the end; None if the goal was cancelled."""
+        last_map, event, goal = None, None, None
         next_feedback = 0.0
         complete_at = time.monotonic()
         while not (rospy.is_shutdown() or self._server.is_preempt_requested()):
@@ -141,24 +150,24 @@ class Explore:
             now, grid, robot = rospy.get_time(), self._map, self._robot()
             order = None
             if not missing and robot is not None:
-                order = explorer.advance(now, None if grid is seen_map else grid, robot, event)
-                seen_map, event = grid, None
+                order = explorer.advance(now, None if grid is last_map else grid, robot, event)
+                last_map, event = grid, None
             if isinstance(order, FinishTask):
                 return order
             if self._autostart is not None and explorer.start is not None:
-                self._autostart.keep(explorer.start)
-            if isinstance(order, GoTo):
+                self._autostart.save(explorer.start)
+            if isinstance(order, SendGoal):
                 goal = order.pose
                 self._move_base.send(goal)
             if explorer.state is not ExplorerState.READY and now >= next_feedback:
                 next_feedback = now + FEEDBACK_SECONDS
-                self._tell(explorer, goal)
+                self._publish_feedback(explorer, goal)
             self._step.pause(POLL_SECONDS)
             event = event or self._next_event()
         return None
 
     def _stop(self) -> None:
-        """Gives the goal up, and waits a little until it has been given up."""
+        """Cancel the move_base goal and wait briefly until it has ended."""
         self._move_base.cancel()
         deadline = time.monotonic() + STOP_SECONDS
         while not self._move_base.is_idle and time.monotonic() < deadline:
@@ -171,10 +180,10 @@ class Explore:
         outcome = self._move_base.outcome()
         event = None if outcome is None else outcome.event
         if isinstance(event, GoalFailed):
-            rospy.loginfo("goal given up: %s", event.reason)
+            rospy.loginfo("move_base goal failed: %s", event.reason)
         return event
 
-    def _tell(self, explorer: Explorer, goal: Optional[Pose2]):
+    def _publish_feedback(self, explorer: Explorer, goal: Optional[Pose2]):
         self._server.publish_feedback(
             ExploreFeedback(
                 explored_area=explorer.explored_area,
@@ -192,10 +201,10 @@ class Explore:
         stamped.header.frame_id, stamped.header.stamp = self._settings.global_frame, rospy.Time.now()
         return stamped
 
-    def _measure_view(self, scan):
+    def _on_scan(self, scan):
         self._field_of_view = len(scan.ranges) * abs(scan.angle_increment)
 
-    def _keep_map(self, message):
+    def _on_map(self, message):
         self._map = grid_from_msg(message)
 
 

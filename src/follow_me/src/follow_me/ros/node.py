@@ -1,11 +1,11 @@
-"""The node ``follow_me``: asks tf where both robots are, and sends goals to the follower's move_base."""
+"""The node ``follow_me``: looks up both robots in tf and sends goals to the follower's move_base."""
 
 from typing import Callable, Optional
 
 import rospy
 
 from follow_me.config import NodeSettings
-from follow_me.follower import Follower
+from follow_me.follower import LeaderFollower
 from planar import Pose2
 from planar_ros.calls.move_base import MoveBaseClient
 from planar_ros.messages.transforms import Transforms
@@ -16,12 +16,12 @@ from planar_ros.step import LockstepClient
 
 
 class FollowMe:
-    """Sends goals for as long as it lives; without transforms it waits, and says for which."""
+    """Sends goals until shutdown; waits for move_base and the transforms and logs which are missing."""
 
     def __init__(self):
         step = LockstepClient.of_node()
         self._settings = read_settings(NodeSettings)
-        self._follower = Follower(self._settings)
+        self._follower = LeaderFollower(self._settings)
         self._transforms = Transforms()
         self._move_base = MoveBaseClient(self._settings.map_frame)
         self._move_base.cancel_at_end()
@@ -35,11 +35,11 @@ class FollowMe:
                 },
             }
         )
-        step.every(lambda: self._settings.goal_period, self._follow, self._begin_afresh, reports=True)
+        step.every(lambda: self._settings.goal_period, self._follow, self._reset, reports=True)
         step.join()
 
-    def _begin_afresh(self):
-        self._follower = Follower(self._settings)
+    def _reset(self):
+        self._follower = LeaderFollower(self._settings)
         self._transforms.clear()
 
     def _follow(self, _now: rospy.Time):

@@ -1,4 +1,4 @@
-"""The ROS node of the keyboard teleop: keys of a terminal or of a script become velocities."""
+"""The ROS node of the keyboard teleop: publishes velocities from the keys of a terminal or script."""
 
 import argparse
 import sys
@@ -39,62 +39,76 @@ anything else : stop smoothly
 CTRL-C to quit
 """
 CHANGES_PER_BANNER = 15
-LISTENER_SECONDS = 60.0
+SUBSCRIBER_TIMEOUT = 60.0
 POLL_SECONDS = 0.02
-DELIVERY_SECONDS = 2.0
+DELIVERY_TIMEOUT = 2.0
 
 
-class Driver(Protocol):
-    """Makes velocities of keys. ``full``: what is told of it when it changes, m/s and rad/s."""
+class TeleopDriver(Protocol):
+    """Computes velocity commands from keys.
+
+    Attributes:
+        full: Full speed and turn rate, printed when they change [m/s, rad/s].
+    """
 
     full: Twist2
 
     def press(self, key: str) -> None:
-        """Takes in a key."""
+        """Process a key."""
 
     def tick(self, now: float) -> Twist2:
-        """The velocity for the coming TICK_SECONDS; ``now``: seconds, by any steady clock."""
+        """Velocity command for the next TICK_SECONDS; ``now``: time of a monotonic clock [s]."""
 
 
 @dataclass(frozen=True)
-class Style:
-    """A teleop of somebody's: its names, what it prints, its keys, and who makes velocities of them."""
+class TeleopVariant:
+    """An official teleop program that this node can stand in for.
+
+    Attributes:
+        program: Name of the executable.
+        node_name: Name of the node.
+        topic: Topic of the velocity commands.
+        banner: Text printed at the start.
+        keys: Valid keys of a script.
+        make_driver: Constructs the driver.
+        speeds: Format of the line that reports the full speeds.
+    """
 
     program: str
     node_name: str
     topic: str
     banner: str
     keys: Collection[str]
-    driver: Callable[[], Driver]
+    make_driver: Callable[[], TeleopDriver]
     speeds: str = "currently:\tspeed {v:.4g}\tturn {omega:.4g}"
 
 
-TURTLEBOT = Style(
+TURTLEBOT = TeleopVariant(
     program="turtlebot_teleop_key",
     node_name="turtlebot_teleop_keyboard",
     topic="~cmd_vel",
     banner=BANNER,
     keys=KEYS,
-    driver=lambda: Teleop(read_settings(TeleopSettings)),
+    make_driver=lambda: Teleop(read_settings(TeleopSettings)),
 )
 
 
 class KeyboardTeleop:
-    """Publishes velocities every TICK_SECONDS until the keys end; whatever ends it stops the robot."""
+    """Publishes velocities every TICK_SECONDS until the keys end; stops the robot however it ends."""
 
-    def __init__(self, style: Style):
-        self._style = style
-        self._teleop = style.driver()
+    def __init__(self, variant: TeleopVariant):
+        self._variant = variant
+        self._teleop = variant.make_driver()
         self._changes = 0
         self._is_stopped = False
         self._lock = threading.Lock()
-        self._publisher = rospy.Publisher(style.topic, Twist, queue_size=5, tcp_nodelay=True)
+        self._publisher = rospy.Publisher(variant.topic, Twist, queue_size=5, tcp_nodelay=True)
         rospy.on_shutdown(self.stop)
 
-    def follow_keyboard(self, terminal: Terminal) -> None:
-        """Until Ctrl-C. Timed by the wall clock, like the hands on the keyboard."""
-        print(self._style.banner)
-        self._tell_speeds()
+    def run_keyboard(self, terminal: Terminal) -> None:
+        """Drive by the keys of a terminal until Ctrl-C, in wall time."""
+        print(self._variant.banner)
+        self._print_speeds()
         next_tick = time.monotonic()
         while not rospy.is_shutdown():
             for key in terminal.read(max(0.0, next_tick - time.monotonic())):
@@ -106,14 +120,14 @@ class KeyboardTeleop:
                 next_tick = now + TICK_SECONDS
                 self._publish(self._teleop.tick(now))
 
-    def follow_script(self, script: KeyScript, pipe: Optional[Pipe]) -> None:
-        """Until the script, and the pipe that more of it may come from, is at its end. Timed by ROS time."""
-        self._wait_for_listener()
+    def run_script(self, script: KeyScript, pipe: Optional[Pipe]) -> None:
+        """Drive by a script, and by what else the pipe delivers, until both end, in ROS time."""
+        self._wait_for_subscriber()
         progress = ProgressPublisher()
         rate = rospy.Rate(1.0 / TICK_SECONDS)
         while not rospy.is_shutdown():
             if pipe is not None:
-                script.add(parse(pipe.read(), self._style.keys))
+                script.add(parse(pipe.read(), self._variant.keys))
             now = rospy.get_rostime()
             for key in script.keys_at(now.to_sec()):
                 self._press(key)
@@ -124,32 +138,32 @@ class KeyboardTeleop:
             try:
                 rate.sleep()
             except rospy.ROSTimeMovedBackwardsException:
-                raise PlanarError("time has jumped back: the rest of the script is not played") from None
+                raise PlanarError("ROS time jumped back: the rest of the script is dropped") from None
 
     def stop(self) -> None:
-        """Stops the robot for good."""
+        """Stop the robot and publish nothing after that."""
         with self._lock:
             if self._is_stopped:
                 return
             self._is_stopped = True
             self._publisher.publish(Twist())
-            flush_and_close(self._publisher, patience=DELIVERY_SECONDS)
+            flush_and_close(self._publisher, patience=DELIVERY_TIMEOUT)
 
-    def _wait_for_listener(self):
+    def _wait_for_subscriber(self):
         conditions = {
-            f"somebody to listen on {self._publisher.resolved_name}": lambda: (
+            f"a subscriber of {self._publisher.resolved_name}": lambda: (
                 self._publisher.get_num_connections() > 0
             ),
             "the clock": lambda: not rospy.get_rostime().is_zero(),
         }
         ReadinessMonitor(conditions)
-        deadline = time.monotonic() + LISTENER_SECONDS
+        deadline = time.monotonic() + SUBSCRIBER_TIMEOUT
         while not rospy.is_shutdown():
             missing = [name for name, is_met in conditions.items() if not is_met()]
             if not missing:
                 return
             if time.monotonic() > deadline:
-                raise PlanarError(f"waited for {' and '.join(missing)} for {LISTENER_SECONDS:g} s")
+                raise PlanarError(f"waited for {' and '.join(missing)} for {SUBSCRIBER_TIMEOUT:g} s")
             time.sleep(POLL_SECONDS)
 
     def _press(self, key):
@@ -157,13 +171,13 @@ class KeyboardTeleop:
         self._teleop.press(key)
         if self._teleop.full != full:
             self._changes += 1
-            self._tell_speeds()
+            self._print_speeds()
             if self._changes % CHANGES_PER_BANNER == 0:
-                print(self._style.banner)
+                print(self._variant.banner)
 
-    def _tell_speeds(self):
+    def _print_speeds(self):
         full = self._teleop.full
-        print(self._style.speeds.format(v=full.v, omega=full.omega), flush=True)
+        print(self._variant.speeds.format(v=full.v, omega=full.omega), flush=True)
 
     def _publish(self, velocity: Twist2):
         message = Twist()
@@ -173,27 +187,27 @@ class KeyboardTeleop:
                 self._publisher.publish(message)
 
 
-def main(style: Style = TURTLEBOT):
-    keys = _parse_arguments(style).keys
+def main(variant: TeleopVariant = TURTLEBOT):
+    keys = _parse_arguments(variant).keys
     try:
         if not keys and sys.stdin is not None and sys.stdin.isatty():
             terminal = Terminal(sys.stdin.fileno())
-            run(style.node_name, lambda: _drive(style, lambda node: _follow_in(terminal, node)))
+            run(variant.node_name, lambda: _drive(variant, lambda node: _run_in(terminal, node)))
         else:
-            script, pipe = _open_script(" ".join(keys), style.keys)
-            run(style.node_name, lambda: _drive(style, lambda node: node.follow_script(script, pipe)))
+            script, pipe = _open_script(" ".join(keys), variant.keys)
+            run(variant.node_name, lambda: _drive(variant, lambda node: node.run_script(script, pipe)))
     except PlanarError as error:
-        print(f"[/{style.node_name}] error: {error}", file=sys.stderr)
+        print(f"[/{variant.node_name}] error: {error}", file=sys.stderr)
         sys.exit(2)
 
 
-def _follow_in(terminal, node):
+def _run_in(terminal, node):
     with terminal:
-        node.follow_keyboard(terminal)
+        node.run_keyboard(terminal)
 
 
 def _open_script(text, known_keys):
-    """The script and the pipe from which more of it may come; what has already come is checked at once."""
+    """The script and the pipe that may deliver more of it; what is available is parsed at once."""
     if text:
         return KeyScript(parse(text, known_keys)), None
     if sys.stdin is None:
@@ -211,9 +225,9 @@ NO_KEYS = (
 )
 
 
-def _drive(style, follow):
+def _drive(variant, follow):
     on_signals(_end)
-    node = KeyboardTeleop(style)
+    node = KeyboardTeleop(variant)
     try:
         follow(node)
     finally:
@@ -226,12 +240,12 @@ def _end(number, _frame):
     sys.exit(128 + number)
 
 
-def _parse_arguments(style):
+def _parse_arguments(variant):
     parser = argparse.ArgumentParser(
-        prog=style.program,
+        prog=variant.program,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description="Drives the robot with the keys of a terminal, or with a script of keys.\n"
-        + style.banner,
+        + variant.banner,
         epilog="A script comes as arguments or on a pipe:  echo 'i:2.0 j:1.5, ,:1' | turtlebot_teleop_key\n"
         "Times are seconds of ROS time; without a time a key is pressed once. The robot stops at the end.",
     )

@@ -2,7 +2,7 @@
 
 import rospy
 
-from teleop_lite.ros.node import Style
+from teleop_lite.ros.node import TeleopVariant
 from teleop_lite.ros.node import main as drive
 from teleop_lite.turtlebot3 import KEYS, SteppedTeleop
 
@@ -21,13 +21,13 @@ space key, s : force stop
 
 CTRL-C to quit
 """
-TURTLEBOT3 = Style(
+TURTLEBOT3 = TeleopVariant(
     program="turtlebot3_teleop_key",
     node_name="turtlebot3_teleop",
     topic="cmd_vel",
     banner=BANNER,
     keys=KEYS,
-    driver=lambda: SteppedTeleop(rospy.get_param("model", "burger")),
+    make_driver=lambda: SteppedTeleop(rospy.get_param("model", "burger")),
     speeds="currently:\tlinear vel {v:.4g}\t angular vel {omega:.4g} ",
 )
 

@@ -16,7 +16,9 @@ TWIST_KEYBOARD = replace(
     node_name="teleop_twist_keyboard",
     topic="cmd_vel",
     banner=TURTLEBOT.banner.replace("Turtlebot", "Robot"),
-    driver=lambda: Teleop(TeleopSettings(rospy.get_param("~speed", SPEED), rospy.get_param("~turn", TURN))),
+    make_driver=lambda: Teleop(
+        TeleopSettings(rospy.get_param("~speed", SPEED), rospy.get_param("~turn", TURN))
+    ),
 )
 
 
