@@ -19,7 +19,7 @@ sys.path[:0] = [str(path) for path in ROOT.glob("src/*/src")]
 from planar.config.listing import Section, render_yaml  # noqa: E402
 
 MADE_BY = "Made by docs/generate.py; do not edit."
-# A comment that names a module, on a line of its own, and the listing behind it, once there is one.
+# A comment that names a module, on a separate line, and the listing behind it, once there is one.
 LISTING = re.compile(r"^<!-- (\S+\.py) -->\n(?:\n```python\n.*?^```\n)?", re.MULTILINE | re.DOTALL)
 GENERATED = re.compile(r"^<!-- generated: (\w+) -->\n.*?^<!-- end -->$", re.MULTILINE | re.DOTALL)
 USAGE = re.compile(r"^# (Usage: .*?)^(?!#)", re.MULTILINE | re.DOTALL)
