@@ -23,7 +23,7 @@ except KeyboardInterrupt:
 STARTER = """
 import sys, threading, time
 from cockpit.child_program import ChildProgram
-threading.Thread(target=lambda: (Program([sys.executable, *sys.argv[1:]]), time.sleep(60))).start()
+threading.Thread(target=lambda: (ChildProgram([sys.executable, *sys.argv[1:]]), time.sleep(60))).start()
 """
 
 

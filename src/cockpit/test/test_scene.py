@@ -35,8 +35,8 @@ def test_pieces_of_a_colour_become_one_surface():
 def test_a_look_comes_through_to_another_process():
     look = SceneDescription.from_bytes(SceneDescription((wall(0.0, 1.0),), ("a warning",)).to_bytes())
     assert look.warnings == ("a warning",)
-    assert look.pieces[0].colour == (1, 2, 3)
-    assert np.allclose(look.pieces[0].pose, wall(0.0, 1.0).pose)
+    assert look.parts[0].colour == (1, 2, 3)
+    assert np.allclose(look.parts[0].pose, wall(0.0, 1.0).pose)
 
 
 def test_solids_are_a_metre_across():

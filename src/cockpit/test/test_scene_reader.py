@@ -28,7 +28,7 @@ def test_each_request_returns_a_scene_or_a_reason():
             (WORLD, "/nowhere.world", ""),
         ]
     )
-    assert isinstance(world, SceneDescription) and len(world.pieces) > 10
+    assert isinstance(world, SceneDescription) and len(world.parts) > 10
     assert isinstance(robot, SceneDescription)
     assert "not well-formed" in nonsense
     assert missing.startswith("/nowhere.world: cannot be read")
@@ -79,6 +79,6 @@ def test_a_reading_that_takes_too_long_is_an_error(monkeypatch):
 def test_a_model_is_shown_under_the_name_that_it_was_spawned_by():
     for text in (SDF, URDF):
         (answer,) = read_scenes([(MODEL, "cup", text)])
-        (piece,) = answer.pieces
+        (piece,) = answer.parts
         assert (piece.model, piece.link) == ("cup", "l")
         assert abs(piece.vertices).max() == pytest.approx(0.1)

@@ -1,4 +1,4 @@
-"""Who may see the page: whoever holds the token, from a page that this server itself has sent."""
+"""Access control of the page: a token, and checks of the Host and Origin headers."""
 
 import hmac
 import secrets
@@ -13,7 +13,13 @@ OK, FORBIDDEN = 200, 403
 
 @dataclass(frozen=True)
 class AccessDecision:
-    """``status``: 200, let it pass, or come again with ``cookie`` if there is one; 403, and why."""
+    """The decision on a request.
+
+    Attributes:
+        status: 200 to accept, 403 to reject.
+        reason: Why the request is rejected.
+        cookie: A cookie to set with a redirect to the page, or empty.
+    """
 
     status: int
     reason: str = ""
@@ -21,41 +27,49 @@ class AccessDecision:
 
 
 class AccessPolicy:
-    """Judges requests by token, cookie, Host and Origin.
+    """Decides on requests by token, cookie, Host and Origin.
 
-    The token is in the URL that the terminal prints; the first request turns it into a cookie and is sent on
-    to a URL without it. A page of another site that has the name of its own host point here (DNS rebinding)
-    is known by its Host, one that calls this server by its Origin.
+    The token is in the URL that the terminal prints; the first request exchanges it for a cookie and is
+    redirected to a URL without it. A site whose host name resolves to this machine (DNS rebinding) is rejected
+    by its Host, a page of another site by its Origin.
     """
 
     def __init__(self, port: int, hosts: Tuple[str, ...] = LOOPBACK, token: Optional[str] = None):
-        """``hosts``: names and addresses, beside the loopback's, that browsers may know this machine by."""
+        """``hosts``: further names and addresses of this machine in use by browsers."""
         self.token = token or secrets.token_urlsafe(24)
         self._hosts = {*LOOPBACK, *hosts}
-        # Cookies know no ports: two cockpits of one machine must not share one.
+        # Cookies are not separated by port: two cockpits on one machine need different names.
         self._cookie = f"cockpit_{port}"
 
     def judge(
         self, target: str, host: str, origin: Optional[str], cookies: str, is_socket: bool
     ) -> AccessDecision:
-        """``target``: path and query; ``origin``: None if there is none, which no browser's socket lacks."""
+        """Decide on a request.
+
+        Args:
+            target: Path and query.
+            host: Host header.
+            origin: Origin header; None if absent. Browsers always send it for a web socket.
+            cookies: Cookie header.
+            is_socket: Whether the request opens a web socket.
+        """
         if _host_name(f"//{host}") not in self._hosts:
             return AccessDecision(FORBIDDEN, "this name is not one of the cockpit's")
         if origin is not None and origin != f"http://{host}":
-            return AccessDecision(FORBIDDEN, "asked for by a page of another site")
+            return AccessDecision(FORBIDDEN, "requested by a page of another site")
         if is_socket and origin is None:
-            return AccessDecision(FORBIDDEN, "asked for by no page")
-        told = parse_qs(target.partition("?")[2]).get("token", [""])[0]
-        if not is_socket and self._is_token(told):
+            return AccessDecision(FORBIDDEN, "requested without an Origin header")
+        token = parse_qs(target.partition("?")[2]).get("token", [""])[0]
+        if not is_socket and self._is_token(token):
             return AccessDecision(OK, cookie=f"{self._cookie}={self.token}; HttpOnly; SameSite=Lax; Path=/")
-        if not self._is_token(self._kept(cookies)):
+        if not self._is_token(self._token_of(cookies)):
             return AccessDecision(FORBIDDEN, "open the URL that the terminal prints: it has the token")
         return AccessDecision(OK)
 
     def _is_token(self, text: str) -> bool:
         return hmac.compare_digest(text.encode(), self.token.encode())
 
-    def _kept(self, cookies: str) -> str:
+    def _token_of(self, cookies: str) -> str:
         try:
             morsel = SimpleCookie(cookies).get(self._cookie)
         except CookieError:
@@ -64,7 +78,7 @@ class AccessPolicy:
 
 
 def _host_name(address: str) -> Optional[str]:
-    """The name in ``//name:port``; None if it is none."""
+    """Return the name in ``//name:port``, or None if the address is malformed."""
     try:
         return urlsplit(address).hostname
     except ValueError:

@@ -1,4 +1,4 @@
-"""A program that a person has started at the page."""
+"""A program started from the page."""
 
 import os
 import signal
@@ -11,7 +11,7 @@ END_SECONDS = 5.0
 
 
 class ChildProgram:
-    """It ends as by Ctrl-C, when it is to or when this process is no more."""
+    """A child process that receives SIGINT when it is ended or when this process exits."""
 
     def __init__(self, command: Sequence[str]):
         self._process = subprocess.Popen(
@@ -27,7 +27,7 @@ class ChildProgram:
         return self._process.poll() is None
 
     def complaints(self) -> List[str]:
-        """What it said at its end, if that was a bad one."""
+        """Return the last line of its error output if it failed."""
         if self.is_running or self._process.returncode in (0, -signal.SIGINT):
             return []
         assert self._process.stderr is not None

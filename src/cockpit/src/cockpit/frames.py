@@ -1,4 +1,4 @@
-"""Where frames are and were a moment ago, and ways between any two."""
+"""The tree of frames: current and recent transforms, and poses between any two frames."""
 
 import math
 from collections import deque
@@ -9,14 +9,22 @@ import numpy as np
 
 from sim_bridge.geometry.pose3 import quaternion
 
-# Longer chains are a loop.
+# A longer chain of parents is a loop.
 DEEPEST = 64
-# Two seconds of what comes fifty times a second: for scans that come later than their transforms.
+# Two seconds at 50 Hz, for scans that arrive later than their transforms.
 MOST_KEPT = 100
 
 
 def pose_matrix(position: Sequence[float], quaternion: Sequence[float]) -> Optional[np.ndarray]:
-    """A pose as (4, 4) of metres and a quaternion (x, y, z, w) of any length but zero; None if it is none."""
+    """Build a pose matrix.
+
+    Args:
+        position: x, y, z [m].
+        quaternion: x, y, z, w of any length but zero.
+
+    Returns:
+        The pose (4, 4), or None if a number is not finite or the quaternion is zero.
+    """
     x, y, z, w = quaternion
     length = x * x + y * y + z * z + w * w
     if not (all(map(math.isfinite, position)) and 1e-6 < length < 1e6):
@@ -33,19 +41,19 @@ def pose_matrix(position: Sequence[float], quaternion: Sequence[float]) -> Optio
 
 
 def wxyz_of(pose: np.ndarray) -> Tuple[float, float, float, float]:
-    """The rotation of a pose (4, 4) as viser takes it: w, x, y, z."""
+    """Return the rotation of a pose (4, 4) as the quaternion w, x, y, z of viser."""
     x, y, z, w = quaternion(pose)
     return w, x, y, z
 
 
 def pose_from_message(position: Any, orientation: Any) -> Optional[np.ndarray]:
-    """The same as messages of geometry_msgs tell it: of a Point or Vector3, and a Quaternion."""
+    """Convert a geometry_msgs Point or Vector3 and a Quaternion to a pose (4, 4), or None if invalid."""
     p, q = position, orientation
     return pose_matrix((p.x, p.y, p.z), (q.x, q.y, q.z, q.w))
 
 
 def inverse(pose: np.ndarray) -> np.ndarray:
-    """Of a rigid pose (4, 4)."""
+    """Invert a rigid pose (4, 4)."""
     turned = pose[:3, :3].T
     result = np.eye(4)
     result[:3, :3], result[:3, 3] = turned, -turned @ pose[:3, 3]
@@ -54,7 +62,15 @@ def inverse(pose: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Transform:
-    """``pose_in_parent``: (4, 4); ``stamp``: seconds of ROS time; ``is_static``: from /tf_static."""
+    """A transform of a child frame.
+
+    Attributes:
+        parent: Parent frame.
+        pose_in_parent: Pose of the child frame (4, 4).
+        stamp: ROS time [s].
+        is_static: Whether it was published on /tf_static.
+        publisher: Name of the publishing node.
+    """
 
     parent: str
     pose_in_parent: np.ndarray
@@ -64,7 +80,7 @@ class Transform:
 
 
 class FrameTree:
-    """The newest transform of each frame, and the last few: a view needs no more."""
+    """The newest and the last few transforms of each frame."""
 
     def __init__(self):
         self._transforms: Dict[str, Transform] = {}
@@ -73,7 +89,7 @@ class FrameTree:
     def put(self, child: str, transform: Transform) -> None:
         child = child.lstrip("/")
         past = self._past.setdefault(child, deque(maxlen=MOST_KEPT))
-        if past and transform.stamp < past[-1].stamp:  # time began anew
+        if past and transform.stamp < past[-1].stamp:  # time has jumped back
             past.clear()
         past.append(transform)
         self._transforms[child] = transform
@@ -83,13 +99,13 @@ class FrameTree:
         self._past.clear()
 
     def reset(self) -> None:
-        """Time has: what moves is nowhere until it is told again."""
-        for child in [child for child, told in self._transforms.items() if not told.is_static]:
+        """Drop all transforms that are not static, after ROS time has jumped back."""
+        for child in [child for child, newest in self._transforms.items() if not newest.is_static]:
             del self._transforms[child]
             del self._past[child]
 
     def transforms(self) -> Dict[str, Transform]:
-        """That of each frame that has a parent."""
+        """Return the newest transform of each child frame."""
         return dict(self._transforms)
 
     def names(self) -> List[str]:
@@ -100,9 +116,15 @@ class FrameTree:
         return [name for name in self.names() if name not in self._transforms]
 
     def pose(self, frame: str, fixed: str, at: Optional[float] = None) -> Optional[np.ndarray]:
-        """Of ``frame`` in ``fixed``, (4, 4); None if no chain of transforms leads from one to the other.
+        """Look up the pose of a frame in another one.
 
-        ``at``: seconds of ROS time, of which what is kept comes nearest; None: now.
+        Args:
+            frame: Frame whose pose is wanted.
+            fixed: Reference frame.
+            at: ROS time [s]; the stored transform closest to it is used. None for the newest.
+
+        Returns:
+            The pose (4, 4), or None if the frames are not connected.
         """
         frame, fixed = frame.lstrip("/"), fixed.lstrip("/")
         if frame == fixed:
@@ -114,13 +136,13 @@ class FrameTree:
     def _to_root(self, frame: str, at: Optional[float]) -> Tuple[str, np.ndarray]:
         pose = np.eye(4)
         for _ in range(DEEPEST):
-            transform = self._told(frame, at)
+            transform = self._transform(frame, at)
             if transform is None:
                 break
             pose, frame = transform.pose_in_parent @ pose, transform.parent
         return frame, pose
 
-    def _told(self, frame: str, at: Optional[float]) -> Optional[Transform]:
+    def _transform(self, frame: str, at: Optional[float]) -> Optional[Transform]:
         if at is None or frame not in self._past:
             return self._transforms.get(frame)
         return min(self._past[frame], key=lambda transform: abs(transform.stamp - at))

@@ -1,4 +1,4 @@
-"""What browsers may send: few kinds of messages, finite numbers, so much a second."""
+"""Checks of messages from browsers: allowed kinds, finite numbers, message rate."""
 
 import math
 from typing import Any, Mapping
@@ -6,12 +6,12 @@ from typing import Any, Mapping
 from cockpit.errors import RefusedError
 
 LARGEST_MESSAGE = 256 * 1024
-# A page sends its camera 60 times a second while it is turned, and a drag beside.
+# A page sends its camera 60 times a second while it turns, and drags in addition.
 MESSAGES_PER_SECOND, BURST = 240.0, 960.0
 DEEPEST = 8
 
-# What a page sends for the controls that ours has; what viser's also knows (files, forms, sharing, pictures)
-# is not wanted: some of it is kept for ever.
+# The messages of the controls that this page has. Others that viser accepts (files, forms, sharing, pictures)
+# are rejected: viser keeps some of them forever.
 KINDS = frozenset(
     {
         "ViewerCameraMessage",
@@ -26,7 +26,7 @@ KINDS = frozenset(
 
 
 class RateLimiter:
-    """A bucket of ``burst`` messages, into which ``rate`` a second run."""
+    """Token bucket: at most ``burst`` messages at once and ``rate`` per second."""
 
     def __init__(self, rate: float = MESSAGES_PER_SECOND, burst: float = BURST):
         self._rate, self._burst = rate, burst
@@ -34,7 +34,7 @@ class RateLimiter:
         self._at = -math.inf
 
     def allow(self, now: float) -> bool:
-        """Whether there was one left; ``now``: seconds by a steady clock."""
+        """Return whether a message is allowed at ``now`` [s, steady clock]."""
         self._left = min(self._burst, self._left + (now - self._at) * self._rate)
         self._at = now
         if self._left < 1.0:
@@ -44,7 +44,7 @@ class RateLimiter:
 
 
 def check(message: Any) -> None:
-    """A message as it was decoded. Raises RefusedError."""
+    """Check a decoded message. Raises RefusedError."""
     if not isinstance(message, Mapping) or message.get("type") not in KINDS:
         raise RefusedError("not a message that the page sends")
     updates = message.get("updates", {})

@@ -1,4 +1,4 @@
-"""The cockpit beside a run: a process of its own, which ends with the one that has started it."""
+"""The cockpit as a child process of a run."""
 
 import contextlib
 import signal
@@ -12,17 +12,25 @@ from typing import List, Mapping, Optional, Sequence
 from cockpit.errors import CockpitError, PortError
 from supervision.processes import ending_with_parent
 
-# Where a page is served if nobody says.
+# Default address of the page.
 FREE_PORT = "127.0.0.1:0"
 URL, ERROR = "cockpit: http", "error: "
 START_SECONDS, CLOSE_SECONDS, POLL_SECONDS = 120.0, 2.0, 0.02
 
 
 class CockpitProcess:
-    """Serves the page of the graph of ``ROS_MASTER_URI``, whose master may come later; logs to ``log``.
+    """Starts the cockpit for the graph of ``ROS_MASTER_URI``, whose master may start later.
 
-    ``tool``: that is open at first. ``prefix``: before its command, as that of a file system of its own.
-    Raises PortError if it cannot be served at ``where``, [ADDRESS:]PORT, CockpitError if it does not start.
+    Args:
+        where: [ADDRESS:]PORT of the page.
+        log: Log file.
+        environment: Environment variables; None to inherit them.
+        tool: Name of a tool that is opened first.
+        prefix: Words in front of the command, such as those of a sandbox.
+
+    Raises:
+        PortError: If the page cannot be served at ``where``.
+        CockpitError: If the process does not start.
     """
 
     def __init__(
@@ -52,7 +60,7 @@ class CockpitProcess:
         self.url = self._wait_for_url()
 
     def close(self) -> None:
-        """Ends it: every page is told that the connection is lost."""
+        """End the process; open pages show that the connection is lost."""
         self._process.send_signal(signal.SIGTERM)
         try:
             self._process.wait(CLOSE_SECONDS)
@@ -76,7 +84,7 @@ class CockpitProcess:
         raise CockpitError(f"the cockpit did not start, see {self._log}")
 
     def _read(self) -> None:
-        """Reads on whatever happens to the log, since a process stands still when nobody reads."""
+        """Read the output even if the log cannot be written: a full pipe would block the process."""
         with contextlib.ExitStack() as stack:
             log = None
             with contextlib.suppress(OSError):
@@ -86,5 +94,5 @@ class CockpitProcess:
                     self._lines.append(line)
                 if log is not None:
                     with contextlib.suppress(OSError):
-                        # The log stays when the run is over: the token is for who started it.
+                        # The log outlives the run, so it must not contain the token.
                         log.write(line.partition("?token=")[0].rstrip() + "\n")

@@ -66,7 +66,7 @@ class Window:
             self._world.remove(model)
         world = playground.arena.world
         look = describe_bodies(replace(world, bodies=(*world.bodies, *map(body_of, world.walkers))))
-        corners = np.vstack([piece.pose[:3, 3] for piece in look.pieces])[:, :2]
+        corners = np.vstack([piece.pose[:3, 3] for piece in look.parts])[:, :2]
         self._world.show(look)
         self._page.frame_view(corners.min(axis=0), corners.max(axis=0))
         self._title.content = f"<b>{escape(playground.arena.title)}</b>"

@@ -1,4 +1,4 @@
-"""What can be drawn in the world, one layer a module; a module that is put here is found."""
+"""The layers, one a module; every module of this package is loaded."""
 
 import importlib
 import pkgutil
@@ -8,7 +8,7 @@ from cockpit.layer import DisplayLayer
 
 
 def all_layers() -> List[DisplayLayer]:
-    """Every layer, in the order of their titles."""
+    """Return all layers sorted by title."""
     modules = (
         importlib.import_module(f"{__name__}.{found.name}") for found in pkgutil.iter_modules(__path__)
     )
@@ -16,5 +16,5 @@ def all_layers() -> List[DisplayLayer]:
 
 
 def by_type() -> Dict[str, DisplayLayer]:
-    """The layer of each type of message."""
+    """Return the layer of each message type."""
     return {kind: layer for layer in all_layers() for kind in layer.types}

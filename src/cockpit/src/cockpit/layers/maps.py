@@ -12,7 +12,7 @@ LARGEST = 4000 * 4000
 
 
 def _map_colours() -> np.ndarray:
-    """The colour (256, 4) of each value of a map, as unsigned bytes: unknown, free to occupied."""
+    """The colour (256, 4) uint8 of each value of a map: unknown, free to occupied."""
     table = np.zeros((256, 4), np.uint8)
     shade = np.linspace(245, 30, 101).astype(np.uint8)
     table[:101] = np.column_stack((shade, shade, shade, np.full(101, 235)))
@@ -22,7 +22,7 @@ def _map_colours() -> np.ndarray:
 
 
 def _costmap_colours() -> np.ndarray:
-    """As rviz's scheme "costmap": blue to red, cyan where the robot would touch, magenta what is there."""
+    """The costmap colours of rviz: blue to red, cyan for inscribed cells, magenta for lethal ones."""
     table = np.zeros((256, 4), np.uint8)
     share = np.arange(1, 99) / 98.0
     table[1:99] = np.column_stack((255 * share, np.zeros(98), 255 * (1 - share), 60 + 90 * share))
@@ -35,13 +35,13 @@ MAP_COLOURS, COSTMAP_COLOURS = _map_colours(), _costmap_colours()
 
 
 def picture_of(cells: np.ndarray, is_costmap: bool) -> np.ndarray:
-    """Cells (rows, columns) int8, row 0 lowest, as a picture (rows, columns, 4), row 0 at the top."""
+    """Convert cells (rows, columns) int8, row 0 lowest, to an image (rows, columns, 4), row 0 at the top."""
     colours = COSTMAP_COLOURS if is_costmap else MAP_COLOURS
     return colours[cells[::-1].view(np.uint8)]
 
 
 def draw_as(is_costmap: bool, height: float):
-    """Draws grids ``height`` metres above the floor, so that those of several topics do not flicker."""
+    """Return a function that draws grids at a height [m]; different heights avoid flicker."""
 
     def draw(message) -> LayerUpdate:
         info = message.info
@@ -54,7 +54,7 @@ def draw_as(is_costmap: bool, height: float):
             (origin.orientation.x, origin.orientation.y, origin.orientation.z, origin.orientation.w),
         )
         if corner is None or not 0.0 < info.resolution < 1e3:
-            raise CockpitError("a grid at no place, or of no resolution")
+            raise CockpitError("the grid's origin is not finite, or its resolution is not positive")
         size = info.width * info.resolution, info.height * info.resolution
         picture = picture_of(cells, is_costmap)
         return LayerUpdate(
@@ -65,7 +65,7 @@ def draw_as(is_costmap: bool, height: float):
 
 
 class GridLayer:
-    """A topic's grids; a costmap is known by its values between the extremes."""
+    """Draws the grids of a topic; values between free and lethal identify a costmap."""
 
     def __call__(self, message) -> LayerUpdate:
         values = np.asarray(message.data, dtype=np.int8)

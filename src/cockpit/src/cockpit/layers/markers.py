@@ -1,4 +1,4 @@
-"""Markers and arrays of them: all of visualization_msgs' types but meshes from files."""
+"""Markers and marker arrays: all types of visualization_msgs except mesh resources."""
 
 from typing import Callable, Dict, List, Tuple
 
@@ -21,13 +21,13 @@ ADD, DELETE, DELETE_ALL = 0, 2, 3
 ARROW, CUBE, SPHERE, CYLINDER, LINE_STRIP, LINE_LIST = range(6)
 CUBE_LIST, SPHERE_LIST, POINTS, TEXT, MESH, TRIANGLES = range(6, 12)
 HAIRLINE, BLACK = 2.0, (30, 30, 30)
-# Pixels that a metre of a line's width becomes; it is shown in pixels, to be seen from afar.
+# Line widths are drawn in pixels so that lines stay visible from afar; pixels per metre of width.
 PIXELS_PER_METRE = 60.0
 MOST_SOLIDS = 2000
 
 
 class MarkerLayer:
-    """Each marker replaces the one of its namespace and number."""
+    """Draws markers; each replaces the marker of the same namespace and id."""
 
     def __call__(self, message) -> LayerUpdate:
         parts: Dict[str, PlacedShape] = {}
@@ -50,14 +50,14 @@ class MarkerLayer:
 
 
 def part_of(marker, name: str) -> PlacedShape:
-    """Raises ValueError if it makes no sense."""
+    """Convert a marker. Raises ValueError if it is malformed."""
     p, q = marker.pose.position, marker.pose.orientation
     quaternion = (q.x, q.y, q.z, q.w) if any((q.x, q.y, q.z, q.w)) else (0.0, 0.0, 0.0, 1.0)
     pose = pose_matrix((p.x, p.y, p.z), quaternion)
     scale = np.array([marker.scale.x, marker.scale.y, marker.scale.z])
     points = np.array([(point.x, point.y, point.z) for point in marker.points], dtype=float).reshape(-1, 3)
     if pose is None or not np.isfinite(scale).all() or not np.isfinite(points).all():
-        raise ValueError("its pose, its scale or a point is not finite")
+        raise ValueError("its pose, scale or a point is not finite")
     draw = _KINDS.get(marker.type)
     if draw is None:
         raise ValueError(f"its type {marker.type} cannot be shown")
@@ -74,7 +74,7 @@ def _colour(warning) -> Tuple[int, int, int]:
 
 
 def _colours(marker, count: int) -> np.ndarray:
-    """(count, 3): of each point, or that of the marker for all."""
+    """Return the colours (count, 3): per point, or the marker's colour for all."""
     if len(marker.colors) == count and count:
         return np.array([_colour(colour) for colour in marker.colors], np.uint8)
     return np.tile(np.array(_colour(marker.color), np.uint8), (count, 1))
@@ -102,7 +102,7 @@ def _opacity(marker) -> float:
 
 
 def _arrow(marker, scale: np.ndarray, points: np.ndarray) -> Drawable:
-    """Along x as long as its scale says, or from its first point to its second."""
+    """Draw an arrow from the first to the second point, or along x with the length of its scale."""
     start, end = (points[0], points[1]) if len(points) >= 2 else (np.zeros(3), np.array([scale[0], 0.0, 0.0]))
     along = end - start
     across = np.cross(along, (0.0, 0.0, 1.0)) if np.abs(along[:2]).max(initial=0.0) > 1e-9 else np.zeros(3)

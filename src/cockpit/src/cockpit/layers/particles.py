@@ -1,4 +1,4 @@
-"""Many poses at once, as localization's particles are: a short line for each."""
+"""Pose arrays such as the particle cloud: a short line for each pose."""
 
 import numpy as np
 
@@ -11,11 +11,11 @@ COLOUR = (120, 80, 220)
 
 def draw(message) -> LayerUpdate:
     poses = message.poses[:: len(message.poses) // MOST + 1]
-    told = [
+    fields = [
         (p.position.x, p.position.y, p.orientation.x, p.orientation.y, p.orientation.z, p.orientation.w)
         for p in poses
     ]
-    x, y, qx, qy, qz, qw = np.array(told, dtype=float).reshape(-1, 6).T
+    x, y, qx, qy, qz, qw = np.array(fields, dtype=float).reshape(-1, 6).T
     yaw = np.arctan2(2.0 * (qw * qz + qx * qy), 1.0 - 2.0 * (qy * qy + qz * qz))
     starts = np.column_stack((x, y, np.full(len(x), HEIGHT)))
     ends = starts + LENGTH * np.column_stack((np.cos(yaw), np.sin(yaw), np.zeros(len(x))))

@@ -10,6 +10,10 @@ COLOUR = (46, 160, 67)
 
 
 def draw(message) -> LayerUpdate:
+    """Draw the path through the finite positions of a nav_msgs/Path, slightly above the floor.
+
+    The frame is that of the path or, if it is empty, of its first pose.
+    """
     points = np.array([(pose.pose.position.x, pose.pose.position.y, HEIGHT) for pose in message.poses])
     points = points.reshape(-1, 3)
     points = points[np.isfinite(points).all(axis=1)]

@@ -1,4 +1,4 @@
-"""Pictures of cameras, shown beside the world."""
+"""Camera images, shown beside the world."""
 
 import numpy as np
 
@@ -29,7 +29,7 @@ def draw(message) -> LayerUpdate:
 
 
 def _rows(message, width: int) -> np.ndarray:
-    """The bytes of each row, without what fills it up."""
+    """Return the bytes of each row without padding."""
     content = np.frombuffer(bytes(message.data), np.uint8)
     if message.step < width or len(content) < message.step * message.height:
         raise CockpitError(
@@ -46,7 +46,7 @@ def _colours(message) -> np.ndarray:
 
 
 def _depth(message) -> np.ndarray:
-    """Near is bright; what is not known is black."""
+    """Draw near pixels bright and unknown ones black."""
     is_metres = message.encoding == "32FC1"
     kind = np.dtype(np.float32 if is_metres else np.uint16).newbyteorder(">" if message.is_bigendian else "<")
     rows = np.ascontiguousarray(_rows(message, message.width * kind.itemsize)).view(kind)

@@ -1,4 +1,4 @@
-"""Single poses and points: goals, estimates with how uncertain they are, odometry."""
+"""Poses and points: goals, estimates with their covariance, odometry."""
 
 import numpy as np
 
@@ -11,14 +11,14 @@ LENGTH, HEAD, HEIGHT = 0.45, 0.14, 0.06
 
 
 def arrow(length: float = LENGTH, head: float = HEAD) -> np.ndarray:
-    """An arrow along x from the origin, flat: segments (3, 2, 3)."""
+    """Return a flat arrow along x from the origin: segments (3, 2, 3)."""
     tip = (length, 0.0, 0.0)
     ends = [(0.0, 0.0, 0.0), (length - head, head * 0.6, 0.0), (length - head, -head * 0.6, 0.0)]
     return np.array([(end, tip) for end in ends])
 
 
 def ellipse(covariance: np.ndarray, sigmas: float = 2.0) -> np.ndarray:
-    """Where a position lies, from its (2, 2) covariance: segments (32, 2, 3)."""
+    """Return the ellipse of a covariance (2, 2): segments (32, 2, 3)."""
     values, vectors = np.linalg.eigh((covariance + covariance.T) / 2.0)
     angles = np.linspace(0.0, 2.0 * np.pi, 33)
     circle = np.stack((np.cos(angles), np.sin(angles)))
@@ -28,15 +28,15 @@ def ellipse(covariance: np.ndarray, sigmas: float = 2.0) -> np.ndarray:
 
 
 def draw(message) -> LayerUpdate:
-    """Of PoseStamped, PoseWithCovarianceStamped, Odometry and PointStamped."""
+    """Draw a PoseStamped, PoseWithCovarianceStamped, Odometry or PointStamped."""
     if hasattr(message, "point"):
         point = message.point
         pose, parts = pose_matrix((point.x, point.y, point.z), (0, 0, 0, 1)), [arrow(0.01)]
     else:
         with_covariance = hasattr(message.pose, "covariance")
-        told = message.pose.pose if with_covariance else message.pose
-        q = told.orientation
-        pose = pose_matrix((told.position.x, told.position.y, HEIGHT), (q.x, q.y, q.z, q.w))
+        pose_message = message.pose.pose if with_covariance else message.pose
+        q = pose_message.orientation
+        pose = pose_matrix((pose_message.position.x, pose_message.position.y, HEIGHT), (q.x, q.y, q.z, q.w))
         parts = [arrow()]
     if pose is None:
         return LayerUpdate(warning="the pose is not finite, or its quaternion is zero")

@@ -10,7 +10,7 @@ COLOUR = (230, 57, 70)
 
 def draw(message) -> LayerUpdate:
     ranges = np.asarray(message.ranges, dtype=float)
-    with np.errstate(invalid="ignore"):  # angles may be anything
+    with np.errstate(invalid="ignore"):  # angles of a malformed scan may be infinite
         angles = message.angle_min + message.angle_increment * np.arange(len(ranges))
     seen = (
         np.isfinite(ranges)

@@ -1,4 +1,4 @@
-"""The camera of every page, moved along with a robot."""
+"""The camera of every page, moved with the robot."""
 
 from typing import Optional
 
@@ -10,14 +10,14 @@ STILL = 0.01
 
 
 class CameraFollower:
-    """Keeps the view that each person has chosen, moved on by as much as the robot."""
+    """Translates each client's camera by the motion of the robot."""
 
     def __init__(self, page: Page):
         self._page = page
         self._at: Optional[np.ndarray] = None
 
     def update(self, base_in_fixed: Optional[np.ndarray]) -> None:
-        """``base_in_fixed``: (4, 4); None: the camera stays."""
+        """Follow the base pose (4, 4) in the fixed frame; None stops following."""
         if base_in_fixed is None:
             self._at = None
             return
@@ -29,6 +29,6 @@ class CameraFollower:
                 client.camera.look_at = at
         elif np.abs(at - self._at).max() > STILL:
             for client in self._page.clients():
-                # Its setter takes along what is looked at.
+                # The setter translates look_at as well.
                 client.camera.position = client.camera.position + (at - self._at)
             self._at = at

@@ -1,4 +1,4 @@
-"""Pictures of cameras in a window of their own."""
+"""A window with camera images."""
 
 from typing import Any, Dict
 
@@ -8,7 +8,7 @@ from cockpit.page.tool_panel import ToolWindow
 
 
 class CameraWindow:
-    """A window that is there as long as there are pictures."""
+    """A window that exists while there are images to show."""
 
     def __init__(self, gui):
         self._gui = gui
@@ -17,7 +17,7 @@ class CameraWindow:
         self._shown: Dict[str, int] = {}
 
     def show(self, pictures: Dict[str, np.ndarray]) -> None:
-        """``pictures``: of each topic the newest, (rows, columns, 3) uint8."""
+        """Show the newest image (rows, columns, 3) uint8 of each topic."""
         if set(pictures) != set(self._images):
             self._rebuild(pictures)
         for topic, picture in pictures.items():

@@ -1,8 +1,7 @@
-"""The gate before viser's server: who comes in, how many, and what they may send.
+"""Access checks, connection limits and message checks in front of the server of viser.
 
-viser 1.1 has no hook for any of this; but it serves page and socket by one call of ``websockets``' server,
-and that call is given another socket, a check before viser's own, and connections that check what they
-receive. The version of viser is pinned, and test_gate.py tries it all on the real server.
+viser 1.1 has no hooks for these, but it serves page and socket with one call of ``websockets``. That call is
+replaced to pass our socket, a check before viser's own, and connections that check each message. viser is pinned, and test_connection_guard.py tests this module with the real server.
 """
 
 import logging
@@ -25,16 +24,16 @@ from cockpit.page.controls import accepts
 from supervision.open_files import allow_open_files
 
 MOST_PAGES = 32
-OPEN_FILES = 4096  # so many that a thousand connections leave some for ROS
-MOST_REASON = 100  # bytes of why a connection is closed: the protocol has room for some more
-# What each kind of message consists of.
+OPEN_FILES = 4096  # a thousand connections leave enough for ROS
+MOST_REASON = 100  # bytes of a closing reason; the protocol allows a few more
+# The fields of each message kind.
 FORMS = {kind: getattr(forms, kind) for kind in KINDS}
 POLICY = (
     "default-src 'self'; connect-src 'self' ws: data: blob:; img-src 'self' data: blob:; "
     "font-src 'self' data:; style-src 'self' 'unsafe-inline'; worker-src 'self' blob: data:; "
     "script-src 'self' 'unsafe-inline' 'unsafe-eval' 'wasm-unsafe-eval' blob: data:; frame-ancestors 'none'"
 )
-# Leads on to the page. Without a graphics card a quarter of the pixels is what a page can draw in time.
+# Redirects to the page. Without a graphics card it asks for a quarter of the pixels, to draw in time.
 START = """<!doctype html>
 <html lang="en">
 <title>Cockpit</title>
@@ -49,7 +48,7 @@ START = """<!doctype html>
 
 
 def listen(address: str, port: int) -> socket.socket:
-    """A socket that listens there and nowhere else. Raises PortError."""
+    """Open a listening socket. Raises PortError."""
     family = socket.AF_INET6 if ":" in address else socket.AF_INET
     listening = socket.socket(family, socket.SOCK_STREAM)
     listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -64,28 +63,28 @@ def listen(address: str, port: int) -> socket.socket:
 
 
 class ConnectionGuard:
-    """Stands before what is served on ``listening`` from within ``guarding()``."""
+    """Checks what is served on ``listening`` by a server that is started within ``guarding()``."""
 
     def __init__(self, listening: socket.socket, access: AccessPolicy):
         self._socket, self._access = listening, access
         self._pages = 0
         self._controls: Mapping[str, Any] = {}
-        # The other half is for ROS, which needs files too.
+        # The other half of the files is left for ROS.
         self._most_connections = allow_open_files(OPEN_FILES) // 2
-        # It would print the traceback of every request that is refused.
+        # It would print a traceback for every rejected request.
         logging.getLogger("websockets.server").setLevel(logging.CRITICAL)
 
     def set_controls(self, gui: Any) -> None:
-        """Whose controls get only such values as they can have: viser's ``gui``."""
+        """Set the gui of viser whose controls check the values they are sent."""
         self._controls = gui._gui_input_handle_from_uuid
 
     @contextmanager
     def guarding(self) -> Iterator[None]:
-        """The server that is started within is served through this gate."""
+        """Guard the server that is started in this context."""
         serve = library.serve
 
         def guarded(handler, _host, _port, *, process_request, **options):
-            connection = partial(_Connection, most=self._most_connections, is_acceptable=self._is_of_use)
+            connection = partial(_Connection, most=self._most_connections, is_acceptable=self._is_acceptable)
             options.update(max_size=LARGEST_MESSAGE, create_connection=connection, sock=self._socket)
             return serve(
                 self._closing_on_error(handler), process_request=self._checked(process_request), **options
@@ -97,13 +96,13 @@ class ConnectionGuard:
         finally:
             library.serve = serve  # type: ignore[misc]
 
-    def _is_of_use(self, message: Mapping[str, Any]) -> bool:
-        """Controls come and go, so that a page may well speak of one as it was."""
+    def _is_acceptable(self, message: Mapping[str, Any]) -> bool:
+        """Messages for controls that no longer exist are passed on: controls come and go."""
         control = self._controls.get(message.get("uuid", ""))
         return control is None or all(accepts(control, each) for each in message.get("updates", {}).values())
 
     def _checked(self, process_request: Callable) -> Callable:
-        """What judges a request before viser sees it."""
+        """Wrap the request handler with the access check."""
 
         def judged(connection, request):
             headers = request.headers
@@ -126,7 +125,7 @@ class ConnectionGuard:
         return judged
 
     def _closing_on_error(self, handler: Callable) -> Callable:
-        """Whatever a page sends, it is the end of its own connection only."""
+        """Close only the connection whose message raises an error."""
 
         async def handled(connection) -> None:
             self._pages += 1
@@ -134,7 +133,7 @@ class ConnectionGuard:
                 await handler(connection)
             except ConnectionClosed:
                 raise
-            except Exception:  # viser's handler lets pass whatever msgspec raises
+            except Exception:  # the handler of viser does not catch the errors of msgspec
                 await connection.close(1003, "not understood")
             finally:
                 self._pages -= 1
@@ -143,13 +142,13 @@ class ConnectionGuard:
 
 
 class _Connection(library.ServerConnection):
-    """Passes on what a page may send; closes at the first thing that it may not."""
+    """Passes valid messages on and closes at the first invalid one."""
 
     def __init__(
         self, *arguments: Any, most: int, is_acceptable: Callable[[Mapping[str, Any]], bool], **options: Any
     ):
         super().__init__(*arguments, **options)
-        self._most, self._is_of_use = most, is_acceptable
+        self._most, self._is_acceptable = most, is_acceptable
         self._rate_limiter = RateLimiter()
 
     def connection_made(self, transport: Any) -> None:
@@ -162,22 +161,22 @@ class _Connection(library.ServerConnection):
             message = await super().recv(*arguments, **options)
             if not self._rate_limiter.allow(time.monotonic()):
                 await self.close(1008, "too many messages")
-                continue  # which raises that it is closed
+                continue  # recv then raises ConnectionClosed
             try:
-                told = _read(message)
+                content = _read(message)
             except (RefusedError, msgspec.MsgspecError, TypeError) as error:
                 await self.close(1003, str(error).encode()[:MOST_REASON].decode(errors="ignore"))
                 continue
-            if self._is_of_use(told):
+            if self._is_acceptable(content):
                 return message
 
 
 def _read(message: Any) -> Mapping[str, Any]:
-    """Raises RefusedError, msgspec's errors, or for text TypeError."""
-    told = msgspec.msgpack.decode(message)
-    check(told)
-    msgspec.convert(told, FORMS[told["type"]])
-    return told
+    """Decode and check a message. Raises RefusedError, MsgspecError, or TypeError for text."""
+    content = msgspec.msgpack.decode(message)
+    check(content)
+    msgspec.convert(content, FORMS[content["type"]])
+    return content
 
 
 def _start(connection, cookie: str):
@@ -190,7 +189,7 @@ def _start(connection, cookie: str):
 
 
 def _with_policy(response):
-    """The page may load nothing from elsewhere, and nobody may frame it."""
+    """Add headers that forbid foreign resources and framing."""
     if response is not None:
         response.headers["Content-Security-Policy"] = POLICY
         response.headers["X-Content-Type-Options"] = "nosniff"

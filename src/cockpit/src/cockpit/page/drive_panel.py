@@ -1,4 +1,4 @@
-"""What a person does in the world: goals, poses and points, driving, time, things, missions."""
+"""The Drive tab: goals, poses and points, driving by hand, simulated time, missions, doors."""
 
 from typing import Any, Callable, Mapping, Protocol, Sequence, Tuple
 
@@ -12,20 +12,20 @@ HINTS = {
     POSE: "Press where the robot is, turn it the way it looks, release.",
     POINT: "Click a place: it is published.",
     BOX: "Click a place: a box is dropped there.",
-    MOVE: "Press where the thing is to stand; turn it if you like; release.",
+    MOVE: "Press the new position of the model; drag to turn it; release.",
 }
-# The buttons in rows, with the key of each: of turtlebot_teleop, but that "," is no key here.
+# The buttons and keys of turtlebot_teleop; the page has no "," key and uses m instead.
 BUTTONS = (("U", "u"), ("I", "i"), ("O", "o"), ("J", "j"), ("K", "k"), ("L", "l"), ("M", ","))
 ARROWS = {"U": "forward left", "I": "forward", "O": "forward right", "J": "turn left", "K": "stop"}
 ARROWS.update({"L": "turn right", "M": "back"})
 HOLD_HZ = 10.0
-NOBODY, NOTHING, NOWHERE = "(nobody yet)", "(nothing yet)", "(no place yet)"
-SPEEDS = ("as fast as it keeps up", "0.5 x", "1 x", "2 x", "5 x")
+NO_SUBSCRIBER, NO_MODEL, NO_PLACE = "(no subscriber yet)", "(no model yet)", "(no place yet)"
+SPEEDS = ("as fast as possible", "0.5 x", "1 x", "2 x", "5 x")
 FACTORS = (0.0, 0.5, 1.0, 2.0, 5.0)
 
 
 class DriveCommands(Protocol):
-    """What the panel asks for; whatever it raises is told on the page."""
+    """The actions of the panel; their exceptions are reported on the page."""
 
     def set_mode(self, mode: str) -> None: ...
 
@@ -49,7 +49,7 @@ class DriveCommands(Protocol):
 
 
 class DrivePanel:
-    """``guarded`` wraps what controls call."""
+    """Creates the controls; ``guarded`` wraps their callbacks to report exceptions."""
 
     def __init__(self, gui, tab, driver: DriveCommands, guarded: Callable[[Callable], Callable]):
         self._gui, self._driver, self._guarded = gui, driver, guarded
@@ -61,21 +61,21 @@ class DrivePanel:
             self._build_joints()
         self._build_keys()
 
-    def offer_world(self, things: Sequence[str], joints: Sequence[str]) -> None:
-        """What can be moved, and opened."""
-        _offer(self.thing, things)
+    def offer_world(self, models: Sequence[str], joints: Sequence[str]) -> None:
+        """Offer models to move and joints to open."""
+        _offer(self.model, models)
         _offer(self.joint, joints)
         self._joints.visible = bool(joints)
 
     def offer(self, robots: Sequence[str], topics: Sequence[str], places: Sequence[str]) -> None:
-        """Robots that take goals, topics that take velocities, and where things are carried."""
+        """Offer robots with a goal topic, velocity topics with a subscriber, and places of deliveries."""
         _offer(self.robot, robots)
         _offer(self.topic, topics)
         for end in (self.source, self.destination):
             _offer(end, places)
 
     def reset_mode(self) -> None:
-        """Pointing is over."""
+        """Return the mouse to the camera."""
         self.mode.value = LOOK
 
     def _build_pointing(self) -> None:
@@ -83,21 +83,21 @@ class DrivePanel:
         self.mode = gui.add_dropdown("Mouse", MODES)
         self.hint = gui.add_html(paragraph(HINTS[LOOK]))
         self.robot = gui.add_dropdown("Robot", ("/",))
-        self.thing = gui.add_dropdown("Thing", (NOTHING,), visible=False)
+        self.model = gui.add_dropdown("Model", (NO_MODEL,), visible=False)
         self.cancel = gui.add_button("Cancel the goal", color="gray")
         self.mode.on_update(self._guarded(self._choose_mode))
         self.cancel.on_click(self._guarded(lambda _: self._driver.cancel()))
 
     def _choose_mode(self, _event: Any) -> None:
-        self.thing.visible = self.mode.value == MOVE
+        self.model.visible = self.mode.value == MOVE
         self._driver.set_mode(self.mode.value)
-        self.hint.content = paragraph(HINTS[self.mode.value])  # said when it is so
+        self.hint.content = paragraph(HINTS[self.mode.value])  # the hint confirms the switch
 
     def _build_teleop(self) -> None:
         gui = self._gui
         with gui.add_folder("Drive by hand"):
-            gui.add_html(paragraph("Hold a button or its key: u i o j k l, m is back. Let go: it stops."))
-            self.topic = gui.add_dropdown("Velocities to", (NOBODY,))
+            gui.add_html(paragraph("Hold a button or its key: u i o j k l, m is back. Release it to stop."))
+            self.topic = gui.add_dropdown("Velocities to", (NO_SUBSCRIBER,))
             for label, key in BUTTONS:
                 button = gui.add_button(f"{label}  {ARROWS[label]}")
                 hold = self._guarded(lambda event, key=key: self._driver.press(key, event.client_id))
@@ -106,10 +106,14 @@ class DrivePanel:
     def _build_mission(self) -> None:
         gui, driver, guarded = self._gui, self._driver, self._guarded
         with gui.add_folder("Mission"):
-            self.mission = gui.add_html(paragraph("No mission is told of."))
+            self.mission = gui.add_html(
+                paragraph(
+                    "No mission yet. Choose object and places below, or start one with home_service.sh --serve."
+                )
+            )
             self.object = gui.add_text("Object", "parcel")
-            self.source = gui.add_dropdown("From", (NOWHERE,))
-            self.destination = gui.add_dropdown("To", (NOWHERE,))
+            self.source = gui.add_dropdown("From", (NO_PLACE,))
+            self.destination = gui.add_dropdown("To", (NO_PLACE,))
             start, end = gui.add_button("Deliver it"), gui.add_button("Cancel the mission", color="gray")
             start.on_click(guarded(lambda _: driver.deliver()))
             end.on_click(guarded(lambda _: driver.cancel_mission()))
@@ -117,7 +121,7 @@ class DrivePanel:
     def _build_joints(self) -> None:
         self._joints = self._gui.add_folder("Doors and drawers", visible=False)
         with self._joints:
-            self.joint = self._gui.add_dropdown("Of", (NOTHING,))
+            self.joint = self._gui.add_dropdown("Of", (NO_MODEL,))
             self.opened = self._gui.add_slider("Open, %", 0, 100, 5, 0)
             self.opened.on_update(self._guarded(lambda _: self._driver.swing()))
 
@@ -131,13 +135,13 @@ class DrivePanel:
         gui, driver = self._gui, self._driver
         with gui.add_folder("Simulated time", expand_by_default=False):
             self.speed = gui.add_dropdown("Speed", SPEEDS, initial_value="1 x")
-            pause, go_on = gui.add_button("Pause"), gui.add_button("Go on")
+            pause, resume = gui.add_button("Pause"), gui.add_button("Resume")
             step, reset = gui.add_button("One step"), gui.add_button("Reset the world", color="orange")
         factors: Mapping[str, float] = dict(zip(SPEEDS, FACTORS))
         self.speed.on_update(self._guarded(lambda _: driver.set_speed(factors[self.speed.value])))
         does: Tuple[Tuple[Any, Callable[[], None]], ...] = (
             (pause, lambda: driver.pause(True)),
-            (go_on, lambda: driver.pause(False)),
+            (resume, lambda: driver.pause(False)),
             (step, driver.step),
             (reset, driver.reset),
         )
@@ -146,6 +150,6 @@ class DrivePanel:
 
 
 def _offer(dropdown: Any, options: Sequence[str]) -> None:
-    told = tuple(options) or dropdown.options
-    if dropdown.options != told:
-        dropdown.options = told
+    offered = tuple(options) or dropdown.options
+    if dropdown.options != offered:
+        dropdown.options = offered

@@ -1,4 +1,4 @@
-"""The mouse over the floor, while a person is to point at something: press, turn, release, as in rviz."""
+"""Pointing with the mouse on the floor as in rviz: press, drag, release."""
 
 from typing import Any, Callable, Optional, Tuple
 
@@ -15,9 +15,9 @@ PREVIEW, COLOUR, HEIGHT = "pointer", (46, 160, 67), 0.08
 
 
 class FloorPointer:
-    """Calls ``on_pose`` with x, y and yaw in the fixed frame, and the client that pointed.
+    """Calls ``on_pose`` with x, y [m] and yaw [rad] in the fixed frame and the client id.
 
-    ``floor``: the handle of what is pressed. Without a turn the yaw is None.
+    The yaw is None for a click without a drag. ``floor`` is the handle of the mesh that receives clicks.
     """
 
     def __init__(self, floor: Any, drawer: SceneRenderer):
@@ -26,7 +26,7 @@ class FloorPointer:
         self._start: Optional[Point] = None
 
     def aim(self, on_pose: Optional[Callable[[float, float, Optional[float], int], None]]) -> None:
-        """From now on the mouse points; with None it turns the camera again."""
+        """Start pointing; None returns the mouse to the camera."""
         was_on, self._on_pose = self._on_pose is not None, on_pose
         if on_pose is not None and not was_on:
             self._floor.on_drag("left")(self._dragged)

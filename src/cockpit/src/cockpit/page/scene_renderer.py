@@ -1,4 +1,4 @@
-"""Puts what layers draw into the scene, and keeps it where its frames are."""
+"""Draws the shapes of layers into the scene and keeps them at their frames."""
 
 import hashlib
 from dataclasses import dataclass
@@ -21,13 +21,13 @@ from cockpit.frames import FrameTree, wxyz_of
 
 STILL = 1e-6
 EVERYTHING = "*"
-# viser's pictures lie in the plane of a camera: x to the right, y down.
+# Images of viser lie in the plane of a camera: x to the right, y down.
 LAID_DOWN = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
 @dataclass
 class _SceneNode:
-    """A part in the scene: ``node`` has its place, ``shape`` hangs from it; ``pose``: as it was last sent."""
+    """A shape in the scene: ``node`` carries the pose last sent, ``shape`` is its child."""
 
     part: PlacedShape
     node: Any
@@ -38,14 +38,14 @@ class _SceneNode:
 
 
 class SceneRenderer:
-    """Holds what each layer shows."""
+    """Keeps the shapes of all layers in the scene."""
 
     def __init__(self, scene):
         self._scene = scene
         self._shown: Dict[Tuple[str, str], _SceneNode] = {}
 
     def show(self, layer: str, update: LayerUpdate, now: float = 0.0) -> None:
-        """Shows what ``layer`` has drawn, in place of what it showed before."""
+        """Apply an update of a layer; ``now`` is steady-clock time [s]."""
         names = {part.name for part in update.parts}
         for key in list(self._shown):
             if (
@@ -63,9 +63,12 @@ class SceneRenderer:
             self._remove(key)
 
     def place(self, frames: FrameTree, fixed: str, now: float) -> None:
-        """Moves every part to where its frame is now; hides those whose frame leads nowhere.
+        """Move every shape to its frame and hide those whose frame is not connected.
 
-        ``now``: seconds by a steady clock, as for ``show``.
+        Args:
+            frames: Tree of frames.
+            fixed: Fixed frame.
+            now: Steady-clock time [s], as for ``show``.
         """
         for key in [key for key, shown in self._shown.items() if shown.ends <= now]:
             self._remove(key)
@@ -108,7 +111,7 @@ def _move(shown: _SceneNode, pose: np.ndarray) -> None:
 
 
 def _update(scene, path: str, shown: _SceneNode) -> None:
-    """Sends a part's shape if it is another than the one that is shown."""
+    """Send a shape if it has changed."""
     digest = _digest(shown.part.shape)
     if digest == shown.digest:
         return
@@ -191,5 +194,5 @@ _DRAWN: Dict[type, Callable] = {
 
 
 def _path_word(text: str) -> str:
-    """A word of a path in the scene, in which a slash would mean a level."""
+    """Escape a word of a scene path, in which a slash separates levels."""
     return text.strip("/").replace("/", ":") or "it"

@@ -21,13 +21,17 @@ CAMERA, LOOK_AT = np.array((-5.5, -12.5, 14.5)), np.array((1.2, -0.6, 0.0))
 
 
 class Page:
-    """Serves the page from now on. Raises PortError.
+    """Serves the page. Raises PortError.
 
-    ``gui`` and ``scene`` are shared by all who look; ``url`` has the token.
+    Attributes:
+        gui: The gui of viser, shared by all clients.
+        scene: The scene of viser, shared by all clients.
+        url: Address of the page with the token.
+
     """
 
     def __init__(self, address: str, port: int):
-        """``port``: 0 for a free one."""
+        """Bind and start the server; ``port`` 0 selects a free one."""
         listening = listen(address, port)
         port = listening.getsockname()[1]
         shown = "127.0.0.1" if address in ("0.0.0.0", "::") else address
@@ -35,33 +39,33 @@ class Page:
         self.url = f"http://{f'[{shown}]' if ':' in shown else shown}:{port}/?token={access.token}"
         self._on_leave: List[Callable[[int], None]] = []
         self._is_watched = threading.Event()
-        # viser greets on the standard output, with a URL that has no token.
+        # viser prints a URL without the token.
         guard = ConnectionGuard(listening, access)
         with guard.guarding(), contextlib.redirect_stdout(io.StringIO()):
             self._server = viser.ViserServer(address, port, label=NAME, verbose=False)
         self.gui, self.scene = self._server.gui, self._server.scene
         guard.set_controls(self.gui)
-        self._server.on_client_connect(self._came)
-        self._server.on_client_disconnect(self._left)
-        self._dress()
+        self._server.on_client_connect(self._on_connect)
+        self._server.on_client_disconnect(self._on_disconnect)
+        self._set_up_scene()
 
     @property
     def is_watched(self) -> bool:
-        """Whether any browser shows the page."""
+        """Whether the page is open in any browser."""
         return self._is_watched.is_set()
 
-    def wait_for_someone(self, seconds: float) -> bool:
+    def wait_for_client(self, seconds: float) -> bool:
         return self._is_watched.wait(seconds)
 
     def clients(self) -> List[viser.ClientHandle]:
         return list(self._server.get_clients().values())
 
     def on_leave(self, do: Callable[[int], None]) -> None:
-        """``do`` is given the number of each client whose page was closed, or lost."""
+        """Register a callback for the id of each client whose page was closed or lost."""
         self._on_leave.append(do)
 
     def notify(self, text: str, is_bad: bool = False) -> None:
-        """A note on every page, which goes by itself."""
+        """Show a notification on every page, which closes automatically."""
         for client in self.clients():
             client.add_notification(
                 "Something went wrong" if is_bad else NAME,
@@ -71,11 +75,11 @@ class Page:
             )
 
     def atomic(self):
-        """What is changed within is seen at once."""
+        """Group changes into one update of the pages."""
         return self._server.atomic()
 
     def frame_view(self, low_xy: np.ndarray, high_xy: np.ndarray) -> None:
-        """Those who come from now on see all between two corners, m, from above and aside."""
+        """Set the initial camera of new clients to show the area between two corners (2,) [m]."""
         middle = np.append(0.5 * (low_xy + high_xy), 0.0)
         away = 0.5 * float(np.linalg.norm(high_xy - low_xy)) / np.tan(0.5 * FIELD_OF_VIEW)
         direction = (CAMERA - LOOK_AT) / np.linalg.norm(CAMERA - LOOK_AT)
@@ -86,16 +90,16 @@ class Page:
         with contextlib.redirect_stdout(io.StringIO()):
             self._server.stop()
 
-    def _came(self, _client: viser.ClientHandle) -> None:
+    def _on_connect(self, _client: viser.ClientHandle) -> None:
         self._is_watched.set()
 
-    def _left(self, client: viser.ClientHandle) -> None:
+    def _on_disconnect(self, client: viser.ClientHandle) -> None:
         if not self._server.get_clients():
             self._is_watched.clear()
         for do in self._on_leave:
             do(client.client_id)
 
-    def _dress(self) -> None:
+    def _set_up_scene(self) -> None:
         self.gui.configure_theme(
             show_logo=False, show_share_button=False, brand_color=BRAND, control_width="medium"
         )
@@ -106,7 +110,7 @@ class Page:
         self._server.initial_camera.fov = FIELD_OF_VIEW
         self.scene.set_up_direction("+z")
         self._light()
-        # What is pressed when a person points at a place: a picture of one colour, which no light need reach.
+        # The floor that receives clicks: an image of one colour, which needs no lighting.
         self.floor = self.scene.add_image(
             "/floor/slab",
             np.full((2, 2, 3), FLOOR_COLOUR, np.uint8),
@@ -129,10 +133,7 @@ class Page:
         )
 
     def _light(self) -> None:
-        """Two lamps and no shadows.
-
-        Light from all around, and shadows, are four fifths of what a page costs without a graphics card.
-        """
+        """Use two lights without shadows: an environment map and shadows take 80 % of the time without a GPU."""
         self.scene.configure_environment_map(None)
         self.scene.configure_default_lights(enabled=False)
         self.scene.add_light_directional(

@@ -1,4 +1,4 @@
-"""The tools: a tab with a box for each, and a window for each that is open."""
+"""The Tools tab with a checkbox for each tool, and the windows of open tools."""
 
 from typing import Any, Callable, Dict, Iterable, Tuple
 
@@ -6,29 +6,29 @@ WIDTH = 420
 
 
 class ToolPanel:
-    """``on_switch`` is called with a tool's name and whether it is to be open."""
+    """Calls ``on_switch`` with a tool's name and whether it should be open."""
 
     def __init__(self, gui, tools: Iterable[Tuple[str, str]], on_switch: Callable[[str, bool], None]):
-        """``tools``: the name and title of each."""
+        """Create a checkbox for each (name, title) in ``tools``."""
         self._gui = gui
         self._boxes: Dict[str, Any] = {}
-        gui.add_markdown("Each opens a window, which can be moved and docked.")
+        gui.add_markdown("Each tool opens a window that can be moved and docked.")
         for name, title in tools:
             box = gui.add_checkbox(title, False)
             box.on_update(lambda _, name=name, box=box: on_switch(name, box.value))
             self._boxes[name] = box
 
     def open(self, name: str) -> None:
-        """As if a person had ticked its box."""
+        """Tick the checkbox of a tool."""
         self._boxes[name].value = True
 
     def window(self, title: str, width: int) -> Any:
-        """A new window with one tab: the context in which controls are made, and ``remove()``."""
+        """Create a window; controls are created within its context."""
         return ToolWindow(self._gui, title, width)
 
 
 class ToolWindow:
-    """A movable window of the page; ``width``: pixels."""
+    """A movable window of the page, ``width`` pixels wide."""
 
     def __init__(self, gui, title: str, width: int = WIDTH):
         self._panel = gui.add_panel()

@@ -1,4 +1,4 @@
-"""What is shown and from where: the page's tab of layers."""
+"""The View tab: layers, fixed frame and camera."""
 
 from typing import Any, Callable, Dict, Tuple
 
@@ -8,10 +8,10 @@ AUTOMATIC = "automatic"
 
 
 class ViewPanel:
-    """Checkboxes of layers, which come and go with their topics; the fixed frame; the camera."""
+    """A checkbox for each topic of a layer, the fixed frame, and the camera."""
 
     def __init__(self, gui, tab, on_cut: Callable[[float], None]):
-        """``tab``: what the controls are in."""
+        """Create the controls in ``tab``; ``on_cut`` receives the cut height [m]."""
         self._gui, self._tab = gui, tab
         self._folders: Dict[str, Any] = {}
         self._boxes: Dict[str, Any] = {}
@@ -23,10 +23,12 @@ class ViewPanel:
     def _build(self) -> None:
         gui = self._gui
         self.status = gui.add_html("")
-        self.follow = gui.add_checkbox("Follow the robot", False, hint="the camera keeps its view of it")
-        self.fixed = gui.add_dropdown("Fixed frame", (AUTOMATIC,), hint="in which everything is shown")
+        self.follow = gui.add_checkbox("Follow the robot", False, hint="moves the camera with the robot")
+        self.fixed = gui.add_dropdown(
+            "Fixed frame", (AUTOMATIC,), hint="frame in which everything is displayed"
+        )
         self.height = gui.add_slider(
-            "Cut at (m)", min=0.2, max=3.0, step=0.1, initial_value=1.2, hint="what is higher is taken off"
+            "Cut at (m)", min=0.2, max=3.0, step=0.1, initial_value=1.2, hint="hides what is higher"
         )
         with gui.add_folder("World"):
             self.world = gui.add_checkbox("World", True)
@@ -38,7 +40,7 @@ class ViewPanel:
             self.fixed.options = (AUTOMATIC, *names)
 
     def offer(self, topic: str, layer: DisplayLayer) -> None:
-        """A box for a topic, as it was last left."""
+        """Add a checkbox for a topic in its last state."""
         if topic in self._boxes:
             return
         if layer.title not in self._folders:
@@ -51,16 +53,16 @@ class ViewPanel:
         self._boxes[topic] = box
 
     def withdraw(self, topic: str) -> None:
-        """The topic is gone."""
+        """Remove the checkbox of a topic that has disappeared."""
         box = self._boxes.pop(topic)
         self._chosen[topic] = box.value
         box.remove()
 
     def offered(self) -> Dict[str, bool]:
-        """The topics that have a box, and whether they are switched on."""
+        """Return the listed topics and whether each is enabled."""
         return {topic: box.value for topic, box in self._boxes.items()}
 
     def show_status(self, text: str) -> None:
-        """How things stand, as HTML."""
+        """Show a status line (HTML)."""
         if self.status.content != text:
             self.status.content = text

@@ -1,4 +1,4 @@
-"""The world and its robots in the scene."""
+"""The world and the robots in the 3D scene."""
 
 from itertools import groupby
 from typing import Any, Dict, List, Optional, Tuple
@@ -12,20 +12,20 @@ STILL = 1e-5
 
 
 class LinkView:
-    """Pieces that move together: a node of the scene with a surface for each colour."""
+    """The visual parts of a link: a scene node with a mesh for each colour."""
 
-    def __init__(self, scene, path: str, pieces: Tuple[VisualPart, ...]):
+    def __init__(self, scene, path: str, parts: Tuple[VisualPart, ...]):
         self._scene, self._path = scene, path
-        self.pieces = pieces
+        self.parts = parts
         self.node = scene.add_frame(path, show_axes=False)
         self._surfaces: List[Any] = []
         self._pose: Optional[np.ndarray] = None
 
     def draw(self, height: float) -> None:
-        """With nothing above ``height``, metres in the world."""
+        """Draw the parts, cut at ``height`` in the world [m]."""
         for surface in self._surfaces:
             surface.remove()
-        cut = tuple(cut_at(piece, height) for piece in self.pieces)
+        cut = tuple(cut_at(piece, height) for piece in self.parts)
         self._surfaces = [
             self._scene.add_mesh_simple(
                 f"{self._path}/{number}",
@@ -39,7 +39,7 @@ class LinkView:
         ]
 
     def move(self, pose: Optional[np.ndarray]) -> None:
-        """``pose``: (4, 4) in the fixed frame; None hides it."""
+        """Set the pose (4, 4) in the fixed frame; None hides the link."""
         if self.node.visible != (pose is not None):
             self.node.visible = pose is not None
         if pose is None or (self._pose is not None and np.abs(pose - self._pose).max() < STILL):
@@ -54,11 +54,11 @@ class LinkView:
 
 
 class WorldView:
-    """The models of a world, which stand where they were put until ``place`` says otherwise."""
+    """The models of a world. A link keeps its pose until ``place`` or ``move`` changes it."""
 
     def __init__(self, scene):
         self._scene = scene
-        self._things: Dict[str, LinkView] = {}
+        self._links: Dict[str, LinkView] = {}
         self._poses: Dict[str, np.ndarray] = {}
         self._height = np.inf
         self.joints: Dict[str, DisplayJoint] = {}
@@ -66,71 +66,71 @@ class WorldView:
 
     @property
     def movable(self) -> List[str]:
-        """``model::link`` of what physics may move."""
-        return [name for name, thing in self._things.items() if thing.pieces[0].moves]
+        """Names ``model::link`` of links that the physics moves."""
+        return [name for name, link in self._links.items() if link.parts[0].moves]
 
     @property
     def models(self) -> List[str]:
-        return sorted({thing.pieces[0].model for thing in self._things.values()})
+        return sorted({link.parts[0].model for link in self._links.values()})
 
-    def show(self, look: SceneDescription) -> None:
-        def thing_of(piece: VisualPart) -> str:
+    def show(self, description: SceneDescription) -> None:
+        def link_of(piece: VisualPart) -> str:
             return f"{piece.model}::{piece.link}"
 
-        self.joints.update({f"{joint.model}: {joint.name}": joint for joint in look.joints})
-        for name, pieces in groupby(sorted(look.pieces, key=thing_of), thing_of):
-            thing = LinkView(self._scene, f"/world/{name.replace('/', ':')}", tuple(pieces))
-            thing.draw(self._height)
-            self._things[name] = thing
-            self._poses[name] = thing.pieces[0].pose
+        self.joints.update({f"{joint.model}: {joint.name}": joint for joint in description.joints})
+        for name, parts in groupby(sorted(description.parts, key=link_of), link_of):
+            link = LinkView(self._scene, f"/world/{name.replace('/', ':')}", tuple(parts))
+            link.draw(self._height)
+            self._links[name] = link
+            self._poses[name] = link.parts[0].pose
 
     def remove(self, model: str) -> None:
-        """If there is such a model."""
-        for name in [name for name, thing in self._things.items() if thing.pieces[0].model == model]:
-            self._things.pop(name).remove()
+        """Remove a model, if it exists."""
+        for name in [name for name, link in self._links.items() if link.parts[0].model == model]:
+            self._links.pop(name).remove()
             del self._poses[name]
         self.joints = {name: joint for name, joint in self.joints.items() if joint.model != model}
 
     def cut(self, height: float) -> None:
-        """Takes off what is above ``height``, metres: roofs, and the upper part of walls."""
+        """Hide everything above ``height`` [m]: roofs and the upper part of walls."""
         self._height = height
-        for thing in self._things.values():
-            thing.draw(height)
+        for link in self._links.values():
+            link.draw(height)
 
     def place(self, name: str, pose_in_world: np.ndarray) -> None:
         if name in self._poses:
             self._poses[name] = pose_in_world
 
     def move(self, model: str, motion: np.ndarray) -> None:
-        """``motion``: (4, 4), from where the model was in the world to where it is."""
-        for name, thing in self._things.items():
-            if thing.pieces[0].model == model:
+        """Move a model by ``motion`` (4, 4) in the world frame."""
+        for name, link in self._links.items():
+            if link.parts[0].model == model:
                 self._poses[name] = motion @ self._poses[name]
 
     def update(self, world_in_fixed: Optional[np.ndarray]) -> None:
-        for name, thing in self._things.items():
+        for name, link in self._links.items():
             shown = world_in_fixed is not None and self.is_shown
-            thing.move(world_in_fixed @ self._poses[name] if shown else None)
+            link.move(world_in_fixed @ self._poses[name] if shown else None)
 
 
 class RobotView:
-    """A robot's links, each where tf says; ``prefix`` is before the names of its frames."""
+    """The links of a robot, placed by tf; ``prefix`` is its tf_prefix."""
 
-    def __init__(self, scene, name: str, look: SceneDescription, prefix: str):
+    def __init__(self, scene, name: str, description: SceneDescription, prefix: str):
         self._prefix = f"{prefix.strip('/')}/" if prefix.strip("/") else ""
-        self._things: Dict[str, LinkView] = {}
-        for link, pieces in groupby(sorted(look.pieces, key=_link), _link):
+        self._links: Dict[str, LinkView] = {}
+        for link, parts in groupby(sorted(description.parts, key=_link), _link):
             path = f"/robots/{name.strip('/').replace('/', ':') or 'robot'}/{link}"
-            self._things[link] = LinkView(scene, path, tuple(pieces))
-            self._things[link].draw(np.inf)
+            self._links[link] = LinkView(scene, path, tuple(parts))
+            self._links[link].draw(np.inf)
 
     def update(self, frames: FrameTree, fixed: str, is_shown: bool) -> None:
-        for link, thing in self._things.items():
-            thing.move(frames.pose(self._prefix + link, fixed) if is_shown else None)
+        for link, link in self._links.items():
+            link.move(frames.pose(self._prefix + link, fixed) if is_shown else None)
 
     def remove(self) -> None:
-        for thing in self._things.values():
-            thing.remove()
+        for link in self._links.values():
+            link.remove()
 
 
 def _link(piece: VisualPart) -> str:

@@ -1,4 +1,4 @@
-"""What takes long, done beside: a tool asks other nodes and programs without waiting for them."""
+"""Background calls: a tool calls other nodes and programs without blocking."""
 
 import threading
 from typing import Any, Callable, List, Optional, Tuple
@@ -7,7 +7,7 @@ from cockpit.errors import CockpitError
 
 
 class BackgroundCall:
-    """One thing at a time, in a thread that nobody waits for."""
+    """Runs one call at a time in a daemon thread."""
 
     def __init__(self) -> None:
         self._done: List[Tuple[Optional[Exception], Any]] = []
@@ -18,20 +18,20 @@ class BackgroundCall:
         return self._thread is not None and self._thread.is_alive()
 
     def start(self, do: Callable[[], Any]) -> None:
-        """Raises CockpitError if the one before is not done yet."""
+        """Start a call. Raises CockpitError if the previous one is still running."""
         if self.is_busy:
-            raise CockpitError("the answer before is still awaited")
+            raise CockpitError("the previous request is still running; wait for its answer")
         self.restart(do)
 
     def restart(self, do: Callable[[], Any]) -> None:
-        """Instead of the one before: whatever comes of that is not taken any more."""
+        """Start a call and discard the result of the previous one."""
         done: List[Tuple[Optional[Exception], Any]] = []
         self._done = done
         self._thread = threading.Thread(target=_work, args=(do, done), daemon=True)
         self._thread.start()
 
     def results(self) -> List[Any]:
-        """What has come of it since the last call, if anything. Raises what it has raised."""
+        """Return the new result, if any, as a list. Raises the exception of the call."""
         if not self._done:
             return []
         error, result = self._done.pop()
@@ -43,7 +43,7 @@ class BackgroundCall:
 def _work(do: Callable[[], Any], done: List[Tuple[Optional[Exception], Any]]) -> None:
     try:
         result = do()
-    except Exception as error:  # handed on to who asks
+    except Exception as error:  # raised again by results()
         done.append((error, None))
     else:
         done.append((None, result))

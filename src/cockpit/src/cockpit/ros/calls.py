@@ -1,4 +1,4 @@
-"""Services, called, and topics, joined."""
+"""Service calls with time-outs, and waiting for subscribers."""
 
 import time
 from typing import Any
@@ -9,13 +9,13 @@ from rospy.msg import args_kwds_to_message
 from cockpit.errors import CockpitError
 from planar_ros.calls.services import ServiceError, call_service
 
-# So long is waited for a service to be there, and for its answer; of one that has much to do.
+# Time-outs for a service to appear, for its response, and for a slow response [s].
 SERVICE_SECONDS, ANSWER_SECONDS, LONG_SECONDS = 1.0, 10.0, 60.0
 LISTENER_SECONDS, POLL_SECONDS = 1.0, 0.02
 
 
 def call(name: str, kind: Any, *arguments: Any, seconds: float = ANSWER_SECONDS) -> Any:
-    """The answer. Raises CockpitError if there is none within ``seconds``, as of a node that hangs."""
+    """Call a service. Raises CockpitError if there is no response within ``seconds``."""
     try:
         rospy.wait_for_service(name, SERVICE_SECONDS)
         request = args_kwds_to_message(kind._request_class, arguments, {})
@@ -25,7 +25,7 @@ def call(name: str, kind: Any, *arguments: Any, seconds: float = ANSWER_SECONDS)
 
 
 def wait_for_subscribers(publisher: rospy.Publisher, listeners: int) -> None:
-    """Gives those who listen the time to find it."""
+    """Wait until ``listeners`` subscribers are connected, for LISTENER_SECONDS at most."""
     deadline = time.monotonic() + LISTENER_SECONDS
     while time.monotonic() < deadline and publisher.get_num_connections() < listeners:
         time.sleep(POLL_SECONDS)

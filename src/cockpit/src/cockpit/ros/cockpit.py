@@ -1,4 +1,4 @@
-"""The cockpit of a running graph: a thread that looks, draws and lets the tools work, ten times a second."""
+"""The cockpit of a running graph: one thread that reads topics, draws and updates tools at 10 Hz."""
 
 import time
 from contextlib import suppress
@@ -27,17 +27,17 @@ from cockpit.ros.world.scene_reader import SceneReader
 from cockpit.ros.world.world import WorldTracker
 
 PERIOD = 0.1
-# How often it is asked what there is.
-LOOKING_SECONDS = 1.0
+# Period of looking for new topics, worlds and robots [s].
+REFRESH_SECONDS = 1.0
 IDLE_SECONDS = 0.5
 FIXED_FRAMES = ("map", "odom", "world")
 FRAMES = "frames"
-# Time that jumps back further has begun anew.
+# A larger jump back of ROS time is a restart [s].
 JITTER_SECONDS = 0.1
 
 
 class Cockpit:
-    """Everything of the page but the page itself."""
+    """Connects the page to the ROS graph."""
 
     def __init__(self, page: Page, reader: SceneReader):
         self._page = page
@@ -48,81 +48,81 @@ class Cockpit:
         self._drawer = SceneRenderer(page.scene)
         self._world = WorldTracker(self._graph, page.scene, reader, self._warn)
         pointer = FloorPointer(page.floor, self._drawer)
-        self._driving = DriveTab(
+        self._drive_tab = DriveTab(
             self._graph, self._frames, pointer, self._world, page.notify, lambda: self._fixed
         )
         self._build()
         self._world.view.cut(self._view.height.value)
         self._layers = LayerManager(self._graph, self._drawer, self._warn)
         self._follower = CameraFollower(page)
-        page.on_leave(self._driving.teleop.release)
-        self._look_at = self._newest = 0.0
-        self._trouble = self._complaint = ""
+        page.on_leave(self._drive_tab.teleop.release)
+        self._refresh_at = self._newest = 0.0
+        self._error = self._last_warning = ""
 
     def _build(self) -> None:
         gui = self._page.gui
         tabs = gui.add_tab_group()
         self._view = ViewPanel(gui, tabs.add_tab("View"), self._guarded(self._world.view.cut))
-        self._driving.build(gui, tabs.add_tab("Drive"), self._guarded)
+        self._drive_tab.build(gui, tabs.add_tab("Drive"), self._guarded)
         with tabs.add_tab("Tools"):
             self.toolbox = Toolbox(self._page, self._graph)
         self._screens = CameraWindow(gui)
 
     def run(self, is_over: Callable[[], bool] = rospy.is_shutdown) -> None:
-        """Until ``is_over``."""
+        """Run until ``is_over`` returns True."""
         while not is_over():
-            if not self._page.wait_for_someone(IDLE_SECONDS):
-                self._rest()
+            if not self._page.wait_for_client(IDLE_SECONDS):
+                self._unsubscribe()
                 self._read_world()
                 continue
             began = time.monotonic()
             try:
-                self._turn(began)
-            except Exception as error:  # whatever a graph sends, the page goes on
-                self._complain(error_text(error))
+                self._step(began)
+            except Exception as error:  # malformed data from the graph must not end the page
+                self._warn_once(error_text(error))
             time.sleep(max(PERIOD - (time.monotonic() - began), 0.02))
-        self._driving.teleop.close()
-        self._rest()
+        self._drive_tab.teleop.close()
+        self._unsubscribe()
 
     def _read_world(self) -> None:
-        """So that it is there when the first page opens."""
+        """Read the world early, for the first client."""
         with suppress(CockpitError):
             self._world.poll()
 
-    def _rest(self) -> None:
-        """Nobody looks: nothing is subscribed to."""
+    def _unsubscribe(self) -> None:
+        """End all subscriptions while no page is open."""
         self._layers.close()
         self._transforms.listen(False)
-        self._driving.rest()
-        self._world.rest()
+        self._drive_tab.unsubscribe()
+        self._world.unsubscribe()
         self.toolbox.pause()
 
-    def _turn(self, now: float) -> None:
-        self._watch_time(rospy.get_time())
+    def _step(self, now: float) -> None:
+        self._check_time(rospy.get_time())
         try:
             self._transforms.listen(True)
-            if now >= self._look_at:
-                self._look_at = now + LOOKING_SECONDS
+            if now >= self._refresh_at:
+                self._refresh_at = now + REFRESH_SECONDS
                 self._refresh()
-            self._driving.update()
+            self._drive_tab.update()
             self._transforms.update()
-            self._trouble = ""
-        except Exception as error:  # the rest is shown nevertheless
-            self._trouble = error_text(error)
+            self._error = ""
+        except Exception as error:  # everything else is still drawn
+            self._error = error_text(error)
         self._fixed = self._fixed_frame()
         self._layers.update(now)
         self._show(now)
         self.toolbox.update(now)
 
-    def _watch_time(self, stamp: float) -> None:
-        """``stamp``: seconds of ROS time."""
+    def _check_time(self, stamp: float) -> None:
+        """Reset layers and frames if ROS time [s] has jumped back."""
         if stamp < self._newest - JITTER_SECONDS:
             self._layers.reset()
             self._frames.reset()
         self._newest = stamp
 
     def _refresh(self) -> None:
-        """What there is, and what of it is to be shown. Raises CockpitError."""
+        """Update the lists of topics, worlds and frames. Raises CockpitError."""
         offers = self._layers.offers()
         for topic, layer in offers.items():
             self._view.offer(topic, layer)
@@ -131,10 +131,10 @@ class Cockpit:
         self._layers.choose(self._view.offered(), offers)
         self._world.poll()
         self._view.offer_frames(tuple(self._frames.names()))
-        self._driving.refresh()
+        self._drive_tab.refresh()
 
     def _fixed_frame(self) -> str:
-        """The one that was chosen, or the likeliest."""
+        """Return the selected fixed frame or a default."""
         if self._view.fixed.value != AUTOMATIC:
             return self._view.fixed.value
         known = set(self._frames.names())
@@ -149,20 +149,20 @@ class Cockpit:
                 self._drawer.clear(FRAMES)
             self._world.update(self._frames, fixed, view.world.value, view.robots.value)
             self._drawer.place(self._frames, fixed, now)
-        base = self._driving.base_frame() if view.follow.value else None
+        base = self._drive_tab.base_frame() if view.follow.value else None
         self._follower.update(None if base is None else self._frames.pose(base, fixed))
         self._screens.show(self._layers.screens)
         view.show_status(self._status())
 
     def _status(self) -> str:
-        if self._trouble:
-            return f'<div style="margin:0 12px;color:#c92a2a">{escape(self._trouble)}</div>'
+        if self._error:
+            return f'<div style="margin:0 12px;color:#c92a2a">{escape(self._error)}</div>'
         return f'<div style="margin:0 12px;opacity:.7">fixed frame <b>{escape(self._fixed)}</b></div>'
 
-    def _complain(self, text: str) -> None:
-        """Once for each thing that is wrong."""
-        if text != self._complaint:
-            self._complaint = text
+    def _warn_once(self, text: str) -> None:
+        """Report an error once until it changes."""
+        if text != self._last_warning:
+            self._last_warning = text
             self._warn(text)
 
     def _warn(self, text: str) -> None:
@@ -170,19 +170,19 @@ class Cockpit:
         self._page.notify(text, True)
 
     def _guarded(self, do: Callable[[Any], object]) -> Callable[[Any], None]:
-        """For what controls call: whatever it raises is told, and is the end of this call only."""
+        """Wrap a callback of a control so that its exceptions are reported."""
 
         def guarded(event: Any) -> None:
             try:
                 do(event)
-            except Exception as error:  # a person's input meets the whole of ROS here
+            except Exception as error:  # user input can raise any error of ROS
                 self._warn(error_text(error))
 
         return guarded
 
 
 def frames_drawn(frames: FrameTree, fixed: str) -> LayerUpdate:
-    """The axes of every frame that is joined to the fixed one, with their names."""
+    """Draw the axes and names of all frames connected to the fixed frame."""
     found = [(name, frames.pose(name, fixed)) for name in frames.names()]
     poses = [(name, pose) for name, pose in found if pose is not None]
     if not poses:

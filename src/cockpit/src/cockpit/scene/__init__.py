@@ -1,1 +1,1 @@
-"""What a world and its robots look like: read in a process of its own, cut, and merged into few surfaces."""
+"""Visual shapes of worlds and robots, read by a child process."""

@@ -1,4 +1,4 @@
-"""The look of worlds and robots: their visible parts as triangles."""
+"""The visual parts of worlds and robots as triangle meshes."""
 
 import io
 import json
@@ -12,10 +12,16 @@ from cockpit.drawing import Colour
 
 @dataclass(frozen=True, eq=False)
 class VisualPart:
-    """A visible part of a link: ``vertices`` (N, 3) in the link's frame, ``triangles`` (M, 3).
+    """A visual of a link as triangles.
 
-    ``model``, ``link``: what it belongs to; of a robot the model is empty. ``pose``: (4, 4) of the link in
-    the world. ``moves``: whether anything but a person moves it.
+    Attributes:
+        model: Model of the link; empty for a robot.
+        link: Name of the link.
+        pose: Pose (4, 4) of the link in the world.
+        vertices: (N, 3) in the link frame [m].
+        triangles: (M, 3) indices of vertices.
+        colour: Colour.
+        moves: Whether the physics moves the link.
     """
 
     model: str
@@ -29,7 +35,7 @@ class VisualPart:
 
 @dataclass(frozen=True)
 class DisplayJoint:
-    """A door or a drawer: the joint ``name`` of a ``model``, and where it is shut and wide open, rad or m."""
+    """The joint of a door or a drawer, with its closed and its open position [rad or m]."""
 
     model: str
     name: str
@@ -37,31 +43,35 @@ class DisplayJoint:
     wide: float
 
     def opened(self, share: float) -> float:
-        """Its position when it is open by so much, 0 to 1."""
+        """Return the position at an opening from 0 to 1."""
         return self.shut + share * (self.wide - self.shut)
 
 
 @dataclass(frozen=True, eq=False)
 class SceneDescription:
-    """``warnings``: what cannot be shown, in words."""
+    """The visual parts of a world, a model or a robot.
 
-    pieces: Tuple[VisualPart, ...]
+    Attributes:
+        parts: Visual parts.
+        warnings: What cannot be displayed, and why.
+        joints: Joints of doors and drawers.
+    """
+
+    parts: Tuple[VisualPart, ...]
     warnings: Tuple[str, ...] = ()
     joints: Tuple[DisplayJoint, ...] = ()
 
     def to_bytes(self) -> bytes:
-        """As another process reads it with ``from_bytes``."""
+        """Serialize for another process; ``from_bytes`` is the inverse."""
         about: List[dict] = []
         arrays: Dict[str, np.ndarray] = {}
-        for number, piece in enumerate(self.pieces):
-            about.append(
-                {"model": piece.model, "link": piece.link, "colour": piece.colour, "moves": piece.moves}
-            )
-            arrays[f"p{number}"] = piece.pose
-            arrays[f"v{number}"] = piece.vertices.astype(np.float32)
-            arrays[f"t{number}"] = piece.triangles.astype(np.int32)
+        for number, part in enumerate(self.parts):
+            about.append({"model": part.model, "link": part.link, "colour": part.colour, "moves": part.moves})
+            arrays[f"p{number}"] = part.pose
+            arrays[f"v{number}"] = part.vertices.astype(np.float32)
+            arrays[f"t{number}"] = part.triangles.astype(np.int32)
         joints = [astuple(joint) for joint in self.joints]
-        index = json.dumps({"pieces": about, "warnings": self.warnings, "joints": joints})
+        index = json.dumps({"parts": about, "warnings": self.warnings, "joints": joints})
         file = io.BytesIO()
         np.savez(file, index=np.array(index), **arrays)
         return file.getvalue()
@@ -70,7 +80,7 @@ class SceneDescription:
     def from_bytes(content: bytes) -> "SceneDescription":
         with np.load(io.BytesIO(content)) as arrays:
             index = json.loads(str(arrays["index"]))
-            pieces = [
+            parts = [
                 VisualPart(
                     about["model"],
                     about["link"],
@@ -80,37 +90,37 @@ class SceneDescription:
                     tuple(about["colour"]),
                     about["moves"],
                 )
-                for number, about in enumerate(index["pieces"])
+                for number, about in enumerate(index["parts"])
             ]
         joints = tuple(DisplayJoint(*joint) for joint in index["joints"])
-        return SceneDescription(tuple(pieces), tuple(index["warnings"]), joints)
+        return SceneDescription(tuple(parts), tuple(index["warnings"]), joints)
 
 
-def cut_at(piece: VisualPart, height: float) -> VisualPart:
-    """The piece without what is above ``height``, metres in the world; empty if it is all above."""
-    in_world = piece.vertices @ piece.pose[:3, :3].T + piece.pose[:3, 3]
+def cut_at(part: VisualPart, height: float) -> VisualPart:
+    """Cut a part at ``height`` in the world [m]; the result may be empty."""
+    in_world = part.vertices @ part.pose[:3, :3].T + part.pose[:3, 3]
     if not len(in_world) or in_world[:, 2].max() <= height:
-        return piece
+        return part
     if in_world[:, 2].min() >= height:
-        return VisualPart(*_named(piece), np.empty((0, 3)), np.empty((0, 3), int), piece.colour, piece.moves)
+        return VisualPart(*_named(part), np.empty((0, 3)), np.empty((0, 3), int), part.colour, part.moves)
     in_world[:, 2] = np.minimum(in_world[:, 2], height)
-    vertices = (in_world - piece.pose[:3, 3]) @ piece.pose[:3, :3]
-    return VisualPart(*_named(piece), vertices, piece.triangles, piece.colour, piece.moves)
+    vertices = (in_world - part.pose[:3, 3]) @ part.pose[:3, :3]
+    return VisualPart(*_named(part), vertices, part.triangles, part.colour, part.moves)
 
 
-def _named(piece: VisualPart) -> Tuple[str, str, np.ndarray]:
-    return piece.model, piece.link, piece.pose
+def _named(part: VisualPart) -> Tuple[str, str, np.ndarray]:
+    return part.model, part.link, part.pose
 
 
-def merged(pieces: Tuple[VisualPart, ...]) -> List[Tuple[np.ndarray, np.ndarray, Colour]]:
-    """Vertices, triangles and colour, one of each colour, of pieces of one link."""
+def merged(parts: Tuple[VisualPart, ...]) -> List[Tuple[np.ndarray, np.ndarray, Colour]]:
+    """Merge the parts of one link to one mesh (vertices, triangles, colour) per colour."""
     by_colour: Dict[Colour, List[VisualPart]] = {}
-    for piece in pieces:
-        if len(piece.triangles):
-            by_colour.setdefault(piece.colour, []).append(piece)
+    for part in parts:
+        if len(part.triangles):
+            by_colour.setdefault(part.colour, []).append(part)
     result = []
     for colour, same in by_colour.items():
-        offsets = np.cumsum([0, *(len(piece.vertices) for piece in same)])
-        triangles = np.concatenate([piece.triangles + first for piece, first in zip(same, offsets)])
-        result.append((np.concatenate([piece.vertices for piece in same]), triangles, colour))
+        offsets = np.cumsum([0, *(len(part.vertices) for part in same)])
+        triangles = np.concatenate([part.triangles + first for part, first in zip(same, offsets)])
+        result.append((np.concatenate([part.vertices for part in same]), triangles, colour))
     return result

@@ -24,9 +24,9 @@ from sim_bridge.sdf.element import Element, parse_text
 from sim_bridge.views.render_geometry import GREY, mesh_of, visible_parts
 from sim_bridge.world import Joint, World
 
-# Colours of a mesh's triangles that differ by less are one, of 255: each is a surface of its own.
+# Triangle colours that differ by less (of 255) are merged: each colour is a separate mesh.
 COARSENESS = 16
-# How far what has no limits is opened, rad and m; a limit beyond the second is none.
+# Open position of joints without limits [rad, m]; a larger limit than BEYOND counts as none.
 FREELY, BEYOND = {"revolute": math.pi / 2.0, "prismatic": 0.5}, 1000.0
 
 
@@ -52,7 +52,7 @@ def describe_bodies(world: World) -> SceneDescription:
                 place = model, link, body.pose_in_world, body.mass is not None
                 collector.add(place, visual.shape, visual.pose_in_body, visual.colour)
     joints = tuple(_display_joint(joint) for joint in world.joints if joint.kind in FREELY)
-    return SceneDescription(tuple(collector.pieces), (*world.warnings, *collector.warnings), joints)
+    return SceneDescription(tuple(collector.parts), (*world.warnings, *collector.warnings), joints)
 
 
 def describe_robot(text: str, find_file: FindFile) -> SceneDescription:
@@ -69,7 +69,7 @@ def describe_robot(text: str, find_file: FindFile) -> SceneDescription:
             material = visual.child("material")
             own = None if material is None else _rgb(material) or named.get(material.name)
             collector.add(("", link.name, IDENTITY, True), shape, _origin(visual), own)
-    return SceneDescription(tuple(collector.pieces), tuple(collector.warnings))
+    return SceneDescription(tuple(collector.parts), tuple(collector.warnings))
 
 
 def robot_joints(text: str) -> Dict[str, Tuple[str, np.ndarray]]:
@@ -96,7 +96,7 @@ class _Collector:
     """Collects the triangles of shapes, grouped by colour."""
 
     def __init__(self):
-        self.pieces: List[VisualPart] = []
+        self.parts: List[VisualPart] = []
         self.warnings: List[str] = []
 
     def add(self, place: Tuple[str, str, np.ndarray, bool], shape: Shape, pose: np.ndarray, rgb) -> None:
@@ -105,7 +105,7 @@ class _Collector:
         try:
             for vertices, triangles, colour in _coloured(shape, rgb):
                 vertices = transform_points(pose, vertices)
-                self.pieces.append(VisualPart(model, link, link_pose, vertices, triangles, colour, moves))
+                self.parts.append(VisualPart(model, link, link_pose, vertices, triangles, colour, moves))
         except PlanarError as error:
             self.warnings.append(str(error))
 

@@ -1,4 +1,4 @@
-"""Looks of worlds and robots, read by a process of their own that ends when it has."""
+"""Read worlds and robots in a child process that exits when it is done."""
 
 import sys
 import threading
@@ -11,57 +11,57 @@ import msgspec.msgpack
 from cockpit.scene.description import SceneDescription
 
 READING_SECONDS = 120.0
-# Where processors are short, the graph goes first, but this must not starve.
+# The graph has priority on a busy machine, but reading must not starve.
 NICENESS = "5"
 WORLD, ROBOT, MODEL = "world", "robot", "model"
-# WORLD, an SDF file, and nothing; ROBOT, its parameter, and its URDF; MODEL, its name, and its SDF or URDF.
+# (WORLD, SDF file, ""), (ROBOT, parameter, URDF) or (MODEL, name, SDF or URDF).
 SceneRequest = Tuple[str, str, str]
-# A look, or why there is none.
+# The description, or the reason why it could not be read.
 SceneResult = Union[SceneDescription, str]
 
 
 class SceneReader:
-    """Starts the processes that read, each for all that is asked at once."""
+    """Starts a child process for each batch of requests."""
 
     def __init__(self):
         self._ready: Optional[Popen] = None
 
     def prepare(self) -> None:
-        """Starts that of the next reading: what it imports is most of its work, and can be done in time."""
+        """Start the next child process early: importing takes most of its time."""
         self._ready = _start()
 
-    def rest(self) -> None:
-        """Nothing is to be read soon."""
+    def stop(self) -> None:
+        """Stop the prepared child process."""
         if self._ready is not None:
             self._ready.kill()
             self._ready.communicate()
             self._ready = None
 
     def read_in_background(
-        self, requests: Sequence[SceneRequest], take: Callable[[List[SceneResult]], None]
+        self, requests: Sequence[SceneRequest], on_results: Callable[[List[SceneResult]], None]
     ) -> None:
-        """Reads in a thread, which gives ``take`` the answers."""
+        """Read in a thread, which calls ``on_results``."""
         process, self._ready = self._ready, None
-        threading.Thread(target=lambda: take(read_scenes(requests, process)), daemon=True).start()
+        threading.Thread(target=lambda: on_results(read_scenes(requests, process)), daemon=True).start()
 
 
 def read_scenes(requests: Sequence[SceneRequest], process: Optional[Popen] = None) -> List[SceneResult]:
-    """By one process for all of them: that which is given, or a new one."""
+    """Read all requests in one child process, the given one or a new one."""
     process = process or _start()
     try:
-        told, complaint = process.communicate(msgspec.msgpack.encode(requests), READING_SECONDS)
+        output, errors = process.communicate(msgspec.msgpack.encode(requests), READING_SECONDS)
     except TimeoutExpired:
         process.kill()
         process.communicate()
         return [f"was not read within {READING_SECONDS:g} s"] * len(requests)
     if process.returncode == 0:
-        answers = msgspec.msgpack.decode(told)
+        answers = msgspec.msgpack.decode(output)
         return [
             SceneDescription.from_bytes(answer) if isinstance(answer, bytes) else answer for answer in answers
         ]
-    if len(requests) > 1:  # one of them has ended it
+    if len(requests) > 1:  # one of them has crashed the process
         return [answer for request in requests for answer in read_scenes([request])]
-    lines = complaint.decode(errors="replace").strip().splitlines()
+    lines = errors.decode(errors="replace").strip().splitlines()
     return [lines[-1] if lines else "could not be read"]
 
 
@@ -78,7 +78,7 @@ def main() -> None:
 
 
 def _reading() -> Callable[[str, str, str], Union[bytes, str]]:
-    """What reads a request; only the process that reads imports what that takes."""
+    """Return the function that reads a request; only the child process imports the physics packages."""
     from cockpit.scene.reader import describe_model, describe_robot, describe_world
     from planar import PlanarError
     from sim_bridge.ros.description import find_file, model_folders

@@ -1,4 +1,4 @@
-"""Models that are spawned into the simulation and deleted while it runs, as the simulator tells of them."""
+"""Models that are spawned and deleted while the simulation runs."""
 
 from dataclasses import replace
 from typing import Any, Callable, Dict, List, Optional, Tuple
@@ -13,7 +13,7 @@ TYPE = "sim_bridge_msgs/SpawnedModels"
 
 
 class SpawnedModelsView:
-    """Shows them in the ``view``, where they were put."""
+    """Shows the models that the simulator publishes."""
 
     def __init__(
         self, graph: GraphClient, view: WorldView, reader: SceneReader, notify: Callable[[str], None]
@@ -24,10 +24,10 @@ class SpawnedModelsView:
         self._arrived: List[Tuple[List[Any], List[SceneResult]]] = []
 
     def poll(self) -> None:
-        """Listens to who tells of them, if anybody does. Raises CockpitError."""
+        """Subscribe to the topic of spawned models, if there is one. Raises CockpitError."""
         if self._feed is None:
-            told = (topic for topic, kind in self._graph.topics().items() if kind == TYPE)
-            topic = next(told, None)
+            topics = (topic for topic, kind in self._graph.topics().items() if kind == TYPE)
+            topic = next(topics, None)
             self._feed = None if topic is None else self._graph.feed(topic, TYPE)
 
     def update(self) -> None:
@@ -39,14 +39,14 @@ class SpawnedModelsView:
                 if self._models.get(model.name) == model:
                     self._show(model, answer)
 
-    def rest(self) -> None:
-        """Nobody looks."""
+    def unsubscribe(self) -> None:
+        """End the subscription."""
         if self._feed is not None:
             self._feed.close()
             self._feed = None
 
     def _compare(self, models: Dict[str, Any]) -> None:
-        """With those that are shown or being read."""
+        """Remove deleted models and read new ones."""
         for name, model in self._models.items():
             if models.get(name) != model:
                 self._view.remove(name)
@@ -61,5 +61,5 @@ class SpawnedModelsView:
         if not isinstance(answer, SceneDescription):
             self._notify(f"{model.name}: {answer}")
         elif pose is not None:
-            pieces = tuple(replace(piece, pose=pose @ piece.pose) for piece in answer.pieces)
-            self._view.show(replace(answer, pieces=pieces))
+            parts = tuple(replace(part, pose=pose @ part.pose) for part in answer.parts)
+            self._view.show(replace(answer, parts=parts))

@@ -1,4 +1,4 @@
-"""The simulated world and the robots of the graph: found by their parameters, kept where they are."""
+"""The simulated world and the robots of the graph, found by their parameters."""
 
 from contextlib import suppress
 from functools import partial
@@ -14,7 +14,7 @@ from cockpit.ros.world.scene_reader import ROBOT, WORLD, SceneReader, SceneReque
 from cockpit.ros.world.spawned_models import SpawnedModelsView
 from cockpit.scene.description import SceneDescription
 
-# Of the simulator under its own name and under that of Gazebo.
+# Parameters of sim_bridge and of Gazebo with the path of the world.
 WORLD_PARAMETERS = ("/sim_bridge/world", "/gazebo/world")
 DESCRIPTION, PREFIX = "robot_description", "tf_prefix"
 # The frame of a world file; a map made or rendered of that world coincides with it.
@@ -23,7 +23,7 @@ LINK_STATES = "/gazebo/link_states"
 
 
 class WorldTracker:
-    """Looks for worlds and robots, and draws them once they have been read."""
+    """Finds worlds and robots, reads them in the background and draws them."""
 
     def __init__(self, graph: GraphClient, scene, reader: SceneReader, notify: Callable[[str], None]):
         self._graph, self._scene, self._reader, self._notify = graph, scene, reader, notify
@@ -35,7 +35,7 @@ class WorldTracker:
         self._spawned = SpawnedModelsView(graph, self.view, reader, notify)
 
     def poll(self) -> None:
-        """Reads, in the background, what has come since the last call. Raises CockpitError."""
+        """Start reading new worlds and robots. Raises CockpitError."""
         names = self._graph.parameter_names()
         worlds = [(WORLD, name, self._show_world) for name in WORLD_PARAMETERS if name in names]
         robots = [
@@ -44,23 +44,23 @@ class WorldTracker:
             if name.rpartition("/")[2] == DESCRIPTION
         ]
         self._read([*worlds, *robots])
-        self._reader.rest()
+        self._reader.stop()
         self._spawned.poll()
 
     def update(self, frames: FrameTree, fixed: str, shows_world: bool, shows_robots: bool) -> None:
         while self._arrived:
             self._arrived.pop(0)()
         self.view.is_shown = shows_world
-        with suppress(CockpitError):  # of a master that is gone; the status tells of that
-            self._follow_things(shows_world)
+        with suppress(CockpitError):  # the status line reports a missing master
+            self._update_link_poses(shows_world)
             self._spawned.update()
         self.view.update(world_in(frames, fixed))
         for robot in self.robots.values():
             robot.update(frames, fixed, shows_robots)
 
-    def rest(self) -> None:
-        """Nobody looks."""
-        self._spawned.rest()
+    def unsubscribe(self) -> None:
+        """End all subscriptions."""
+        self._spawned.unsubscribe()
         self._stop_following()
 
     def _stop_following(self) -> None:
@@ -68,8 +68,8 @@ class WorldTracker:
             self._states.close()
             self._states = None
 
-    def _follow_things(self, wanted: bool) -> None:
-        """Those that physics may move; where there are none the simulator is not asked."""
+    def _update_link_poses(self, wanted: bool) -> None:
+        """Update links that physics moves; without any, the simulator's states are not subscribed to."""
         movable = self.view.movable
         if not wanted or not movable:
             self._stop_following()
@@ -83,7 +83,7 @@ class WorldTracker:
                     self.view.place(name, pose)
 
     def _read(self, found: Sequence[Tuple[str, str, Callable[[SceneDescription], None]]]) -> None:
-        """Those that have not been read: of which kind each is, its parameter, and what shows its look."""
+        """Read parameters that are new: (kind, parameter, function that shows the result) each."""
         new = [(kind, name, show) for kind, name, show in found if name not in self._asked]
         if not new:
             return
@@ -94,14 +94,14 @@ class WorldTracker:
         ]
         self._asked.update(name for _, name, _ in new)
 
-        def take(answers: List[SceneResult]) -> None:
-            for (_, name, show), answer in zip(new, answers):
-                if isinstance(answer, SceneDescription):
-                    self._arrived.append(partial(show, answer))
+        def on_results(results: List[SceneResult]) -> None:
+            for (_, name, show), result in zip(new, results):
+                if isinstance(result, SceneDescription):
+                    self._arrived.append(partial(show, result))
                 else:
-                    self._notify(f"{name}: {answer}")
+                    self._notify(f"{name}: {result}")
 
-        self._reader.read_in_background(requests, take)
+        self._reader.read_in_background(requests, on_results)
 
     def _show_world(self, look: SceneDescription) -> None:
         self.view.show(look)
@@ -120,7 +120,7 @@ class WorldTracker:
 
 
 def world_in(frames: FrameTree, fixed: str) -> Optional[np.ndarray]:
-    """Where the world's frame is, (4, 4): tf's, or else that of the map, or the fixed frame itself."""
+    """Return the pose (4, 4) of the world frame, else of the map frame, else the identity."""
     known = set(frames.names())
     for frame in (WORLD_FRAME, MAP_FRAME):
         if frame in known and frames.pose(frame, fixed) is not None:
