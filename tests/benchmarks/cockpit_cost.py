@@ -53,7 +53,7 @@ def measure(options: argparse.Namespace, folder: Path) -> Dict[str, Any]:
         print(
             f"page up {now - page.create_time():.2f} s after its start, {now - start:.2f} s after the command"
         )
-        run.told("send goals to")
+        run.wait_for_line("send goals to")
         time.sleep(5.0)
         figures["no client"] = use_of(page, "no client", options.seconds)
         for count in (1, options.clients):
@@ -100,8 +100,8 @@ def pace_of_mission(is_watched: bool, folder: Path) -> float:
     view = ["--web"] if is_watched else []
     with Command(SCRIPTS / "home_service.sh", "--speed", "0", "--output", folder, *view) as run:
         with Clients(run.url, 1) if is_watched else nullcontext():
-            run.told("SUCCESS")
-        name = run.told("result, report and logs in ")
+            run.wait_for_line("SUCCESS")
+        name = run.wait_for_line("result, report and logs in ")
     return json.loads((Path(name) / "result.json").read_text())["real_time_factor"]
 
 

@@ -1,4 +1,4 @@
-"""Where things are on the page."""
+"""Positions of the world's points on the page."""
 
 import math
 

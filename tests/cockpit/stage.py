@@ -26,8 +26,8 @@ class Stage:
         self._number = rospy.Publisher("/sine", Float64, queue_size=5)
         self._image = rospy.Publisher("/camera/image", Image, queue_size=1)
         self._frames = rospy.Publisher("/tf", TFMessage, queue_size=5)
-        self._told = rospy.Publisher("/told", String, queue_size=5, latch=True)
-        rospy.Subscriber("/words", String, lambda message: self._told.publish(f"heard {message.data}"))
+        self._replies = rospy.Publisher("/replies", String, queue_size=5, latch=True)
+        rospy.Subscriber("/words", String, lambda message: self._replies.publish(f"received {message.data}"))
         rospy.Service("/switch", SetBool, self._switch)
         SettingsReconfigureServer(self.settings, self._tune)
 
@@ -44,7 +44,7 @@ class Stage:
             rospy.rostime.wallsleep(0.05)
 
     def _switch(self, request):
-        return SetBoolResponse(success=request.data, message=f"told {request.data}")
+        return SetBoolResponse(success=request.data, message=f"switched {request.data}")
 
     def _tune(self, values):
         self.settings = Settings(**values)

@@ -39,7 +39,7 @@ class CockpitCourseTest(unittest.TestCase):
             page.evaluate("document.activeElement.blur()")
             start = self.newest["turtle1"]
             page.hold_key("i", "the turtle to go", lambda: distance(start, self.newest["turtle1"]) > FAR)
-            page.let_go_key("i")
+            page.release_key("i")
         wait_until("both together again", lambda: self.apart() < NEAR, 60.0)
 
     def test_rqt_graph_draws_who_talks_to_whom(self):
@@ -51,21 +51,21 @@ class CockpitCourseTest(unittest.TestCase):
             page.wait_for("/turtle2/pose/x")
             wait_until("a chart", lambda: page.evaluate("document.querySelectorAll('.uplot').length") == 1)
 
-    def test_rqt_console_tells_what_nodes_say(self):
+    def test_rqt_console_lists_log_messages(self):
         with Looking(self, "rqt_console") as page:
             rospy.logwarn("a word of the test")
             page.wait_for("a word of the test")
 
     def test_rqt_logger_level_knows_the_nodes(self):
         with Looking(self, "rqt_logger_level") as page:
-            page.click("How much a node says")
+            page.click("Logger levels")
             page.choose("Of node", "/turtlesim")
 
     def test_rqt_tf_tree_draws_the_frames(self):
         with Looking(self, "rqt_tf_tree") as page:
             page.wait_for("world", "turtle1", "turtle2", "/turtle1_tf_broadcaster")
 
-    def test_rqt_topic_tells_rates_and_values(self):
+    def test_rqt_topic_shows_rates_and_values(self):
         with Looking(self, "rqt_topic") as page:
             page.choose("Watch", "/turtle1/pose")
             page.wait_for("linear_velocity: ")
@@ -73,7 +73,7 @@ class CockpitCourseTest(unittest.TestCase):
     def test_rqt_publisher_drives_a_turtle(self):
         with Looking(self, "rqt_publisher") as page:
             page.fill_in("Topic", "/turtle1/cmd_vel")
-            page.click("Make the message")
+            page.click("Create the message")
             wait_until("the template", lambda: "angular" in (page.value_of("Message") or ""))
             page.fill_in("Message", "angular: {z: 1.0}")
             before = self.newest["turtle1"].theta

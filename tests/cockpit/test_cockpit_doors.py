@@ -58,7 +58,7 @@ class CockpitDoorsTest(unittest.TestCase):
         with PageClient(self.cockpit.url) as client:
 
             def is_shown():
-                return "/world/cup::cup" in client.things
+                return "/world/cup::cup" in client.nodes
 
             pose = Pose(Point(1.0, 0.5, 0.1), Quaternion(w=1.0))
             answer = rospy.ServiceProxy("/gazebo/spawn_sdf_model", SpawnModel)("cup", CUP, "", pose, "world")

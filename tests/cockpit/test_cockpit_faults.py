@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What goes wrong with a simulated robot is chosen on a page in a browser; judged by what the robot says."""
+"""Faults of a simulated robot are injected from a browser; judged by what the robot publishes."""
 
 import os
 import tempfile
@@ -28,7 +28,7 @@ class CockpitFaultsTest(unittest.TestCase):
         cls.browser = Browser()
         cls.page = cls.browser.open(cls.cockpit.url, 1400, 900)
         wait_until("scans", lambda: cls.scans, 60.0)
-        cls.page.wait_for("The laser publishes nothing.", "Let it go wrong", seconds=90.0)
+        cls.page.wait_for("The laser publishes nothing.", "Inject the fault", seconds=90.0)
 
     @classmethod
     def tearDownClass(cls):
@@ -38,14 +38,14 @@ class CockpitFaultsTest(unittest.TestCase):
     def tearDown(self):
         self.assertEqual(self.page.errors, [])
 
-    def test_a_fault_begins_lasts_as_long_as_it_says_and_ends(self):
+    def test_a_fault_is_active_for_its_duration(self):
         self.page.choose("Kind", "scan_nan")
         self.page.wait_for("All beams measure nothing.")
         self.page.fill_in("Seconds", "4")
-        self.page.click("Let it go wrong")
-        self.page.wait_for("scan_nan has begun.", "Goes wrong now")
+        self.page.click("Inject the fault")
+        self.page.wait_for("scan_nan is active.", "Active fault")
         wait_until("a blind scan", lambda: self.is_blind())
-        wait_until("it to be over on the page", lambda: "Goes wrong now" not in self.page.text())
+        wait_until("it to be over on the page", lambda: "Active fault" not in self.page.text())
         wait_until("the robot to see again", lambda: not self.is_blind())
 
     def test_what_goes_wrong_for_ever_outlives_its_window(self):
@@ -54,22 +54,22 @@ class CockpitFaultsTest(unittest.TestCase):
         self.page.wait_for("All beams are too long. Usually 0.1 m, from -1 to 1.")
         self.page.fill_in("Seconds", "0")
         self.page.fill_in("Strength", str(BIAS))
-        self.page.click("Let it go wrong")
+        self.page.click("Inject the fault")
         wait_until("shorter beams", lambda: abs(self.nearest() - usual - BIAS) < 0.1)
-        self.page.wait_for(f"{BIAS} m", "for ever")
+        self.page.wait_for(f"{BIAS} m", "forever")
         if PICTURES:
             self.page.screenshot(Path(PICTURES) / "faults.png")
         self.page.click("Tools")
         self.page.click("Faults")
-        wait_until("the window to close", lambda: "Let it go wrong" not in self.page.text())
+        wait_until("the window to close", lambda: "Inject the fault" not in self.page.text())
         self.page.click("Faults")
-        self.page.wait_for("Let it go wrong", f"{BIAS} m", "for ever")
+        self.page.wait_for("Inject the fault", f"{BIAS} m", "forever")
 
-    def test_what_the_simulator_refuses_is_told_in_its_words(self):
+    def test_what_the_simulator_refuses_is_replies_in_its_words(self):
         self.page.choose("Kind", "wheel_weak")
         self.page.wait_for("The left wheel turns more slowly", "from 0 to 1.")
         self.page.fill_in("Strength", "7")
-        self.page.click("Let it go wrong")
+        self.page.click("Inject the fault")
         self.page.wait_for("strength must be from 0 to 1")
 
     def is_blind(self):

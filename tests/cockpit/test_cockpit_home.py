@@ -26,7 +26,7 @@ TELEOP = "/cmd_vel_mux/input/teleop"
 GOAL = (1.5, 0.3)
 # Keys, and whither they drive: the signs of the velocities along x and to the left.
 DIRECTIONS = (("i", 1, 0), ("u", 1, 1), ("o", 1, -1), ("j", 0, 1), ("l", 0, -1), ("m", -1, 0))
-# A pixel is some centimetres of the floor; the robot stops within 0.25 m of where it was told to.
+# A pixel is some centimetres of the floor; the robot stops within 0.25 m of its goal.
 POINTING, ARRIVAL = 0.1, 0.35
 
 
@@ -92,9 +92,9 @@ class CockpitHomeTest(unittest.TestCase):
         self.page.drag(pixel(self.page, x, y), pixel(self.page, x, y + 1.0))
         self.page.wait_for("pose estimate sent")
         wait_until("the estimate", lambda: "/initialpose" in self.newest)
-        told = self.newest["/initialpose"].pose.pose
-        self.assertLess(math.hypot(told.position.x - x, told.position.y - y), POINTING)
-        yaw = 2.0 * math.atan2(told.orientation.z, told.orientation.w)
+        pose = self.newest["/initialpose"].pose.pose
+        self.assertLess(math.hypot(pose.position.x - x, pose.position.y - y), POINTING)
+        yaw = 2.0 * math.atan2(pose.orientation.z, pose.orientation.w)
         self.assertAlmostEqual(yaw, math.pi / 2.0, delta=0.2)
 
     def test_4_a_box_is_dropped_where_it_was_clicked(self):
@@ -105,8 +105,8 @@ class CockpitHomeTest(unittest.TestCase):
         self.assertLess(math.hypot(self.box().x + 0.5, self.box().y - 1.0), 0.2)
 
     def test_5_furniture_is_moved_to_where_it_was_pressed(self):
-        self.aim("Move", "Press where the thing is to stand")
-        self.page.choose("Thing", "armchair")
+        self.aim("Move", "Press the new position of the model")
+        self.page.choose("Model", "armchair")
         self.page.drag(pixel(self.page, -1.0, -3.2), pixel(self.page, -1.0, -2.2))
         self.page.wait_for("armchair moved to")
         wait_until("the armchair", lambda: self.place_of("armchair").y < -2.9)
@@ -122,15 +122,15 @@ class CockpitHomeTest(unittest.TestCase):
         for key, forward, left in DIRECTIONS:
             self.page.hold_key(key, f"driving by {key}", lambda: self.drives(forward, left))  # noqa: B023
             wait_until("the robot to move", self.is_moving)
-            self.page.let_go_key(key)
+            self.page.release_key(key)
             self.wait_until_standing()
 
     def test_7_k_stops_without_a_ramp(self):
         self.page.hold_key("i", "driving", lambda: self.newest[TELEOP].linear.x > 8.0 * RAMP.v)
-        self.page.let_go_key("i")
+        self.page.release_key("i")
         del self.velocities[:-1]
         self.page.hold_key("k", "a stop", lambda: self.newest[TELEOP] == Twist())
-        self.page.let_go_key("k")
+        self.page.release_key("k")
         speeds = [velocity.linear.x for velocity in self.velocities]
         self.assertGreater(max(a - b for a, b in zip(speeds, speeds[1:])), 2.0 * RAMP.v)
         self.wait_until_standing()
@@ -139,11 +139,11 @@ class CockpitHomeTest(unittest.TestCase):
         del self.velocities[:]
         self.page.tick("Object")
         self.page.hold_key("i", "letters", lambda: "iii" in self.page.value_of("Object"))
-        self.page.let_go_key("i")
+        self.page.release_key("i")
         self.page.evaluate("document.activeElement.blur()")
         self.assertEqual([velocity for velocity in self.velocities if velocity != Twist()], [])
 
-    def test_9_a_tab_that_is_closed_while_a_key_is_held_lets_go(self):
+    def test_9_a_tab_that_is_closed_while_a_key_is_held_stops_the_robot(self):
         page = self.browser.open(self.cockpit.url)
         page.wait_for("/scan", "/amcl", seconds=60.0)
         page.hold_key("j", "turning", lambda: self.newest[TELEOP].angular.z > 0.2)
@@ -151,7 +151,7 @@ class CockpitHomeTest(unittest.TestCase):
         wait_until("rest", lambda: self.newest[TELEOP] == Twist(), 3.0)
         self.wait_until_standing()
 
-    def test_9_a_tab_that_is_closed_lets_go(self):
+    def test_9_a_closed_tab_stops_the_robot(self):
         self.page.press("J turn left")
         wait_until("turning", lambda: self.newest[TELEOP].angular.z > 0.2)
         self.page.close()
@@ -159,18 +159,18 @@ class CockpitHomeTest(unittest.TestCase):
         wait_until("the robot to stand", lambda: not self.is_moving(), 3.0)
 
     def test_9b_nothing_is_subscribed_while_nobody_looks(self):
-        wait_until("silence", lambda: not self.heard_by_cockpit(), 10.0)
+        wait_until("silence", lambda: not self.topics_of_cockpit(), 10.0)
         page = self.browser.open(self.cockpit.url)
-        wait_until("scans", lambda: "/scan" in self.heard_by_cockpit(), 30.0)
+        wait_until("scans", lambda: "/scan" in self.topics_of_cockpit(), 30.0)
         page.close()
-        wait_until("silence", lambda: not self.heard_by_cockpit(), 10.0)
+        wait_until("silence", lambda: not self.topics_of_cockpit(), 10.0)
 
     def aim(self, mode, hint):
         self.page.choose("Mouse", mode)
         self.page.wait_for(hint)
 
-    def heard_by_cockpit(self):
-        """Its topics but the clock, which every node hears."""
+    def topics_of_cockpit(self):
+        """The topics that it subscribes to, without /clock, to which every node subscribes."""
         _, subscribers, _ = rosgraph.Master("/test").getSystemState()
         found = {topic for topic, nodes in subscribers if any(node.startswith("/cockpit") for node in nodes)}
         return found - {"/clock"}
@@ -180,9 +180,9 @@ class CockpitHomeTest(unittest.TestCase):
         return position.x, position.y
 
     def drives(self, forward, left):
-        """Whether the robot is told to, in that direction."""
-        told = self.newest[TELEOP]
-        return (np.sign(told.linear.x), np.sign(told.angular.z)) == (forward, left)
+        """Whether the robot is commanded in that direction."""
+        command = self.newest[TELEOP]
+        return (np.sign(command.linear.x), np.sign(command.angular.z)) == (forward, left)
 
     def wait_until_standing(self):
         wait_until("rest", lambda: self.newest[TELEOP] == Twist())

@@ -2,7 +2,7 @@
 """The cockpit among strangers, pages that send nonsense, and a graph that says what makes no sense.
 
 After each of it a page that behaves is served, the graph goes on, and who was driven by a page that is cut
-off is told to stop.
+off is commanded to stop.
 """
 
 import contextlib
@@ -65,7 +65,7 @@ UPGRADE = {
     "Sec-WebSocket-Version": "13",
     "Sec-WebSocket-Key": "MDEyMzQ1Njc4OWFiY2RlZg==",
 }
-# A node that can be killed: it says where a marker is, again and again.
+# A node that can be killed; it publishes a marker repeatedly.
 MORTAL = """
 import rospy
 from visualization_msgs.msg import Marker
@@ -87,7 +87,7 @@ class Odd(String):
 
 
 class Liar(String):
-    """Says that it is a grid."""
+    """Claims to be a grid."""
 
     _type, _md5sum = OccupancyGrid._type, OccupancyGrid._md5sum
 
@@ -100,9 +100,9 @@ class CockpitHostileTest(unittest.TestCase):
         cls.sines, cls.velocities = [], []
         rospy.Subscriber("/sine", Float64, lambda message: cls.sines.append(message.data))
         rospy.Subscriber(VELOCITIES, Twist, cls.velocities.append)
-        threading.Thread(target=say_what_changes, daemon=True).start()
+        threading.Thread(target=publish_changing_topics, daemon=True).start()
         cls.good = PageClient(cls.cockpit.url)
-        wait_until("somebody to drive", lambda: VELOCITIES in cls.good.options("Velocities to"), 60.0)
+        wait_until("a velocity topic", lambda: VELOCITIES in cls.good.options("Velocities to"), 60.0)
 
     @classmethod
     def tearDownClass(cls):
@@ -115,11 +115,11 @@ class CockpitHostileTest(unittest.TestCase):
         self.good.wait_for_pictures()
         with PageClient(self.cockpit.url) as newcomer:
             newcomer.wait_for_pictures(3)
-        heard = len(self.sines)
-        wait_until("the graph to go on", lambda: len(self.sines) > heard + 20)
-        self.wait_until_told_to_stop()
+        received = len(self.sines)
+        wait_until("the graph to continue", lambda: len(self.sines) > received + 20)
+        self.wait_until_replies_to_stop()
 
-    def test_strangers_are_refused(self):
+    def test_requests_without_the_token_are_rejected(self):
         cookie, origin = self.cookie(), {"Origin": self.site()}
         for target, headers in (
             ("/", {}),
@@ -146,7 +146,7 @@ class CockpitHostileTest(unittest.TestCase):
                 with contextlib.suppress(ConnectionClosed):
                     bad.send(nonsense)
                 bad.wait_until_closed()
-                self.wait_until_told_to_stop()
+                self.wait_until_replies_to_stop()
 
     def test_a_flood_of_messages_is_the_end_of_the_page_that_sends_it(self):
         with PageClient(self.cockpit.url) as bad:
@@ -155,7 +155,7 @@ class CockpitHostileTest(unittest.TestCase):
                 for _ in range(20_000):
                     bad.press(FORWARD)
             bad.wait_until_closed()
-            self.wait_until_told_to_stop()
+            self.wait_until_replies_to_stop()
 
     def test_a_value_that_a_control_cannot_have_reaches_nothing(self):
         with PageClient(self.cockpit.url) as bad:
@@ -173,10 +173,10 @@ class CockpitHostileTest(unittest.TestCase):
                 if number % 2:
                     opened.sendall(b"GET / HTTP/1.1\r\nHost: 127")  # and no more of it
             self.drive(driver)
-            self.wait_until_told_to_stop()
+            self.wait_until_replies_to_stop()
             self.drive(driver)
             driver.close()
-            self.wait_until_told_to_stop()
+            self.wait_until_replies_to_stop()
             self.good.wait_for_pictures()
 
     def test_a_page_that_reads_nothing_slows_nobody(self):
@@ -196,7 +196,7 @@ class CockpitHostileTest(unittest.TestCase):
             self.good.wait_for_pictures(MANY_PICTURES)
             self.assertLess(time.monotonic() - began, 0.3 * MANY_PICTURES)
 
-    def test_what_makes_no_sense_in_the_graph_is_told_and_the_rest_is_shown(self):
+    def test_what_makes_no_sense_in_the_graph_is_replies_and_the_rest_is_shown(self):
         for topic, message, why in (
             ("/map", grid(2, 2, [0, 0, 0]), "a grid of 2 x 2 with 3 cells"),
             ("/far/map", grid(1, 1, [0], NAN), "a grid at no place, or of no resolution"),
@@ -211,7 +211,7 @@ class CockpitHostileTest(unittest.TestCase):
                 publisher.publish(marker(2, 1.0))
                 wait_until(
                     "the other marker",
-                    lambda: any("bad:markers/hostile:2" in one for one in self.good.things),
+                    lambda: any("bad:markers/hostile:2" in one for one in self.good.nodes),
                 )
             publisher.unregister()
 
@@ -234,9 +234,9 @@ class CockpitHostileTest(unittest.TestCase):
             rospy.rostime.wallsleep(0.02)
             return "shelf" in self.good.options("Fixed frame")
 
-        wait_until("what is told beside it", knows_the_shelf)
-        self.good.wait_for_text("sends a transform of nowhere that is none")
-        wait_until("the particles", lambda: any("particlecloud" in one for one in self.good.things))
+        wait_until("the valid topic beside it", knows_the_shelf)
+        self.good.wait_for_text("publishes an invalid transform of nowhere")
+        wait_until("the particles", lambda: any("particlecloud" in one for one in self.good.nodes))
         for publisher in (frames, cloud, still):
             publisher.unregister()
 
@@ -252,12 +252,12 @@ class CockpitHostileTest(unittest.TestCase):
             self.assertLess(time.monotonic() - began, ANSWER_SECONDS)
         self.good.wait_for_note("no answer of the service /gazebo/pause_physics")
 
-    def test_a_topic_of_an_unknown_type_is_listed_and_watching_it_says_why_nothing_is_seen(self):
+    def test_a_topic_of_an_unknown_type_is_listed_and_watching_it_shows_the_reason(self):
         publisher = rospy.Publisher("/odd", Odd, queue_size=1, latch=True)
         publisher.publish(Odd("words"))
         self.good.wait_for_text("nowhere_msgs/Odd")
         self.good.set("Watch", "/odd")
-        self.good.wait_for_text("a type that is not installed here")
+        self.good.wait_for_text("is not installed")
         self.good.set("Watch", "(none)")
         publisher.unregister()
 
@@ -267,7 +267,7 @@ class CockpitHostileTest(unittest.TestCase):
             try:
                 wait_until(
                     "its marker",
-                    lambda number=number: any(f"mortal:{number}" in one for one in self.good.things),
+                    lambda number=number: any(f"mortal:{number}" in one for one in self.good.nodes),
                     END_SECONDS,
                 )
             finally:
@@ -315,7 +315,7 @@ class CockpitHostileTest(unittest.TestCase):
 
         wait_until("the robot to drive", moves)
 
-    def wait_until_told_to_stop(self):
+    def wait_until_replies_to_stop(self):
         at_rest = Twist()
         wait_until("a stop", lambda: not self.velocities or self.velocities[-1] == at_rest, STOP_SECONDS)
 
@@ -339,7 +339,7 @@ def status_of(port, target, headers):
         return connection.getresponse().status
 
 
-def say_what_changes():
+def publish_changing_topics():
     """A scan that is another each time, so that there is always something to show."""
     publisher = rospy.Publisher("/scan", LaserScan, queue_size=1)
     for turn in itertools.count():

@@ -28,8 +28,8 @@ ARRIVAL, MISSION_SECONDS = 0.25, 150.0
 class CockpitMissionTest(unittest.TestCase):
     def test_a_delivery_is_asked_for_joined_and_cancelled(self):
         self.newest, self.brought_to = {}, None
-        self.hear("/pick_objects/mission_state", MissionState)
-        self.hear("/base_pose_ground_truth", Odometry)
+        self.subscribe("/pick_objects/mission_state", MissionState)
+        self.subscribe("/base_pose_ground_truth", Odometry)
         with tempfile.TemporaryDirectory() as folder, Browser() as browser:
             cockpit = CockpitProcess(FREE_PORT, Path(folder) / "cockpit.log")
             self.addCleanup(cockpit.close)
@@ -38,9 +38,9 @@ class CockpitMissionTest(unittest.TestCase):
             self.page.click("Drive")
             wait_until("a robot that takes missions", takes_missions, 60.0)
             time.sleep(CATALOGUE_SECONDS + 0.5)
-            self.ask("cup", "pickup", "dropoff")
+            self.request("cup", "pickup", "dropoff")
             wait_until("the first delivery", lambda: self.states() == [DeliveryState.FETCHING], 60.0)
-            self.ask("cup", "dropoff", "pickup")
+            self.request("cup", "dropoff", "pickup")
             wait_until("the second one", lambda: len(self.states()) == 2)
             wait_until("the cup", lambda: self.brought_to is not None, MISSION_SECONDS)
             self.page.click("Cancel the mission")  # while the second one is under way
@@ -53,14 +53,14 @@ class CockpitMissionTest(unittest.TestCase):
             wait_until("the end", lambda: self.states()[1] == DeliveryState.CANCELLED, MISSION_SECONDS)
             self.assertEqual(self.page.errors, [])
 
-    def ask(self, thing, source, destination):
-        self.page.fill_in("Object", thing)
+    def request(self, name, source, destination):
+        self.page.fill_in("Object", name)
         self.page.choose("From", source)
         self.page.choose("To", destination)
         self.page.click("Deliver it")
-        self.page.wait_for(f"{thing}: from {source} to {destination}")
+        self.page.wait_for(f"{name}: from {source} to {destination}")
 
-    def hear(self, topic, kind):
+    def subscribe(self, topic, kind):
         rospy.Subscriber(topic, kind, lambda message: self.keep(topic, message), queue_size=50)
 
     def keep(self, topic, message):

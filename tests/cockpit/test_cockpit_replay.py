@@ -14,7 +14,7 @@ from browser import Browser
 from command import Command
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from nav_msgs.msg import Path as PathMsg
-from rosgraph_msgs.msg import Clock, LogBuffer
+from rosgraph_msgs.msg import Clock, Log
 from std_msgs.msg import Float64
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker
@@ -23,7 +23,7 @@ from waiting import wait_until
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 PICTURES = os.environ.get("COCKPIT_PICTURES")
 START, SECONDS, END_SECONDS = 100.0, 60, 40.0
-SAID = "two thirds of the way"
+LOG_TEXT = "two thirds of the way"
 
 
 class CockpitReplayTest(unittest.TestCase):
@@ -36,13 +36,13 @@ class CockpitReplayTest(unittest.TestCase):
         record(self.folder / "drive.bag")
         bag, runs = self.folder / "drive.bag", self.folder / "runs"
         with Command(SCRIPTS / "cockpit.sh", bag, "--output", runs) as showing, Browser() as browser:
-            os.environ["ROS_MASTER_URI"] = showing.told("ROS_MASTER_URI=")
+            os.environ["ROS_MASTER_URI"] = showing.wait_for_line("ROS_MASTER_URI=")
             rospy.init_node("looker_on", disable_signals=True)
             page = browser.open(showing.url, 1400, 900)
             page.wait_for("Replay", "playing", seconds=60.0)
             page.click("Pause")
             page.wait_for("paused")
-            at = {name: Heard(name, kind) for name, kind in (("/number", Float64), ("/clock", Clock))}
+            at = {name: Newest(name, kind) for name, kind in (("/number", Float64), ("/clock", Clock))}
             for wanted in (45, 12):
                 page.fill_in("Time, s", str(wanted))
                 page.wait_for(f"paused: {wanted}.0 s of 59.9 s")
@@ -50,17 +50,17 @@ class CockpitReplayTest(unittest.TestCase):
                 wait_until("its time", lambda: abs(at["/clock"].newest.clock.to_sec() - START - wanted) < 0.1)  # noqa: B023
                 if PICTURES:
                     page.screenshot(Path(PICTURES) / f"replay_{wanted}.png")
-            told_before = told_times(showing)
-            page.choose("Pace", "20 x")
-            page.click("Go on")
+            logged_before = times_logged(showing)
+            page.choose("Speed", "20 x")
+            page.click("Resume")
             page.wait_for("59.9 s of 59.9 s", seconds=30.0)
-            wait_until("what was said", lambda: told_times(showing) > told_before)
-            self.assertEqual(told_times(showing), told_before + 1)
+            wait_until("the log message", lambda: times_logged(showing) > logged_before)
+            self.assertEqual(times_logged(showing), logged_before + 1)
             page.fill_in("Time, s", "30")
             wait_until("a number after the end", lambda: 30 <= at["/number"].newest.data < 59)
             self.assertEqual(page.errors, [])
 
-    def test_what_is_no_recording_is_told_before_anything_starts(self):
+    def test_what_is_no_recording_is_replies_before_anything_starts(self):
         (self.folder / "broken.bag").write_text("no bag")
         for name, why in (("broken.bag", "not a readable bag"), ("none.bag", "no such bag")):
             command = [str(SCRIPTS / "cockpit.sh"), str(self.folder / name)]
@@ -69,7 +69,7 @@ class CockpitReplayTest(unittest.TestCase):
             self.assertIn(f"{name}: {why}", done.stderr)
 
 
-class Heard:
+class Newest:
     """The newest message of a topic."""
 
     def __init__(self, topic, kind):
@@ -77,14 +77,14 @@ class Heard:
         rospy.Subscriber(topic, kind, lambda message: setattr(self, "newest", message))
 
 
-def told_times(showing):
-    return sum(f"pick_objects: {SAID}" in line for line in list(showing.lines))
+def times_logged(showing):
+    return sum(f"pick_objects: {LOG_TEXT}" in line for line in list(showing.lines))
 
 
 def record(path):
     """A robot that drives along x, 1 m/s, with a number for each second and a marker for each ten.
 
-    What is said at second 40 was recorded as it was said, and as rosout passed it on.
+    The log message at second 40 was recorded on /rosout and on /rosout_agg.
     """
     with rosbag.Bag(str(path), "w") as bag:
         for tick in range(10 * SECONDS):
@@ -101,7 +101,7 @@ def record(path):
                 bag.write("/plan", plan(now), now)
             if tick == 400:
                 for topic in ("/rosout", "/rosout_agg"):
-                    bag.write(topic, LogBuffer(name="/pick_objects", level=LogBuffer.INFO, msg=SAID), now)
+                    bag.write(topic, Log(name="/pick_objects", level=Log.INFO, msg=LOG_TEXT), now)
 
 
 def cube(number, now):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What a person turns is not lost when its old value is told at the same moment."""
+"""A changed control keeps its value when the old value is published at the same time."""
 
 import math
 import unittest
@@ -13,43 +13,43 @@ from home_service_msgs.msg import Playback
 from home_service_msgs.srv import SeekResponse
 from waiting import wait_until
 
-from cockpit.ros.tools.reconfigure import DESCRIPTION_TYPE, Reconfigure
-from cockpit.ros.tools.replay import Replay
+from cockpit.ros.tools.reconfigure import DESCRIPTION_TYPE, ReconfigureTool
+from cockpit.ros.tools.replay import ReplayTool
 
 TOPICS = {"/base/parameter_descriptions": DESCRIPTION_TYPE}
 
 
-class WishesTest(unittest.TestCase):
-    def test_a_place_in_a_recording_is_gone_to_though_the_player_tells_another(self):
+class RequestsTest(unittest.TestCase):
+    def test_a_new_position_is_sent_although_the_player_publishes_the_old_one(self):
         feed = TopicFeed(Playback(position=0.3, length=60.0, is_paused=True))
         context = ToolContext({"/player/playback": "home_service_msgs/Playback"}, [feed])
         with patch("cockpit.ros.tools.replay.call") as called:
             called.return_value = SeekResponse(success=True)
-            replay = Replay(context)
+            replay = ReplayTool(context)
             replay.build()
             replay.update(0.0)
             slider = context.gui.made["Time, s"]
             self.assertEqual(slider.value, 0.3)
             slider.value = 45.0
-            feed.told.append(Playback(position=0.4, length=60.0, is_paused=True))
+            feed.unread.append(Playback(position=0.4, length=60.0, is_paused=True))
             replay.update(0.1)
             slider.notify()
             replay.update(0.2)
             wait_until("a call", lambda: called.called, 5.0)
         self.assertEqual([each[0][0::2] for each in called.call_args_list], [("/player/seek", 45.0)])
 
-    def test_a_parameter_is_sent_though_the_server_tells_its_old_value(self):
+    def test_a_changed_parameter_is_sent_although_the_server_publishes_the_old_value(self):
         updates = TopicFeed()
         context = ToolContext(TOPICS, [TopicFeed(described(1.5)), updates])
         with patch("cockpit.ros.tools.reconfigure.call") as called:
             called.return_value = SimpleNamespace(config=speed(1.5))
-            tool = Reconfigure(context)
+            tool = ReconfigureTool(context)
             tool.build()
             context.gui.made["Server"].value = "/base"
             tool.update(0.0)
             slider = context.gui.made["speed"]
             slider.value = 2.0
-            updates.told.append(speed(0.5))
+            updates.unread.append(speed(0.5))
             tool.update(0.2)
             slider.notify()
             tool.update(0.4)
@@ -58,17 +58,17 @@ class WishesTest(unittest.TestCase):
             wait_until("the answer", lambda: tool.update(0.6) or slider.value == 1.5, 5.0)
         self.assertEqual(called.call_count, 1)
 
-    def test_a_parameter_that_is_no_number_is_nobodys_wish(self):
+    def test_a_nan_parameter_is_not_sent(self):
         updates = TopicFeed(speed(math.nan))
         context = ToolContext(TOPICS, [TopicFeed(described(1.5)), updates])
         with patch("cockpit.ros.tools.reconfigure.call") as called:
-            tool = Reconfigure(context)
+            tool = ReconfigureTool(context)
             tool.build()
             context.gui.made["Server"].value = "/base"
             for now in (0.0, 0.2):
                 tool.update(now)
             self.assertTrue(math.isnan(context.gui.made["speed"].value))
-            updates.told.append(speed(1.0))
+            updates.unread.append(speed(1.0))
             tool.update(0.4)
         self.assertEqual((context.gui.made["speed"].value, called.called), (1.0, False))
 
@@ -84,12 +84,12 @@ def described(highest):
 
 
 class TopicFeed:
-    def __init__(self, *told):
-        self.told = list(told)
+    def __init__(self, *messages):
+        self.unread = list(messages)
 
-    def take(self):
-        taken, self.told = self.told, []
-        return taken
+    def messages(self):
+        unread, self.unread = self.unread, []
+        return unread
 
     def close(self):
         pass
@@ -122,7 +122,7 @@ class Gui:
 
 
 class Handle:
-    """``tell``: the page's word that a person has turned it comes after the value itself."""
+    """``notify`` is the callback of viser, which comes after the change of the value."""
 
     def __init__(self, value):
         self.value, self.options, self.max, self.content = value, ("(none)",), 1.0, ""
@@ -139,4 +139,4 @@ class Handle:
 
 
 if __name__ == "__main__":
-    rostest.rosrun("home_service_tests", "wishes", WishesTest)
+    rostest.rosrun("home_service_tests", "requests", RequestsTest)

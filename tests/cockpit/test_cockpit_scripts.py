@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Scripts at which a person looks in the browser: a map made by hand, somebody's project."""
+"""Scripts with --web: mapping by hand, and a user's project."""
 
 import os
 import shutil
@@ -37,7 +37,7 @@ class CockpitScriptsTest(unittest.TestCase):
     def test_a_map_is_made_by_hand(self):
         script = ROOT / "scripts/test_slam.sh"
         with Command(script, "--drive", "page", "--seed", "107", "--output", self.folder) as run:
-            os.environ["ROS_MASTER_URI"] = run.told("ROS_MASTER_URI=")
+            os.environ["ROS_MASTER_URI"] = run.wait_for_line("ROS_MASTER_URI=")
             robot = Robot()
             page = self.browser.open(run.url, 1400, 900)
             page.wait_for("/map", "/scan", seconds=90.0)
@@ -46,7 +46,7 @@ class CockpitScriptsTest(unittest.TestCase):
             page.click("Drive")
             page.hold_key("l", "the robot to turn", lambda: robot.twist.angular.z < -0.1)
             page.hold_key("l", "more to be known", lambda: robot.known_area > first + MORE_AREA)
-            page.let_go_key("l")
+            page.release_key("l")
             wait_until("the robot to stand", lambda: abs(robot.twist.angular.z) < 0.01)
             print(f"{first:.1f} m2 known at first, {robot.known_area:.1f} m2 in the end")
             if PICTURES:
@@ -54,7 +54,7 @@ class CockpitScriptsTest(unittest.TestCase):
             self.assertEqual(page.errors, [])
             page.close()
             self.assertEqual(run.end(), 0)
-        grid = load_map(Path(run.told("SUCCESS: map saved in ")))
+        grid = load_map(Path(run.wait_for_line("SUCCESS: map saved in ")))
         self.assertGreater((grid.cells != UNKNOWN).sum() * grid.resolution**2, first + MORE_AREA)
 
     def test_somebodys_project_is_looked_at(self):
@@ -64,18 +64,16 @@ class CockpitScriptsTest(unittest.TestCase):
         # Slow enough to be looked at by a browser that comes up on a busy machine.
         looked_at = ("--web", "--speed", "0.5", "--output", self.folder / "runs")
         with Command(script, project, *looked_at) as run:
-            url = run.told(URL, 300.0)
+            url = run.wait_for_line(URL, 300.0)
             with PageClient(url) as client:
                 page = self.browser.open(url, 1400, 900)
                 page.wait_for("/map", "/scan", "/visualization_marker", seconds=120.0)
-                wait_until(
-                    "its world", lambda: any("cupboard" in thing for thing in list(client.things)), 60.0
-                )
+                wait_until("its world", lambda: any("cupboard" in node for node in list(client.nodes)), 60.0)
             if PICTURES:
                 page.screenshot(Path(PICTURES) / "project.png")
             self.assertEqual(page.errors, [])
             page.close()
-            run.told("SUCCESS: 2 of 2 goals reached", 180.0)
+            run.wait_for_line("SUCCESS: 2 of 2 goals reached", 180.0)
 
 
 class Robot:

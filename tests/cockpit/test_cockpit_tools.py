@@ -69,7 +69,7 @@ class CockpitToolsTest(unittest.TestCase):
     def test_topics_have_rates_and_values(self):
         self.open("Topics")
         self.page.fill_in("Filter", "sine")
-        wait_until("the others to vanish", lambda: "/told" not in self.page.text())
+        wait_until("the others to vanish", lambda: "/replies" not in self.page.text())
         self.page.choose("Watch", "/sine")
         self.page.wait_for("data: ")
         wait_until("20 Hz", lambda: any(15.0 < rate < 25.0 for rate in self.rates()))
@@ -85,7 +85,7 @@ class CockpitToolsTest(unittest.TestCase):
         wait_until("warnings to vanish", lambda: "of the stage" not in self.page.text())
         self.page.choose("From level", "Debug")
         self.page.wait_for("of the stage")
-        self.page.click("How much a node says")
+        self.page.click("Logger levels")
         self.page.choose("Of node", "/stage")
         self.page.choose("Logger", "rosout")
         self.page.choose("Level", "Fatal")
@@ -107,7 +107,7 @@ class CockpitToolsTest(unittest.TestCase):
         wait_until("the template", lambda: "data" in (self.page.value_of("Request") or ""))
         self.page.fill_in("Request", "data: true")
         self.page.click("Call")
-        self.page.wait_for("success: True", "message: told True")
+        self.page.wait_for("success: True", "message: switched True")
         self.page.fill_in("Request", "data: [")
         self.page.click("Call")
         self.page.wait_for("not YAML")
@@ -127,17 +127,17 @@ class CockpitToolsTest(unittest.TestCase):
 
     def test_a_message_is_published_once_and_again_and_again(self):
         self.open("Publisher")
-        heard = []
-        rospy.Subscriber("/words", String, lambda message: heard.append(message.data))
+        received = []
+        rospy.Subscriber("/words", String, lambda message: received.append(message.data))
         self.page.fill_in("Topic", "/words")
-        self.page.click("Make the message")
+        self.page.click("Create the message")
         wait_until("the template", lambda: self.page.value_of("Message") == "data: ''")
         self.page.fill_in("Message", "data: hello")
         self.page.click("Publish once")
-        wait_until("the message", lambda: heard == ["hello"])
+        wait_until("the message", lambda: received == ["hello"])
         self.page.fill_in("Hz", "10")
         self.page.tick("Again and again")
-        wait_until("ten more", lambda: len(heard) > 10)
+        wait_until("ten more", lambda: len(received) > 10)
         self.page.tick("Again and again")
         self.page.fill_in("Message", "data: [1]")
         self.page.click("Publish once")
@@ -151,7 +151,7 @@ class CockpitToolsTest(unittest.TestCase):
         wait_until("a chart", lambda: self.page.evaluate("document.querySelectorAll('.uplot').length") == 1)
         self.page.fill_in("or type it", "/nothing")
         self.page.click("Add")
-        self.page.wait_for("no topic is the beginning of '/nothing'")
+        self.page.wait_for("'/nothing' does not begin with the name of a topic")
 
     def test_a_server_is_reconfigured(self):
         self.open("Reconfigure")
@@ -170,49 +170,49 @@ class CockpitToolsTest(unittest.TestCase):
         self.open("Bag")
         self.page.fill_in("File", "../there.bag")
         self.page.click("Record")
-        self.page.wait_for("is no name of a file")
-        self.page.fill_in("File", "told.bag")
+        self.page.wait_for("is not a valid file name")
+        self.page.fill_in("File", "sine.bag")
         self.page.fill_in("Topics", "/sine")
         self.page.click("Record")
-        self.page.wait_for("recording told.bag")
-        wait_until("something in it", lambda: _size(self.folder / "told.bag.active") > 4000)
+        self.page.wait_for("recording sine.bag")
+        wait_until("something in it", lambda: _size(self.folder / "sine.bag.active") > 4000)
         threading.Event().wait(2.0)
-        self.page.click("End the recording")
-        self.page.wait_for("recorded told.bag")
-        self.page.choose("Found", "told.bag")
-        self.page.fill_in("Times real time", "0.1")
+        self.page.click("Stop the recording")
+        self.page.wait_for("recorded sine.bag")
+        self.page.choose("Found", "sine.bag")
+        self.page.fill_in("Rate", "0.1")
         self.page.click("Play")
         self.page.wait_for("playing")
         wait_until("its node", lambda: any("/play" in node for node in nodes_of("/sine")))
         wait_until("its service", lambda: any(name.endswith("/pause_playback") for name in services()))
         self.page.click("Pause")
         wait_until("silence", lambda: not played_within(0.5))
-        self.page.click("Go on")
+        self.page.click("Resume")
         wait_until("what was recorded", lambda: played_within(2.0))
-        self.page.click("End it")
-        self.page.wait_for("played to its end")
+        self.page.click("Stop")
+        self.page.wait_for("finished playing")
         self.page.fill_in("or its path", "nothing.bag")
         self.page.click("Play")
         self.page.wait_for("no such bag")
 
     def test_faults_need_a_simulator_and_the_page_waits_for_none(self):
         self.open("Faults")
-        self.page.wait_for("nobody offers /sim_bridge/add_fault")
+        self.page.wait_for("none is running")
         over = threading.Event()
         service = rospy.Service(
             "/sim_bridge/add_fault", AddFault, lambda _: over.wait() and AddFaultResponse(True, "")
         )
         self.addCleanup(service.shutdown)
         self.addCleanup(over.set)
-        wait_until("somebody to be found", lambda: "nobody offers" not in self.page.text())
+        wait_until("a simulator", lambda: "none is running" not in self.page.text())
         self.page.choose("Kind", "scan_nan")
-        self.page.click("Let it go wrong")
+        self.page.click("Inject the fault")
         self.page.wait_for("...")
         self.page.choose("Kind", "scan_inf")
         self.page.wait_for("All beams meet nothing.")
         self.assertNotIn("no answer", self.page.text())
         self.page.wait_for("no answer of the service /sim_bridge/add_fault within 10 s")
-        self.assertNotIn("Goes wrong now", self.page.text())
+        self.assertNotIn("Active fault", self.page.text())
 
     def test_the_names_of_rqt_start_the_cockpit_at_their_tool(self):
         self.assert_shows(["rosrun", "rqt_plot", "rqt_plot", "/sine/data"], "Plot", "/sine/data")
@@ -243,16 +243,16 @@ def services():
 
 def played_within(seconds):
     """Whether the player sends anything."""
-    heard = threading.Event()
+    received = threading.Event()
 
-    def hear(message):
+    def on_message(message):
         if "/play" in message._connection_header["callerid"]:
-            heard.set()
+            received.set()
 
-    subscriber = rospy.Subscriber("/sine", rospy.AnyMsg, hear)
-    heard.wait(seconds)
+    subscriber = rospy.Subscriber("/sine", rospy.AnyMsg, on_message)
+    received.wait(seconds)
     subscriber.unregister()
-    return heard.is_set()
+    return received.is_set()
 
 
 def _size(path):

@@ -19,7 +19,7 @@ from planar_ros.messages.conversion import pose2_from_msg
 
 PICTURES = os.environ.get("COCKPIT_PICTURES")
 GOALS = {"alice": Pose2(1.0, 0.3, 0.0), "bob": Pose2(2.0, 3.0, 0.0)}
-# A pixel is some centimetres of the floor; a robot stops within 0.25 m of where it was told to.
+# A pixel is some centimetres of the floor; a robot stops within 0.25 m of its goal.
 ARRIVAL, DRIVE_SECONDS = 0.35, 120.0
 
 

@@ -183,7 +183,7 @@ class Tab:
 
         wait_until(what, is_met_or_repeats)
 
-    def let_go_key(self, key):
+    def release_key(self, key):
         self._key("keyUp", key)
 
     def choose(self, label, option):

@@ -37,9 +37,9 @@ class Command:
     @property
     def url(self):
         """Of the page that it serves."""
-        return self.told(URL)
+        return self.wait_for_line(URL)
 
-    def told(self, beginning, seconds=START_SECONDS):
+    def wait_for_line(self, beginning, seconds=START_SECONDS):
         """What follows the first line's beginning, once there is one."""
         wait_until(f"a line '{beginning}'", lambda: self._has_ended() or self._following(beginning), seconds)
         found = self._following(beginning)

@@ -58,7 +58,7 @@ class PageClient:
         """Raises InvalidHandshake if it is not let in; see ``open_page``."""
         self._socket = open_page(url, origin)
         self.protocol = self._socket.subprotocol
-        self.told, self.controls, self.texts, self.things = [], {}, {}, set()
+        self.told, self.controls, self.texts, self.nodes = [], {}, {}, set()
         self._options = {}
         self.pictures = 0
         self.is_open = True
@@ -123,9 +123,9 @@ class PageClient:
         elif kind.startswith("Gui") and "label" in props:
             self.controls[props["label"]] = message["uuid"]
         elif kind == "RemoveSceneNodeMessage":
-            self.things.discard(message["name"])
+            self.nodes.discard(message["name"])
         elif "name" in message and "props" in message:
-            self.things.add(message["name"])
+            self.nodes.add(message["name"])
         changed = props or message.get("updates") or {}
         if isinstance(changed.get("content"), str):
             self.texts[message["uuid"]] = changed["content"]

@@ -68,7 +68,7 @@ class ReportTest(unittest.TestCase):
         command = [ROOT / "scripts/test_navigation.sh", "--goals", "1.0 0.5 0.0; 0.0 0.5 3.0", "--output"]
         with tempfile.TemporaryDirectory() as parent:
             with Command(*command, parent, env=environment) as run:
-                run.told("goal 1 (")
+                run.wait_for_line("goal 1 (")
                 _fill_the_disk_of(mark)
                 code = run.process.wait(RUN_SECONDS)
             written = [path.name for path in next(Path(parent).iterdir()).iterdir()]

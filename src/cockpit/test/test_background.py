@@ -6,7 +6,7 @@ from cockpit.errors import CockpitError
 from cockpit.ros.background import BackgroundCall
 
 
-def test_one_thing_at_a_time_or_the_last_instead_of_the_one_before():
+def test_one_call_runs_at_a_time_and_a_restart_discards_the_previous_one():
     background, go_on, has_gone_on = BackgroundCall(), threading.Event(), threading.Event()
 
     def hang():

@@ -18,6 +18,6 @@ def test_a_cockpit_that_dies_as_it_starts_is_not_waited_for(tmp_path):
     assert (tmp_path / "cockpit.log").read_text() == "Traceback\n"
 
 
-def test_the_last_words_of_a_cockpit_that_dies_are_heard(tmp_path):
+def test_the_last_output_of_a_crashed_cockpit_is_logged(tmp_path):
     with pytest.raises(PortError, match="^8080 is taken$"):
         CockpitProcess(FREE_PORT, tmp_path / "log", prefix=["sh", "-c", "echo error: 8080 is taken; exit 2"])

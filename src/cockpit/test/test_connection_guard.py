@@ -1,4 +1,4 @@
-"""The gate, tried on the real server: who comes in, and what becomes of those who send nonsense."""
+"""The connection guard with the real server: access, limits and malformed messages."""
 
 import contextlib
 import http.client
@@ -109,7 +109,7 @@ def is_shown(page, port, cookie):
 
 
 def closing_code(socket_):
-    """None if the frame that tells it is lost, as when the server closes on what it has not read."""
+    """None if the close frame is lost, as when the server closes with unread data."""
     with pytest.raises(ConnectionClosed) as closed:
         while True:
             socket_.recv(timeout=DEADLINE)
@@ -205,9 +205,9 @@ def test_a_flood_of_messages_ends_the_connection(page, port, cookie):
 
 
 def update(control, value):
-    """As a page tells that a person has changed a control."""
-    told = {"type": "GuiUpdateMessage", "uuid": control._impl.uuid, "updates": {"value": value}}
-    return msgspec.msgpack.encode(told)
+    """The message of a page for a changed control."""
+    message = {"type": "GuiUpdateMessage", "uuid": control._impl.uuid, "updates": {"value": value}}
+    return msgspec.msgpack.encode(message)
 
 
 @pytest.mark.parametrize(
@@ -260,7 +260,7 @@ def _opens(port, cookie):
     return True
 
 
-def test_a_thousand_connections_that_say_nothing_leave_the_page_alive(page, port, cookie):
+def test_a_thousand_silent_connections_leave_the_page_alive(page, port, cookie):
     with contextlib.ExitStack() as stack:
         for _ in range(1000):
             stack.enter_context(socket.create_connection(("127.0.0.1", port), DEADLINE))
@@ -276,7 +276,7 @@ def test_so_many_connections_that_files_are_left_for_ros():
         port = int(server.stdout.readline())
         held = psutil.Process(server.pid)
         most, deadline = 0, time.monotonic() + DEADLINE
-        while most <= FEW_FILES // 2:  # who says nothing is shown out, on a busy machine before all are in
+        while most <= FEW_FILES // 2:  # silent connections time out, on a busy machine before all are open
             assert time.monotonic() < deadline
             most = max(most, _most_files(held, port))
         assert most < 0.75 * FEW_FILES

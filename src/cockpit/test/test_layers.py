@@ -96,7 +96,7 @@ def test_particles_are_lines_along_where_they_look():
 
 
 @pytest.mark.parametrize(
-    ("kind", "thing"),
+    ("kind", "shape"),
     [
         (Marker.ARROW, LineSegments),
         (Marker.CUBE, TriangleMesh),
@@ -112,10 +112,10 @@ def test_particles_are_lines_along_where_they_look():
     ],
 )
 @pytest.mark.parametrize("count", [0, 3])
-def test_each_type_of_marker_is_drawn_whatever_its_points(kind, thing, count):
+def test_each_type_of_marker_is_drawn_whatever_its_points(kind, shape, count):
     drawing = markers(marker(type=kind, points=[Point(float(i), 0.0, 0.0) for i in range(count)]))
     assert not drawing.warning
-    assert isinstance(drawing.parts[0].shape, thing)
+    assert isinstance(drawing.parts[0].shape, shape)
 
 
 def test_a_cube_is_as_large_as_its_scale():
@@ -124,7 +124,7 @@ def test_a_cube_is_as_large_as_its_scale():
     assert part.seconds == math.inf
 
 
-def test_a_nan_in_a_marker_is_told_and_the_others_are_drawn():
+def test_a_nan_in_a_marker_is_reported_and_the_others_are_drawn():
     drawing = markers(marker(id=1, points=[Point(float("nan"), 0.0, 0.0)]), marker(id=2))
     assert "marker a:1" in drawing.warning
     assert [part.name for part in drawing.parts] == ["a:2"]

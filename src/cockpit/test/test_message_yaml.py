@@ -9,7 +9,7 @@ from cockpit.errors import CockpitError
 from cockpit.ros.message_yaml import filled, message_class, service_class, template
 
 
-def test_a_template_is_a_message_as_it_is_by_itself():
+def test_a_template_has_the_default_values():
     assert filled(PoseStamped, template(PoseStamped)) == PoseStamped()
     assert template(TriggerRequest) == ""
     assert filled(TriggerRequest, "") == TriggerRequest()
@@ -35,14 +35,14 @@ def test_fields_that_are_not_named_stay_as_they_are():
         (String, "data: " + "x" * 30_000),
     ],
 )
-def test_what_is_no_such_message_is_told(kind, text):
+def test_text_that_is_no_such_message_is_an_error(kind, text):
     with pytest.raises(CockpitError):
         filled(kind, text)
 
 
-def test_types_that_are_not_installed_are_told():
+def test_types_that_are_not_installed_are_an_error():
     assert message_class("std_msgs/String") is String
-    with pytest.raises(CockpitError, match="nowhere_msgs/Thing is a type that is not installed here"):
-        message_class("nowhere_msgs/Thing")
+    with pytest.raises(CockpitError, match="type nowhere_msgs/Odd is not installed"):
+        message_class("nowhere_msgs/Odd")
     with pytest.raises(CockpitError):
         service_class("nonsense")

@@ -109,7 +109,7 @@ def test_the_tree_of_frames_goes_from_the_root_down_with_ages():
     assert rows[3][1] == "static"
 
 
-def test_frames_in_a_loop_are_told_as_such():
+def test_frames_in_a_loop_are_listed_as_such():
     rows = rows_of({"a": transform("b"), "b": transform("a")}, 0.0, {})
     assert [row[0] for row in rows] == ["a (in a loop)", "b (in a loop)"]
 
@@ -150,7 +150,7 @@ def test_a_number_is_found_by_its_path(path, value):
 @pytest.mark.parametrize(
     "path", ["", "pose", "nothing", "ranges[9]", "header.frame_id", "__class__", "pose..x"]
 )
-def test_what_is_no_number_is_told(path):
+def test_a_field_that_is_no_number_is_an_error(path):
     with pytest.raises(CockpitError):
         number_at(MESSAGE, path)
 
@@ -217,9 +217,9 @@ def test_choices_are_read_and_nonsense_is_none():
     listed = "{'enum': [{'name': 'Slow', 'value': 0, 'type': 'int'}], 'enum_description': ''}"
     for text, choices in ((listed, (("Slow", 0),)), ("__import__('os')", ()), ("[[", ()), ("3", ())):
         group = SimpleNamespace(parameters=[parameter_message("mode", "double", text)])
-        told = config(mode=0.0)
+        values = config(mode=0.0)
         (parameter,) = parameters_from_description(
-            SimpleNamespace(groups=[group], min=told, max=told, dflt=told)
+            SimpleNamespace(groups=[group], min=values, max=values, dflt=values)
         )
         assert parameter.choices == choices
 
@@ -264,15 +264,15 @@ def test_parameters_are_flattened():
     assert flat({}) == {}
 
 
-def test_amounts_are_told_in_what_is_short():
+def test_amounts_are_formatted_in_short_units():
     assert (amount(1500), amount(2_500_000)) == ("1.5 KB", "2.5 MB")
 
 
-def test_a_mission_tells_of_its_deliveries():
-    told = MissionState(mission="<tea>", state="carrying", progress=0.5, time_left=12.0)
+def test_a_mission_lists_its_deliveries():
+    state = MissionState(mission="<tea>", state="carrying", progress=0.5, time_left=12.0)
     what = Delivery(object="cup", source="kitchen", destination="context")
-    told.deliveries = [DeliveryState(delivery=what, state=state) for state in (DeliveryState.CARRYING, 99)]
-    html = mission_html(told)
+    state.deliveries = [DeliveryState(delivery=what, state=each) for each in (DeliveryState.CARRYING, 99)]
+    html = mission_html(state)
     for text in (
         "&lt;tea&gt;: carrying",
         "50 %",

@@ -1,11 +1,11 @@
-"""A view when time begins anew."""
+"""The tree of frames when ROS time jumps back."""
 
 import numpy as np
 
 from cockpit.frames import FrameTree, Transform
 
 
-def test_what_moves_is_nowhere_when_time_begins_anew_and_what_is_fixed_stays():
+def test_a_jump_back_of_time_drops_dynamic_transforms_and_keeps_static_ones():
     frames = FrameTree()
     frames.put("odom", Transform("map", np.eye(4), 5.0, is_static=False))
     frames.put("laser", Transform("base_link", np.eye(4), 0.0, is_static=True))

@@ -26,6 +26,6 @@ def test_a_program_is_the_cockpit_at_its_tool(program, arguments, expected):
 
 
 @pytest.mark.parametrize("arguments", [["-s"], ["--standalone", "rqt_dream"]])
-def test_a_tool_that_is_not_there_is_told(arguments):
-    with pytest.raises(PlanarError, match="there is no '"):
+def test_an_unknown_program_is_an_error(arguments):
+    with pytest.raises(PlanarError, match="unknown program '"):
         chosen("rqt", arguments)

@@ -27,7 +27,7 @@ def test_what_is_higher_is_cut_off_and_what_is_all_above_goes():
     assert len(cut_at(wall(2.5, 2.6), 1.2).triangles) == 0
 
 
-def test_pieces_of_a_colour_become_one_surface():
+def test_parts_of_one_colour_become_one_mesh():
     surfaces = merged((wall(0.0, 1.0), wall(1.0, 2.0), wall(0.0, 1.0, (9, 9, 9))))
     assert [(len(vertices), len(triangles)) for vertices, triangles, _ in surfaces] == [(16, 24), (8, 12)]
 
@@ -53,7 +53,7 @@ def test_a_ray_meets_the_floor_below_and_nowhere_above():
     assert floor_intersection((0.0, 0.0, 2.0), (1.0, 0.0, math.nan)) is None
 
 
-def test_a_press_without_a_turn_has_no_direction_of_its_own():
+def test_a_click_without_a_drag_has_no_direction():
     assert drag_yaw((0.0, 0.0), (0.0, 1.0), 7.0) == math.pi / 2
     assert drag_yaw((0.0, 0.0), (0.05, 0.0), 7.0) == 7.0
     assert drag_yaw((0.0, 0.0), None, 7.0) == 7.0

@@ -1,4 +1,4 @@
-"""Looks are read by a process of their own: one answer for each, whatever becomes of the others."""
+"""Scenes are read by a child process: one result per request, whatever happens to the others."""
 
 from pathlib import Path
 from queue import Queue
@@ -65,8 +65,8 @@ def test_a_prepared_process_that_is_not_needed_ends(monkeypatch):
     monkeypatch.setattr(scene_reader, "_start", lambda: started.append(start()) or started[-1])
     reader = SceneReader()
     reader.prepare()
-    reader.rest()
-    reader.rest()
+    reader.stop()
+    reader.stop()
     (process,) = started
     assert process.poll() is not None
 

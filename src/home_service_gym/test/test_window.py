@@ -43,7 +43,7 @@ def test_who_looks_on_sees_the_episode_go_on_in_its_own_time(name, capsys):
         for _ in range(STEPS):
             seen_after_a_step(env, page)
         assert time.monotonic() - began > 0.8 * (STEPS - 1) / env.metadata["render_fps"]
-        kinds = {thing.strip("/").partition("/")[0] for thing in page.things}
+        kinds = {node.strip("/").partition("/")[0] for node in page.nodes}
         assert {"world", "robots", "layers"} <= kinds
         env.close()
         page.wait_until_closed()
@@ -54,10 +54,10 @@ def test_another_world_takes_the_place_of_the_one_before(capsys):
     env.reset(seed=0, options={"seed": 1})
     with opened(env, capsys) as page:
         page.wait_for_text("home of 264 m2")
-        before = set(page.things)
+        before = set(page.nodes)
         env.reset(options={"seed": 2})
         page.wait_for_text("home of 46 m2")
-        assert set(page.things) != before
+        assert set(page.nodes) != before
     env.close()
 
 

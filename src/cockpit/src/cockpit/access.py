@@ -30,12 +30,12 @@ class AccessPolicy:
     """Decides on requests by token, cookie, Host and Origin.
 
     The token is in the URL that the terminal prints; the first request exchanges it for a cookie and is
-    redirected to a URL without it. A site whose host name resolves to this machine (DNS rebinding) is rejected
-    by its Host, a page of another site by its Origin.
+    redirected to a URL without it. The Host header reveals a site whose name resolves to this machine (DNS
+    rebinding), the Origin header a page of another site.
     """
 
     def __init__(self, port: int, hosts: Tuple[str, ...] = LOOPBACK, token: Optional[str] = None):
-        """``hosts``: further names and addresses of this machine in use by browsers."""
+        """``hosts``: further names and addresses of this machine."""
         self.token = token or secrets.token_urlsafe(24)
         self._hosts = {*LOOPBACK, *hosts}
         # Cookies are not separated by port: two cockpits on one machine need different names.

@@ -1,7 +1,8 @@
 """Access checks, connection limits and message checks in front of the server of viser.
 
 viser 1.1 has no hooks for these, but it serves page and socket with one call of ``websockets``. That call is
-replaced to pass our socket, a check before viser's own, and connections that check each message. viser is pinned, and test_connection_guard.py tests this module with the real server.
+replaced to pass our socket, a check before viser's own, and connections that check each message. viser is
+pinned, and test_connection_guard.py tests this module with the real server.
 """
 
 import logging

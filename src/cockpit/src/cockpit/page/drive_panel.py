@@ -106,11 +106,7 @@ class DrivePanel:
     def _build_mission(self) -> None:
         gui, driver, guarded = self._gui, self._driver, self._guarded
         with gui.add_folder("Mission"):
-            self.mission = gui.add_html(
-                paragraph(
-                    "No mission yet. Choose object and places below, or start one with home_service.sh --serve."
-                )
-            )
+            self.mission = gui.add_html(paragraph("No mission yet. Enter an object and its places below."))
             self.object = gui.add_text("Object", "parcel")
             self.source = gui.add_dropdown("From", (NO_PLACE,))
             self.destination = gui.add_dropdown("To", (NO_PLACE,))

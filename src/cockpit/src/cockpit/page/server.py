@@ -133,7 +133,7 @@ class Page:
         )
 
     def _light(self) -> None:
-        """Use two lights without shadows: an environment map and shadows take 80 % of the time without a GPU."""
+        """Use two lights without shadows; shadows and an environment map are slow without a GPU."""
         self.scene.configure_environment_map(None)
         self.scene.configure_default_lights(enabled=False)
         self.scene.add_light_directional(

@@ -92,7 +92,7 @@ class Cockpit:
     def _unsubscribe(self) -> None:
         """End all subscriptions while no page is open."""
         self._layers.close()
-        self._transforms.listen(False)
+        self._transforms.subscribe(False)
         self._drive_tab.unsubscribe()
         self._world.unsubscribe()
         self.toolbox.pause()
@@ -100,7 +100,7 @@ class Cockpit:
     def _step(self, now: float) -> None:
         self._check_time(rospy.get_time())
         try:
-            self._transforms.listen(True)
+            self._transforms.subscribe(True)
             if now >= self._refresh_at:
                 self._refresh_at = now + REFRESH_SECONDS
                 self._refresh()

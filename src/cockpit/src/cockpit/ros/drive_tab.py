@@ -153,7 +153,7 @@ class DriveTab:
         while self._swung != self._wanted_swing() and self._command_lock.acquire(blocking=False):
             try:
                 wanted = self._wanted_swing()
-                self._commands.swing(*wanted)
+                self._commands.set_joint(*wanted)
                 self._swung = wanted
             finally:
                 self._command_lock.release()

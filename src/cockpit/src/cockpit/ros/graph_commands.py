@@ -1,4 +1,4 @@
-"""What a person at the page tells the graph: goals, poses, points, time, things."""
+"""Commands from the page to the graph: goals, poses, points, deliveries, time, models."""
 
 import time
 from typing import Any, Dict, List, Optional
@@ -24,10 +24,10 @@ GOAL, ESTIMATE, POINT = "move_base_simple/goal", "initialpose", "clicked_point"
 CANCEL = "move_base/cancel"
 MISSIONS = "/pick_objects"
 TWIST = "geometry_msgs/Twist"
-# Those that a person is to drive by come first.
-LIKELY = ("input/teleop", "teleop/cmd_vel", "cmd_vel", "velocity")
-# rviz's, for a pose estimate: variances of x, y and yaw.
-SPREAD = {0: 0.25, 7: 0.25, 35: 0.06853891945200942}
+# Ends of velocity topics in order of preference.
+PREFERRED = ("input/teleop", "teleop/cmd_vel", "cmd_vel", "velocity")
+# Variances of x, y and yaw that rviz publishes with a pose estimate.
+VARIANCES = {0: 0.25, 7: 0.25, 35: 0.06853891945200942}
 BOX_SIZE, BOX_HEIGHT = 0.3, 0.5
 BOX = """<sdf version="1.6"><model name="{name}"><link name="box">
 <inertial><mass>2</mass></inertial>
@@ -37,7 +37,7 @@ BOX = """<sdf version="1.6"><model name="{name}"><link name="box">
 
 
 class GraphCommands:
-    """Each raises CockpitError if nobody is there to take it."""
+    """Sends commands; each raises CockpitError without a subscriber or service."""
 
     def __init__(self, graph: GraphClient):
         self._graph = graph
@@ -45,11 +45,11 @@ class GraphCommands:
         self._boxes = 0
 
     def robots(self) -> List[str]:
-        """The namespaces in which goals are taken. Raises CockpitError."""
+        """Return the namespaces with a goal topic. Raises CockpitError."""
         return sorted(name[: -len(GOAL)] for name in self._graph.subscribers() if name.endswith(f"/{GOAL}"))
 
     def velocity_topics(self) -> List[str]:
-        """The topics on which somebody takes velocities, the likeliest first. Raises CockpitError."""
+        """Return the velocity topics with a subscriber, preferred ones first. Raises CockpitError."""
         types, own = self._graph.topics(), rospy.get_name()
         found = [
             name
@@ -58,7 +58,9 @@ class GraphCommands:
         ]
 
         def rank(name: str) -> int:
-            return next((number for number, end in enumerate(LIKELY) if name.endswith(end)), len(LIKELY))
+            return next(
+                (number for number, end in enumerate(PREFERRED) if name.endswith(end)), len(PREFERRED)
+            )
 
         return sorted(found, key=lambda name: (rank(name), len(name), name))
 
@@ -71,35 +73,37 @@ class GraphCommands:
         message = PoseWithCovarianceStamped()
         message.header.frame_id, message.header.stamp = frame, rospy.get_rostime()
         message.pose.pose = _pose(x, y, yaw)
-        message.pose.covariance = [SPREAD.get(index, 0.0) for index in range(36)]
+        message.pose.covariance = [VARIANCES.get(index, 0.0) for index in range(36)]
         self._send(robot + ESTIMATE, message)
 
     def point(self, frame: str, x: float, y: float) -> None:
         message = PointStamped()
         message.header.frame_id, message.header.stamp = frame, rospy.get_rostime()
         message.point.x, message.point.y = x, y
-        self._send("/" + POINT, message, needs_listener=False)
+        self._send("/" + POINT, message, needs_subscriber=False)
 
     def cancel(self, robot: str) -> None:
         self._send(robot + CANCEL, GoalID())
 
     def places(self) -> List[str]:
-        """The names of those that things are carried between. Raises CockpitError."""
+        """Return the names of places of deliveries. Raises CockpitError."""
         return list(self._graph.parameter(f"{MISSIONS}/places", []))
 
-    def deliver(self, thing: str, source: str, destination: str, joins: bool) -> None:
-        """``joins``: as one more delivery of the mission that is running; else as a mission of its own."""
-        delivery = Delivery(object=thing, source=source, destination=destination)
+    def deliver(self, object_name: str, source: str, destination: str, joins: bool) -> None:
+        """Request a delivery; ``joins`` adds it to the running mission instead of starting one."""
+        delivery = Delivery(object=object_name, source=source, destination=destination)
         if joins:
             _check(call(f"{MISSIONS}/add_delivery", AddDelivery, delivery))
             return
         goal = "/deliver/goal"
         if not self._graph.subscribers().get(goal):
-            raise CockpitError("nobody waits for missions (home_service.sh --serve does)")
+            raise CockpitError(
+                "no node accepts missions on /deliver/goal; start one with home_service.sh --serve"
+            )
         self._send(goal, DeliverActionGoal(goal=DeliverGoal(deliveries=[delivery])))
 
     def cancel_mission(self) -> None:
-        """All deliveries; an object on the robot is left where the robot stands."""
+        """Cancel all deliveries; a carried object is set down where the robot stands."""
         _check(call(f"{MISSIONS}/cancel_delivery", CancelDelivery, ""))
 
     def pause(self, is_paused: bool) -> None:
@@ -112,20 +116,20 @@ class GraphCommands:
         call("/sim_bridge/step", Step, 1)
 
     def set_speed(self, factor: float) -> None:
-        """``factor``: times real time, 0 as fast as the nodes keep up."""
-        told = call("/gazebo/get_physics_properties", gazebo_msgs.srv.GetPhysicsProperties)
+        """Set the speed as a multiple of real time; 0 is as fast as possible."""
+        physics = call("/gazebo/get_physics_properties", gazebo_msgs.srv.GetPhysicsProperties)
         answer = call(
             "/gazebo/set_physics_properties",
             gazebo_msgs.srv.SetPhysicsProperties,
-            told.time_step,
-            factor / told.time_step,
-            told.gravity,
-            told.ode_config,
+            physics.time_step,
+            factor / physics.time_step,
+            physics.gravity,
+            physics.ode_config,
         )
         _check(answer)
 
     def drop_box(self, x: float, y: float) -> str:
-        """In the world's frame; returns the name of the model."""
+        """Spawn a box at x, y in the world frame [m] and return the name of its model."""
         self._boxes += 1
         name = f"box_of_cockpit_{int(time.time()) % 100000}_{self._boxes}"
         pose = _pose(x, y, 0.0)
@@ -143,19 +147,29 @@ class GraphCommands:
         return name
 
     def move_model(self, name: str, x: float, y: float, yaw: Optional[float]) -> np.ndarray:
-        """In the world's frame; None: turned as it is. Returns the motion (4, 4) that this was."""
-        told = call("/gazebo/get_model_state", gazebo_msgs.srv.GetModelState, name, "world")
-        _check(told)
-        before = _matrix(told.pose)
-        state = gazebo_msgs.msg.ModelState(model_name=name, reference_frame="world", pose=told.pose)
+        """Move a model in the world frame.
+
+        Args:
+            name: Name of the model.
+            x: New position [m].
+            y: New position [m].
+            yaw: New orientation [rad]; None keeps it.
+
+        Returns:
+            The motion (4, 4) in the world frame.
+        """
+        current = call("/gazebo/get_model_state", gazebo_msgs.srv.GetModelState, name, "world")
+        _check(current)
+        before = _matrix(current.pose)
+        state = gazebo_msgs.msg.ModelState(model_name=name, reference_frame="world", pose=current.pose)
         if yaw is not None:
             state.pose = _pose(x, y, yaw)
         state.pose.position.x, state.pose.position.y, state.pose.position.z = x, y, before[2, 3]
         _check(call("/gazebo/set_model_state", gazebo_msgs.srv.SetModelState, state))
         return _matrix(state.pose) @ inverse(before)
 
-    def swing(self, model: str, joint: str, position: float) -> None:
-        """``position``: of a door's or a drawer's joint, rad or m."""
+    def set_joint(self, model: str, joint: str, position: float) -> None:
+        """Set the joint position of a door or a drawer [rad or m]."""
         answer = call(
             "/gazebo/set_model_configuration",
             gazebo_msgs.srv.SetModelConfiguration,
@@ -166,13 +180,15 @@ class GraphCommands:
         )
         _check(answer)
 
-    def _send(self, topic: str, message: Any, needs_listener: bool = True) -> None:
+    def _send(self, topic: str, message: Any, needs_subscriber: bool = True) -> None:
         if topic not in self._publishers:
             self._publishers[topic] = rospy.Publisher(topic, type(message), queue_size=1)
         publisher = self._publishers[topic]
-        wait_for_subscribers(publisher, len(self._graph.subscribers().get(topic, ())) or int(needs_listener))
-        if needs_listener and not publisher.get_num_connections():
-            raise CockpitError(f"nobody listens to {topic}")
+        wait_for_subscribers(
+            publisher, len(self._graph.subscribers().get(topic, ())) or int(needs_subscriber)
+        )
+        if needs_subscriber and not publisher.get_num_connections():
+            raise CockpitError(f"no node subscribes to {topic}")
         publisher.publish(message)
 
 
@@ -193,5 +209,5 @@ def _matrix(pose: Pose) -> np.ndarray:
     """Raises CockpitError."""
     matrix = pose_from_message(pose.position, pose.orientation)
     if matrix is None:
-        raise CockpitError("the simulator tells a pose that is none")
+        raise CockpitError("the simulator returned a pose that is not finite or has a zero quaternion")
     return matrix

@@ -1,4 +1,4 @@
-"""Layers of topics: subscribed while they are switched on and somebody looks, and drawn."""
+"""Subscriptions of layers: topics that are enabled while a page is open."""
 
 from typing import Any, Callable, Dict, List, Optional
 
@@ -12,10 +12,10 @@ from cockpit.ros.tool import error_text
 
 
 class LayerSubscription:
-    """A topic that is switched on."""
+    """The subscription of an enabled topic."""
 
     def __init__(self, graph: GraphClient, topic: str, kind: str, layer: DisplayLayer):
-        """Raises CockpitError."""
+        """Subscribe. Raises CockpitError."""
         self.topic, self.layer = topic, layer
         self._feed: TopicFeed = graph.feed(topic, kind, layer.needs_all)
         self.reset()
@@ -25,7 +25,7 @@ class LayerSubscription:
         self._due = 0.0
 
     def updates(self, now: float) -> List[LayerUpdate]:
-        """What is new. Raises whatever a message that makes no sense makes its layer raise."""
+        """Draw the new messages. Raises any exception of the layer."""
         if now < self._due:
             return []
         messages = self._feed.messages()
@@ -38,24 +38,24 @@ class LayerSubscription:
 
 
 class LayerManager:
-    """All topics that a layer knows to draw."""
+    """Manages the topics that a layer can draw."""
 
     def __init__(self, graph: GraphClient, drawer: SceneRenderer, notify: Callable[[str], None]):
         self._graph, self._drawer, self._notify = graph, drawer, notify
         self._by_type = by_type()
         self._shown: Dict[str, LayerSubscription] = {}
         self._complaints: Dict[str, str] = {}
-        # The newest picture of each camera.
+        # The newest image of each camera.
         self.screens: Dict[str, Any] = {}
 
     def offers(self) -> Dict[str, DisplayLayer]:
-        """The layer of each topic that somebody publishes. Raises CockpitError."""
+        """Return the layer of each published topic. Raises CockpitError."""
         published, types = self._graph.publishers(), self._graph.topics()
         known = ((topic, self._by_type.get(types.get(topic, ""))) for topic in sorted(published))
         return {topic: layer for topic, layer in known if layer is not None}
 
     def choose(self, wanted: Dict[str, bool], offers: Dict[str, DisplayLayer]) -> None:
-        """Subscribes to what is switched on, and to nothing else."""
+        """Subscribe to the enabled topics only."""
         for topic in [topic for topic in self._shown if not wanted.get(topic)]:
             self._close(topic)
         for topic, is_on in wanted.items():
@@ -68,17 +68,17 @@ class LayerManager:
                 for update in shown.updates(now):
                     self._show(topic, update, now)
                     self._complain(topic, update.warning)
-            except Exception as error:  # what a graph sends may be anything
+            except Exception as error:  # messages of a graph may be malformed in any way
                 self._complain(topic, error_text(error))
 
     def reset(self) -> None:
-        """Time has: what was shown belongs to another."""
+        """Clear all layers after ROS time has jumped back."""
         for topic, shown in self._shown.items():
             shown.reset()
             self._clear(topic)
 
     def close(self) -> None:
-        """Subscribes to nothing; what is shown stays to be seen by who comes next."""
+        """End all subscriptions; the scene is kept for the next client."""
         for shown in self._shown.values():
             shown.close()
         self._shown.clear()
@@ -115,5 +115,5 @@ def layer_type(graph: GraphClient, topic: str) -> str:
     """Raises CockpitError."""
     kind: Optional[str] = graph.topics().get(topic)
     if kind is None:
-        raise CockpitError("the topic is gone")
+        raise CockpitError("the topic no longer exists")
     return kind

@@ -1,4 +1,4 @@
-"""Messages as people write them: a template in YAML, filled in as for rostopic pub and rosservice call."""
+"""Messages as YAML: a template, filled in as for rostopic pub and rosservice call."""
 
 from io import BytesIO
 from typing import Any, Callable, Optional, Type
@@ -14,35 +14,35 @@ LONGEST = 20_000
 
 
 def message_class(kind: str) -> Type[Any]:
-    """Raises CockpitError if the type is not installed here."""
+    """Find the class of a type. Raises CockpitError if it is not installed."""
     return _found(roslib.message.get_message_class, kind)
 
 
 def service_class(kind: str) -> Type[Any]:
-    """Raises CockpitError if the type is not installed here."""
+    """Find the class of a type. Raises CockpitError if it is not installed."""
     return _found(roslib.message.get_service_class, kind)
 
 
 def template(kind: Type[Any]) -> str:
-    """Every field with the value that it has by itself; empty if there is none."""
+    """Return all fields with their default values as YAML; empty without fields."""
     return genpy.message.strify_message(kind()).strip()
 
 
 def filled(kind: Type[Any], text: str) -> Any:
-    """A message of ``kind`` with what ``text`` says; ``now`` is the time now. Raises CockpitError."""
+    """Build a message from YAML, in which ``now`` is the current time. Raises CockpitError."""
     if len(text) > LONGEST:
         raise CockpitError(f"longer than {LONGEST} characters")
     message = kind()
     try:
         fields = yaml.safe_load(text)
         if fields is not None and not isinstance(fields, (dict, list)):
-            raise CockpitError("not fields with values, as 'data: 1.0'")
+            raise CockpitError("expected fields with values, such as 'data: 1.0'")
         if fields:
             now = rospy.get_rostime() if rospy.core.is_initialized() else rospy.Time()
             arguments = fields if isinstance(fields, list) else [fields]
             genpy.message.fill_message_args(message, arguments, {"now": now, "auto": _header(now)})
         message._check_types()
-        message.serialize(BytesIO())  # genpy of Debian 11 looks at no floating-point number before
+        message.serialize(BytesIO())  # genpy of Debian 11 checks floating-point numbers only here
     except yaml.YAMLError as error:
         where = getattr(error, "problem_mark", None)
         line = "" if where is None else f", line {where.line + 1}"
@@ -59,8 +59,8 @@ def _header(now: Any) -> Any:
 def _found(find: Callable[[str], Optional[Type[Any]]], name: str) -> Type[Any]:
     try:
         kind = find(name)
-    except ValueError:  # of a name without a slash
+    except ValueError:  # the name has no slash
         kind = None
     if kind is None:
-        raise CockpitError(f"{name} is a type that is not installed here")
+        raise CockpitError(f"type {name} is not installed")
     return kind

@@ -1,4 +1,4 @@
-"""The process of the cockpit: the page first, then the graph, whenever its master comes.
+"""The process of the cockpit: serves the page, then waits for the ROS master.
 
 cockpit [--web-port [ADDRESS:]PORT] [--tool NAME]
 """
@@ -29,7 +29,7 @@ from supervision.ros.node_api import is_master_online, node_names
 FREE_PORT = "127.0.0.1:0"
 MASTER_SECONDS, NODES_SECONDS = 0.2, 3.0
 CLOSE_SECONDS = 15.0
-# Where processors are short, the graph goes first.
+# The graph has priority on a busy machine.
 NICENESS = 5
 
 
@@ -37,8 +37,10 @@ NICENESS = 5
 class CockpitOptions:
     """Shows and drives a running ROS graph in the browser."""
 
-    web_port: str = option(FREE_PORT, "where the page is served; 0: a free port", metavar="[ADDRESS:]PORT")
-    tool: Optional[str] = option(None, "a tool that is open at first", metavar="NAME")
+    web_port: str = option(
+        FREE_PORT, "address of the page; port 0 selects a free one", metavar="[ADDRESS:]PORT"
+    )
+    tool: Optional[str] = option(None, "a tool that is opened first", metavar="NAME")
 
 
 def main() -> None:
@@ -51,33 +53,43 @@ def main() -> None:
 
 
 def serve(where: str, tool: Optional[str], words: Tuple[str, ...] = ()) -> int:
-    """Until the process is interrupted; ``words``: what the tool is to show at first.
+    """Serve the page until the process is interrupted.
 
-    The end of the process is the end of the page: viser would wait for browsers that are gone.
-    Raises CockpitError if the options make no sense.
+    The page ends with the process: viser would wait for browsers that have disconnected.
+
+    Args:
+        where: [ADDRESS:]PORT of the page.
+        tool: Name of a tool that is opened first.
+        words: Arguments of the tool.
+
+    Returns:
+        Exit code.
+
+    Raises:
+        CockpitError: If an option is invalid.
     """
     check_tool(tool)
     page = Page(*address_of(where))
     print(f"cockpit: {page.url}", flush=True)
     os.nice(NICENESS)
-    reader = _get_ready()
+    reader = _preload()
     if not is_master_online():
         print(f"cockpit: waiting for a ROS master at {get_master_uri()}", flush=True)
     while not is_master_online():
         time.sleep(MASTER_SECONDS)
     _wait_for_nodes()
-    is_asked_to_end = _hear_signals()
+    is_interrupted = _install_signal_handlers()
     init_node("cockpit", anonymous=True, log_level=rospy.WARN)
     cockpit = Cockpit(page, reader)
     if tool is not None:
         cockpit.toolbox.open(tool, words)
-    cockpit.run(lambda: is_asked_to_end() or rospy.is_shutdown())
+    cockpit.run(lambda: is_interrupted() or rospy.is_shutdown())
     rospy.signal_shutdown("the cockpit ends")
     return 0
 
 
-def _get_ready() -> SceneReader:
-    """What can be done before there is a graph, which would have to wait for it later."""
+def _preload() -> SceneReader:
+    """Load layers, tools and the scene reader while there is no graph yet."""
     reader = SceneReader()
     reader.prepare()
     all_layers()
@@ -85,10 +97,11 @@ def _get_ready() -> SceneReader:
     return reader
 
 
-def _hear_signals() -> Callable[[], bool]:
-    """Tells whether one has come; the process ends in time whatever is waited for, and says what that was.
+def _install_signal_handlers() -> Callable[[], bool]:
+    """Return a function that reports whether a signal has arrived.
 
-    rospy's own handler asks the master, in the middle of what the thread it interrupts may just ask it.
+    If the process does not end in time after a signal, it prints where it waits and exits. rospy's handler is
+    not used: it calls the master inside the interrupted thread, which may be calling it as well.
     """
     ending = threading.Event()
 
@@ -101,23 +114,25 @@ def _hear_signals() -> Callable[[], bool]:
 
 
 def _wait_for_nodes() -> None:
-    """A graph that just begins says whose time it has before its first nodes come; a node asks once."""
+    """Wait for the first nodes: use_sim_time is set before they start, and rospy reads it once."""
     deadline = time.monotonic() + NODES_SECONDS
     while time.monotonic() < deadline and not set(node_names()) - {"/rosout"}:
         time.sleep(MASTER_SECONDS)
 
 
 def check_tool(name: Optional[str]) -> None:
-    """Raises CockpitError if it is neither None nor the name of a tool."""
+    """Raise CockpitError for a name that is no tool."""
     if name is not None and name not in names():
-        raise CockpitError(f"--tool: there is no '{name}', only {', '.join(names())}")
+        raise CockpitError(f"--tool: unknown tool '{name}'; expected one of {', '.join(names())}")
 
 
 def address_of(text: str) -> Tuple[str, int]:
-    """Address and port of ``[ADDRESS:]PORT``. Raises PortError."""
+    """Parse ``[ADDRESS:]PORT``. Raises PortError."""
     address, _, port = text.rpartition(":")
     if not port.isascii() or not port.isdigit() or int(port) > 65535:
-        raise PortError(f"--web-port: '{text}' is no port, nor an address and a port")
+        raise PortError(
+            f"--web-port: '{text}' is not valid; expected [ADDRESS:]PORT with a port from 0 to 65535"
+        )
     return address.strip("[]") or "127.0.0.1", int(port)
 
 

@@ -1,4 +1,4 @@
-"""The cockpit under the names of rqt's programs: each opens it at the tool that does the same."""
+"""The cockpit under the names of rqt's programs; each opens the corresponding tool."""
 
 import sys
 from importlib.util import find_spec
@@ -10,7 +10,7 @@ import rospy
 from planar import PlanarError
 from supervision.interruption import leave
 
-# The whole cockpit, and its tools.
+# Programs that open the cockpit without a tool.
 WHOLE = ("rqt", "rqt_gui", "gzclient")
 TOOLS: Dict[str, str] = {
     "rqt_bag": "bag",
@@ -29,9 +29,9 @@ STANDALONE = ("-s", "--standalone")
 
 
 def main() -> None:
-    """Ends with 2 if there is no such tool, or no cockpit."""
+    """Run the program; exit code 2 for an unknown tool or without viser."""
     if find_spec("viser") is None:
-        sys.exit(_complain("the cockpit is not installed: ./scripts/setup.sh --web brings it"))
+        sys.exit(_complain("the cockpit is not installed; run ./scripts/setup.sh --web"))
     from cockpit.ros.node import FREE_PORT, serve
 
     arguments = rospy.myargv()[1:]
@@ -43,7 +43,7 @@ def main() -> None:
 
 
 def chosen(program: str, arguments: List[str]) -> Tuple[Optional[str], Tuple[str, ...]]:
-    """The tool to open, and what it is to show. ``rqt -s rqt_graph`` is ``rqt_graph``. Raises PlanarError."""
+    """Return the tool and its arguments; ``rqt -s rqt_graph`` is ``rqt_graph``. Raises PlanarError."""
     words = list(arguments)
     for option in STANDALONE:
         if option in words:
@@ -51,7 +51,7 @@ def chosen(program: str, arguments: List[str]) -> Tuple[Optional[str], Tuple[str
             program = words[at + 1] if at + 1 < len(words) else ""
             del words[at : at + 2]
     if program not in TOOLS and program not in WHOLE:
-        raise PlanarError(f"there is no '{program}' here, only {', '.join(sorted(TOOLS))}")
+        raise PlanarError(f"unknown program '{program}'; expected one of {', '.join(sorted(TOOLS))}")
     return TOOLS.get(program), tuple(word for word in words if not word.startswith("-"))
 
 

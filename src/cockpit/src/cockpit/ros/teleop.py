@@ -1,4 +1,4 @@
-"""Driving by hand from the page: velocities follow the keys that are held, and cease with them."""
+"""Teleoperation from the page: velocity commands while keys are held."""
 
 import threading
 import time
@@ -10,15 +10,15 @@ from geometry_msgs.msg import Twist
 from planar_ros.node.last_words import flush_and_close
 from teleop_lite.teleop import TICK_SECONDS, Teleop
 
-# So long after it has come to rest the robot is told so, then others may drive it.
+# Zero velocities are published for this long after the robot has stopped [s].
 RESTING_SECONDS = 0.5
-# Wall seconds at the end for the robot to hear that it is to stop.
-LAST_WORD_SECONDS = 1.0
+# Wall time at shutdown for the stop command to be delivered [s].
+FLUSH_SECONDS = 1.0
 FORCE_STOP = "k"
 
 
 class PageTeleop:
-    """A page that is closed, frozen or cut off sends no more keys, and that is what letting go is."""
+    """Publishes velocities while a page repeats a key; a closed or frozen page stops the robot."""
 
     def __init__(self):
         self._lock = threading.Lock()
@@ -30,7 +30,7 @@ class PageTeleop:
         threading.Thread(target=self._work, daemon=True).start()
 
     def press(self, key: str, client: int, topic: str) -> None:
-        """A key or button of the page ``client`` is held: to be called again and again while it is."""
+        """Handle a key or button that ``client`` holds; called repeatedly while it is held."""
         with self._lock:
             if self._publisher is None or self._publisher.resolved_name != rospy.resolve_name(topic):
                 self._stop()
@@ -43,18 +43,18 @@ class PageTeleop:
         self._wake.set()
 
     def release(self, client: int) -> None:
-        """The page is gone: the robot that it drove stops at once."""
+        """Stop the robot that a disconnected client has driven."""
         with self._lock:
             if client == self._driver:
                 self._stop()
 
     def close(self) -> None:
-        """For good, before the node ends: the robot hears that it is to stop."""
+        """Publish and flush a stop command before the node shuts down."""
         with self._lock:
             is_driving = self._driver is not None
             self._stop()
             if is_driving and self._publisher is not None:
-                flush_and_close(self._publisher, patience=LAST_WORD_SECONDS)
+                flush_and_close(self._publisher, patience=FLUSH_SECONDS)
 
     def _stop(self) -> None:
         self._teleop.press(FORCE_STOP)

@@ -1,4 +1,4 @@
-"""The tools that are open."""
+"""The open tools."""
 
 import threading
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ class _OpenTool:
 
 
 class Toolbox:
-    """Opens and closes tools, and lets each of those that are open do its work in turn."""
+    """Opens, closes and updates tools."""
 
     def __init__(self, page: Page, graph: GraphClient):
         self._page, self._graph = page, graph
@@ -37,20 +37,20 @@ class Toolbox:
         return list(self._kinds)
 
     def open(self, name: str, words: Tuple[str, ...] = ()) -> None:
-        """``words``: what it is to show."""
+        """Open a tool with arguments."""
         self._words[name] = words
         self._panel.open(name)
 
     def update(self, now: float) -> None:
         for name, opened in self._opened():
             if now < opened.due or not opened.context.lock.acquire(blocking=False):
-                continue  # a person is at it: it has its turn later
+                continue  # a callback holds the tool: update it later
             opened.due = now + opened.tool.seconds
             try:
                 if name in self._open:
                     opened.tool.update(now)
                 opened.complaint = ""
-            except Exception as error:  # what a tool meets in a graph may be anything
+            except Exception as error:  # data from the graph may be malformed in any way
                 self._complain(opened, error)
             finally:
                 opened.context.lock.release()
@@ -88,7 +88,7 @@ class Toolbox:
         return opened
 
     def _complain(self, opened: _OpenTool, error: Exception) -> None:
-        """Once for each thing that is wrong."""
+        """Report an error once until it changes."""
         text = f"{opened.tool.title}: {error_text(error)}"
         if text != opened.complaint:
             self._page.notify(text, True)

@@ -1,4 +1,4 @@
-"""/tf and /tf_static into a tree of frames."""
+"""Subscriptions of /tf and /tf_static that fill a tree of frames."""
 
 from collections import Counter
 from typing import Iterator, List
@@ -12,14 +12,14 @@ KIND = "tf2_msgs/TFMessage"
 
 
 class TransformFeed:
-    """Keeps ``frames`` up to date while it listens; ``counts``: how many transforms of each have come."""
+    """Updates ``frames`` while subscribed; ``counts`` has the transforms received per child frame."""
 
     def __init__(self, frames: FrameTree):
         self._frames = frames
         self.counts: Counter = Counter()
         self._feeds: List[TopicFeed] = []
 
-    def listen(self, wanted: bool) -> None:
+    def subscribe(self, wanted: bool) -> None:
         if wanted and not self._feeds:
             self._feeds = [TopicFeed(topic, KIND, all_of_them=True) for topic in TOPICS]
         if not wanted:
@@ -28,23 +28,24 @@ class TransformFeed:
             self._feeds = []
 
     def update(self) -> None:
-        """Takes in what has come. Raises CockpitError if some of it makes no sense, after all the rest."""
-        troubles = [trouble for feed in self._feeds for trouble in self._update_from(feed)]
-        if troubles:
-            raise CockpitError(troubles[0])
+        """Store the new transforms. Raises CockpitError afterwards if one was malformed."""
+        errors = [error for feed in self._feeds for error in self._update_from(feed)]
+        if errors:
+            raise CockpitError(errors[0])
 
     def _update_from(self, feed: TopicFeed) -> Iterator[str]:
-        """What is wrong with what has come."""
+        """Store the new messages of a topic and yield what is wrong with them."""
         try:
             for _, message, sender in feed.stamped_messages():
                 for stamped in message.transforms:
-                    if not self._take(stamped, feed.topic == TOPICS[1], sender):
-                        yield f"{sender} sends a transform of {stamped.child_frame_id} that is none"
+                    if not self._store(stamped, feed.topic == TOPICS[1], sender):
+                        name = stamped.child_frame_id
+                        yield f"{sender} publishes an invalid transform of {name} (not finite)"
         except CockpitError as error:
             yield str(error)
 
-    def _take(self, stamped, is_static: bool, sender: str) -> bool:
-        """Whether it is a transform."""
+    def _store(self, stamped, is_static: bool, sender: str) -> bool:
+        """Store a transform and return whether it is valid."""
         pose = pose_from_message(stamped.transform.translation, stamped.transform.rotation)
         if pose is None:
             return False

@@ -1,4 +1,4 @@
-"""The tools, one a module; a module that is put here is found."""
+"""The tools, one a module; every module of this package is loaded."""
 
 import importlib
 import pkgutil
@@ -8,10 +8,10 @@ from cockpit.ros.tool import Tool
 
 
 def names() -> List[str]:
-    """The modules that hold tools; a tool has the name of its module."""
+    """Return the names of the tools, which are those of their modules."""
     return sorted(found.name for found in pkgutil.iter_modules(__path__))
 
 
 def all_tools() -> Dict[str, Type[Tool]]:
-    """Every tool by its name."""
+    """Return all tools by name."""
     return {name: importlib.import_module(f"{__name__}.{name}").TOOL for name in names()}

@@ -1,4 +1,4 @@
-"""Bag: what is said recorded in a file, a file played, paused and ended (rqt_bag, rosbag)."""
+"""Bag: record topics to a file, and play, pause and stop a bag (rqt_bag, rosbag)."""
 
 import os
 from pathlib import Path
@@ -34,20 +34,20 @@ class BagTool:
         gui, guarded = self._context.gui, self._context.guarded
         with gui.add_folder("Record"):
             self._name = gui.add_text("File", "recording.bag", hint=f"in {self._folder}")
-            self._topics = gui.add_text("Topics", "", hint="names with blanks between; empty: all")
+            self._topics = gui.add_text("Topics", "", hint="names separated by spaces; empty for all")
             gui.add_button("Record").on_click(guarded(lambda _: self._record()))
-            gui.add_button("End the recording", color="gray").on_click(
+            gui.add_button("Stop the recording", color="gray").on_click(
                 guarded(lambda _: self._end_recorder())
             )
         with gui.add_folder("Play"):
             self._found = gui.add_dropdown("Found", (NONE,), hint=f"in {self._folder} and its runs")
             self._path = gui.add_text("or its path", "")
-            self._rate = gui.add_number("Times real time", 1.0, min=0.01, max=100.0, step=0.1)
-            self._clock = gui.add_checkbox("Its clock too", False, hint="for nodes with use_sim_time")
+            self._rate = gui.add_number("Rate", 1.0, min=0.01, max=100.0, step=0.1)
+            self._clock = gui.add_checkbox("Publish /clock", False, hint="for nodes with use_sim_time")
             gui.add_button("Play").on_click(guarded(lambda _: self._play()))
             gui.add_button("Pause", color="gray").on_click(guarded(lambda _: self._pause(True)))
-            gui.add_button("Go on", color="gray").on_click(guarded(lambda _: self._pause(False)))
-            gui.add_button("End it", color="gray").on_click(guarded(lambda _: self._end_player()))
+            gui.add_button("Resume", color="gray").on_click(guarded(lambda _: self._pause(False)))
+            gui.add_button("Stop", color="gray").on_click(guarded(lambda _: self._end_player()))
         self._status = gui.add_markdown("")
 
     def update(self, now: float) -> None:
@@ -56,37 +56,37 @@ class BagTool:
             self._found.options = options
         for do in self._background.results():
             do()
-        self._status.content = "  \n".join(self._told())
+        self._status.content = "  \n".join(self._status_lines())
 
     def pause(self) -> None:
-        """A recording goes on though nobody looks: that is what it was started for."""
+        """Recording and playing continue while no page is open."""
 
     def close(self) -> None:
         self._end_recorder()
         self._end_player()
 
-    def _told(self) -> List[str]:
-        told = []
+    def _status_lines(self) -> List[str]:
+        lines = []
         if self._recorder is not None:
             part = self._file.with_suffix(".bag.active")
             size = next((path.stat().st_size for path in (part, self._file) if path.exists()), 0)
             state = "recording" if self._recorder.is_running else "recorded"
-            told.append(f"{state} {self._file.name}: {amount(size)}")
+            lines.append(f"{state} {self._file.name}: {amount(size)}")
         if self._player is not None:
-            told.append("playing" if self._player.is_running else "played to its end")
-            told += [f"the player says: {word}" for word in self._player.complaints()]
-        return told
+            lines.append("playing" if self._player.is_running else "finished playing")
+            lines += [f"the player failed: {line}" for line in self._player.complaints()]
+        return lines
 
     def _record(self) -> None:
         if self._recorder is not None and self._recorder.is_running:
-            raise CockpitError(f"{self._file.name} is being recorded: end that first")
+            raise CockpitError(f"{self._file.name} is being recorded; stop that first")
         path = new_bag(self._folder, self._name.value)
         if not os.access(self._folder, os.W_OK):
-            raise CockpitError(f"{self._folder} cannot be written to")
+            raise CockpitError(f"{self._folder} is not writable")
         topics = self._topics.value.split()
         bad = [topic for topic in topics if not topic.startswith("/")]
         if bad:
-            raise CockpitError(f"'{bad[0]}' is no topic: its name begins with /")
+            raise CockpitError(f"'{bad[0]}' is not a topic name; it must begin with /")
         self._file = path
         self._recorder = ChildProgram([*ROSBAG, "record", "-O", str(path), *(topics or ["--all"])])
 
@@ -96,14 +96,14 @@ class BagTool:
 
     def _play(self) -> None:
         if self._player is not None and self._player.is_running:
-            raise CockpitError("a bag is being played: end that first")
-        told = self._path.value.strip() or self._found.value
-        if told == NONE:
+            raise CockpitError("a bag is being played; stop that first")
+        chosen = self._path.value.strip() or self._found.value
+        if chosen == NONE:
             raise CockpitError("choose a bag first")
-        path, rate, clock = self._folder / told, self._rate.value, self._clock.value
+        path, rate, clock = self._folder / chosen, self._rate.value, self._clock.value
 
-        def look():
-            bags = Recording([path]).paths  # whether it can be read is known before anything is sent
+        def check():
+            bags = Recording([path]).paths  # checks that the bag can be read before anything is published
             words = ["play", "--rate", f"{rate:g}", *(["--clock"] if clock else []), *map(str, bags)]
 
             def start() -> None:
@@ -111,13 +111,13 @@ class BagTool:
 
             return start
 
-        self._background.start(look)
+        self._background.start(check)
 
     def _pause(self, is_paused: bool) -> None:
-        """Whatever plays a bag in this graph."""
+        """Pause or resume every bag player of the graph."""
         found = [name for name in self._context.graph.services() if name.endswith(PAUSE)]
         if not found:
-            raise CockpitError("no bag is played")
+            raise CockpitError("no bag is being played")
 
         def ask():
             for name in found:

@@ -1,4 +1,4 @@
-"""Console: what nodes say, by node and level; how much each says (rqt_console, rqt_logger_level)."""
+"""Console: log messages by node and level, and logger levels (rqt_console, rqt_logger_level)."""
 
 from typing import Optional
 
@@ -12,7 +12,7 @@ from cockpit.ros.calls import call
 from cockpit.ros.graph import TopicFeed
 from cockpit.ros.tool import ToolContext
 
-COLLECTED, TOLD, KIND = "/rosout_agg", "/rosout", "rosgraph_msgs/Log"
+AGGREGATED, ROSOUT, KIND = "/rosout_agg", "/rosout", "rosgraph_msgs/Log"
 NONE = "(none)"
 LOGGERS, SET_LEVEL = "/get_loggers", "/set_logger_level"
 
@@ -32,33 +32,35 @@ class ConsoleTool:
         self._node = gui.add_text("Node", "", hint="part of a node's name")
         self._text = gui.add_text("Message", "", hint="part of a message")
         gui.add_button("Clear", color="gray").on_click(guarded(lambda _: self._log.clear()))
-        with gui.add_folder("How much a node says", expand_by_default=False):
-            self._speaker = gui.add_dropdown("Of node", (NONE,))
+        with gui.add_folder("Logger levels", expand_by_default=False):
+            self._logging_node = gui.add_dropdown("Of node", (NONE,))
             self._logger = gui.add_dropdown("Logger", (NONE,))
             self._level = gui.add_dropdown("Level", tuple(LEVELS.values()), initial_value="Info")
             gui.add_button("Set the level").on_click(guarded(self._set_level))
-        self._lines = gui.add_html("")  # below all that is clicked: it grows
-        self._speaker.on_update(guarded(self._ask_loggers))
+        self._lines = gui.add_html("")  # last, since it grows
+        self._logging_node.on_update(guarded(self._ask_loggers))
 
     def update(self, now: float) -> None:
-        for told in self._listening().messages():
-            where = f"{told.file.rpartition('/')[2]}:{told.line} {told.function}".strip(": ")
-            self._log.add(LogEntry(told.level, told.header.stamp.to_sec(), told.name, told.msg, where))
+        for message in self._subscribed().messages():
+            where = f"{message.file.rpartition('/')[2]}:{message.line} {message.function}".strip(": ")
+            self._log.add(
+                LogEntry(message.level, message.header.stamp.to_sec(), message.name, message.msg, where)
+            )
         wanted = LogFilter(level_named(self._lowest.value), self._node.value, self._text.value)
         content = table(HEADS, self._log.rows(wanted))
         if self._lines.content != content:
             self._lines.content = content
         services = self._context.graph.services()
-        speakers = sorted(name[: -len(LOGGERS)] for name in services if name.endswith(LOGGERS))
-        if self._speaker.options != (NONE, *speakers):
-            self._speaker.options = (NONE, *speakers)
+        nodes = sorted(name[: -len(LOGGERS)] for name in services if name.endswith(LOGGERS))
+        if self._logging_node.options != (NONE, *nodes):
+            self._logging_node.options = (NONE, *nodes)
         for background in (self._asking, self._setting):
             for do in background.results():
                 do()
 
-    def _listening(self) -> TopicFeed:
-        """To the collector of all that is said or, where none runs, to each node itself."""
-        wanted = COLLECTED if COLLECTED in self._context.graph.publishers() else TOLD
+    def _subscribed(self) -> TopicFeed:
+        """Subscribe to /rosout_agg or, without rosout running, to /rosout."""
+        wanted = AGGREGATED if AGGREGATED in self._context.graph.publishers() else ROSOUT
         if self._feed is not None and self._feed.topic != wanted:
             self.pause()
         if self._feed is None:
@@ -73,13 +75,13 @@ class ConsoleTool:
     close = pause
 
     def _ask_loggers(self, _event) -> None:
-        node = self._speaker.value
+        node = self._logging_node.value
         self._logger.options = (NONE,)
-        self._asking.restart(lambda: self._offering(node))
+        self._asking.restart(lambda: self._read_loggers(node))
 
-    def _offering(self, node: str):
-        told = call(node + LOGGERS, GetLoggers).loggers if node != NONE else ()
-        levels = {logger.name: logger.level.capitalize() for logger in told}
+    def _read_loggers(self, node: str):
+        loggers = call(node + LOGGERS, GetLoggers).loggers if node != NONE else ()
+        levels = {logger.name: logger.level.capitalize() for logger in loggers}
 
         def offer() -> None:
             self._logger.options = tuple(sorted(levels, key=lambda name: (name != "rosout", name))) or (NONE,)
@@ -90,9 +92,9 @@ class ConsoleTool:
         return offer
 
     def _set_level(self, _event) -> None:
-        node, logger, level = self._speaker.value, self._logger.value, self._level.value
+        node, logger, level = self._logging_node.value, self._logger.value, self._level.value
         if NONE in (node, logger):
-            raise CockpitError("choose a node and one of its loggers first")
+            raise CockpitError("choose a node and a logger first")
 
         def ask():
             call(node + SET_LEVEL, SetLoggerLevel, logger, level.lower())

@@ -1,4 +1,4 @@
-"""Frames: the tree of transforms, how old each is, and who tells it (rqt_tf_tree)."""
+"""Frames: the tree of transforms with age and publisher (rqt_tf_tree)."""
 
 from typing import Dict
 
@@ -25,7 +25,7 @@ class FramesTool:
         self._tree = self._context.gui.add_html("")
 
     def update(self, now: float) -> None:
-        self._listener.listen(True)
+        self._listener.subscribe(True)
         self._listener.update()
         transforms = self._frames.transforms()
         rates = {}
@@ -33,10 +33,10 @@ class FramesTool:
             rate = self._rates.setdefault(frame, RateMeter())
             rates[frame], _ = rate.update(now, self._listener.counts[frame], 0)
         rows = rows_of(transforms, rospy.get_time(), rates)
-        self._tree.content = table(HEADS, rows) if rows else table(("Nobody tells of frames on /tf.",), ())
+        self._tree.content = table(HEADS, rows) if rows else table(("No transforms on /tf yet.",), ())
 
     def pause(self) -> None:
-        self._listener.listen(False)
+        self._listener.subscribe(False)
         self._frames.clear()
         self._rates.clear()
 

@@ -26,7 +26,7 @@ class GraphTool:
         self._part = gui.add_text("Filter", "", hint="part of a name")
         self._debug = gui.add_checkbox("Debug", False, hint="the log, the clock, the cockpit itself")
         self._transforms = gui.add_checkbox("/tf", False)
-        self._actions = gui.add_checkbox("Topics of actions apart", False)
+        self._actions = gui.add_checkbox("Action topics separately", False)
         self._picture = gui.add_html("")
 
     def update(self, now: float) -> None:
@@ -46,7 +46,7 @@ class GraphTool:
             self._background.start(lambda: _html(dot))
 
     def pause(self) -> None:
-        """It listens to nothing."""
+        """Nothing to do: the tool has no subscriptions."""
 
     close = pause
 
@@ -58,9 +58,9 @@ def _html(dot: str) -> str:
             ["dot", "-Tsvg"], input=dot.encode(), capture_output=True, timeout=DRAWING_SECONDS, check=True
         )
     except FileNotFoundError:
-        raise CockpitError("graphviz is not installed: ./scripts/setup.sh --web brings it") from None
+        raise CockpitError("graphviz is not installed; run ./scripts/setup.sh --web") from None
     except subprocess.SubprocessError:
-        raise CockpitError("graphviz could not draw the graph; a filter makes it smaller") from None
+        raise CockpitError("graphviz could not draw the graph; use the filter to make it smaller") from None
     svg = done.stdout.decode(errors="replace")
     svg = SIZE.sub(r'<svg style="width:100%;max-width:\1px;height:auto"', svg[svg.index("<svg") :])
     return f'<div style="overflow:auto;max-height:70vh;margin:0 12px">{svg}</div>'

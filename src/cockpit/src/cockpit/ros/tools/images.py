@@ -1,4 +1,4 @@
-"""Images: what a camera sees (rqt_image_view)."""
+"""Images: the image of a camera topic (rqt_image_view)."""
 
 from typing import Any, Optional
 
@@ -34,9 +34,9 @@ class ImagesTool:
             self._topic.options = found
         if self._awaited and self._awaited[0] in found:
             self._topic.value, self._awaited = self._awaited[0], ()
-        self._listen()
+        self._subscribe()
         if self._feed is None:
-            self._status.content = "choose a topic" if len(found) > 1 else "no camera sends pictures"
+            self._status.content = "choose a topic" if len(found) > 1 else "no topic has images"
             return
         hertz, _ = self._rate.update(now, self._feed.count, 0)
         for message in self._feed.messages():
@@ -52,7 +52,7 @@ class ImagesTool:
 
     close = pause
 
-    def _listen(self) -> None:
+    def _subscribe(self) -> None:
         wanted = self._topic.value
         if self._feed is not None and self._feed.topic != wanted:
             self.pause()

@@ -1,4 +1,4 @@
-"""Parameters: listed, looked at, set and removed (rosparam)."""
+"""Parameters: list, get, set and delete (rosparam)."""
 
 import rospy
 import yaml
@@ -38,14 +38,14 @@ class ParametersTool:
             self._list.content = content
 
     def pause(self) -> None:
-        """It listens to nothing."""
+        """Nothing to do: the tool has no subscriptions."""
 
     close = pause
 
     def _named(self) -> str:
         name = self._name.value.strip()
         if not name or name == "/":
-            raise CockpitError("say the parameter's name first")
+            raise CockpitError("enter the name of a parameter first")
         return rospy.resolve_name("/" + name.lstrip("/"))
 
     def _get(self) -> None:
@@ -64,9 +64,9 @@ class ParametersTool:
         except (yaml.YAMLError, RecursionError) as error:
             raise CockpitError(f"{name}: not YAML ({getattr(error, 'problem', error)})") from None
         if value is None:
-            raise CockpitError(f"{name}: say a value first")
+            raise CockpitError(f"{name}: enter a value first")
         rospy.set_param(name, value)
-        self._context.notify(f"{name} is set; a node that has read it already knows nothing of that")
+        self._context.notify(f"{name} is set; nodes that have read it already keep the old value")
 
     def _remove(self) -> None:
         name = self._named()

@@ -43,8 +43,8 @@ class PlotTool:
         if self._topic.options != topics:
             self._topic.options = topics
         self._add_awaited()
-        self._listen()
-        self._take()
+        self._subscribe()
+        self._read()
         self._traces.seconds = self._span.value
         names = sorted(self._paths)
         rows = [(name, f"{self._traces.newest(name):.6g}") for name in names]
@@ -74,7 +74,7 @@ class PlotTool:
         self._rebuild()
 
     def _add_awaited(self) -> None:
-        """Of what was asked for at the start, that of topics which are there by now."""
+        """Add the requested numbers whose topics exist by now."""
         topics = self._context.graph.topics()
         come = [name for name in self._awaited if any(name.startswith(f"{topic}/") for topic in topics)]
         if come:
@@ -83,10 +83,10 @@ class PlotTool:
             self._rebuild()
 
     def _split(self, typed: str) -> Tuple[str, str]:
-        """A topic and what follows it, as rqt_plot takes them."""
+        """Split a field path of rqt_plot into topic and field."""
         known = [name for name in self._context.graph.topics() if typed.startswith(f"{name}/")]
         if not known:
-            raise CockpitError(f"no topic is the beginning of '{typed}'")
+            raise CockpitError(f"'{typed}' does not begin with the name of a topic")
         topic = max(known, key=len)
         return topic, typed[len(topic) + 1 :].replace("/", ".")
 
@@ -97,7 +97,7 @@ class PlotTool:
             self._rebuild()
 
     def _rebuild(self) -> None:
-        """A chart with as many lines as there are numbers."""
+        """Recreate the chart with one line per number."""
         names = sorted(self._paths)
         self._shown.options = tuple(names) or (NONE,)
         if self._chart is not None:
@@ -112,15 +112,15 @@ class PlotTool:
                     self._traces.drawn(names, 0.0), tuple(series), scales={"x": {"time": False}}, height=260
                 )
 
-    def _listen(self) -> None:
+    def _subscribe(self) -> None:
         wanted = {topic for topic, _ in self._paths.values()}
         for topic in set(self._feeds) - wanted:
             self._feeds.pop(topic).close()
         for topic in wanted - set(self._feeds):
-            if topic in self._context.graph.topics():  # it may be gone, and come again
+            if topic in self._context.graph.topics():  # a topic may disappear and return
                 self._feeds[topic] = self._context.graph.feed(topic, all_of_them=True)
 
-    def _take(self) -> None:
+    def _read(self) -> None:
         for topic, feed in self._feeds.items():
             wanted = [(name, path) for name, (source, path) in self._paths.items() if source == topic]
             for at, message, _ in feed.stamped_messages():
@@ -129,7 +129,7 @@ class PlotTool:
 
 
 def _name(topic: str, path: str) -> str:
-    """As rqt_plot writes it."""
+    """Format a number as rqt_plot does."""
     return f"{topic}/{path.replace('.', '/')}"
 
 

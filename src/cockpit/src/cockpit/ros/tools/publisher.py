@@ -1,4 +1,4 @@
-"""Publisher: a message filled in by hand, sent once or again and again (rqt_publisher, rostopic pub)."""
+"""Publisher: edit a message and publish it once or repeatedly (rqt_publisher, rostopic pub)."""
 
 import time
 from typing import Any, Optional
@@ -27,12 +27,12 @@ class PublisherTool:
     def build(self) -> None:
         gui, guarded = self._context.gui, self._context.guarded
         self._topic = gui.add_text("Topic", "/cmd_vel")
-        self._kind = gui.add_text("Type", "", hint="of its messages; empty: that which the topic has")
-        gui.add_button("Make the message", color="gray").on_click(guarded(self._fill_in))
-        self._fields = gui.add_text("Message", "", multiline=True, hint="YAML; now is the time now")
+        self._kind = gui.add_text("Type", "", hint="message type; empty for the type of the topic")
+        gui.add_button("Create the message", color="gray").on_click(guarded(self._fill_in))
+        self._fields = gui.add_text("Message", "", multiline=True, hint="YAML; now is the current time")
         gui.add_button("Publish once").on_click(guarded(lambda _: self._send_once()))
         self._rate = gui.add_number("Hz", 1.0, min=0.1, max=FASTEST, step=0.1)
-        self._repeats = gui.add_checkbox("Again and again", False)
+        self._repeats = gui.add_checkbox("Repeat", False)
         self._repeats.on_update(guarded(self._switch))
         self._status = gui.add_markdown("")
 
@@ -41,7 +41,7 @@ class PublisherTool:
             self._publish()
 
     def pause(self) -> None:
-        """Nobody is there to see what it does: it ceases."""
+        """Stop publishing while no page is open."""
         self._stop()
         self._repeats.value = False
         if self._publisher is not None:
@@ -55,7 +55,7 @@ class PublisherTool:
             return self._kind.value.strip()
         known = self._context.graph.topics().get(self._topic.value.strip())
         if known is None:
-            raise CockpitError(f"there is no topic {self._topic.value.strip()}: say the type too")
+            raise CockpitError(f"there is no topic {self._topic.value.strip()}; enter the type as well")
         return known
 
     def _fill_in(self, _event: Any) -> None:
@@ -83,12 +83,12 @@ class PublisherTool:
         self._message = None
 
     def _prepare(self) -> None:
-        """A publisher of what is filled in, joined to those who listen. Raises CockpitError."""
+        """Create the message and a publisher with connected subscribers. Raises CockpitError."""
         kind, topic = message_class(self._kind_name()), self._topic.value.strip()
         message = filled(kind, self._fields.value)
         known = self._context.graph.topics().get(topic)
         if known not in (None, kind._type):
-            raise CockpitError(f"{topic} has messages of type {known}")
+            raise CockpitError(f"{topic} has type {known}, not {kind._type}")
         old = self._publisher
         if old is None or old.resolved_name != rospy.resolve_name(topic) or old.data_class is not kind:
             if old is not None:
@@ -106,8 +106,8 @@ class PublisherTool:
         assert self._publisher is not None
         self._publisher.publish(self._message)
         self._sent += 1
-        listeners = self._publisher.get_num_connections()
-        self._status.content = f"{self._sent} sent, {listeners} listening"
+        subscribers = self._publisher.get_num_connections()
+        self._status.content = f"{self._sent} sent, {subscribers} subscribers"
 
 
 TOOL = PublisherTool

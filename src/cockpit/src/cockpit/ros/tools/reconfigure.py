@@ -1,4 +1,4 @@
-"""Reconfigure: every dynamic_reconfigure server, its parameters with their bounds (rqt_reconfigure)."""
+"""Reconfigure: the parameters of dynamic_reconfigure servers (rqt_reconfigure)."""
 
 from typing import Any, Dict, List
 
@@ -31,7 +31,7 @@ class ReconfigureTool:
         self._background = BackgroundCall()
         self._feeds: List[TopicFeed] = []
         self._server = NONE
-        self._controls: Dict[str, Control] = {}
+        self._controls: Dict[str, ParameterControl] = {}
 
     def build(self) -> None:
         self._servers = self._context.gui.add_dropdown("Server", (NONE,))
@@ -49,10 +49,10 @@ class ReconfigureTool:
             self._servers.options = (NONE, *found)
             self._choose(self._servers.value)
         if self._server != NONE and not self._feeds:
-            self._listen()
+            self._subscribe()
         for config in self._background.results():
             self._show(values_of(config))
-        self._take()
+        self._read()
         self._send()
 
     def pause(self) -> None:
@@ -68,31 +68,31 @@ class ReconfigureTool:
             self._server = server
             self._clear()
 
-    def _listen(self) -> None:
+    def _subscribe(self) -> None:
         self._feeds = [
             self._context.graph.feed(self._server + DESCRIPTIONS, DESCRIPTION_TYPE),
             self._context.graph.feed(self._server + UPDATES, "dynamic_reconfigure/Config"),
         ]
 
-    def _take(self) -> None:
+    def _read(self) -> None:
         if not self._feeds:
             return
         for description in self._feeds[0].messages():
             self._clear()
             with self._space:
                 for parameter in parameters_from_description(description):
-                    self._controls[parameter.name] = Control(self._context.gui, parameter)
+                    self._controls[parameter.name] = ParameterControl(self._context.gui, parameter)
         if self._controls:
             for config in self._feeds[1].messages():
                 self._show(values_of(config))
 
     def _send(self) -> None:
-        """What was turned since the last answer, in one call."""
-        turned = [control for control in self._controls.values() if control.widget.is_changed()]
-        if not turned or self._background.is_busy:
+        """Send all changed values in one call."""
+        changed = [control for control in self._controls.values() if control.widget.is_changed()]
+        if not changed or self._background.is_busy:
             return
         config, service = Config(), self._server + SERVICE
-        for control in turned:
+        for control in changed:
             field, kind = LISTS[control.parameter.kind]
             getattr(config, field).append(kind(control.parameter.name, control.consume()))
         self._background.start(lambda: call(service, ReconfigureService, config).config)
@@ -108,7 +108,7 @@ class ReconfigureTool:
         self._controls.clear()
 
 
-class Control:
+class ParameterControl:
     """The control of one parameter: a slider between its bounds, a box, a list of choices."""
 
     def __init__(self, gui: Any, parameter: ReconfigurableParameter):
@@ -118,17 +118,17 @@ class Control:
         self.widget = TwoWayControl(self._made(gui))
 
     def consume(self) -> Any:
-        """What it was turned to."""
-        told = self.widget.consume()
+        """Return the changed value in the parameter's type."""
+        value = self.widget.consume()
         if self._values:
-            return self._values[told]
-        return {"bool": bool, "int": int, "double": float, "str": str}[self.parameter.kind](told)
+            return self._values[value]
+        return {"bool": bool, "int": int, "double": float, "str": str}[self.parameter.kind](value)
 
     def show(self, value: Any) -> None:
-        """What the server says."""
-        told = self._names.get(value, value) if self._values else value
-        if not (self._values and told not in self._values):
-            self.widget.show(told)
+        """Display a value of the server."""
+        shown = self._names.get(value, value) if self._values else value
+        if not (self._values and shown not in self._values):
+            self.widget.show(shown)
 
     def _made(self, gui: Any) -> Any:
         parameter, hint = self.parameter, self.parameter.meaning or None

@@ -1,4 +1,4 @@
-"""Services: who offers them, and a call of one (rqt_service_caller)."""
+"""Services: providers, and a call of one (rqt_service_caller)."""
 
 from typing import Any, Dict
 
@@ -13,7 +13,7 @@ from cockpit.ros.message_yaml import filled, service_class, template
 from cockpit.ros.tool import ToolContext
 
 NONE = "(none)"
-# Those that every node has, or every node of its kind.
+# Services that every node, or every node of a kind, has.
 COMMON = ("/get_loggers", "/set_logger_level", "/tf2_frames")
 
 
@@ -28,7 +28,7 @@ class ServicesTool:
     def build(self) -> None:
         gui, guarded = self._context.gui, self._context.guarded
         self._filter = gui.add_text("Filter", "", hint="part of a service's name")
-        self._common = gui.add_checkbox("Those of loggers too", False)
+        self._common = gui.add_checkbox("Include logger services", False)
         self._list = gui.add_html("")
         self._chosen = gui.add_dropdown("Service", (NONE,))
         self._kind = gui.add_markdown("")
@@ -55,7 +55,7 @@ class ServicesTool:
             self._answer.content = outline(answer) if answer.__slots__ else preformatted("done")
 
     def pause(self) -> None:
-        """It listens to nothing."""
+        """Nothing to do: the tool has no subscriptions."""
 
     close = pause
 
@@ -88,7 +88,7 @@ def _type_of(name: str) -> str:
     except rosservice.ROSServiceException as error:
         raise CockpitError(f"{name}: {error}") from None
     if kind is None:
-        raise CockpitError(f"{name} does not tell its type")
+        raise CockpitError(f"{name}: the service does not report its type")
     return kind
 
 

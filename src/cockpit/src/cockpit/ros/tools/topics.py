@@ -1,4 +1,4 @@
-"""Topics: type, how often, how much, and what the newest message says (rqt_topic)."""
+"""Topics: type, rate, bandwidth and the newest message (rqt_topic)."""
 
 from typing import Dict, Optional
 
@@ -26,7 +26,7 @@ class TopicsTool:
     def build(self) -> None:
         gui = self._context.gui
         self._filter = gui.add_text("Filter", "", hint="part of a topic's name")
-        self._measured = gui.add_checkbox("Measure", False, hint="subscribe to all that are listed")
+        self._measured = gui.add_checkbox("Measure", False, hint="subscribe to all listed topics")
         self._list = gui.add_html("")
         self._watched = gui.add_dropdown("Watch", (NONE,))
         self._values = gui.add_html("")
@@ -40,7 +40,7 @@ class TopicsTool:
         options = (NONE, *types)
         if self._watched.options != options:
             self._watched.options = options
-        self._listen(types)
+        self._subscribe(types)
         rows = [(topic, kind, *self._figures(topic, now)) for topic, kind in types.items()]
         self._list.content = table(("Topic", "Type", "Hz", "KB/s"), rows)
         self._show_values()
@@ -54,7 +54,7 @@ class TopicsTool:
     def close(self) -> None:
         self.pause()
 
-    def _listen(self, types: Dict[str, str]) -> None:
+    def _subscribe(self, types: Dict[str, str]) -> None:
         wanted = set(types) if self._measured.value else set()
         wanted |= {self._watched.value} & set(types)
         for topic in set(self._feeds) - wanted:
