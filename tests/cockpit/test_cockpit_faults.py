@@ -40,7 +40,7 @@ class CockpitFaultsTest(unittest.TestCase):
 
     def test_a_fault_is_active_for_its_duration(self):
         self.page.choose("Kind", "scan_nan")
-        self.page.wait_for("All beams measure nothing.")
+        self.page.wait_for("All ranges are NaN.")
         self.page.fill_in("Seconds", "4")
         self.page.click("Inject the fault")
         self.page.wait_for("scan_nan is active.", "Active fault")
@@ -51,7 +51,7 @@ class CockpitFaultsTest(unittest.TestCase):
     def test_what_goes_wrong_for_ever_outlives_its_window(self):
         usual = self.nearest()
         self.page.choose("Kind", "scan_biased")
-        self.page.wait_for("All beams are too long. Usually 0.1 m, from -1 to 1.")
+        self.page.wait_for("All ranges are too long. Usually 0.1 m, from -1 to 1.")
         self.page.fill_in("Seconds", "0")
         self.page.fill_in("Strength", str(BIAS))
         self.page.click("Inject the fault")

@@ -25,7 +25,7 @@ class LinkView:
         """Draw the parts, cut at ``height`` in the world [m]."""
         for surface in self._surfaces:
             surface.remove()
-        cut = tuple(cut_at(piece, height) for piece in self.parts)
+        cut = tuple(cut_at(part, height) for part in self.parts)
         self._surfaces = [
             self._scene.add_mesh_simple(
                 f"{self._path}/{number}",
@@ -74,8 +74,8 @@ class WorldView:
         return sorted({link.parts[0].model for link in self._links.values()})
 
     def show(self, description: SceneDescription) -> None:
-        def link_of(piece: VisualPart) -> str:
-            return f"{piece.model}::{piece.link}"
+        def link_of(part: VisualPart) -> str:
+            return f"{part.model}::{part.link}"
 
         self.joints.update({f"{joint.model}: {joint.name}": joint for joint in description.joints})
         for name, parts in groupby(sorted(description.parts, key=link_of), link_of):
@@ -125,13 +125,13 @@ class RobotView:
             self._links[link].draw(np.inf)
 
     def update(self, frames: FrameTree, fixed: str, is_shown: bool) -> None:
-        for link, link in self._links.items():
-            link.move(frames.pose(self._prefix + link, fixed) if is_shown else None)
+        for name, view in self._links.items():
+            view.move(frames.pose(self._prefix + name, fixed) if is_shown else None)
 
     def remove(self) -> None:
         for link in self._links.values():
             link.remove()
 
 
-def _link(piece: VisualPart) -> str:
-    return piece.link
+def _link(part: VisualPart) -> str:
+    return part.link
