@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A node that is not in step: its static transform comes late, as on a machine that is busy."""
+"""An unsynchronised node that publishes a static transform late, as on a busy machine."""
 
 import time
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The TurtleBot's Kinect and inertial sensor, as gazebo_plugins tell of them."""
+"""Topics of the TurtleBot's Kinect and IMU, as of gazebo_plugins."""
 
 import math
 import time
@@ -52,7 +52,7 @@ class TestCamera(unittest.TestCase):
         scan, info = wait_for("scan", LaserScan), wait_for("camera/depth/camera_info", CameraInfo)
         self.assertEqual(scan.header.frame_id, "camera_depth_frame")
         self.assertEqual((len(scan.ranges), len(scan.intensities)), (640, 640))
-        for told, expected in (
+        for value, expected in (
             (scan.angle_min, -math.radians(30.0)),
             (scan.angle_max, math.radians(30.0)),
             (scan.range_min, 0.45),
@@ -60,7 +60,7 @@ class TestCamera(unittest.TestCase):
             (scan.scan_time, 0.033),
             (scan.time_increment, 0.0),
         ):
-            self.assertAlmostEqual(told, expected, places=5)
+            self.assertAlmostEqual(value, expected, places=5)
         self.assertLessEqual(np.nanmax(scan.ranges), 5.0)
         self.assertFalse(np.isinf(scan.ranges).any(), "what is not seen is not a number")
         self.assertEqual(info.header.frame_id, "camera_depth_optical_frame")
@@ -89,7 +89,7 @@ class TestCamera(unittest.TestCase):
         slow.unregister()
         self.assertGreater(lost, 0)
 
-    def test_nothing_is_drawn_that_nobody_has_subscribed_to(self):
+    def test_nothing_is_rendered_without_subscribers(self):
         """Time passes faster without pictures: they are not taken."""
         with_pictures = rospy.Subscriber("camera/depth/points", PointCloud2, lambda message: None)
         wait_for("camera/depth/points", PointCloud2)
@@ -101,12 +101,12 @@ class TestCamera(unittest.TestCase):
 def stamps_of(topic, kind, count):
     """Of so many messages in a row, s."""
     stamps = []
-    heard = rospy.Subscriber(topic, kind, lambda message: stamps.append(message.header.stamp.to_sec()))
+    subscriber = rospy.Subscriber(topic, kind, lambda message: stamps.append(message.header.stamp.to_sec()))
     deadline = time.monotonic() + 20.0
     while len(stamps) < count:
         assert time.monotonic() < deadline, f"too few messages on {topic}"
         time.sleep(0.01)
-    heard.unregister()
+    subscriber.unregister()
     return stamps
 
 

@@ -22,14 +22,14 @@ import rostest
 WORLD = Path(__file__).resolve().parents[2] / "map" / "home.world"
 NODE = roslib.packages.find_node("sim_bridge", "sim_bridge")[0]
 START_SECONDS = 60.0
-# What is aimed at, measured by `test_exit.py STARTS`; the test itself only tells an end from a hang.
+# Target of EXIT_SECONDS, measured by `test_exit.py STARTS`; the test only distinguishes an end from a hang.
 EXIT_SECONDS = 1.0
 HANG_SECONDS = 5.0
 SITUATIONS = ("running", "paused", "without master", "terminated", "as gazebo")
 
 
 class Started:
-    """A master of its own and simulators that start there; leaving ends all."""
+    """A separate master and simulators; leaving the context ends all."""
 
     def __init__(self):
         self._processes = []
@@ -63,7 +63,7 @@ class Started:
         self._wait_for(lambda: self._is_up(name))
 
     def failed_start(self, *parameters):
-        """The exit code and what is said by a simulator that is to end at once."""
+        """Return the exit code and the output of a simulator that ends at once."""
         ended = subprocess.run(
             [NODE, *parameters],
             env=self.environment,
@@ -139,7 +139,7 @@ class TestExit(unittest.TestCase):
             self.assertLess(seconds, HANG_SECONDS, situation)
             self.assertEqual((code, left), (0, []), situation)
 
-    def test_what_it_cannot_start_with_is_told_in_a_line(self):
+    def test_an_error_at_the_start_is_reported_in_a_line(self):
         with Started() as started, tempfile.TemporaryDirectory() as folder:
             broken, still = Path(folder) / "broken.world", Path(folder) / "still.urdf"
             broken.write_text("<sdf><world")

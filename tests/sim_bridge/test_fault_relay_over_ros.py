@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What passes through the relay: to the last bit as it came, or as the faults of file and service have it."""
+"""The relay passes messages on to the last bit, or as the faults of file and service change them."""
 
 import math
 import subprocess
@@ -23,9 +23,9 @@ from tf2_msgs.msg import TFMessage
 from waiting import wait_until
 
 NODE = roslib.packages.find_node("sim_bridge", "fault_relay")[0]
-# What the clock shows first, and at the beginning of each test: when it goes back the faults begin anew.
+# Time of the clock at the start of each test; when it goes back the faults restart.
 FIRST = 100.0
-# Of the file: from START to END it is blind, from LAST on all beams meet something at once.
+# Faults of the file: all ranges are NaN from START to END, and 0 from LAST on.
 START, END, LAST = FIRST + 10.0, FIRST + 20.0, FIRST + 30.0
 
 
@@ -57,19 +57,19 @@ def command_message(v=0.4):
 
 
 class Passage:
-    """Sends bytes on a topic and hears those on the other."""
+    """Publishes bytes on the input of a relay and collects those of its output."""
 
-    def __init__(self, topic, told, kind):
+    def __init__(self, topic, output, kind):
         self._kind = kind
         self._publisher = rospy.Publisher(topic, kind, queue_size=100)
-        self._heard = Heard(told, rospy.AnyMsg)
+        self._output = Heard(output, rospy.AnyMsg)
         wait_until(f"a relay of {topic}", lambda: self._publisher.get_num_connections() > 0)
-        wait_until(f"a relay to {told}", self._heard.is_connected)
+        wait_until(f"a relay to {output}", self._output.is_connected)
 
     @property
     def count(self):
-        """How many messages have come out."""
-        return len(self._heard.messages)
+        """Number of messages of the output."""
+        return len(self._output.messages)
 
     def send(self, data):
         raw = rospy.AnyMsg()
@@ -77,13 +77,13 @@ class Passage:
         self._publisher.publish(raw)
 
     def through(self, data):
-        """What comes out for what is put in."""
+        """Return the output for an input."""
         count = self.count
         self.send(data)
         wait_until("what was sent", lambda: self.count > count)
-        return self._heard.messages[-1]._buff
+        return self._output.messages[-1]._buff
 
-    def told(self, message):
+    def relay(self, message):
         return self._kind().deserialize(self.through(data_of(message)))
 
 
@@ -102,22 +102,22 @@ class TestFaultRelay(unittest.TestCase):
         self.show(LAST)
         wait_until("the last fault", lambda: self.first_range() == 0.0)
         self.show(FIRST)
-        wait_until("the faults to begin anew", lambda: self.first_range() == 1.0)
+        wait_until("the faults to restart", lambda: self.first_range() == 1.0)
 
     @classmethod
     def show(cls, time):
         cls.clock.publish(rospy.Time.from_sec(time))
 
-    def is_blind(self):
-        return bool(np.isnan(self.scan.told(scan_message()).ranges).all())
+    def is_all_nan(self):
+        return bool(np.isnan(self.scan.relay(scan_message()).ranges).all())
 
     def first_range(self):
-        return self.scan.told(scan_message()).ranges[0]
+        return self.scan.relay(scan_message()).ranges[0]
 
     def test_without_a_fault_all_is_passed_on_to_the_last_bit(self):
         for passage, message in (
             (self.scan, scan_message()),
-            (self.scan, scan_message(angle_min=math.nan)),  # what it means is no matter of ours
+            (self.scan, scan_message(angle_min=math.nan)),  # invalid, but no fault reads it
             (self.odometry, odometry_message()),
             (self.command, command_message()),
         ):
@@ -125,33 +125,33 @@ class TestFaultRelay(unittest.TestCase):
 
     def test_a_fault_of_the_file_begins_and_ends_at_its_time(self):
         self.show(START)
-        wait_until("it to be blind", self.is_blind)
-        told, whole = self.scan.told(scan_message()), LaserScan().deserialize(data_of(scan_message()))
-        told.ranges = whole.ranges
-        self.assertEqual(data_of(told), data_of(whole), "nothing else is changed")
+        wait_until("ranges of NaN", self.is_all_nan)
+        faulty, original = self.scan.relay(scan_message()), LaserScan().deserialize(data_of(scan_message()))
+        faulty.ranges = original.ranges
+        self.assertEqual(data_of(faulty), data_of(original), "nothing else is changed")
         for passage, message in ((self.odometry, odometry_message()), (self.command, command_message())):
             self.assertEqual(passage.through(data_of(message)), data_of(message))
         self.show(END)
-        wait_until("it to see", lambda: not self.is_blind())
+        wait_until("valid ranges", lambda: not self.is_all_nan())
 
-    def test_a_fault_that_is_asked_for_lasts_its_seconds(self):
+    def test_an_added_fault_lasts_its_seconds(self):
         answer = self.add_fault("velocity_saturated", 2.0, 0.1)
         self.assertEqual((answer.success, answer.message), (True, ""))
         slow = Twist(Vector3(0.1, 0.1, 0.2), Vector3(0.3, 0.4, 0.5))
-        self.assertEqual(self.command.told(command_message()), slow)
+        self.assertEqual(self.command.relay(command_message()), slow)
         self.assertEqual(self.scan.through(data_of(scan_message())), data_of(scan_message()))
         self.show(FIRST + 2.0)
-        wait_until("it to be over", lambda: self.command.told(command_message()) == command_message())
+        wait_until("it to be over", lambda: self.command.relay(command_message()) == command_message())
 
-    def test_what_comes_late_is_the_earlier_message(self):
+    def test_a_delayed_message_is_the_earlier_one(self):
         self.assertTrue(self.add_fault("commands_late", 5.0, 1.0).success)
         count, sent = self.command.count, [data_of(command_message(v)) for v in (0.1, 0.2, 0.3)]
         self.command.send(sent[0])
         self.assertEqual([self.command.through(data) for data in sent[1:]], sent[:2])
         self.assertEqual(self.command.count, count + 2)
 
-    def test_what_cannot_be_relayed_or_makes_no_sense_is_refused_in_a_sentence(self):
-        for asked, said in (
+    def test_faults_that_cannot_be_relayed_and_invalid_ones_are_refused_with_a_reason(self):
+        for fault, reason in (
             (
                 ("kidnapped", 0.0, 0.0),
                 "kidnapped changes no scan, odometry or command, only wheels or the home",
@@ -161,16 +161,16 @@ class TestFaultRelay(unittest.TestCase):
             (("scan_biased", 0.0, 99.0), "strength must be from"),
             (("scan_nan", -1.0, 0.0), "seconds must not be negative"),
         ):
-            answer = self.add_fault(*asked)
+            answer = self.add_fault(*fault)
             self.assertFalse(answer.success)
-            self.assertIn(said, answer.message)
-        self.assertFalse(self.is_blind())
+            self.assertIn(reason, answer.message)
+        self.assertFalse(self.is_all_nan())
 
-    def test_what_it_cannot_start_with_is_told_in_a_line(self):
+    def test_an_error_at_the_start_is_reported_in_a_line(self):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "home.yaml"
             path.write_text("faults:\n  - {kind: scan_nan}\n  - {kind: way_closed}\n")
-            for name, argument, said in (
+            for name, argument, reason in (
                 (
                     "home",
                     f"_faults_file:={path}",
@@ -188,31 +188,31 @@ class TestFaultRelay(unittest.TestCase):
                     capture_output=True, text=True, timeout=60.0, check=False,
                 )  # fmt: skip
                 self.assertEqual(ended.returncode, 2, ended.stderr)
-                self.assertIn(f"error: {said}", ended.stderr)
+                self.assertIn(f"error: {reason}", ended.stderr)
                 self.assertNotIn("Traceback", ended.stderr)
 
-    def test_what_is_no_scan_is_left_out_and_does_not_end_the_node(self):
+    def test_an_invalid_scan_is_dropped_and_does_not_end_the_node(self):
         self.assertTrue(self.add_fault("scan_biased", 5.0, 0.5).success)
         count, whole = self.scan.count, data_of(scan_message())
         self.scan.send(data_of(scan_message(angle_min=math.nan)))
         self.scan.send(whole[:-3])
-        self.assertEqual(self.scan.told(scan_message()).ranges[0], 1.5)
+        self.assertEqual(self.scan.relay(scan_message()).ranges[0], 1.5)
         self.assertEqual(self.scan.count, count + 1)
 
     def test_the_transform_is_that_of_the_faulty_odometry(self):
-        heard = Heard("/tf", TFMessage)
-        wait_until("the sender of transforms", heard.is_connected)
+        received = Heard("/tf", TFMessage)
+        wait_until("the sender of transforms", received.is_connected)
         odometry = Passage("with_tf/wheel_odom", "with_tf/odom", Odometry)
-        told = []
+        published = []
 
         def is_scaled():
-            sent = odometry_message(0.5 * len(told), len(told))
-            told.append(odometry.told(sent))
-            return told[-1].pose.pose.position.x > sent.pose.pose.position.x
+            sent = odometry_message(0.5 * len(published), len(published))
+            published.append(odometry.relay(sent))
+            return published[-1].pose.pose.position.x > sent.pose.pose.position.x
 
         wait_until("a fault", is_scaled)
-        wait_until("its transform", lambda: len(heard.messages) >= len(told))
-        for message, transforms in zip(told, heard.messages):
+        wait_until("its transform", lambda: len(received.messages) >= len(published))
+        for message, transforms in zip(published, received.messages):
             (transform,) = transforms.transforms
             self.assertEqual(
                 (transform.header.stamp, transform.header.frame_id), (message.header.stamp, "odom")

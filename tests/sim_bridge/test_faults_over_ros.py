@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What goes wrong by a file, and what is asked to go wrong while the simulation runs."""
+"""Faults of a file, and faults added while the simulation runs."""
 
 import unittest
 
@@ -16,7 +16,7 @@ def nearest_in(scan):
     return np.nanmin(scan.ranges)
 
 
-def is_blind(scan):
+def is_all_nan(scan):
     return np.isnan(scan.ranges).all()
 
 
@@ -35,16 +35,16 @@ class TestFaults(unittest.TestCase):
         self.wait_for_a_scan("without the bias", lambda scan: nearest_in(scan) < usual - 0.3)
         wait_until("it to be back", lambda: nearest_in(self.scans[-1]) > usual - 0.2)
 
-    def test_a_fault_begins_when_asked_for_and_ends(self):
+    def test_an_added_fault_begins_and_ends(self):
         self.assertTrue(self.add_fault("scan_nan", 1.0, 0.0).success)
-        self.wait_for_a_scan("that is blind", is_blind)
-        wait_until("to see again", lambda: not is_blind(self.scans[-1]))
+        self.wait_for_a_scan("with all ranges NaN", is_all_nan)
+        wait_until("valid ranges", lambda: not is_all_nan(self.scans[-1]))
 
-    def test_odometry_falls_silent_and_speaks_again(self):
+    def test_odometry_stops_and_resumes(self):
         self.assertTrue(self.add_fault("odometry_stopped", 2.0, 0.0).success)
         wait_until("a gap", lambda: self.longest_gap() > 1.5)
 
-    def test_a_late_scan_bears_the_stamp_of_its_measurement(self):
+    def test_a_late_scan_has_the_stamp_of_its_measurement(self):
         ages = []
         rospy.Subscriber("scan", LaserScan, lambda scan: ages.append(self.age_of(scan)), queue_size=100)
         self.assertTrue(self.add_fault("scan_late", 3.0, 1.0).success)
@@ -52,7 +52,7 @@ class TestFaults(unittest.TestCase):
         wait_until("scans in time", lambda: ages[-1] < 0.5)
 
     def wait_for_a_scan(self, what, is_it):
-        """Among all that were heard: it may have been the last one for a moment only."""
+        """Search all received scans: the scan may no longer be the last one."""
         wait_until(f"a scan {what}", lambda: any(map(is_it, self.scans)))
 
     def age_of(self, scan):
@@ -62,16 +62,16 @@ class TestFaults(unittest.TestCase):
         stamps = [message.header.stamp.to_sec() for message in self.odometry]
         return max(np.diff(stamps), default=0.0)
 
-    def test_what_makes_no_sense_is_refused_in_a_sentence(self):
-        for asked, said in (
+    def test_an_invalid_fault_is_refused_with_a_reason(self):
+        for fault, reason in (
             (("scan_nans", 0.0, 0.0), "there is no fault 'scan_nans', did you mean scan_nan?"),
             (("scan_biased", 0.0, 99.0), "strength must be from"),
             (("scan_nan", -1.0, 0.0), "seconds must not be negative"),
             (("scan_nan", float("nan"), 0.0), "seconds must not be negative"),
         ):
-            answer = self.add_fault(*asked)
+            answer = self.add_fault(*fault)
             self.assertFalse(answer.success)
-            self.assertIn(said, answer.message)
+            self.assertIn(reason, answer.message)
 
 
 if __name__ == "__main__":

@@ -30,7 +30,7 @@ CAN = """<robot name='can'><link name='can'><inertial><mass value='0.3'/>
 <collision><geometry><cylinder radius='0.05' length='0.2'/></geometry></collision></link></robot>"""
 
 MODEL = "<sdf version='1.6'><model name='any'><link name='a'>{}</link></model></sdf>"
-THING = "<robot name='any'><link name='a'>{}</link></robot>"
+URDF_MODEL = "<robot name='any'><link name='a'>{}</link></robot>"
 VISUAL = "<visual name='v{}'><geometry><box><size>{} 1 1</size></box></geometry></visual>"
 CENTIPEDE = "<sdf version='1.6'><model name='any'>{}</model></sdf>".format(
     "<link name='l0'/>"
@@ -82,7 +82,7 @@ class TestGazebo(unittest.TestCase):
         steps = round(seconds / 0.02)
         call("/sim_bridge/step", Step, steps)
 
-    def test_a_paused_simulation_stands_still_and_steps_as_told(self):
+    def test_a_paused_simulation_takes_the_requested_steps(self):
         call("/gazebo/pause_physics", Empty)
         before = call("/sim_bridge/step", Step, 0).stamp
         time.sleep(0.3)
@@ -98,16 +98,16 @@ class TestGazebo(unittest.TestCase):
         self.addCleanup(client.update_configuration, {"speed": 0.0})
         wait_until("twice real time", lambda: abs(real_time_factor() - 2.0) < 0.4)
 
-    def test_how_fast_time_passes_is_told(self):
+    def test_performance_metrics_state_the_real_time_factor(self):
         scans = rospy.Subscriber("scan", LaserScan, lambda message: None)
-        deadline, told = time.monotonic() + 20.0, None
-        while (told is None or not told.sim_update_rate) and time.monotonic() < deadline:
-            metrics, told = self.performance_and_scans()
+        deadline, scans = time.monotonic() + 20.0, None
+        while (scans is None or not scans.sim_update_rate) and time.monotonic() < deadline:
+            metrics, scans = self.performance_and_scans()
         # Scans were sent for only a part of that period; the next one is whole.
-        metrics, told = self.performance_and_scans()
+        metrics, scans = self.performance_and_scans()
         scans.unregister()
         self.assertGreater(metrics.real_time_factor, 0.0)
-        self.assertAlmostEqual(told.sim_update_rate, 10.0, delta=1.5)
+        self.assertAlmostEqual(scans.sim_update_rate, 10.0, delta=1.5)
 
     def performance_and_scans(self):
         metrics = rospy.wait_for_message("/gazebo/performance_metrics", PerformanceMetrics, 10.0)
@@ -148,7 +148,7 @@ class TestGazebo(unittest.TestCase):
         self.assertIn("ground_plane", world.model_names)
         self.assertTrue(world.rendering_enabled)
 
-    def test_a_spawned_model_is_listed_told_and_deleted(self):
+    def test_a_spawned_model_is_listed_published_and_deleted(self):
         self.assertEqual(self.spawn(1.0).status_message, "SpawnModel: Successfully spawned entity")
         state = model_state("crate")
         self.assertTrue(state.success)
@@ -162,7 +162,7 @@ class TestGazebo(unittest.TestCase):
         gone = call("/gazebo/delete_model", srv.DeleteModel, "crate")
         self.assertEqual((gone.success, gone.status_message), (False, "DeleteModel: model does not exist"))
 
-    def test_a_thing_described_in_urdf_can_be_spawned(self):
+    def test_a_urdf_model_can_be_spawned(self):
         pose = pose_at(1.0, 0.0, 0.1)
         self.assertTrue(call("/gazebo/spawn_urdf_model", srv.SpawnModel, "can", CAN, "", pose, "").success)
         self.assertAlmostEqual(model_state("can").pose.position.x, 1.0, delta=0.01)
@@ -200,7 +200,7 @@ class TestGazebo(unittest.TestCase):
             mesh = f"<collision><geometry><mesh {{}}file://{folder}/pipe.obj{{}}</geometry></collision>"
             for kind, xml, reason in (
                 ("sdf", MODEL.format(mesh.format("><uri>", "</uri></mesh>")), "not a regular file"),
-                ("urdf", THING.format(mesh.format('filename="', '"/>')), "not a regular file"),
+                ("urdf", URDF_MODEL.format(mesh.format('filename="', '"/>')), "not a regular file"),
                 ("urdf", f"<robot name='r'>{LINKS}{fork}</robot>", "joints go round in a circle: "),
             ):
                 self.refused_while_time_passes(kind, xml, reason)
@@ -275,16 +275,16 @@ class TestGazebo(unittest.TestCase):
         ):
             self.assertEqual((answer.success, answer.status_message), (False, text))
 
-    def test_links_can_be_told_and_set(self):
+    def test_link_states_can_be_got_and_set(self):
         self.spawn(1.0)
         state = LinkState("crate::body", pose_at(1.5, 0.2, 0.2), Twist(), "")
         self.assertTrue(call("/gazebo/set_link_state", srv.SetLinkState, state).success)
-        told = call("/gazebo/get_link_state", srv.GetLinkState, "crate::body", "").link_state
-        self.assertAlmostEqual(told.pose.position.x, 1.5, delta=0.01)
+        state = call("/gazebo/get_link_state", srv.GetLinkState, "crate::body", "").link_state
+        self.assertAlmostEqual(state.pose.position.x, 1.5, delta=0.01)
         unscoped = call("/gazebo/get_link_state", srv.GetLinkState, "body", "base_footprint")
         self.assertTrue(unscoped.success, "as in Gazebo, if the name is the only one")
 
-    def test_answers_are_counted_and_say_their_frame_and_time(self):
+    def test_responses_have_sequence_number_frame_and_time(self):
         first, second = (model_state("mobile_base", "ground_plane").header for _ in range(2))
         self.assertEqual((second.seq, second.frame_id), (first.seq + 1, "ground_plane"))
         self.assertGreaterEqual(second.stamp, first.stamp)
@@ -317,7 +317,7 @@ class TestGazebo(unittest.TestCase):
             self.assertEqual((answer.success, answer.status_message), (False, text))
         self.assertTrue(math.isfinite(model_state("mobile_base").pose.position.x))
 
-    def test_states_in_which_nothing_can_be_are_refused_and_time_goes_on(self):
+    def test_impossible_states_are_refused_and_time_goes_on(self):
         far, fast = pose_at(1e308, 0.0), Twist(angular=Vector3(0.0, 0.0, 1e308))
         for pose, twist, text in (
             (far, Twist(), "SetModelState: nothing can be at the pose"),
@@ -329,7 +329,7 @@ class TestGazebo(unittest.TestCase):
         self.simulated(0.1)
         self.assertLess(abs(model_state("mobile_base").pose.position.x), 1.0)
 
-    def test_an_orientation_that_nobody_has_filled_in_turns_nothing(self):
+    def test_a_zero_quaternion_is_the_identity(self):
         for turn in (Quaternion(), Quaternion(0.0, 0.0, 1e-200, 0.0)):
             state = ModelState("mobile_base", Pose(Point(0.5, 0.0, 0.0), turn), Twist(), "")
             self.assertTrue(call("/gazebo/set_model_state", srv.SetModelState, state).success)
@@ -349,7 +349,7 @@ class TestGazebo(unittest.TestCase):
         links.publish(LinkState("crate::body", pose_at(1.5, 0.2, 0.2), Twist(), ""))
         wait_until("the crate", lambda: abs(model_state("crate").pose.position.x - 1.5) < 0.01)
 
-    def test_all_models_and_links_are_told_by_topic(self):
+    def test_all_models_and_links_are_published(self):
         models = rospy.wait_for_message("/gazebo/model_states", ModelStates, 10.0)
         self.assertIn("mobile_base", models.name)
         self.assertEqual(len(models.name), len(models.pose))
@@ -381,7 +381,7 @@ class TestGazebo(unittest.TestCase):
         self.simulated(0.5)
         self.assertAlmostEqual(model_state("crate").twist.linear.y, 0.0, delta=0.01)
 
-    def test_physics_can_be_told_and_changed(self):
+    def test_physics_properties_can_be_got_and_set(self):
         kept = call("/gazebo/get_physics_properties", srv.GetPhysicsProperties)
         self.assertAlmostEqual(kept.time_step, 0.005)
         self.assertAlmostEqual(kept.gravity.z, -9.8)
@@ -408,8 +408,8 @@ class TestGazebo(unittest.TestCase):
         before = client.get_configuration()
         self.assertEqual((before["time_step"], before["gravity_z"]), (0.005, -9.8))
         self.assertEqual(client.update_configuration({"gravity_z": -1.6})["gravity_z"], -1.6)
-        told = call("/gazebo/get_physics_properties", srv.GetPhysicsProperties)
-        self.assertEqual((told.gravity.z, told.time_step), (-1.6, 0.005))
+        properties = call("/gazebo/get_physics_properties", srv.GetPhysicsProperties)
+        self.assertEqual((properties.gravity.z, properties.time_step), (-1.6, 0.005))
         kept = client.update_configuration({"gravity_x": 3.0})
         self.assertEqual((kept["gravity_x"], kept["gravity_z"]), (0.0, -1.6), "only along z")
         client.update_configuration({"gravity_z": -9.8})

@@ -54,13 +54,13 @@ class TestModels(unittest.TestCase):
         call("delete_model", srv.DeleteModel, "cabinet")
 
     def test_a_model_names_its_links_solids_and_joints(self):
-        told = call("get_model_properties", srv.GetModelProperties, "cabinet")
-        self.assertEqual(told.body_names, ["post", "door", "drawer"])
-        self.assertEqual(told.geom_names, ["foot", "leaf"])
-        self.assertEqual(told.joint_names, ["hinge", "rail"])
-        self.assertEqual(told.canonical_body_name, "post")
+        properties = call("get_model_properties", srv.GetModelProperties, "cabinet")
+        self.assertEqual(properties.body_names, ["post", "door", "drawer"])
+        self.assertEqual(properties.geom_names, ["foot", "leaf"])
+        self.assertEqual(properties.joint_names, ["hinge", "rail"])
+        self.assertEqual(properties.canonical_body_name, "post")
 
-    def test_joints_tell_their_kind_and_where_they_are(self):
+    def test_joints_have_a_type_and_a_position(self):
         hinge, rail = joint("hinge"), joint("cabinet::rail")
         self.assertEqual((hinge.type, rail.type), (hinge.REVOLUTE, rail.PRISMATIC))
         self.assertEqual(list(hinge.damping), [0.1])
@@ -96,18 +96,18 @@ class TestModels(unittest.TestCase):
         simulated(3.0)
         self.assertAlmostEqual(joint("hinge").position[0], 0.7, delta=0.05)
 
-    def test_mass_and_inertia_of_a_link_are_told_and_set(self):
-        told = call("get_link_properties", srv.GetLinkProperties, "cabinet::door")
-        self.assertEqual(told.mass, 2.0)
-        self.assertAlmostEqual(told.ixx, 0.2)
-        self.assertAlmostEqual(told.izz, 0.4)
-        self.assertTrue(told.gravity_mode)
+    def test_mass_and_inertia_of_a_link_can_be_got_and_set(self):
+        properties = call("get_link_properties", srv.GetLinkProperties, "cabinet::door")
+        self.assertEqual(properties.mass, 2.0)
+        self.assertAlmostEqual(properties.ixx, 0.2)
+        self.assertAlmostEqual(properties.izz, 0.4)
+        self.assertTrue(properties.gravity_mode)
         change = srv.SetLinkPropertiesRequest(link_name="cabinet::door", mass=3.0, ixx=0.4, iyy=0.6, izz=0.8)
         done = call("set_link_properties", srv.SetLinkProperties, change)
         self.assertEqual((done.success, done.status_message), (True, "SetLinkProperties: properties set"))
-        told = call("get_link_properties", srv.GetLinkProperties, "cabinet::door")
-        self.assertEqual((told.mass, told.gravity_mode), (3.0, False))
-        self.assertAlmostEqual(told.iyy, 0.6)
+        properties = call("get_link_properties", srv.GetLinkProperties, "cabinet::door")
+        self.assertEqual((properties.mass, properties.gravity_mode), (3.0, False))
+        self.assertAlmostEqual(properties.iyy, 0.6)
         change.mass = -1.0
         self.assertFalse(call("set_link_properties", srv.SetLinkProperties, change).success)
 
@@ -121,12 +121,12 @@ class TestModels(unittest.TestCase):
         self.assertAlmostEqual(post.pose.position.x, -0.5, places=3)
 
     def test_the_sun_is_known_set_and_deleted(self):
-        told = call("get_light_properties", srv.GetLightProperties, "sun")
-        self.assertTrue(told.success)
+        properties = call("get_light_properties", srv.GetLightProperties, "sun")
+        self.assertTrue(properties.success)
         change = srv.SetLightPropertiesRequest(light_name="sun", diffuse=ColorRGBA(1.0, 0.5, 0.0, 1.0))
         self.assertTrue(call("set_light_properties", srv.SetLightProperties, change).success)
-        told = call("get_light_properties", srv.GetLightProperties, "sun")
-        self.assertAlmostEqual(told.diffuse.g, 0.5)
+        properties = call("get_light_properties", srv.GetLightProperties, "sun")
+        self.assertAlmostEqual(properties.diffuse.g, 0.5)
         done = call("delete_light", srv.DeleteLight, "sun")
         self.assertEqual(done.status_message, "DeleteLight: sun successfully deleted")
 

@@ -30,7 +30,7 @@ INPUTS = {
 JOYSTICK = "subscribers: [{name: Joystick, topic: input/joy, timeout: 0.5, priority: 1}]"
 
 
-def heard(topic, kind):
+def connected(topic, kind):
     """Listens once there is a publisher."""
     listener = Heard(topic, kind)
     wait_until(f"a publisher of {topic}", listener.is_connected)
@@ -45,12 +45,12 @@ def nearest_of(cloud):
 class TestKobuki(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.bumper = heard("mobile_base/events/bumper", BumperEvent)
-        cls.cliff = heard("mobile_base/events/cliff", CliffEvent)
-        cls.drop = heard("mobile_base/events/wheel_drop", WheelDropEvent)
-        cls.state = heard("mobile_base/sensors/core", SensorState)
-        cls.cloud = heard("mobile_base/sensors/bumper_pointcloud", PointCloud2)
-        cls.odom, cls.active = heard("odom", Odometry), heard("cmd_vel_mux/active", String)
+        cls.bumper = connected("mobile_base/events/bumper", BumperEvent)
+        cls.cliff = connected("mobile_base/events/cliff", CliffEvent)
+        cls.drop = connected("mobile_base/events/wheel_drop", WheelDropEvent)
+        cls.state = connected("mobile_base/sensors/core", SensorState)
+        cls.cloud = connected("mobile_base/sensors/bumper_pointcloud", PointCloud2)
+        cls.odom, cls.active = connected("odom", Odometry), connected("cmd_vel_mux/active", String)
         cls.velocity = rospy.Publisher("cmd_vel", Twist, queue_size=1)
         wait_until("the simulation", cls.velocity.get_num_connections)
         cls.odom.next()
@@ -58,8 +58,8 @@ class TestKobuki(unittest.TestCase):
     def setUp(self):
         rospy.ServiceProxy("/gazebo/reset_world", Empty)()
         self.odom.next()
-        for heard in (self.bumper, self.cliff, self.drop, self.state, self.cloud):
-            heard.messages.clear()
+        for topic in (self.bumper, self.cliff, self.drop, self.state, self.cloud):
+            topic.messages.clear()
 
     def drive_until(self, what, v, is_met):
         def drives():
@@ -69,7 +69,7 @@ class TestKobuki(unittest.TestCase):
 
         wait_until(what, drives)
 
-    def test_a_bump_is_told_pressed_and_released_and_marked_for_costmaps(self):
+    def test_a_bump_is_published_as_pressed_released_and_as_points_for_costmaps(self):
         self.drive_until("a bump", 0.4, lambda: self.cloud.messages and self.bumper.messages)
         pressed = self.bumper.messages[0]
         self.assertEqual((pressed.bumper, pressed.state), (BumperEvent.CENTER, BumperEvent.PRESSED))
@@ -80,8 +80,8 @@ class TestKobuki(unittest.TestCase):
         cloud = self.cloud.messages[0]
         self.assertEqual((cloud.header.frame_id, cloud.width, cloud.height), ("base_link", 3, 1))
         left, centre, right = read_points(cloud)
-        for told, expected in zip(centre, (0.24, 0.0, 0.04)):
-            self.assertAlmostEqual(told, expected, places=6)
+        for value, expected in zip(centre, (0.24, 0.0, 0.04)):
+            self.assertAlmostEqual(value, expected, places=6)
         self.assertGreater(min(math.hypot(*left), math.hypot(*right)), 50.0, "out of reach")
         self.drive_until("the release", -0.3, lambda: self.bumper.messages[-1].state == BumperEvent.RELEASED)
         wait_until("a cloud that clears", lambda: nearest_of(self.cloud.messages[-1]) > 50.0)
@@ -90,7 +90,7 @@ class TestKobuki(unittest.TestCase):
             self.odom.next()
         self.assertEqual(len(self.cloud.messages), count, "one that clears, then silence")
 
-    def test_an_edge_is_told_before_the_wheels_hang(self):
+    def test_a_cliff_is_published_before_the_wheels_drop(self):
         aside = Pose()
         aside.position.y, aside.orientation = -1.0, quaternion_of(-math.pi / 2.0)
         set_state = rospy.ServiceProxy("/gazebo/set_model_state", SetModelState)
@@ -99,7 +99,7 @@ class TestKobuki(unittest.TestCase):
         first = self.cliff.messages[0]
         self.assertEqual((first.sensor, first.state), (CliffEvent.CENTER, CliffEvent.CLIFF))
         self.drive_until("both wheels to hang", 0.4, lambda: len(self.drop.messages) >= 2)
-        # By the stamps of the state: events have none, and come by connections of their own.
+        # By the stamps of the state: events have none, and have separate connections.
         before = next(state for state in self.state.messages if state.cliff or state.wheel_drop)
         self.assertEqual((before.wheel_drop, before.cliff), (0, SensorState.CLIFF_CENTRE))
         wheels = {(one.wheel, one.state) for one in self.drop.messages[:2]}
@@ -113,7 +113,7 @@ class TestKobuki(unittest.TestCase):
         publishers = [rospy.Publisher(f"cmd_vel_mux/{topic}", Twist, queue_size=1) for topic in INPUTS]
         wait_until("the mux", lambda: all(one.get_num_connections() for one in publishers))
         for count, name in enumerate(INPUTS.values(), 1):
-            self.told_by(publishers[:count], name)
+            self.drive_by(publishers[:count], name)
         wait_until("silence", lambda: self.active.messages[-1].data == "idle")
 
     def test_the_mux_takes_other_inputs_while_it_runs_but_no_senseless_ones(self):
@@ -121,16 +121,16 @@ class TestKobuki(unittest.TestCase):
         client.update_configuration({"yaml_cfg_data": JOYSTICK})
         joystick = rospy.Publisher("cmd_vel_mux/input/joy", Twist, queue_size=1)
         wait_until("the new input", joystick.get_num_connections)
-        self.told_by([joystick], "Joystick")
+        self.drive_by([joystick], "Joystick")
         client.update_configuration({"yaml_cfg_data": "subscribers: {"})
-        self.told_by([joystick], "Joystick")
+        self.drive_by([joystick], "Joystick")
         client.update_configuration({"restore_defaults": True})
         navigation = rospy.Publisher("cmd_vel_mux/input/navi", Twist, queue_size=1)
         wait_until("the old inputs", navigation.get_num_connections)
-        self.told_by([navigation], "Navigation")
+        self.drive_by([navigation], "Navigation")
 
-    def told_by(self, publishers, name):
-        """Commands on some inputs until the mux says that the one of that name drives."""
+    def drive_by(self, publishers, name):
+        """Publish commands on some inputs until the mux selects the input of that name."""
 
         def drives():
             for publisher in publishers:
@@ -139,7 +139,7 @@ class TestKobuki(unittest.TestCase):
 
         wait_until(name, drives)
 
-    def test_what_is_measured_says_in_which_frame_and_how_well(self):
+    def test_measurements_have_frames_and_covariances(self):
         covariance = self.odom.next().pose.covariance
         self.assertEqual([covariance[7 * axis] for axis in range(6)], [0.1, 0.1, 1e6, 1e6, 1e6, 0.05])
         imu = rospy.wait_for_message("mobile_base/sensors/imu_data", Imu, PATIENCE_SECONDS)

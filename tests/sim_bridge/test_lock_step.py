@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""In lock-step the simulation waits for those that work on its data."""
+"""Lock-step by progress reports: the simulation waits for nodes that process its data."""
 
 import time
 import unittest
@@ -18,7 +18,7 @@ PERIOD = 0.1
 
 
 class TestLockStep(unittest.TestCase):
-    def test_a_slow_node_loses_no_scan_and_a_silent_one_is_not_waited_for_for_ever(self):
+    def test_a_slow_node_loses_no_scan_and_a_silent_one_is_given_up(self):
         progress, stamps, factors, ahead = ProgressPublisher(), [], [], []
         working = True
 
@@ -37,14 +37,14 @@ class TestLockStep(unittest.TestCase):
         self.assertLess(max(gaps), PERIOD + 1e-6)
         self.assertLess(max(ahead[10:]), PERIOD + 1e-6, "but for the first, which start the lock-step")
 
-        said = []
-        log = rospy.Subscriber("/rosout", Log, lambda line: said.append((line.name, line.msg)))
+        logged = []
+        log = rospy.Subscriber("/rosout", Log, lambda line: logged.append((line.name, line.msg)))
         wait_until("the log", lambda: hears_all(log))
         working = False
         count = len(stamps)
         wait_until("more scans", lambda: len(stamps) > count + 20, 25.0)
-        words = "no progress of lock_step: the simulation goes on without it in real time"
-        wait_until("the name of who is silent", lambda: ("/sim_bridge", words) in said)
+        warning = "no progress of lock_step: the simulation goes on without it in real time"
+        wait_until("the name of the silent node", lambda: ("/sim_bridge", warning) in logged)
 
 
 if __name__ == "__main__":

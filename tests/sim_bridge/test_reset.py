@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Resets in the middle of a goal: every node survives them and reaches the next goal."""
+"""Resets during a goal: every node survives them and reaches the next goal."""
 
 import math
 import unittest
@@ -35,27 +35,27 @@ class TestReset(unittest.TestCase):
         self.reset("/gazebo/reset_world")
         stamps = [message.header.stamp.to_sec() for message in self.truth]
         self.assertEqual(stamps, sorted(stamps), "time goes on")
-        self.tell_initial_pose()
+        self.publish_initial_pose()
         self.assert_nodes_work()
 
     def test_reset_simulation_in_the_middle_of_a_goal(self):
         self.set_off_for(2.0, 3.0)
         last = self.truth[-1].header.stamp
-        first_anew = self.reset("/gazebo/reset_simulation")
-        self.assertLess(first_anew.header.stamp, last, "time begins anew")
-        self.assertLess(first_anew.header.stamp.to_sec(), 5.0)
-        self.assert_status_is_told()
-        self.tell_initial_pose()
+        first_after = self.reset("/gazebo/reset_simulation")
+        self.assertLess(first_after.header.stamp, last, "time restarts")
+        self.assertLess(first_after.header.stamp.to_sec(), 5.0)
+        self.assert_status_is_published()
+        self.publish_initial_pose()
         self.assert_nodes_work()
 
-    def assert_status_is_told(self):
+    def assert_status_is_published(self):
         """Several times: an old timer ends at its first sleep after the jump."""
-        told = []
-        rospy.Subscriber("move_base/status", GoalStatusArray, told.append, queue_size=10)
-        wait_until("the status of move_base", lambda: len(told) >= 5, PATIENCE_SECONDS)
+        statuses = []
+        rospy.Subscriber("move_base/status", GoalStatusArray, statuses.append, queue_size=10)
+        wait_until("the status of move_base", lambda: len(statuses) >= 5, PATIENCE_SECONDS)
 
     def start_goal(self, x, y):
-        """A client of its own: one that has lived through a jump of time has forgotten nothing of it."""
+        """Send a goal with a new client: an old one keeps its state across a jump of time."""
         client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
         wait_until("move_base", lambda: client.wait_for_server(rospy.Duration(0.1)), PATIENCE_SECONDS)
         goal = MoveBaseGoal()
@@ -71,7 +71,7 @@ class TestReset(unittest.TestCase):
         wait_until("the robot to set off", lambda: self.distance_from(here.x, here.y) > 0.7, PATIENCE_SECONDS)
 
     def reset(self, name):
-        """The first truth of the robot where it started; a moment later it may have driven on."""
+        """Reset, and return the first true pose at the start; the robot may drive on at once."""
         rospy.wait_for_service(name, 20.0)
         first = len(self.truth)
         rospy.ServiceProxy(name, Empty)()
@@ -82,8 +82,8 @@ class TestReset(unittest.TestCase):
         wait_until("the robot to be back", back, PATIENCE_SECONDS)
         return back()
 
-    def tell_initial_pose(self):
-        """Where the robot was a moment ago, as a person would click it: its goal goes on meanwhile."""
+    def publish_initial_pose(self):
+        """Publish the latest true pose as initial pose, as from RViz, while the goal goes on."""
         wait_until("amcl", self.initial_pose.get_num_connections, PATIENCE_SECONDS)
         last = self.truth[-1]
         message = PoseWithCovarianceStamped()

@@ -68,7 +68,7 @@ CART = f"""<sdf version="1.6"><model name="any"><link name="chassis"><pose>0 0 0
 <rightJoint>right_hinge</rightJoint><wheelSeparation>0.3</wheelSeparation><wheelDiameter>0.2</wheelDiameter>
 <robotBaseFrame>chassis</robotBaseFrame></plugin></model></sdf>"""
 
-# Simulated seconds over which an acceleration is told.
+# Time over which an acceleration is measured [simulated s].
 RISE_SECONDS = 0.7
 
 
@@ -114,7 +114,7 @@ class TestRobots(unittest.TestCase):
         return self.odom.next()
 
     def turns(self, omega, *publishers):
-        """Whether the robot turns so fast when it is told to."""
+        """Return whether the robot turns at a commanded rate."""
         return abs(self.command(0.0, omega, *publishers).twist.twist.angular.z - omega) < 0.1
 
     def is_driven_by(self, name):
@@ -158,7 +158,7 @@ class TestRobots(unittest.TestCase):
         self.rover_command.publish(Twist())
         wait_until("a stop", lambda: abs(self.rover_odom.next().twist.twist.angular.z) < 0.01)
 
-    def test_4_the_mux_prefers_teleoperation_and_tells_who_drives(self):
+    def test_4_the_mux_prefers_teleoperation_and_publishes_the_active_input(self):
         navi, teleop = self.inputs["navi"], self.inputs["teleop"]
         wait_until("navigation", lambda: self.turns(0.5, navi) and self.is_driven_by("Navigation"))
 
@@ -192,7 +192,7 @@ class TestRobots(unittest.TestCase):
         rises = np.interp(grid + RISE_SECONDS, stamps, rates) - np.interp(grid, stamps, rates)
         return rises.max() / RISE_SECONDS
 
-    def test_6_kobuki_hears_its_commands_and_tells_of_bumps(self):
+    def test_6_kobuki_subscribes_to_its_commands_and_publishes_bumps(self):
         navi = self.inputs["navi"]
         wait_until("a turn", lambda: self.turns(0.5, navi))
         self.motors.publish(MotorPower(MotorPower.OFF))

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The topics, frames and rates of the simulation's node."""
+"""Topics, frames and rates of the node sim_bridge."""
 
 import math
 import threading
@@ -88,7 +88,7 @@ class TestSimBridge(unittest.TestCase):
         wait_until("its transform", parents)
         self.assertEqual(parents(), {"odom"})
 
-    def test_both_command_topics_drive_the_robot_and_silence_stops_it(self):
+    def test_both_command_topics_drive_the_robot_and_it_stops_without_commands(self):
         for topic in self.commands:
             self.turn_by(topic)
             wait_until("a stop", lambda: abs(self.odom.next().twist.twist.angular.z) < 0.05)
@@ -128,9 +128,9 @@ class TestSimBridge(unittest.TestCase):
         finally:
             pushing.set()
 
-    def test_a_box_that_cannot_be_is_refused_with_a_reason_and_time_goes_on(self):
-        said = Heard("/rosout", Log)
-        wait_until("the log", said.is_connected)
+    def test_an_invalid_box_is_refused_with_a_reason_and_time_goes_on(self):
+        log = Heard("/rosout", Log)
+        wait_until("the log", log.is_connected)
         for size, x, reason in (
             (1e30, 2.0, "a box needs positive lengths and a valid pose, got (1e+30,"),
             (math.nan, 2.0, "a box needs positive lengths and a valid pose, got (nan,"),
@@ -141,7 +141,7 @@ class TestSimBridge(unittest.TestCase):
             box.scale.x = box.scale.y = box.scale.z = size
             self.boxes.publish(box)
             words = f"box not added: {'giant: ' if x < 1e30 else ''}{reason}"
-            wait_until(words, lambda words=words: any(words in line.msg for line in said.messages))
+            wait_until(words, lambda words=words: any(words in line.msg for line in log.messages))
         self.assertTrue(np.allclose(periods(self.odom.following(50)), 0.02))
 
     def _push_until(self, done):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The command spawn_model and the functions that other people's scripts import from gazebo_ros."""
+"""The script spawn_model, and the functions that scripts import from gazebo_ros."""
 
 import math
 import signal
@@ -23,7 +23,7 @@ POST = """<?xml version='1.0'?><sdf version='1.6'><model name='any'><static>1</s
 
 
 def spawn_model(*options, stdin=""):
-    """The command's exit code and what it says."""
+    """Return the exit code and the output of the script."""
     command = ["rosrun", "gazebo_ros", "spawn_model", *options]
     done = subprocess.run(
         command, input=stdin, capture_output=True, text=True, timeout=PATIENCE_SECONDS, check=False
@@ -46,7 +46,7 @@ class TestSpawnModel(unittest.TestCase):
     def tearDown(self):
         rospy.ServiceProxy("/gazebo/delete_model", DeleteModel)("post")
 
-    def test_words_that_it_does_not_know_are_named_and_ignored_as_kinetics_does(self):
+    def test_unknown_arguments_are_named_and_ignored_as_in_kinetic(self):
         place = ("$", "-x", "-3.75", "-trimesh", "post.stl", "-y", "2")
         code, text = spawn_model("-sdf", "-stdin", "-model", "post", *place, stdin=POST)
         self.assertEqual(code, 0, text)
@@ -69,7 +69,7 @@ class TestSpawnModel(unittest.TestCase):
         self.assertAlmostEqual(yaw_of(pose.orientation), 1.5, places=6)
         self.assertFalse(rospy.ServiceProxy("/gazebo/get_physics_properties", GetPhysicsProperties)().pause)
 
-    def test_what_fails_says_why_in_a_line_and_ends_with_1(self):
+    def test_a_failure_is_reported_in_a_line_with_exit_code_1(self):
         self.assertTrue(spawn_sdf_model_client("post", POST, "", Pose(), "", "/gazebo"))
         self.assertFalse(spawn_sdf_model_client("post", POST, "", Pose(), "", "/gazebo"))
         for options, stdin, reason in (

@@ -1,4 +1,4 @@
-"""Faults as data: every kind does what it says, while it lasts, and a file's mistakes are told by line."""
+"""Fault injection: every kind has an effect while it is active, and errors in files are reported by line."""
 
 import math
 import sys
@@ -21,7 +21,7 @@ EXACT = SimulationSettings(**noise_named("ideal"))
 START, END, SECONDS = 1.0, 2.0, 3.0
 
 
-def played_world():
+def walled_world():
     floor = Body("floor::l", np.eye(4), (Collision(Plane(), np.eye(4)),))
     at = np.eye(4)
     at[:3, 3] = (6.0, 0.0, 0.5)
@@ -29,21 +29,21 @@ def played_world():
     return World("w", (floor, wall))
 
 
-def played(*faults, seed=0):
+def simulate(*faults, seed=0):
     """Observations of a robot that drives towards a wall."""
-    going_wrong = FaultInjector(faults, seed)
-    simulation = Simulation(played_world(), settings=EXACT, wrappers=going_wrong.wrappers)
+    injector = FaultInjector(faults, seed)
+    simulation = Simulation(walled_world(), settings=EXACT, wrappers=injector.wrappers)
     seen = []
     for _ in range(round(SECONDS / simulation.step_seconds)):
         command = Twist2(0.3, math.sin(0.1 * len(seen)))
         seen.append(simulation.step(command))
-        going_wrong.update(seen[-1].stamp, FaultContext(simulation.scene, ROBOT_NAME, seen[-1].base_in_world))
+        injector.update(seen[-1].stamp, FaultContext(simulation.scene, ROBOT_NAME, seen[-1].base_in_world))
     simulation.close()
     return seen
 
 
 def essence(observations, since=0.0, until=math.inf):
-    """All that can be told of a run."""
+    """All measurements of a run."""
     return [
         (one.stamp, one.base_in_world, one.odometry, None if one.scan is None else one.scan.ranges.tobytes(),
          None if one.scan is None else (one.scan.stamp, one.scan.angle_min))
@@ -54,7 +54,7 @@ def essence(observations, since=0.0, until=math.inf):
 
 @pytest.fixture(scope="module")
 def clean():
-    return played()
+    return simulate()
 
 
 def test_there_are_25_kinds_and_more():
@@ -62,45 +62,45 @@ def test_there_are_25_kinds_and_more():
 
 
 @pytest.mark.parametrize("name", KINDS)
-def test_a_kind_keeps_the_contract(name, clean):
+def test_a_kind_meets_the_contract(name, clean):
     usual, least, largest = KINDS[name].strength
     assert least <= usual <= largest
     assert KINDS[name].__doc__
     fault = Fault(name, START, END, usual, seed=4)
-    seen = played(fault)
+    seen = simulate(fault)
     assert essence(seen, until=START) == essence(clean, until=START), "nothing happens before it begins"
     assert essence(seen, START) != essence(clean, START), "something happens then"
-    assert essence(seen) == essence(played(fault)), "the same seed gives the same fault"
+    assert essence(seen) == essence(simulate(fault)), "the same seed gives the same fault"
 
 
-def test_a_scan_is_whole_again_when_its_fault_is_over():
-    seen = played(Fault("scan_nan", START, END))
+def test_a_scan_is_correct_again_when_its_fault_ends():
+    seen = simulate(Fault("scan_nan", START, END))
     shares = {one.stamp: np.isnan(one.scan.ranges).mean() for one in seen if one.scan is not None}
     assert {share for stamp, share in shares.items() if START <= stamp < END - 0.01} == {1.0}
     assert {share for stamp, share in shares.items() if stamp > END + 0.01} == {0.0}
 
 
 def test_faults_add_up():
-    seen = played(Fault("scan_biased", strength=0.1), Fault("scan_biased", strength=0.2))
-    both, none = (next(one.scan for one in run if one.scan is not None) for run in (seen, played()))
+    seen = simulate(Fault("scan_biased", strength=0.1), Fault("scan_biased", strength=0.2))
+    both, none = (next(one.scan for one in run if one.scan is not None) for run in (seen, simulate()))
     finite = np.isfinite(none.ranges)
     assert both.ranges[finite] - none.ranges[finite] == pytest.approx(0.3, abs=1e-5)
 
 
 def test_a_late_scan_keeps_the_stamp_of_its_measurement():
-    seen = played(Fault("scan_late", strength=0.5))
+    seen = simulate(Fault("scan_late", strength=0.5))
     ages = [one.stamp - one.scan.stamp for one in seen if one.scan is not None]
     assert ages == pytest.approx([0.5] * len(ages), abs=0.11)
 
 
-def test_a_robot_that_is_kidnapped_is_elsewhere(clean):
-    seen = played(Fault("kidnapped", START, strength=0.5))
+def test_a_kidnapped_robot_is_displaced(clean):
+    seen = simulate(Fault("kidnapped", START, strength=0.5))
     moved = seen[-1].base_in_world.distance_to(clean[-1].base_in_world)
     assert moved == pytest.approx(0.5, abs=0.1)
     assert seen[-1].odometry.base_in_odom.distance_to(clean[-1].odometry.base_in_odom) < 0.2
 
 
-def test_a_robot_that_is_kidnapped_is_not_set_down_in_a_wall():
+def test_a_kidnapped_robot_is_not_put_into_a_wall():
     """Found by falsify.sh: it counted as the robot's collision."""
     floor = Body("floor::l", np.eye(4), (Collision(Plane(), np.eye(4)),))
     at = np.eye(4)
@@ -118,8 +118,8 @@ def test_a_robot_that_is_kidnapped_is_not_set_down_in_a_wall():
 
 
 @pytest.mark.parametrize("kind", ["way_closed", "object_in_way"])
-def test_two_things_may_be_in_the_way_and_somebody_may_take_them_away(kind):
-    simulation, faults = Simulation(played_world(), settings=EXACT), FaultInjector((), extendable=True)
+def test_several_obstacles_may_appear_and_may_be_deleted_meanwhile(kind):
+    simulation, faults = Simulation(walled_world(), settings=EXACT), FaultInjector((), extendable=True)
     before = simulation.scene.models.names()
     for end, strength in ((0.5, 1.0), (0.5, 3.0), (9.0, 5.0)):
         faults.add(Fault(kind, 0.0, end, strength))
@@ -156,14 +156,14 @@ def test_faults_are_read_from_a_file(tmp_path):
         ("kidnapped", "must be a table"),
     ],
 )
-def test_a_mistake_is_told_with_file_line_and_key(tmp_path, entry, complaint):
+def test_an_error_is_reported_with_file_line_and_key(tmp_path, entry, complaint):
     path = tmp_path / "faults.yaml"
     path.write_text(f"faults:\n  - {entry}\n")
     with pytest.raises(SettingsError, match=f"faults.yaml:2: .*{complaint}"):
         load_faults(path)
 
 
-def test_a_fault_may_come_later():
+def test_a_fault_may_be_added_later():
     faults = FaultInjector((), extendable=True)
     floor = Body("floor::l", np.eye(4), (Collision(Plane(), np.eye(4)),))
     simulation = Simulation(World("w", (floor,)), settings=EXACT, wrappers=faults.wrappers)
@@ -177,8 +177,8 @@ def test_a_fault_may_come_later():
     assert np.isnan(seen.scan.ranges).all()
 
 
-class Shouts(FaultKind):
-    """Everything is half as far."""
+class HalfRange(FaultKind):
+    """All ranges are halved."""
 
     strength = (0.5, 0.1, 1.0)
 
@@ -193,39 +193,39 @@ class Raises(FaultKind):
         raise ZeroDivisionError("division by zero")
 
 
-class SpinsForEver(FaultKind):
-    """Gives wheels no speed."""
+class InfiniteSpeed(FaultKind):
+    """Returns an infinite wheel speed."""
 
     def wheel_speeds(self, left, right):
         return math.inf, right
 
 
-class AnswersANumber(FaultKind):
-    """Gives no scan."""
+class ReturnsNumber(FaultKind):
+    """Returns no scan."""
 
     def scan(self, scan):
         return 3
 
 
-class WithoutMeasure(FaultKind):
+class WithoutRange(FaultKind):
     """Has no range of strengths."""
 
     strength = 3.0
 
 
-class HearsLess(FaultKind):
+class WrongSignature(FaultKind):
     """Cannot be called."""
 
     def scan(self):
         return None
 
 
-class Stranger:
-    """Has all methods and is none."""
+class NotDerived:
+    """Has all methods of a fault but another base class."""
 
     strength = (1.0, 0.0, 1.0)
-    scan = odometry = command = lambda self, told: told
-    begin = end = lambda self, stage: None
+    scan = odometry = command = lambda self, value: value
+    begin = end = lambda self, context: None
     wheel_speeds = lambda self, left, right: (left, right)  # noqa: E731
 
     def __init__(self, strength, rng):
@@ -233,18 +233,18 @@ class Stranger:
 
 
 @pytest.fixture
-def own(monkeypatch):
+def dotted(monkeypatch):
     """This module under a dotted name; names its classes."""
-    monkeypatch.setitem(sys.modules, "own.faults", sys.modules[__name__])
-    return lambda kind: f"own.faults/{kind.__name__}"
+    monkeypatch.setitem(sys.modules, "custom.faults", sys.modules[__name__])
+    return lambda kind: f"custom.faults/{kind.__name__}"
 
 
-def test_a_fault_of_other_people_is_known_by_its_dotted_name(tmp_path, own, clean):
+def test_a_custom_kind_is_found_by_its_dotted_name(tmp_path, dotted, clean):
     path = tmp_path / "faults.yaml"
-    path.write_text(f"faults:\n  - {{kind: {own(Shouts)}, start: {START}, end: {END}}}\n")
+    path.write_text(f"faults:\n  - {{kind: {dotted(HalfRange)}, start: {START}, end: {END}}}\n")
     (fault,) = load_faults(path)
     assert fault.strength == 0.5
-    seen = played(fault)
+    seen = simulate(fault)
     assert essence(seen, until=START) == essence(clean, until=START)
     pairs = [
         (one.scan, other.scan) for one, other in zip(seen, clean) if one.scan and START <= one.stamp < END
@@ -255,28 +255,30 @@ def test_a_fault_of_other_people_is_known_by_its_dotted_name(tmp_path, own, clea
 
 
 @pytest.mark.parametrize(
-    ("kind", "said"),
+    ("kind", "message"),
     [
         (Raises, "raised ZeroDivisionError: division by zero"),
-        (SpinsForEver, "wheel_speeds returned"),
-        (AnswersANumber, "scan returned int, expected Scan or None"),
+        (InfiniteSpeed, "wheel_speeds returned"),
+        (ReturnsNumber, "scan returned int, expected Scan or None"),
     ],
 )
-def test_what_goes_wrong_in_it_is_told_in_its_name(kind, said, own):
-    with pytest.raises(FaultError, match=f"^{own(kind)}:? {said}"):
-        played(Fault(own(kind), 0.0))
+def test_failures_of_a_custom_kind_are_reported_with_its_name(kind, message, dotted):
+    with pytest.raises(FaultError, match=f"^{dotted(kind)}:? {message}"):
+        simulate(Fault(dotted(kind), 0.0))
 
 
 @pytest.mark.parametrize(
     ("kind", "lacks"),
     [
-        (WithoutMeasure, r"strength must be \(default, least, largest\), got 3.0"),
-        (HearsLess, r"it cannot be called as scan\(scan\)"),
-        (Stranger, "it is not derived from sim_bridge.faults.kind.FaultKind"),
+        (WithoutRange, r"strength must be \(default, least, largest\), got 3.0"),
+        (WrongSignature, r"it cannot be called as scan\(scan\)"),
+        (NotDerived, "it is not derived from sim_bridge.faults.kind.FaultKind"),
     ],
 )
-def test_what_is_no_fault_is_refused_with_what_it_lacks(kind, lacks, own, tmp_path):
+def test_a_class_that_is_no_fault_is_refused_with_the_reason(kind, lacks, dotted, tmp_path):
     path = tmp_path / "faults.yaml"
-    path.write_text(f"faults:\n  - {{kind: {own(kind)}}}\n")
-    with pytest.raises(SettingsError, match=f"faults.yaml:2: .*kind cannot be used: {own(kind)} .*{lacks}"):
+    path.write_text(f"faults:\n  - {{kind: {dotted(kind)}}}\n")
+    with pytest.raises(
+        SettingsError, match=f"faults.yaml:2: .*kind cannot be used: {dotted(kind)} .*{lacks}"
+    ):
         load_faults(path)

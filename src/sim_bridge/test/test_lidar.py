@@ -1,4 +1,4 @@
-"""The range finder's errors."""
+"""Scans of the range finder and their errors."""
 
 import dataclasses
 import math
@@ -30,7 +30,7 @@ def true_range(scan):
     return 2.0 / np.maximum(np.abs(np.cos(angles)), np.abs(np.sin(angles)))
 
 
-def test_an_ideal_laser_tells_the_truth():
+def test_an_ideal_laser_measures_true_ranges():
     scan = sweep()
     assert scan.stamp == 1.5
     assert scan.ranges == pytest.approx(true_range(scan), abs=1e-5)
@@ -56,11 +56,11 @@ def test_beams_drop_out_and_read_the_greatest_range_as_often_as_asked_for(profil
 
 
 @pytest.mark.parametrize(("profile", "is_lost"), [(LIDAR, np.isposinf), (KINECT, np.isnan)])
-def test_what_is_out_of_sight_reads_as_the_robots_profile_says(profile, is_lost):
+def test_beams_without_return_read_as_the_profile_states(profile, is_lost):
     assert is_lost(sweep(profile, segments=NOTHING).ranges).all()
 
 
-def test_what_reflects_comes_back_bright():
+def test_reflective_walls_have_high_intensity():
     scan = sweep()
     angles = scan.angle_min + scan.angle_increment * np.arange(len(scan.ranges))
     ahead = np.abs(angles) < math.radians(44.0)
@@ -75,7 +75,7 @@ def test_the_same_seed_makes_the_same_errors():
     assert not np.array_equal(sweep(seed=3, **noise).ranges, sweep(seed=4, **noise).ranges)
 
 
-def test_a_laser_mounted_upside_down_sweeps_the_other_way_round():
+def test_a_laser_mounted_upside_down_sweeps_in_reverse():
     profile = dataclasses.replace(LIDAR, pose_in_base=pose3(roll=math.pi))
     lidar = Lidar(profile, NOISE_PROFILES["ideal"], np.random.default_rng(0))
     wall_on_the_left = np.array([[-5.0, 2.0, 5.0, 2.0]])

@@ -16,7 +16,7 @@ def mux():
     return VelocityMux(TURTLEBOT_INPUTS)
 
 
-def test_nobody_drives_when_all_are_silent(mux):
+def test_no_input_drives_when_all_are_silent(mux):
     assert mux.choose(0.0, {}) is None
     assert mux.active(0.0) == "idle"
 
@@ -30,7 +30,7 @@ def test_the_more_important_source_drives_until_it_falls_silent(mux):
     assert mux.active(3.0) == "idle"
 
 
-def test_after_time_has_begun_anew_nothing_old_counts(mux):
+def test_a_reset_of_time_discards_old_commands(mux):
     mux.choose(100.0, {"Teleoperation": SLOW})
     assert mux.choose(0.0, {"Navigation": FAST}) == FAST
 
@@ -53,7 +53,7 @@ def test_inputs_are_read_from_a_file_of_the_official_format(tmp_path):
 
 
 def commanded(smoother, seconds, begins):
-    """What the smoother says at each step of so many seconds."""
+    """Commands of the smoother at each step of so many seconds."""
     return [smoother.command(begins + step * STEP) for step in range(1, round(seconds / STEP) + 1)]
 
 
@@ -73,23 +73,25 @@ def test_a_smoothed_command_grows_by_its_acceleration_and_brakes_faster():
 
 
 def test_after_a_pause_between_commands_no_velocity_jumps():
-    smoother, told = VelocitySmoother(), [Twist2()]
+    smoother, commands = VelocitySmoother(), [Twist2()]
     for begins, pause in ((0.0, 0.1), (0.1, 0.44), (0.54, 0.1), (0.64, 0.7), (1.34, 0.3)):
         smoother.set_target(Twist2(0.0, 2.0), begins)
-        told += commanded(smoother, pause, begins)
-    assert max(after.omega - before.omega for before, after in zip(told, told[1:])) <= 2.0 * STEP + 1e-9
+        commands += commanded(smoother, pause, begins)
+    assert (
+        max(after.omega - before.omega for before, after in zip(commands, commands[1:])) <= 2.0 * STEP + 1e-9
+    )
 
 
-def test_after_the_last_command_the_robot_is_led_to_rest_and_then_left_alone():
+def test_after_the_last_command_the_smoother_brakes_to_rest_and_then_publishes_nothing():
     smoother = VelocitySmoother()
     smoother.set_target(Twist2(0.3, 0.0), 0.0)
-    told = commanded(smoother, 2.0, 0.0)
-    assert told[-1] is None
-    spoken = [one.v for one in told if one is not None]
-    assert max(spoken) == pytest.approx(0.3) and spoken[-1] == 0.0
+    commands = commanded(smoother, 2.0, 0.0)
+    assert commands[-1] is None
+    speeds = [one.v for one in commands if one is not None]
+    assert max(speeds) == pytest.approx(0.3) and speeds[-1] == 0.0
 
 
-def test_time_that_begins_anew_begins_the_smoother_anew():
+def test_a_reset_of_time_resets_the_smoother():
     smoother = VelocitySmoother()
     smoother.set_target(Twist2(0.3, 0.0), 10.0)
     commanded(smoother, 0.4, 10.0)

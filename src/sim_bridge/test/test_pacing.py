@@ -1,4 +1,4 @@
-"""How fast simulated time may pass."""
+"""The pace of simulated time."""
 
 import pytest
 
@@ -20,11 +20,11 @@ def test_simulated_time_passes_at_the_given_speed(speed):
     assert steps_within(Pacer(speed), 2.0) == pytest.approx(2.0 * speed, abs=0.1)
 
 
-def test_speed_zero_knows_no_limit():
+def test_speed_zero_has_no_limit():
     assert steps_within(Pacer(0.0), 0.01) >= 1000.0
 
 
-def test_a_delay_is_not_made_up_for():
+def test_a_delay_is_not_caught_up():
     pacer = Pacer(1.0)
     assert pacer.delay(0.02, 0.0) == 0.0
     assert pacer.delay(0.04, 60.0) == 0.0
@@ -40,7 +40,7 @@ def reported(pacer, name, until, period=0.1):
 def test_until_all_nodes_have_reported_time_passes_as_on_the_wall():
     pacer = Pacer(0.0, ["amcl", "move_base"])
     reported(pacer, "amcl", 0.0)
-    reported(pacer, "stranger", 0.0)
+    reported(pacer, "other_node", 0.0)
     assert pacer.is_missing("move_base")
     assert not pacer.is_missing("amcl")
     assert pacer.delay(0.02, 0.0) == 0.0
@@ -104,7 +104,7 @@ def test_a_node_that_falls_silent_is_given_up_once_until_it_reports_again():
     assert not pacer.is_missing("amcl")
 
 
-def test_a_node_that_lags_behind_what_it_can_never_catch_up_with_does_not_slow_time_down():
+def test_a_node_that_can_never_catch_up_does_not_slow_time_down():
     """As amcl without odometry, which skips a scan when a hundred others have come: 10 s later."""
     pacer, stamp, wall, given_up = Pacer(0.0, ["amcl"], patience=5.0), 0.0, 0.0, 0
     reported(pacer, "amcl", 0.0)

@@ -42,7 +42,7 @@ def camera(settings, seed=0):
     return Camera(settings, np.random.default_rng(seed), profile)
 
 
-def picture(settings, *shapes, at=None, seed=0):
+def render(settings, *shapes, at=None, seed=0):
     return camera(settings, seed).render(*drawing_of(*shapes), pose3(z=1.0) if at is None else at)
 
 
@@ -51,7 +51,7 @@ FLOOR = (Plane(), np.eye(4), (0.5, 0.5, 0.5))
 
 
 def test_a_wall_ahead_is_as_deep_everywhere_as_it_is_far():
-    seen = picture(SMALL, WALL)
+    seen = render(SMALL, WALL)
     assert seen.depth == pytest.approx(np.full((120, 160), 3.0), abs=1e-5)
     assert (seen.rgb[..., 0] > 100).all()
     assert (seen.rgb[..., 1:] == 0).all()
@@ -65,8 +65,8 @@ def test_what_glows_is_as_bright_from_all_sides():
     assert (seen.rgb[np.isfinite(seen.depth)] == 255).all()
 
 
-def test_the_floor_is_seen_where_geometry_says():
-    seen = picture(SMALL, FLOOR)
+def test_the_floor_is_seen_where_geometry_predicts():
+    seen = render(SMALL, FLOOR)
     _, centre_y = SMALL.centre
     rows = np.arange(120)
     expected = SMALL.focal_length * 1.0 / (rows[70:] - centre_y)
@@ -75,14 +75,14 @@ def test_the_floor_is_seen_where_geometry_says():
 
 
 def test_what_is_nearer_hides_what_is_behind():
-    seen = picture(SMALL, WALL, (Sphere(0.5), pose3(2.0, 0.0, 1.0), (0.0, 0.0, 1.0)))
+    seen = render(SMALL, WALL, (Sphere(0.5), pose3(2.0, 0.0, 1.0), (0.0, 0.0, 1.0)))
     assert seen.depth[60, 80] == pytest.approx(1.5, abs=0.01)
     assert seen.rgb[60, 80, 2] > 0
     assert seen.depth[5, 5] == pytest.approx(3.0, abs=1e-5)
 
 
 def test_left_is_left_and_up_is_up():
-    seen = picture(SMALL, (Box((0.2, 0.2, 0.2)), pose3(3.0, 1.0, 1.5), (0.0, 1.0, 0.0)))
+    seen = render(SMALL, (Box((0.2, 0.2, 0.2)), pose3(3.0, 1.0, 1.5), (0.0, 1.0, 0.0)))
     rows, columns = np.nonzero(np.isfinite(seen.depth))
     assert columns.max() < 80
     assert rows.max() < 60
@@ -90,7 +90,7 @@ def test_left_is_left_and_up_is_up():
 
 def test_points_lie_on_what_is_seen():
     at = pose3(0.3, -0.2, 0.8, 0.05, 0.2, 0.4)
-    seen = picture(SMALL, (Cylinder(0.6, 2.0), pose3(2.5, 1.0, 1.0), (1.0, 1.0, 1.0)), at=at)
+    seen = render(SMALL, (Cylinder(0.6, 2.0), pose3(2.5, 1.0, 1.0), (1.0, 1.0, 1.0)), at=at)
     points = depth_to_points(seen.depth, SMALL)[np.isfinite(seen.depth)]
     camera = np.column_stack((points[:, 2], -points[:, 0], -points[:, 1]))
     in_world = transform_points(at, camera)
@@ -102,17 +102,17 @@ def test_points_lie_on_what_is_seen():
 
 def test_depths_out_of_reach_are_not_numbers():
     near = (Box((0.1, 4.0, 4.0)), pose3(0.35, 0.0, 1.0), None)
-    assert np.isnan(picture(KINECT, near).depth).all()
-    assert np.isnan(picture(KINECT, (Box((0.1, 90.0, 90.0)), pose3(6.0), None)).depth).all()
-    assert np.isfinite(picture(KINECT, WALL).depth).all()
+    assert np.isnan(render(KINECT, near).depth).all()
+    assert np.isnan(render(KINECT, (Box((0.1, 90.0, 90.0)), pose3(6.0), None)).depth).all()
+    assert np.isfinite(render(KINECT, WALL).depth).all()
 
 
 def test_depth_noise_grows_with_the_square_of_the_depth_and_follows_the_seed():
     noisy = DepthCameraSettings(depth_noise=0.002)
-    errors = picture(noisy, WALL).depth - 3.0
+    errors = render(noisy, WALL).depth - 3.0
     assert errors.std() == pytest.approx(0.002 * 9.0, rel=0.02)
-    assert np.array_equal(picture(noisy, WALL, seed=1).depth, picture(noisy, WALL, seed=1).depth)
-    assert not np.array_equal(picture(noisy, WALL, seed=1).depth, picture(noisy, WALL, seed=2).depth)
+    assert np.array_equal(render(noisy, WALL, seed=1).depth, render(noisy, WALL, seed=1).depth)
+    assert not np.array_equal(render(noisy, WALL, seed=1).depth, render(noisy, WALL, seed=2).depth)
 
 
 def test_bodies_that_move_are_drawn_where_they_are_and_the_robot_itself_is_left_out():
@@ -155,14 +155,14 @@ def at_rest(pose):
     return KinematicState(pose, np.zeros(3), np.zeros(3))
 
 
-def test_an_imu_at_rest_feels_what_keeps_it_from_falling():
+def test_an_imu_at_rest_measures_plus_g_upwards():
     imu = Imu(ImuSettings(), np.random.default_rng(0), AT_BASE)
     reading = imu.read(at_rest(pose3(pitch=0.1)), 0.02, 9.8)
     assert reading.acceleration == pytest.approx([-9.8 * math.sin(0.1), 0.0, 9.8 * math.cos(0.1)])
     assert reading.angular_velocity == pytest.approx(np.zeros(3))
 
 
-def test_an_imu_feels_turning_and_speeding_up_in_its_own_frame():
+def test_an_imu_measures_turning_and_accelerating_in_its_frame():
     imu = Imu(ImuSettings(), np.random.default_rng(0), AT_BASE)
     turned = pose3(yaw=math.pi / 2.0)
     imu.read(KinematicState(turned, np.zeros(3), np.zeros(3)), 0.1, 9.8)
@@ -171,7 +171,7 @@ def test_an_imu_feels_turning_and_speeding_up_in_its_own_frame():
     assert reading.angular_velocity == pytest.approx([0.0, 0.0, 0.7])
 
 
-def test_an_imu_errs_as_asked_for():
+def test_imu_noise_has_the_deviation_asked_for():
     def readings(seed):
         imu = Imu(ImuSettings(gyro_noise=0.01, acceleration_noise=0.1), np.random.default_rng(seed), AT_BASE)
         return [imu.read(at_rest(np.eye(4)), 0.02, 9.8) for _ in range(2000)]
@@ -194,12 +194,12 @@ def test_an_imu_errs_as_asked_for():
         (0.0, 0.005, set()),
     ],
 )
-def test_a_bumper_tells_which_side_is_touched(bearing, height, expected):
+def test_the_pressed_sectors_are_those_with_contacts(bearing, height, expected):
     angle = math.radians(bearing)
     assert pressed(np.array([[0.178 * math.cos(angle), 0.178 * math.sin(angle), height]])) == expected
 
 
-def test_nothing_presses_a_bumper_that_touches_nothing():
+def test_a_bumper_without_contacts_is_not_pressed():
     assert pressed(np.empty((0, 3))) == frozenset()
 
 
@@ -217,7 +217,7 @@ def test_the_depth_camera_and_the_laser_made_of_it_agree():
     errors = np.abs(ranges - at_bearings)
     print(f"depth camera against laser: median {np.nanmedian(errors):.4f} m")
     assert np.nanmedian(errors) < 0.002
-    assert (errors[np.isfinite(errors)] < 0.02).mean() > 0.95, "all but the edges of things"
+    assert (errors[np.isfinite(errors)] < 0.02).mean() > 0.95, "all but the edges of objects"
     simulation.close()
 
 

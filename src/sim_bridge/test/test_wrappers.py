@@ -1,4 +1,4 @@
-"""What stands before a robot's sensors and its drive, without the robot knowing."""
+"""Wrappers of a robot's sensors and drive."""
 
 import math
 
@@ -17,7 +17,7 @@ SCAN = ROBOTS["turtlebot_lidar"].scanner
 
 
 class Delayed(SensorWrapper):
-    """What a sensor tells comes so many steps of physics later."""
+    """Delays readings by a number of physics steps."""
 
     def __init__(self, sensor, steps):
         super().__init__(sensor)
@@ -29,7 +29,7 @@ class Delayed(SensorWrapper):
 
 
 class DroppingOut(SensorWrapper):
-    """Of what a sensor tells only some is heard."""
+    """Drops a share of the readings."""
 
     def __init__(self, sensor, share, rng):
         super().__init__(sensor)
@@ -41,7 +41,7 @@ class DroppingOut(SensorWrapper):
 
 
 class Weak:
-    """A drive whose wheels turn more slowly than they are told."""
+    """A drive whose wheels turn more slowly than commanded."""
 
     def __init__(self, drive, factor):
         self._drive, self._factor = drive, factor
@@ -54,7 +54,7 @@ class Weak:
 
 @pytest.fixture
 def observations():
-    """Observations of so many seconds with a fitting and a speed."""
+    """Results of so many seconds with wrappers and a speed."""
     simulations = []
 
     def run(seconds, wrappers=RobotWrappers(), speed=0.0):
@@ -76,16 +76,16 @@ def only(name, wrap):
     return RobotWrappers(sensor=lambda sensor: wrap(sensor) if sensor.name == name else sensor)
 
 
-def told(seen):
+def readings_of(seen):
     """When scans came, and when they were measured."""
     return [(one.stamp, one.readings[SCAN].stamp) for one in seen if SCAN in one.readings]
 
 
 @pytest.mark.parametrize("steps, later", [(12, 12), (3, 4), (5, 8)])
 def test_a_delayed_scan_comes_later_and_carries_the_stamp_of_its_measurement(observations, steps, later):
-    """It is told with the odometry, after each fourth step."""
-    delayed = told(observations(1.0, only(SCAN, lambda sensor: Delayed(sensor, steps))))
-    prompt = told(observations(1.0))
+    """Readings are returned with the odometry, after each fourth step."""
+    delayed = readings_of(observations(1.0, only(SCAN, lambda sensor: Delayed(sensor, steps))))
+    prompt = readings_of(observations(1.0))
     assert [measured for _, measured in delayed] == [measured for _, measured in prompt][: len(delayed)]
     assert all(came - measured == pytest.approx(later / EXACT.physics_rate) for came, measured in delayed)
     assert all(came == pytest.approx(measured) for came, measured in prompt)
@@ -95,7 +95,7 @@ def test_a_scanner_that_drops_out_leaves_all_else_as_it_was(observations):
     rng = np.random.default_rng(0)
     seen = observations(10.0, only(SCAN, lambda sensor: DroppingOut(sensor, 0.5, rng)), speed=0.2)
     clean = observations(10.0, speed=0.2)
-    assert 0.3 < len(told(seen)) / len(told(clean)) < 0.7
+    assert 0.3 < len(readings_of(seen)) / len(readings_of(clean)) < 0.7
     assert [one.base_in_world for one in seen] == [one.base_in_world for one in clean]
 
 
@@ -106,7 +106,7 @@ def test_odometry_that_drops_out_stays_what_it_was_last(observations):
     assert "odometry" not in seen[-1].readings
 
 
-def test_what_stands_before_a_drive_changes_how_the_robot_moves(observations):
+def test_a_wrapped_drive_changes_how_the_robot_moves(observations):
     whole = observations(3.0, speed=0.3)[-1].base_in_world.x
     half = observations(3.0, RobotWrappers(drive=lambda drive: Weak(drive, 0.5)), speed=0.3)[
         -1
@@ -115,7 +115,7 @@ def test_what_stands_before_a_drive_changes_how_the_robot_moves(observations):
 
 
 class _Always:
-    """A source of chance that always strikes."""
+    """A random generator whose draws are all 0."""
 
     @staticmethod
     def random():
