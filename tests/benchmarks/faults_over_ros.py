@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Shows what becomes of the errand over the whole graph with each kind of fault, beside the same without.
+"""Measure missions over the whole graph of nodes with each kind of fault, and without.
 
 python3 tests/benchmarks/faults_over_ros.py [--seed 301] [--runs 2] [--only scan_nan ...]
     [--table docs/reports/faults_over_ros.md]
@@ -14,14 +14,14 @@ from pathlib import Path
 from typing import Any, Dict, List, Optional, Sequence
 
 import yaml
-from soak import RUNS, Graph, Traces
+from soak import RUNS, Graph, Leftovers
 
 from home_service.judging.verdict import ARRIVAL_TOLERANCE
 from home_service.rehearsal.twins import START
 from planar import write_atomically
 from sim_bridge.faults import KINDS, default_strength
 
-# Wall seconds that a run may take, and that it may take beyond them to end and to judge.
+# Time limit of a run, and additional time to end and to judge [wall s].
 RUN_SECONDS, SPARE_SECONDS = 240.0, 60.0
 CLEAN = "none"
 PAGE = """# Faults over ROS
@@ -31,8 +31,8 @@ The kinds of [faults](../reference/faults.md), from {start:g} s on, in the whole
 `python3 tests/benchmarks/faults_over_ros.py --seed {seed} --runs {runs}
 --table docs/reports/faults_over_ros.md`.
 
-A verdict is false if the robot says that it has delivered and has not, or the other way round; a run hangs if
-the script has not ended by itself {spare:g} s after that. *Left* are processes, sockets and files.
+A verdict is false if the robot reports a delivery that did not happen, or the other way round; a run hangs
+if the script has not ended {spare:g} s after the time limit. *Left* are processes, sockets and files.
 
 | fault | succeeded | false verdicts | hung | left | simulated s | why not |
 | --- | --- | --- | --- | --- | --- | --- |
@@ -42,7 +42,7 @@ the script has not ended by itself {spare:g} s after that. *Left* are processes,
 
 @dataclass(frozen=True)
 class Run:
-    """``result``: what result.json says; ``hung``: whether it had to be ended."""
+    """A run: its result.json, whether it had to be ended, and what it left."""
 
     result: Dict[str, Any]
     hung: bool
@@ -54,14 +54,14 @@ class Run:
 
     @property
     def is_false(self) -> bool:
-        """Whether the robot said something of its mission that is not so."""
+        """Whether the state that the robot reports is wrong."""
         deliveries = self.result.get("deliveries", [])
         is_delivered = bool(deliveries) and all(map(_is_proven, deliveries))
         return (self.result.get("final_state") == "delivered") != is_delivered
 
 
 def _is_proven(delivery: Dict[str, Any]) -> bool:
-    """Whether it was at both of its places when it said so."""
+    """Return whether the robot was at both places when it reported so."""
     errors = (delivery["pickup_error"], delivery["dropoff_error"])
     is_there = all(error is not None and error <= ARRIVAL_TOLERANCE for error in errors)
     return delivery["state"] == "delivered" and is_there
@@ -69,7 +69,7 @@ def _is_proven(delivery: Dict[str, Any]) -> bool:
 
 @dataclass(frozen=True)
 class Row:
-    """All runs with one kind of fault."""
+    """All runs with a kind of fault."""
 
     kind: str
     runs: Sequence[Run]
@@ -80,9 +80,9 @@ class Row:
         return survivable and 2 * sum(run.is_success for run in self.runs) < len(self.runs)
 
     @property
-    def is_well(self) -> bool:
-        bad = any(run.hung or run.is_false or run.left for run in self.runs)
-        return not bad and not self.is_needless_failure
+    def is_ok(self) -> bool:
+        is_bad = any(run.hung or run.is_false or run.left for run in self.runs)
+        return not is_bad and not self.is_needless_failure
 
     @property
     def line(self) -> str:
@@ -101,23 +101,23 @@ class Row:
         return f"| {' | '.join(map(str, cells))} |"
 
 
-def run(kind: str, seed: int, traces: Traces) -> Run:
-    """The errand with this fault, from its script."""
-    folder = Path(traces.environment["TMPDIR"]) / RUNS
+def run(kind: str, seed: int, leftovers: Leftovers) -> Run:
+    """Run the mission with a fault, by its script."""
+    folder = Path(leftovers.environment["TMPDIR"]) / RUNS
     folder.mkdir(exist_ok=True)
     faults = folder / f"{kind}.yaml"
     listed = [] if kind == CLEAN else [{"kind": kind, "start": START, "strength": default_strength(kind)}]
     faults.write_text(yaml.safe_dump({"faults": listed}))
     before = set(folder.iterdir())
     options = ("--faults", str(faults), "--seed", str(seed), "--timeout", str(RUN_SECONDS))
-    graph = Graph(traces, "home_service.sh", *options)
+    graph = Graph(leftovers, "home_service.sh", *options)
     hung = False
     try:
         graph.process.wait(RUN_SECONDS + SPARE_SECONDS)
     except subprocess.TimeoutExpired:
         hung = True
         graph.end()
-    return Run(_result_in(sorted(set(folder.iterdir()) - before)), hung, traces.left())
+    return Run(_result_in(sorted(set(folder.iterdir()) - before)), hung, leftovers.find())
 
 
 def _result_in(folders: Sequence[Path]) -> Dict[str, Any]:
@@ -133,22 +133,22 @@ def main() -> int:
     parser.add_argument("--only", nargs="+", default=kinds, choices=kinds, metavar="KIND")
     parser.add_argument("--table", type=Path, help="Markdown file for the table", metavar="FILE")
     options = parser.parse_args()
-    traces = Traces()
+    leftovers = Leftovers()
     rows: List[Row] = []
     for kind in options.only:
-        runs = [run(kind, seed, traces) for seed in range(options.seed, options.seed + options.runs)]
+        runs = [run(kind, seed, leftovers) for seed in range(options.seed, options.seed + options.runs)]
         rows.append(Row(kind, runs))
         print(rows[-1].line, flush=True)
         _write(options.table, rows, options)
-    return int(not all(row.is_well for row in rows))
+    return int(not all(row.is_ok for row in rows))
 
 
 def _write(table: Optional[Path], rows: Sequence[Row], options: argparse.Namespace) -> None:
     if table is None:
         return
-    told = {"start": START, "limit": RUN_SECONDS, "spare": SPARE_SECONDS}
+    limits = {"start": START, "limit": RUN_SECONDS, "spare": SPARE_SECONDS}
     lines = "\n".join(row.line for row in rows)
-    text = PAGE.format(rows=lines, runs=options.runs, seed=options.seed, **told)
+    text = PAGE.format(rows=lines, runs=options.runs, seed=options.seed, **limits)
     write_atomically(table, text.encode("utf-8"))
 
 

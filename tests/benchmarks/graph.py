@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Measures the whole navigation over ROS: times real time, and the CPU time and memory of each node.
+"""Measure navigation over ROS: the real-time factor, and CPU time and memory of each node.
 
-Drives the robot through the home by scripts/test_navigation.sh, as fast as the nodes keep up:
+Drive the robot through the home by scripts/test_navigation.sh, as fast as the nodes keep up:
 
     python3 tests/benchmarks/graph.py [--laps 3] [--seed 3] [--json FILE]
 """
@@ -26,21 +26,22 @@ NODE = re.compile(r"__name:=(\w+)")
 
 
 class NodeMeter:
-    """CPU seconds since ``start`` and the most memory, MB, of every ROS node below a process."""
+    """Measures CPU time since ``start`` [s] and peak memory [MB] of every ROS node below a process."""
 
     def __init__(self, parent: psutil.Process):
         self._parent = parent
-        # By process, as a node may have several; one that has ended has taken what it took.
+        # By process, as a node may have several, and some end early.
         self._nodes: Dict[int, str] = {}
         self._cpu: Dict[int, float] = {}
         self._before: Dict[int, float] = {}
         self.memory: Dict[str, float] = {}
 
     def start(self) -> None:
-        self.look()
+        self.sample()
         self._before = dict(self._cpu)
 
-    def look(self) -> None:
+    def sample(self) -> None:
+        """Read CPU time and memory of all nodes."""
         for process in self._parent.children(recursive=True):
             try:
                 match = NODE.search(" ".join(process.cmdline()))
@@ -54,11 +55,11 @@ class NodeMeter:
                 continue
 
     def cpu_since_start(self) -> Dict[str, float]:
-        taken: Dict[str, float] = {}
+        used: Dict[str, float] = {}
         for process, seconds in self._cpu.items():
             name = self._nodes[process]
-            taken[name] = taken.get(name, 0.0) + seconds - self._before.get(process, 0.0)
-        return taken
+            used[name] = used.get(name, 0.0) + seconds - self._before.get(process, 0.0)
+        return used
 
 
 def main() -> int:
@@ -77,24 +78,24 @@ def main() -> int:
 
 
 def _drive(options, folder: str) -> NodeMeter:
-    """Shows what the run says, and watches its nodes from the first goal on."""
+    """Print the output of the run, and measure its nodes from the first goal on."""
     command = [str(ROOT / "scripts" / "test_navigation.sh"), "--output", folder]
     command += ["--seed", str(options.seed), "--goals", options.laps * LAP]
     run = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-    meter, is_under_way = NodeMeter(psutil.Process(run.pid)), threading.Event()
+    meter, has_started = NodeMeter(psutil.Process(run.pid)), threading.Event()
 
     def show() -> None:
         assert run.stdout is not None
         for line in run.stdout:
             print(line, end="", flush=True)
             if line.startswith("goal 1"):
-                is_under_way.set()
+                has_started.set()
 
     threading.Thread(target=show, daemon=True).start()
-    is_under_way.wait(START_SECONDS)
+    has_started.wait(START_SECONDS)
     meter.start()
     while run.poll() is None:
-        meter.look()
+        meter.sample()
         time.sleep(PERIOD_SECONDS)
     if run.returncode == 2:
         raise SystemExit(2)

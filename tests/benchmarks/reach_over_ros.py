@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drives a scenario's robot to a place without a map, as evaluate.sh does, by any node that is a move_base.
+"""Drive a scenario's robot to its goal without a map, as evaluate.sh does, by move_base or a compatible node.
 
 SCENARIO is a file or a name in scenarios/ whose task is to reach a place: barn, dynabarn, fields, crossings.
 The official move_base, where it is installed, is compared on the same seeds:
@@ -44,7 +44,7 @@ def main() -> int:
 
 
 def _drive(robot: RobotOverRos, simulation: Simulation, scenario):
-    """Outcome and simulated seconds of one run; the clock starts with the goal."""
+    """Return outcome and duration [simulated s] of a run; time counts from the goal on."""
     robot.put(simulation)
     client = client_with_goal(robot, "odom", scenario.task.goal)
     began, goal, outcome = robot.now, scenario.start @ scenario.task.goal, "timeout"

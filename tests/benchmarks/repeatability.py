@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Shows that a simulation with noise is the same to the last bit for a seed, in fresh processes.
+"""Check that a simulation with noise is the same to the last bit for a seed, in separate processes.
 
 python3 tests/benchmarks/repeatability.py [--seconds 60] [--noise turtlebot] [--seeds 1 2] [--runs 2] [WORLD]
 """
@@ -58,7 +58,7 @@ def in_fresh_process(options: argparse.Namespace, seed: int) -> str:
 
 
 def fingerprint(path: str, seed: int, noise: str, seconds: float) -> str:
-    """A hash of all that a robot observes that pushes a box through the world, curving left and right."""
+    """Return a hash of all measurements of a robot that pushes a box through the world in curves."""
     settings = SimulationSettings(**noise_named(noise))
     simulation = Simulation(load_world(path), settings=settings, seed=seed)
     simulation.add_box("crate", (0.3, 0.3, 0.3), Pose2(0.6, 0.0, 0.3), mass=0.5)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Shows what lasts: missions in a row, starts and stops, deliveries of one graph; what is left, what grows.
+"""Run many missions, starts and stops, or deliveries of one graph; report leftovers and growth of memory.
 
 python3 tests/benchmarks/soak.py missions [--runs 20] [--seed 0]
 python3 tests/benchmarks/soak.py starts [--runs 20]
@@ -27,7 +27,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SHARED_MEMORY = Path("/dev/shm")
 RUNS = "runs"
 RUN_SECONDS, UP_SECONDS, DOWN_SECONDS = 300.0, 90.0, 60.0
-# Of the deliveries of a graph the first ones fill caches.
+# Share of the first deliveries, which fill caches.
 SETTLED = 0.1
 MISSION = """
 places: {here: {x: 0.0, y: 0.0}, there: {x: 0.9, y: 0.2}}
@@ -36,8 +36,8 @@ deliveries: [{object: cup, from: %s, to: %s}]
 """
 
 
-class Traces:
-    """What graphs leave behind: processes, and files where temporary ones and shared memory are."""
+class Leftovers:
+    """Finds what graphs leave behind: processes, sockets, and files in temporary folders, shared memory."""
 
     def __init__(self) -> None:
         adopt_orphans()
@@ -45,8 +45,8 @@ class Traces:
         self._shared = set(SHARED_MEMORY.iterdir())
         self.environment = {**os.environ, "TMPDIR": self._folder.name, "PYTHONUNBUFFERED": "1"}
 
-    def left(self) -> List[str]:
-        """Of what has ended by now. Whatever else uses shared memory meanwhile is counted too."""
+    def find(self) -> List[str]:
+        """List what is left now; shared memory of other programs counts, too."""
         processes = psutil.Process().children(recursive=True)
         alive = [process for process in processes if process.status() != psutil.STATUS_ZOMBIE]
         sockets = [f"socket {each.laddr}" for process in alive for each in process.connections("inet")]
@@ -56,34 +56,35 @@ class Traces:
 
 
 class Graph:
-    """A script that has brought a graph up: what it says, and its nodes."""
+    """A script that runs a graph: its output and its nodes."""
 
-    def __init__(self, traces: Traces, *command: str):
+    def __init__(self, leftovers: Leftovers, *command: str):
         self._log = tempfile.NamedTemporaryFile("w+", prefix="soak")  # noqa: SIM115
-        script, output = ROOT / "scripts" / command[0], Path(traces.environment["TMPDIR"]) / RUNS
+        script, output = ROOT / "scripts" / command[0], Path(leftovers.environment["TMPDIR"]) / RUNS
         self.process = subprocess.Popen(
             [str(script), *command[1:], "--output", str(output)],
-            env=traces.environment,
+            env=leftovers.environment,
             stdin=subprocess.DEVNULL,
             stdout=self._log,
             stderr=subprocess.STDOUT,
         )
 
     @property
-    def said(self) -> str:
+    def output(self) -> str:
+        """Output so far."""
         return Path(self._log.name).read_text(errors="replace")
 
     def wait_for(self, pattern: str) -> str:
-        """The first group of what it says; exits if it does not."""
+        """Return the first group of a pattern in the output; exit if it does not appear in time."""
         deadline = time.monotonic() + UP_SECONDS
         while time.monotonic() < deadline and self.process.poll() is None:
-            found = re.search(pattern, self.said)
+            found = re.search(pattern, self.output)
             if found:
                 return found[1]
             time.sleep(0.05)
-        said = self.said
+        output = self.output
         self.end()
-        sys.exit(f"soak.py: not within {UP_SECONDS:g} s: {pattern}\n{said}")
+        sys.exit(f"soak.py: no output like {pattern} within {UP_SECONDS:g} s\n{output}")
 
     def end(self) -> int:
         self.process.send_signal(signal.SIGINT)
@@ -94,9 +95,9 @@ class Graph:
             return self.process.wait()
 
     def memory(self) -> Dict[str, int]:
-        """Bytes of each process, the script's too, by its name: of memory that no file could be read for.
+        """Return the anonymous memory of each process and of the script by name [bytes].
 
-        What is mapped of libraries is now shared and now not, whatever a process does.
+        Memory mapped from libraries is excluded, because whether it counts as shared varies.
         """
         found: Dict[str, int] = {}
         script = psutil.Process(self.process.pid)
@@ -110,13 +111,13 @@ class Graph:
 def _anonymous(process: psutil.Process) -> int:
     status = Path(f"/proc/{process.pid}/status")
     with contextlib.suppress(FileNotFoundError):
-        told = re.search(r"RssAnon:\s+(\d+) kB", status.read_text())
-        return int(told[1]) << 10 if told else 0  # a zombie has none
+        match = re.search(r"RssAnon:\s+(\d+) kB", status.read_text())
+        return int(match[1]) << 10 if match else 0  # a zombie has none
     raise psutil.NoSuchProcess(process.pid)
 
 
 def name_of(words: Sequence[str]) -> str:
-    """A node's name, or the module or program that a command line runs; those of one name count as one."""
+    """Return the name of a node, or of the module or program of a command line."""
     command = " ".join(words)
     node = re.search(r"__name:=(\S+)", command)
     if node:
@@ -125,37 +126,37 @@ def name_of(words: Sequence[str]) -> str:
     return Path(programs[0]).name if programs else command
 
 
-def missions(options: argparse.Namespace, traces: Traces) -> int:
-    """One after the other, each with the next seed."""
+def missions(options: argparse.Namespace, leftovers: Leftovers) -> int:
+    """Run missions one after the other, each with the next seed."""
     failures, left = [], []
     for seed in range(options.seed, options.seed + options.runs):
-        graph = Graph(traces, "home_service.sh", "--seed", str(seed), "--timeout", str(RUN_SECONDS))
+        graph = Graph(leftovers, "home_service.sh", "--seed", str(seed), "--timeout", str(RUN_SECONDS))
         code = graph.process.wait(RUN_SECONDS + DOWN_SECONDS)
-        left += traces.left()
+        left += leftovers.find()
         if code:
             failures.append(seed)
-            print(graph.said, flush=True)
-        print(f"seed {seed}: exit code {code}, {len(left)} things left", flush=True)
+            print(graph.output, flush=True)
+        print(f"seed {seed}: exit code {code}, {len(left)} left over", flush=True)
     print(f"{options.runs - len(failures)} of {options.runs} succeeded; failed: {failures}; left: {left}")
     return int(bool(failures or left))
 
 
-def starts(options: argparse.Namespace, traces: Traces) -> int:
-    """The whole graph brought up and ended by Ctrl-C."""
+def starts(options: argparse.Namespace, leftovers: Leftovers) -> int:
+    """Start the whole graph and end it by Ctrl-C."""
     codes, left = [], []
     for number in range(options.runs):
-        graph = Graph(traces, "launch.sh")
+        graph = Graph(leftovers, "launch.sh")
         graph.wait_for(r"ROS_MASTER_URI=(\S+)")
         codes.append(graph.end())
-        left += traces.left()
-        print(f"start {number + 1}: exit code {codes[-1]}, {len(left)} things left", flush=True)
+        left += leftovers.find()
+        print(f"start {number + 1}: exit code {codes[-1]}, {len(left)} left over", flush=True)
     print(f"{options.runs} starts and stops, exit codes {sorted(set(codes))}; left: {left}")
     return int(any(codes) or bool(left))
 
 
-def serve(options: argparse.Namespace, traces: Traces) -> int:
-    """Deliveries of one graph, and what each node's memory becomes."""
-    graph = Graph(traces, "home_service.sh", "--serve", "--speed", "0")
+def serve(options: argparse.Namespace, leftovers: Leftovers) -> int:
+    """Run deliveries with one graph, and measure the memory of each node."""
+    graph = Graph(leftovers, "home_service.sh", "--serve", "--speed", "0")
     os.environ.update(ROS_MASTER_URI=graph.wait_for(r"ROS_MASTER_URI=(\S+)"), ROS_IP="127.0.0.1")
     memory, failures = [], 0
     for number in range(options.runs):
@@ -167,13 +168,13 @@ def serve(options: argparse.Namespace, traces: Traces) -> int:
     code = graph.end()
     for line in growth(memory):
         print(line)
-    left = traces.left()
+    left = leftovers.find()
     print(f"{options.runs - failures} of {options.runs} delivered, exit code {code}; left: {left}")
     return int(bool(failures or code or left))
 
 
 def _deliver(ends: Sequence[str]) -> bool:
-    """Whether the mission was done, by the one client that there is."""
+    """Deliver with one client for all deliveries; return whether it succeeded."""
     import actionlib
     import rospy
     from actionlib_msgs.msg import GoalStatus
@@ -194,7 +195,7 @@ def _deliver(ends: Sequence[str]) -> bool:
 
 
 def growth(memory: Sequence[Dict[str, int]]) -> List[str]:
-    """Of each node, and of all, once it has settled: a line through what was seen."""
+    """Fit a line to the memory of each node, and of all, after the first deliveries."""
     settled = memory[int(SETTLED * len(memory)) :]
     lines = []
     nodes = sorted(set.intersection(*map(set, settled))) if len(settled) > 2 else []
@@ -214,7 +215,7 @@ def main() -> int:
     parser.add_argument("--runs", type=int, default=20, help="default: 20")
     parser.add_argument("--seed", type=int, default=0, help="the first of the missions (default: 0)")
     options = parser.parse_args()
-    return {"missions": missions, "starts": starts, "serve": serve}[options.what](options, Traces())
+    return {"missions": missions, "starts": starts, "serve": serve}[options.what](options, Leftovers())
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Shows what becomes of a mission when its processes stand still, its time does, or strangers meddle.
+"""Measure missions whose processes are stopped, whose time is paused or reset, or with foreign goals.
 
 python3 tests/benchmarks/troubled_graphs.py [--seed 61] [--only goal_storm ...]
     [--table docs/reports/troubled_graphs.md]
@@ -27,7 +27,7 @@ from killed_nodes import (
     table_row,
     wait_for_end,
 )
-from soak import Graph, Traces
+from soak import Graph, Leftovers
 
 STILL_SECONDS = 5.0
 CALL_SECONDS = 10.0
@@ -36,30 +36,31 @@ STORM_GOALS, STORM_SECONDS = 2000, 2.0
 CANCELS, CANCELS_APART = 100, 0.05
 PAGE = """# Troubled graphs
 
-What becomes of `./scripts/home_service.sh --mission map/mission.yaml --speed {speed}` when, while the robot
-drives, something befalls its processes, its time or its topics: wall seconds until the run has ended, and
-what is left of it then, processes, sockets, temporary files. Made by
+Result of `./scripts/home_service.sh --mission map/mission.yaml --speed {speed}` when its processes, its
+time or its topics are disturbed while the robot drives: wall seconds until the run ends, and the number of
+processes, sockets and temporary files that are left. Made by
 `python3 tests/benchmarks/troubled_graphs.py --seed {seed} --table docs/reports/troubled_graphs.md`.
 
-| trouble | what befalls it | ended after, s | exit code | what the run says | left |
+| trouble | disturbance | ended after, s | exit code | reason of the run | left |
 | --- | --- | --- | --- | --- | --- |
 {rows}
 
-Processes that die: [killed nodes](killed_nodes.md). Robots and homes that go wrong: [faults](faults.md).
+Killed processes: [killed nodes](killed_nodes.md). Faults of sensors, drive and environment:
+[faults](faults.md).
 """
 
 
 @dataclass(frozen=True)
 class Trouble:
-    """``what``: befalls the graph, in a sentence; ``make`` does it, and returns when it is over."""
+    """A disturbance: its description, and a function that causes it and returns when it is over."""
 
     what: str
     make: Callable[[Graph], None]
 
 
 @dataclass(frozen=True)
-class Outcome:
-    """What became of a run; ``ended``: wall seconds after the trouble began."""
+class TroubleResult:
+    """Result of a run; ``ended``: wall seconds since the start of the trouble."""
 
     name: str
     ended: float
@@ -73,7 +74,7 @@ class Outcome:
         return table_row(self.name, what, f"{self.ended:.1f}", self.code, self.reason, self.left)
 
     @property
-    def is_well(self) -> bool:
+    def is_ok(self) -> bool:
         return self.code == 0 and not self.left
 
 
@@ -117,7 +118,7 @@ def _call(service: str) -> None:
 
 
 def _storm(graph: Graph) -> None:
-    """Goals all over the home, as from a program gone wild."""
+    """Publish many goals all over the home, as a faulty program might."""
     import rospy
     from move_base_msgs.msg import MoveBaseActionGoal
 
@@ -134,7 +135,7 @@ def _storm(graph: Graph) -> None:
 
 
 def _cancel(graph: Graph) -> None:
-    """Whatever is pursued, again and again."""
+    """Cancel all goals repeatedly."""
     import rospy
     from actionlib_msgs.msg import GoalID
 
@@ -165,20 +166,20 @@ TROUBLES: Dict[str, Trouble] = {
     "time_set_back": Trouble(
         "/gazebo/reset_simulation: time from 0 on, the robot back at its start", _set_time_back
     ),
-    "goal_storm": Trouble(f"a stranger sends {STORM_GOALS} goals in {STORM_SECONDS:g} s", _storm),
-    "cancel_race": Trouble(f"a stranger cancels all goals {CANCELS} times in a row", _cancel),
+    "goal_storm": Trouble(f"another node sends {STORM_GOALS} goals in {STORM_SECONDS:g} s", _storm),
+    "cancel_race": Trouble(f"another node cancels all goals {CANCELS} times in a row", _cancel),
 }
 
 
-def outcome_of(name: str, seed: int) -> Outcome:
-    """For a process of its own: rospy knows one master."""
-    traces = Traces()
-    graph, folder = run_under_way(traces, seed)
+def run_with_trouble(name: str, seed: int) -> TroubleResult:
+    """Run in a separate process, because rospy connects to one master."""
+    leftovers = Leftovers()
+    graph, folder = run_under_way(leftovers, seed)
     time.sleep(DRIVING_SECONDS)
     began = time.monotonic()
     TROUBLES[name].make(graph)
     code = wait_for_end(graph)
-    return Outcome(name, time.monotonic() - began, code, reason_in(folder), len(traces.left()))
+    return TroubleResult(name, time.monotonic() - began, code, reason_in(folder), len(leftovers.find()))
 
 
 def main() -> int:
@@ -187,15 +188,15 @@ def main() -> int:
     parser.add_argument("--only", nargs="+", default=list(TROUBLES), choices=TROUBLES, metavar="TROUBLE")
     parser.add_argument("--table", type=Path, help="Markdown file for the table", metavar="FILE")
     options = parser.parse_args()
-    outcomes: List[Outcome] = []
+    outcomes: List[TroubleResult] = []
     for name in options.only:
         with multiprocessing.Pool(1) as pool:
-            outcomes.append(pool.apply(outcome_of, (name, options.seed)))
+            outcomes.append(pool.apply(run_with_trouble, (name, options.seed)))
         print(outcomes[-1].row, flush=True)
     if options.table:
         rows = "\n".join(outcome.row for outcome in outcomes)
         options.table.write_text(PAGE.format(speed=SPEED, seed=options.seed, rows=rows))
-    return int(not all(outcome.is_well for outcome in outcomes))
+    return int(not all(outcome.is_ok for outcome in outcomes))
 
 
 if __name__ == "__main__":
