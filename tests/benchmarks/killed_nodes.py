@@ -52,8 +52,8 @@ number of processes, sockets and temporary files that are left. Made by
 A restarted node resumes from its checkpoint, a parameter or a file that a parameter names: amcl from its
 particles, slam_gmapping from its pose graph of at most five seconds ago, explore from its start pose,
 pick_objects from the progress of its deliveries. rosout only collects logs. A node is restarted up to three
-times. When the simulator, the master or roslaunch dies, the run ends. Other tests: [troubled
-graphs](troubled_graphs.md), [faults](faults.md).
+times. When the simulator, the master or roslaunch dies, the run ends. Other tests:
+[troubled graphs](troubled_graphs.md), [faults](faults.md).
 """
 
 

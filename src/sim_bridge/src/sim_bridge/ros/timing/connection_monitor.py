@@ -20,7 +20,7 @@ START_SECONDS, JOIN_SECONDS, CONNECT_SECONDS = 30.0, 5.0, 5.0
 
 
 class ConnectionMonitor:
-    """Checks, in a thread of its own, that the graph is complete before simulated time passes.
+    """Checks, in a separate thread, that the graph is complete before simulated time passes.
 
     It is complete when all expected nodes have joined, each is connected to the topics of the others, of the
     simulator and of the static publishers, and the observers are connected to them. What does not come within
