@@ -7,7 +7,7 @@ import rospy
 from sensor_msgs.msg import CameraInfo, Image, PointCloud2, PointField
 
 from sim_bridge.ros.publishers import RobotPublishers
-from sim_bridge.sensors.camera import CameraImage, CameraProfile, CameraSettings, depth_to_points
+from sim_bridge.sensors.camera import CameraReading, CameraProfile, CameraSettings, depth_to_points
 
 # Layout of points in gazebo_plugins' openni_kinect.
 POINT_OFFSETS = {"x": 0, "y": 4, "z": 8, "rgb": 16}
@@ -47,7 +47,7 @@ class CameraTopics:
         """Return whether any topic has subscribers."""
         return any(topic.get_num_connections() for topic, _ in self._topics)
 
-    def publish(self, image: CameraImage, stamp: rospy.Time) -> None:
+    def publish(self, image: CameraReading, stamp: rospy.Time) -> None:
         for topic, message_of in self._topics:
             if topic.get_num_connections():
                 message = message_of(image, self._settings)
@@ -55,11 +55,11 @@ class CameraTopics:
                 topic.publish(message)
 
 
-def _colour_msg(image: CameraImage, _settings: CameraSettings) -> Image:
+def _colour_msg(image: CameraReading, _settings: CameraSettings) -> Image:
     return _image_msg(image.rgb, "rgb8")
 
 
-def _depth_msg(image: CameraImage, _settings: CameraSettings) -> Image:
+def _depth_msg(image: CameraReading, _settings: CameraSettings) -> Image:
     """Make a depth image in metres (REP 118)."""
     return _image_msg(image.depth, "32FC1")
 
@@ -71,7 +71,7 @@ def _image_msg(pixels: np.ndarray, encoding: str) -> Image:
     )
 
 
-def _info_msg(_image: CameraImage, settings: CameraSettings) -> CameraInfo:
+def _info_msg(_image: CameraReading, settings: CameraSettings) -> CameraInfo:
     (x, y), scale = settings.centre, settings.focal_length
     return CameraInfo(
         height=settings.height,
@@ -84,7 +84,7 @@ def _info_msg(_image: CameraImage, settings: CameraSettings) -> CameraInfo:
     )
 
 
-def _points_msg(image: CameraImage, settings: CameraSettings) -> PointCloud2:
+def _points_msg(image: CameraReading, settings: CameraSettings) -> PointCloud2:
     height, width = image.depth.shape
     cloud = np.zeros((height, width), dtype=POINT)
     points = depth_to_points(image.depth, settings)

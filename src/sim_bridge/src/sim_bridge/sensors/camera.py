@@ -96,7 +96,7 @@ class DepthCameraSettings(CameraSettings):
 
 
 @dataclass(frozen=True, eq=False)
-class CameraImage:
+class CameraReading:
     """What a camera measures.
 
     Attributes:
@@ -156,13 +156,13 @@ class Camera:
     def schedule(self, settings: SimulationSettings) -> Schedule:
         return every(self._profile.rate, settings)
 
-    def measure(self, context: SensorContext) -> CameraImage:
+    def measure(self, context: SensorContext) -> CameraReading:
         """Render the world from the camera's pose on the robot."""
         return self.render(*context.triangles(), context.base.pose @ self._profile.pose_in_base)
 
     def render(
         self, triangles_xyz: np.ndarray, shades: np.ndarray, camera_in_world: np.ndarray
-    ) -> CameraImage:
+    ) -> CameraReading:
         """Render triangles (see sim_bridge.views.drawing).
 
         Args:
@@ -176,7 +176,7 @@ class Camera:
         if self._settings.noise > 0.0:
             noisy = rgb + 255.0 * self._rng.normal(0.0, self._settings.noise, rgb.shape)
             rgb = np.clip(np.rint(noisy), 0, 255).astype(np.uint8)
-        return CameraImage(rgb, self._measured(depth))
+        return CameraReading(rgb, self._measured(depth))
 
     def _measured(self, depth: np.ndarray) -> np.ndarray:
         settings = self._settings
