@@ -7,7 +7,7 @@ import rospy
 from sensor_msgs.msg import CameraInfo, Image, PointCloud2, PointField
 
 from sim_bridge.ros.publishers import RobotPublishers
-from sim_bridge.sensors.camera import CameraReading, CameraProfile, CameraSettings, depth_to_points
+from sim_bridge.sensors.camera import CameraProfile, CameraReading, CameraSettings, depth_to_points
 
 # Layout of points in gazebo_plugins' openni_kinect.
 POINT_OFFSETS = {"x": 0, "y": 4, "z": 8, "rgb": 16}
