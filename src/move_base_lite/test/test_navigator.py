@@ -292,7 +292,7 @@ def test_a_robot_that_does_not_move_is_given_up_with_that_reason(settings):
     navigator.set_goal(Pose2(5.0, 2.0))
     decisions = drive_to_end(robot, navigator)
     assert decisions[-1].outcome.reason == "OSCILLATION"
-    assert decisions[-1].text.endswith("the robot does not move when it is told to]")
+    assert decisions[-1].text.endswith("the robot does not move when commanded]")
     assert sum(decision.recovery is not None for decision in decisions) == 4
 
 

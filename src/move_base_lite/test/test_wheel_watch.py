@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from move_base_lite.plausibility.wheel_monitor import REST, WheelMonitor
+from move_base_lite.plausibility.wheel_monitor import RETRY_AFTER, WheelMonitor
 from planar import Pose2, Twist2
 
 TRACK, PERIOD = 0.23, 0.02
@@ -80,6 +80,6 @@ def test_it_is_tried_again_after_a_rest():
     drive = Drive(0.0, 1.0)
     assert drive.go(15.0, ahead)
     drive._shares = (1.0, 1.0)
-    drive.watch.add_odometry(drive.now + REST + 1.0, drive._pose, Twist2())
-    drive.now += REST + 1.0
+    drive.watch.add_odometry(drive.now + RETRY_AFTER + 1.0, drive._pose, Twist2())
+    drive.now += RETRY_AFTER + 1.0
     assert drive.go(15.0, ahead) is None

@@ -1,6 +1,6 @@
-"""Navigation after move_base: from a goal, poses and scans to velocities that reach it without collision.
+"""Navigation with move_base's behaviour, without ROS: from goal, poses and scans to velocity commands.
 
-Also what plugins of one's own are made of: the contracts of the seams and what they speak of.
+Exports the Navigator, its settings, and the contracts of user-defined plugins with the types they use.
 """
 
 from move_base_lite.config import NavigatorSettings
@@ -25,10 +25,13 @@ from planar.deprecation import deprecated_names
 __all__ = [
     "ControlError",
     "ControllerSettings",
+    "CostmapPlacement",
+    "CostmapWindow",
     "Decision",
     "GlobalPlanner",
     "GoalBlocked",
     "Layer",
+    "LayerContext",
     "LayerSettings",
     "LocalPlanner",
     "NavigationError",
@@ -36,7 +39,6 @@ __all__ = [
     "NavigatorSettings",
     "NoPath",
     "OutOfMap",
-    "CostmapPlacement",
     "Plan",
     "PlannerSettings",
     "PlanningError",
@@ -44,12 +46,10 @@ __all__ = [
     "RecoveryBehavior",
     "RecoveryContext",
     "RecoverySettings",
-    "LayerContext",
     "ControlContext",
     "StartBlocked",
     "Status",
     "Trajectory",
-    "CostmapWindow",
     "load_settings",
     "settings_from_parameters",
 ]

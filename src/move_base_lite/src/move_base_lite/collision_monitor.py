@@ -1,7 +1,7 @@
-"""Slows and stops whatever the robot is told to do, by what its sensors see at this moment.
+"""Collision monitor: slows or stops any velocity command by the latest scan (nav2_collision_monitor).
 
-No map, no memory, no plan: the last thing between any command, teleoperated too, and the wheels
-(after nav2_collision_monitor's "approach" and "stop" zones).
+It uses no map and no plan, so it also protects teleoperation. It combines the "approach" and "stop" models of
+nav2_collision_monitor.
 """
 
 import math
@@ -17,16 +17,16 @@ from planar.config.parameters import POSITIVE, at_least, check_parameters, param
 from planar.config.settings import check
 
 STEPS = 20
-# Metres that the robot must come closer by to count as doing so: a circle is a polygon here.
-CLOSER = 0.005
-# Metres inside the outline from which on a point belongs to the robot itself.
-OWN_BODY = 0.03
+# Decrease of the distance that counts as approaching [m]; a circle is approximated by a polygon.
+APPROACH_TOLERANCE = 0.005
+# Metres inside the outline beyond which a point belongs to the robot itself.
+SELF_MARGIN = 0.03
 CLEAR, SLOWED, STOPPED = "clear", "slowed", "stopped"
 
 
 @dataclass(frozen=True)
 class MonitorSettings:
-    """The robot's outline, and how near it is to come to anything."""
+    """Parameters of the collision monitor."""
 
     footprint: Tuple[Tuple[float, float], ...] = parameter(
         (), "corners [x, y] in the base frame; empty: a circle of robot_radius", "m"
@@ -34,14 +34,16 @@ class MonitorSettings:
     robot_radius: float = parameter(0.18, "of a round footprint", "m", POSITIVE)
     stop_distance: float = parameter(
         0.05,
-        "clearance around the robot at which it is stopped, unless it moves away",
+        "clearance at which the robot is stopped, unless it moves away",
         "m",
         at_least(0.0),
     )
     time_to_collision: float = parameter(
-        1.0, "the robot is slowed so that it would take so long to come as close as that", "s", POSITIVE
+        1.0, "time until stop_distance to which the robot is slowed", "s", POSITIVE
     )
-    scan_timeout: float = parameter(0.5, "without a scan until it is stopped", "s", POSITIVE)
+    scan_timeout: float = parameter(
+        0.5, "time without a scan after which the robot is stopped", "s", POSITIVE
+    )
 
     def __post_init__(self):
         check_parameters(self)
@@ -50,14 +52,19 @@ class MonitorSettings:
 
 @dataclass(frozen=True)
 class LimitedCommand:
-    """The command that may pass, and why: clear, slowed or stopped."""
+    """A velocity command after the collision check.
+
+    Attributes:
+        command: Command to execute.
+        reason: Action taken: clear, slowed or stopped.
+    """
 
     command: Twist2
     reason: str
 
 
 class CollisionMonitor:
-    """Looks at one command at a time."""
+    """Checks one command at a time against the points of a scan."""
 
     def __init__(self, settings: MonitorSettings):
         self._settings = settings
@@ -65,10 +72,17 @@ class CollisionMonitor:
         self._corners_xy = outline.corners_xy
 
     def limit_command(self, command: Twist2, points_xy: np.ndarray) -> LimitedCommand:
-        """What of a command may pass; ``points_xy``: (N, 2), obstacles in the base frame, metres.
+        """Limit a command so that the robot does not collide.
 
-        The robot is followed along the command's arc. A point that is within the stop distance already does
-        not count as long as the robot moves away from it.
+        The robot is simulated along the command's arc. A point that is already within the stop distance is
+        ignored while the robot moves away from it.
+
+        Args:
+            command: Commanded velocity.
+            points_xy: (N, 2) obstacle points in the base frame [m].
+
+        Returns:
+            The command, slowed or stopped if necessary.
         """
         if command == Twist2():
             return LimitedCommand(command, CLEAR)
@@ -81,18 +95,17 @@ class CollisionMonitor:
             settings.stop_distance,
             settings.time_to_collision,
         )
-        share = seconds / settings.time_to_collision
-        if share >= 1.0:
+        fraction = seconds / settings.time_to_collision
+        if fraction >= 1.0:
             return LimitedCommand(command, CLEAR)
-        if share <= 1.0 / STEPS:
+        if fraction <= 1.0 / STEPS:
             return LimitedCommand(Twist2(), STOPPED)
-        return LimitedCommand(Twist2(share * command.v, share * command.omega), SLOWED)
+        return LimitedCommand(Twist2(fraction * command.v, fraction * command.omega), SLOWED)
 
 
 @numba.njit(cache=True)
 def _free_seconds(corners, points, v, omega, margin, horizon):
-    """Seconds until a point comes closer to the moving outline than the margin, or closer still; at most the
-    horizon."""
+    """Time until a point comes within the margin of the moving outline; at most the horizon [s]."""
     dt = horizon / STEPS
     nearest = np.empty(points.shape[0])
     for i in range(points.shape[0]):
@@ -104,26 +117,26 @@ def _free_seconds(corners, points, v, omega, margin, horizon):
         yaw += omega * dt
         c, s = math.cos(yaw), math.sin(yaw)
         for i in range(points.shape[0]):
-            if nearest[i] < -OWN_BODY:
+            if nearest[i] < -SELF_MARGIN:
                 continue
             along, across = points[i, 0] - x, points[i, 1] - y
             distance = _distance(corners, c * along + s * across, c * across - s * along)
-            if distance < margin and distance < nearest[i] - CLOSER:
+            if distance < margin and distance < nearest[i] - APPROACH_TOLERANCE:
                 return (step - 1) * dt
     return horizon
 
 
 @numba.njit(cache=True)
 def _distance(corners, x, y):
-    """Metres from the polygon, negative inside."""
+    """Signed distance from the polygon [m], negative inside."""
     squared, inside = np.inf, False
     for i in range(corners.shape[0]):
         x0, y0 = corners[i - 1]
         x1, y1 = corners[i]
         along_x, along_y = x1 - x0, y1 - y0
-        share = ((x - x0) * along_x + (y - y0) * along_y) / (along_x * along_x + along_y * along_y)
-        share = min(max(share, 0.0), 1.0)
-        squared = min(squared, (x - x0 - share * along_x) ** 2 + (y - y0 - share * along_y) ** 2)
+        fraction = ((x - x0) * along_x + (y - y0) * along_y) / (along_x * along_x + along_y * along_y)
+        fraction = min(max(fraction, 0.0), 1.0)
+        squared = min(squared, (x - x0 - fraction * along_x) ** 2 + (y - y0 - fraction * along_y) ** 2)
         if (y0 > y) != (y1 > y) and x < x0 + (y - y0) / (y1 - y0) * along_x:
             inside = not inside
     return -math.sqrt(squared) if inside else math.sqrt(squared)

@@ -1,4 +1,4 @@
-"""All settings of the Navigator, and the file that lists them."""
+"""Settings of the Navigator, and the configuration files generated from them."""
 
 from dataclasses import dataclass, field
 from typing import Any, Tuple
@@ -22,50 +22,54 @@ from planar.config.parameters import POSITIVE, Parameter, at_least, check_parame
 
 @dataclass(frozen=True)
 class MoveBaseSettings:
-    """move_base's own parameters, and a few that it lacks."""
+    """move_base's own parameters; sensor_patience is an addition."""
 
-    controller_frequency: float = parameter(20.0, "velocities", "Hz", POSITIVE, dynamic=100.0)
+    controller_frequency: float = parameter(20.0, "rate of velocity commands", "Hz", POSITIVE, dynamic=100.0)
     planner_frequency: float = parameter(
         0.0,
-        "plans while driving; 0: only for a new goal or when control fails",
+        "rate of planning while driving; 0: only for a new goal or when control fails",
         "Hz",
         at_least(0.0),
         dynamic=100.0,
     )
     planner_patience: float = parameter(
-        5.0, "without a plan until recovery", "s", at_least(0.0), dynamic=100.0
+        5.0, "time without a plan until recovery", "s", at_least(0.0), dynamic=100.0
     )
     controller_patience: float = parameter(
-        15.0, "without a safe velocity until recovery", "s", at_least(0.0), dynamic=100.0
+        15.0, "time without a safe velocity until recovery", "s", at_least(0.0), dynamic=100.0
     )
     max_planning_retries: int = parameter(
-        -1, "failed plans until recovery; -1: patience alone decides", dynamic=(-1, 1000)
+        -1, "failed plans until recovery; -1: only planner_patience counts", dynamic=(-1, 1000)
     )
     oscillation_timeout: float = parameter(
-        0.0, "without progress until recovery; 0: never", "s", at_least(0.0), dynamic=60.0
+        0.0, "time without progress until recovery; 0: never", "s", at_least(0.0), dynamic=60.0
     )
-    oscillation_distance: float = parameter(0.5, "that count as progress", "m", at_least(0.0), dynamic=10.0)
+    oscillation_distance: float = parameter(
+        0.5, "displacement that counts as progress", "m", at_least(0.0), dynamic=10.0
+    )
     conservative_reset_dist: float = parameter(
-        3.0, "side of the square that the first recovery keeps", "m", dynamic=(0.0, 50.0)
+        3.0, "side of the square that conservative_reset keeps", "m", dynamic=(0.0, 50.0)
     )
     clearing_rotation_allowed: bool = parameter(
         True, "whether the default recoveries may rotate", dynamic=True
     )
     recovery_behavior_enabled: bool = parameter(
-        True, "whether recovery is tried before a goal is given up", dynamic=True
+        True, "whether recovery behaviours run before a goal is aborted", dynamic=True
     )
     make_plan_clear_costmap: bool = parameter(
-        True, "make_plan forgets obstacles where the robot stands", dynamic=True
+        True, "whether make_plan clears obstacles at the robot's position", dynamic=True
     )
     make_plan_add_unreachable_goal: bool = parameter(
-        True, "make_plan ends at the goal even if only its tolerance was reached", dynamic=True
+        True, "whether make_plan appends the goal if only its tolerance was reached", dynamic=True
     )
     clearing_radius: float = parameter(
-        0.0, "around the robot that make_plan forgets; 0: that of the footprint", "m", at_least(0.0)
+        0.0, "radius around the robot that make_plan clears; 0: that of the footprint", "m", at_least(0.0)
     )
-    shutdown_costmaps: bool = parameter(False, "whether costmaps rest while there is no goal", dynamic=True)
+    shutdown_costmaps: bool = parameter(
+        False, "whether costmaps are not updated while there is no goal", dynamic=True
+    )
     sensor_patience: float = parameter(
-        10.0, "without scans or transforms until the goal is given up", "s", at_least(0.0)
+        10.0, "time without scans or transforms until the goal is aborted", "s", at_least(0.0)
     )
 
     def __post_init__(self):
@@ -74,7 +78,16 @@ class MoveBaseSettings:
 
 @dataclass(frozen=True)
 class NavigatorSettings:
-    """Everything the Navigator needs to know; who plans and controls follows from the kinds of settings."""
+    """Settings of the Navigator; the types of ``planner`` and ``controller`` select the planners.
+
+    Attributes:
+        move_base: move_base's own parameters.
+        planner: Settings of the global planner.
+        controller: Settings of the local planner.
+        global_costmap: Costmap for planning.
+        local_costmap: Costmap for control.
+        recoveries: Recovery behaviours, in order.
+    """
 
     move_base: MoveBaseSettings = field(default_factory=MoveBaseSettings)
     planner: PlannerSettings = field(default_factory=NavfnSettings)
@@ -85,7 +98,7 @@ class NavigatorSettings:
 
     @property
     def scan_topic(self) -> str:
-        """The topic of the first laser that a costmap listens to."""
+        """Topic of the first laser scan among the observation sources."""
         for costmap in (self.local_costmap, self.global_costmap):
             for source in costmap.obstacles.sources:
                 if source.data_type == "LaserScan":
@@ -109,12 +122,12 @@ _COSTMAP = Section(
     Section(
         "obstacle_layer",
         ObstacleSettings,
-        Parameter("observation_sources", "scan", "names of sensors, separated by spaces"),
+        Parameter("observation_sources", "scan", "names of the sources, separated by spaces"),
         Section("scan", SourceSettings(topic="scan")),
     ),
     Section("inflation_layer", InflationSettings),
 )
-# The namespace of TrajectoryPlannerROS is listed for rotate_recovery, whose defaults are others.
+# The namespace TrajectoryPlannerROS is listed with the defaults of rotate_recovery, which differ.
 _MEMBERS: Tuple[Plugin[Any], ...] = (*GLOBAL_PLANNERS.members, *LOCAL_PLANNERS.members)
 _PLANNERS = [
     Section(planner.short_name, planner.settings) for planner in _MEMBERS if planner is not TRAJECTORY
@@ -137,7 +150,7 @@ CONFIG_FILES: ConfigFiles = {
         _COSTMAP,
         Section("local_costmap", same_as="global_costmap"),
         about="Every parameter of move_base_lite with its default, that of move_base and its plugins.\n"
-        "Robots are better served by a preset such as turtlebot.yaml.",
+        "For a robot, use a preset such as turtlebot.yaml.",
     ),
     "collision_monitor.yaml": Section(
         "", MonitorSettings, about="Parameters of collision_monitor, with their defaults."

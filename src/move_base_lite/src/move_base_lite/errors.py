@@ -1,5 +1,5 @@
 # ruff: noqa: N818  -- the names are the reasons
-"""Why the robot cannot go: one class per reason, the text for people."""
+"""Errors of navigation: the class is the reason, the text is for people."""
 
 from typing import TYPE_CHECKING, Optional
 
@@ -11,8 +11,12 @@ if TYPE_CHECKING:
 
 
 class NavigationError(PlanarError):
-    """Something keeps the robot from its goal; ``code`` names the reason for programs, ``outcome`` is the
-    number that move_base_flex has for it (mbf_msgs/MoveBaseResult)."""
+    """Base class: something keeps the robot from its goal.
+
+    Attributes:
+        code: The reason, for programs.
+        outcome: Outcome code of move_base_flex (mbf_msgs/MoveBaseResult).
+    """
 
     code = "FAILURE"
     outcome = 10
@@ -26,27 +30,27 @@ class PlanningError(NavigationError):
 
 
 class OutOfMap(PlanningError):
-    """The start or the goal lies outside the costmap."""
+    """The start or the goal is outside the costmap."""
 
     code = "OUT_OF_MAP"
 
 
 class StartBlocked(PlanningError):
-    """The robot stands in an obstacle and there is no free space near it."""
+    """The robot is in an obstacle and there is no free space near it."""
 
     code = "START_BLOCKED"
     outcome = 14
 
 
 class GoalBlocked(PlanningError):
-    """The goal lies in or too close to an obstacle, and so does all that its tolerance allows."""
+    """The goal, and every point within its tolerance, is in or too close to an obstacle."""
 
     code = "GOAL_BLOCKED"
     outcome = 15
 
 
 class NoPath(PlanningError):
-    """Start and goal are free, but nothing connects them."""
+    """Start and goal are free, but no path connects them."""
 
     code = "NO_PATH"
 
@@ -56,7 +60,7 @@ class ControlError(NavigationError):
     """No safe velocity follows the plan.
 
     Attributes:
-        trajectory_samples: The trajectories that the local planner evaluated, if it can show them.
+        trajectory_samples: Samples that the local planner evaluated, if it offers them.
     """
 
     code = "NO_VALID_CONTROL"
@@ -68,35 +72,35 @@ class ControlError(NavigationError):
 
 
 class PluginFailed(NavigationError):
-    """A class of other people raised, or answered with what cannot be used; the text begins with its name."""
+    """A user-defined plugin raised or returned an invalid value; the text begins with its name."""
 
     code = "PLUGIN_FAILED"
     outcome = 17
 
 
 class PlanningPluginFailed(PluginFailed, PlanningError):
-    """It was to make a plan."""
+    """A user-defined global planner failed."""
 
 
 class ControlPluginFailed(PluginFailed, ControlError):
-    """It was to find a velocity."""
+    """A user-defined local planner failed."""
 
 
 class Oscillation(NavigationError):
-    """The robot moves, but gets nowhere."""
+    """The robot makes no progress for ~oscillation_timeout."""
 
     code = "OSCILLATION"
     outcome = 13
 
 
 class SensorStale(NavigationError):
-    """The scans have stopped, so the robot must not move."""
+    """Sensor data stay away, so the robot must not move."""
 
     code = "SENSOR_STALE"
 
 
 class RobotLost(NavigationError):
-    """It is not known where the robot is."""
+    """The pose of the robot is unknown."""
 
     code = "TF_ERROR"
     outcome = 16

@@ -1,12 +1,12 @@
-"""Plugins: what can stand in one of the navigator's seams, by its official name.
+"""Plugins of the navigator's extension points, by their official names.
 
-A seam is a contract in a file of its own -- ``control/local_planner.py``, ``planning/global_planner.py``,
-``recovery/behavior.py``, ``costmap/layer.py`` -- and beside it a ``registry.py`` that lists its members, one
-line each. All else follows from a member's entry: how its parameters are read, what of them
-dynamic_reconfigure offers, what ``config/move_base_lite.yaml`` says of them.
+An extension point is a contract in a module of its own -- ``control/local_planner.py``,
+``planning/global_planner.py``, ``recovery/behavior.py``, ``costmap/layer.py`` -- and a registry of the
+plugins in this package. Everything else follows from a plugin's entry: how its parameters are read, which of
+them dynamic_reconfigure offers, and their listing in ``config/move_base_lite.yaml``.
 
-A class of other people needs no line: it is known by its dotted name (planar.plugins). It is not trusted: a
-``guarded.py`` beside the contract stands before it.
+A user-defined class needs no entry: it is found by its dotted name (planar.plugins), and a guard checks its
+calls.
 """
 
 from dataclasses import dataclass, field
@@ -19,20 +19,23 @@ from planar.plugins import PluginContract, load_plugin
 T = TypeVar("T")
 
 
-def _as_they_are(values: Dict[str, Any]) -> Dict[str, Any]:
+def _unchanged(values: Dict[str, Any]) -> Dict[str, Any]:
     return values
 
 
 @dataclass(frozen=True)
 class Plugin(Generic[T]):
-    """A member of a seam.
+    """A plugin of an extension point.
 
-    ``name``: the official one, package included. ``settings``: its dataclass, of parameters
-    (planar.config.parameters). ``make``: its class; the contract says what it is called with.
-    ``deprecated``: old names of its parameters and the present ones; honoured with a warning.
-    ``synonyms``: other names that are as good. ``translated``: makes present values of old ways to say them.
-    ``without_effect``: parameters that the official dynamic_reconfigure offers and that mean nothing here;
-    ``ignored``: names that are known and mean nothing.
+    Attributes:
+        name: Official name with its package, as in ``dwa_local_planner/DWAPlannerROS``.
+        settings: Dataclass of its parameters (planar.config.parameters).
+        make: Its class; the contract states the arguments.
+        deprecated: Old names of parameters with the present ones; accepted with a warning.
+        synonyms: Other names of parameters with the present ones; accepted without a warning.
+        translate: Converts old forms of parameter values to the present ones.
+        without_effect: Parameters of the official dynamic_reconfigure that have no effect here.
+        ignored: Names of parameters that are accepted and have no effect.
     """
 
     name: str
@@ -40,35 +43,37 @@ class Plugin(Generic[T]):
     make: Callable[..., T]
     deprecated: Mapping[str, str] = field(default_factory=dict)
     synonyms: Mapping[str, str] = field(default_factory=dict)
-    translate: Callable[[Dict[str, Any]], Dict[str, Any]] = _as_they_are
+    translate: Callable[[Dict[str, Any]], Dict[str, Any]] = _unchanged
     without_effect: Tuple[DynamicParameter, ...] = ()
     ignored: FrozenSet[str] = frozenset()
 
     @property
     def short_name(self) -> str:
-        """The name without its package: that of its namespace of parameters."""
+        """Name without the package, which is the namespace of its parameters."""
         return short_name(self.name)
 
     @property
     def tunables(self) -> Tuple[DynamicParameter, ...]:
-        """What dynamic_reconfigure offers of it."""
+        """Parameters that dynamic_reconfigure offers."""
         return (*dynamic_parameters_of(self.settings), *self.without_effect)
 
     @property
     def meaningless(self) -> FrozenSet[str]:
-        """Names of parameters that are known, but mean nothing here."""
+        """Names of parameters that are accepted and have no effect."""
         return self.ignored | {tunable.name for tunable in self.without_effect}
 
     def old_names(self, name: str) -> Tuple[str, ...]:
-        """Other names under which a parameter may have been given."""
+        """Other names of a parameter."""
         return tuple(old for old, new in {**self.deprecated, **self.synonyms}.items() if new == name)
 
 
 class Registry(Generic[T]):
-    """The members of a seam; the first one takes the place of one that is not there.
+    """The plugins of an extension point; the first is the default.
 
-    ``contract``: that other people's classes have to keep; ``guarded(name, make)`` stands before what
-    ``make()`` gives, an object of theirs.
+    Args:
+        members: Plugins of this package.
+        contract: PluginContract that user-defined classes must fulfil.
+        guarded: ``guarded(name, make)`` wraps the user-defined object that ``make()`` constructs.
     """
 
     def __init__(
@@ -81,12 +86,21 @@ class Registry(Generic[T]):
 
     @property
     def names(self) -> Tuple[str, ...]:
+        """Official names of the plugins of this package."""
         return tuple(member.name for member in self.members)
 
     def find(self, name: str, is_package_needed: bool = True) -> Optional[Plugin[T]]:
-        """The member of that name; None if there is none. Without its package a name may be of any.
+        """Find a plugin by its name; a dotted name is that of a user-defined class.
 
-        A dotted name is that of other people's class. Raises PluginError if that cannot be used.
+        Args:
+            name: Official name, entry point, or ``my_package.my_module/MyClass``.
+            is_package_needed: Whether the package of an official name must be given.
+
+        Returns:
+            The plugin; None if there is none.
+
+        Raises:
+            PluginError: If a user-defined class cannot be loaded or does not fulfil the contract.
         """
         if "." not in name.rpartition("/")[0]:
             for member in self.members:
@@ -95,7 +109,12 @@ class Registry(Generic[T]):
         return self._loaded.get(name) or self._load(name)
 
     def make(self, settings: Any, *given: Any) -> T:
-        """A new object of the member that the settings are meant for; ``given``: as the contract says."""
+        """Construct the plugin whose settings are given.
+
+        Args:
+            settings: Its settings; their type selects the plugin.
+            given: Further arguments, as the contract states.
+        """
         known = (*self.members, *self._loaded.values())
         member = next(each for each in known if each.settings is type(settings))
         return member.make(settings, *given)
@@ -113,5 +132,5 @@ class Registry(Generic[T]):
 
 
 def short_name(name: str) -> str:
-    """The name of a plugin without its package: ``pkg/Name``, or ``pkg::Name`` as of layers."""
+    """Return the name of a plugin, ``pkg/Name`` or ``pkg::Name``, without its package."""
     return name.replace("::", "/").rpartition("/")[2]

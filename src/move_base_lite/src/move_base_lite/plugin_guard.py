@@ -1,4 +1,4 @@
-"""What the guards of all seams share: other people's code gets the blame for what goes wrong in it."""
+"""Guard around calls of user-defined plugins: what goes wrong in them becomes an error with their name."""
 
 import math
 from contextlib import contextmanager
@@ -11,48 +11,66 @@ from move_base_lite.thread_time import Stopwatch
 from planar import Twist2
 
 T = TypeVar("T")
-# Seconds of its own that an answer may take; the first may take longer, as kernels are compiled in it.
+# Seconds of thread time that a call may take; the first may take longer, as numba compiles kernels in it.
 MAX_CALL_SECONDS = 1.0
 
 
 class PluginGuard(Generic[T]):
-    """Watches what ``make()`` gives, of the plugin ``name``; raises ``failure`` for all that goes wrong."""
+    """Constructs a plugin at the first call, and checks its calls.
+
+    Args:
+        name: Dotted name of the plugin's class, for messages.
+        make: Constructs the plugin.
+        failure: Error to raise for everything that goes wrong in it.
+    """
 
     def __init__(self, name: str, make: Callable[[], T], failure: Type[PluginFailed]):
         self.name = name
         self._make = make
-        self._made: Optional[T] = None
+        self._plugin: Optional[T] = None
         self._failure = failure
-        self._has_answered = False
+        self._was_called = False
 
     def fail(self, text: str) -> PluginFailed:
+        """Make the error for a fault of the plugin."""
         return self._failure(f"{self.name} {text}")
 
     @contextmanager
-    def watch(self, *lent: np.ndarray) -> Iterator[T]:
-        """Around a call of the object; what is ``lent`` to it is given back as it was."""
-        before = [array.tobytes() for array in lent]
+    def watch(self, *read_only: np.ndarray) -> Iterator[T]:
+        """Guard a call of the plugin.
+
+        Args:
+            read_only: Arrays that the plugin must not change; they are restored if it does.
+
+        Yields:
+            The plugin.
+
+        Raises:
+            PluginFailed: If it raises anything but a NavigationError, changes the arrays or takes too long.
+        """
+        before = [array.tobytes() for array in read_only]
         watch = Stopwatch()
         try:
-            if self._made is None:
-                self._made = self._make()
-            yield self._made
+            if self._plugin is None:
+                self._plugin = self._make()
+            yield self._plugin
         except NavigationError:
             raise
         except Exception as error:
             raise self.fail(f"raised {type(error).__name__}: {error}") from error
         finally:
             is_changed = False
-            for array, content in zip(lent, before):
+            for array, content in zip(read_only, before):
                 if array.tobytes() != content:
                     array[...] = np.frombuffer(content, array.dtype).reshape(array.shape)
                     is_changed = True
-        took, self._has_answered, is_first = watch.seconds(), True, not self._has_answered
+        seconds, self._was_called, is_first = watch.seconds(), True, not self._was_called
         if is_changed:
             raise self.fail("changed what it was given to read")
-        if took > MAX_CALL_SECONDS and not is_first:
-            raise self.fail(f"took {took:.1f} s for an answer")
+        if seconds > MAX_CALL_SECONDS and not is_first:
+            raise self.fail(f"took {seconds:.1f} s for an answer")
 
     def check_velocity(self, twist: Twist2) -> None:
+        """Raise PluginFailed if a velocity is not finite."""
         if not (math.isfinite(twist.v) and math.isfinite(twist.omega)):
             raise self.fail(f"asked for {twist.v} m/s, {twist.omega} rad/s")

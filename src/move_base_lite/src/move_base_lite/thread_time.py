@@ -1,4 +1,4 @@
-"""Time as a thread has it, whatever else the machine is busy with."""
+"""Stopwatch that excludes the time in which a thread waits for a processor."""
 
 import os
 import threading
@@ -6,19 +6,25 @@ import time
 from pathlib import Path
 from typing import BinaryIO, Optional
 
-# proc(5): nanoseconds on a processor, nanoseconds of waiting for one, and how often it has had one.
+# proc(5): nanoseconds on a processor, nanoseconds of waiting for one, and number of time slices.
 STATISTICS = Path("/proc/thread-self/schedstat")
-# Seconds for which what the system has told is new enough: asking costs as much as a small answer.
-FRESH = 0.1
+# Seconds for which the statistics are reused: reading them costs as much as a short call.
+MAX_AGE = 0.1
 
 
 class _Thread(threading.local):
-    """What Linux tells of this thread."""
+    """Scheduler statistics of the current thread.
+
+    Attributes:
+        statistics: Open file of the statistics; None if there is none.
+        is_opened: Whether opening it has been tried.
+        read_at: When they were last read.
+        waited: Seconds the thread had waited for a processor by then.
+    """
 
     statistics: Optional[BinaryIO] = None
     is_opened: bool = False
-    # When it was last asked, and what it told: seconds that the thread was kept waiting by then.
-    asked_at: float = -FRESH
+    read_at: float = -MAX_AGE
     waited: float = 0.0
 
 
@@ -26,7 +32,7 @@ _thread = _Thread()
 
 
 def _reset() -> None:
-    """A forked process has threads of its own, which have waited for nothing yet."""
+    """Discard the statistics of the parent in a forked process, which has threads of its own."""
     global _thread
     _thread = _Thread()
 
@@ -35,23 +41,23 @@ os.register_at_fork(after_in_child=_reset)
 
 
 class Stopwatch:
-    """Starts when it is made, and stands still while its thread could go on but others have all processors.
+    """Measures wall time from its construction, less the time its thread waits for a processor.
 
-    Where the system does not tell of that, it never does.
+    Without /proc/thread-self/schedstat it measures wall time.
     """
 
     def __init__(self) -> None:
-        self._begun = time.perf_counter()
-        if self._begun - _thread.asked_at > FRESH:
-            _thread.asked_at, _thread.waited = self._begun, _seconds_kept_waiting()
+        self._start = time.perf_counter()
+        if self._start - _thread.read_at > MAX_AGE:
+            _thread.read_at, _thread.waited = self._start, _seconds_waited()
 
     def seconds(self) -> float:
-        """They may be less by what the thread was kept waiting in ``FRESH`` seconds before the start."""
-        took = time.perf_counter() - self._begun
-        return took if took <= FRESH else took - (_seconds_kept_waiting() - _thread.waited)
+        """Elapsed time [s]; too short by at most the waiting time in ``MAX_AGE`` seconds before the start."""
+        elapsed = time.perf_counter() - self._start
+        return elapsed if elapsed <= MAX_AGE else elapsed - (_seconds_waited() - _thread.waited)
 
 
-def _seconds_kept_waiting() -> float:
+def _seconds_waited() -> float:
     if not _thread.is_opened:
         _thread.statistics, _thread.is_opened = _opened(), True
     if _thread.statistics is None:

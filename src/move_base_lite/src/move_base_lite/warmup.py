@@ -1,4 +1,4 @@
-"""Compiles, or loads from the cache, what the first goal would otherwise wait for."""
+"""Warm-up: compile the numba kernels, or load them from the cache, before the first goal."""
 
 from dataclasses import replace
 
@@ -11,7 +11,11 @@ from planar import OccupancyGrid, Pose2, Scan, Twist2
 
 
 def warm_up(settings: NavigatorSettings) -> None:
-    """Drives a robot in an empty room for a moment."""
+    """Run two control periods in an empty map, so that the first goal does not wait for the compiler.
+
+    Args:
+        settings: Settings of the Navigator; they select the kernels.
+    """
     static = replace(settings.global_costmap.static, enabled=True)
     settings = replace(settings, global_costmap=replace(settings.global_costmap, static=static))
     navigator = Navigator(settings, OccupancyGrid(np.zeros((60, 60), np.int8), 0.1))

@@ -1,6 +1,6 @@
-"""Costmaps: how dear it is to be where (after costmap_2d).
+"""Layered costmaps (costmap_2d).
 
-``layer.py`` is the contract of layers, ``registry.py`` the list of those that hold it, ``layers/`` has them.
+``layer.py`` is the contract of layers, ``layers/`` holds the layers, ``registry.py`` lists them.
 """
 
 from move_base_lite.costmap.costmap import LayeredCostmap
@@ -21,20 +21,20 @@ __all__ = [
     "LETHAL",
     "UNKNOWN",
     "CellBounds",
+    "CostmapPlacement",
     "CostmapSettings",
+    "CostmapWindow",
     "Footprint",
     "Layer",
+    "LayerContext",
     "LayerSettings",
     "LayeredCostmap",
-    "CostmapPlacement",
-    "Polygon",
     "Observation",
-    "LayerContext",
-    "CostmapWindow",
+    "Polygon",
     "footprint_from",
-    "occupancy_of",
     "observation_from_points",
     "observation_from_scan",
+    "occupancy_of",
 ]
 
 __getattr__ = deprecated_names(

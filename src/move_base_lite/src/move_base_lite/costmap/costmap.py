@@ -1,4 +1,4 @@
-"""A costmap in layers: the map, what sensors see, zones, and inflation over all."""
+"""Layered costmap: static map, obstacles, zones, plugin layers and inflation (costmap_2d)."""
 
 import math
 from typing import List, Optional, Sequence
@@ -16,14 +16,23 @@ from move_base_lite.costmap.settings import CostmapSettings
 from move_base_lite.costmap.window import NO_CELLS, CellBounds, CostmapWindow, union
 from planar import OccupancyGrid, Pose2
 
-# Radians between the headings at which a turn on the spot is checked.
+# Radians between the headings at which a rotation in place is checked for collisions.
 TURN_STEP = 0.1
 
 
 class LayeredCostmap:
-    """Costs, uint8 (rows, cols), of the cells of ``window``; fixed to its frame or rolling with the robot.
+    """Costmap that is fixed in its frame or rolls with the robot.
 
-    Only what can have changed is computed anew: the block that was seen, grown by what inflation reaches.
+    An update recomputes only the cells that may have changed: the observed block, grown by the reach of
+    inflation.
+
+    Attributes:
+        settings: Parameters of the costmap and its layers.
+        footprint: Outline of the robot.
+        window: Position of the cells.
+        outline_xy: (N, 2) points of the footprint at which collisions are checked, in the base frame [m].
+        costs: Costs, uint8 (rows, cols).
+        map_costs: Costs without observations, uint8 (rows, cols).
     """
 
     def __init__(
@@ -32,7 +41,7 @@ class LayeredCostmap:
         grid: Optional[OccupancyGrid] = None,
         map_window: Optional[CostmapWindow] = None,
     ):
-        """``map_window``: a size to keep, that of a map whose layer has been switched off since."""
+        """``map_window`` keeps the size of a map whose layer has been disabled since."""
         self.settings = settings
         self.footprint: Footprint = footprint_from(
             settings.footprint, settings.robot_radius, settings.footprint_padding
@@ -43,24 +52,36 @@ class LayeredCostmap:
         self.outline_xy = self.footprint.outline_xy(0.8 * self.window.resolution)
         context = LayerContext(self.window, settings.rolling_window, self.footprint, grid)
         self._zones = ZoneLayer(LayerSettings(), context)
-        obstacles, own = _made([settings.obstacles], context), _made(settings.plugin_layers, context)
-        ground, inflation = _made([settings.static], context), _made([settings.inflation], context)
-        self._layers = [*ground, *obstacles, self._zones, *own, *inflation]
-        self._remembering = [*obstacles, *own]
+        obstacles = _enabled_layers([settings.obstacles], context)
+        plugins = _enabled_layers(settings.plugin_layers, context)
+        static = _enabled_layers([settings.static], context)
+        inflation = _enabled_layers([settings.inflation], context)
+        self._layers = [*static, *obstacles, self._zones, *plugins, *inflation]
+        self._observing = [*obstacles, *plugins]
         self._reach_cells = sum(layer.reach_cells for layer in self._layers)
-        self._unseen = UNKNOWN if settings.track_unknown_space else FREE
+        self._default = UNKNOWN if settings.track_unknown_space else FREE
         self._changed = NO_CELLS
         self.costs = np.empty((self.window.rows, self.window.cols), dtype=np.uint8)
         self.recompute(self.window.everything)
         self.map_costs: np.ndarray = self.costs.copy()
 
     def add_observation(self, observation: Observation, base_in_frame: Pose2) -> None:
-        """Keeps what a sensor saw from there for the next update."""
+        """Store sensor data for the next update.
+
+        Args:
+            observation: Beams of one sensor.
+            base_in_frame: Robot in the costmap's frame when they were measured.
+        """
         for layer in self._layers:
             layer.add_observation(observation, base_in_frame)
 
     def update(self, base_in_frame: Pose2, map_in_frame: Pose2 = Pose2()) -> None:
-        """Follows the robot and takes in what has been noted."""
+        """Follow the robot and integrate the stored observations.
+
+        Args:
+            base_in_frame: Robot in the costmap's frame.
+            map_in_frame: Map in the costmap's frame.
+        """
         placement = self._follow(base_in_frame, map_in_frame)
         changed = self.window.everything if self.settings.rolling_window else NO_CELLS
         for layer in self._layers:
@@ -68,54 +89,59 @@ class LayeredCostmap:
         self.recompute(changed)
 
     def recompute(self, changed: CellBounds) -> None:
-        """Stacks the layers anew where they have changed."""
+        """Apply all layers again in a block that has changed."""
         bounds = self.window.grown(changed, self._reach_cells)
-        self.costs[bounds.slices] = self._unseen
+        self.costs[bounds.slices] = self._default
         for layer in self._layers:
             layer.apply(self.costs, self.window, bounds)
         self._changed = union(self._changed, bounds)
 
-    def set_keep_out(self, barred: Sequence[Polygon], disliked: Sequence[Polygon]) -> None:
-        """From the next update on, polygons of the map are obstacles, others are only dear to be in."""
-        self._zones.set(barred, disliked)
+    def set_keep_out(self, blocked: Sequence[Polygon], occupied: Sequence[Polygon]) -> None:
+        """Set the keep-out zones, from the next update on.
+
+        Args:
+            blocked: Polygons of the map that become obstacles.
+            occupied: Polygons that the robot is in and has to leave: expensive, but not blocked.
+        """
+        self._zones.set_zones(blocked, occupied)
 
     def with_settings(self, settings: CostmapSettings) -> "LayeredCostmap":
-        """This costmap with other settings; it keeps what was seen unless its cells are others."""
+        """Return a costmap with other settings; it keeps the observations unless the size changes."""
         if settings == self.settings:
             return self
         changed = LayeredCostmap(settings, self._map, self._map_window)
         changed._zones.take_over(self._zones)
-        if self.window.is_like(changed.window):
-            changed._remember(self)
+        if self.window.has_same_size(changed.window):
+            changed._take_over_layers(self)
         return changed
 
-    def _remember(self, before: "LayeredCostmap") -> None:
-        """Goes on with what the same layers of a costmap of as many cells have known."""
-        known = {layer.kind: layer for layer in before._remembering}
-        pairs = [(layer, known[layer.kind]) for layer in self._remembering if layer.kind in known]
-        for layer, same in pairs:
-            layer.take_over(same)
+    def _take_over_layers(self, before: "LayeredCostmap") -> None:
+        """Take over the state of the layers of a costmap of the same size."""
+        replaced = {layer.kind: layer for layer in before._observing}
+        pairs = [(layer, replaced[layer.kind]) for layer in self._observing if layer.kind in replaced]
+        for layer, old in pairs:
+            layer.take_over(old)
         if pairs:
             self.window = before.window
             self.recompute(self.window.everything)
 
     def pop_changed_bounds(self) -> CellBounds:
-        """The block of cells that may have changed since this was asked last."""
+        """Return the block of cells that may have changed since the last call, and start over."""
         changed, self._changed = self._changed, NO_CELLS
         return changed
 
     def collides(self, pose: Pose2) -> bool:
-        """Whether the robot's footprint at ``pose`` touches an obstacle, the unknown or the edge."""
+        """Whether the footprint at ``pose`` touches an obstacle, unknown space or the edge."""
         return collides(self.costs, self.window, self.outline_xy, pose)
 
     def contacts(self, pose: Pose2) -> int:
-        """At how many points of its outline the robot at ``pose`` touches something."""
+        """Count the points of the footprint at ``pose`` that collide."""
         return contacts(self.costs, self.window, self.outline_xy, pose)
 
     def has_room_to_turn(self, pose: Pose2, angle: float) -> bool:
-        """Whether the robot at ``pose`` can turn so far on the spot without touching more than it does.
+        """Whether the robot can rotate in place by ``angle`` [rad] without touching more than it does now.
 
-        A footprint that is round to within a cell needs no room.
+        A footprint that is round to within one cell always can.
         """
         spread = self.footprint.circumscribed_radius - self.footprint.inscribed_radius
         if spread < self.window.resolution:
@@ -125,20 +151,20 @@ class LayeredCostmap:
         return all(self.contacts(pose @ Pose2(0.0, 0.0, float(turn))) <= touching for turn in turns)
 
     def clear_outside(self, base_in_frame: Pose2, side: float) -> None:
-        """Forgets obstacles (not the map) outside a square of ``side`` metres round the robot."""
+        """Clear obstacles (not the map) outside a square around the robot, ``side`` in metres."""
         bounds = self.window.bounds_around(base_in_frame.x, base_in_frame.y, 0.5 * side)
-        self._refresh_changed([layer.clear_outside(bounds, self.window) for layer in self._layers])
+        self._recompute_blocks([layer.clear_outside(bounds, self.window) for layer in self._layers])
 
     def clear_around(self, base_in_frame: Pose2, side: float) -> None:
-        """Forgets obstacles (not the map) inside a square of ``side`` metres round the robot."""
+        """Clear obstacles (not the map) inside a square around the robot, ``side`` in metres."""
         bounds = self.window.bounds_around(base_in_frame.x, base_in_frame.y, 0.5 * side)
-        self._refresh_changed([layer.clear_inside(bounds) for layer in self._layers])
+        self._recompute_blocks([layer.clear_inside(bounds) for layer in self._layers])
 
     def reset(self) -> None:
-        """Forgets all that was seen; the map stays."""
-        self._refresh_changed([layer.clear_outside(NO_CELLS, self.window) for layer in self._layers])
+        """Clear all observations; the map stays."""
+        self._recompute_blocks([layer.clear_outside(NO_CELLS, self.window) for layer in self._layers])
 
-    def _refresh_changed(self, blocks: Sequence[CellBounds]) -> None:
+    def _recompute_blocks(self, blocks: Sequence[CellBounds]) -> None:
         changed = NO_CELLS
         for block in blocks:
             changed = union(changed, block)
@@ -146,7 +172,7 @@ class LayeredCostmap:
             self.recompute(changed)
 
     def _follow(self, base_in_frame: Pose2, map_in_frame: Pose2) -> CostmapPlacement:
-        """Moves the window, if it rolls."""
+        """Move a rolling window with the robot."""
         if not self.settings.rolling_window:
             return CostmapPlacement(self.window, 0, 0, base_in_frame, map_in_frame)
         before, self.window = self.window, self.window.centred_on(base_in_frame.x, base_in_frame.y)
@@ -155,7 +181,7 @@ class LayeredCostmap:
         return CostmapPlacement(self.window, rows, cols, base_in_frame, map_in_frame)
 
 
-def _made(settings: Sequence[LayerSettings], context: LayerContext) -> List[Layer]:
+def _enabled_layers(settings: Sequence[LayerSettings], context: LayerContext) -> List[Layer]:
     return [LAYERS.make(each, context) for each in settings if each.enabled]
 
 

@@ -1,15 +1,26 @@
-"""Values of a costmap's cells, those of costmap_2d."""
+"""Cost values of a costmap's cells (costmap_2d: cost_values.h)."""
 
 import numpy as np
 
+# The robot's centre can be in the cell.
 FREE = 0
+# The cell is within the inscribed radius of an obstacle: the robot's centre would collide.
 INSCRIBED = 253
+# The cell contains an obstacle.
 LETHAL = 254
+# The cell has not been observed.
 UNKNOWN = 255
 
 
 def occupancy_of(costs: np.ndarray) -> np.ndarray:
-    """Costs as rviz shows them, int8: 0 free, 1..98 inflated, 99 inscribed, 100 lethal, -1 unknown."""
+    """Convert costs to occupancy values for rviz.
+
+    Args:
+        costs: uint8 (rows, cols).
+
+    Returns:
+        int8 (rows, cols): 0 free, 1..98 inflated, 99 inscribed, 100 lethal, -1 unknown.
+    """
     return _OCCUPANCY_BY_COST[costs]
 
 

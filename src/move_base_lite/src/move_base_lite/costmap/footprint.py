@@ -1,4 +1,4 @@
-"""The robot's outline, and whether it touches an obstacle."""
+"""Footprint of the robot and collision checks against a costmap."""
 
 import math
 from dataclasses import dataclass
@@ -18,13 +18,17 @@ COLLISION = 255
 
 @dataclass(frozen=True, eq=False)
 class Footprint:
-    """A polygon round the robot. ``corners_xy``: (N, 2), metres, in the base frame, padding included."""
+    """Outline of the robot.
+
+    Attributes:
+        corners_xy: (N, 2) corners in the base frame, padding included [m].
+    """
 
     corners_xy: np.ndarray
 
     @cached_property
     def inscribed_radius(self) -> float:
-        """Largest circle about the base frame's origin that fits in: metres."""
+        """Radius of the largest circle around the base frame's origin inside the outline [m]."""
         starts, ends = self.corners_xy, np.roll(self.corners_xy, -1, axis=0)
         edges = ends - starts
         along = np.clip(-(starts * edges).sum(axis=1) / (edges * edges).sum(axis=1), 0.0, 1.0)
@@ -32,11 +36,11 @@ class Footprint:
 
     @cached_property
     def circumscribed_radius(self) -> float:
-        """Smallest circle about the base frame's origin that holds everything: metres."""
+        """Radius of the smallest circle around the base frame's origin that contains the outline [m]."""
         return float(np.linalg.norm(self.corners_xy, axis=1).max())
 
     def outline_xy(self, spacing: float) -> np.ndarray:
-        """Points (M, 2) along the outline, at most ``spacing`` metres apart, in the base frame."""
+        """Sample points (M, 2) along the outline, at most ``spacing`` metres apart, in the base frame."""
         pieces = []
         for start, end in zip(self.corners_xy, np.roll(self.corners_xy, -1, axis=0)):
             count = max(1, math.ceil(float(np.linalg.norm(end - start)) / spacing))
@@ -45,9 +49,12 @@ class Footprint:
 
 
 def footprint_from(corners: Sequence[Tuple[float, float]], robot_radius: float, padding: float) -> Footprint:
-    """The polygon of ``corners``, or a circle of ``robot_radius`` if there are none.
+    """Build the footprint from parameters.
 
-    Padding moves each corner outwards along both axes, as costmap_2d does.
+    Args:
+        corners: Corners (x, y) in the base frame [m]; empty for a circle.
+        robot_radius: Radius of the circle [m].
+        padding: Distance by which each corner is moved outwards along both axes, as in costmap_2d [m].
     """
     corners_xy = np.array(corners, dtype=float).reshape(-1, 2)
     if not len(corners_xy):
@@ -57,7 +64,7 @@ def footprint_from(corners: Sequence[Tuple[float, float]], robot_radius: float, 
 
 
 def collides(costs: np.ndarray, window: CostmapWindow, outline_xy: np.ndarray, pose: Pose2) -> bool:
-    """Whether the outline (M, 2), put at ``pose``, touches an obstacle or leaves the costmap."""
+    """Whether the outline (M, 2) at ``pose`` touches an obstacle or leaves the costmap."""
     cost = footprint_cost(
         costs, window.origin_x, window.origin_y, window.resolution, outline_xy, pose.x, pose.y, pose.yaw
     )
@@ -65,7 +72,7 @@ def collides(costs: np.ndarray, window: CostmapWindow, outline_xy: np.ndarray, p
 
 
 def contacts(costs: np.ndarray, window: CostmapWindow, outline_xy: np.ndarray, pose: Pose2) -> int:
-    """At how many of its points the outline (M, 2), put at ``pose``, touches an obstacle or the edge."""
+    """Count the points of the outline (M, 2) at ``pose`` that touch an obstacle or leave the costmap."""
     return count_contacts(
         costs, window.origin_x, window.origin_y, window.resolution, outline_xy, pose.x, pose.y, pose.yaw
     )
@@ -73,7 +80,7 @@ def contacts(costs: np.ndarray, window: CostmapWindow, outline_xy: np.ndarray, p
 
 @numba.njit(cache=True)
 def footprint_cost(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw):
-    """Kernel: highest cost below the outline or the robot's centre; COLLISION if it cannot stand there."""
+    """Kernel: highest cost under the outline and the robot's centre; COLLISION if the robot collides."""
     rows, cols = costs.shape
     row = math.floor((y - origin_y) / resolution)
     col = math.floor((x - origin_x) / resolution)
@@ -98,7 +105,7 @@ def footprint_cost(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw)
 
 @numba.njit(cache=True)
 def count_contacts(costs, origin_x, origin_y, resolution, outline_xy, x, y, yaw):
-    """Kernel: how many points of the outline touch something, and one if the centre is too near to it."""
+    """Kernel: number of colliding points of the outline, plus one if the centre collides."""
     rows, cols = costs.shape
     c, s = math.cos(yaw) / resolution, math.sin(yaw) / resolution
     base_col, base_row = (x - origin_x) / resolution, (y - origin_y) / resolution

@@ -1,4 +1,4 @@
-"""What a sensor saw, in the one form that costmaps take in."""
+"""Observation: sensor data in the one form that costmaps integrate (costmap_2d: Observation)."""
 
 from dataclasses import dataclass
 from typing import Union
@@ -10,11 +10,19 @@ from planar import Pose2, Scan
 
 @dataclass(frozen=True, eq=False)
 class Observation:
-    """Beams from a sensor: of a laser scan, or to the points of a cloud.
+    """Beams of a laser scan, or to the points of a point cloud.
 
-    ``topic``: where it came from. ``sensor_in_base``: pose of the beams' origin in the base frame.
-    ``angles``, ``ranges``: (N,); a beam ends at something if its range lies in [range_min, range_max).
-    ``heights``: of what the beams end at, above the floor: metres, one for all or (N,).
+    A beam hits an obstacle if its range lies in [range_min, range_max).
+
+    Attributes:
+        topic: Topic of the message.
+        stamp: Time of the measurement [s].
+        sensor_in_base: Origin of the beams in the base frame.
+        angles: (N,) angles of the beams in the sensor frame [rad].
+        ranges: (N,) ranges [m].
+        range_min: Shortest valid range [m].
+        range_max: Limit of valid ranges [m].
+        heights: Heights of the end points above the floor [m], one for all or (N,).
     """
 
     topic: str
@@ -28,7 +36,13 @@ class Observation:
 
 
 def observation_from_scan(topic: str, scan: Scan, height: float = 0.0) -> Observation:
-    """A laser scan, ``height`` metres above the floor."""
+    """Convert a laser scan to a costmap observation.
+
+    Args:
+        topic: Topic of the scan.
+        scan: The scan.
+        height: Height of the laser above the floor [m].
+    """
     return Observation(
         topic,
         scan.stamp,
@@ -44,7 +58,15 @@ def observation_from_scan(topic: str, scan: Scan, height: float = 0.0) -> Observ
 def observation_from_points(
     topic: str, stamp: float, sensor_in_base: Pose2, points_xyz: np.ndarray
 ) -> Observation:
-    """A cloud of points (N, 3) in the base frame, z above the floor; those not finite are left out."""
+    """Convert a point cloud to a costmap observation.
+
+    Args:
+        topic: Topic of the cloud.
+        stamp: Time of the measurement [s].
+        sensor_in_base: Sensor in the base frame.
+        points_xyz: (N, 3) points in the base frame, z above the floor [m]; points that are not finite are
+            dropped.
+    """
     points_xyz = points_xyz[np.isfinite(points_xyz).all(axis=1)]
     offsets_xy = sensor_in_base.inverse().transform_points(points_xyz[:, :2])
     return Observation(

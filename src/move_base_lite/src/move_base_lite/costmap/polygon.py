@@ -1,4 +1,4 @@
-"""Polygons on the floor."""
+"""Polygons in the plane, and their rasterisation."""
 
 from dataclasses import dataclass
 
@@ -11,20 +11,33 @@ from planar import Pose2
 
 @dataclass(frozen=True, eq=False)
 class Polygon:
-    """``corners_xy``: (N, 2), metres, in any order of turning. What is inside: the even-odd rule."""
+    """A polygon; inside and outside follow the even-odd rule.
+
+    Attributes:
+        corners_xy: (N, 2) corners, clockwise or counter-clockwise [m].
+    """
 
     corners_xy: np.ndarray
 
     def contains(self, x: float, y: float) -> bool:
         """Whether a point lies inside."""
-        return bool(_holds(self.corners_xy, x, y))
+        return bool(_contains(self.corners_xy, x, y))
 
     def in_frame(self, map_in_frame: Pose2) -> "Polygon":
-        """This polygon of the map in another frame."""
+        """Transform a polygon from the map to another frame."""
         return Polygon(map_in_frame.transform_points(self.corners_xy))
 
     def fill(self, costs: np.ndarray, window: CostmapWindow, cost: int) -> CellBounds:
-        """Gives a cost to the cells (rows, cols) whose centre lies inside; returns the block they lie in."""
+        """Set the cost of the cells whose centre lies inside.
+
+        Args:
+            costs: uint8 (rows, cols), changed in place.
+            window: Position of the cells.
+            cost: New cost.
+
+        Returns:
+            Block that encloses the polygon, cut to the window.
+        """
         corners = (self.corners_xy - (window.origin_x, window.origin_y)) / window.resolution
         col_min, row_min = map(int, np.floor(corners.min(axis=0)))
         col_max, row_max = map(int, np.ceil(corners.max(axis=0)))
@@ -38,12 +51,12 @@ def _fill(costs, corners, bounds, cost):
     row_min, row_max, col_min, col_max = bounds
     for row in range(row_min, row_max):
         for col in range(col_min, col_max):
-            if _holds(corners, col + 0.5, row + 0.5):
+            if _contains(corners, col + 0.5, row + 0.5):
                 costs[row, col] = cost
 
 
 @numba.njit(cache=True)
-def _holds(corners, x, y):
+def _contains(corners, x, y):
     inside = False
     for i in range(corners.shape[0]):
         x0, y0 = corners[i - 1]

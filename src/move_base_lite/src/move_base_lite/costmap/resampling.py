@@ -1,4 +1,4 @@
-"""Costs that lie in another frame, turned and at another resolution, in the cells of a window."""
+"""Resampling of a cost grid into the cells of a window in another frame."""
 
 import math
 
@@ -13,13 +13,21 @@ from planar import Pose2
 def resample_costs(
     window: CostmapWindow, frame_in_other: Pose2, costs: np.ndarray, origin: Pose2, resolution: float
 ) -> np.ndarray:
-    """What a window shows of ``costs``, uint8 (rows, cols), UNKNOWN beyond them.
+    """Sample costs of another frame at the centres of a window's cells.
 
-    ``frame_in_other``: the window's frame in that of the costs; ``origin``, ``resolution``: theirs, metres.
+    Args:
+        window: Cells to fill.
+        frame_in_other: The window's frame in the frame of the costs.
+        costs: uint8 (rows, cols).
+        origin: Lower left corner of the costs in their frame.
+        resolution: Cell size of the costs [m].
+
+    Returns:
+        Costs of the window's cells, uint8 (rows, cols); UNKNOWN outside the given costs.
     """
     corner_in_other = frame_in_other @ Pose2(window.origin_x, window.origin_y)
     corner_in_costs = origin.inverse() @ corner_in_other
-    return _seen_through(
+    return _sampled(
         costs,
         corner_in_costs.x / resolution,
         corner_in_costs.y / resolution,
@@ -31,13 +39,13 @@ def resample_costs(
 
 
 @numba.njit(cache=True)
-def _seen_through(costs, x, y, yaw, scale, rows, cols):
-    seen = np.full((rows, cols), UNKNOWN, dtype=np.uint8)
+def _sampled(costs, x, y, yaw, scale, rows, cols):
+    sampled = np.full((rows, cols), UNKNOWN, dtype=np.uint8)
     c, s = math.cos(yaw) * scale, math.sin(yaw) * scale
     for row in range(rows):
         for col in range(cols):
             other_row = math.floor(y + s * (col + 0.5) + c * (row + 0.5))
             other_col = math.floor(x + c * (col + 0.5) - s * (row + 0.5))
             if 0 <= other_row < costs.shape[0] and 0 <= other_col < costs.shape[1]:
-                seen[row, col] = costs[other_row, other_col]
-    return seen
+                sampled[row, col] = costs[other_row, other_col]
+    return sampled

@@ -14,14 +14,23 @@ from planar.config.settings import check
 
 @dataclass(frozen=True)
 class CostmapSettings:
-    """One costmap; names and defaults of costmap_2d. ``own_layers``: others than its, below inflation."""
+    """Parameters of one costmap, with costmap_2d's names and defaults.
+
+    Attributes:
+        static: Static layer.
+        obstacles: Obstacle layer.
+        plugin_layers: Further layers, applied below inflation.
+        inflation: Inflation layer.
+    """
 
     global_frame: str = parameter("map", "frame in which the costmap lies")
     robot_base_frame: str = parameter("base_link", "the robot's frame")
-    transform_tolerance: float = parameter(0.3, "how old a transform may be", "s", dynamic=(0.0, 10.0))
+    transform_tolerance: float = parameter(
+        0.3, "age up to which a transform is used", "s", dynamic=(0.0, 10.0)
+    )
     update_frequency: float = parameter(5.0, "", "Hz", at_least(0.0), dynamic=100.0)
     publish_frequency: float = parameter(
-        0.0, "0: never but to new subscribers", "Hz", at_least(0.0), dynamic=100.0
+        0.0, "of the costmap's topics; 0: only for new subscribers", "Hz", at_least(0.0), dynamic=100.0
     )
     rolling_window: bool = parameter(False, "whether the window follows the robot")
     width: float = parameter(10.0, "unless the map sets the size", "m", POSITIVE, dynamic=True)
@@ -34,10 +43,12 @@ class CostmapSettings:
     )
     robot_radius: float = parameter(0.46, "of a round footprint", "m", at_least(0.0), dynamic=10.0)
     footprint_padding: float = parameter(
-        0.01, "by which the footprint is larger", "m", at_least(0.0), dynamic=(-math.inf, math.inf)
+        0.01, "added around the footprint", "m", at_least(0.0), dynamic=(-math.inf, math.inf)
     )
-    track_unknown_space: bool = parameter(False, "whether cells not seen yet are unknown rather than free")
-    always_send_full_costmap: bool = parameter(False, "whole costmaps instead of the part that has changed")
+    track_unknown_space: bool = parameter(
+        False, "whether cells without observations are unknown rather than free"
+    )
+    always_send_full_costmap: bool = parameter(False, "publish the complete costmap instead of updates")
     static: StaticSettings = field(default_factory=lambda: StaticSettings(enabled=False))
     obstacles: ObstacleSettings = field(default_factory=ObstacleSettings)
     plugin_layers: Tuple[LayerSettings, ...] = ()

@@ -1,4 +1,4 @@
-"""Where a costmap lies in its frame."""
+"""Cells of a costmap: their number, size and position in its frame."""
 
 import math
 from dataclasses import dataclass, replace
@@ -17,7 +17,7 @@ class CellBounds(NamedTuple):
 
     @property
     def slices(self) -> Tuple[slice, slice]:
-        """Of its rows and its columns, to index arrays with."""
+        """Slices of rows and columns, to index arrays."""
         return slice(self.row_min, self.row_max), slice(self.col_min, self.col_max)
 
 
@@ -25,7 +25,7 @@ NO_CELLS = CellBounds(0, 0, 0, 0)
 
 
 def union(a: CellBounds, b: CellBounds) -> CellBounds:
-    """The smallest block that holds both."""
+    """Smallest block that contains both."""
     if a.row_min >= a.row_max or a.col_min >= a.col_max:
         return b
     if b.row_min >= b.row_max or b.col_min >= b.col_max:
@@ -40,7 +40,15 @@ def union(a: CellBounds, b: CellBounds) -> CellBounds:
 
 @dataclass(frozen=True)
 class CostmapWindow:
-    """An axis-aligned block of cells; (origin_x, origin_y) is the lower left corner of (0, 0), metres."""
+    """An axis-aligned grid of cells in the costmap's frame.
+
+    Attributes:
+        rows: Cells along y.
+        cols: Cells along x.
+        resolution: Cell size [m].
+        origin_x: Lower left corner of cell (0, 0) [m].
+        origin_y: Lower left corner of cell (0, 0) [m].
+    """
 
     rows: int
     cols: int
@@ -49,22 +57,23 @@ class CostmapWindow:
     origin_y: float = 0.0
 
     def cell_of(self, x: float, y: float) -> Tuple[int, int]:
-        """(row, col) of a point; it may lie outside."""
+        """(row, col) of a point, which may be outside the window."""
         return (
             math.floor((y - self.origin_y) / self.resolution),
             math.floor((x - self.origin_x) / self.resolution),
         )
 
     def contains(self, x: float, y: float) -> bool:
+        """Whether a point lies in the window."""
         row, col = self.cell_of(x, y)
         return 0 <= row < self.rows and 0 <= col < self.cols
 
-    def is_like(self, other: "CostmapWindow") -> bool:
-        """Whether both have as many cells of the same size, wherever they lie."""
+    def has_same_size(self, other: "CostmapWindow") -> bool:
+        """Whether both have the same number of cells of the same size."""
         return replace(self, origin_x=other.origin_x, origin_y=other.origin_y) == other
 
     def centred_on(self, x: float, y: float) -> "CostmapWindow":
-        """The same window moved by whole cells so that its middle is at the point."""
+        """Move the window by whole cells so that it is centred on a point."""
         row, col = self.cell_of(x - 0.5 * self.cols * self.resolution, y - 0.5 * self.rows * self.resolution)
         return replace(
             self,
@@ -73,13 +82,13 @@ class CostmapWindow:
         )
 
     def bounds_around(self, x: float, y: float, reach: float) -> CellBounds:
-        """Cells within a square of half side ``reach`` around a point, cut to the window."""
+        """Cells in a square around a point, cut to the window; ``reach`` is half its side [m]."""
         row_min, col_min = self.cell_of(x - reach, y - reach)
         row_max, col_max = self.cell_of(x + reach, y + reach)
         return self.cut(CellBounds(row_min, row_max + 1, col_min, col_max + 1))
 
     def grown(self, bounds: CellBounds, cells: int) -> CellBounds:
-        """The block and all within so many cells of it, cut to the window."""
+        """Grow a block by a number of cells on each side, cut to the window."""
         return self.cut(
             CellBounds(
                 bounds.row_min - cells, bounds.row_max + cells, bounds.col_min - cells, bounds.col_max + cells
@@ -87,6 +96,7 @@ class CostmapWindow:
         )
 
     def cut(self, bounds: CellBounds) -> CellBounds:
+        """Cut a block to the window."""
         return CellBounds(
             min(max(bounds.row_min, 0), self.rows),
             min(max(bounds.row_max, 0), self.rows),
@@ -96,6 +106,7 @@ class CostmapWindow:
 
     @property
     def everything(self) -> CellBounds:
+        """Block of all cells."""
         return CellBounds(0, self.rows, 0, self.cols)
 
 

@@ -1,4 +1,4 @@
-"""The Navigator: move_base's state machine, and what it remembers and decides."""
+"""Navigator: move_base's state machine without ROS."""
 
 from move_base_lite.navigator.decision import Decision, GoalOutcome, GoalProgress, RecoveryTrigger, Status
 from move_base_lite.navigator.navigator import Navigator

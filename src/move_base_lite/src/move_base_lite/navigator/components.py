@@ -1,4 +1,4 @@
-"""Who works for the Navigator: a planner, a controller, costmaps, and an eye on what moves."""
+"""Components of the Navigator: global planner, controller, costmaps and the tracker of moving obstacles."""
 
 from typing import Optional, Sequence, Tuple
 
@@ -17,9 +17,16 @@ from planar import OccupancyGrid, Pose2, Twist2
 
 
 class NavigatorComponents:
-    """Made from settings, and changed with them; ``zones`` may be switched by others.
+    """The components that one Navigator uses, built from its settings.
 
-    ``latency``: seconds until a command takes effect; ``in_force``: the one that the robot obeys meanwhile.
+    Attributes:
+        settings: Settings in use.
+        zones: Keep-out and speed zones; a service may switch them at any time.
+        latency: Time until a command takes effect [s].
+        active_command: Velocity command that the robot follows until then.
+        planner: Global planner.
+        controller: Follows the plan with the local planner.
+        costmaps: Global and local costmap.
     """
 
     def __init__(self, settings: NavigatorSettings, grid: Optional[OccupancyGrid], zones: Zones):
@@ -30,17 +37,17 @@ class NavigatorComponents:
         self.reset_controller()
 
     def set_map(self, grid: Optional[OccupancyGrid]) -> None:
-        """Another map, and nothing has been seen yet."""
+        """Start with another map and without observations."""
         self.costmaps = Costmaps(self.settings, grid, self.zones)
         self._obstacle_tracker = DynamicObstacleTracker()
 
     def reset_controller(self) -> None:
-        """Forgets how the last goal was pursued."""
+        """Replace the controller, which keeps state of the goal."""
         settings = self.settings.controller
         self.controller = Controller(settings, self.period, LOCAL_PLANNERS.make(settings, self.period))
 
     def update_settings(self, settings: NavigatorSettings) -> None:
-        """Goes on with other settings, plan included."""
+        """Apply other settings; the plan in use stays."""
         before, self.settings = (self.settings.controller, self.period), settings
         self.planner = GLOBAL_PLANNERS.make(settings.planner)
         if (settings.controller, self.period) != before:
@@ -50,23 +57,35 @@ class NavigatorComponents:
 
     @property
     def period(self) -> float:
-        """Of control, seconds."""
+        """Control period [s]."""
         return 1.0 / self.settings.move_base.controller_frequency
 
     def update_costmaps(self, state: RobotState, observations: Sequence[Observation]) -> None:
-        """Takes in what is seen; a plan does not have to lead around people who walk."""
-        lasting = [self._lasting(state.base_in_odom, observation) for observation in observations]
-        self.costmaps.update(state.now, state.base_in_map, state.base_in_odom, observations, lasting)
+        """Add observations to the costmaps; those of moving obstacles only to the local one."""
+        static = [self._without_moving(state.base_in_odom, observation) for observation in observations]
+        self.costmaps.update(state, observations, static)
 
-    def _lasting(self, base_in_odom: Pose2, observation: Observation) -> Observation:
-        """What is seen without what moves."""
+    def _without_moving(self, base_in_odom: Pose2, observation: Observation) -> Observation:
+        """Track moving obstacles in a scan and remove their beams."""
         settings = self.settings.controller.tracker_settings
         if settings is None or observation.topic != self.settings.scan_topic:
             return observation
         return self._obstacle_tracker.update(base_in_odom, observation, settings)
 
     def plan(self, start_in_map: Pose2, goal_in_map: Pose2, tolerance: float = 0.0) -> np.ndarray:
-        """Path (N, 2) in the map between any two places. Raises PlanningError."""
+        """Plan a path between two poses in the map.
+
+        Args:
+            start_in_map: Start; its heading does not matter.
+            goal_in_map: Goal; its heading does not matter.
+            tolerance: Distance from the goal at which the path may end [m].
+
+        Returns:
+            Points of the path, (N, 2), in the map [m].
+
+        Raises:
+            PlanningError: If there is no path.
+        """
         costmap = self.costmaps.global_costmap
         start_xy: Tuple[float, float] = (start_in_map.x, start_in_map.y)
         return self.planner.plan(
@@ -74,7 +93,7 @@ class NavigatorComponents:
         )
 
     def control_context(self, state: RobotState) -> ControlContext:
-        """What a velocity is to be chosen from: how things will stand when it takes effect."""
+        """Predict what the local planner will find when its command takes effect."""
         controller = self.settings.controller
         acceleration = Twist2(controller.acc_lim_x, controller.acc_lim_theta)
         moved, twist = predict_motion(state.twist, self.active_command, self.latency, acceleration)
@@ -83,6 +102,6 @@ class NavigatorComponents:
             state.base_in_odom @ moved,
             twist,
             self.costmaps.local_costmap,
-            self._obstacle_tracker.obstacles_at(state.now + self.latency),
+            self._obstacle_tracker.obstacles_at(state.stamp + self.latency),
             self.costmaps.global_costmap,
         )

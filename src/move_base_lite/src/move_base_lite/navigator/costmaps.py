@@ -1,4 +1,4 @@
-"""The two costmaps of a robot, and what they were shown."""
+"""The global and the local costmap of a robot."""
 
 import math
 from typing import Dict, List, Optional, Sequence, Tuple
@@ -6,6 +6,7 @@ from typing import Dict, List, Optional, Sequence, Tuple
 from move_base_lite.config import NavigatorSettings
 from move_base_lite.costmap import INSCRIBED, LETHAL, UNKNOWN, LayeredCostmap, Observation, Polygon
 from move_base_lite.errors import GoalBlocked, OutOfMap
+from move_base_lite.navigator.goal_execution import RobotState
 from move_base_lite.navigator.zones import NavigationZone, Zones
 from planar import OccupancyGrid, Pose2
 
@@ -13,62 +14,68 @@ TIME_TOLERANCE = 1e-6
 
 
 class Costmaps:
-    """``whole``: of the map, to plan on. ``near``: of the robot's surroundings, in odom, to drive on."""
+    """Updates both costmaps from observations.
+
+    Attributes:
+        global_costmap: Costmap for planning, in the map frame.
+        local_costmap: Costmap for control, around the robot, in the odometry frame.
+    """
 
     def __init__(self, settings: NavigatorSettings, grid: Optional[OccupancyGrid], zones: Zones):
         self._settings = settings
         self._zones = zones
-        self._zones_drawn: Tuple[List[NavigationZone], List[NavigationZone]] = ([], [])
+        self._applied_zones: Tuple[List[NavigationZone], List[NavigationZone]] = ([], [])
         self._next_updates = [-math.inf, -math.inf]
-        self._last_seen: Dict[str, float] = {}
+        self._last_stamps: Dict[str, float] = {}
         self.global_costmap = LayeredCostmap(settings.global_costmap, grid)
         self.local_costmap = LayeredCostmap(settings.local_costmap, grid)
 
     def update_settings(self, settings: NavigatorSettings) -> None:
-        """Goes on with other settings; what was seen stays where it can."""
+        """Apply other settings; observations stay unless the cells change."""
         self._settings = settings
         self.global_costmap = self.global_costmap.with_settings(settings.global_costmap)
         self.local_costmap = self.local_costmap.with_settings(settings.local_costmap)
 
     def clear(self) -> None:
-        """Forgets all obstacles that are not in the map."""
+        """Clear all obstacles that are not in the static map."""
         self.local_costmap.reset()
         self.global_costmap.reset()
 
     def update(
         self,
-        now: float,
-        base_in_map: Pose2,
-        base_in_odom: Pose2,
+        state: RobotState,
         observations: Sequence[Observation],
-        lasting: Sequence[Observation],
+        static_observations: Sequence[Observation],
     ) -> None:
-        """Has the costmaps note what is seen, and brings those up to date that are due.
+        """Add observations and update the costmaps that are due.
 
-        ``lasting``: the same without what will soon have gone, for the costmap to plan on.
+        Args:
+            state: Robot state at this control tick.
+            observations: Sensor data for the local costmap.
+            static_observations: The same without moving obstacles, for the global costmap.
         """
-        map_in_odom = base_in_odom @ base_in_map.inverse()
-        self._draw_zones(base_in_map)
+        map_in_odom = state.base_in_odom @ state.base_in_map.inverse()
+        self._apply_zones(state.base_in_map)
         for observation in observations:
-            self._last_seen[observation.topic] = observation.stamp
-        views = (
-            (self.local_costmap, base_in_odom, map_in_odom, observations),
-            (self.global_costmap, base_in_map, Pose2(), lasting),
+            self._last_stamps[observation.topic] = observation.stamp
+        inputs = (
+            (self.local_costmap, state.base_in_odom, map_in_odom, observations),
+            (self.global_costmap, state.base_in_map, Pose2(), static_observations),
         )
-        for number, (costmap, base_in_frame, map_in_frame, seen) in enumerate(views):
-            for observation in seen:
+        for number, (costmap, base_in_frame, map_in_frame, new_observations) in enumerate(inputs):
+            for observation in new_observations:
                 costmap.add_observation(observation, base_in_frame)
-            if now >= self._next_updates[number] - TIME_TOLERANCE:
+            if state.stamp >= self._next_updates[number] - TIME_TOLERANCE:
                 costmap.update(base_in_frame, map_in_frame)
                 frequency = costmap.settings.update_frequency
-                self._next_updates[number] = now + (1.0 / frequency if frequency > 0.0 else math.inf)
+                self._next_updates[number] = state.stamp + (1.0 / frequency if frequency > 0.0 else math.inf)
 
     def last_stamp(self, topic: str) -> float:
-        """When the newest data of a sensor were taken, seconds; -inf if there were none."""
-        return self._last_seen.get(topic, -math.inf)
+        """Stamp of the newest observation from a topic [s]; -inf if there is none."""
+        return self._last_stamps.get(topic, -math.inf)
 
     def stale_source(self, now: float) -> Optional[str]:
-        """The topic of a sensor whose newest data are older than a costmap allows, if there is one."""
+        """Topic of a sensor whose data exceed its expected_update_rate; None if there is none."""
         for costmap in (self._settings.local_costmap, self._settings.global_costmap):
             for source in costmap.obstacles.sources if costmap.obstacles.enabled else ():
                 if 0.0 < source.expected_update_rate < now - self.last_stamp(source.topic):
@@ -76,9 +83,11 @@ class Costmaps:
         return None
 
     def check_goal(self, goal: Pose2) -> None:
-        """Says at once what no recovery can change: a goal off the map, or in the map's own obstacles.
+        """Reject a goal that no recovery behaviour can make reachable.
 
-        Raises OutOfMap or GoalBlocked.
+        Raises:
+            OutOfMap: If the goal is outside the map.
+            GoalBlocked: If it is in a keep-out zone, an obstacle of the map, or unknown space.
         """
         costmap, where = self.global_costmap, f"the goal at ({goal.x:.2f}, {goal.y:.2f})"
         if not costmap.window.contains(goal.x, goal.y):
@@ -96,14 +105,14 @@ class Costmaps:
         if cost == UNKNOWN and not planner.allow_unknown:
             raise GoalBlocked(f"{where} is in unknown space")
 
-    def _draw_zones(self, base_in_map: Pose2) -> None:
-        """Bars the keep-out zones but those that the robot stands in, which it is to leave."""
-        barred, inside = self._zones.keep_out_of(base_in_map)
-        if (barred, inside) == self._zones_drawn:
+    def _apply_zones(self, base_in_map: Pose2) -> None:
+        """Block the keep-out zones, except those that the robot is in and has to leave."""
+        blocked, occupied = self._zones.split_keep_out(base_in_map)
+        if (blocked, occupied) == self._applied_zones:
             return
-        self._zones_drawn = (barred, inside)
+        self._applied_zones = (blocked, occupied)
         for costmap in (self.global_costmap, self.local_costmap):
-            costmap.set_keep_out(_polygons(barred), _polygons(inside))
+            costmap.set_keep_out(_polygons(blocked), _polygons(occupied))
 
 
 def _polygons(zones: List[NavigationZone]) -> List[Polygon]:

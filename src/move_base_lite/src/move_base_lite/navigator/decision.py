@@ -1,4 +1,4 @@
-"""What the Navigator decides in a control period."""
+"""Decision: the output of the Navigator in a control period."""
 
 from dataclasses import dataclass
 from enum import Enum
@@ -12,7 +12,7 @@ from planar import Twist2
 
 
 class Status(Enum):
-    """What the Navigator is doing; the last three say, once, how a goal ended."""
+    """State of the Navigator; the last three are reported once, when a goal ends."""
 
     IDLE = "idle"
     PLANNING = "planning"
@@ -28,7 +28,7 @@ class Status(Enum):
 
 
 class RecoveryTrigger(Enum):
-    """What made recovery necessary, with move_base's text of giving up for it."""
+    """What made recovery necessary; the value is move_base's abort text for it."""
 
     PLANNING = "Failed to find a valid plan. Even after executing recovery behaviors."
     CONTROLLING = "Failed to find a valid control. Even after executing recovery behaviors."
@@ -40,7 +40,7 @@ STALE_SENSOR_TEXT = "Sensor data is out of date, we're not going to allow comman
 
 
 def with_reason(text: str, error: NavigationError) -> str:
-    """move_base's text, which clients match on, followed by the reason it keeps to itself."""
+    """Append the reason to move_base's text, which clients match and which does not contain it."""
     return f"{text} [code={error.code}: {error}]"
 
 
@@ -50,9 +50,14 @@ CANCELLED_OUTCOME = 11
 
 @dataclass(frozen=True)
 class GoalProgress:
-    """How the pursuit of a goal stands: seconds and metres driven so far, recoveries used, and what is left.
+    """Progress towards the goal.
 
-    ``seconds_left`` is an estimate from the speed so far.
+    Attributes:
+        seconds: Time since the goal was accepted [s].
+        travelled: Distance travelled since then [m].
+        recoveries: Recovery behaviours used.
+        distance_left: Length of the path that remains [m].
+        seconds_left: Estimate of the remaining time from the average speed [s].
     """
 
     seconds: float
@@ -64,9 +69,16 @@ class GoalProgress:
 
 @dataclass(frozen=True)
 class GoalOutcome:
-    """How a goal ended. ``code``: the number move_base_flex has for it; ``reason``: the same as a word.
+    """How a goal ended.
 
-    ``distance_to_goal`` in metres, ``angle_to_goal`` in radians, of the robot at the end.
+    Attributes:
+        code: Outcome code of move_base_flex (mbf_msgs/MoveBaseResult).
+        reason: The outcome as a word, such as NO_PATH.
+        text: Text of the action's result.
+        distance_to_goal: Distance of the robot from the goal at the end [m].
+        angle_to_goal: Difference of headings at the end [rad].
+        recoveries: Recovery behaviours used.
+        seconds: Time since the goal was accepted [s].
     """
 
     code: int
@@ -80,7 +92,13 @@ class GoalOutcome:
 
 @dataclass(frozen=True)
 class RecoveryStart:
-    """A recovery behaviour that begins in this period: the ``index``-th, from 0, of ``total``."""
+    """A recovery behaviour that starts in this period.
+
+    Attributes:
+        name: Its name in ~recovery_behaviors.
+        index: Its position in the list, from 0.
+        total: Length of the list.
+    """
 
     name: str
     index: int
@@ -89,13 +107,19 @@ class RecoveryStart:
 
 @dataclass(frozen=True, eq=False)
 class Decision:
-    """What to do in this control period.
+    """Output of :meth:`Navigator.tick`.
 
-    ``command``: the velocity to send, None while there is no goal. ``text``: why, where there is something
-    to tell. ``plan_xy``: (N, 2) in the map, a plan made in this period, empty if none was found.
-    ``trajectory``: poses (N, 3) the command leads through, and ``followed_xy``: (M, 2) the part of the plan
-    it follows, both in the local frame. ``trajectory_samples``: the trajectories that DWA evaluated, valid
-    until the next period. ``progress``: while there is a goal. ``outcome``: with a goal's last decision.
+    Attributes:
+        status: State of the Navigator.
+        command: Velocity command; None while there is no goal.
+        text: Why the robot stands or the goal ended; empty if there is nothing to report.
+        plan_xy: (N, 2) path in the map, if a plan was made in this period; empty if planning failed.
+        trajectory: (N, 3) predicted poses x, y, yaw for the command, in the local frame.
+        followed_xy: (M, 2) part of the plan that the command follows, in the local frame.
+        trajectory_samples: Samples of the local planner, if it offers them; valid until the next tick.
+        recovery: Recovery behaviour that starts in this period.
+        progress: Progress while there is a goal.
+        outcome: Outcome, in the last decision for a goal.
     """
 
     status: Status

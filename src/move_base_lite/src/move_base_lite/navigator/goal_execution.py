@@ -1,4 +1,4 @@
-"""The pursuit of one goal: since when what has failed, and how far recovery has come."""
+"""State of the execution of one goal: what fails since when, and which recovery behaviour comes next."""
 
 import math
 from dataclasses import dataclass, field
@@ -12,23 +12,33 @@ from move_base_lite.navigator.progress_checker import RecoveryProgressChecker
 from move_base_lite.recovery import RecoveryBehavior, SpeedLimit
 from planar import Pose2, Twist2, wrap
 
-# Metres after which the speed so far tells how long the rest will take.
+# Metres to travel before the average speed is used to estimate the remaining time.
 MIN_TRAVEL_FOR_SPEED = 1.0
-# Metres and radians that it is told to move, and the share of them that it moves at least, or it cannot.
+# After so much commanded motion, metres plus radians, odometry must show at least this fraction of it.
 MIN_COMMANDED_MOTION, MIN_MOTION_FRACTION = 1.0, 0.1
 
 
 @dataclass(frozen=True)
 class RobotState:
-    """The robot in this control period: seconds, its pose in two frames, its velocity."""
+    """State of the robot at a control tick.
 
-    now: float
+    Attributes:
+        stamp: Time of the tick [s].
+        base_in_map: Pose in the map, from localization.
+        base_in_odom: Pose in the odometry frame.
+        twist: Velocity from odometry.
+    """
+
+    stamp: float
     base_in_map: Pose2
     base_in_odom: Pose2
     twist: Twist2
 
     def distance_to(self, other: "RobotState") -> float:
-        """What localization and odometry agree on: no jump of an estimate, no wheels that spin."""
+        """Distance on which localization and odometry agree [m].
+
+        The smaller of both: neither a jump of localization nor spinning wheels count as motion.
+        """
         return min(
             self.base_in_map.distance_to(other.base_in_map), self.base_in_odom.distance_to(other.base_in_odom)
         )
@@ -36,18 +46,38 @@ class RobotState:
 
 @dataclass
 class GoalExecution:
-    """What the Navigator remembers while it has a goal: when and where the robot was last, and last got on.
+    """Execution state of one goal, read and written by the state machine.
 
-    ``path_xy``: (N, 2) in the map, the plan in use, made at ``planned_at``; empty if the last one failed.
-    ``told``, ``moved``: since the last progress, metres and radians together that it was told to move, and
-    that odometry says it has.
+    Attributes:
+        goal: Goal in the map.
+        started: When the goal was accepted [s].
+        last_state: Robot at the latest tick.
+        progress_state: Robot when it last made progress, by ~oscillation_distance.
+        progress_stamp: When it last made progress, or a recovery behaviour ended [s].
+        planning_since: Start of the time that ~planner_patience limits [s].
+        next_plan: When the next plan is due [s].
+        status: State of the state machine.
+        trigger: What made the latest recovery necessary.
+        control_fails_since: When control began to fail [s]; None while it succeeds.
+        failed_plans: Failed plans since the last successful one.
+        recovery_index: Next recovery behaviour in the list.
+        recovery: Recovery behaviour that is running.
+        error: Why planning or control failed last.
+        travelled: Distance since the goal was accepted [m].
+        recoveries_used: Recovery behaviours started for this goal.
+        commanded_motion: Motion commanded since the last progress, metres plus radians.
+        measured_motion: Motion measured by odometry since then, metres plus radians.
+        speed_limit: Limit set by a recovery behaviour, and the robot's pose in odometry at that time.
+        progress_checker: Checks plans found after recovery.
+        path_xy: (N, 2) plan in the map; empty if the latest one failed.
+        planned_at: When the latest plan was made [s].
     """
 
     goal: Pose2
     started: float
-    last: RobotState
-    last_progress: RobotState
-    last_progress_stamp: float
+    last_state: RobotState
+    progress_state: RobotState
+    progress_stamp: float
     planning_since: float
     next_plan: float
     status: Status = Status.PLANNING
@@ -56,84 +86,94 @@ class GoalExecution:
     failed_plans: int = 0
     recovery_index: int = 0
     recovery: Optional[RecoveryBehavior] = None
-    reason: Optional[NavigationError] = None
+    error: Optional[NavigationError] = None
     travelled: float = 0.0
     recoveries_used: int = 0
-    commanded: float = 0.0
-    moved: float = 0.0
-    speed_limit_until: Optional[Tuple[SpeedLimit, Pose2]] = None
+    commanded_motion: float = 0.0
+    measured_motion: float = 0.0
+    speed_limit: Optional[Tuple[SpeedLimit, Pose2]] = None
     progress_checker: RecoveryProgressChecker = field(default_factory=RecoveryProgressChecker)
     path_xy: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
     planned_at: float = -math.inf
 
     @classmethod
-    def of(cls, goal: Pose2, state: RobotState) -> "GoalExecution":
-        """A pursuit that begins now and here."""
-        now = state.now
+    def start(cls, goal: Pose2, state: RobotState) -> "GoalExecution":
+        """Start the execution of a goal at this tick."""
+        now = state.stamp
         return cls(goal, now, state, state, now, now, now)
 
     @property
     def pose(self) -> Pose2:
-        """Where the robot was last, in the map."""
-        return self.last.base_in_map
+        """Pose of the robot in the map at the latest tick."""
+        return self.last_state.base_in_map
 
-    def advance(
+    def update(
         self, state: RobotState, oscillation_distance: float, commanded: Twist2, period: float
     ) -> None:
-        """The robot has moved on; so many metres from where it was before are progress.
+        """Update travelled distance and progress.
 
-        ``told``: the velocity that was in force, for ``period`` seconds.
+        Args:
+            state: Robot state at this control tick.
+            oscillation_distance: Displacement that counts as progress [m] (move_base: ~oscillation_distance).
+            commanded: Velocity command in effect since the last tick.
+            period: Control period [s].
         """
-        self.commanded += (abs(commanded.v) + abs(commanded.omega)) * period
-        self.moved += (abs(state.twist.v) + abs(state.twist.omega)) * period
-        self.travelled += state.distance_to(self.last)
-        self.last = state
-        if state.distance_to(self.last_progress) >= oscillation_distance:
-            self.last_progress = state
-            self._count_from(state.now)
+        self.commanded_motion += (abs(commanded.v) + abs(commanded.omega)) * period
+        self.measured_motion += (abs(state.twist.v) + abs(state.twist.omega)) * period
+        self.travelled += state.distance_to(self.last_state)
+        self.last_state = state
+        if state.distance_to(self.progress_state) >= oscillation_distance:
+            self.progress_state = state
+            self._restart_progress(state.stamp)
             self.on_resolved(RecoveryTrigger.OSCILLATION)
 
-    def speed_limit(self, base_in_odom: Pose2, allowed: float) -> Twist2:
-        """The highest speeds that anything but the controller's own settings allows.
+    def limit_speed(self, limit: SpeedLimit, base_in_odom: Pose2) -> None:
+        """Apply the speed limit of a recovery behaviour from this pose on."""
+        self.speed_limit = (limit, base_in_odom)
 
-        ``allowed``: m/s, where the robot is; a recovery may have it go more slowly for a while.
+    def max_speed(self, base_in_odom: Pose2, zone_speed: float) -> Twist2:
+        """Highest speeds allowed by zones and by a recovery behaviour.
+
+        Args:
+            base_in_odom: Robot in the odometry frame.
+            zone_speed: Highest speed in the zones at the robot's position [m/s].
         """
-        if self.speed_limit_until is not None:
-            limit, since = self.speed_limit_until
-            if base_in_odom.distance_to(since) < limit.distance:
-                return Twist2(min(limit.highest.v, allowed), limit.highest.omega)
-            self.speed_limit_until = None
-        return Twist2(allowed, math.inf)
+        if self.speed_limit is not None:
+            limit, start = self.speed_limit
+            if base_in_odom.distance_to(start) < limit.distance:
+                return Twist2(min(limit.highest.v, zone_speed), limit.highest.omega)
+            self.speed_limit = None
+        return Twist2(zone_speed, math.inf)
 
     def on_planning_failed(self, error: PlanningError, now: float) -> None:
-        """There is no plan; the last one is driven on if it is under way."""
+        """Record that planning failed; a plan that is being followed stays in use."""
         if self.failed_plans == 0 and self.status is Status.CONTROLLING:
             self.planning_since = now
         self.failed_plans += 1
-        self.reason = self.progress_checker.reason = error
+        self.error = self.progress_checker.planning_error = error
         self.path_xy = np.empty((0, 2))
 
-    def has_no_plan(self, now: float, patience: float) -> bool:
-        """Whether the plan under way leads nowhere, and none has been found that does for so many seconds."""
+    def needs_planning_recovery(self, now: float, patience: float) -> bool:
+        """Whether the plan in use makes no progress, or planning has failed for ``patience`` seconds."""
         if self.progress_checker.budget_exceeded(self.travelled):
             return True
-        return self.failed_plans > 0 and now - max(self.planning_since, self.last_progress_stamp) > patience
+        return self.failed_plans > 0 and now - max(self.planning_since, self.progress_stamp) > patience
 
-    def on_plan_found(self) -> None:
-        """There is a plan."""
+    def on_planning_succeeded(self) -> None:
+        """Record that there is a plan: control starts."""
         self.status = Status.CONTROLLING
         self.failed_plans = 0
         self.on_resolved(RecoveryTrigger.PLANNING)
 
-    def on_control_succeeded(self, distance_left: float) -> None:
-        """There is a velocity along a plan of which so many metres are left."""
-        self.progress_checker.on_control_succeeded(self.travelled, distance_left)
+    def on_control_succeeded(self, remaining: float) -> None:
+        """Record that there is a velocity along a plan with ``remaining`` metres to go."""
+        self.progress_checker.on_control_succeeded(self.travelled, remaining)
         self.control_fails_since = None
         self.on_resolved(RecoveryTrigger.CONTROLLING)
 
     def on_control_failed(self, error: ControlError, now: float, patience: float) -> None:
-        """Without a velocity another plan may help, or, after so many seconds, recovery."""
-        self.reason = error
+        """Record that there is no velocity: plan again, or start recovery after ``patience`` seconds."""
+        self.error = error
         if self.control_fails_since is None:
             self.control_fails_since = now
         if now - self.control_fails_since > patience:
@@ -142,50 +182,57 @@ class GoalExecution:
             self.replan(now)
 
     def on_resolved(self, trigger: RecoveryTrigger) -> None:
-        """What recovery was begun for is no more: the next trouble starts with the first behaviour."""
+        """Restart the list of recovery behaviours if ``trigger`` was the reason of the latest recovery."""
         if self.trigger is trigger:
             self.recovery_index = self.progress_checker.behaviors_tried
 
     def start_recovery(self, trigger: RecoveryTrigger) -> None:
-        """Recovery is to begin."""
+        """Switch to recovery."""
         self.status, self.trigger = Status.CLEARING, trigger
         if trigger is RecoveryTrigger.PLANNING:
             self.progress_checker.on_planning_failed()
-            self.reason = self.progress_checker.reason
+            self.error = self.progress_checker.planning_error
 
     def replan(self, now: float) -> None:
-        """Another plan is to be made, with full patience."""
+        """Switch to planning, with full patience."""
         self.status = Status.PLANNING
         self.planning_since, self.failed_plans = now, 0
 
     def on_behavior_finished(self, now: float) -> None:
-        """One behaviour has ended; the next trouble gets the next one."""
+        """Record that a recovery behaviour has ended, and plan again."""
         self.recovery = None
         self.recovery_index += 1
         if self.trigger is RecoveryTrigger.PLANNING:
             self.progress_checker.on_behavior_finished(self.recovery_index)
         self.control_fails_since = None
-        self._count_from(now)
+        self._restart_progress(now)
         self.replan(now)
 
     @property
     def follows_commands(self) -> bool:
-        """Whether the robot does, to some extent, what it has been told since the last progress."""
-        return self.commanded < MIN_COMMANDED_MOTION or self.moved > MIN_MOTION_FRACTION * self.commanded
-
-    def _count_from(self, now: float) -> None:
-        self.last_progress_stamp, self.commanded, self.moved = now, 0.0, 0.0
-
-    def progress(self, now: float, distance_left: float, usual_speed: float) -> GoalProgress:
-        """How it stands; before the robot's own speed tells, the usual one says how long the rest takes."""
-        seconds = now - self.started
-        speed = self.travelled / seconds if self.travelled > MIN_TRAVEL_FOR_SPEED else usual_speed
-        return GoalProgress(
-            seconds, self.travelled, self.recoveries_used, distance_left, distance_left / speed
+        """Whether the robot has moved at least a little of what was commanded since the last progress."""
+        return (
+            self.commanded_motion < MIN_COMMANDED_MOTION
+            or self.measured_motion > MIN_MOTION_FRACTION * self.commanded_motion
         )
 
+    def _restart_progress(self, now: float) -> None:
+        self.progress_stamp, self.commanded_motion, self.measured_motion = now, 0.0, 0.0
+
+    def progress(self, now: float, remaining: float, nominal_speed: float) -> GoalProgress:
+        """Progress so far, and an estimate of what remains.
+
+        Args:
+            now: Time [s].
+            remaining: Length of the path that remains [m].
+            nominal_speed: Speed assumed until the robot has travelled far enough to measure its own [m/s].
+        """
+        seconds = now - self.started
+        speed = self.travelled / seconds if self.travelled > MIN_TRAVEL_FOR_SPEED else nominal_speed
+        return GoalProgress(seconds, self.travelled, self.recoveries_used, remaining, remaining / speed)
+
     def outcome(self, now: float, code: int, reason: str, text: str) -> GoalOutcome:
-        """How it ended."""
+        """Outcome of the goal, with the robot's distance to it."""
         return GoalOutcome(
             code,
             reason,

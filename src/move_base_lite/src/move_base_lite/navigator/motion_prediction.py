@@ -1,4 +1,4 @@
-"""Where the robot will be when what is decided now takes effect."""
+"""Prediction of the robot's motion during the latency of a command."""
 
 from typing import Tuple
 
@@ -10,9 +10,16 @@ STEPS = 5
 def predict_motion(
     twist: Twist2, active_command: Twist2, seconds: float, acceleration: Twist2
 ) -> Tuple[Pose2, Twist2]:
-    """How the robot moves on and how fast it then is.
+    """Predict the robot's pose and velocity when the next command takes effect.
 
-    ``twist``: of now; ``in_force``: the command that it obeys meanwhile; ``acceleration``: the robot's own.
+    Args:
+        twist: Present velocity.
+        active_command: Velocity command that the robot follows until then.
+        seconds: Time until then [s].
+        acceleration: Limits of acceleration, m/s^2 and rad/s^2.
+
+    Returns:
+        The predicted pose in the present base frame, and the velocity there.
     """
     moved, dt = Pose2(), seconds / STEPS
     for _ in range(STEPS if seconds > 0.0 else 0):
@@ -26,5 +33,5 @@ def predict_motion(
     return moved, twist
 
 
-def _towards(now: float, wanted: float, most: float) -> float:
-    return min(max(wanted, now - most), now + most)
+def _towards(value: float, target: float, max_change: float) -> float:
+    return min(max(target, value - max_change), value + max_change)

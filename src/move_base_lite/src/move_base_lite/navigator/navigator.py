@@ -1,7 +1,7 @@
-"""The Navigator: from poses and scans to velocities that reach a goal."""
+"""Navigator: from goal, robot state and sensor data to velocity commands."""
 
 from dataclasses import replace
-from typing import Optional, Sequence
+from typing import Any, Optional, Sequence
 
 import numpy as np
 
@@ -24,15 +24,20 @@ from move_base_lite.navigator.state_machine import GoalAborted, GoalReached, ste
 from move_base_lite.navigator.zones import Zones
 from move_base_lite.planning import Potential
 from planar import OccupancyGrid, Pose2, Scan, Twist2
+from planar.deprecation import renamed_method
 from planar.geometry.pose import check_pose
 
 
 class Navigator:
-    """Drives a differential-drive robot to one goal at a time, without colliding.
+    """Drives a differential-drive robot to one goal at a time without collisions.
 
-    Call :meth:`tick` once a control period. Plans on a costmap of the map, follows the plan on a costmap of
-    the robot's surroundings, and tries recovery behaviours in order when either fails, as move_base does
-    (states.py).
+    Call :meth:`tick` once a control period. Plans on the global costmap, follows the plan on the local
+    costmap and runs the recovery behaviours in order when either fails, as move_base does (state_machine.py).
+
+    Args:
+        settings: Parameters of move_base, its costmaps, planners and recovery behaviours.
+        grid: Static map, if there is one.
+        zones: Keep-out and speed zones.
     """
 
     def __init__(
@@ -53,37 +58,38 @@ class Navigator:
         observations: Sequence[Observation] = (),
         latency: float = 0.0,
     ) -> Decision:
-        """The velocity for the coming period.
+        """Run one control period.
 
-        ``now``: seconds; ``scan``: one not given before, as seen from the present pose, or None.
-        ``sightings``: the same of any other sensors. ``latency``: seconds until the velocity takes effect.
+        Args:
+            now: Time [s].
+            base_in_map: Robot in the map, from localization.
+            base_in_odom: Robot in the odometry frame.
+            twist: Velocity from odometry.
+            scan: New scan, as seen from the present pose; None if there is none.
+            observations: New data of other sensors, as seen from the present pose.
+            latency: Time until the command takes effect [s].
+
+        Returns:
+            The velocity command for the coming period, and the state of the goal.
         """
         self._components.latency = latency
-        decision = self._decide(now, base_in_map, base_in_odom, twist, scan, observations)
+        if scan is not None:
+            observations = [*observations, observation_from_scan(self.settings.scan_topic, scan)]
+        decision = self._decide(RobotState(now, base_in_map, base_in_odom, twist), observations)
         self._components.active_command = decision.command or Twist2()
         return decision
 
-    def _decide(
-        self,
-        now: float,
-        base_in_map: Pose2,
-        base_in_odom: Pose2,
-        twist: Twist2,
-        scan: Optional[Scan],
-        observations: Sequence[Observation],
-    ) -> Decision:
-        state = RobotState(now, base_in_map, base_in_odom, twist)
-        if scan is not None:
-            observations = [*observations, observation_from_scan(self.settings.scan_topic, scan)]
+    def _decide(self, state: RobotState, observations: Sequence[Observation]) -> Decision:
+        components, now = self._components, state.stamp
         try:
             if self.is_active or not self.settings.move_base.shutdown_costmaps:
-                self._components.update_costmaps(state, observations)
+                components.update_costmaps(state, observations)
             self._accept_goal(state)
             if self._execution is None:
                 return Decision(Status.IDLE)
             distance = self.settings.move_base.oscillation_distance
-            self._execution.advance(state, distance, self._components.active_command, self._components.period)
-            decision = step(self._execution, state, self._components)
+            self._execution.update(state, distance, components.active_command, components.period)
+            decision = step(self._execution, state, components)
         except GoalReached:
             outcome = self._outcome(now, SUCCEEDED_OUTCOME, "SUCCESS", SUCCESS_TEXT)
             return self._end(Status.SUCCEEDED, SUCCESS_TEXT, outcome)
@@ -93,55 +99,60 @@ class Navigator:
             return self._end(Status.ABORTED, text, outcome)
         except PluginFailed as failure:
             return self._abort_for_plugin(failure, now)
-        left, usual_speed = self._components.controller.distance_left, self.settings.controller.max_vel_x
-        return replace(decision, progress=self._execution.progress(now, left, usual_speed))
+        remaining, nominal_speed = components.controller.distance_left, self.settings.controller.max_vel_x
+        return replace(decision, progress=self._execution.progress(now, remaining, nominal_speed))
 
     def _accept_goal(self, state: RobotState) -> None:
-        """Begins to pursue a new goal, if there is one. Raises GivenUp for one that can never be reached."""
+        """Start the execution of a new goal, if there is one.
+
+        Raises:
+            GoalAborted: If the goal can never be reached.
+        """
         goal, self._new_goal = self._new_goal, None
         if goal is not None:
-            self._execution = GoalExecution.of(goal, state)
+            self._execution = GoalExecution.start(goal, state)
             try:
                 self._components.costmaps.check_goal(goal)
             except PlanningError as error:
                 raise GoalAborted(RecoveryTrigger.PLANNING.value, error) from error
 
     def set_goal(self, goal_in_map: Pose2) -> None:
-        """Drives there from the next tick on; a goal under way is left without stopping.
+        """Set the goal, from the next tick on; it preempts a goal in progress without stopping.
 
-        Raises OutOfRangeError for a place at which no robot can be.
+        Raises:
+            OutOfRangeError: If the coordinates are too large.
         """
         check_pose(goal_in_map, "a goal")
         self._new_goal = goal_in_map
 
     def cancel(self, now: float) -> Decision:
-        """Ends the goal under way, if there is one: the robot is to stop at once."""
+        """Cancel the goal, if there is one; the decision stops the robot."""
         if not self.is_active:
             return Decision(Status.IDLE)
         return self._end(Status.CANCELLED, "", self._outcome(now, CANCELLED_OUTCOME, "CANCELLED", ""))
 
     def clear_goal(self) -> None:
-        """Drops the goal without a word; the robot has to be stopped by other means."""
+        """Drop the goal without an outcome; the caller has to stop the robot."""
         self._new_goal = self._execution = None
         self._components.reset_controller()
 
     def reset(self) -> None:
-        """Forgets the goal and all that was seen, as after a jump of time."""
+        """Drop the goal and all observations, as after a jump of time."""
         self.set_map(self._grid)
         self.clear_goal()
 
     def set_map(self, grid: Optional[OccupancyGrid]) -> None:
-        """Goes on with another map, from which obstacles have to be seen anew."""
+        """Replace the static map; observations are dropped."""
         self._grid = grid
         self._components.set_map(grid)
 
     def update_settings(self, settings: NavigatorSettings) -> None:
-        """Goes on with other settings, goal and plan included."""
+        """Apply other settings; goal and plan stay."""
         self._components.update_settings(settings)
 
     @property
     def settings(self) -> NavigatorSettings:
-        """Those in force."""
+        """Settings in use."""
         return self._components.settings
 
     @property
@@ -151,38 +162,51 @@ class Navigator:
 
     @property
     def global_costmap(self) -> LayeredCostmap:
-        """The costmap to plan on, in the map's frame."""
+        """Costmap for planning, in the map frame."""
         return self._components.costmaps.global_costmap
 
     @property
     def local_costmap(self) -> LayeredCostmap:
-        """The costmap to drive on, in odometry's frame."""
+        """Costmap for control, in the odometry frame."""
         return self._components.costmaps.local_costmap
 
     @property
     def potential(self) -> Optional[Potential]:
-        """The wave of the newest plan, if the settings ask for it."""
+        """Potential of the latest plan, if visualize_potential or publish_potential is on."""
         return self._components.planner.potential
 
     def make_plan(self, start_in_map: Pose2, goal_in_map: Pose2, tolerance: float = 0.0) -> np.ndarray:
-        """Path (N, 2) in the map between any two places. Raises PlanningError, and as ``set_goal``."""
+        """Plan a path between two poses without driving.
+
+        Args:
+            start_in_map: Start.
+            goal_in_map: Goal.
+            tolerance: Distance from the goal at which the path may end [m].
+
+        Returns:
+            Points of the path, (N, 2), in the map [m].
+
+        Raises:
+            PlanningError: If there is no path.
+            OutOfRangeError: If the coordinates are too large.
+        """
         check_pose(start_in_map, "a start")
         check_pose(goal_in_map, "a goal")
         return self._components.plan(start_in_map, goal_in_map, tolerance)
 
     def clear_costmaps(self) -> None:
-        """Forgets all obstacles that are not in the map."""
+        """Clear all obstacles that are not in the static map (move_base: ~clear_costmaps)."""
         self._components.costmaps.clear()
 
     def clear_around(self, base_in_map: Pose2) -> None:
-        """Forgets what obstacles the map's costmap shows where the robot stands."""
+        """Clear the obstacles of the global costmap at the robot's position, within ~clearing_radius."""
         radius = self.settings.move_base.clearing_radius
         self.global_costmap.clear_around(
             base_in_map, 2.0 * (radius or self.global_costmap.footprint.circumscribed_radius)
         )
 
     def _abort_for_plugin(self, failure: PluginFailed, now: float) -> Decision:
-        """Costs that a layer has failed to tell cannot be relied on: no goal is pursued then."""
+        """Abort the goal, since the costs of a failed layer are unknown."""
         if not self.is_active:
             return Decision(Status.IDLE, text=str(failure))
         text = with_reason(RecoveryTrigger.CONTROLLING.value, failure)
@@ -196,3 +220,8 @@ class Navigator:
     def _end(self, status: Status, text: str, outcome: GoalOutcome) -> Decision:
         self.clear_goal()
         return Decision(status, Twist2(), text, outcome=outcome)
+
+    # Names of the first releases.
+    change: Any = renamed_method("change", "update_settings")
+    forget: Any = renamed_method("forget", "reset")
+    forget_goal: Any = renamed_method("forget_goal", "clear_goal")

@@ -1,4 +1,4 @@
-"""Whether plans lead on that were found only after recovery behaviours had forgotten what was in the way."""
+"""Progress check for plans that appear only because a recovery behaviour cleared the costmap."""
 
 import math
 from dataclasses import dataclass
@@ -6,47 +6,58 @@ from typing import Optional
 
 from move_base_lite.errors import PlanningError
 
-# Share of the way that was left when plans failed, below which the robot has got on since.
+# Fraction of the remaining path below which the robot counts as having passed the obstruction.
 PROGRESS_FRACTION = 0.5
-# How often the length of such a plan is driven before it is known to lead nowhere.
+# Multiple of the plan's length the robot may travel before the plan counts as leading nowhere.
 TRAVEL_BUDGET = 2.0
 
 
 @dataclass
 class RecoveryProgressChecker:
-    """A plan alone does not overcome that there was none: what was forgotten may be in the way still.
+    """Decides whether a plan found after clearing the costmap makes progress.
 
-    ``tried_in_vain``: how many behaviours have led to no more than such plans; ``reason``: why plans failed.
-    Of the way to the goal, metres, ``least_left`` is the least that was left so far, ``left_in_trouble`` that
-    when plans failed last. ``ends_at``: metres travelled by which the plan should have led on.
+    Clearing removes obstacles from the costmap, not from the world, so a new plan alone does not prove that
+    the way is free.
+
+    Attributes:
+        behaviors_tried: Recovery behaviours that led only to such plans.
+        planning_error: Why planning failed before the first of them.
+        min_remaining: Shortest remaining path so far [m].
+        remaining_at_failure: Remaining path when planning last failed [m].
+        travel_limit: Travelled distance by which the plan must have made progress [m].
     """
 
     behaviors_tried: int = 0
-    reason: Optional[PlanningError] = None
+    planning_error: Optional[PlanningError] = None
     min_remaining: float = math.inf
     remaining_at_failure: float = math.inf
     travel_limit: float = math.inf
 
     def budget_exceeded(self, travelled: float) -> bool:
-        """Whether the plan under way should have led on by now."""
+        """Whether the robot has travelled so far that the current plan should have made progress."""
         return travelled > self.travel_limit
 
     def on_planning_failed(self) -> None:
-        """There is no plan, and recovery begins."""
+        """Record that there is no plan and recovery starts."""
         self.remaining_at_failure, self.travel_limit = self.min_remaining, math.inf
 
-    def on_behavior_finished(self, number: int) -> None:
-        """So many behaviours have been tried; what comes of it has to be seen."""
-        self.behaviors_tried, self.travel_limit = number, math.inf
+    def on_behavior_finished(self, behaviors_tried: int) -> None:
+        """Record that a recovery behaviour has ended; a plan found now has to make progress."""
+        self.behaviors_tried, self.travel_limit = behaviors_tried, math.inf
 
-    def on_control_succeeded(self, travelled: float, distance_left: float) -> None:
-        """The robot drives a plan of which so much is left."""
-        self.min_remaining = min(self.min_remaining, distance_left)
+    def on_control_succeeded(self, travelled: float, remaining: float) -> None:
+        """Update with the path that remains while the robot follows a plan.
+
+        Args:
+            travelled: Distance travelled since the goal was accepted [m].
+            remaining: Length of the path that remains [m].
+        """
+        self.min_remaining = min(self.min_remaining, remaining)
         if not self.behaviors_tried:
             return
         if math.isinf(self.remaining_at_failure):
-            self.remaining_at_failure = distance_left
+            self.remaining_at_failure = remaining
         if math.isinf(self.travel_limit):
-            self.travel_limit = travelled + TRAVEL_BUDGET * distance_left
+            self.travel_limit = travelled + TRAVEL_BUDGET * remaining
         if self.min_remaining < PROGRESS_FRACTION * self.remaining_at_failure:
             self.behaviors_tried, self.travel_limit = 0, math.inf

@@ -1,4 +1,4 @@
-"""Zones that people draw into a map: where the robot must not go, and where it must go slowly."""
+"""Keep-out zones and speed zones in the map (Nav2: KeepoutFilter, SpeedFilter)."""
 
 import math
 from dataclasses import dataclass, field
@@ -15,10 +15,14 @@ KEEP_OUT, SPEED = "keep_out", "speed"
 
 @dataclass(frozen=True)
 class NavigationZone:
-    """A polygon ``corners`` (at least 3, metres, in the map) with a meaning.
+    """A polygon in the map with a rule for the robot.
 
-    ``kind``: ``keep_out``, or ``speed``, in which the robot drives no faster than ``max_speed``, m/s.
-    ``enabled``: whether it counts from the start.
+    Attributes:
+        name: Name of the zone, also of its service ~zones/<name>.
+        kind: ``keep_out`` or ``speed``.
+        corners: At least 3 points (x, y) in the map [m].
+        max_speed: Highest speed in a speed zone [m/s].
+        enabled: Whether the zone is on at start-up.
     """
 
     name: str
@@ -37,7 +41,7 @@ class NavigationZone:
 
 
 class Zones:
-    """All zones, each on or off."""
+    """All zones, each of which can be switched on and off."""
 
     def __init__(self, zones: Sequence[NavigationZone] = ()):
         self.all = tuple(zones)
@@ -47,33 +51,36 @@ class Zones:
         return name in self._enabled
 
     def enable(self, name: str, is_on: bool) -> None:
-        """Switches the zone of that name on or off."""
+        """Switch a zone on or off."""
         (self._enabled.add if is_on else self._enabled.discard)(name)
 
-    def keep_out_of(self, base_in_map: Pose2) -> Tuple[List[NavigationZone], List[NavigationZone]]:
-        """The keep-out zones that bar the robot's way, and those it stands in and has to get out of."""
-        counting = self._counting(KEEP_OUT)
-        inside = [zone for zone in counting if zone.contains(base_in_map.x, base_in_map.y)]
-        return [zone for zone in counting if zone not in inside], inside
+    def split_keep_out(self, base_in_map: Pose2) -> Tuple[List[NavigationZone], List[NavigationZone]]:
+        """Return the keep-out zones that block the robot, and those that it is in and has to leave."""
+        active = self._active(KEEP_OUT)
+        inside = [zone for zone in active if zone.contains(base_in_map.x, base_in_map.y)]
+        return [zone for zone in active if zone not in inside], inside
 
     def keep_out_at(self, x: float, y: float) -> List[NavigationZone]:
-        """The keep-out zones that hold a point of the map."""
-        return [zone for zone in self._counting(KEEP_OUT) if zone.contains(x, y)]
+        """Return the keep-out zones that contain a point of the map."""
+        return [zone for zone in self._active(KEEP_OUT) if zone.contains(x, y)]
 
     def max_speed(self, base_in_map: Pose2) -> float:
-        """The highest speed allowed where the robot is, m/s; inf if any is."""
-        here = (zone for zone in self._counting(SPEED) if zone.contains(base_in_map.x, base_in_map.y))
+        """Highest speed allowed at the robot's position [m/s]; inf outside speed zones."""
+        here = (zone for zone in self._active(SPEED) if zone.contains(base_in_map.x, base_in_map.y))
         return min((zone.max_speed for zone in here), default=math.inf)
 
-    def _counting(self, kind: str) -> List[NavigationZone]:
+    def _active(self, kind: str) -> List[NavigationZone]:
         return [zone for zone in self.all if zone.kind == kind and zone.name in self._enabled]
 
 
 def load_zones(path) -> Zones:
-    """Zones of a YAML file ``name: {kind: keep_out, corners: [[x, y], ...]}``; a zone that is not to count
-    from the start has ``enabled: false``, and one of kind ``speed`` its ``max_speed``, m/s.
+    """Read zones from a YAML file.
 
-    Raises SettingsError naming file, line and key.
+    An entry is ``name: {kind: keep_out, corners: [[x, y], ...]}``. A zone that is off at start-up has
+    ``enabled: false``; one of kind ``speed`` has ``max_speed`` [m/s].
+
+    Raises:
+        SettingsError: With file, line and key, if the file is invalid.
     """
     table = read_table(path)
     return Zones([_zone(name, table.table(name)) for name in table])

@@ -1,4 +1,4 @@
-"""move_base's parameters, as a nested dictionary, made into the settings of a Navigator."""
+"""Conversion of move_base's parameters, a nested dictionary, to the settings of a Navigator."""
 
 from typing import Any, Dict, List, Mapping, Tuple
 
@@ -9,8 +9,8 @@ from move_base_lite.parameters.reader import ParameterReader, subtree
 from move_base_lite.parameters.recoveries import recovery_settings
 from planar.config.yaml_table import read_table
 
-# Parameters that are known but mean nothing here: of a robot that moves sideways, of details of the official
-# code, or read by it and never used.
+# Parameters that are accepted without effect, or read elsewhere: for holonomic robots, for details of the
+# official code, or unused there.
 _MOVE_BASE_IGNORED = {
     "base_global_planner", "base_local_planner", "recovery_behaviors", "latch_xy_goal_tolerance",
     "strict_params", "zones_file", "footprint", "robot_radius", "footprint_padding", "obstacle_range",
@@ -19,9 +19,14 @@ _MOVE_BASE_IGNORED = {
 
 
 def load_settings(*paths, **chosen: Any) -> NavigatorSettings:
-    """Settings from YAML files of official parameters, later ones over earlier, as ``rosparam load`` does.
+    """Read settings from YAML files of official parameters.
 
-    ``chosen``: parameters of move_base over those of all files. Raises SettingsError.
+    Args:
+        paths: Files; later ones override earlier ones, as with ``rosparam load``.
+        chosen: Parameters of move_base that override those of all files.
+
+    Raises:
+        SettingsError: If a file cannot be read or a value is invalid.
     """
     parameters: Dict[str, Any] = {}
     for path in paths:
@@ -29,9 +34,9 @@ def load_settings(*paths, **chosen: Any) -> NavigatorSettings:
     return settings_from_parameters(merged(parameters, chosen), f"{paths[-1]}: ")[0]
 
 
-def merged(subtree: Mapping[str, Any], above: Mapping[str, Any]) -> Dict[str, Any]:
-    """Nested tables, one over the other."""
-    both = dict(subtree)
+def merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> Dict[str, Any]:
+    """Merge two nested dictionaries; values of ``above`` override those of ``below``."""
+    both = dict(below)
     for key, value in above.items():
         has_tables = isinstance(value, Mapping) and isinstance(both.get(key), Mapping)
         both[key] = merged(both[key], value) if has_tables else value
@@ -41,10 +46,19 @@ def merged(subtree: Mapping[str, Any], above: Mapping[str, Any]) -> Dict[str, An
 def settings_from_parameters(
     parameters: Mapping[str, Any], where: str = "", is_lenient: bool = False
 ) -> Tuple[NavigatorSettings, List[str]]:
-    """Settings from move_base's parameters as a nested dictionary, and warnings for people.
+    """Convert move_base's parameters to settings.
 
-    Raises SettingsError with the full name of the parameter, ``where`` put before it; if ``is_lenient``, a
-    value of a wrong type counts as not set, as in roscpp, and is warned of.
+    Args:
+        parameters: Nested dictionary as on the parameter server.
+        where: Prefix of parameter names in messages.
+        is_lenient: Whether a value of a wrong type is ignored with a warning, as in roscpp, instead of
+            refused.
+
+    Returns:
+        The settings, and warnings about unknown, deprecated or ignored parameters.
+
+    Raises:
+        SettingsError: With the full name of the parameter, if a value is invalid.
     """
     reader = ParameterReader(where, is_lenient)
     move_base = reader.read(MoveBaseSettings, parameters, "", _MOVE_BASE_IGNORED)

@@ -13,9 +13,9 @@ from move_base_lite.parameters.reader import ParameterReader, Tree, parameter_na
 from move_base_lite.plugin import Plugin
 from planar import SettingsError
 
-# What both costmaps have from move_base's own namespace, unless they have it themselves.
+# Parameters that costmaps inherit from move_base's namespace.
 INHERITED = ("footprint", "robot_radius", "footprint_padding")
-# Parameters that are known but mean nothing here: of details of the official code, or read by it and unused.
+# Parameters that are accepted without effect, or read elsewhere.
 _COSTMAP_IGNORED = {
     "plugins", "static_map", "map_type", "inscribed_radius", "circumscribed_radius",
     "footprint_topic", "published_footprint_topic",
@@ -23,7 +23,7 @@ _COSTMAP_IGNORED = {
 
 
 def costmap_settings(reader: ParameterReader, values: Tree, name: str, parameters: Tree) -> CostmapSettings:
-    """One costmap and its layers."""
+    """Read the settings of one costmap and its layers."""
     values = with_plugin_list(values, f"{reader.where}{name}/")
     for inherited in INHERITED:
         if inherited in parameters:
@@ -54,9 +54,14 @@ def costmap_settings(reader: ParameterReader, values: Tree, name: str, parameter
 
 
 def with_plugin_list(values: Mapping[str, Any], where: str) -> Dict[str, Any]:
-    """A costmap's parameters with a list of plugins, made as costmap_2d does if they are older than that.
+    """Convert a costmap's parameters from before ``plugins`` to a list of plugins, as costmap_2d does.
 
-    ``where`` they stand, for people. Raises SettingsError if a layer is no table.
+    Args:
+        values: Parameters of the costmap.
+        where: Prefix of parameter names in messages.
+
+    Raises:
+        SettingsError: If the parameters of a layer are not a table.
     """
     if "plugins" in values:
         return dict(values)
@@ -81,12 +86,12 @@ def with_plugin_list(values: Mapping[str, Any], where: str) -> Dict[str, Any]:
 
 
 def _keys_of(kind: Plugin[Layer]) -> Set[str]:
-    """What belongs to a layer; it stood in the costmap's own namespace before there were plugins."""
+    """Parameters of a layer that stand in the costmap's namespace if there is no list of plugins."""
     return {*parameter_names(kind.settings), *kind.meaningless} - {"enabled"}
 
 
 def layer_plugins(reader: ParameterReader, values: Tree, name: str) -> Dict[str, Plugin[Layer]]:
-    """The kind of each layer that there is here, by its name, in order."""
+    """Return the plugin of each layer by its name, in order; unknown types are skipped with a warning."""
     layers = {}
     plugins = values["plugins"]
     for plugin in plugins if isinstance(plugins, list) else [plugins]:
@@ -100,28 +105,38 @@ def layer_plugins(reader: ParameterReader, values: Tree, name: str) -> Dict[str,
         if kind is not None:
             layers[plugin["name"]] = kind
         else:
-            reader.warnings.append(f"no layer of type {plugin['type']} here, {plugin['name']} is left out")
+            reader.warnings.append(
+                f"{reader.where}{name}/plugins: {plugin['name']} has the unknown type {plugin['type']}"
+            )
     return layers
 
 
 def _obstacle_settings(
     reader: ParameterReader, kind: Plugin[Layer], tree: Tree, where: str, outer: List[Tree]
 ) -> ObstacleSettings:
-    """A layer with its sources; their ranges are searched for in the namespaces around them too."""
+    """Read an obstacle layer and its sources; ranges are also searched in the enclosing namespaces."""
     layer = reader.read_plugin(kind, tree, where)
     sources = []
     for name in str(tree.get("observation_sources", "")).split():
         own = {"topic": name, **subtree(tree, name)}
         for key in ("obstacle_range", "raytrace_range"):
-            for around in (tree, *outer):
-                if key in around:
-                    own.setdefault(key, around[key])
+            for namespace in (tree, *outer):
+                if key in namespace:
+                    own.setdefault(key, namespace[key])
         sources.append(reader.read(SourceSettings, own, f"{where}{name}/"))
     return replace(layer, sources=tuple(sources))
 
 
 def parse_footprint(value: Any, name: str) -> Tuple[Tuple[float, float], ...]:
-    """A footprint, which may be written as text, too; ``name`` of the parameter. Raises SettingsError."""
+    """Parse a footprint: a list of points [x, y], or such a list as text.
+
+    Args:
+        value: Value of the parameter.
+        name: Full name of the parameter, for messages.
+
+    Raises:
+        SettingsError: If the value is not a list of points.
+    """
     try:
         points = yaml.safe_load(value) if isinstance(value, str) else value
         return tuple((float(x), float(y)) for x, y in points)

@@ -1,4 +1,4 @@
-"""Settings read out of nested dictionaries of parameters."""
+"""Reading of settings from nested dictionaries of parameters."""
 
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Type, TypeVar
 
@@ -10,33 +10,41 @@ from planar.plugins import PluginError
 
 Tree = Mapping[str, Any]
 T = TypeVar("T")
-# In every namespace that has had a server of dynamic_reconfigure.
+# Parameter that a server of dynamic_reconfigure leaves in its namespace.
 LEFT_BY_RECONFIGURE = "restore_defaults"
 
 
 class ParameterReader:
-    """Reads dataclasses out of nested dictionaries and collects what is odd."""
+    """Reads settings from nested dictionaries and collects warnings.
+
+    Args:
+        where: Prefix of parameter names in messages.
+        is_lenient: Whether a value of a wrong type is ignored with a warning instead of refused.
+    """
 
     def __init__(self, where: str, is_lenient: bool = False):
         self.where = where
         self.warnings: List[str] = []
-        self._complain = self._pass_over if is_lenient else None
+        self._on_invalid = self._ignore_value if is_lenient else None
 
     def read(self, kind: Type[T], values: Tree, prefix: str, ignore: Iterable[str] = ()) -> T:
-        """The settings ``kind`` from the values that are not dictionaries themselves."""
+        """Read settings of type ``kind`` from the values that are not dictionaries themselves."""
         flat = {
             name: value
             for name, value in values.items()
             if not isinstance(value, dict) and name not in ignore
         }
-        said = parameters_of(kind)
-        names = {**{each.field: each.field for each in said}, **{each.name: each.field for each in said}}
-        settings, unknown = settings_from(kind, flat, names, self.where + prefix, self._complain)
+        declared = parameters_of(kind)
+        names = {
+            **{each.field: each.field for each in declared},
+            **{each.name: each.field for each in declared},
+        }
+        settings, unknown = settings_from(kind, flat, names, self.where + prefix, self._on_invalid)
         self.report_unknown(unknown, prefix, [*parameter_names(kind), *ignore])
         return settings
 
     def read_plugin(self, plugin: Plugin, values: Tree, prefix: str) -> Any:
-        """The plugin's settings, also from old names and other ways to say the same."""
+        """Read the settings of a plugin, also from deprecated names, synonyms and old forms of values."""
         present = dict(values)
         for old, new in plugin.deprecated.items():
             if old in present:
@@ -48,16 +56,17 @@ class ParameterReader:
     def find(
         self, registry: Registry[T], name: str, key: str, is_package_needed: bool = True
     ) -> Optional[Plugin[T]]:
-        """The plugin that the parameter ``key`` asks for. Raises PluginError if it cannot be used."""
+        """Find the plugin that the parameter ``key`` selects; see Registry.find."""
         try:
             return registry.find(name, is_package_needed)
         except PluginError as error:
             raise PluginError(f"{self.where}{key}: {error}") from None
 
-    def _pass_over(self, complaint: str) -> None:
-        self.warnings.append(f"{complaint}: it counts as not set")
+    def _ignore_value(self, message: str) -> None:
+        self.warnings.append(f"{message}: it counts as not set")
 
     def report_unknown(self, names: Iterable[str], prefix: str, known: Iterable[str]) -> None:
+        """Add a warning for each name, with the known name it resembles."""
         known = list(known)
         for name in names:
             if name == LEFT_BY_RECONFIGURE:
@@ -66,14 +75,16 @@ class ParameterReader:
 
 
 def subtree(parameters: Tree, name: str) -> Tree:
+    """Return the parameters in a namespace; empty if there are none."""
     value = parameters.get(name, {})
     return value if isinstance(value, dict) else {}
 
 
 def renamed(values: Tree, names: Mapping[str, str]) -> Dict[str, Any]:
+    """Replace names of parameters by others."""
     return {names.get(name, name): value for name, value in values.items()}
 
 
 def parameter_names(kind: type) -> List[str]:
-    """The official names of the parameters of a settings dataclass."""
+    """Official names of the parameters of a settings dataclass."""
     return [each.name for each in parameters_of(kind)]

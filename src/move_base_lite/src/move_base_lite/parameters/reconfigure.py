@@ -1,4 +1,4 @@
-"""What dynamic_reconfigure may change: the parameters that the official packages' .cfg files list."""
+"""Parameters that dynamic_reconfigure can change: those in the .cfg files of the official packages."""
 
 import math
 from dataclasses import replace
@@ -13,32 +13,32 @@ from move_base_lite.plugin import Plugin
 from planar.config.parameters import DynamicParameter, dynamic_parameters_of
 
 COSTMAPS = ("global_costmap", "local_costmap")
-# What a namespace has from move_base's own, unless it says otherwise.
-_FROM_ABOVE = (*INHERITED, "latch_xy_goal_tolerance")
+# Parameters that a namespace inherits from move_base's own.
+_INHERITED = (*INHERITED, "latch_xy_goal_tolerance")
 
 
 def reconfigure_servers(parameters: Tree) -> Dict[str, List[Tuple[DynamicParameter, Any]]]:
-    """By namespace below move_base: what may be changed there, with the values in force."""
-    chosen = [
+    """Return the parameters of each dynamic_reconfigure server with their present values, by namespace."""
+    planner_choices = [
         DynamicParameter(key, registry.names[0], key.replace("_", " ")[5:])
         for key, registry in PLANNERS.items()
     ]
-    found = {"": _offered(parameters, "", [*chosen, *dynamic_parameters_of(MoveBaseSettings)])}
+    found = {"": _with_values(parameters, "", [*planner_choices, *dynamic_parameters_of(MoveBaseSettings)])}
     for costmap in COSTMAPS:
-        found[costmap] = _offered(parameters, costmap, dynamic_parameters_of(CostmapSettings))
+        found[costmap] = _with_values(parameters, costmap, dynamic_parameters_of(CostmapSettings))
         values = with_plugin_list(subtree(parameters, costmap), f"{costmap}/")
         for layer, kind in layer_plugins(ParameterReader(""), values, costmap).items():
-            found[f"{costmap}/{layer}"] = _offered(parameters, f"{costmap}/{layer}", kind.tunables, kind)
+            found[f"{costmap}/{layer}"] = _with_values(parameters, f"{costmap}/{layer}", kind.tunables, kind)
     for key, registry in PLANNERS.items():
         planner = registry.find(str(parameters.get(key, registry.names[0])), is_package_needed=False)
         if planner is not None and planner.tunables:
             name = planner.short_name
-            found[name] = _offered(parameters, name, planner.tunables, planner)
+            found[name] = _with_values(parameters, name, planner.tunables, planner)
     return found
 
 
 def with_changes(parameters: Tree, namespace: str, values: Tree) -> Dict[str, Any]:
-    """The parameters with other values in a namespace below move_base."""
+    """Return the parameters with other values in a namespace below move_base."""
     name, _, rest = namespace.partition("/")
     if not name:
         return {**parameters, **values}
@@ -48,31 +48,31 @@ def with_changes(parameters: Tree, namespace: str, values: Tree) -> Dict[str, An
     return {**parameters, name: with_changes(tree, rest, values)}
 
 
-def _offered(
+def _with_values(
     parameters: Tree, namespace: str, tunables: Sequence[DynamicParameter], kind: Optional[Plugin] = None
 ) -> List[Tuple[DynamicParameter, Any]]:
-    """The tunables with their values in force, also if these are inherited or have an old name."""
+    """Pair tunables with their present values, which may be inherited or have an old name."""
     tree = parameters
     for name in filter(None, namespace.split("/")):
         tree = subtree(tree, name)
         tree = with_plugin_list(tree, f"{name}/") if name in COSTMAPS else tree
     offered = []
-    for tunable in map(_in_a_message, tunables):
+    for tunable in map(_message_form, tunables):
         names = (tunable.name, *(kind.old_names(tunable.name) if kind else ()))
         value = next((tree[name] for name in names if name in tree), None)
-        if value is None and tunable.name in _FROM_ABOVE:
+        if value is None and tunable.name in _INHERITED:
             value = parameters.get(tunable.name)
-        offered.append((tunable, tunable.default if value is None else _like(tunable.default, value)))
+        offered.append((tunable, tunable.default if value is None else _converted(tunable.default, value)))
     return offered
 
 
-def _in_a_message(tunable: DynamicParameter) -> DynamicParameter:
-    """A footprint is a text there."""
+def _message_form(tunable: DynamicParameter) -> DynamicParameter:
+    """Give a footprint the text form it has in messages."""
     return replace(tunable, default="[]") if tunable.default == () else tunable
 
 
-def _like(default: Any, value: Any) -> Any:
-    """The value, of the type it has in messages."""
+def _converted(default: Any, value: Any) -> Any:
+    """Convert a value to the type of the default, which it has in messages."""
     if isinstance(default, str):
         return str(value)
     return math.inf if value == "inf" else type(default)(value)

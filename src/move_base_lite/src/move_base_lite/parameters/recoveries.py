@@ -16,7 +16,7 @@ from planar import SettingsError
 def recovery_settings(
     reader: ParameterReader, parameters: Tree, move_base: MoveBaseSettings, local: CostmapSettings
 ) -> Tuple[NamedRecovery, ...]:
-    """The behaviours to try, in order."""
+    """Read the list of recovery behaviours with their settings."""
     footprint = footprint_from(local.footprint, local.robot_radius, local.footprint_padding)
     distances = {
         "conservative_reset": move_base.conservative_reset_dist,
@@ -45,7 +45,7 @@ def _listed(reader: ParameterReader, parameters: Tree, rotation_allowed: bool) -
     if not is_usable or len(set(names)) != len(names):
         reader.warnings.append(
             f"{reader.where}recovery_behaviors must be a list of {{name, type}} with different names, "
-            "the default ones take their place"
+            "the default ones are used instead"
         )
         return _default_recoveries(rotation_allowed)
     return items
@@ -63,18 +63,18 @@ def _settings_of(
 
 
 def _rotate_settings(reader: ParameterReader, parameters: Tree, name: str, values: Tree) -> Any:
-    """Of its own namespace nothing counts; those of TrajectoryPlannerROS do, as far as they are its own."""
+    """Read the settings of rotate_recovery, whose namespace is TrajectoryPlannerROS."""
     reader.report_unknown(set(values) - ROTATE.ignored, f"{name}/", ROTATE.ignored)
-    rotating = renamed(subtree(parameters, "TrajectoryPlannerROS"), ROTATE.synonyms)
-    own = {key: value for key, value in rotating.items() if key in parameter_names(ROTATE.settings)}
-    return reader.read_plugin(ROTATE, own, "TrajectoryPlannerROS/")
+    shared = renamed(subtree(parameters, "TrajectoryPlannerROS"), ROTATE.synonyms)
+    values = {key: value for key, value in shared.items() if key in parameter_names(ROTATE.settings)}
+    return reader.read_plugin(ROTATE, values, "TrajectoryPlannerROS/")
 
 
 def _check_layers(reader: ParameterReader, parameters: Tree, name: str, named: Any) -> None:
-    """All obstacles are cleared, whatever the name of their layer; one that is not there is a slip."""
+    """Warn about names of layers that do not exist; the obstacles of all layers are cleared anyway."""
     if named is None:
         return
-    there = {
+    existing = {
         layer
         for costmap in ("global_costmap", "local_costmap")
         for layer in layer_plugins(
@@ -84,10 +84,10 @@ def _check_layers(reader: ParameterReader, parameters: Tree, name: str, named: A
         )
     }
     for layer in named if isinstance(named, list) else [named]:
-        if not isinstance(layer, str) or layer not in there:
+        if not isinstance(layer, str) or layer not in existing:
             reader.warnings.append(
                 f"{reader.where}{name}/layer_names: no costmap has a layer {layer} "
-                f"(but {', '.join(sorted(there))}); the obstacles of all layers are cleared"
+                f"(there are {', '.join(sorted(existing))}); the obstacles of all layers are cleared"
             )
 
 

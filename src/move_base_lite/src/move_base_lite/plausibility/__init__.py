@@ -1,4 +1,4 @@
-"""Whether what the sensors tell can be so."""
+"""Plausibility checks of sensors and wheels."""
 
 from move_base_lite.plausibility.sensor_monitor import SensorMonitor
 

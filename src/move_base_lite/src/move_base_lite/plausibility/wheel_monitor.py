@@ -1,74 +1,82 @@
-"""Wheels that do not do what they are told: the robot turns where it should drive straight."""
+"""Detects a wheel that does not turn: the robot turns although it should drive straight."""
 
 import math
 from typing import Optional
 
 from planar import Pose2, Twist2
 
-# Metres told over which evidence counts, and metres of evidence that are no chance.
-MEMORY, ENOUGH = 2.0, 1.0
-# Radians turned unasked with each metre told. A wheel of 0.23 m track that stands turns the robot by 4.3; one
-# that is a fifth too slow by 0.9, and the controller makes up for that.
-UNASKED = 2.2
-# Seconds between two odometries that belong together, and rad/s that are a jump and no motion.
-LONGEST_STEP, FASTEST = 0.5, 6.0
+# Commanded distance [m] over which evidence decays, and evidence [m] that cannot be chance.
+DECAY_DISTANCE, MIN_EVIDENCE = 2.0, 1.0
+# Rotation per commanded metre [rad/m] that means a stuck wheel. A wheel that stands, with a track of 0.23 m,
+# turns the robot by 4.3; one that is 20 % too slow by 0.9, which the controller compensates.
+STUCK_RAD_PER_METRE = 2.2
+# Longest time between two consecutive odometry messages [s], and turn rates that are jumps, not motion
+# [rad/s].
+MAX_INTERVAL, MAX_TURN_RATE = 0.5, 6.0
 # Rates, m/s and rad/s, below which the robot stands.
 STANDING = 1e-3
-# Weight of the belief that nothing turns, in the sums.
+# Regularisation of the regression: weight of the prior that the robot does not turn.
 PRIOR = 1e-3
-# Seconds after which it may be tried again.
-REST = 30.0
+# Seconds after which a stuck wheel is checked again.
+RETRY_AFTER = 30.0
 
 
 class WheelMonitor:
-    """Held against commands, odometry tells how much the robot turns with each metre and each radian told.
+    """Estimates how far the robot turns per commanded metre and per commanded radian.
 
-    Linear regression of the turn driven on the velocities told, by least squares with exponential forgetting.
-    A robot that stands tells nothing about its wheels.
+    Least-squares regression of the measured turn rate on the commanded velocities, with exponential decay.
+    Data of a robot that stands are not used.
     """
 
     def __init__(self) -> None:
-        self._base, self._at = Pose2(), -math.inf
-        self._stuck_at: Optional[float] = None
+        self._base, self._stamp = Pose2(), -math.inf
+        self._stuck_since: Optional[float] = None
         self._reset()
 
     def add_odometry(self, now: float, base_in_odom: Pose2, command: Twist2) -> None:
-        """Where odometry believes the robot to be, and what the robot has been told to do."""
-        moved, seconds = self._base.inverse() @ base_in_odom, now - self._at
-        self._base, self._at = base_in_odom, now
-        if self._stuck_at is not None and now - self._stuck_at > REST:
-            self._stuck_at = None
+        """Update the estimate.
+
+        Args:
+            now: Time [s].
+            base_in_odom: Pose from odometry.
+            command: Velocity command that the robot follows.
+        """
+        moved, seconds = self._base.inverse() @ base_in_odom, now - self._stamp
+        self._base, self._stamp = base_in_odom, now
+        if self._stuck_since is not None and now - self._stuck_since > RETRY_AFTER:
+            self._stuck_since = None
             self._reset()
-        if not 0.0 < seconds < LONGEST_STEP:
+        if not 0.0 < seconds < MAX_INTERVAL:
             return
-        turned = moved.yaw / seconds
-        stands = max(math.hypot(moved.x, moved.y) / seconds, abs(turned)) < STANDING
-        if not stands and abs(turned) < FASTEST:
-            self._learn(command, turned, seconds)
-        if self._stuck_at is None and self._way > ENOUGH and abs(self._turn_per_metre()) > UNASKED:
-            self._stuck_at = now
+        turn_rate = moved.yaw / seconds
+        stands = max(math.hypot(moved.x, moved.y) / seconds, abs(turn_rate)) < STANDING
+        if not stands and abs(turn_rate) < MAX_TURN_RATE:
+            self._update_sums(command, turn_rate, seconds)
+        has_evidence = self._stuck_since is None and self._distance > MIN_EVIDENCE
+        if has_evidence and abs(self._turn_per_metre()) > STUCK_RAD_PER_METRE:
+            self._stuck_since = now
 
     def fault(self) -> Optional[str]:
-        """Which wheel does not do what it is told, for people; None if both do."""
-        if self._stuck_at is None:
+        """Describe which wheel is stuck; None if both turn."""
+        if self._stuck_since is None:
             return None
         turn = self._turn_per_metre()
         side = "left" if turn > 0.0 else "right"
-        return f"drive: {abs(turn):.1f} rad turned with each metre told: does the {side} wheel turn?"
+        return f"drive: {abs(turn):.1f} rad turned per commanded metre: does the {side} wheel turn?"
 
     def _reset(self) -> None:
-        self._way = self._vv = self._vw = self._ww = self._vt = self._wt = 0.0
+        self._distance = self._vv = self._vw = self._ww = self._vt = self._wt = 0.0
 
-    def _learn(self, told: Twist2, turned: float, seconds: float) -> None:
-        """Adds to the sums of products of what was told, and of that with the turn."""
-        way = abs(told.v) * seconds
-        keep = math.exp(-way / MEMORY)
-        self._way = keep * self._way + way
-        self._vv = keep * self._vv + seconds * told.v * told.v
-        self._vw = keep * self._vw + seconds * told.v * told.omega
-        self._ww = keep * self._ww + seconds * told.omega * told.omega
-        self._vt = keep * self._vt + seconds * told.v * turned
-        self._wt = keep * self._wt + seconds * told.omega * turned
+    def _update_sums(self, command: Twist2, turn_rate: float, seconds: float) -> None:
+        """Add the products of commanded velocities and turn rate to the decayed sums."""
+        distance = abs(command.v) * seconds
+        decay = math.exp(-distance / DECAY_DISTANCE)
+        self._distance = decay * self._distance + distance
+        self._vv = decay * self._vv + seconds * command.v * command.v
+        self._vw = decay * self._vw + seconds * command.v * command.omega
+        self._ww = decay * self._ww + seconds * command.omega * command.omega
+        self._vt = decay * self._vt + seconds * command.v * turn_rate
+        self._wt = decay * self._wt + seconds * command.omega * turn_rate
 
     def _turn_per_metre(self) -> float:
         vv, ww = self._vv + PRIOR, self._ww + PRIOR

@@ -1,6 +1,6 @@
-"""What the robot tries when it finds no plan or no safe velocity.
+"""Recovery behaviours: what the robot does when there is no plan or no safe velocity.
 
-``behavior.py`` is the contract, ``registry.py`` the list of those that hold it.
+``behavior.py`` is the contract, ``registry.py`` lists the behaviours.
 """
 
 from move_base_lite.recovery.behavior import (

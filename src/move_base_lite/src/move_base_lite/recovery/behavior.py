@@ -1,11 +1,11 @@
-"""The contract of recovery behaviours: what the robot tries when it finds no plan or no safe velocity.
+"""Contract of recovery behaviours (nav_core: RecoveryBehavior).
 
-Life cycle. An object is one run of a behaviour: it is made with its settings when its turn comes, has
-:meth:`~RecoveryBehavior.step` called once a control period until it says that it has ended, and is thrown
-away; a goal that is cancelled, or another one, ends it at once, without a word.
+Life cycle: an object is one run of a behaviour. It is constructed with its settings when its turn comes;
+:meth:`RecoveryBehavior.step` is called once a control period until it returns None; then the object is
+dropped. A cancelled or new goal drops it at once, without another call.
 
-To add one: a file with settings, a class and its Plugin, and a line in ``recovery/registry.py``.
-``test/test_recovery.py`` holds it to what is said here.
+To add a behaviour to this package, write a module with settings, a class and its Plugin, and add it to
+``recovery/registry.py``. ``test/test_recovery.py`` checks the contract.
 """
 
 from dataclasses import dataclass
@@ -17,12 +17,17 @@ from planar import Pose2, Twist2
 
 @dataclass(frozen=True)
 class RecoverySettings:
-    """What every behaviour can be told: nothing."""
+    """Base class of the settings of a recovery behaviour; it has no parameters."""
 
 
 @dataclass(frozen=True)
 class SpeedLimit:
-    """How fast the robot may go until it has moved ``distance`` metres."""
+    """A temporary speed limit.
+
+    Attributes:
+        highest: Highest speeds, m/s and rad/s.
+        distance: Distance after which the limit ends [m].
+    """
 
     highest: Twist2
     distance: float
@@ -30,7 +35,17 @@ class SpeedLimit:
 
 @dataclass(frozen=True)
 class RecoveryContext:
-    """What a behaviour may look at and change; ``limit_speed`` tells the robot to go slowly for a while."""
+    """What a recovery behaviour can read and change.
+
+    Attributes:
+        base_in_map: Robot in the map.
+        base_in_local: Robot in the frame of the local costmap.
+        twist: Velocity of the robot.
+        period: Control period [s].
+        global_costmap: Costmap for planning, which the behaviour may clear.
+        local_costmap: Costmap for control, which the behaviour may clear.
+        limit_speed: Sets a temporary speed limit for the local planner.
+    """
 
     base_in_map: Pose2
     base_in_local: Pose2
@@ -42,21 +57,32 @@ class RecoveryContext:
 
 
 class RecoveryBehavior(Protocol):
-    """Made by ``make(settings)``."""
+    """A recovery behaviour; constructed with its settings."""
 
     def __init__(self, settings: Any): ...
 
     def step(self, context: RecoveryContext) -> Optional[Twist2]:
-        """The velocity for this period; None when the behaviour has ended, and the robot stands.
+        """Run one control period.
 
-        It has to stop by itself before it touches anything: nobody else looks.
+        The behaviour must not collide: its commands are not checked against the costmap.
+
+        Args:
+            context: Robot state and costmaps.
+
+        Returns:
+            The velocity command for this period; None when the behaviour has finished.
         """
         ...
 
 
 @dataclass(frozen=True)
 class NamedRecovery:
-    """A behaviour in the list of those to try: the name it is given there, and its settings."""
+    """An entry of ~recovery_behaviors.
+
+    Attributes:
+        name: Its name in the list.
+        settings: Its parameters; their type selects the behaviour.
+    """
 
     name: str
     settings: Any

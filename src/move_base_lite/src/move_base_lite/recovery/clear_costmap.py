@@ -1,4 +1,4 @@
-"""Forgetting obstacles (clear_costmap_recovery)."""
+"""Clear costmap recovery (clear_costmap_recovery)."""
 
 from dataclasses import dataclass
 from typing import Optional
@@ -14,16 +14,16 @@ LOCAL, GLOBAL, BOTH = "local", "global", "both"
 
 @dataclass(frozen=True)
 class ClearCostmapSettings:
-    """What is forgotten, and where."""
+    """Parameters of clear_costmap_recovery."""
 
     reset_distance: float = parameter(
         3.0,
-        "side of the square around the robot outside of which obstacles are forgotten",
+        "side of the square around the robot outside of which obstacles are cleared",
         "m",
         at_least(0.0),
     )
-    invert_area_to_clear: bool = parameter(False, "whether they are forgotten inside of it")
-    affected_maps: str = parameter(BOTH, "local, global or both")
+    invert_area_to_clear: bool = parameter(False, "clear inside the square instead of outside")
+    affected_maps: str = parameter(BOTH, "costmaps to clear: local, global or both")
 
     def __post_init__(self):
         check_parameters(self)
@@ -32,7 +32,7 @@ class ClearCostmapSettings:
 
 
 class ClearCostmapRecovery(RecoveryBehavior):
-    """Forgets obstacles outside a square round the robot, or inside it; what is still seen comes back."""
+    """Clears obstacles outside or inside a square around the robot; sensors mark again what exists."""
 
     def __init__(self, settings: ClearCostmapSettings):
         self._settings = settings
@@ -49,7 +49,8 @@ class ClearCostmapRecovery(RecoveryBehavior):
         return None
 
 
-# All layers of obstacles are cleared, and costmaps are brought up to date every period.
+# The ignored parameters have no effect here: all obstacle layers are cleared, and costmaps update every
+# period.
 CLEAR_COSTMAP: Plugin[RecoveryBehavior] = Plugin(
     "clear_costmap_recovery/ClearCostmapRecovery",
     ClearCostmapSettings,

@@ -1,4 +1,4 @@
-"""Going on slowly (move_slow_and_clear)."""
+"""Move slow and clear recovery (move_slow_and_clear)."""
 
 from dataclasses import dataclass
 from typing import Optional
@@ -11,19 +11,19 @@ from planar.config.parameters import POSITIVE, at_least, check_parameters, param
 
 @dataclass(frozen=True)
 class MoveSlowSettings:
-    """What is cleared around the robot, and how fast it may go until it has moved on."""
+    """Parameters of move_slow_and_clear."""
 
-    clearing_distance: float = parameter(0.5, "around the robot that is forgotten", "m", at_least(0.0))
+    clearing_distance: float = parameter(0.5, "distance around the robot that is cleared", "m", at_least(0.0))
     limited_trans_speed: float = parameter(0.25, "highest speed", "m/s", POSITIVE)
     limited_rot_speed: float = parameter(0.45, "highest turn rate", "rad/s", POSITIVE)
-    limited_distance: float = parameter(0.3, "to be driven slowly", "m", at_least(0.0))
+    limited_distance: float = parameter(0.3, "distance driven at limited speed", "m", at_least(0.0))
 
     def __post_init__(self):
         check_parameters(self)
 
 
 class MoveSlowRecovery(RecoveryBehavior):
-    """Forgets obstacles near the robot and has it go on slowly."""
+    """Clears obstacles near the robot and limits its speed for some distance."""
 
     def __init__(self, settings: MoveSlowSettings):
         self._settings = settings

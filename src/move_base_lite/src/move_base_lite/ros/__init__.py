@@ -1,1 +1,1 @@
-"""Between move_base's topics, services and action, and the Navigator."""
+"""ROS nodes: move_base's action, topics, services and parameters around the Navigator."""

@@ -1,4 +1,4 @@
-"""The node ``collision_monitor``: between whoever commands the robot and its wheels."""
+"""Node collision_monitor: limits velocity commands between their source and the drive."""
 
 import threading
 from typing import Optional
@@ -24,19 +24,19 @@ SILENT = "silent"
 
 
 class CollisionMonitorNode:
-    """Passes ``cmd_vel_in`` on to ``cmd_vel_out`` as far as ``scan`` allows; ``~state`` says how far."""
+    """Limits ``cmd_vel_in`` by ``scan`` and publishes ``cmd_vel_out`` and ``~state``."""
 
     def __init__(self):
         parameters = parameters_below("~")
         self._base_frame = frame_name(parameters.pop("base_frame", "base_footprint"))
         self._settings = _settings_from(parameters)
         self._monitor = CollisionMonitor(self._settings)
-        self._monitor.limit_command(Twist2(0.1), np.zeros((1, 2)))  # compiled before it matters
+        self._monitor.limit_command(Twist2(0.1), np.zeros((1, 2)))  # compiles the kernel
         self._transforms = Transforms()
         self._lock = threading.Lock()
         self._points_xy: Optional[np.ndarray] = None
-        self._seen = rospy.Time(0)
-        self._command, self._passed, self._told_at = Twist2(), Twist2(), rospy.Time(0)
+        self._scan_stamp = rospy.Time(0)
+        self._command, self._passed, self._command_stamp = Twist2(), Twist2(), rospy.Time(0)
         self._reason = ""
         self._state = rospy.Publisher("~state", String, queue_size=1, latch=True)
         self._out = rospy.Publisher("cmd_vel_out", Twist, queue_size=1, tcp_nodelay=True)
@@ -52,35 +52,38 @@ class CollisionMonitorNode:
             return
         with self._lock:
             self._points_xy = scan_from_msg(message, *mounting).hit_points_in_base()
-            self._seen = rospy.Time.now()
-            is_fresh = (self._seen - self._told_at).to_sec() < self._settings.scan_timeout
-            if is_fresh and self._verdict().command != self._passed:
-                self._pass(self._verdict())
+            self._scan_stamp = rospy.Time.now()
+            is_fresh = (self._scan_stamp - self._command_stamp).to_sec() < self._settings.scan_timeout
+            if is_fresh and self._limited().command != self._passed:
+                self._publish(self._limited())
 
     def _on_command(self, message):
         with self._lock:
             self._command = Twist2(message.linear.x, message.angular.z)
-            self._told_at = rospy.Time.now()
-            self._pass(self._verdict())
+            self._command_stamp = rospy.Time.now()
+            self._publish(self._limited())
 
-    def _verdict(self) -> LimitedCommand:
-        if self._points_xy is None or (rospy.Time.now() - self._seen).to_sec() > self._settings.scan_timeout:
+    def _limited(self) -> LimitedCommand:
+        if (
+            self._points_xy is None
+            or (rospy.Time.now() - self._scan_stamp).to_sec() > self._settings.scan_timeout
+        ):
             return LimitedCommand(Twist2(), SILENT)
         if not self._command.is_finite():
             return LimitedCommand(Twist2(), STOPPED)
         return self._monitor.limit_command(self._command, self._points_xy)
 
-    def _pass(self, verdict: LimitedCommand):
-        self._passed = verdict.command
+    def _publish(self, limited: LimitedCommand):
+        self._passed = limited.command
         message = Twist()
-        message.linear.x, message.angular.z = verdict.command.v, verdict.command.omega
+        message.linear.x, message.angular.z = limited.command.v, limited.command.omega
         self._out.publish(message)
-        if verdict.reason == SILENT:
+        if limited.reason == SILENT:
             silent = f"no scans on {rospy.resolve_name('scan')}: the robot is stopped"
             rospy.logwarn_throttle(WARN_SECONDS, silent)
-        if verdict.reason != self._reason:
-            self._reason = verdict.reason
-            self._state.publish(verdict.reason)
+        if limited.reason != self._reason:
+            self._reason = limited.reason
+            self._state.publish(limited.reason)
 
 
 def _settings_from(parameters) -> MonitorSettings:

@@ -1,4 +1,4 @@
-"""The node ``move_base``: a Navigator behind move_base's action, topics and services."""
+"""Node move_base: the Navigator behind move_base's action, topics and services."""
 
 import threading
 from functools import partial
@@ -36,9 +36,9 @@ TIME_JUMP_TEXT = "Aborting on the goal because time has jumped back"
 
 
 class MoveBaseNode:
-    """Callbacks store; the Navigator is ticked in ROS time, and what it decides published.
+    """Stores inputs in callbacks, ticks the Navigator in ROS time and publishes its decisions.
 
-    As with the official node, the action and the services come up when the map and the transforms are there.
+    As with the official node, the action and the services start once map and transforms are available.
     """
 
     def __init__(self):
@@ -64,7 +64,7 @@ class MoveBaseNode:
         self._global_topics = CostmapTopics("global_costmap")
         self._local_topics = CostmapTopics("local_costmap")
         self._transforms = Transforms()
-        rospy.on_shutdown(self._on_shutdown)  # before the goals end
+        rospy.on_shutdown(self._on_shutdown)  # registered before the goal server, so that it runs first
         self._goals = GoalServer(self._map_frame, self._transforms, self._on_cancel)
         odom_topic = parameters.get("DWAPlannerROS", {}).get("odom_topic", "odom")
         self._sensors = SensorBridge(self._settings, self._transforms, odom_topic)
@@ -101,7 +101,7 @@ class MoveBaseNode:
                 self._navigator.update_settings(settings)
 
     def _has_map(self) -> bool:
-        """Whether there is a map, or it is yet to be made."""
+        """Whether there is a map, or none is expected from a synchronised node."""
         is_there = self._new_map is not None or self._navigator is not None
         return is_there or has_synchronised_publisher(self._maps)
 
@@ -109,7 +109,7 @@ class MoveBaseNode:
         return 1.0 / self._settings.move_base.controller_frequency
 
     def _on_time_jump(self):
-        rospy.logwarn("time has jumped back: forgetting goal, obstacles and transforms")
+        rospy.logwarn("time has jumped back: clearing goal, obstacles and transforms")
         with self._lock:
             self._sensors.reset()
             for topics in (self._topics, self._global_topics, self._local_topics):
@@ -117,7 +117,7 @@ class MoveBaseNode:
             if self._navigator is not None:
                 self._navigator.reset()
             if self._goals.abort(TIME_JUMP_TEXT):
-                self._topics.command(Twist2())
+                self._topics.publish_command(Twist2())
 
     def _tick(self, now: rospy.Time):
         with self._lock:
@@ -167,7 +167,7 @@ class MoveBaseNode:
         )
         ZoneTopics(self._zones, self._map_frame)
         self._goals.start()
-        # Takes a while, for it talks to the parameter server a lot.
+        # In a thread, since it makes many calls to the parameter server.
         threading.Thread(target=self._tree.serve, daemon=True).start()
         rospy.loginfo("odom received, map received: ready for goals")
 
@@ -175,20 +175,20 @@ class MoveBaseNode:
         return self._inputs.base_in_map if self._inputs else None
 
     def _wait_for_transforms(self, navigator: Navigator, now: rospy.Time):
-        """Without transforms nothing is safe but standing; goals still come, are cancelled and given up."""
+        """Stop the robot; accept and cancel goals, and abort them after ~sensor_patience."""
         missing = f"waiting for {self._sensors.missing_transform(now)}"
         rospy.logwarn_throttle(WARN_SECONDS, missing)
         self._accept_goal(navigator, now)
         if not self._goals.is_active:
             self._lost_since = now
             return
-        self._topics.command(Twist2())
+        self._topics.publish_command(Twist2())
         if (now - self._lost_since).to_sec() > self._settings.move_base.sensor_patience:
             lost = RobotLost(missing)
             self._abort_goal(navigator, with_reason(RecoveryTrigger.CONTROLLING.value, lost), lost)
 
     def _accept_goal(self, navigator: Navigator, now: rospy.Time):
-        """Accepts a new goal, if one has come."""
+        """Accept a new goal, if there is one."""
         try:
             goal = self._goals.accept_goal(now)
         except InvalidGoal as error:
@@ -199,10 +199,10 @@ class MoveBaseNode:
             if goal is not None:
                 self._goal = goal
                 navigator.set_goal(goal)
-                self._on_cancel()  # actionlib tells of none that came before it was taken
+                self._on_cancel()  # actionlib reports no cancellation from before the goal was accepted
 
     def _on_cancel(self):
-        """Does not wait for the next tick."""
+        """Cancel the goal at once, not at the next tick."""
         with self._lock:
             if self._navigator is not None and self._goals.is_cancelled:
                 decision = self._navigator.cancel(rospy.get_time())
@@ -211,9 +211,9 @@ class MoveBaseNode:
 
     def _abort_goal(self, navigator: Navigator, text: str, error: NavigationError):
         rospy.logerr(text)
-        self._topics.outcome(GoalOutcome(error.outcome, error.code, text))
+        self._topics.publish_outcome(GoalOutcome(error.outcome, error.code, text))
         navigator.clear_goal()
-        self._topics.command(Twist2())
+        self._topics.publish_command(Twist2())
         self._goals.finish(Status.ABORTED, text)
 
     def _publish_decision(self, now: rospy.Time, inputs: NavigatorInputs, decision: Decision):
@@ -229,7 +229,7 @@ class MoveBaseNode:
             rospy.logwarn_throttle(WARN_SECONDS, decision.text)
 
     def _on_shutdown(self):
-        """The action ends by itself."""
+        """Stop the robot; the action server aborts the goal."""
         with self._lock:
             self._navigator = self._new_map = None
             if self._is_up and self._goals.is_active:
@@ -247,7 +247,7 @@ def _checked_settings(parameters) -> NavigatorSettings:
 
 
 def _short_name(parameters, key: str, default: str) -> str:
-    """The name of a plugin without its package."""
+    """Name of a plugin without its package."""
     return str(parameters.get(key, default)).rpartition("/")[2]
 
 

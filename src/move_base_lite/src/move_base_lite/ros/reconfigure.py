@@ -1,4 +1,4 @@
-"""move_base's servers of dynamic_reconfigure: of itself, its costmaps, their layers, its planners."""
+"""dynamic_reconfigure servers of move_base, its costmaps, their layers and its planners."""
 
 import threading
 from functools import partial
@@ -17,7 +17,12 @@ from planar_ros.node.reconfigure import ReconfigureServer
 
 
 class ReconfigureServers:
-    """The parameters in force; ``apply(settings)`` is called when they have changed."""
+    """Serves the parameters and applies changes.
+
+    Args:
+        parameters: Parameters at start-up, a nested dictionary.
+        apply: Called with the new settings after a change.
+    """
 
     def __init__(self, parameters: Dict[str, Any], apply: Callable[[NavigatorSettings], None]):
         self._parameters = parameters
@@ -25,10 +30,10 @@ class ReconfigureServers:
         self._lock, self._serving = threading.RLock(), threading.Lock()
         self._servers: Dict[str, ReconfigureServer] = {}
         for costmap in ("global_costmap", "local_costmap"):
-            self._hear_footprint(costmap)
+            self._subscribe_footprint(costmap)
 
     def serve(self) -> None:
-        """Starts those servers that are not there yet."""
+        """Start the servers that do not exist yet."""
         with self._serving:
             for namespace, tunables in reconfigure_servers(self._parameters).items():
                 if namespace not in self._servers:
@@ -39,16 +44,16 @@ class ReconfigureServers:
                         namespace,
                     )
 
-    def _change(self, namespace: str, asked: Dict[str, Any]) -> Dict[str, Any]:
-        """The values in force after somebody has asked for others: all of them, or none if one is refused."""
+    def _change(self, namespace: str, requested: Dict[str, Any]) -> Dict[str, Any]:
+        """Apply requested values, all or none; return the values in effect."""
         where = rospy.get_name() + "/"
         with self._lock:
             try:
                 for key, registry in PLANNERS.items():
-                    if key in asked and registry.find(asked[key]) is None:
+                    if key in requested and registry.find(requested[key]) is None:
                         known = ", ".join(registry.names)
-                        raise SettingsError(f"{where}{key} must be one of {known}, got {asked[key]}")
-                parameters = with_changes(self._parameters, namespace, asked)
+                        raise SettingsError(f"{where}{key} must be one of {known}, got {requested[key]}")
+                parameters = with_changes(self._parameters, namespace, requested)
                 settings, _ = settings_from_parameters(parameters, where, is_lenient=True)
             except SettingsError as error:
                 rospy.logerr("%s; nothing is changed", error)
@@ -57,12 +62,12 @@ class ReconfigureServers:
                 }
             self._parameters = parameters
             self._apply(settings)
-        if set(PLANNERS) & set(asked):
+        if set(PLANNERS) & set(requested):
             threading.Thread(target=self.serve, daemon=True).start()
-        return asked
+        return requested
 
-    def _hear_footprint(self, costmap: str) -> None:
-        """A footprint may come on the topic on which the present one is published, of another type."""
+    def _subscribe_footprint(self, costmap: str) -> None:
+        """Subscribe to footprints (Polygon) on the topic that publishes the present one (PolygonStamped)."""
         topic = self._parameters.get(costmap, {}).get("footprint_topic", "footprint")
         rospy.Subscriber(f"~{costmap}/{topic}", rospy.AnyMsg, self._on_footprint, costmap, queue_size=1)
 

@@ -1,1 +1,1 @@
-"""The layers of a costmap, one a module."""
+"""Layers of a costmap, one module each."""

@@ -1,4 +1,4 @@
-"""Inflation: what lies near an obstacle costs the more the nearer it is (costmap_2d's inflation layer)."""
+"""Inflation layer: costs decay with the distance from obstacles (costmap_2d: InflationLayer)."""
 
 import math
 from dataclasses import dataclass
@@ -15,22 +15,22 @@ from planar.config.parameters import at_least, check_parameters, parameter
 
 @dataclass(frozen=True)
 class InflationSettings(LayerSettings):
-    """costmap_2d's parameters of it."""
+    """Parameters of costmap_2d's inflation layer."""
 
     inflation_radius: float = parameter(
-        0.55, "of what costs around an obstacle", "m", at_least(0.0), dynamic=50.0
+        0.55, "distance from obstacles within which cells have costs", "m", at_least(0.0), dynamic=50.0
     )
-    cost_scaling_factor: float = parameter(10.0, "how fast costs fall", "1/m", at_least(0.0), dynamic=100.0)
-    inflate_unknown: bool = parameter(
-        False, "whether cells of which nothing is known cost as well", dynamic=True
+    cost_scaling_factor: float = parameter(
+        10.0, "decay of costs with distance", "1/m", at_least(0.0), dynamic=100.0
     )
+    inflate_unknown: bool = parameter(False, "whether unknown cells are inflated too", dynamic=True)
 
     def __post_init__(self):
         check_parameters(self)
 
 
 def cost_at(distance: float, inscribed_radius: float, settings: InflationSettings) -> int:
-    """Cost of a cell so many metres from the nearest obstacle."""
+    """Cost of a cell at a distance [m] from the nearest obstacle (costmap_2d: computeCost)."""
     if distance <= 0.0:
         return LETHAL
     if distance > settings.inflation_radius:
@@ -41,7 +41,7 @@ def cost_at(distance: float, inscribed_radius: float, settings: InflationSetting
 
 
 class InflationLayer(Layer):
-    """Raises the costs around lethal cells, within any block of a costmap."""
+    """Raises the costs around lethal cells."""
 
     def __init__(self, settings: InflationSettings, context: LayerContext):
         resolution, inscribed_radius = context.window.resolution, context.footprint.inscribed_radius
@@ -54,54 +54,66 @@ class InflationLayer(Layer):
         )
 
     def apply(self, costs: np.ndarray, window: CostmapWindow, bounds: CellBounds) -> None:
-        """Inflates the cells of ``bounds``; obstacles in reach outside of it count too."""
+        """Inflate the cells of ``bounds``, also around obstacles within reach outside of it."""
         if self.reach_cells:
-            seen = window.grown(bounds, self.reach_cells)
+            source = window.grown(bounds, self.reach_cells)
             far = np.float32(self.reach_cells + 1)
-            near = _cells_to_obstacle_along_columns(costs, bounds, seen, far)
-            _inflate(costs, bounds, seen, near, self.reach_cells, self._cost_by_square, self._inflate_unknown)
+            column_distances = _cells_to_obstacle_along_columns(costs, bounds, source, far)
+            _inflate(
+                costs,
+                bounds,
+                source,
+                column_distances,
+                self.reach_cells,
+                self._cost_by_square,
+                self._inflate_unknown,
+            )
 
 
 @numba.njit(cache=True)
-def _cells_to_obstacle_along_columns(costs, bounds, seen, far):
-    """Cells, float32, from each of the rows of ``bounds`` and columns of ``seen`` to an obstacle of its
-    column, at most ``far``."""
+def _cells_to_obstacle_along_columns(costs, bounds, source, far):
+    """Distances in cells, float32, to the nearest obstacle in the same column, at most ``far``.
+
+    They are for the rows of ``bounds`` and the columns of ``source``.
+    """
     row_min, row_max, _, _ = bounds
-    seen_row_min, seen_row_max, col_min, col_max = seen
-    near = np.empty((row_max - row_min, col_max - col_min), dtype=np.float32)
+    source_row_min, source_row_max, col_min, col_max = source
+    nearest = np.empty((row_max - row_min, col_max - col_min), dtype=np.float32)
     distances = np.full(col_max - col_min, far)
-    for row in range(seen_row_min, row_max):
+    for row in range(source_row_min, row_max):
         _pass(costs[row, col_min:col_max], distances, far)
         if row >= row_min:
-            near[row - row_min] = distances
+            nearest[row - row_min] = distances
     distances[:] = far
-    for row in range(seen_row_max - 1, row_min - 1, -1):
+    for row in range(source_row_max - 1, row_min - 1, -1):
         _pass(costs[row, col_min:col_max], distances, far)
         if row < row_max:
-            near[row - row_min] = np.minimum(near[row - row_min], distances)
-    return near
+            nearest[row - row_min] = np.minimum(nearest[row - row_min], distances)
+    return nearest
 
 
 @numba.njit(cache=True)
 def _pass(costs, distances, far):
-    """Brings the cells to an obstacle behind from one row of costs to the next, at most ``far``."""
+    """Propagate the distances to obstacles from one row of costs to the next, at most ``far``."""
     for col in range(costs.size):
         ahead = min(distances[col] + np.float32(1.0), far)
         distances[col] = np.float32(0.0) if costs[col] == LETHAL else ahead
 
 
 @numba.njit(cache=True)
-def _inflate(costs, bounds, seen, near, reach, cost_by_square, inflate_unknown):
-    """Raises the costs in ``bounds`` by the squares of the distances to obstacles within ``reach`` cells.
+def _inflate(costs, bounds, source, column_distances, reach, cost_by_square, inflate_unknown):
+    """Raise the costs in ``bounds`` by the squared distances to obstacles within ``reach`` cells.
 
-    A row is shifted over itself: that takes more steps than the way of planar's distance field, but eight
-    cells at once, and whole numbers are exact in float32 up to 16 million.
+    Each row is shifted over itself: more steps than planar's distance field, but the compiler vectorises
+    them, and whole numbers are exact in float32 up to 16 million.
     """
     row_min, row_max, col_min, col_max = bounds
-    cols, first, far = col_max - col_min, reach - col_min + seen[2], np.float32(cost_by_square.size)
+    cols, first, far = col_max - col_min, reach - col_min + source[2], np.float32(cost_by_square.size)
     own, squares = np.full(cols + 2 * reach, far), np.empty(cols, dtype=np.float32)
     for row in range(row_min, row_max):
-        own[first : first + near.shape[1]] = near[row - row_min] * near[row - row_min]
+        own[first : first + column_distances.shape[1]] = (
+            column_distances[row - row_min] * column_distances[row - row_min]
+        )
         squares[:] = far
         for shift in range(2 * reach + 1):
             aside, shifted = np.float32((shift - reach) ** 2), own[shift : shift + cols]
@@ -112,7 +124,7 @@ def _inflate(costs, bounds, seen, near, reach, cost_by_square, inflate_unknown):
 
 @numba.njit(cache=True)
 def _raise(costs, squares, cost_by_square, inflate_unknown):
-    """Raises the costs of a row by the squares of the distances to obstacles."""
+    """Raise the costs of a row by the squared distances to obstacles."""
     for col in range(costs.size):
         square = np.int64(squares[col])
         if square >= cost_by_square.size or square == 0:

@@ -1,4 +1,4 @@
-"""What sensors see: marks where beams end, clears where they passed (costmap_2d's obstacle layer)."""
+"""Obstacle layer: marks the ends of beams and clears along them (costmap_2d: ObstacleLayer)."""
 
 import math
 from dataclasses import dataclass
@@ -18,29 +18,29 @@ from planar.config.parameters import POSITIVE, DynamicParameter, at_least, check
 from planar.config.settings import check
 
 DATA_TYPES = ("LaserScan", "PointCloud", "PointCloud2")
-OVERWRITE, MAXIMUM, NOTHING = 0, 1, 99
+OVERWRITE, MAXIMUM, IGNORE_LAYER = 0, 1, 99
 
 
 @dataclass(frozen=True)
 class SourceSettings:
-    """One sensor."""
+    """Parameters of one observation source."""
 
-    topic: str = parameter("", "its own name, if left out")
-    sensor_frame: str = parameter("", "that of its messages, if empty")
-    data_type: str = parameter("PointCloud", "of its messages", choices=DATA_TYPES)
+    topic: str = parameter("", "topic of the sensor; default: the name of the source")
+    sensor_frame: str = parameter("", "frame of the sensor; empty: the frame of its messages")
+    data_type: str = parameter("PointCloud", "type of its messages", choices=DATA_TYPES)
     observation_persistence: float = parameter(
-        0.0, "that marks come back for after they were cleared", "s", at_least(0.0)
+        0.0, "time for which an observation keeps marking", "s", at_least(0.0)
     )
     expected_update_rate: float = parameter(
-        0.0, "without data until the robot stops; 0: never", "s", at_least(0.0)
+        0.0, "time without data after which the robot stops; 0: never", "s", at_least(0.0)
     )
-    min_obstacle_height: float = parameter(0.0, "above the floor from which on it marks", "m")
-    max_obstacle_height: float = parameter(2.0, "above the floor up to which it marks", "m")
-    inf_is_valid: bool = parameter(False, "whether a beam without return clears its way")
-    marking: bool = parameter(True, "whether its echoes are obstacles")
-    clearing: bool = parameter(False, "whether the way to its echoes is free")
-    obstacle_range: float = parameter(2.5, "up to which beams mark", "m", POSITIVE)
-    raytrace_range: float = parameter(3.0, "up to which beams clear", "m")
+    min_obstacle_height: float = parameter(0.0, "lowest height above the floor that is marked", "m")
+    max_obstacle_height: float = parameter(2.0, "highest height above the floor that is marked", "m")
+    inf_is_valid: bool = parameter(False, "whether beams without return (inf) clear")
+    marking: bool = parameter(True, "whether its returns are marked as obstacles")
+    clearing: bool = parameter(False, "whether cells up to its returns are cleared")
+    obstacle_range: float = parameter(2.5, "range up to which returns are marked", "m", POSITIVE)
+    raytrace_range: float = parameter(3.0, "range up to which cells are cleared", "m")
 
     def __post_init__(self):
         check_parameters(self)
@@ -54,19 +54,21 @@ class SourceSettings:
 
 @dataclass(frozen=True)
 class ObstacleSettings(LayerSettings):
-    """The layer and its sensors."""
+    """Parameters of the obstacle layer and its observation sources."""
 
     track_unknown_space: bool = parameter(
         False,
-        "whether the map's unknown stays so until seen, else it is free; default: the costmap's own",
+        "whether cells without observations are unknown rather than free; default: that of the costmap",
     )
-    footprint_clearing_enabled: bool = parameter(True, "where the robot stands is free", dynamic=True)
+    footprint_clearing_enabled: bool = parameter(
+        True, "whether the footprint of the robot is cleared", dynamic=True
+    )
     max_obstacle_height: float = parameter(
-        2.0, "above the floor up to which any sensor marks", "m", dynamic=(0.0, 50.0)
+        2.0, "highest height above the floor that any source marks", "m", dynamic=(0.0, 50.0)
     )
     combination_method: int = parameter(
         MAXIMUM,
-        "over the layers below: 0 overwrites, 1 takes the higher cost, 99 nothing",
+        "with the layers below: 0 overwrites, 1 keeps the higher cost, 99 ignores this layer",
         dynamic=(0, 99),
     )
     sources: Tuple[SourceSettings, ...] = ()
@@ -74,68 +76,72 @@ class ObstacleSettings(LayerSettings):
     def __post_init__(self):
         check_parameters(self)
         method = self.combination_method
-        check(method in (OVERWRITE, MAXIMUM, NOTHING), "combination_method", "0, 1 or 99", method)
+        check(method in (OVERWRITE, MAXIMUM, IGNORE_LAYER), "combination_method", "0, 1 or 99", method)
 
 
 @dataclass(frozen=True, eq=False)
 class _LocatedObservation:
-    """A sighting from where it was made, in the costmap's frame."""
+    """An observation with the pose of its sensor in the costmap's frame."""
 
     observation: Observation
     sensor_in_frame: Pose2
 
 
 class ObstacleLayer(Layer):
-    """Cells that sensors have shown to be occupied or free, aligned with the costmap's window."""
+    """Occupied and free cells observed by sensors, aligned with the costmap's window."""
 
     def __init__(self, settings: ObstacleSettings, context: LayerContext):
         self._settings, self._footprint = settings, context.footprint
         self._default = UNKNOWN if settings.track_unknown_space else FREE
-        self._kept: Dict[str, List[_LocatedObservation]] = {source.topic: [] for source in settings.sources}
-        self._new: Dict[str, _LocatedObservation] = {}
+        self._persistent: Dict[str, List[_LocatedObservation]] = {
+            source.topic: [] for source in settings.sources
+        }
+        self._pending: Dict[str, _LocatedObservation] = {}
         self._costs = np.full((context.window.rows, context.window.cols), self._default, dtype=np.uint8)
 
     def add_observation(self, observation: Observation, base_in_frame: Pose2) -> None:
-        """Keeps a sighting until the next update; the newest of a sensor counts."""
-        if observation.topic in self._kept:
-            self._new[observation.topic] = _LocatedObservation(
+        """Store an observation until the next update; a newer one of the same sensor replaces it."""
+        if observation.topic in self._persistent:
+            self._pending[observation.topic] = _LocatedObservation(
                 observation, base_in_frame @ observation.sensor_in_base
             )
 
     def update(self, placement: CostmapPlacement) -> CellBounds:
-        """Clears for all sensors, then marks; where the robot stands there is no obstacle."""
+        """Clear for all sensors, then mark, then clear the footprint."""
         window = placement.window
         self._roll(placement.rows, placement.cols)
-        changed = self._take_in(window)
+        changed = self._integrate_pending(window)
         if self._settings.footprint_clearing_enabled:
             outline_xy = placement.base_in_frame.transform_points(self._footprint.corners_xy)
             changed = union(changed, Polygon(outline_xy).fill(self._costs, window, FREE))
         return changed
 
-    def _take_in(self, window: CostmapWindow) -> CellBounds:
+    def _integrate_pending(self, window: CostmapWindow) -> CellBounds:
         changed = NO_CELLS
-        heard = [
-            (source, self._new[source.topic])
+        received = [
+            (source, self._pending[source.topic])
             for source in self._settings.sources
-            if source.topic in self._new
+            if source.topic in self._pending
         ]
-        for source, new in heard:
+        for source, new in received:
             self._integrate(window, source, new, 0.0, source.raytrace_range * source.clearing)
             reach = max(source.obstacle_range, source.raytrace_range) + window.resolution
-            seen = window.bounds_around(new.sensor_in_frame.x, new.sensor_in_frame.y, reach)
-            changed = union(changed, seen)
-        for source, new in heard:
-            for located in self._persisting(source, new):
+            observed = window.bounds_around(new.sensor_in_frame.x, new.sensor_in_frame.y, reach)
+            changed = union(changed, observed)
+        for source, new in received:
+            for located in self._marking_observations(source, new):
                 self._integrate(window, source, located, source.obstacle_range * source.marking, 0.0)
-        self._new.clear()
+        self._pending.clear()
         return changed
 
-    def _persisting(self, source: SourceSettings, new: _LocatedObservation) -> List[_LocatedObservation]:
-        """The observations that mark now: the new one, and older ones that still count."""
+    def _marking_observations(
+        self, source: SourceSettings, new: _LocatedObservation
+    ) -> List[_LocatedObservation]:
+        """Return the new observation and the older ones that persist."""
         oldest = new.observation.stamp - source.observation_persistence
-        kept = [one for one in self._kept[source.topic] if one.observation.stamp >= oldest]
-        self._kept[source.topic] = [*kept, new] if source.observation_persistence > 0.0 else []
-        return [*kept, new]
+        persistent = [one for one in self._persistent[source.topic] if one.observation.stamp >= oldest]
+        self._persistent[source.topic] = [*persistent, new] if source.observation_persistence > 0.0 else []
+        return [*persistent, new]
 
     def _integrate(self, window, source, located, mark_range: float, clear_range: float) -> None:
         observation, sensor = located.observation, located.sensor_in_frame
@@ -158,7 +164,7 @@ class ObstacleLayer(Layer):
         )
 
     def _roll(self, rows: int, cols: int) -> None:
-        """The window has moved by so many cells: keeps what is still in it."""
+        """Move the cells with the window; those that enter it get the default cost."""
         if not (rows or cols):
             return
         moved = np.full_like(self._costs, self._default)
@@ -169,14 +175,14 @@ class ObstacleLayer(Layer):
         self._costs = moved
 
     def apply(self, costs: np.ndarray, window: CostmapWindow, bounds: CellBounds) -> None:
-        if self._settings.combination_method != NOTHING:
-            _stack(costs, self._costs, bounds, self._settings.combination_method == OVERWRITE)
+        if self._settings.combination_method != IGNORE_LAYER:
+            _combine(costs, self._costs, bounds, self._settings.combination_method == OVERWRITE)
 
     def clear_outside(self, bounds: CellBounds, window: CostmapWindow) -> CellBounds:
         rows, cols = bounds.slices
         kept = self._costs[rows, cols].copy()
         self._costs.fill(self._default)
-        for observations in self._kept.values():
+        for observations in self._persistent.values():
             observations.clear()
         self._costs[rows, cols] = kept
         return window.everything
@@ -191,8 +197,8 @@ class ObstacleLayer(Layer):
 
 
 @numba.njit(cache=True)
-def _stack(costs, above, bounds, overwrite):
-    """The higher of both layers, or the upper; the unknown of one gives way to the knowledge of the other."""
+def _combine(costs, above, bounds, overwrite):
+    """Write the higher of both costs, or the upper one; known costs replace unknown ones."""
     row_min, row_max, col_min, col_max = bounds
     for row in range(row_min, row_max):
         for col in range(col_min, col_max):
@@ -207,7 +213,7 @@ def _stack(costs, above, bounds, overwrite):
 def _integrate(
     costs, x, y, angles, ranges, range_min, range_max, resolution, mark_range, clear_range, inf_is_valid
 ):
-    """Clears along all beams, then marks their ends. ``x``, ``y``: the laser, in cells."""
+    """Clear along all beams, then mark their ends; ``x``, ``y``: position of the sensor in cells."""
     rows, cols = costs.shape
     for i in range(ranges.size if clear_range > 0.0 else 0):
         reach = ranges[i]
@@ -228,7 +234,7 @@ def _integrate(
 
 @numba.njit(cache=True)
 def _clear_ray(costs, x0, y0, x1, y1):
-    """Frees the cells from (x0, y0) to just before that of (x1, y1), one per row or column."""
+    """Clear the cells from (x0, y0) up to but not including (x1, y1), one per row or column."""
     rows, cols = costs.shape
     steps = int(max(abs(x1 - x0), abs(y1 - y0)))
     for step in range(steps):
@@ -238,8 +244,8 @@ def _clear_ray(costs, x0, y0, x1, y1):
             costs[row, col] = FREE
 
 
-# Of voxels, which are not here: obstacles are flat.
-FLAT = "(no effect: obstacles are flat)"
+# Parameters of costmap_2d's voxel layer; this layer has no voxels.
+FLAT = "(no effect: the layer has no voxels)"
 VOXELS = (
     DynamicParameter("origin_z", 0.0, f"[m] {FLAT}", 0.0),
     DynamicParameter("z_resolution", 0.2, f"[m] {FLAT}", 0.0, 50.0),
@@ -247,7 +253,7 @@ VOXELS = (
     DynamicParameter("unknown_threshold", 15, FLAT, 0, 16),
     DynamicParameter("mark_threshold", 0, FLAT, 0, 16),
 )
-# Read for the sensors, or known and without meaning.
+# Parameters that are read with the sources, or known and without effect.
 IGNORED = frozenset(
     {"observation_sources", "transform_tolerance", "obstacle_range", "raytrace_range", "publish_voxel_map"}
     | {voxel.name for voxel in VOXELS}

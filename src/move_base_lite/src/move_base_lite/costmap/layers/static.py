@@ -1,4 +1,4 @@
-"""The map as a layer of a costmap (costmap_2d's static layer)."""
+"""Static layer: the map (costmap_2d: StaticLayer)."""
 
 from dataclasses import dataclass
 from typing import Optional
@@ -16,24 +16,26 @@ from planar.config.parameters import check_parameters, parameter
 
 @dataclass(frozen=True)
 class StaticSettings(LayerSettings):
-    """costmap_2d's parameters of it."""
+    """Parameters of costmap_2d's static layer."""
 
-    map_topic: str = parameter("map", "where the map comes from")
+    map_topic: str = parameter("map", "topic of the map")
     track_unknown_space: bool = parameter(
         True, "whether the map's unknown cells are unknown rather than free"
     )
     lethal_cost_threshold: int = parameter(
         100, "occupancy from which on a cell is an obstacle", bounds=ParameterBounds(1, 100, "1 to 100")
     )
-    unknown_cost_value: int = parameter(-1, "occupancy that means a cell of which nothing is known")
-    trinary_costmap: bool = parameter(True, "obstacle, free or unknown, nothing in between")
+    unknown_cost_value: int = parameter(-1, "occupancy of unknown cells")
+    trinary_costmap: bool = parameter(
+        True, "whether cells are obstacle, free or unknown, without values in between"
+    )
 
     def __post_init__(self):
         check_parameters(self)
 
 
 class StaticLayer(Layer):
-    """The map, as it lies in a fixed costmap or as it is seen through a rolling window."""
+    """Writes the map into a fixed costmap, or resamples it into a rolling window."""
 
     def __init__(self, settings: StaticSettings, context: LayerContext):
         self._grid, self._is_rolling = context.grid, context.is_rolling
@@ -57,7 +59,7 @@ class StaticLayer(Layer):
 
 
 def static_costs(cells: np.ndarray, settings: StaticSettings) -> np.ndarray:
-    """Costs, uint8 (rows, cols), of a map's cells, int8 (rows, cols)."""
+    """Convert the cells of a map, int8 (rows, cols), to costs, uint8 (rows, cols)."""
     threshold = settings.lethal_cost_threshold
     if settings.trinary_costmap:
         costs = np.where(cells >= threshold, LETHAL, FREE)

@@ -1,1 +1,1 @@
-"""What the Navigator is asked: goals, and plans for others."""
+"""Goals and plan requests: the action, the simple goal topic and the services."""

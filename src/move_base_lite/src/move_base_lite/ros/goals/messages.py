@@ -1,5 +1,5 @@
 # ruff: noqa: N818  -- the names are the reasons
-"""Goal messages made into goals, by move_base's rules."""
+"""Conversion of goal messages by move_base's rules."""
 
 import math
 
@@ -12,27 +12,29 @@ from planar_ros.messages.conversion import frame_name, pose2_from_msg
 from planar_ros.messages.transforms import Transforms
 
 INVALID_QUATERNION = "Aborting on goal because it was sent with an invalid quaternion"
-SHORTEST_SQUARED = 1e-6
+MIN_SQUARED_NORM = 1e-6
 TILT_TOLERANCE = 1e-3
 
 
 class InvalidGoal(NavigationError):
-    """A goal that means nothing; the text is the action's result."""
+    """A goal with an invalid pose; the text is the action's result."""
 
     code = "INVALID_GOAL"
 
 
 class GoalFrameUnknown(NavigationError):
-    """A goal in a frame that tf does not know."""
+    """A goal in a frame that is not connected to the map."""
 
     code = "TF_ERROR"
     outcome = 16
 
 
 def goal_from_msg(message: PoseStamped, map_frame: str, transforms: Transforms) -> Pose2:
-    """The goal in the map's frame, by the latest transforms whatever its stamp.
+    """Transform a goal into the map frame by the latest transforms, whatever its stamp.
 
-    Raises InvalidGoal or GoalFrameUnknown.
+    Raises:
+        InvalidGoal: If the pose is not finite, or its quaternion is invalid or not about the vertical.
+        GoalFrameUnknown: If its frame is not connected to the map.
     """
     if not is_upright(message.pose.orientation):
         raise InvalidGoal(INVALID_QUATERNION)
@@ -50,10 +52,10 @@ def goal_from_msg(message: PoseStamped, map_frame: str, transforms: Transforms) 
 
 
 def is_upright(quaternion) -> bool:
-    """Whether a quaternion is finite, has a length and turns about the vertical only."""
+    """Whether a quaternion is finite, not zero and a rotation about the vertical."""
     parts = (quaternion.x, quaternion.y, quaternion.z, quaternion.w)
     squared = sum(part * part for part in parts)
-    if not math.isfinite(squared) or squared < SHORTEST_SQUARED:
+    if not math.isfinite(squared) or squared < MIN_SQUARED_NORM:
         return False
     z_of_up = 1.0 - 2.0 * (quaternion.x**2 + quaternion.y**2) / squared
     return abs(z_of_up - 1.0) <= TILT_TOLERANCE

@@ -1,4 +1,4 @@
-"""Services: plans for others, and costmaps that forget."""
+"""Services make_plan and clear_costmaps."""
 
 import threading
 from typing import Callable, Optional
@@ -22,7 +22,16 @@ NO_START_TEXT = "move_base cannot make a plan for you because it could not get t
 
 
 class PlanServices:
-    """``~make_plan``, ``~<planner>/make_plan`` and ``~clear_costmaps``; ``lock`` guards the Navigator."""
+    """Serves ``~make_plan``, ``~<planner>/make_plan`` and ``~clear_costmaps``.
+
+    Args:
+        navigator: The Navigator.
+        lock: Guards the Navigator.
+        transforms: Transforms from tf.
+        is_active: Whether there is a goal.
+        robot_in_map: Returns the robot's pose, None if it is unknown.
+        global_planner: Name of the global planner, for its service.
+    """
 
     def __init__(
         self,
@@ -47,9 +56,9 @@ class PlanServices:
         with self._lock:
             if self._is_active():
                 raise rospy.ServiceException(INACTIVE_TEXT)
-            settings, here = self._settings.move_base, self._robot_in_map()
-            if settings.make_plan_clear_costmap and here is not None:
-                self._navigator.clear_around(here)
+            settings, base_in_map = self._settings.move_base, self._robot_in_map()
+            if settings.make_plan_clear_costmap and base_in_map is not None:
+                self._navigator.clear_around(base_in_map)
             return self._plan(request, request.tolerance, settings.make_plan_add_unreachable_goal)
 
     def _on_planner_make_plan(self, request):

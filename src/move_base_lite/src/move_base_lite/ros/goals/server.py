@@ -1,4 +1,4 @@
-"""Goals: move_base's action, and the topic on which rviz sends them."""
+"""Goal server: move_base's action, and the topic move_base_simple/goal of rviz."""
 
 from typing import Callable, Optional
 
@@ -16,9 +16,12 @@ from planar_ros.step import LockstepClient
 
 
 class GoalServer:
-    """One goal at a time; a new one preempts the old one.
+    """Serves one goal at a time; a new goal preempts the old one.
 
-    ``on_cancel`` is called, out of the way of actionlib's locks, when a client wants the goal to be left.
+    Args:
+        map_frame: Frame of the map.
+        transforms: Transforms from tf.
+        on_cancel: Called without actionlib's locks when a client cancels the goal.
     """
 
     def __init__(self, map_frame: str, transforms: Transforms, on_cancel: Callable[[], None]):
@@ -30,23 +33,28 @@ class GoalServer:
         rospy.Subscriber("move_base_simple/goal", PoseStamped, self._on_simple_goal, queue_size=1)
 
     def start(self) -> None:
-        """From now on clients find the action."""
+        """Start the action server."""
         self._server.start()
 
     @property
     def is_active(self) -> bool:
+        """Whether there is a goal."""
         return self._server.is_active()
 
     @property
     def is_cancelled(self) -> bool:
-        """Whether the goal under way is to be left without another one to take over."""
+        """Whether the goal is cancelled and no other goal follows it."""
         server = self._server
         return server.is_active() and server.is_preempt_requested() and not server.is_new_goal_available()
 
     def accept_goal(self, now: rospy.Time) -> Optional[Pose2]:
-        """A goal that has come, in the map; it is accepted, and the old one preempted. None if there is none.
+        """Accept a new goal, which preempts the old one.
 
-        Raises NavigationError for a goal that means nothing; it has been accepted all the same.
+        Returns:
+            The goal in the map; None if there is no new goal.
+
+        Raises:
+            NavigationError: If the goal is invalid; the action goal is accepted and has to be aborted.
         """
         with self._server.action_server.lock, self._server.lock:
             if not self._server.is_new_goal_available():
@@ -57,12 +65,12 @@ class GoalServer:
         return goal
 
     def publish_feedback(self, base_in_map: Pose2, now: rospy.Time) -> None:
-        """Feedback: where the robot is."""
+        """Publish the robot's pose as feedback."""
         if self._server.is_active():
             self._server.publish_feedback(MoveBaseFeedback(pose_msg(base_in_map, now, self._map_frame)))
 
     def finish(self, status: Status, text: str) -> None:
-        """The goal under way has ended so."""
+        """Report the result of the goal."""
         if status is Status.SUCCEEDED:
             self._server.set_succeeded(text=text)
         elif status is Status.CANCELLED:
@@ -71,7 +79,7 @@ class GoalServer:
             self._server.set_aborted(text=text)
 
     def abort(self, text: str) -> bool:
-        """Aborts the goal under way, also one that has not been taken; whether there was any."""
+        """Abort the goal, also one that was not accepted yet; return whether there was one."""
         with self._server.action_server.lock, self._server.lock:
             if self._server.is_new_goal_available():
                 self._server.accept_new_goal()

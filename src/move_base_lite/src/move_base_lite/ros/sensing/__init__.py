@@ -1,1 +1,1 @@
-"""What the Navigator is given: transforms, odometry, sensors."""
+"""Inputs of the Navigator: transforms, odometry, sensor data."""

@@ -1,11 +1,11 @@
-"""Point clouds as arrays."""
+"""Conversion of point clouds to arrays."""
 
 import numpy as np
 from sensor_msgs.msg import PointCloud, PointCloud2
 
 
 def points_of(message) -> np.ndarray:
-    """Points (N, 3), float64, of a PointCloud or PointCloud2 in its frame; they may be NaN."""
+    """Convert a PointCloud or PointCloud2 to points (N, 3), float64, in its frame; they may be NaN."""
     if isinstance(message, PointCloud):
         return np.array([(point.x, point.y, point.z) for point in message.points]).reshape(-1, 3)
     return _points_of_cloud2(message)

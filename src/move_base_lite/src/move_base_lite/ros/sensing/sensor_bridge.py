@@ -1,4 +1,4 @@
-"""What the robot's transforms, odometry and sensors say at a control tick."""
+"""Sensor bridge: collects transforms, odometry and sensor data for a control tick."""
 
 import threading
 from collections import deque
@@ -28,15 +28,22 @@ from planar_ros.messages.conversion import (
 )
 from planar_ros.messages.transforms import Transforms
 
-KEPT = 5
-# A sensor that has said nothing for so long, and stopped about when localization did, may be why.
+QUEUE_SIZE = 5
+# A sensor without messages for so long [s], which stopped about when localization did, may be the cause.
 SILENT_SECONDS = 2.0
 MESSAGES = {"LaserScan": LaserScanArrays, "PointCloud": PointCloud, "PointCloud2": PointCloud2}
 
 
 @dataclass(frozen=True)
 class NavigatorInputs:
-    """The robot now; ``sightings``: those not given before, as seen from the present pose."""
+    """Inputs of the Navigator at a control tick.
+
+    Attributes:
+        base_in_map: Robot in the map.
+        base_in_odom: Robot in the odometry frame.
+        twist: Velocity from odometry.
+        observations: Sensor data since the last tick, relative to the present pose.
+    """
 
     base_in_map: Pose2
     base_in_odom: Pose2
@@ -45,7 +52,13 @@ class NavigatorInputs:
 
 
 class SensorBridge:
-    """Callbacks store; :meth:`view` puts together what there is."""
+    """Stores messages in callbacks; :meth:`inputs` combines them at a tick.
+
+    Args:
+        settings: Frames, transform tolerances and observation sources.
+        transforms: Transforms from tf.
+        odom_topic: Topic of the odometry.
+    """
 
     def __init__(self, settings: NavigatorSettings, transforms: Transforms, odom_topic: str):
         self._transforms = transforms
@@ -55,8 +68,8 @@ class SensorBridge:
         self.update_settings(settings)
         self._twist = Twist2()
         self._command = Twist2()
-        self._watch = SensorMonitor()
-        self._complaint: Optional[str] = None
+        self._monitor = SensorMonitor()
+        self._fault: Optional[str] = None
         self._diagnostics = SensorDiagnostics()
         self._lock = threading.Lock()
         subscribe(odom_topic, Odometry, self._on_odometry, queue_size=1, tcp_nodelay=True)
@@ -66,23 +79,23 @@ class SensorBridge:
         ]
 
     def update_settings(self, settings: NavigatorSettings) -> None:
-        """Transforms may be as old as other settings say."""
+        """Apply other transform tolerances."""
         costmaps = (settings.global_costmap, settings.local_costmap)
         self._tolerances = tuple(costmap.transform_tolerance for costmap in costmaps)
 
     def has_message(self, topic: str) -> bool:
-        """Whether all that is awaited on a sensor's topic has spoken."""
+        """Whether all sensors on a topic have sent a message."""
         return all(sensor.has_message for sensor in self._sensors if sensor.topic == topic)
 
     @property
     def topics(self) -> List[str]:
-        """Topics of all sensors."""
+        """Topics of all observation sources."""
         return [sensor.topic for sensor in self._sensors]
 
     def inputs(self, now: rospy.Time) -> Optional[NavigatorInputs]:
-        """The robot as far as it is known at ``now``; None if its transforms are missing or too old."""
+        """Combine the inputs at ``now``; None without valid transforms, or with a sensor fault."""
         if self.missing_transform(now) is not None:
-            self.set_command(Twist2())  # who does not know where it is stands
+            self.set_command(Twist2())  # the robot stands while its pose is unknown
             return None
         base_in_odom = self._transforms.lookup(self._local_frame, self._base_frame)
         odom_in_map = self._transforms.lookup(self._global_frame, self._local_frame)
@@ -93,17 +106,17 @@ class SensorBridge:
         return NavigatorInputs(odom_in_map @ base_in_odom, base_in_odom, self._twist, observations)
 
     def set_command(self, command: Twist2) -> None:
-        """What the robot has just been told; one stopped for a sensor that lies is still told to go on."""
-        if self._complaint is None:
+        """Set the command to compare sensors with; a stop because of a sensor fault does not count."""
+        if self._fault is None:
             self._command = command
 
     def missing_transform(self, now: rospy.Time) -> Optional[str]:
-        """Which transform is not known or too old, or which sensor lies, for people; None if all are well."""
-        self._complaint = fault = self._watch.fault(now.to_sec())
-        self._diagnostics.tell(fault, now)
+        """Describe the transform that is missing or too old, or the sensor fault; None if there is none."""
+        self._fault = fault = self._monitor.fault(now.to_sec())
+        self._diagnostics.publish(fault, now)
         if fault is not None:
             return f"a trustworthy sensor ({fault})"
-        # Odometry first: without it nobody can localize either, and that would be named.
+        # Odometry first: without it localization stops too, and would be reported instead.
         links = [(self._global_frame, self._local_frame), (self._local_frame, self._base_frame)]
         for (parent, child), tolerance in reversed(list(zip(links, self._tolerances))):
             latest = self._transforms.latest_stamp(parent, child)
@@ -115,37 +128,37 @@ class SensorBridge:
                 return f"a transform {parent} -> {child} that is not {age:.1f} s old{silence}"
         return None
 
-    def _silence_since(self, moment: rospy.Time, now: rospy.Time) -> str:
-        """Which sensor fell silent when localization did, if one did."""
+    def _silence_since(self, stamp: rospy.Time, now: rospy.Time) -> str:
+        """Describe the sensor whose messages stopped when localization did; empty if there is none."""
         for sensor in self._sensors:
-            silent, apart = (
+            silence, difference = (
                 (now - sensor.last_message_at).to_sec(),
-                abs((moment - sensor.last_message_at).to_sec()),
+                abs((stamp - sensor.last_message_at).to_sec()),
             )
-            if sensor.has_message and silent > SILENT_SECONDS > apart:
-                return f"; nothing on {sensor.topic} for {silent:.1f} s"
+            if sensor.has_message and silence > SILENT_SECONDS > difference:
+                return f"; nothing on {sensor.topic} for {silence:.1f} s"
         return ""
 
     def reset(self) -> None:
-        """Time has jumped back: what was heard is worthless."""
+        """Discard all messages and transforms, since time has jumped back."""
         for sensor in self._sensors:
             sensor.reset()
         self._transforms.clear()
-        self._watch.reset()
-        self._command, self._complaint = Twist2(), None
+        self._monitor.reset()
+        self._command, self._fault = Twist2(), None
 
     def _on_odometry(self, message):
         self._twist = twist2_from_msg(message.twist.twist)
         pose = pose2_from_msg(message.pose.pose)
-        self._watch.add_odometry(rospy.get_time(), pose, self._command)
+        self._monitor.add_odometry(rospy.get_time(), pose, self._command)
 
     def _on_scan(self, message):
         span = message.angle_increment * (len(message.ranges) - 1)
-        self._watch.add_scan(message.ranges, message.range_min, message.range_max, span)
+        self._monitor.add_scan(message.ranges, message.range_min, message.range_max, span)
 
 
 class _Sensor:
-    """The newest messages of one topic, made into sightings as soon as tf knows where they were taken."""
+    """The latest messages of a topic, converted to observations as soon as their transform is known."""
 
     def __init__(
         self,
@@ -153,18 +166,22 @@ class _Sensor:
         transforms: Transforms,
         local_frame: str,
         base_frame: str,
-        watch: Callable[[LaserScanArrays], None],
+        on_scan: Callable[[LaserScanArrays], None],
     ):
-        """``watch`` is told of each scan, if its returns are what it marks by."""
-        self._source, self._watch = source, watch
+        """``on_scan`` is called for each scan of a source that marks."""
+        self._source, self._on_scan = source, on_scan
         self._transforms = transforms
         self._local_frame, self._base_frame = local_frame, base_frame
-        self._messages: Deque = deque(maxlen=KEPT)
+        self._messages: Deque = deque(maxlen=QUEUE_SIZE)
         self._lock = threading.Lock()
         self._mountings: Dict[str, np.ndarray] = {}
         self.has_message, self.last_message_at = False, rospy.Time(0)
         subscribe(
-            source.topic, MESSAGES[source.data_type], self._on_message, queue_size=KEPT, tcp_nodelay=True
+            source.topic,
+            MESSAGES[source.data_type],
+            self._on_message,
+            queue_size=QUEUE_SIZE,
+            tcp_nodelay=True,
         )
 
     @property
@@ -172,13 +189,13 @@ class _Sensor:
         return rospy.resolve_name(self._source.topic)
 
     def newest(self, base_in_odom: Pose2) -> Optional[Observation]:
-        """The newest message not given before, as if taken from the present pose; None if there is none."""
+        """Convert the latest new message, relative to the present pose; None if there is none."""
         with self._lock:
-            waiting = list(self._messages)
-        for message in reversed(waiting):
-            observation = self._seen_from(base_in_odom, message)
+            queued = list(self._messages)
+        for message in reversed(queued):
+            observation = self._observe(base_in_odom, message)
             if observation is None:
-                self._complain_of(message)
+                self._warn_of_transform(message)
             else:
                 with self._lock:
                     while self._messages and self._messages[0].header.stamp <= message.header.stamp:
@@ -190,8 +207,8 @@ class _Sensor:
         with self._lock:
             self._messages.clear()
 
-    def _complain_of(self, message) -> None:
-        """A message that cannot be used for long, or not at all, is told of."""
+    def _warn_of_transform(self, message) -> None:
+        """Warn if the transform to a message's frame is missing."""
         frame = frame_name(self._source.sensor_frame or message.header.frame_id)
         if frame not in self._mountings:
             rospy.logwarn_throttle(
@@ -202,24 +219,24 @@ class _Sensor:
         check_message(message)
         self.has_message, self.last_message_at = True, rospy.Time.now()
         if self._source.data_type == "LaserScan" and self._source.marking:
-            self._watch(message)
+            self._on_scan(message)
         with self._lock:
             self._messages.append(message)
 
-    def _seen_from(self, base_in_odom: Pose2, message) -> Optional[Observation]:
-        """None as long as it is not known where the message was taken."""
+    def _observe(self, base_in_odom: Pose2, message) -> Optional[Observation]:
+        """Convert a message; None while the transform at its stamp is unknown."""
         frame = frame_name(self._source.sensor_frame or message.header.frame_id)
-        base_then = self._transforms.lookup(self._local_frame, self._base_frame, message.header.stamp)
+        base_at_stamp = self._transforms.lookup(self._local_frame, self._base_frame, message.header.stamp)
         if frame not in self._mountings:
             mounting = self._transforms.matrix(self._base_frame, frame)
             if mounting is None:
                 return None
             self._mountings[frame] = mounting
-        if base_then is None:
+        if base_at_stamp is None:
             return None
         sensor_in_base = self._mountings[frame]
         observation = self._sighting(message, sensor_in_base)
-        moved = base_in_odom.inverse() @ base_then
+        moved = base_in_odom.inverse() @ base_at_stamp
         return replace(observation, sensor_in_base=moved @ observation.sensor_in_base)
 
     def _sighting(self, message, sensor_in_base: np.ndarray) -> Observation:
@@ -236,6 +253,6 @@ class _Sensor:
 
 
 def _sources_of(settings: NavigatorSettings) -> Dict[str, SourceSettings]:
-    """One source for each topic that any costmap listens to."""
+    """One source for each topic of the costmaps' observation sources."""
     costmaps = (settings.global_costmap, settings.local_costmap)
     return {source.topic: source for costmap in costmaps for source in costmap.obstacles.sources}

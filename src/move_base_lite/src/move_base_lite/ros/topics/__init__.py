@@ -1,1 +1,1 @@
-"""What the Navigator shows: commands, plans, costmaps, zones, how a goal stands."""
+"""Published topics: commands, plans, costmaps, zones, progress and outcome of goals."""

@@ -1,4 +1,4 @@
-"""A costmap's topics as rviz expects them: costmap, costmap_updates, footprint."""
+"""Costmap topics for rviz: costmap, costmap_updates, footprint (costmap_2d: Costmap2DPublisher)."""
 
 import numpy as np
 import rospy
@@ -14,12 +14,12 @@ OccupancyGridUpdateArrays = numpy_msg(OccupancyGridUpdate)
 
 
 class CostmapTopics(rospy.SubscribeListener):
-    """Publishes while somebody listens; a new listener gets the whole costmap at the next occasion."""
+    """Publishes a costmap while there are subscribers; a new subscriber gets the full costmap."""
 
     def __init__(self, name: str):
         super().__init__()
-        self._is_whole_wanted = False
-        self._next = rospy.Time(0)
+        self._send_full = False
+        self._next_stamp = rospy.Time(0)
         self._last_window = None
         self._costmap = rospy.Publisher(
             f"~{name}/costmap", OccupancyGridArrays, subscriber_listener=self, queue_size=1
@@ -28,33 +28,33 @@ class CostmapTopics(rospy.SubscribeListener):
         self._footprint = rospy.Publisher(f"~{name}/footprint", PolygonStamped, queue_size=1)
 
     def peer_subscribe(self, topic_name, topic_publish, peer_publish):
-        self._is_whole_wanted = True
+        self._send_full = True
 
     def reset_time(self) -> None:
-        """Time has jumped back: the next occasion is now."""
-        self._next = rospy.Time(0)
+        """Publish at the next tick, since time has jumped back."""
+        self._next_stamp = rospy.Time(0)
 
     def publish(self, now: rospy.Time, costmap: LayeredCostmap, base_in_frame: Pose2) -> None:
-        """To be called every tick; does nothing until it is due."""
+        """Publish the costmap if it is due; call it at every tick."""
         settings = costmap.settings
-        is_due = settings.publish_frequency > 0.0 and now >= self._next
-        if not (is_due or self._is_whole_wanted):
+        is_due = settings.publish_frequency > 0.0 and now >= self._next_stamp
+        if not (is_due or self._send_full):
             return
         if is_due:
-            self._next = now + rospy.Duration(1.0 / settings.publish_frequency)
+            self._next_stamp = now + rospy.Duration(1.0 / settings.publish_frequency)
         frame = frame_name(settings.global_frame)
         if self._costmap.get_num_connections():
             is_moved = costmap.window != self._last_window
-            if self._is_whole_wanted or is_moved or settings.always_send_full_costmap:
-                self._publish_whole(now, costmap, frame)
+            if self._send_full or is_moved or settings.always_send_full_costmap:
+                self._publish_full(now, costmap, frame)
             else:
                 self._publish_update(now, costmap, frame)
         if self._footprint.get_num_connections():
             corners_xy = base_in_frame.transform_points(costmap.footprint.corners_xy)
             self._footprint.publish(_polygon(corners_xy, now, frame))
 
-    def _publish_whole(self, now, costmap, frame):
-        self._is_whole_wanted = False
+    def _publish_full(self, now, costmap, frame):
+        self._send_full = False
         self._last_window = window = costmap.window
         costmap.pop_changed_bounds()
         origin = Pose2(window.origin_x, window.origin_y)

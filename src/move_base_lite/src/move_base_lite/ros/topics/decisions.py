@@ -1,4 +1,4 @@
-"""What the Navigator decides, as topics."""
+"""Topics for the Navigator's decisions."""
 
 from typing import Optional
 
@@ -17,18 +17,18 @@ from planar import Pose2, Twist2
 from planar_ros.node.last_words import flush_and_close
 
 FEEDBACK_PERIOD = rospy.Duration(0.2)
-# Where rviz's configurations look for the plans of any local planner.
-USUAL_LOCAL_PLANNER = "DWAPlannerROS"
-OFFICIAL_LOCAL_PLANNERS = (USUAL_LOCAL_PLANNER, "TrajectoryPlannerROS")
+# Namespace in which rviz configurations expect the plans of any other local planner.
+DEFAULT_LOCAL_PLANNER = "DWAPlannerROS"
+OFFICIAL_LOCAL_PLANNERS = (DEFAULT_LOCAL_PLANNER, "TrajectoryPlannerROS")
 
 
 class DecisionTopics:
-    """Velocities, plans, recoveries, how a goal stands and how it ended."""
+    """Publishes velocity commands, plans, recovery behaviours, progress and outcome."""
 
     def __init__(self, global_planner: str, local_planner: str, map_frame: str, odom_frame: str):
         self._map_frame, self._odom_frame = map_frame, odom_frame
         self._next_feedback = rospy.Time(0)
-        local = local_planner if local_planner in OFFICIAL_LOCAL_PLANNERS else USUAL_LOCAL_PLANNER
+        local = local_planner if local_planner in OFFICIAL_LOCAL_PLANNERS else DEFAULT_LOCAL_PLANNER
         self._command = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True)
         self._outcome = rospy.Publisher("~outcome", DiagnosticStatus, queue_size=1, latch=True)
         self._feedback = rospy.Publisher("~nav_feedback", DiagnosticStatus, queue_size=1)
@@ -38,34 +38,36 @@ class DecisionTopics:
         self._local_plan = rospy.Publisher(f"~{local}/local_plan", Path, queue_size=1)
         self._dwa_clouds = DwaCloudTopics(local, odom_frame)
 
-    def command(self, command: Twist2) -> None:
+    def publish_command(self, command: Twist2) -> None:
+        """Publish a velocity command."""
         message = Twist()
         message.linear.x, message.angular.z = command.v, command.omega
         self._command.publish(message)
 
     def publish_final_stop(self) -> None:
-        """The last command of all, which is heard."""
-        self.command(Twist2())
+        """Publish a stop command, and wait until it is sent to the subscribers."""
+        self.publish_command(Twist2())
         flush_and_close(self._command)
 
     def publish_end(self, decision: Decision) -> None:
-        """The last command for a goal, and how it ended."""
+        """Publish the last command for a goal, and its outcome."""
         if decision.command is not None:
-            self.command(decision.command)
+            self.publish_command(decision.command)
         if decision.outcome is not None:
-            self.outcome(decision.outcome)
+            self.publish_outcome(decision.outcome)
 
-    def outcome(self, outcome: GoalOutcome) -> None:
+    def publish_outcome(self, outcome: GoalOutcome) -> None:
+        """Publish the outcome of a goal."""
         self._outcome.publish(outcome_msg(outcome))
 
     def reset_time(self) -> None:
-        """Time has jumped back: the next occasion is now."""
+        """Publish progress at the next tick, since time has jumped back."""
         self._next_feedback = rospy.Time(0)
 
     def publish(
         self, now: rospy.Time, decision: Decision, base_in_map: Pose2, goal: Pose2, orientation_mode: int
     ) -> None:
-        """All of a decision but the end of the action."""
+        """Publish everything of a decision except the action's result."""
         self.publish_end(decision)
         if decision.plan_xy is not None and self._plan.get_num_connections():
             plan = plan_msg(
@@ -85,8 +87,8 @@ class DecisionTopics:
 
     def _publish_followed(self, now: rospy.Time, path_xy: Optional[np.ndarray]):
         if path_xy is not None and self._global_plan.get_num_connections():
-            level = np.zeros(len(path_xy))
-            self._global_plan.publish(path_msg(path_xy, now, self._odom_frame, level))
+            yaws = np.zeros(len(path_xy))
+            self._global_plan.publish(path_msg(path_xy, now, self._odom_frame, yaws))
 
     def _publish_recovery(self, now: rospy.Time, recovery: RecoveryStart, base_in_map: Pose2):
         rospy.logwarn("recovery behavior %s (%d of %d)", recovery.name, recovery.index + 1, recovery.total)

@@ -1,4 +1,4 @@
-"""What the dynamic window approach tries, as rviz shows it."""
+"""Samples of the dynamic window approach as point clouds for rviz."""
 
 import numpy as np
 import rospy
@@ -12,7 +12,7 @@ COST_FIELDS = ("x", "y", "z", "path_cost", "goal_cost", "occ_cost", "total_cost"
 
 
 class DwaCloudTopics:
-    """``~<planner>/trajectory_cloud`` and ``~<planner>/cost_cloud``, made while somebody listens."""
+    """Publishes ``~<planner>/trajectory_cloud`` and ``~<planner>/cost_cloud`` while there are subscribers."""
 
     def __init__(self, local_planner: str, odom_frame: str):
         self._odom_frame = odom_frame
@@ -20,7 +20,7 @@ class DwaCloudTopics:
         self._costs = rospy.Publisher(f"~{local_planner}/cost_cloud", PointCloud2, queue_size=1)
 
     def publish(self, now: rospy.Time, samples: TrajectorySamples) -> None:
-        """To be called in the period in which it was made."""
+        """Publish the samples; call it in the control period in which they were made."""
         if samples.shows_trajectories and self._trajectories.get_num_connections():
             x, y, *rest = samples.trajectory_points().T
             columns = (x, y, np.zeros(len(x)), *rest)

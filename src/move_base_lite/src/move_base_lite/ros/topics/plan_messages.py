@@ -1,4 +1,4 @@
-"""Plans as nav_msgs/Path."""
+"""Conversion of plans to nav_msgs/Path."""
 
 import numpy as np
 import rospy
@@ -19,20 +19,21 @@ def plan_msg(
     start_yaw: float,
     goal_yaw: float,
 ) -> Path:
-    """A global plan (N, 2), headed as the mode says (see headings_along)."""
+    """Convert a global plan (N, 2) to a message, with headings by orientation_mode (see headings_along)."""
     return path_msg(path_xy, stamp, frame, headings_along(path_xy, orientation_mode, start_yaw, goal_yaw))
 
 
 def path_msg(path_xy: np.ndarray, stamp: rospy.Time, frame: str, yaws: np.ndarray) -> Path:
-    """A path (N, 2) with headings (N,)."""
+    """Convert a path (N, 2) with headings (N,) [rad] to a message."""
     return trajectory_msg(np.column_stack((path_xy, yaws)), stamp, frame)
 
 
 def trajectory_msg(poses: np.ndarray, stamp: rospy.Time, frame: str) -> Path:
-    """Poses (N, 3) as a path."""
+    """Convert poses (N, 3), x, y, yaw, to a message."""
     header = Header(stamp=stamp, frame_id=frame)
     return Path(header, [PoseStamped(header, pose2_to_msg(Pose2(*pose))) for pose in poses.tolist()])
 
 
 def pose_msg(pose: Pose2, stamp: rospy.Time, frame: str) -> PoseStamped:
+    """Convert a pose to a message."""
     return PoseStamped(Header(stamp=stamp, frame_id=frame), pose2_to_msg(pose))

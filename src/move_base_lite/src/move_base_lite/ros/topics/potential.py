@@ -1,4 +1,4 @@
-"""The wave that a global plan comes from, as rviz shows it."""
+"""Potential of the global planner for rviz."""
 
 from typing import Optional
 
@@ -12,24 +12,30 @@ from planar_ros.messages.clouds import cloud_msg
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_to_msg
 
 CLOUD_FIELDS = ("x", "y", "z", "pot")
-# Metres up in navfn's cloud at which the goal is.
+# Height of the goal in navfn's cloud [m].
 GOAL_HEIGHT = 20.0
 UNREACHED = -1
 
 
 class PotentialTopic:
-    """``~<planner>/potential``, for each plan once: a grid if it is GlobalPlanner's, else navfn's cloud."""
+    """Publishes ``~<planner>/potential`` once per plan: a grid for GlobalPlanner, a cloud for navfn."""
 
     def __init__(self, planner: str, map_frame: str):
         self._map_frame = map_frame
-        self._newest: Optional[Potential] = None
+        self._latest: Optional[Potential] = None
         self._is_grid = planner == "GlobalPlanner"
         kind = OccupancyGridArrays if self._is_grid else PointCloud2
         self._publisher = rospy.Publisher(f"~{planner}/potential", kind, queue_size=1)
 
     def publish(self, now: rospy.Time, potential: Optional[Potential], scale: int) -> None:
-        """To be called every tick, for services plan in between; ``scale``: the highest value of a grid."""
-        is_new, self._newest = potential is not self._newest, potential
+        """Publish the potential if it is new; call it at every tick, since services plan between them.
+
+        Args:
+            now: Stamp.
+            potential: Potential of the latest plan.
+            scale: Highest value of a grid.
+        """
+        is_new, self._latest = potential is not self._latest, potential
         if not is_new or potential is None or not self._publisher.get_num_connections():
             return
         if self._is_grid:

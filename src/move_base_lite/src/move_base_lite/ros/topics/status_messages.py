@@ -1,4 +1,4 @@
-"""How a goal stands and how it ended, as diagnostic_msgs/DiagnosticStatus: readable without our messages."""
+"""Progress and outcome of goals as diagnostic_msgs/DiagnosticStatus, a type every ROS installation has."""
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
@@ -6,7 +6,7 @@ from move_base_lite.navigator.decision import SUCCEEDED_OUTCOME, Decision, GoalO
 
 
 def outcome_msg(outcome: GoalOutcome) -> DiagnosticStatus:
-    """The end of a goal; ``outcome`` is the number move_base_flex has for it (mbf_msgs/MoveBaseResult)."""
+    """Convert an outcome; the value ``outcome`` is move_base_flex's code (mbf_msgs/MoveBaseResult)."""
     level = DiagnosticStatus.OK if outcome.code == SUCCEEDED_OUTCOME else DiagnosticStatus.ERROR
     return _status(
         level,
@@ -21,7 +21,7 @@ def outcome_msg(outcome: GoalOutcome) -> DiagnosticStatus:
 
 
 def progress_msg(decision: Decision, progress: GoalProgress) -> DiagnosticStatus:
-    """What the robot does for its goal, and what is left: metres, seconds."""
+    """Convert progress: state, remaining distance [m] and time [s], and what was used so far."""
     return _status(
         DiagnosticStatus.WARN if decision.text else DiagnosticStatus.OK,
         decision.text,

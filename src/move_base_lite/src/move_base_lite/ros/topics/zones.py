@@ -1,4 +1,4 @@
-"""Zones towards ROS: a service to switch each on or off, and markers that show them."""
+"""Zones in ROS: a service that switches each zone, and markers for rviz."""
 
 import rospy
 from geometry_msgs.msg import Point
@@ -13,7 +13,7 @@ LINE_WIDTH = 0.05
 
 
 class ZoneTopics:
-    """``~zones/<name>`` (std_srvs/SetBool) for each zone, and ``~zones/markers``, latched."""
+    """Serves ``~zones/<name>`` (std_srvs/SetBool) for each zone and publishes ``~zones/markers``, latched."""
 
     def __init__(self, zones: Zones, map_frame: str):
         self._zones, self._map_frame = zones, map_frame
