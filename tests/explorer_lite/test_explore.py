@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The action explore in a toy world: a map that opens, a move_base that obeys, dawdles or refuses."""
+"""The action explore with a mock move_base that succeeds, never ends or aborts."""
 
 import time
 import unittest
@@ -25,38 +25,38 @@ START = Pose2(1.25, 1.25)
 
 
 class ToyWorld:
-    """Publishes map and pose, and plays move_base."""
+    """Publishes map and pose, and serves move_base."""
 
     def __init__(self):
         self.robot = START
-        self.manner = "obeys"
+        self.behavior = "succeeds"
         self.cancelled = 0
         self._transforms = Transforms()
         self._map = rospy.Publisher("map", OccupancyGridArrays, queue_size=1, latch=True)
         self._server = actionlib.SimpleActionServer("move_base", MoveBaseAction, self._execute, False)
         self._server.start()
-        pose_timer = rospy.Timer(rospy.Duration(0.05), self._tell_pose)
+        pose_timer = rospy.Timer(rospy.Duration(0.05), self._publish_pose)
         rospy.on_shutdown(pose_timer.shutdown)
 
     @property
     def is_driving(self):
         return self._server.is_active()
 
-    def reset(self, manner):
-        self.robot, self.manner, self.cancelled = START, manner, 0
+    def reset(self, behavior):
+        self.robot, self.behavior, self.cancelled = START, behavior, 0
         self.show(HALF_KNOWN)
 
     def show(self, grid):
         self._map.publish(grid_to_msg(grid, rospy.Time.now(), "map"))
 
-    def _tell_pose(self, _event):
+    def _publish_pose(self, _event):
         self._transforms.send(self.robot, "map", "base_footprint", rospy.Time.now())
 
     def _execute(self, goal):
-        if self.manner == "refuses":
+        if self.behavior == "aborts":
             self._server.set_aborted(text="Failed to find a valid plan.")
             return
-        while self.manner == "dawdles":
+        while self.behavior == "never ends":
             if self._server.is_preempt_requested():
                 self.cancelled += 1
                 self._server.set_preempted()
@@ -75,13 +75,13 @@ class ExploreTest(unittest.TestCase):
         cls.lonely = actionlib.SimpleActionClient("lonely/explore", ExploreAction)
         # A client's own feedback is lost if the result overtakes it.
         cls.feedback = []
-        heard = rospy.Subscriber("explore/feedback", ExploreActionFeedback, cls.feedback.append)
-        wait_until("a publisher of feedback", lambda: hears_all(heard))
+        subscriber = rospy.Subscriber("explore/feedback", ExploreActionFeedback, cls.feedback.append)
+        wait_until("a publisher of feedback", lambda: hears_all(subscriber))
 
     def test_z_an_open_map_is_explored_and_the_robot_comes_back(self):
         """The last one, as it leaves a map behind in which there is nothing to explore."""
         self.feedback.clear()
-        self._explore(self.client, "obeys")
+        self._explore(self.client, "succeeds")
         self.assertEqual(self._end(self.client), GoalStatus.SUCCEEDED)
         result = self.client.get_result()
         self.assertAlmostEqual(result.explored_area, 6 * 3 * 0.25)
@@ -94,7 +94,7 @@ class ExploreTest(unittest.TestCase):
 
     def test_cancelling_stops_the_robot_and_ends_the_goal(self):
         self.feedback.clear()
-        self._explore(self.client, "dawdles")
+        self._explore(self.client, "never ends")
         wait_until("feedback", lambda: self.feedback)
         self.client.cancel_goal()
         self.assertEqual(self._end(self.client), GoalStatus.PREEMPTED)
@@ -102,13 +102,13 @@ class ExploreTest(unittest.TestCase):
         self.assertGreater(self.client.get_result().explored_area, 0.0)
 
     def test_what_cannot_be_reached_is_reported(self):
-        self._explore(self.client, "refuses")
+        self._explore(self.client, "aborts")
         self.assertEqual(self._end(self.client), GoalStatus.ABORTED)
         self.assertIn("Failed to find a valid plan.", self.client.get_goal_status_text())
         self.assertEqual(len(self.client.get_result().unreachable), 1)
 
     def test_without_map_and_move_base_it_gives_up_and_names_them(self):
-        self._explore(self.lonely, "obeys")
+        self._explore(self.lonely, "succeeds")
         self.assertEqual(self._end(self.lonely), GoalStatus.ABORTED)
         self.assertEqual(
             self.lonely.get_goal_status_text(),
@@ -118,7 +118,7 @@ class ExploreTest(unittest.TestCase):
     def test_zz_the_robot_stops_and_the_goal_ends_when_the_node_does(self):
         """After all others, as there is no explorer any more."""
         self.feedback.clear()
-        self._explore(self.client, "dawdles")
+        self._explore(self.client, "never ends")
         wait_until("feedback", lambda: self.feedback)
         wait_until("a goal", lambda: self.world.is_driving)
         rosnode.kill_nodes(["/explore"])
@@ -126,8 +126,8 @@ class ExploreTest(unittest.TestCase):
         self.assertEqual(self.client.get_goal_status_text(), KILLED_TEXT)
         wait_until("the cancel", lambda: self.world.cancelled == 1)
 
-    def _explore(self, client, manner):
-        self.world.reset(manner)
+    def _explore(self, client, behavior):
+        self.world.reset(behavior)
         wait_until("the action", lambda: server_is_ready(client))
         client.send_goal(ExploreGoal(return_to_start=True))
 

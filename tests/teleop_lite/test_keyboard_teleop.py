@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The keyboard teleop on a terminal, on a pipe and without either; whatever ends it stops the robot."""
+"""The keyboard teleop on a terminal, on a pipe and without either; it always stops the robot at the end."""
 
 import os
 import pty
@@ -22,26 +22,26 @@ EXIT_SECONDS = 15.0
 
 class KeyboardTeleopTest(unittest.TestCase):
     def setUp(self):
-        self.velocities, self._heard_at = [], []
-        self._subscriber = rospy.Subscriber(TOPIC, Twist, self._listen, queue_size=100)
+        self.velocities, self._received_at = [], []
+        self._subscriber = rospy.Subscriber(TOPIC, Twist, self._receive, queue_size=100)
 
     def tearDown(self):
         self._subscriber.unregister()
 
-    def _listen(self, message):
-        self._heard_at.append(time.monotonic())
+    def _receive(self, message):
+        self._received_at.append(time.monotonic())
         self.velocities.append((message.linear.x, message.angular.z))
 
-    def test_a_script_on_a_pipe_is_played_and_ends_at_rest(self):
+    def test_a_script_on_a_pipe_is_executed_and_ends_at_rest(self):
         run = subprocess.run(COMMAND, input=b"i:2.5, j:2.5\nk:0.2", timeout=60, check=False)
         self.assertEqual(run.returncode, 0)
         self.assertAlmostEqual(max(v for v, _ in self.velocities), 0.2)
         self.assertAlmostEqual(max(omega for _, omega in self.velocities), 1.0)
-        periods = [later - earlier for earlier, later in zip(self._heard_at, self._heard_at[1:])]
+        periods = [later - earlier for earlier, later in zip(self._received_at, self._received_at[1:])]
         self.assertAlmostEqual(statistics.median(periods), 0.1, delta=0.02)
         self.assertEqual(self.velocities[-1], (0.0, 0.0))
 
-    def test_a_script_may_come_bit_by_bit(self):
+    def test_a_script_may_arrive_in_parts(self):
         run = subprocess.Popen(COMMAND, stdin=subprocess.PIPE)
         run.stdin.write(b"i:0.5\n")
         run.stdin.flush()
@@ -61,7 +61,7 @@ class KeyboardTeleopTest(unittest.TestCase):
         self.assertIn(b"speed 0.22", run.stdout)
         self.assertGreater(max(self.velocities)[0], 0.05)
 
-    def test_without_terminal_and_script_it_says_so(self):
+    def test_without_terminal_and_script_it_fails_with_the_reason(self):
         for text, reason in (
             (b"", b"neither a terminal nor a script"),
             (b"i:2 hello", b"'hello' is not a key"),
@@ -71,10 +71,10 @@ class KeyboardTeleopTest(unittest.TestCase):
             self.assertIn(reason, run.stderr)
             self.assertNotIn(b"Traceback", run.stderr)
 
-    def test_ctrl_c_on_a_terminal_ends_it_and_leaves_all_in_order(self):
+    def test_ctrl_c_stops_the_robot_and_restores_the_terminal(self):
         self.assertEqual(self._run_on_terminal(lambda run, keyboard: os.write(keyboard, b"\x03")), 0)
 
-    def test_signals_end_it_and_leave_all_in_order(self):
+    def test_signals_stop_the_robot_and_restore_the_terminal(self):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             code = self._run_on_terminal(lambda run, _: run.send_signal(number))  # noqa: B023
             self.assertEqual(code, 128 + number)

@@ -48,7 +48,7 @@ def explorer(return_to_start=True, **settings):
     return Explorer(ExplorerSettings(**{**vars(SETTINGS), **settings}), return_to_start)
 
 
-def test_an_explorer_that_takes_over_returns_to_where_the_one_before_began():
+def test_a_restarted_explorer_returns_to_the_start_of_the_earlier_one():
     start = Pose2(2.25, 1.25)
     task = Explorer(SETTINGS, start=start)
     task.advance(0.0, grid(OPEN_TO_THE_RIGHT), ROBOT)
@@ -56,7 +56,7 @@ def test_an_explorer_that_takes_over_returns_to_where_the_one_before_began():
     assert task.start == start
 
 
-def test_the_robot_is_sent_to_the_frontier_and_home_when_all_is_known():
+def test_the_robot_is_sent_to_the_frontier_and_back_when_the_map_is_complete():
     task = explorer()
     order = task.advance(0.0, grid(OPEN_TO_THE_RIGHT), ROBOT)
     assert isinstance(order, SendGoal)
@@ -70,18 +70,18 @@ def test_the_robot_is_sent_to_the_frontier_and_home_when_all_is_known():
     assert task.advance(21.0, None, ROBOT) is None
 
 
-def test_a_sensor_that_sees_little_at_once_is_turned_before_the_robot_drives():
+def test_a_robot_with_a_narrow_field_of_view_turns_before_it_drives():
     task = explorer(field_of_view=1.0, reach=2.0)
     order = task.advance(0.0, grid(OPEN_TO_THE_RIGHT), Pose2(2.25, 1.25, math.pi))
     assert (order.pose.x, order.pose.y) == (2.25, 1.25)
     assert order.pose.yaw == pytest.approx(0.0)
-    # That has shown nothing; now it has to be looked at from nearer.
+    # The turn has shown nothing new; now a nearer viewpoint is needed.
     order = task.advance(20.0, grid(OPEN_TO_THE_RIGHT), Pose2(2.25, 1.25), GoalReached())
     order = order or task.advance(30.0, grid(OPEN_TO_THE_RIGHT), Pose2(2.25, 1.25))
     assert order.pose.x == pytest.approx(3.25)
 
 
-def test_without_a_way_home_asked_for_it_ends_where_all_is_known():
+def test_without_return_to_start_it_ends_when_the_map_is_complete():
     assert explorer(return_to_start=False).advance(0.0, grid(CLOSED), ROBOT) == FinishTask(
         True, "explored 6.0 m2"
     )
@@ -98,7 +98,7 @@ def test_the_nearer_of_two_frontiers_is_first(robot_x, goal_x):
     assert order.pose.x == pytest.approx(goal_x)
 
 
-def test_a_frontier_under_way_is_only_left_for_a_much_cheaper_one():
+def test_the_present_frontier_is_only_left_for_a_much_cheaper_one():
     task = explorer(orientation_scale=0.0, switch_gain=1.0)
     corridor = grid(OPEN_AT_BOTH_ENDS)
     assert task.advance(0.0, corridor, Pose2(2.75, 0.75)).pose.x == pytest.approx(0.25)
@@ -106,7 +106,7 @@ def test_a_frontier_under_way_is_only_left_for_a_much_cheaper_one():
     assert task.advance(2.0, corridor, Pose2(3.75, 0.75)).pose.x == pytest.approx(5.75)
 
 
-def test_a_frontier_that_stays_is_tried_from_elsewhere_and_then_given_up():
+def test_a_persistent_frontier_is_tried_from_elsewhere_and_then_dropped():
     task = explorer(return_to_start=False)
     room = grid(OPEN_TO_THE_RIGHT)
     first = task.advance(0.0, room, ROBOT)
@@ -119,7 +119,7 @@ def test_a_frontier_that_stays_is_tried_from_elsewhere_and_then_given_up():
     assert len(task.unreachable) == 1
 
 
-def test_at_a_goal_a_map_is_waited_for_but_not_for_ever():
+def test_at_a_goal_the_explorer_waits_for_a_map_for_a_limited_time():
     task = explorer()
     first = task.advance(0.0, grid(OPEN_TO_THE_RIGHT), ROBOT)
     task.advance(10.0, None, first.pose, GoalReached())
@@ -135,7 +135,7 @@ def test_a_refused_goal_is_followed_by_another_at_once():
     assert second.pose.distance_to(first.pose) > SETTINGS.blacklist_radius
 
 
-def test_a_goal_that_comes_no_nearer_is_given_up():
+def test_a_goal_without_progress_is_dropped():
     task = explorer()
     room = grid(OPEN_TO_THE_RIGHT)
     first = task.advance(0.0, room, ROBOT)
@@ -145,14 +145,14 @@ def test_a_goal_that_comes_no_nearer_is_given_up():
     assert second.pose.distance_to(first.pose) > SETTINGS.blacklist_radius
 
 
-def test_a_robot_that_does_not_get_away_ends_the_exploration():
+def test_a_stranded_robot_ends_the_exploration():
     task = explorer(attempts=100, blacklist_radius=0.1)
     task.advance(0.0, grid(OPEN_TO_THE_RIGHT), ROBOT)
     orders = [task.advance(1.0 + i, None, ROBOT, GoalFailed("blocked")) for i in range(8)]
     assert orders[-1] == FinishTask(False, "the robot is stuck, all goals from here were refused: blocked")
 
 
-def test_a_frontier_that_opens_on_the_way_home_is_explored_too():
+def test_a_frontier_that_appears_during_the_return_is_explored_too():
     task = explorer()
     task.advance(0.0, grid(CLOSED), Pose2(1.25, 1.25))
     order = task.advance(5.0, grid(OPEN_TO_THE_RIGHT), Pose2(1.75, 1.25))
@@ -160,7 +160,7 @@ def test_a_frontier_that_opens_on_the_way_home_is_explored_too():
     assert task.state is ExplorerState.EXPLORING
 
 
-def test_the_way_home_is_tried_again_before_it_fails():
+def test_the_return_is_tried_again_before_it_fails():
     task = explorer(attempts=2)
     task.advance(0.0, grid(CLOSED), ROBOT)
     assert task.advance(1.0, None, ROBOT, GoalFailed("blocked")) == SendGoal(ROBOT)
@@ -169,7 +169,7 @@ def test_the_way_home_is_tried_again_before_it_fails():
     assert end == FinishTask(False, "explored 6.0 m2, but the robot cannot return to the start: blocked")
 
 
-def test_a_robot_in_no_free_space_waits_for_a_better_map_but_not_for_ever():
+def test_a_robot_in_no_free_space_waits_for_a_better_map_for_a_limited_time():
     task = explorer()
     unknown = grid("?????\n?????\n?...?")
     assert task.advance(0.0, unknown, Pose2(10.0, 10.0)) is None
@@ -178,7 +178,7 @@ def test_a_robot_in_no_free_space_waits_for_a_better_map_but_not_for_ever():
     assert end == FinishTask(False, "the map shows no free space around the robot")
 
 
-def test_a_robot_that_took_long_to_arrive_may_look_about_there():
+def test_a_robot_that_took_long_to_arrive_still_waits_for_the_map():
     task = explorer()
     order = task.advance(0.0, grid(OPEN_AT_BOTH_ENDS), ROBOT)
     assert task.advance(19.0, None, order.pose, GoalReached()) is None
@@ -187,12 +187,12 @@ def test_a_robot_that_took_long_to_arrive_may_look_about_there():
 
 
 @pytest.mark.parametrize("name, value", [("attempts", 0), ("reach", 0.0), ("max_frontier_size", 0.1)])
-def test_senseless_settings_are_refused(name, value):
+def test_invalid_settings_are_refused(name, value):
     with pytest.raises(SettingsError, match=name):
         ExplorerSettings(**{name: value})
 
 
-def test_a_clock_that_jumps_forth_and_back_keeps_the_robot_from_nothing():
+def test_a_clock_that_jumps_back_and_forth_does_not_stop_the_exploration():
     task = explorer()
     task.advance(0.0, grid(OPEN_TO_THE_RIGHT), ROBOT)
     task.advance(1e6, grid(OPEN_TO_THE_RIGHT), ROBOT)

@@ -9,7 +9,7 @@ def middles(frontiers):
     return sorted(tuple(frontier.middle_xy.tolist()) for frontier in frontiers)
 
 
-def test_frontiers_are_free_cells_beside_the_unknown():
+def test_frontiers_are_free_cells_beside_unknown_space():
     grid = known_part(grid_from_picture("#####\n#..??\n#..??\n#..??\n#####"))
     (frontier,) = find_frontiers(grid, 1.0, 10.0)
     assert sorted(map(tuple, frontier.points_xy.tolist())) == [(2.5, 1.5), (2.5, 2.5), (2.5, 3.5)]
@@ -26,12 +26,12 @@ def test_separate_openings_are_separate_frontiers():
     assert len(find_frontiers(grid, 1.0, 10.0)) == 2
 
 
-def test_small_frontiers_are_left_out():
+def test_small_frontiers_are_ignored():
     grid = known_part(grid_from_picture("##?###\n#....?\n#....?\n#....?\n######"))
     assert len(find_frontiers(grid, 2.0, 10.0)) == 1
 
 
-def test_long_frontiers_are_taken_in_parts():
+def test_long_frontiers_are_split():
     grid = known_part(grid_from_picture("....\n" * 12))
     parts = find_frontiers(grid, 1.0, 4.0)
     assert all(np.ptp(part.points_xy, axis=0).max() < 4.0 for part in parts)
@@ -39,7 +39,7 @@ def test_long_frontiers_are_taken_in_parts():
     assert len(cells) == sum(len(part.points_xy) for part in parts) == 2 * 4 + 2 * 10
 
 
-def test_only_the_known_part_of_a_vast_grid_is_looked_at():
+def test_a_large_grid_is_cropped_to_its_known_part():
     cells = np.full((500, 400), UNKNOWN, dtype=np.int8)
     cells[200:203, 100:104] = [[0, 10, 25, 0], [0, 60, 65, 0], [100, 99, 0, 0]]
     vast = OccupancyGrid(cells, 0.5, Pose2(-10.0, -20.0, 0.3))
@@ -52,5 +52,5 @@ def test_only_the_known_part_of_a_vast_grid_is_looked_at():
     assert part.points_of([[1, 1]])[0] == pytest.approx(vast.points_of([[200, 100]])[0])
 
 
-def test_a_grid_without_anything_known_has_no_frontiers():
+def test_an_unknown_grid_has_no_frontiers():
     assert find_frontiers(known_part(grid_from_picture("??\n??")), 1.0, 10.0) == []

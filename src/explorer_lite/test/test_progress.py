@@ -1,7 +1,7 @@
 from explorer_lite.progress import GoalProgressChecker
 
 
-def test_a_robot_is_stuck_that_comes_no_nearer_to_its_goal():
+def test_a_robot_without_progress_is_stuck():
     watch = GoalProgressChecker(10.0)
     watch.restart(0.0)
     assert not watch.is_stuck(1.0, 3.0)
@@ -9,7 +9,7 @@ def test_a_robot_is_stuck_that_comes_no_nearer_to_its_goal():
     assert watch.is_stuck(11.0, 2.95)
 
 
-def test_a_robot_on_its_way_to_a_goal_that_has_moved_away_is_not():
+def test_a_goal_that_moves_away_does_not_make_the_robot_stuck():
     watch = GoalProgressChecker(10.0)
     watch.restart(0.0)
     assert not watch.is_stuck(1.0, 3.0)
@@ -19,7 +19,7 @@ def test_a_robot_on_its_way_to_a_goal_that_has_moved_away_is_not():
     assert not watch.is_stuck(24.0, 0.5)
 
 
-def test_a_goal_that_moves_about_does_not_hide_that_the_robot_is_stuck():
+def test_a_goal_that_moves_back_and_forth_does_not_hide_a_stuck_robot():
     watch = GoalProgressChecker(10.0)
     watch.restart(0.0)
     for now in range(10):

@@ -23,24 +23,24 @@ def distances_in(picture, robot, clearance, resolution=1.0):
     return travel_distances(grid, distance_field(grid.cells == OCCUPIED, resolution), robot, clearance)
 
 
-def test_the_way_leads_around_walls():
+def test_paths_lead_around_walls():
     distances = distances_in(WALL, Pose2(0.5, 0.5), 0.0)
     assert distances[0, 3] == pytest.approx(3.0)
     assert distances[0, 8] == pytest.approx(6.0 * math.sqrt(2.0) + 2.0)
     assert np.isinf(distances[0, 4])
 
 
-def test_the_way_keeps_clear_of_obstacles():
+def test_paths_keep_the_clearance():
     distances = distances_in("......\n..##..\n......\n......", Pose2(0.5, 0.5), 1.0)
     assert np.isinf(distances[1, 2:4]).all()
     assert distances[0, 5] == pytest.approx(5.0)
 
 
-def test_beyond_a_gap_that_is_too_narrow_there_is_no_way():
+def test_a_narrow_gap_is_impassable():
     assert np.isinf(distances_in("...#...\n.......\n...#...", Pose2(0.5, 1.5), 1.0)[1, 5])
 
 
-def test_between_obstacles_that_touch_at_a_corner_there_is_no_way():
+def test_paths_do_not_lead_between_obstacles_that_touch_at_a_corner():
     assert np.isinf(distances_in("..#\n##.", Pose2(0.5, 1.5), 0.0)[0, 2])
 
 
@@ -53,19 +53,19 @@ POCKET = """
 """
 
 
-def test_a_robot_in_a_tight_place_may_leave_it_with_less_room():
+def test_a_robot_in_a_tight_place_may_leave_it_with_less_clearance():
     robot = Pose2(0.3, 0.3)
     distances = distances_in(POCKET, robot, 0.25, resolution=0.2)
     assert np.isfinite(distances[2, 7])
     assert np.isinf(distances[3, 8])
 
 
-def test_a_robot_that_does_not_see_the_floor_around_it_may_leave_through_the_unknown():
+def test_a_robot_in_unknown_cells_may_leave_through_them():
     distances = distances_in("??........\n??........\n??........", Pose2(0.1, 0.3), 0.1, resolution=0.2)
     assert np.isfinite(distances[1, 9])
 
 
-def test_a_robot_far_from_all_that_is_free_cannot_go_anywhere():
+def test_a_robot_far_from_free_space_reaches_nothing():
     assert np.isinf(distances_in("...", Pose2(-5.0, 0.5), 0.1)).all()
 
 
@@ -76,21 +76,21 @@ def view(picture, middle_xy, robot=Pose2(0.5, 0.5), reach=3.0, excluded=()):
     return viewpoint_of(frontier, grid, distances, robot, reach, list(excluded), 0.5)
 
 
-def test_an_open_frontier_is_driven_to_and_faced_from_there_on():
+def test_the_viewpoint_of_a_reachable_frontier_is_on_it():
     assert view("......\n......", [4.5, 0.5]) == Pose2(4.5, 0.5, 0.0)
 
 
-def test_a_frontier_that_cannot_be_entered_is_looked_at_from_the_nearest_place():
+def test_an_unreachable_frontier_is_viewed_from_the_nearest_cell():
     pose = view("......\n.....#\n......", [5.5, 0.5], robot=Pose2(0.5, 0.5), excluded=[Pose2(5.5, 0.5)])
     assert (pose.x, pose.y) == (4.5, 0.5)
     assert pose.yaw == pytest.approx(0.0)
 
 
-def test_a_wall_in_between_spoils_the_view():
+def test_a_wall_blocks_the_view():
     assert view("...#..", [4.5, 0.5]) is None
     assert view("...#..\n......\n......", [4.5, 2.5], reach=1.0) is not None
 
 
-def test_nothing_is_looked_at_from_too_far():
+def test_a_viewpoint_is_within_reach():
     assert view("...???", [5.5, 0.5], reach=2.5) is None
     assert view("...???", [5.5, 0.5], reach=3.5) is not None

@@ -1,4 +1,4 @@
-"""A kinematic robot with a laser in rooms drawn for tests."""
+"""A kinematic robot with a laser in simple rooms, for tests."""
 
 import math
 from dataclasses import replace
@@ -18,7 +18,7 @@ PERSON_RADIUS = 0.2
 
 
 def room(width, height):
-    """An empty room of so many metres, with walls round it."""
+    """An empty room with walls; width and height in metres."""
     cells = np.zeros((round(height / 0.05), round(width / 0.05)), dtype=np.int8)
     cells[:2], cells[-2:], cells[:, :2], cells[:, -2:] = (OCCUPIED,) * 4
     return OccupancyGrid(cells, 0.05)
@@ -35,7 +35,7 @@ def with_block(grid, x_min, y_min, x_max, y_max, value=OCCUPIED):
 
 
 def two_rooms(door):
-    """Two rooms of 3 m by 4 m, side by side, with a door of that width in the wall between them."""
+    """Two rooms of 3 m by 4 m, side by side, with a door of width ``door`` [m] between them."""
     return with_block(
         with_block(room(6.1, 4.0), 3.0, 0.0, 3.1, 4.0), 3.0, 2.0 - door / 2, 3.1, 2.0 + door / 2, 0
     )
@@ -84,7 +84,7 @@ class Robot:
 
 
 def scan_with_people(grid, base, stamp, people_xy, rng, radius=PERSON_RADIUS):
-    """What a laser of 360 beams with 1 cm of noise sees of a room and of people, cylinders."""
+    """A scan of 360 beams with 1 cm of noise in a room with people (cylinders)."""
     beams, reach = 360, 8.0
     angles = 2.0 * math.pi / beams * np.arange(beams)
     ranges = cast_rays(grid, base, angles, reach)
@@ -100,13 +100,13 @@ def scan_with_people(grid, base, stamp, people_xy, rng, radius=PERSON_RADIUS):
 
 
 def drive_to_end(robot, navigator, seconds=90.0):
-    """All decisions until the goal has ended."""
+    """All decisions until the goal ends."""
     decisions = []
     while robot.now < seconds:
         decisions.append(robot.tick(navigator))
         if decisions[-1].status.is_final:
             return decisions
-    raise AssertionError(f"not there after {seconds} s: {decisions[-1]}")
+    raise AssertionError(f"the goal did not end within {seconds} s: {decisions[-1]}")
 
 
 def assert_arrived(robot, decisions, goal):

@@ -1,4 +1,4 @@
-"""The contract of local planners: what any of them, whoever wrote it, has to do on tiny maps."""
+"""Every registered local planner keeps the contract."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Plugins of other people: found by dotted names, held to their contract, and never the end of the robot."""
+"""Custom plugins: found by dotted names, checked against their contract, and unable to crash the node."""
 
 import pytest
 import yaml
@@ -26,14 +26,14 @@ def drive(grid=GRID, **chosen):
 
 
 @pytest.mark.parametrize("name", ["pure_pursuit/PurePursuit", "potential_field/PotentialField"])
-def test_a_local_planner_is_chosen_by_its_dotted_name_and_told_its_parameters(name):
-    own = {name.partition("/")[2]: {"lookahead": 0.3, "latch_xy_goal_tolerance": True}}
-    robot, decisions = drive(base_local_planner=f"plugin_examples.{name}", **own)
+def test_a_local_planner_is_selected_by_its_dotted_name_and_gets_its_parameters(name):
+    namespace = {name.partition("/")[2]: {"lookahead": 0.3, "latch_xy_goal_tolerance": True}}
+    robot, decisions = drive(base_local_planner=f"plugin_examples.{name}", **namespace)
     assert decisions[-1].text == "Goal reached."
     assert robot.clearance > 0.0
 
 
-def test_a_global_planner_is_chosen_by_its_dotted_name():
+def test_a_global_planner_is_selected_by_its_dotted_name():
     _, decisions = drive(base_global_planner="plugin_examples.rrt_star/RrtStar", RrtStar={"seed": 4})
     assert decisions[-1].text == "Goal reached."
 
@@ -45,15 +45,15 @@ def test_a_global_planner_is_chosen_by_its_dotted_name():
         ("planar.errors/Planner", "there is no Planner in "),
         ("planar.errors/PlanarError", "is no local planner: it has no follow(context, plan, limits)"),
         ("custom_plugins.faulty/NoFollow", "it has no follow(context, plan, limits)"),
-        ("custom_plugins.faulty/FollowsLess", "it cannot be called as follow(context, plan, limits)"),
+        ("custom_plugins.faulty/TooFewArguments", "it cannot be called as follow(context, plan, limits)"),
         (
-            "custom_plugins.faulty/StrangeSettings",
+            "custom_plugins.faulty/WrongSettings",
             "its Settings are no dataclass derived from ControllerSettings",
         ),
         ("custom_plugins.broken/Planner", "custom_plugins.broken fails with RuntimeError: no GPU"),
     ],
 )
-def test_what_cannot_be_used_is_refused_with_what_it_lacks(name, reason):
+def test_an_invalid_class_is_refused_with_what_it_lacks(name, reason):
     with pytest.raises(SettingsError) as refused:
         settings_from_parameters(parameters_with(base_local_planner=name), "/move_base/")
     assert str(refused.value).startswith(f"/move_base/base_local_planner: {name}")
@@ -64,15 +64,15 @@ def test_what_cannot_be_used_is_refused_with_what_it_lacks(name, reason):
     "name, fault",
     [
         ("Raises", "raised ZeroDivisionError: division by zero"),
-        ("RaisesWhenMade", "raised OSError: no weights.npz"),
-        ("AnswersNan", "asked for nan m/s"),
-        ("AnswersNothing", "raised AttributeError"),
-        ("Rushes", "asked for 100 m/s, 0 rad/s, beyond its limits"),
-        ("Scribbles", "changed what it was given to read"),
-        ("Dawdles", "took 1.2 s for an answer"),
+        ("RaisesInConstructor", "raised OSError: no weights.npz"),
+        ("ReturnsNan", "asked for nan m/s"),
+        ("ReturnsNothing", "raised AttributeError"),
+        ("ExceedsLimits", "asked for 100 m/s, 0 rad/s, beyond its limits"),
+        ("ModifiesCosts", "changed what it was given to read"),
+        ("TakesTooLong", "took 1.2 s for an answer"),
     ],
 )
-def test_a_faulty_local_planner_is_named_and_the_goal_given_up_at_a_standstill(name, fault):
+def test_a_faulty_local_planner_is_named_and_the_goal_aborted_at_a_standstill(name, fault):
     robot, decisions = drive(
         base_local_planner=f"custom_plugins.faulty/{name}", recovery_behavior_enabled=False
     )
@@ -81,9 +81,9 @@ def test_a_faulty_local_planner_is_named_and_the_goal_given_up_at_a_standstill(n
     assert robot.pose == Pose2(0.6, 0.6)
 
 
-def test_the_costs_that_a_local_planner_scribbled_over_are_put_right():
+def test_costs_that_a_local_planner_modified_are_restored():
     settings, _ = settings_from_parameters(
-        parameters_with(base_local_planner="custom_plugins.faulty/Scribbles")
+        parameters_with(base_local_planner="custom_plugins.faulty/ModifiesCosts")
     )
     robot, navigator = Robot(GRID, Pose2(0.6, 0.6)), Navigator(settings, GRID)
     navigator.set_goal(Pose2(5.4, 3.4, 1.0))
@@ -100,7 +100,7 @@ def test_a_faulty_global_planner_is_named():
     )
 
 
-def test_a_faulty_recovery_behaviour_is_passed_over():
+def test_a_faulty_recovery_behaviour_is_skipped():
     behaviors = [{"name": "mine", "type": "custom_plugins.faulty/BadRecovery"}]
     _, decisions = drive(two_rooms(door=0.0), recovery_behaviors=behaviors)
     assert any(
@@ -110,7 +110,7 @@ def test_a_faulty_recovery_behaviour_is_passed_over():
     assert decisions[-1].status is Status.ABORTED
 
 
-def test_no_goal_is_pursued_while_a_layer_fails_and_the_robot_stands():
+def test_a_failing_layer_aborts_the_goal_and_stops_the_robot():
     parameters = parameters_with()
     parameters["local_costmap"]["plugins"].append({"name": "mine", "type": "custom_plugins.faulty/BadLayer"})
     settings, _ = settings_from_parameters(parameters)
@@ -124,13 +124,13 @@ def test_no_goal_is_pursued_while_a_layer_fails_and_the_robot_stands():
     assert robot.tick(navigator).text.startswith("custom_plugins.faulty/BadLayer raised IndexError")
 
 
-def test_the_check_says_what_a_plugin_does_not_do(capsys):
-    assert run_checks("move_base_lite", KITS, ["custom_plugins.faulty/Rushes"]) == 1
+def test_the_check_reports_what_a_plugin_fails(capsys):
+    assert run_checks("move_base_lite", KITS, ["custom_plugins.faulty/ExceedsLimits"]) == 1
     printed = capsys.readouterr().out
     assert "FAIL  It reaches the goal and stops there without a collision" in printed
-    assert "custom_plugins.faulty/Rushes: 0 of 6 checks passed" in printed
+    assert "custom_plugins.faulty/ExceedsLimits: 0 of 6 checks passed" in printed
 
 
-def test_the_check_refuses_what_is_no_plugin(capsys):
+def test_the_check_refuses_a_class_that_is_no_plugin(capsys):
     assert run_checks("move_base_lite", KITS, ["custom_plugins.faulty/NoFollow"]) == 2
     assert "is no local planner: it has no follow(context, plan, limits)" in capsys.readouterr().err

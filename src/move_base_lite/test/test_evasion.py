@@ -1,4 +1,4 @@
-"""What a robot does that something is about to run into."""
+"""Evasion of dynamic obstacles on a collision course."""
 
 from dataclasses import replace
 
@@ -13,12 +13,12 @@ from move_base_lite.errors import ControlError
 from planar import Pose2, Twist2
 
 HERE_XY = np.array([3.0, 1.75])
-# Of what comes: m, metres from the robot, m/s.
+# The obstacle's radius [m], gap to the robot [m] and speed [m/s].
 OBSTACLE_RADIUS, NEAR, SPEED = 0.25, 0.04, 0.3
 
 
 def command(bearing):
-    """To a robot that stands in an open room, on the way to the goal, as something comes from a side, rad."""
+    """Command to a standing robot while an obstacle approaches from ``bearing`` [rad]."""
     open_room = maps.check_map("open")
     aside = np.array([np.cos(bearing), np.sin(bearing)])
     obstacle_xy, velocity = HERE_XY + (maps.RADIUS + OBSTACLE_RADIUS + NEAR) * aside, -SPEED * aside
@@ -32,16 +32,16 @@ def command(bearing):
 
 
 @pytest.mark.parametrize("bearing", [1.6, -1.6, 2.6, 3.1])
-def test_a_robot_that_stands_drives_off_even_if_it_will_be_come_closer_to_before(bearing):
+def test_a_standing_robot_drives_off_even_if_the_obstacle_first_comes_closer(bearing):
     assert command(bearing).v > 0.1
 
 
-def test_a_robot_goes_back_from_who_comes_from_ahead():
+def test_a_robot_backs_up_from_an_obstacle_ahead():
     assert command(0.0).v < 0.0
 
 
 @pytest.mark.parametrize("heading", [0.0, 0.4, -0.7, 2.1])
-def test_a_robot_that_is_crowded_does_not_creep_into_the_wall_at_its_back(heading):
+def test_a_crowded_robot_does_not_creep_into_the_wall_behind_it(heading):
     costmap = maps.check_map("open").costmap
     planner = MPPI.make(replace(MPPI.settings(), min_vel_x=-0.15), maps.PERIOD)
     pose, twist = Pose2(0.5 + maps.RADIUS + 0.07, 1.3, heading), Twist2()
@@ -69,7 +69,7 @@ def test_a_robot_that_is_crowded_does_not_creep_into_the_wall_at_its_back(headin
         assert costmap.contacts(pose) == 0
 
 
-def test_evasions_are_of_two_different_arcs_each():
-    ways = evasive_controls(MPPI.settings(), 20)
-    assert (ways[:, 0] != ways[:, -1]).any(axis=1).all()
-    assert len(np.unique(ways[:, [0, -1]].reshape(len(ways), 4), axis=0)) == len(ways) == 15 * 14
+def test_evasive_controls_have_two_different_arcs_each():
+    controls = evasive_controls(MPPI.settings(), 20)
+    assert (controls[:, 0] != controls[:, -1]).any(axis=1).all()
+    assert len(np.unique(controls[:, [0, -1]].reshape(len(controls), 4), axis=0)) == len(controls) == 15 * 14

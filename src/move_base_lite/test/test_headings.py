@@ -1,4 +1,4 @@
-"""Plans say which way the robot is to look, in the manner of global_planner's orientation modes."""
+"""Headings of plans in global_planner's orientation modes."""
 
 import math
 
@@ -25,7 +25,7 @@ NORTH = math.pi / 2
         (6, [-NORTH, -NORTH, 0.0, 0.0]),
     ],
 )
-def test_each_mode_orients_the_way_and_ends_as_the_goal(mode, expected):
+def test_each_mode_orients_the_path_and_ends_with_the_goal_heading(mode, expected):
     yaws = headings_along(BENT_XY, mode, start_yaw=0.4, goal_yaw=0.0)
     assert np.abs(wrap(yaws - np.array([*expected, 0.0]))).max() < 1e-9
 

@@ -102,7 +102,7 @@ def test_a_goal_that_nothing_leads_to_is_given_up_after_all_recoveries_with_a_re
     assert decisions[-1].status is Status.ABORTED
     assert decisions[-1].text == (
         "Failed to find a valid plan. Even after executing recovery behaviors. "
-        "[code=NO_PATH: no way leads from the robot at (1.00, 2.00) to the goal at (5.00, 2.00)]"
+        "[code=NO_PATH: no path leads from the robot at (1.00, 2.00) to the goal at (5.00, 2.00)]"
     )
     recoveries = [decision.recovery for decision in decisions if decision.recovery]
     outcome = decisions[-1].outcome
@@ -135,7 +135,7 @@ def test_a_goal_behind_doors_that_are_all_blocked_is_given_up_although_clearing_
     navigator.set_goal(Pose2(5.0, 3.5))
     decisions = drive_to_end(robot, navigator, 120.0)
     assert decisions[-1].status is Status.ABORTED
-    assert "[code=NO_PATH: no way leads from the robot at " in decisions[-1].text
+    assert "[code=NO_PATH: no path leads from the robot at " in decisions[-1].text
     assert "to the goal at (5.00, 3.50)]" in decisions[-1].text
     names = [decision.recovery.name for decision in decisions if decision.recovery]
     assert names == [recovery.name for recovery in settings.recoveries]

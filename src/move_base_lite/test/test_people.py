@@ -1,4 +1,4 @@
-"""A robot that crosses a room gives way to people who do not look where they go."""
+"""A robot that crosses a room avoids people who do not react to it."""
 
 import math
 from dataclasses import replace
@@ -15,7 +15,7 @@ ROBOT_SPEED = 0.55
 
 
 class RobotAmongPeople(Robot):
-    """Sees one person, who walks straight on."""
+    """A robot that observes one person walking straight on."""
 
     def __init__(self, grid, pose, person_start_xy, person_velocity):
         super().__init__(grid, pose)
@@ -38,17 +38,17 @@ class RobotAmongPeople(Robot):
 
 
 def crossing(number):
-    """Start and velocity of somebody who would run into a robot that drives straight on, or nearly."""
+    """Start and velocity of a person on a collision course with a robot that drives straight on."""
     rng = np.random.default_rng([number, 20])
-    course, speed = rng.uniform(0.3, math.pi) * rng.choice([-1, 1]), rng.uniform(0.4, 0.9)
-    velocity = speed * np.array([math.cos(course), math.sin(course)])
+    heading, speed = rng.uniform(0.3, math.pi) * rng.choice([-1, 1]), rng.uniform(0.4, 0.9)
+    velocity = speed * np.array([math.cos(heading), math.sin(heading)])
     meeting_x = rng.uniform(START.x + 2.0, GOAL.x - 2.0)
     seconds = (meeting_x - START.x) / ROBOT_SPEED + 0.8
     return np.array([meeting_x, START.y]) + rng.normal(0.0, 0.15, 2) - seconds * velocity, velocity
 
 
 def drive_across(number, settings=SETTINGS):
-    """Seconds taken, and the smallest gap to the person."""
+    """Time taken [s] and smallest distance to the person [m]."""
     grid = room(9.0, 6.0)
     robot, navigator = RobotAmongPeople(grid, START, *crossing(number)), Navigator(settings, grid)
     navigator.set_goal(GOAL)
@@ -57,17 +57,17 @@ def drive_across(number, settings=SETTINGS):
         if decision.status.is_final:
             assert decision.status is Status.SUCCEEDED, decision.text
             return robot.now, robot.gap
-    raise AssertionError("not there after 40 s")
+    raise AssertionError("goal not reached within 40 s")
 
 
 @pytest.mark.parametrize("number", range(6))
-def test_a_person_who_crosses_its_way_is_given_way_to(number):
+def test_a_person_crossing_the_path_is_avoided(number):
     seconds, gap = drive_across(number)
     print(f"{seconds:.1f} s, {gap:.2f} m")
     assert gap > 0.1
     assert seconds < 18.0
 
 
-def test_without_prediction_people_would_be_run_into():
+def test_without_prediction_there_would_be_collisions():
     blind = replace(SETTINGS, controller=replace(SETTINGS.controller, predict_dynamic_obstacles=False))
     assert min(drive_across(number, blind)[1] for number in range(6)) < 0.0

@@ -120,7 +120,7 @@ def test_each_free_cell_is_reached_from_each_that_is_connected_to_it(name, how):
                     planner.plan(costs, window, *ends)
 
 
-def test_a_plan_is_neither_longer_nor_dearer_than_the_bare_gradient():
+def test_a_plan_is_neither_longer_nor_more_expensive_than_the_gradient_path():
     rng = np.random.default_rng(5)
     costs = rng.choice([0, 0, 30, 90, 200], (60, 60)).astype(np.uint8)
     window, start, goal = CostmapWindow(60, 60, 1.0), (5, 4), (50, 56)
@@ -134,22 +134,22 @@ def test_a_plan_is_neither_longer_nor_dearer_than_the_bare_gradient():
     assert path_cost(costs, window, plan) <= path_cost(costs, window, bare)
 
 
-def test_the_wave_of_a_plan_is_kept_if_it_is_to_be_seen():
+def test_the_potential_is_kept_if_it_is_visualized():
     costs, ends = costs_of(PICTURES["two rooms"]), [(1, 1), (3, 3), (3, 7)]
     window = window_of(costs)
     start_xy, reached_xy, shut_xy = (centre(window, cell) for cell in ends)
     planner = Navfn(NavfnSettings(visualize_potential=True))
     planner.plan(costs, window, start_xy, reached_xy)
-    seen = planner.potential
-    assert (seen.values[ends[0]], seen.values[ends[1]]) == (0.0, seen.at_goal)
-    assert np.isinf(seen.values[costs == LETHAL]).all()
+    potential = planner.potential
+    assert (potential.values[ends[0]], potential.values[ends[1]]) == (0.0, potential.at_goal)
+    assert np.isinf(potential.values[costs == LETHAL]).all()
     with pytest.raises(NoPath):
         planner.plan(costs, window, start_xy, shut_xy)
-    assert planner.potential is not seen
+    assert planner.potential is not potential
     assert np.isinf(planner.potential.at_goal)
-    unseen = Navfn(NavfnSettings())
-    unseen.plan(costs, window, start_xy, reached_xy)
-    assert unseen.potential is None
+    without = Navfn(NavfnSettings())
+    without.plan(costs, window, start_xy, reached_xy)
+    assert without.potential is None
 
 
 @pytest.mark.parametrize("use_astar, excess", [(False, 1.01), (True, 1.03)])
@@ -179,7 +179,7 @@ def test_at_any_angle_a_path_is_shorter_and_as_cheap():
     assert path_cost(costs, window, any_angle) <= path_cost(costs, window, plain)
 
 
-def test_a_way_round_is_preferred_to_one_along_an_obstacle():
+def test_a_detour_is_preferred_to_a_path_along_an_obstacle():
     picture = "###########\n#.........#\n#.........#\n#.5555555.#\n#.5#####5.#\n#.5555555.#\n###########"
     costs = costs_of(picture)
     window = window_of(costs)
@@ -187,7 +187,7 @@ def test_a_way_round_is_preferred_to_one_along_an_obstacle():
     assert path_xy[:, 1].max() > centre(window, (4, 0))[1]
 
 
-def test_a_goal_in_an_obstacle_is_refused_by_name():
+def test_a_goal_in_an_obstacle_is_refused_with_the_reason():
     costs = costs_of("#####\n#.#i#\n#...#\n#####")
     window, planner = window_of(costs), Navfn(NavfnSettings())
     start = centre(window, (1, 1))
@@ -197,7 +197,7 @@ def test_a_goal_in_an_obstacle_is_refused_by_name():
         planner.plan(costs, window, start, centre(window, (2, 3)))
 
 
-def test_a_blocked_goal_gives_way_to_the_nearest_free_place_within_tolerance():
+def test_a_blocked_goal_is_replaced_by_the_nearest_free_cell_within_tolerance():
     costs = costs_of("######\n#..###\n#..###\n######")
     window, planner = window_of(costs), Navfn(NavfnSettings())
     blocked = centre(window, (1, 4))
@@ -207,7 +207,7 @@ def test_a_blocked_goal_gives_way_to_the_nearest_free_place_within_tolerance():
         planner.plan(costs, window, centre(window, (1, 1)), blocked, tolerance=0.9)
 
 
-def test_a_start_in_an_obstacle_is_left_for_the_nearest_free_cell_or_refused():
+def test_a_blocked_start_is_replaced_by_the_nearest_free_cell_or_refused():
     costs = costs_of("#######\n#ii...#\n#######")
     window, planner = window_of(costs), Navfn(NavfnSettings())
     goal = centre(window, (1, 5))
@@ -217,7 +217,7 @@ def test_a_start_in_an_obstacle_is_left_for_the_nearest_free_cell_or_refused():
         planner.plan(costs, window, centre(window, (1, 1)), goal)
 
 
-def test_a_blocked_end_does_not_give_way_to_a_place_to_which_nothing_leads():
+def test_a_blocked_end_is_not_replaced_by_an_unreachable_cell():
     costs = costs_of("########\n#.#....#\n########")
     window, planner = window_of(costs), Navfn(NavfnSettings())
     between, beyond, in_the_open = (centre(window, (1, col)) for col in (2, 3, 6))
@@ -227,7 +227,7 @@ def test_a_blocked_end_does_not_give_way_to_a_place_to_which_nothing_leads():
 
 
 @pytest.mark.parametrize("outside", [(-5.0, 2.6), (0.0, 99.0)])
-def test_a_place_off_the_map_is_refused(outside):
+def test_a_position_outside_of_the_map_is_refused(outside):
     costs = costs_of(PICTURES["empty"])
     window, planner = window_of(costs), Navfn(NavfnSettings())
     with pytest.raises(OutOfMap, match="the goal"):
@@ -245,7 +245,7 @@ def test_unknown_space_is_crossed_only_if_allowed():
         Navfn(NavfnSettings(allow_unknown=False)).plan(costs, window, *ends)
 
 
-def test_being_there_already_is_a_plan():
+def test_a_goal_at_the_start_gives_a_plan():
     costs = costs_of(PICTURES["empty"])
     window = window_of(costs)
     here = centre(window, (2, 2))

@@ -1,4 +1,4 @@
-"""Ways of driving followed ahead."""
+"""Rollouts of MPPI."""
 
 from dataclasses import replace
 
@@ -13,22 +13,22 @@ from planar import Pose2, Twist2
 STEPS = 20
 
 
-def test_ways_followed_side_by_side_cost_what_each_costs_alone():
-    problem, start = problem_beside_a_wall_and_somebody()
+def test_parallel_rollouts_cost_the_same_as_single_ones():
+    problem, start = problem_beside_a_wall_and_a_person()
     rng = np.random.default_rng(4)
     noise, others = (rng.normal(0.0, (0.3, 0.8), (count, STEPS, 2)) for count in (300, 40))
     mean = np.tile((0.2, 0.1), (STEPS, 1))
     costs = costs_of((noise, mean, others), start, problem)
     poses, speeds = np.empty((STEPS + 1, 3)), np.empty((STEPS, 2))
     alone, ended_early = [], 0
-    for way in (*(noise + mean), *others):
-        alone.append(drive(way, start, problem, poses, speeds))
+    for controls in (*(noise + mean), *others):
+        alone.append(drive(controls, start, problem, poses, speeds))
         ended_early += np.isfinite(alone[-1]) and (poses[-1] == poses[-2]).all()
     assert 0 < ended_early < 340 and 0 < np.isinf(costs).sum() < 340
     assert (costs == alone).all()
 
 
-def problem_beside_a_wall_and_somebody():
+def problem_beside_a_wall_and_a_person():
     room = maps.check_map("open")
     pose, twist = Pose2(0.5 + maps.RADIUS + 0.1, 1.3, 2.0), Twist2(0.3, 0.0)
     context = replace(

@@ -8,7 +8,7 @@ def test_strokes_are_separated_by_blanks_newlines_or_commas(text):
     assert parse(text) == [KeyStroke("i", 2.0), KeyStroke("j", 1.5)]
 
 
-def test_a_comma_before_a_colon_is_the_key_for_going_back():
+def test_a_comma_before_a_colon_is_the_key_for_reversing():
     assert parse("i:1,,:2,k:.5") == [KeyStroke("i", 1.0), KeyStroke(",", 2.0), KeyStroke("k", 0.5)]
 
 
@@ -19,7 +19,7 @@ def test_a_key_without_a_time_is_a_single_press():
 @pytest.mark.parametrize(
     "text, wrong", [("i:2 y:1", "y:1"), ("i:-1", "i:-1"), ("i:2s", "i:2s"), ("hello", "hello")]
 )
-def test_what_is_no_script_is_shown(text, wrong):
+def test_an_invalid_part_is_in_the_message(text, wrong):
     with pytest.raises(KeyScriptError, match=f"'{wrong}' is not a key with a time"):
         parse(text)
 
@@ -34,7 +34,7 @@ def test_single_presses_take_no_time():
     assert KeyScript(parse("q q i:1")).keys_at(0.0) == "qqi"
 
 
-def test_strokes_that_come_late_start_when_they_come():
+def test_late_strokes_start_when_they_arrive():
     script = KeyScript(parse("i:0.1"))
     assert [script.keys_at(0.0), script.keys_at(0.1)] == ["i", ""]
     script.add(parse("j:0.2"))

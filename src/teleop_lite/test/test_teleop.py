@@ -7,7 +7,7 @@ TICK = 0.1
 
 
 def velocities(teleop, ticks, held="", start=0.0):
-    """What ``ticks`` ticks command, a key being held all the while."""
+    """The commands of a number of ticks while a key is held."""
     commands = []
     for i in range(ticks):
         for key in held:
@@ -40,7 +40,7 @@ def test_velocities_change_by_two_centimetres_and_a_tenth_of_a_radian_a_second_i
     assert (second.v, second.omega) == pytest.approx((0.04, 0.2))
 
 
-def test_a_key_repeated_within_a_tick_does_not_speed_the_ramp_up():
+def test_a_key_repeated_within_a_tick_does_not_accelerate_the_ramp():
     assert velocities(Teleop(), 1, "iii")[0].v == pytest.approx(0.02)
 
 
@@ -78,11 +78,11 @@ def test_speed_keys_scale_the_full_speeds_and_do_not_stop_the_robot(key, v, omeg
     assert teleop.tick(1.0).v == pytest.approx(min(0.2 * v, 0.22))
 
 
-def test_the_start_speeds_are_settings():
+def test_the_initial_speeds_are_settings():
     teleop = Teleop(TeleopSettings(scale_linear=0.5, scale_angular=1.5))
     assert velocities(teleop, 30, "u")[-1] == Twist2(0.5, 1.5)
 
 
-def test_a_senseless_speed_is_refused():
+def test_an_invalid_speed_is_refused():
     with pytest.raises(SettingsError, match="scale_linear must be positive"):
         TeleopSettings(scale_linear=-1.0)

@@ -29,7 +29,7 @@ def terminal_pair():
             continue
 
 
-def test_keys_arrive_one_by_one_without_a_newline_and_unseen(terminal_pair):
+def test_keys_arrive_one_by_one_without_newline_and_echo(terminal_pair):
     ours, theirs = terminal_pair
     with Terminal(theirs) as terminal:
         os.write(ours, b"i\r")
@@ -49,8 +49,8 @@ def test_ctrl_c_is_a_key_of_the_own_terminal():
     os.close(keyboard)
 
 
-def test_ctrl_c_reaches_whoever_started_the_node_on_another_session_s_terminal():
-    child, keyboard = pty.fork()  # as roslaunch, whose nodes lead sessions of their own
+def test_ctrl_c_on_another_session_s_terminal_reaches_the_process_that_started_the_node():
+    child, keyboard = pty.fork()  # as roslaunch, which starts nodes in new sessions
     if child == 0:
         node = [sys.executable, "-c", HOLDS_TERMINAL]
         with subprocess.Popen(node, start_new_session=True) as running:
@@ -66,7 +66,7 @@ def test_ctrl_c_reaches_whoever_started_the_node_on_another_session_s_terminal()
     os.close(keyboard)
 
 
-def test_the_terminal_is_restored_whatever_happens(terminal_pair):
+def test_the_terminal_is_restored_after_an_exception(terminal_pair):
     before = termios.tcgetattr(terminal_pair[1])
     with pytest.raises(SystemExit), Terminal(terminal_pair[1]):
         assert termios.tcgetattr(terminal_pair[1]) != before
@@ -74,14 +74,14 @@ def test_the_terminal_is_restored_whatever_happens(terminal_pair):
     assert termios.tcgetattr(terminal_pair[1]) == before
 
 
-def test_a_terminal_that_is_gone_counts_as_ctrl_c(terminal_pair):
+def test_a_closed_terminal_counts_as_ctrl_c(terminal_pair):
     ours, theirs = terminal_pair
     with Terminal(theirs) as terminal:
         os.close(ours)
         assert terminal.read(1.0) == CTRL_C
 
 
-def test_a_pipe_gives_whole_lines_and_at_its_end_the_rest():
+def test_a_pipe_returns_complete_lines_and_the_rest_at_its_end():
     theirs, ours = os.pipe()
     pipe = Pipe(theirs)
     assert pipe.read() == ""
@@ -95,6 +95,6 @@ def test_a_pipe_gives_whole_lines_and_at_its_end_the_rest():
     os.close(theirs)
 
 
-def test_what_is_no_terminal_is_refused_in_a_sentence():
+def test_a_file_that_is_no_terminal_is_refused_with_the_reason():
     with Path(os.devnull).open() as nothing, pytest.raises(NoKeysError, match="no keyboard here"):
         Terminal(nothing.fileno())

@@ -14,7 +14,7 @@ def after(keys, ticks, model="burger"):
     return command
 
 
-def test_each_key_changes_the_velocity_by_a_step_and_it_is_kept():
+def test_each_key_changes_the_velocity_by_a_step_that_is_kept():
     command = after("wwwad", 100)
     assert command.v == pytest.approx(0.03)
     assert command.omega == pytest.approx(0.0)
@@ -25,17 +25,17 @@ def test_the_velocity_rises_by_half_a_step_a_tick():
 
 
 @pytest.mark.parametrize(("model", "v"), [("burger", 0.22), ("waffle", 0.26), ("unheard_of", 0.22)])
-def test_a_model_is_no_faster_than_it_can_be(model, v):
+def test_a_model_does_not_exceed_its_maximum(model, v):
     assert after("w" * 50, 200, model).v == pytest.approx(v)
     assert after("x" * 50, 200, model).v == pytest.approx(-v)
 
 
 @pytest.mark.parametrize("key", "s ")
-def test_a_stop_is_at_once(key):
+def test_a_stop_key_stops_at_once(key):
     assert after("wwww" + "a" + key, 1) == Twist2()
 
 
-def test_a_script_may_hold_keys_of_its_robot_only():
+def test_a_script_may_only_use_the_keys_of_its_robot():
     assert [stroke.key for stroke in parse("w:1.0 a d s", KEYS)] == ["w", "a", "d", "s"]
     with pytest.raises(KeyScriptError):
         parse("i:1.0", KEYS)

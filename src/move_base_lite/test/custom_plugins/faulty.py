@@ -1,10 +1,10 @@
-"""Plugins that do what plugins must not."""
+"""Plugins that violate their contracts."""
 
 import time
 
 import numpy as np
 
-from move_base_lite import ControllerSettings, Layer, Trajectory
+from move_base_lite import Layer, Trajectory
 from planar import Twist2
 
 
@@ -16,48 +16,48 @@ class Faulty:
 
     def follow(self, context, plan, limits):
         self.calls += 1
-        return self.answer(context, plan, Twist2())
+        return self.trajectory(context, plan, Twist2())
 
-    def answer(self, context, plan, command):
+    def trajectory(self, context, plan, command):
         return Trajectory(command, context.base_in_local.as_array()[None, :], 0.0)
 
 
 class Raises(Faulty):
-    def answer(self, context, plan, command):
+    def trajectory(self, context, plan, command):
         raise ZeroDivisionError("division by zero")
 
 
-class RaisesWhenMade(Faulty):
+class RaisesInConstructor(Faulty):
     def __init__(self, settings, period):
         raise OSError("no weights.npz")
 
 
-class AnswersNan(Faulty):
-    def answer(self, context, plan, command):
-        return super().answer(context, plan, Twist2(np.nan, 0.0))
+class ReturnsNan(Faulty):
+    def trajectory(self, context, plan, command):
+        return super().trajectory(context, plan, Twist2(np.nan, 0.0))
 
 
-class AnswersNothing(Faulty):
-    def answer(self, context, plan, command):
+class ReturnsNothing(Faulty):
+    def trajectory(self, context, plan, command):
         return None
 
 
-class Rushes(Faulty):
-    def answer(self, context, plan, command):
-        return super().answer(context, plan, Twist2(100.0, 0.0))
+class ExceedsLimits(Faulty):
+    def trajectory(self, context, plan, command):
+        return super().trajectory(context, plan, Twist2(100.0, 0.0))
 
 
-class Scribbles(Faulty):
-    def answer(self, context, plan, command):
+class ModifiesCosts(Faulty):
+    def trajectory(self, context, plan, command):
         context.costmap.costs[:] = 0
-        return super().answer(context, plan, command)
+        return super().trajectory(context, plan, command)
 
 
-class Dawdles(Faulty):
-    def answer(self, context, plan, command):
+class TakesTooLong(Faulty):
+    def trajectory(self, context, plan, command):
         if self.calls > 1:
             time.sleep(1.2)
-        return super().answer(context, plan, command)
+        return super().trajectory(context, plan, command)
 
 
 class NoFollow:
@@ -65,7 +65,7 @@ class NoFollow:
         pass
 
 
-class FollowsLess:
+class TooFewArguments:
     def __init__(self, settings, period):
         pass
 
@@ -73,12 +73,8 @@ class FollowsLess:
         pass
 
 
-class StrangeSettings(Faulty):
+class WrongSettings(Faulty):
     Settings = dict
-
-
-class OwnSettings(Faulty):
-    Settings = ControllerSettings
 
 
 class BadPlan:
@@ -94,7 +90,7 @@ class BadRecovery:
         pass
 
     def step(self, context):
-        raise KeyError("no such thing")
+        raise KeyError("no such key")
 
 
 class BadLayer(Layer):

@@ -1,6 +1,6 @@
-"""What any plugin has to do, whoever wrote it: ``python3 -m move_base_lite.check NAME``.
+"""Contract checks of plugins: ``python3 -m move_base_lite.check NAME``.
 
-Each seam has a module of checks (planar.contract_check), which are given a Plugin.
+Each kind of plugin has a module of checks (planar.contract_check); a check takes the Plugin.
 """
 
 from functools import partial
@@ -15,13 +15,14 @@ from move_base_lite.recovery import RECOVERIES
 from planar.contract_check import Check, CheckSuite
 
 
-def _kit(registry: Registry[Any], *checks: Check) -> CheckSuite:
+def _suite(registry: Registry[Any], *checks: Check) -> CheckSuite:
     return CheckSuite(partial(registry.find, is_package_needed=False), checks)
 
 
+# The checks by kind of plugin.
 KITS = {
-    "local_planner": _kit(LOCAL_PLANNERS, *local_planners.CHECKS),
-    "global_planner": _kit(GLOBAL_PLANNERS, *global_planners.CHECKS),
-    "recovery_behavior": _kit(RECOVERIES, *recoveries.CHECKS),
-    "costmap_layer": _kit(LAYERS, *layers.CHECKS),
+    "local_planner": _suite(LOCAL_PLANNERS, *local_planners.CHECKS),
+    "global_planner": _suite(GLOBAL_PLANNERS, *global_planners.CHECKS),
+    "recovery_behavior": _suite(RECOVERIES, *recoveries.CHECKS),
+    "costmap_layer": _suite(LAYERS, *layers.CHECKS),
 }

@@ -1,4 +1,4 @@
-"""Holds a plugin to its contract: ``python3 -m move_base_lite.check NAME``."""
+"""Check whether a plugin keeps its contract: ``python3 -m move_base_lite.check NAME``."""
 
 import sys
 

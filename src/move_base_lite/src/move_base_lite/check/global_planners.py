@@ -1,4 +1,4 @@
-"""The checks of global planners."""
+"""Contract checks of global planners."""
 
 from typing import Any
 
@@ -10,12 +10,12 @@ from move_base_lite.errors import GoalBlocked, NoPath, OutOfMap
 from move_base_lite.plugin import Plugin
 from planar.contract_check import expect, expect_error
 
-# Cells of a path's longest step.
+# Maximum distance of consecutive points [cells].
 LONGEST_STEP = 3.0
 
 
 def finds_paths(plugin: Plugin[Any]) -> None:
-    """It finds a way of small steps from start to goal that crosses nothing, in every picture."""
+    """It finds a collision-free path in small steps from start to goal on every map."""
     for name in PICTURES:
         room = check_map(name)
         window, path_xy = room.costmap.window, _plan(plugin, room)
@@ -28,21 +28,21 @@ def finds_paths(plugin: Plugin[Any]) -> None:
 
 
 def is_deterministic(plugin: Plugin[Any]) -> None:
-    """The same calls give the same answers."""
+    """The same calls give the same results."""
     first, second = (_plan(plugin, check_map("door")) for _ in range(2))
-    expect(np.array_equal(first, second), "another path in the same picture")
+    expect(np.array_equal(first, second), "the second call gave another path on the same map")
 
 
 def changes_nothing(plugin: Plugin[Any]) -> None:
-    """What it is given stays as it was."""
+    """It does not modify its arguments."""
     room = check_map("corner")
     before = room.costmap.costs.copy()
     _plan(plugin, room)
-    expect(np.array_equal(room.costmap.costs, before), "the costs are others after the call")
+    expect(np.array_equal(room.costmap.costs, before), "the call modified the costs")
 
 
 def raises_the_reason(plugin: Plugin[Any]) -> None:
-    """Without a way it says why: outside of the map, no room at the goal, nothing that connects."""
+    """Without a path it raises the reason: OutOfMap, GoalBlocked or NoPath."""
     room = check_map("door")
     outside_xy = (room.start_xy[0] - 100.0, room.start_xy[1])
     with expect_error(OutOfMap, "no OutOfMap for a goal 100 m outside"):

@@ -1,4 +1,4 @@
-"""The checks of costmap layers."""
+"""Contract checks of costmap layers."""
 
 from typing import Any, Optional, Tuple
 
@@ -26,27 +26,27 @@ FOOTPRINT: Footprint = footprint_from((), 0.05, 0.0)
 HERE = Pose2(0.5, 0.3)
 
 
-def keeps_to_its_bounds(plugin: Plugin[Any]) -> None:
+def stays_within_bounds(plugin: Plugin[Any]) -> None:
     """It changes no cell outside of the bounds."""
     for is_rolling in (False, True):
-        layer, _ = _shown(plugin, is_rolling)
+        layer, _ = _with_observation(plugin, is_rolling)
         bounds = WINDOW.cut(WINDOW.bounds_around(HERE.x, HERE.y, 0.1))
         outside = np.ones((WINDOW.rows, WINDOW.cols), bool)
         outside[bounds.slices] = False
         costs = _applied(layer, bounds)
-        expect(np.array_equal(costs[outside], _ground()[outside]), f"cells outside of {bounds} changed")
+        expect(np.array_equal(costs[outside], _base_costs()[outside]), f"cells outside of {bounds} changed")
 
 
 def is_repeatable(plugin: Plugin[Any]) -> None:
-    """Applied twice it gives the same."""
-    layer, _ = _shown(plugin)
+    """Applying it twice gives the same costs."""
+    layer, _ = _with_observation(plugin)
     expect(np.array_equal(_applied(layer), _applied(layer)), "other costs the second time")
 
 
 def reports_changed_bounds(plugin: Plugin[Any]) -> None:
-    """An update tells of all that has changed."""
-    before = _applied(_made(plugin))
-    layer, changed = _shown(plugin)
+    """An update returns bounds that contain all changed cells."""
+    before = _applied(_new_layer(plugin))
+    layer, changed = _with_observation(plugin)
     has_changed = before != _applied(layer)
     block = WINDOW.grown(changed, layer.reach_cells)
     has_changed[block.slices] = False
@@ -54,36 +54,38 @@ def reports_changed_bounds(plugin: Plugin[Any]) -> None:
 
 
 def clears_observations(plugin: Plugin[Any]) -> None:
-    """What forgets shows what it would have shown anew."""
-    layer, _ = _shown(plugin)
+    """After clear_outside of everything it gives the costs of a new layer."""
+    layer, _ = _with_observation(plugin)
     layer.clear_outside(WINDOW.cut(WINDOW.bounds_around(-9.0, -9.0, 0.1)), WINDOW)
-    expect(np.array_equal(_applied(layer), _applied(_made(plugin))), "something is left of what was seen")
+    expect(
+        np.array_equal(_applied(layer), _applied(_new_layer(plugin))), "an observation is left after clearing"
+    )
 
 
-def _made(plugin: Plugin[Any], is_rolling: bool = False) -> Layer:
-    """With the defaults, and a sensor if the layer has any."""
+def _new_layer(plugin: Plugin[Any], is_rolling: bool = False) -> Layer:
+    """A layer with default settings, and with a sensor if it has sources."""
     has_sources = hasattr(plugin.settings(), "sources")
     settings = plugin.settings(sources=(SourceSettings(topic="cloud"),)) if has_sources else plugin.settings()
     return plugin.make(settings, LayerContext(WINDOW, is_rolling, FOOTPRINT, GRID))
 
 
-def _shown(plugin: Plugin[Any], is_rolling: bool = False) -> Tuple[Layer, CellBounds]:
-    """A layer that has been shown something beside the robot, and what it said to have changed."""
-    layer = _made(plugin, is_rolling)
+def _with_observation(plugin: Plugin[Any], is_rolling: bool = False) -> Tuple[Layer, CellBounds]:
+    """A layer after an observation beside the robot, and the changed bounds it returned."""
+    layer = _new_layer(plugin, is_rolling)
     layer.add_observation(observation_from_points("cloud", 0.0, Pose2(), np.array([[0.2, 0.0, 0.1]])), HERE)
     return layer, layer.update(CostmapPlacement(WINDOW, 0, 0, HERE, Pose2()))
 
 
-def _ground() -> np.ndarray:
+def _base_costs() -> np.ndarray:
     costs = np.zeros((WINDOW.rows, WINDOW.cols), np.uint8)
     costs[0, 0] = LETHAL
     return costs
 
 
 def _applied(layer: Layer, bounds: Optional[CellBounds] = None) -> np.ndarray:
-    costs = _ground()
+    costs = _base_costs()
     layer.apply(costs, WINDOW, bounds or WINDOW.everything)
     return costs
 
 
-CHECKS = (keeps_to_its_bounds, is_repeatable, reports_changed_bounds, clears_observations)
+CHECKS = (stays_within_bounds, is_repeatable, reports_changed_bounds, clears_observations)

@@ -1,4 +1,4 @@
-"""The checks of local planners."""
+"""Contract checks of local planners."""
 
 import math
 from dataclasses import replace
@@ -17,38 +17,38 @@ SPEEDS = Twist2(0.5, 1.0)
 
 
 def reaches_goals(plugin: Plugin[Any]) -> None:
-    """It reaches the goal and stops there without a collision, in every picture."""
+    """It reaches the goal and stops there without a collision, on every map."""
     for name in PICTURES:
         room = check_map(name)
         poses = drive(plugin, room)
         off = math.dist((poses[-1].x, poses[-1].y), room.goal_xy)
         expect(off <= plugin.settings().xy_goal_tolerance, f"{name}: stands {off:.2f} m from the goal")
         hit = next((pose for pose in poses if room.costmap.collides(pose)), None)
-        expect(hit is None, f"{name}: touches something at {hit}")
+        expect(hit is None, f"{name}: collides at {hit}")
 
 
 def is_deterministic(plugin: Plugin[Any]) -> None:
-    """The same calls give the same answers."""
+    """The same calls give the same results."""
     first, second = (drive(plugin, check_map("corner")) for _ in range(2))
-    expect(first == second, "another drive in the same picture")
+    expect(first == second, "the second run gave another trajectory on the same map")
 
 
 def changes_nothing(plugin: Plugin[Any]) -> None:
-    """What it is given stays as it was."""
+    """It does not modify its arguments."""
     room = check_map("post")
     path_xy, dynamic_obstacles = plan_in(room), np.array([[2.0, 1.0, 0.0, 0.3, 0.2]])
-    lent = {"costs": room.costmap.costs, "plan": path_xy, "movers": dynamic_obstacles}
+    lent = {"costs": room.costmap.costs, "plan": path_xy, "dynamic obstacles": dynamic_obstacles}
     before = {name: array.copy() for name, array in lent.items()}
     context = replace(
         context_of(room.costmap, Pose2(*room.start_xy, 0.0)), dynamic_obstacles=dynamic_obstacles
     )
     plugin.make(plugin.settings(), PERIOD).follow(context, Plan(path_xy, 4.5), SPEEDS)
     for name, array in lent.items():
-        expect(np.array_equal(array, before[name]), f"the {name} are others after the call")
+        expect(np.array_equal(array, before[name]), f"the call modified the {name}")
 
 
 def stays_within_limits(plugin: Plugin[Any]) -> None:
-    """Its velocity is within the limits, and within reach by the accelerations."""
+    """Its commands keep the speed limits and the acceleration limits."""
     room, settings = check_map("corner"), plugin.settings()
     for limits in (SPEEDS, Twist2(0.2, 1.0), Twist2(0.5, 0.1)):
         planner, twist = plugin.make(settings, PERIOD), Twist2()
@@ -58,7 +58,7 @@ def stays_within_limits(plugin: Plugin[Any]) -> None:
             now = planner.follow(context, Plan(path_xy, 5.0), limits).command
             expect(settings.min_vel_x <= now.v <= limits.v + 1e-9, f"{now.v} m/s, limit {limits.v}")
             expect(abs(now.omega) <= limits.omega + 1e-9, f"{now.omega} rad/s, limit {limits.omega}")
-            # A robot at rest may set off at once with the least speed that moves it.
+            # A robot at rest may start at min_vel_trans.
             reach = max(settings.acc_lim_x * PERIOD, settings.min_vel_trans)
             expect(abs(now.v - twist.v) <= reach + 1e-9, f"from {twist.v} to {now.v} m/s in {PERIOD} s")
             turn_reach = settings.acc_lim_theta * PERIOD
@@ -68,7 +68,7 @@ def stays_within_limits(plugin: Plugin[Any]) -> None:
 
 
 def predicts_its_trajectory(plugin: Plugin[Any]) -> None:
-    """A trajectory begins where the robot is, touches nothing and costs something finite."""
+    """A trajectory starts at the robot's pose, is collision-free and has a finite cost."""
     room = check_map("open")
     pose = Pose2(*room.start_xy, 0.2)
     planner = plugin.make(plugin.settings(), PERIOD)
@@ -78,12 +78,12 @@ def predicts_its_trajectory(plugin: Plugin[Any]) -> None:
     expect(is_shaped, f"poses of the shape {poses.shape}, not (N, 3) with N > 1")
     expect(np.allclose(poses[0], pose.as_array()), f"begins at {poses[0]}, the robot is at {pose}")
     expect(math.isfinite(trajectory.cost), f"a cost of {trajectory.cost}")
-    touches = any(room.costmap.collides(Pose2(*way)) for way in poses.tolist())
-    expect(not touches, "touches something in an open room")
+    touches = any(room.costmap.collides(Pose2(*row)) for row in poses.tolist())
+    expect(not touches, "collides on an open map")
 
 
 def refuses_a_blocked_plan(plugin: Plugin[Any]) -> None:
-    """A plan that is blocked as far as it is seen is refused with a ControlError."""
+    """It raises a ControlError if the plan is blocked as far as the costmap shows it."""
     room = check_map("open")
     x, y = room.start_xy
     in_the_wall = Plan(np.array([[x - 0.5, y], [x - 0.5, y + 0.3]]), 0.8)

@@ -1,4 +1,4 @@
-"""Tiny maps drawn as pictures, in which a plugin has to show what it can do."""
+"""Small maps, drawn as pictures, on which plugins are checked."""
 
 import math
 from dataclasses import dataclass, replace
@@ -18,7 +18,7 @@ from planar.contract_check import CheckFailed
 
 PERIOD = 0.1
 RADIUS = 0.2
-# Metres across a character of a picture, in which the robot drives from S to G.
+# Size of a picture's character and of a grid cell [m]; the robot drives from S to G.
 CELL, RESOLUTION = 0.5, 0.05
 PICTURES = {
     "open": """
@@ -52,12 +52,18 @@ PICTURES = {
 #..........#
 ############""",
 }
-ANYWHERE = Twist2(math.inf, math.inf)
+UNLIMITED = Twist2(math.inf, math.inf)
 
 
 @dataclass(frozen=True)
 class CheckMap:
-    """A costmap with a start and a goal, metres in its frame."""
+    """A costmap with start and goal.
+
+    Attributes:
+        costmap: The costmap.
+        start_xy: Start in the costmap's frame [m].
+        goal_xy: Goal in the costmap's frame [m].
+    """
 
     costmap: LayeredCostmap
     start_xy: Tuple[float, float]
@@ -65,7 +71,7 @@ class CheckMap:
 
 
 def check_map(name: str) -> CheckMap:
-    """The picture of that name in cells of 0.05 m."""
+    """The map of that name (see PICTURES), in cells of RESOLUTION."""
     picture = PICTURES[name].strip()
     coarse = grid_from_picture(picture.replace("S", ".").replace("G", "."), CELL)
     times = round(CELL / RESOLUTION)
@@ -87,17 +93,30 @@ def _centre_of(mark: str, picture: str) -> Tuple[float, float]:
 
 
 def context_of(costmap: LayeredCostmap, pose: Pose2, twist: Twist2 = Twist2()) -> ControlContext:
+    """A context without dynamic obstacles in which map and odom frame coincide."""
     return ControlContext(pose, pose, twist, costmap, NO_DYNAMIC_OBSTACLES, costmap)
 
 
 def plan_in(room: CheckMap) -> np.ndarray:
-    """Navfn's path (N, 2) from start to goal."""
+    """navfn's path (N, 2) from start to goal."""
     costs, window = room.costmap.costs, room.costmap.window
     return Navfn(NavfnSettings()).plan(costs, window, room.start_xy, room.goal_xy)
 
 
 def drive(plugin: Plugin[Any], room: CheckMap, seconds: float = 40.0) -> List[Pose2]:
-    """The poses of a robot that does at once what a local planner says, until it stands at the goal."""
+    """Drive to the goal with a local planner whose commands take effect without delay.
+
+    Args:
+        plugin: The local planner.
+        room: The map.
+        seconds: Time limit [s].
+
+    Returns:
+        The robot's pose in each period.
+
+    Raises:
+        CheckFailed: The goal was not reached in time.
+    """
     settings = plugin.settings()
     controller = Controller(settings, PERIOD, plugin.make(settings, PERIOD))
     controller.set_plan(plan_in(room), Pose2(*room.goal_xy, 0.0))
@@ -106,12 +125,14 @@ def drive(plugin: Plugin[Any], room: CheckMap, seconds: float = 40.0) -> List[Po
         poses.append(pose)
         if controller.is_goal_reached(pose, twist):
             return poses
-        twist = controller.control(context_of(room.costmap, pose, twist), ANYWHERE).command
+        twist = controller.control(context_of(room.costmap, pose, twist), UNLIMITED).command
         pose = moved(pose, twist)
-    raise CheckFailed(f"not at the goal after {seconds:g} s, but at ({pose.x:.2f}, {pose.y:.2f})")
+    raise CheckFailed(
+        f"the goal was not reached within {seconds:g} s; the robot is at ({pose.x:.2f}, {pose.y:.2f})"
+    )
 
 
 def moved(pose: Pose2, twist: Twist2) -> Pose2:
-    """Where a velocity has led after a period."""
-    half_turn, way = 0.5 * twist.omega * PERIOD, twist.v * PERIOD
-    return pose @ Pose2(way * math.cos(half_turn), way * math.sin(half_turn), 2.0 * half_turn)
+    """The pose after one period at a velocity."""
+    half_turn, distance = 0.5 * twist.omega * PERIOD, twist.v * PERIOD
+    return pose @ Pose2(distance * math.cos(half_turn), distance * math.sin(half_turn), 2.0 * half_turn)

@@ -1,45 +1,43 @@
-"""The checks of recovery behaviours."""
+"""Contract checks of recovery behaviours."""
 
-import math
 from typing import Any, List
 
-from move_base_lite.check.maps import PERIOD, PICTURES, CheckMap, check_map
+from move_base_lite.check.maps import PERIOD, PICTURES, CheckMap, check_map, moved
 from move_base_lite.plugin import Plugin
 from move_base_lite.recovery import RecoveryContext
 from planar import Pose2, Twist2
 from planar.contract_check import CheckFailed, expect
 
-LONGEST = 60.0
+MAX_DURATION = 60.0
 
 
 def terminates(plugin: Plugin[Any]) -> None:
-    """It ends by itself, wherever it is begun, and the robot touches nothing meanwhile."""
+    """It ends without a collision on every map."""
     for name in PICTURES:
         room = check_map(name)
         hit = next((pose for pose in _run(plugin, room) if room.costmap.collides(pose)), None)
-        expect(hit is None, f"{name}: touches something at {hit}")
+        expect(hit is None, f"{name}: collides at {hit}")
 
 
 def is_deterministic(plugin: Plugin[Any]) -> None:
-    """The same calls give the same answers."""
+    """The same calls give the same results."""
     first, second = (_run(plugin, check_map("corner")) for _ in range(2))
-    expect(first == second, "another drive in the same picture")
+    expect(first == second, "the second run gave another trajectory on the same map")
 
 
 def _run(plugin: Plugin[Any], room: CheckMap) -> List[Pose2]:
-    """The poses of a robot that does at once what the behaviour says."""
+    """The poses of a robot that executes the behaviour's commands without delay."""
     behavior = plugin.make(plugin.settings())
     pose, twist, poses = Pose2(*room.start_xy, 0.0), Twist2(), []
-    for _ in range(round(LONGEST / PERIOD)):
+    for _ in range(round(MAX_DURATION / PERIOD)):
         poses.append(pose)
         context = RecoveryContext(pose, pose, twist, PERIOD, room.costmap, room.costmap, lambda limit: None)
         command = behavior.step(context)
         if command is None:
             return poses
-        twist, half_turn = command, 0.5 * command.omega * PERIOD
-        way = command.v * PERIOD
-        pose = pose @ Pose2(way * math.cos(half_turn), way * math.sin(half_turn), 2.0 * half_turn)
-    raise CheckFailed(f"not at an end after {LONGEST:g} s")
+        twist = command
+        pose = moved(pose, command)
+    raise CheckFailed(f"did not end within {MAX_DURATION:g} s")
 
 
 CHECKS = (terminates, is_deterministic)

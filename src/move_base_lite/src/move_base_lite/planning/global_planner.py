@@ -1,11 +1,11 @@
-"""The contract of global planners: a way through a costmap.
+"""The contract of global planners: a path through a costmap.
 
-Life cycle. A global planner is made with its settings, and anew whenever they change. It may be asked for a
-:meth:`~GlobalPlanner.plan` at any time, also between places where the robot is not; each question stands for
-itself.
+Life cycle: a global planner is constructed with its settings, and again whenever they change.
+:meth:`~GlobalPlanner.plan` may be called at any time, also from positions other than the robot's; calls are
+independent of each other.
 
-To add one: a file with settings (a subclass of PlannerSettings), a class and its Plugin, and a line in
-``planning/registry.py``. ``test/test_planner.py`` holds it to what is said here.
+To add one: a module with settings (a subclass of PlannerSettings), a class and its Plugin, and a line in
+``planning/registry.py``. ``test/test_planner.py`` checks every member of the registry.
 """
 
 from dataclasses import dataclass
@@ -24,20 +24,20 @@ ORIENTATIONS = (
 
 @dataclass(frozen=True)
 class PlannerSettings:
-    """What every global planner can be told."""
+    """Settings of any global planner."""
 
-    allow_unknown: bool = parameter(True, "plans may cross cells that nothing is known of")
+    allow_unknown: bool = parameter(True, "plans may cross unknown cells")
     default_tolerance: float = parameter(
-        0.0, "from a blocked goal, within which the nearest free place will do", "m", at_least(0.0)
+        0.0, "distance from a blocked goal within which the nearest free cell replaces it", "m", at_least(0.0)
     )
     orientation_mode: int = parameter(0, ORIENTATIONS, bounds=Interval(0, 6, "0 to 6"))
     visualize_potential: bool = parameter(
         False,
-        "whether each plan's wave is on the topic potential, while somebody listens; "
+        "publish the potential of each plan on the topic potential if it has subscribers; "
         "GlobalPlanner: publish_potential, true",
     )
     publish_scale: int = parameter(
-        100, "the highest value of GlobalPlanner's potential", bounds=Interval(1, 127, "1 to 127")
+        100, "maximum value of GlobalPlanner's potential", bounds=Interval(1, 127, "1 to 127")
     )
 
     def __post_init__(self):
@@ -46,9 +46,12 @@ class PlannerSettings:
 
 @dataclass(frozen=True, eq=False)
 class Potential:
-    """The wave of a plan: cost from the robot, float32 (rows, cols), inf where it has not come to.
+    """The potential of a plan.
 
-    ``at_goal``: its value there.
+    Attributes:
+        values: (rows, cols) cost from the robot, float32, inf where the wavefront did not arrive.
+        window: Position and resolution of the grid.
+        at_goal: Value at the goal.
     """
 
     values: np.ndarray
@@ -57,9 +60,11 @@ class Potential:
 
 
 class GlobalPlanner(Protocol):
-    """Made by ``make(settings)``; holds no costmap of its own.
+    """Plans paths; constructed as ``make(settings)``. The costmap is an argument of each call.
 
-    ``potential``: the wave of the newest plan, found or not, if it has one and the settings ask for it.
+    Attributes:
+        potential: Potential of the latest call, with or without a path, if the planner computes one and
+            ``visualize_potential`` is set; else None.
     """
 
     potential: Optional[Potential]
@@ -74,12 +79,23 @@ class GlobalPlanner(Protocol):
         goal_xy: Tuple[float, float],
         tolerance: float = 0.0,
     ) -> np.ndarray:
-        """Path (N, 2), N > 1, metres in the window's frame, from start to goal or near it, in small steps.
+        """Plan a path that crosses no cell from INSCRIBED on, except to leave one.
 
-        ``costs``: uint8 (rows, cols) with the meaning of ``costmap/costs.py``, not to be changed; the path
-        crosses no cell from INSCRIBED on, but to get out of one. A goal that cannot be stood on gives way to
-        the nearest free place within ``tolerance`` metres (or the settings' default if that is larger); a
-        start, to one within half a metre.
-        Raises OutOfMap, StartBlocked, GoalBlocked or NoPath, whose texts name the place.
+        Args:
+            costs: (rows, cols), uint8, values as in ``costmap/costs.py``; must not be modified.
+            window: Position and resolution of the grid.
+            start_xy: Start in the window's frame [m]; the nearest free cell within 0.5 m may replace it.
+            goal_xy: Goal in the window's frame [m].
+            tolerance: Distance from a blocked goal within which the nearest free cell replaces it [m]; the
+                settings' ``default_tolerance`` if that is larger.
+
+        Returns:
+            Path (N, 2), N > 1, from start to goal in small steps [m].
+
+        Raises:
+            OutOfMap: Start or goal is outside of the window.
+            StartBlocked: The start is blocked.
+            GoalBlocked: The goal is blocked.
+            NoPath: Nothing connects start and goal. The texts of all four name the position.
         """
         ...

@@ -1,4 +1,4 @@
-"""navfn and global_planner: a wavefront from the robot, a path down its gradient from the goal."""
+"""navfn and global_planner: a wavefront from the robot and gradient descent from the goal."""
 
 from dataclasses import dataclass
 from typing import Any, Dict, Optional, Tuple
@@ -21,24 +21,24 @@ from planar.config.parameters import DynamicParameter, Interval, at_least, param
 from planar.config.settings import check
 
 STEP_CELLS = 0.5
-# Cells that a shortcut may span: any number at any angle; otherwise what evens out the steps of the gradient.
+# Maximum length of a shortcut [cells]: practically unlimited, or just smoothing of the gradient's steps.
 ANY_ANGLE, SMOOTH = 200.0, 3.0
 START_TOLERANCE = 0.5
 
 
 @dataclass(frozen=True)
 class NavfnSettings(PlannerSettings):
-    """navfn's parameters, and what it has more here; entering a cell costs neutral + factor * cost."""
+    """navfn's parameters and additional ones; entering a cell costs neutral_cost + cost_factor * cost."""
 
-    use_astar: bool = parameter(False, "a wave towards the goal only")
-    use_grid_path: bool = parameter(False, "from cell to cell instead of down the gradient")
-    any_angle: bool = parameter(False, "with straight lines where they cost no more")
-    neutral_cost: int = parameter(50, "of entering a free cell")
+    use_astar: bool = parameter(False, "A* instead of Dijkstra's algorithm")
+    use_grid_path: bool = parameter(False, "follow cells instead of the gradient")
+    any_angle: bool = parameter(False, "straight lines where they cost no more")
+    neutral_cost: int = parameter(50, "cost of entering a free cell")
     cost_factor: float = parameter(
-        0.8, "how much a cell's cost adds to that; GlobalPlanner: 3.0", bounds=at_least(0.0)
+        0.8, "factor of a cell's cost that is added; GlobalPlanner: 3.0", bounds=at_least(0.0)
     )
     lethal_cost: int = parameter(
-        253, "cost from which on a cell cannot be entered", bounds=Interval(high=253, words="at most 253")
+        253, "cost from which on a cell is impassable", bounds=Interval(high=253, words="at most 253")
     )
 
     def __post_init__(self):
@@ -50,26 +50,30 @@ class NavfnSettings(PlannerSettings):
 
 @dataclass(frozen=True)
 class GlobalPlannerSettings(NavfnSettings):
-    """The same with global_planner's names, defaults, and what of them dynamic_reconfigure may change."""
+    """The same with global_planner's names, defaults and dynamic parameters."""
 
     lethal_cost: int = parameter(
         253,
-        "cost from which on a cell cannot be entered",
+        "cost from which on a cell is impassable",
         bounds=Interval(high=253, words="at most 253"),
         dynamic=(1, 255),
     )
-    neutral_cost: int = parameter(50, "of entering a free cell", dynamic=(1, 255))
+    neutral_cost: int = parameter(50, "cost of entering a free cell", dynamic=(1, 255))
     cost_factor: float = parameter(
-        3.0, "how much a cell's cost adds to that", bounds=at_least(0.0), dynamic=(0.01, 5.0)
+        3.0, "factor of a cell's cost that is added", bounds=at_least(0.0), dynamic=(0.01, 5.0)
     )
     visualize_potential: bool = parameter(
-        True, "whether the wave of each plan is shown", name="publish_potential", dynamic=True
+        True, "publish the potential of each plan", name="publish_potential", dynamic=True
     )
     orientation_mode: int = parameter(1, ORIENTATIONS, bounds=Interval(0, 6, "0 to 6"), dynamic=(0, 6))
 
 
 class Navfn:
-    """A GlobalPlanner with navfn's costs and wavefront."""
+    """A GlobalPlanner with navfn's costs and wavefront.
+
+    Args:
+        settings: Parameters of navfn or global_planner.
+    """
 
     def __init__(self, settings: NavfnSettings):
         self._settings = settings
@@ -83,7 +87,7 @@ class Navfn:
         goal_xy: Tuple[float, float],
         tolerance: float = 0.0,
     ) -> np.ndarray:
-        """A blocked end gives way to a place from which the other one can be reached, if any can."""
+        """See GlobalPlanner.plan; a blocked end is replaced by a cell connected to the other, if possible."""
         settings = self._settings
         traversal = traversal_costs(
             costs, settings.allow_unknown, settings.neutral_cost, settings.cost_factor, settings.lethal_cost
@@ -101,7 +105,7 @@ class Navfn:
             return np.array([start_xy, goal_xy if free_goal == goal else _centre(window, free_goal)])
         path_cells = self._path_cells(traversal, window, free_start, free_goal)
         if not len(path_cells):
-            raise NoPath(f"no way leads from {_named('robot', start_xy)} to {_named('goal', goal_xy)}")
+            raise NoPath(f"no path leads from {_named('robot', start_xy)} to {_named('goal', goal_xy)}")
         path_xy = path_cells * window.resolution + (window.origin_x, window.origin_y)
         ends = [np.array([start_xy]), path_xy[1:-1] if free_start == start else path_xy[:-1]]
         ends.append(np.array([goal_xy]) if free_goal == goal else path_xy[-1:])
@@ -110,7 +114,7 @@ class Navfn:
     def _path_cells(
         self, traversal: np.ndarray, window: CostmapWindow, start: Cell, goal: Cell
     ) -> np.ndarray:
-        """The path (N, 2) as (col, row), empty if nothing leads there; keeps the wave if it is to be seen."""
+        """The path (N, 2) of col, row, empty if there is none; keeps the potential for visualization."""
         settings = self._settings
         potential = propagate_wavefront(traversal, *start, *goal, settings.use_astar)
         if settings.visualize_potential:
@@ -148,7 +152,7 @@ def _centre(window: CostmapWindow, cell: Tuple[int, int]) -> Tuple[float, float]
 
 
 def _with_astar(values: Dict[str, Any]) -> Dict[str, Any]:
-    """``use_dijkstra: false`` is how global_planner is told to use A*."""
+    """Translate global_planner's ``use_dijkstra`` to ``use_astar``."""
     if "use_dijkstra" not in values:
         return values
     return {
@@ -157,7 +161,7 @@ def _with_astar(values: Dict[str, Any]) -> Dict[str, Any]:
     }
 
 
-# Of global_planner's details; known in both namespaces.
+# Details of global_planner; accepted in both namespaces.
 IGNORED = frozenset(
     {
         "planner_window_x", "planner_window_y", "outline_map", "old_navfn_behavior", "use_quadratic",
@@ -179,7 +183,7 @@ GLOBAL_PLANNER: Plugin[GlobalPlanner] = Plugin(
     translate=_with_astar,
     without_effect=(
         DynamicParameter("orientation_window_size", 1, "(no effect)", 1, 255),
-        DynamicParameter("outline_map", True, "(no effect: the rim is always barred)"),
+        DynamicParameter("outline_map", True, "(no effect: the map's border is always impassable)"),
     ),
     ignored=IGNORED,
 )

@@ -1,4 +1,4 @@
-"""Where the robot can stand near a place where it cannot."""
+"""Replacement of a blocked start or goal by the nearest passable cell."""
 
 import math
 from typing import Optional, Tuple
@@ -13,16 +13,26 @@ Cell = Tuple[int, int]
 def passable_ends(
     traversal: np.ndarray, start: Cell, goal: Cell, start_reach: float, goal_reach: float
 ) -> Tuple[Optional[Cell], Optional[Cell]]:
-    """Start and goal, each moved to the nearest passable cell within its reach, in cells; None without one.
+    """Replace start and goal by the nearest passable cells.
 
-    One that has to be moved goes to where a way from the other leads, if one does: the nearest place may be
-    enclosed, as the inside of a cupboard is.
+    A replacement is preferred that is connected to the other end: the nearest cell may be enclosed, as the
+    inside of a cupboard is.
+
+    Args:
+        traversal: (rows, cols) traversal costs.
+        start: Row and column.
+        goal: Row and column.
+        start_reach: Maximum distance of a replaced start [cells].
+        goal_reach: Maximum distance of a replaced goal [cells].
+
+    Returns:
+        Start and goal, None for one without a passable cell within reach.
     """
     passable = traversal < IMPASSABLE
     free_start, free_goal = _nearest(passable, start, start_reach), _nearest(passable, goal, goal_reach)
     if free_start is None or free_goal is None or (free_start == start and free_goal == goal):
         return free_start, free_goal
-    from scipy.ndimage import label  # late: it takes long to come, and is rarely wanted
+    from scipy.ndimage import label  # imported late: slow to import, rarely needed
 
     regions, _ = label(passable)
     if free_goal != goal:

@@ -1,4 +1,4 @@
-"""Headings along a path (global_planner's orientation filter), and what a path costs."""
+"""Headings along a path (global_planner's orientation filter), and the cost of a path."""
 
 import math
 
@@ -9,16 +9,23 @@ from move_base_lite.planning.wavefront import FACTOR, NEUTRAL
 from planar import wrap
 
 NONE, FORWARD, INTERPOLATE, FORWARD_THEN_INTERPOLATE, BACKWARD, LEFTWARD, RIGHTWARD = range(7)
-# Radians off the last step's direction up to which a path counts as straight.
+# Angle to the last step within which the end of a path counts as straight [rad].
 STRAIGHT = 0.35
-_TURNED = {FORWARD: 0.0, BACKWARD: np.pi, LEFTWARD: np.pi / 2.0, RIGHTWARD: -np.pi / 2.0}
+_ROTATION = {FORWARD: 0.0, BACKWARD: np.pi, LEFTWARD: np.pi / 2.0, RIGHTWARD: -np.pi / 2.0}
 
 
 def headings_along(path_xy: np.ndarray, mode: int, start_yaw: float, goal_yaw: float) -> np.ndarray:
-    """Yaws (N,) at the points of a path (N, 2); the last is always the goal's.
+    """Compute headings along a path.
 
-    ``mode``: 0 none, 1 forward, 2 evenly from start to goal, 3 forward, the straight end evenly, 4 backward,
-    5 leftward, 6 rightward.
+    Args:
+        path_xy: (N, 2) [m].
+        mode: 0 none, 1 forward, 2 interpolated from start to goal, 3 forward and the straight end
+            interpolated, 4 backward, 5 leftward, 6 rightward.
+        start_yaw: Heading at the start [rad].
+        goal_yaw: Heading at the goal [rad]; always that of the last point.
+
+    Returns:
+        Yaws (N,) [rad].
     """
     yaws = np.zeros(len(path_xy))
     if mode == INTERPOLATE:
@@ -26,7 +33,7 @@ def headings_along(path_xy: np.ndarray, mode: int, start_yaw: float, goal_yaw: f
     elif mode != NONE and len(path_xy) > 1:
         steps = np.diff(path_xy, axis=0)
         along = np.arctan2(steps[:, 1], steps[:, 0])
-        yaws[:-1] = along + _TURNED.get(mode, 0.0)
+        yaws[:-1] = along + _ROTATION.get(mode, 0.0)
         if mode == FORWARD_THEN_INTERPOLATE:
             bends = np.flatnonzero(np.abs(wrap(along - along[-1])) > STRAIGHT)
             first = int(bends[-1]) + 1 if len(bends) else 0
@@ -38,7 +45,7 @@ def headings_along(path_xy: np.ndarray, mode: int, start_yaw: float, goal_yaw: f
 
 
 def path_cost(costs: np.ndarray, window: CostmapWindow, path_xy: np.ndarray) -> float:
-    """What navfn would pay for a path (N, 2), in neutral metres; inf where it cannot be driven."""
+    """navfn's cost of a path (N, 2), in metres of free space; inf if a cell of it is blocked."""
     cells = np.floor((path_xy - (window.origin_x, window.origin_y)) / window.resolution).astype(np.int64)
     below = costs[cells[1:, 1], cells[1:, 0]].astype(float)
     if (below >= INSCRIBED).any():

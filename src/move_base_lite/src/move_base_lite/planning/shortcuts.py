@@ -1,4 +1,4 @@
-"""Any-angle smoothing: straight lines wherever they cost no more than the path between their ends."""
+"""Any-angle smoothing: straight lines where they cost no more than the path between their ends."""
 
 import math
 
@@ -7,18 +7,23 @@ import numpy as np
 
 from move_base_lite.planning.wavefront import IMPASSABLE
 
-# Cells between the points of the smoothed path.
+# Spacing of the smoothed path [cells].
 SPACING = 0.5
-# Cells to both sides of a line that it is not to touch an obstacle within.
-GRAZING = 0.05
+# Distance on both sides of a line that must be free [cells].
+SIDE_MARGIN = 0.05
 
 
 @numba.njit(cache=True)
 def shorten(traversal, path, longest):
-    """The path (N, 2) as (col, row), with shortcuts of at most ``longest`` cells; points at most half a cell
-    apart, the ends as they were. It is never longer nor dearer.
+    """Replace parts of a path by straight shortcuts; the result is never longer nor more expensive.
 
-    ``traversal``: cost of entering each cell, uint8 (rows, cols).
+    Args:
+        traversal: (rows, cols) cost of entering each cell, uint8.
+        path: (N, 2) of col, row.
+        longest: Maximum length of a shortcut [cells].
+
+    Returns:
+        Path (M, 2) of col, row with the same ends; points at most half a cell apart.
     """
     costs = np.zeros(path.shape[0])
     for i in range(1, path.shape[0]):
@@ -28,32 +33,32 @@ def shorten(traversal, path, longest):
     while kept[-1] < path.shape[0] - 1:
         here = kept[-1]
         reached, stride = here + 1, 1
-        # Ever longer strides while they succeed, ever shorter ones when not.
+        # Double the stride after a success, halve it after a failure.
         while stride > 0:
             there = min(reached + stride, path.shape[0] - 1)
-            if there > reached and _is_worth(traversal, path, costs, here, there, longest):
+            if there > reached and _is_cheaper(traversal, path, costs, here, there, longest):
                 reached = there
                 stride *= 2
             else:
                 stride //= 2
         kept.append(reached)
-    return _filled(path, kept)
+    return _interpolate(path, kept)
 
 
 @numba.njit(cache=True)
-def _is_worth(traversal, path, costs, here, there, longest):
+def _is_cheaper(traversal, path, costs, here, there, longest):
     length = math.hypot(path[there, 0] - path[here, 0], path[there, 1] - path[here, 1])
     return length <= longest and _line_cost(traversal, path[here], path[there]) <= costs[there] - costs[here]
 
 
 @numba.njit(cache=True)
 def _line_cost(traversal, start, end):
-    """Cost of a straight line between two points, inf if it grazes a cell that cannot be entered."""
+    """Cost of a straight line between two points, inf if a cell within SIDE_MARGIN is impassable."""
     along_x, along_y = end[0] - start[0], end[1] - start[1]
     length = math.hypot(along_x, along_y)
     if length == 0.0:
         return 0.0
-    aside_x, aside_y = -GRAZING * along_y / length, GRAZING * along_x / length
+    aside_x, aside_y = -SIDE_MARGIN * along_y / length, SIDE_MARGIN * along_x / length
     pieces = 2 * max(1, int(math.ceil(length / SPACING)))
     total = 0.0
     for i in range(1, pieces + 1):
@@ -67,8 +72,8 @@ def _line_cost(traversal, start, end):
 
 
 @numba.njit(cache=True)
-def _filled(path, kept):
-    """Points along the shortcuts; a step of the path itself stays as it is."""
+def _interpolate(path, kept):
+    """Points along the shortcuts; single steps of the path stay as they are."""
     pieces = np.ones(len(kept), dtype=np.int64)
     for i in range(1, len(kept)):
         if kept[i] > kept[i - 1] + 1:

@@ -1,4 +1,4 @@
-"""The wavefront of navfn: cost to come from one cell to all others (Konolige, "A gradient method", 2000)."""
+"""The wavefront of navfn: cost from one cell to all others (Konolige, "A gradient method", 2000)."""
 
 import math
 from typing import Optional
@@ -10,19 +10,19 @@ NEUTRAL = 50.0
 FACTOR = 0.8
 LETHAL = 253
 IMPASSABLE = 254
-# How much cost the threshold rises by, and how far the wave goes on behind the goal, whose gradient needs it.
-ROUND = 2.0 * NEUTRAL
+# Increment of the threshold, and cost by which the wavefront passes the goal, whose gradient needs it.
+THRESHOLD_STEP = 2.0 * NEUTRAL
 SETTLED_BEYOND = 2.0 * NEUTRAL
-# Cost a cell that A* expects of the way to the goal: a little less than the least possible, since the
-# gradient is only smooth where the wave has spread a little beyond the straight line.
-EXPECTED = 0.9 * NEUTRAL
+# A*'s heuristic per cell: slightly less than the least possible cost, as the gradient is smooth only where
+# the wavefront has spread beyond the straight line.
+HEURISTIC = 0.9 * NEUTRAL
 
 
 @numba.njit(cache=True)
 def traversal_costs(costs, allow_unknown, neutral, factor, lethal):
-    """Cost of entering each cell, uint8, as navfn has it: 50 + 0.8 cost, at most 253; 254 cannot be entered.
+    """Cost of entering each cell, uint8, as in navfn: 50 + 0.8 cost, at most 253; 254 is impassable.
 
-    The rim of the map cannot be entered either, so that no neighbour ever lies outside.
+    The border of the map is impassable too, so that every neighbour of a passable cell is inside.
     """
     rows, cols = costs.shape
     by_cost = np.full(256, IMPASSABLE, dtype=np.uint8)
@@ -38,32 +38,42 @@ def traversal_costs(costs, allow_unknown, neutral, factor, lethal):
 
 
 def cost_to_go(costs: np.ndarray, targets: np.ndarray) -> Optional[np.ndarray]:
-    """Potential, float32 (rows, cols), of each cell from the last of ``targets`` (N, 2), as (row, col), that
-    can be entered; inf where nothing leads there. None if no target can be entered."""
-    traversal = traversal_costs(costs, True, NEUTRAL, FACTOR, LETHAL)  # numba is slow at defaults
+    """Compute the cost to go to the last passable target.
+
+    Args:
+        costs: (rows, cols), uint8.
+        targets: (N, 2) of row, col; those outside of the grid are ignored.
+
+    Returns:
+        Potential (rows, cols), float32, inf for unreachable cells; None if no target is passable.
+    """
+    traversal = traversal_costs(costs, True, NEUTRAL, FACTOR, LETHAL)  # numba is slow with default arguments
     inside = ((targets >= 0) & (targets < costs.shape)).all(axis=1)
     targets = targets[inside]
     free = np.flatnonzero(traversal[targets[:, 0], targets[:, 1]] < IMPASSABLE)
     if not len(free):
         return None
     row, col = map(int, targets[free[-1]])
-    # The corner is never reached, so the wave runs until it has been everywhere.
+    # The corner is impassable, so the wavefront spreads everywhere.
     return propagate_wavefront(traversal, row, col, 0, 0, False)
 
 
 @numba.njit(cache=True)
 def propagate_wavefront(traversal, start_row, start_col, goal_row, goal_col, use_astar):
-    """Potential, float32 (rows, cols), of each cell reached until the goal's has settled; inf elsewhere.
+    """Propagate the wavefront from the start until the goal's potential is final (navfn's propNavFn*).
 
-    Cells wait in three lists: this round's, the next, and those beyond the threshold, which rises when the
-    nearer ones are done. ``use_astar`` adds the straight way to the goal to what is held against a cell.
+    Cells wait in three lists: the current and the next round, and those above the threshold, which rises when
+    the others are done. ``use_astar`` adds the straight distance to the goal to a cell's priority.
+
+    Returns:
+        Potential (rows, cols), float32, inf where the wavefront did not arrive.
     """
     cols, flat = traversal.shape[1], traversal.ravel()
     potential = np.full(flat.size, np.inf, dtype=np.float32)
     waiting = np.zeros(flat.size, dtype=np.bool_)
     lists = np.empty((3, flat.size), dtype=np.int32)
     current, following, beyond = lists[0], lists[1], lists[2]
-    expected = EXPECTED if use_astar else 0.0
+    expected = HEURISTIC if use_astar else 0.0
     start, goal = start_row * cols + start_col, goal_row * cols + goal_col
     potential[start] = 0.0
     threshold = NEUTRAL + expected * math.hypot(goal_row - start_row, goal_col - start_col)
@@ -79,7 +89,7 @@ def propagate_wavefront(traversal, start_row, start_col, goal_row, goal_col, use
                 continue
             potential[cell] = reached
             row, col = cell // cols, cell % cols
-            away = EXPECTED * math.hypot(goal_row - row, goal_col - col) if use_astar else 0.0
+            away = HEURISTIC * math.hypot(goal_row - row, goal_col - col) if use_astar else 0.0
             if reached + away < threshold:
                 n_following = _enlist(following, n_following, cell, reached, cols, flat, potential, waiting)
             else:
@@ -88,15 +98,15 @@ def propagate_wavefront(traversal, start_row, start_col, goal_row, goal_col, use
         if n_current == 0:
             if potential[goal] + SETTLED_BEYOND < threshold:
                 break
-            threshold += ROUND
+            threshold += THRESHOLD_STEP
             current, beyond, n_current, n_beyond = beyond, current, n_beyond, 0
     return potential.reshape(traversal.shape)
 
 
-# A call would cost a fifth of the time.
+# Inlined, as the calls would take a fifth of the time.
 @numba.njit(cache=True, inline="always")
 def _enlist(cells, count, cell, reached, cols, flat, potential, waiting):
-    """Puts the neighbours that are better reached from here into a list, which is so long then."""
+    """Append the neighbours that are reached at lower cost from here; returns the list's length."""
     for step in (1, -1, cols, -cols):
         other = cell + step
         if waiting[other] or flat[other] >= IMPASSABLE:
@@ -123,9 +133,18 @@ def _potential_from_neighbours(potential, cell, cols, cost):
 
 @numba.njit(cache=True)
 def trace_path(potential, start_row, start_col, goal_row, goal_col, step):
-    """Path, float64 (N, 2) as (col, row) in cells (centres at .5), from start to goal along the gradient.
+    """Trace the path from start to goal down the gradient (navfn's calcPath).
 
-    Empty if the goal was not reached. ``step``: cells per point; 0: from cell to neighbouring cell.
+    Args:
+        potential: (rows, cols), see propagate_wavefront.
+        start_row: Cell of the start; so is ``start_col``.
+        start_col: See ``start_row``.
+        goal_row: Cell of the goal; so is ``goal_col``.
+        goal_col: See ``goal_row``.
+        step: Distance between points [cells]; 0: from cell to neighbouring cell.
+
+    Returns:
+        Path (N, 2) of col, row [cells], centres at .5; empty if the goal was not reached.
     """
     rows, cols = potential.shape
     if not math.isfinite(potential[goal_row, goal_col]):
@@ -162,7 +181,7 @@ def trace_path(potential, start_row, start_col, goal_row, goal_col, step):
 
 @numba.njit(cache=True)
 def _slope(potential, row, col):
-    """Unit gradient at a point between cell centres, bilinear; False where it touches the unreached."""
+    """Unit gradient between cell centres, bilinear; False next to unreached cells."""
     rows, cols = potential.shape
     base_row, base_col = int(math.floor(row)), int(math.floor(col))
     if base_row < 1 or base_col < 1 or base_row > rows - 3 or base_col > cols - 3:
