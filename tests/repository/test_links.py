@@ -1,4 +1,4 @@
-"""Links between the pages of the project lead somewhere."""
+"""Links and scripts in the documentation exist."""
 
 import re
 import subprocess
@@ -12,15 +12,15 @@ SCRIPT = re.compile(r"\./(?:scripts|docs|docker)/[\w.-]+")
 PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")])
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_every_link_and_every_script_of_a_page_is_there(page):
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_every_link_and_every_script_of_a_page_exists(page):
     text = page.read_text(encoding="utf-8")
     missing = [link for link in LINK.findall(text) if not (page.parent / link).exists()]
     missing += [script for script in SCRIPT.findall(text) if not (ROOT / script).exists()]
     assert not missing
 
 
-def test_every_script_of_the_readme_explains_itself():
+def test_every_script_of_the_readme_has_a_help_text():
     for script in sorted(
         set(re.findall(r"\./scripts/\w+\.sh", (ROOT / "README.md").read_text(encoding="utf-8")))
     ):

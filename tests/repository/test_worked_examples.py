@@ -19,7 +19,7 @@ RUN_SECONDS = 300.0
 
 
 class Block(NamedTuple):
-    """A block of code of the page: a new file by its title, a change as a diff, or what is to be run."""
+    """A block of code of the page: a new file by its title, a change as a diff, or a script to run."""
 
     language: str
     title: str
@@ -44,15 +44,15 @@ def examples() -> List[Example]:
 
 @pytest.fixture
 def tree(tmp_path):
-    """A copy of what examples change; the compiled kernels come along."""
+    """A copy of the folders that examples change, with the compiled kernels."""
     for name in ("src", "map", "docs", "scripts"):
         shutil.copytree(ROOT / name, tmp_path / name, symlinks=True)
     return tmp_path
 
 
-def test_the_page_tells_of_a_planner_a_sensor_a_command_and_a_result():
-    told = " ".join(example.name for example in examples())
-    assert all(word in told for word in ("planner", "sensor", "command", "result.json")), told
+def test_the_page_has_examples_of_a_planner_a_sensor_a_command_and_a_result():
+    names = " ".join(example.name for example in examples())
+    assert all(word in names for word in ("planner", "sensor", "command", "result.json")), names
 
 
 @pytest.mark.parametrize("example", examples(), ids=lambda example: example.name)
@@ -61,33 +61,33 @@ def test_an_example_works_as_it_is_written(example, tree):
     for block in example.of("python"):
         if block.title:
             path = tree / block.title
-            assert not path.exists(), f"{block.title} is there already"
+            assert not path.exists(), f"{block.title} exists"
             path.write_text(block.text, encoding="utf-8")
     for block in example.of("diff"):
         change(tree / block.title, block.text)
-    proofs = [block for block in example.of("python") if not block.title]
-    assert proofs, "nothing shows that the example works"
-    for block in proofs:
+    scripts = [block for block in example.of("python") if not block.title]
+    assert scripts, "no script checks the example"
+    for block in scripts:
         run(block.text, tree)
 
 
 def change(path: Path, difference: str) -> None:
-    """Carries out each hunk of a diff, parted by ``@@``; what it shows of the file must be there once."""
+    """Apply each hunk of a diff, separated by ``@@``; its context must occur exactly once in the file."""
     text = path.read_text(encoding="utf-8")
     for hunk in re.split(r"^@@.*\n", difference, flags=re.MULTILINE):
         lines = hunk.splitlines(keepends=True)
         before = "".join(line[1:] for line in lines if not line.startswith("+"))
         after = "".join(line[1:] for line in lines if not line.startswith("-"))
-        assert text.count(before) == 1, f"{path.name} does not hold once:\n{before}"
+        assert text.count(before) == 1, f"not exactly once in {path.name}:\n{before}"
         text = text.replace(before, after)
     path.write_text(text, encoding="utf-8")
 
 
 def run(script: str, tree: Path) -> None:
-    """Runs Python in the copy of the tree; fails with what it said."""
+    """Run Python in the copy of the tree; fail with its output."""
     packages = sorted(str(path) for path in tree.glob("src/**/src") if path.is_dir())
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([*packages, os.environ.get("PYTHONPATH", "")])}
-    ended = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-"],
         input=script,
         cwd=tree,
@@ -98,4 +98,4 @@ def run(script: str, tree: Path) -> None:
         text=True,
         check=False,
     )
-    assert ended.returncode == 0, ended.stdout
+    assert result.returncode == 0, result.stdout
