@@ -38,7 +38,7 @@ STOP_SECONDS = 2.0
 
 
 class Autostart:
-    """Sends the node an ``explore`` goal of its own, and resumes the exploration after a crash.
+    """Sends the node an ``explore`` goal at the start, and resumes the exploration after a crash.
 
     The goal is published on the action's topic, so other clients of the action see a normal goal.
     """

@@ -7,7 +7,7 @@ from planar.config.parameters import POSITIVE, DynamicParameter, parameter
 
 SIDEWAYS = "(no effect on a differential drive)"
 EXACT = "(no effect: the footprint is exact)"
-STEADY = "(no effect: nothing oscillates)"
+STEADY = "(no effect: oscillations are not tracked)"
 
 
 @dataclass(frozen=True)
