@@ -1,6 +1,7 @@
 """Conversion of move_base's parameters, a nested dictionary, to the settings of a Navigator."""
 
-from typing import Any, Dict, List, Mapping, Tuple
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, Tuple, Union
 
 from move_base_lite.config import MoveBaseSettings, NavigatorSettings
 from move_base_lite.parameters.costmaps import costmap_settings
@@ -18,7 +19,7 @@ _MOVE_BASE_IGNORED = {
 }  # fmt: skip
 
 
-def load_settings(*paths, **chosen: Any) -> NavigatorSettings:
+def load_settings(*paths: Union[str, Path], **chosen: Any) -> NavigatorSettings:
     """Read settings from YAML files of official parameters.
 
     Args:
