@@ -201,7 +201,7 @@ class TestGazebo(unittest.TestCase):
             for kind, xml, reason in (
                 ("sdf", MODEL.format(mesh.format("><uri>", "</uri></mesh>")), "not a regular file"),
                 ("urdf", URDF_MODEL.format(mesh.format('filename="', '"/>')), "not a regular file"),
-                ("urdf", f"<robot name='r'>{LINKS}{fork}</robot>", "joints go round in a circle: "),
+                ("urdf", f"<robot name='r'>{LINKS}{fork}</robot>", "joints form a loop: "),
             ):
                 self.refused_while_time_passes(kind, xml, reason)
 

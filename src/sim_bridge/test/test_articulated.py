@@ -146,7 +146,7 @@ def test_joints_that_cannot_be_had_are_named():
     a, b = link("a"), link("b", "0 0 1 0 0 0")
     _, held = scene_of(a, b, joint("ball", "a", "b"))
     assert held.joints[0].kind == "fixed"
-    assert "joint 'hinge': a ball joint is held as it is" in held.warnings[0]
+    assert "joint 'hinge': joint type 'ball' is not supported" in held.warnings[0]
     _, looped = scene_of(a, b, joint("fixed", "a", "b", name="one"), joint("fixed", "b", "a", name="two"))
     assert [joint.name for joint in looped.joints] == ["m::one"]
     assert "joint 'two': closes a loop" in looped.warnings[0]

@@ -137,7 +137,7 @@ def test_an_unknown_plugin_is_named_once():
     unknown = "<gazebo><plugin name='{}' filename='libgazebo_ros_control.so'/></gazebo>"
     text = urdf(DRIVE.format(more="") + unknown.format(1) + unknown.format(2))
     assert read_urdf_robot(text, "mine.urdf").warnings == (
-        "robot mine: plugin libgazebo_ros_control.so is left out",
+        "robot mine: plugin libgazebo_ros_control.so is not supported, ignored",
     )
 
 
@@ -165,7 +165,7 @@ def test_a_mesh_that_is_not_there_is_named_and_left_out():
         '<box size="0.4 0.3 0.1"/>', "<mesh filename='package://nowhere/a.stl'/>"
     )
     robot = read_urdf_robot(text, "mine.urdf")
-    assert robot.warnings[0].endswith("package://nowhere/a.stl not found, left out")
+    assert robot.warnings[0].endswith("package://nowhere/a.stl not found, ignored")
 
 
 def test_what_gazebo_does_without_is_named_and_the_robot_drives():
@@ -175,7 +175,7 @@ def test_what_gazebo_does_without_is_named_and_the_robot_drives():
     text = urdf(DRIVE.format(more="<odometrySource>gps</odometrySource>") + parts)
     robot = read_urdf_robot(text, "mine.urdf")
     assert (robot.odometry.source, robot.sensors) == ("world", ())
-    for named in ("<odometrySource> is none of encoder, world, gyro: 'gps'", "link 'head'", "link 'tail'"):
+    for named in ("<odometrySource> must be one of encoder, world, gyro, got 'gps'", "link 'head'", "link 'tail'"):
         assert any(named in warning for warning in robot.warnings), named
 
 
@@ -205,7 +205,7 @@ def test_of_two_drives_the_one_whose_wheels_are_not_there_is_left_out():
     for drives in (DRIVE.format(more="") + broken, broken + DRIVE.format(more="")):
         robot = read_urdf_robot(urdf(drives), "mine.urdf")
         assert "left_hinge" in robot.drive.joints
-        assert any("no joint 'hinge'" in warning and "left out" in warning for warning in robot.warnings)
+        assert any("no joint 'hinge'" in warning and "ignored" in warning for warning in robot.warnings)
 
 
 @pytest.mark.parametrize(

@@ -37,7 +37,7 @@ def test_a_version_of_thousands_of_digits_is_no_number(tmp_path):
 
 @pytest.mark.parametrize("pose", ["1e308 0 0 0 0 0", "0 0 1e30 0 0 0", "0 0 0 0 0 1e300"])
 def test_a_model_at_which_nothing_can_be_is_refused(tmp_path, pose):
-    with pytest.raises(WorldError, match="nothing can be there|finite"):
+    with pytest.raises(WorldError, match="coordinates must be within|finite"):
         load_world(world_with(tmp_path, BOX, pose=pose))
 
 
@@ -73,7 +73,7 @@ def test_a_mesh_without_faces_is_refused(tmp_path, content):
 
 def test_a_mesh_that_is_scaled_beyond_everything_is_refused(tmp_path):
     (tmp_path / "a.obj").write_text(TETRAHEDRON)
-    with pytest.raises(WorldError, match="larger than anything"):
+    with pytest.raises(WorldError, match="exceeds 1e"):
         load_mesh(MeshFile(tmp_path / "a.obj", (1e300, 1.0, 1.0)), tmp_path / "cache")
 
 
@@ -117,13 +117,13 @@ def joint(name, parent, child):
 )
 def test_joints_that_go_round_in_a_circle_are_refused(joints):
     """Once the simulator followed them for ever."""
-    with pytest.raises(RobotError, match="round in a circle: j"):
+    with pytest.raises(RobotError, match="form a loop: j"):
         read_urdf_robot(f'<robot name="r">{LINKS}{joints}</robot>', "r")
 
 
 def test_a_link_at_which_nothing_can_be_is_refused():
     far = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/><origin xyz="1e308 0 0"/></joint>'
-    with pytest.raises(RobotError, match="nothing can be there|finite"):
+    with pytest.raises(RobotError, match="coordinates must be within|finite"):
         read_urdf_robot(f'<robot name="r">{LINKS}{far}{joint("k", "a", "c")}</robot>', "r")
 
 

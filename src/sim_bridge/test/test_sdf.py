@@ -367,7 +367,7 @@ def test_what_is_ignored_is_named_once_with_how_often(load):
     world = load(model(sensor, "a") + model(sensor, "b") + model("<gripper name='g'/>", "c"))
     assert len(world.warnings) == 2
     assert "gripper 'g'" in world.warnings[0]
-    assert "sensor 's': left out (and 1 more like it)" in world.warnings[1]
+    assert "sensor 's': ignored (and 1 more like it)" in world.warnings[1]
 
 
 def test_a_missing_mesh_is_told_once_and_is_an_error_if_strict(load):
@@ -383,7 +383,7 @@ def test_of_a_missing_mesh_of_gazebos_own_models_the_footprint_is_there(load):
     world = load(geometry(dumpster))
     vertices = world.bodies[0].collisions[0].shape.vertices
     assert vertices.max(axis=0) - vertices.min(axis=0) == pytest.approx([3.0, 1.92, 1.18])
-    assert "dumpster.dae not found, only its footprint is here" in world.warnings[0]
+    assert "dumpster.dae not found, only its footprint is used" in world.warnings[0]
     with pytest.raises(WorldError, match="not found"):
         load(geometry(dumpster), strict=True)
 
@@ -431,4 +431,4 @@ def test_moments_that_no_body_has_are_named_and_left_out(load, senseless):
     inertial = f"<inertial><mass>3</mass><inertia>{senseless}</inertia></inertial>"
     world = load(f"<model name='m'><link name='l'>{inertial}</link></model>")
     assert world.bodies[0].inertia.moments is None
-    assert "link 'l' > inertial > inertia: left out" in world.warnings[0]
+    assert "link 'l' > inertial > inertia: ignored" in world.warnings[0]

@@ -36,7 +36,7 @@ def test_the_default_noise_is_that_of_the_turtlebot():
 
 
 def test_an_unknown_noise_is_refused_with_the_nearest_name():
-    with pytest.raises(SettingsError, match=r"one of ideal, turtlebot, bad.* did you mean ideal\?"):
+    with pytest.raises(SettingsError, match=r"one of ideal, turtlebot, high.* did you mean ideal\?"):
         noise_named("idea")
 
 

@@ -33,7 +33,7 @@ class Pacer:
     Attributes:
         speed: As the argument; may be changed.
         odometry_delay: Time that a scan may have to wait for odometry, granted in addition [simulated s].
-        synchronised_nodes: Nodes in lock-step, which are waited for elsewhere.
+        synchronised_nodes: Nodes that answer each tick, and are waited for elsewhere.
     """
 
     def __init__(

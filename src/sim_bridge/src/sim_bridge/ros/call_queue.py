@@ -70,7 +70,7 @@ class CallQueue:
         return self._has_new
 
     def wait(self, seconds: float) -> None:
-        """Wait for new calls, at most so many wall seconds."""
+        """Wait for new calls, at most ``seconds`` [wall s]."""
         with self._changed:
             if not (self._has_new or self._is_closed):
                 self._changed.wait(seconds)

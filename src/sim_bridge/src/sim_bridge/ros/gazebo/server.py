@@ -54,7 +54,7 @@ class GazeboServer:
 
 
 def frame_named(scene: Scene, name: str) -> Optional[KinematicState]:
-    """The motion of the model or link of that name, or of the world; None if there is none."""
+    """Return the state of a model or link, or of the world frame; None if there is none of that name."""
     if name in WORLD_NAMES:
         return KinematicState(np.eye(4), np.zeros(3), np.zeros(3))
     try:
@@ -66,19 +66,19 @@ def frame_named(scene: Scene, name: str) -> Optional[KinematicState]:
 
 
 def relative(motion: KinematicState, frame: KinematicState) -> KinematicState:
-    """A motion in the world as seen from a frame."""
-    turned_back = frame.pose[:3, :3].T
+    """Transform a state from the world to a frame, with the velocity relative to that of the frame."""
+    world_to_frame = frame.pose[:3, :3].T
     return KinematicState(
         inverse(frame.pose) @ motion.pose,
-        turned_back @ (motion.linear - frame.linear),
-        turned_back @ (motion.angular - frame.angular),
+        world_to_frame @ (motion.linear - frame.linear),
+        world_to_frame @ (motion.angular - frame.angular),
     )
 
 
 def absolute(motion: KinematicState, frame: KinematicState) -> KinematicState:
-    """A motion given in a frame as seen from the world; only the axes of its velocities are the frame's."""
-    turned = frame.pose[:3, :3]
-    return KinematicState(frame.pose @ motion.pose, turned @ motion.linear, turned @ motion.angular)
+    """Transform a state from a frame to the world; its velocity is absolute, along the axes of the frame."""
+    rotation = frame.pose[:3, :3]
+    return KinematicState(frame.pose @ motion.pose, rotation @ motion.linear, rotation @ motion.angular)
 
 
 def _log_failure(success: bool, text: str) -> None:
