@@ -175,7 +175,11 @@ def test_what_gazebo_does_without_is_named_and_the_robot_drives():
     text = urdf(DRIVE.format(more="<odometrySource>gps</odometrySource>") + parts)
     robot = read_urdf_robot(text, "mine.urdf")
     assert (robot.odometry.source, robot.sensors) == ("world", ())
-    for named in ("<odometrySource> must be one of encoder, world, gyro, got 'gps'", "link 'head'", "link 'tail'"):
+    for named in (
+        "<odometrySource> must be one of encoder, world, gyro, got 'gps'",
+        "link 'head'",
+        "link 'tail'",
+    ):
         assert any(named in warning for warning in robot.warnings), named
 
 
