@@ -60,13 +60,10 @@ def cost_to_go(costs: np.ndarray, targets: np.ndarray) -> Optional[np.ndarray]:
 
 @numba.njit(cache=True)
 def propagate_wavefront(traversal, start_row, start_col, goal_row, goal_col, use_astar):
-    """Propagate the wavefront from the start until the goal's potential is final (navfn's propNavFn*).
+    """Potential (rows, cols), float32, propagated until the goal's is final; inf elsewhere (propNavFn*).
 
     Cells wait in three lists: the current and the next round, and those above the threshold, which rises when
-    the others are done. ``use_astar`` adds the straight distance to the goal to a cell's priority.
-
-    Returns:
-        Potential (rows, cols), float32, inf where the wavefront did not arrive.
+    the others are done. ``use_astar`` adds the straight distance to the goal to a priority.
     """
     cols, flat = traversal.shape[1], traversal.ravel()
     potential = np.full(flat.size, np.inf, dtype=np.float32)
@@ -135,16 +132,8 @@ def _potential_from_neighbours(potential, cell, cols, cost):
 def trace_path(potential, start_row, start_col, goal_row, goal_col, step):
     """Trace the path from start to goal down the gradient (navfn's calcPath).
 
-    Args:
-        potential: (rows, cols), see propagate_wavefront.
-        start_row: Cell of the start; so is ``start_col``.
-        start_col: See ``start_row``.
-        goal_row: Cell of the goal; so is ``goal_col``.
-        goal_col: See ``goal_row``.
-        step: Distance between points [cells]; 0: from cell to neighbouring cell.
-
-    Returns:
-        Path (N, 2) of col, row [cells], centres at .5; empty if the goal was not reached.
+    ``step``: distance between points [cells]; 0: from cell to neighbouring cell. Returns the path (N, 2) of
+    col, row [cells], with centres at .5; empty if the goal was not reached.
     """
     rows, cols = potential.shape
     if not math.isfinite(potential[goal_row, goal_col]):

@@ -86,20 +86,13 @@ def best_controls(
 ):
     """Weighted mean of the sampled controls, or the best sample if that is better.
 
-    Scene arrays are passed one by one and all numbers as one array (see kernel_arguments), because named
-    tuples make numba's dispatch slow.
+    Arguments from ``clearance`` on are those of kernel_arguments: named tuples make numba's dispatch slow.
 
     Args:
-        noise: (M, N, 2), added to ``mean``.
-        mean: (N, 2) of v, omega.
+        noise: (M, N, 2), added to ``mean`` (N, 2) of v, omega.
         extra_controls: (L, N, 2), evaluated as they are.
         start: (5,) of x, y, yaw, v, omega.
         temperature: Of the weights [m].
-        clearance: See MppiScene.
-        to_go: See MppiScene.
-        outline_xy: See MppiScene.
-        dynamic_obstacles: See MppiScene.
-        numbers: The numbers of scene, limits and weights.
 
     Returns:
         Controls (N, 2), cost, poses (N + 1, 3) and speeds (N, 2); the cost is inf if all samples collide.
