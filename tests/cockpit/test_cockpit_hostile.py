@@ -205,8 +205,8 @@ class CockpitHostileTest(unittest.TestCase):
         ):
             publisher = rospy.Publisher(topic, type(message), queue_size=1, latch=True)
             publisher.publish(message)
-            self.good.wait_for_note(f"{topic}: ")
-            self.good.wait_for_note(why)
+            self.good.wait_for_notification(f"{topic}: ")
+            self.good.wait_for_notification(why)
             if topic == "/bad/markers":
                 publisher.publish(marker(2, 1.0))
                 wait_until(
@@ -250,7 +250,7 @@ class CockpitHostileTest(unittest.TestCase):
             began = time.monotonic()
             self.drive(driver)
             self.assertLess(time.monotonic() - began, ANSWER_SECONDS)
-        self.good.wait_for_note("no answer of the service /gazebo/pause_physics")
+        self.good.wait_for_notification("no answer of the service /gazebo/pause_physics")
 
     def test_a_topic_of_an_unknown_type_is_listed_and_watching_it_shows_the_reason(self):
         publisher = rospy.Publisher("/odd", Odd, queue_size=1, latch=True)

@@ -6,7 +6,7 @@ import unittest
 
 import rospy
 import rostest
-from simulated import wait_for_truth
+from ground_truth import wait_for_ground_truth
 from waiting import wait_until
 
 from home_service import Commander, CommanderError, Result
@@ -91,7 +91,7 @@ class CommanderTest(unittest.TestCase):
     def _assert_result(self, result):
         outcome = self.robot.wait(WALL_DEADLINE)
         self.assertIs(outcome.result, result, outcome.reason)
-        wait_for_truth(lambda: self.referee.simulated_time, WALL_DEADLINE)
+        wait_for_ground_truth(lambda: self.referee.simulated_time, WALL_DEADLINE)
         return outcome
 
 

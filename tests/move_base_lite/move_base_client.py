@@ -9,7 +9,7 @@ import numpy as np
 import rospy
 from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from geometry_msgs.msg import PoseStamped, Quaternion, Twist
-from listening import hears_all
+from recording import is_connected_to_all
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import Odometry
 from waiting import wait_until
@@ -38,7 +38,7 @@ def points_of(cloud):
     return {field.name: points[:, field.offset // 4] for field in cloud.fields}
 
 
-class Heard:
+class MessageRecorder:
     """The messages of a topic with the times they came at."""
 
     def __init__(self, topic, kind):
@@ -51,7 +51,7 @@ class Heard:
 
     def connected(self):
         """Itself, once all publishers send to it: what one of them publishes only once is not missed."""
-        wait_until("the publishers", lambda: hears_all(self._subscriber))
+        wait_until("the publishers", lambda: is_connected_to_all(self._subscriber))
         return self
 
     def close(self):
@@ -73,9 +73,9 @@ class MoveBaseTestCase(unittest.TestCase):
     def setUpClass(cls):
         cls.client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
         wait_until("move_base", lambda: server_is_ready(cls.client), START_SECONDS)
-        cls.commands = Heard("cmd_vel", Twist)
-        cls.odometry = Heard("odom", Odometry)
-        cls.statuses = Heard("move_base/status", GoalStatusArray)
+        cls.commands = MessageRecorder("cmd_vel", Twist)
+        cls.odometry = MessageRecorder("odom", Odometry)
+        cls.statuses = MessageRecorder("move_base/status", GoalStatusArray)
 
     def has_active_goal(self):
         newest = self.statuses.messages[-1].status_list

@@ -6,7 +6,7 @@ import unittest
 import rospy
 import rostest
 from geometry_msgs.msg import Twist
-from move_base_client import Heard
+from move_base_client import MessageRecorder
 from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 from waiting import wait_until
@@ -16,8 +16,11 @@ DRIVES = [(0.6, 0.0, 8.0), (-0.4, 0.6, 8.0), (0.6, -1.0, 6.0), (0.5, 0.3, 8.0), 
 
 class TestCollisionMonitor(unittest.TestCase):
     def test_a_blind_driver_hits_nothing(self):
-        state, odometry = Heard("collision_monitor/state", String), Heard("odom", Odometry)
-        contacts = Heard("contacts", String)
+        state, odometry = (
+            MessageRecorder("collision_monitor/state", String),
+            MessageRecorder("odom", Odometry),
+        )
+        contacts = MessageRecorder("contacts", String)
         publisher = rospy.Publisher("cmd_vel_raw", Twist, queue_size=1)
         odometry.wait()
         wait_until("the monitor", publisher.get_num_connections)

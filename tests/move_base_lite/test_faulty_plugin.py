@@ -5,7 +5,7 @@ import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Twist
-from move_base_client import Heard, MoveBaseTestCase, pose_at
+from move_base_client import MessageRecorder, MoveBaseTestCase, pose_at
 from move_base_msgs.msg import MoveBaseGoal
 from own_planners.moody import CREEP, MISDEEDS
 from rosgraph_msgs.msg import Log
@@ -28,7 +28,7 @@ class TestFaultyPlugin(MoveBaseTestCase):
         rospy.sleep(2.0)  # simulated time has begun
         cls.stage.show_map()
         super().setUpClass()
-        cls.log = Heard("rosout", Log)
+        cls.log = MessageRecorder("rosout", Log)
 
     def send(self, y):
         """How many commands had come before."""

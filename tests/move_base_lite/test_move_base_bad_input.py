@@ -11,7 +11,7 @@ import rostest
 from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseStamped, Twist
-from move_base_client import START_SECONDS, Heard, MoveBaseTestCase, pose_at
+from move_base_client import START_SECONDS, MessageRecorder, MoveBaseTestCase, pose_at
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal, RecoveryStatus
 from nav_msgs.msg import OccupancyGrid, Path
 from nav_msgs.srv import GetPlan
@@ -79,7 +79,7 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
 
     def test_cancel_while_planning(self):
         self.stage_wall(True)
-        plan = Heard("move_base/NavfnROS/plan", Path).connected()
+        plan = MessageRecorder("move_base/NavfnROS/plan", Path).connected()
         self.client.send_goal(MoveBaseGoal(pose_at(*NEXT_ROOM)))
         self.wait_until(lambda: plan.messages and not plan.messages[-1].poses)
         self.assert_stops_when_cancelled()
@@ -112,7 +112,7 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
         self.addCleanup(self.stage.show_map)
         self.stage_wall(True)
         self.stage.show_map()
-        started = Heard("move_base/recovery_status", RecoveryStatus).connected()
+        started = MessageRecorder("move_base/recovery_status", RecoveryStatus).connected()
         for number, name in enumerate(RECOVERIES):
             started.messages.clear()
             self.client.send_goal(MoveBaseGoal(pose_at(*NEXT_ROOM)))
@@ -136,7 +136,7 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
             cells[24:32, 62:66] = cells[48:56, 62:66] = 100
 
     def test_stamps_far_in_the_past_or_future_do_not_matter(self):
-        goals = Heard("move_base/current_goal", PoseStamped).connected()
+        goals = MessageRecorder("move_base/current_goal", PoseStamped).connected()
         for stamp in (0.5, rospy.get_time() + 1e4):
             for frame, x in (("map", 1.4), ("base_footprint", 0.4)):
                 goals.messages.clear()
@@ -176,7 +176,7 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
             (freeze, "it stays the same to the last bit while the robot moves"),
         ):
             self.setUp()
-            diagnostics = Heard("/diagnostics", DiagnosticArray).connected()
+            diagnostics = MessageRecorder("/diagnostics", DiagnosticArray).connected()
             self.drive(pose_at(*NEXT_ROOM))
             self.stage.spoil = spoil
             self.assert_stands(after=2.0)
@@ -230,7 +230,7 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
         self.assertLess(self.stage.base_in_map.distance_to(Pose2(*NEXT_ROOM)), 0.15)
 
     def test_a_cloud_marks_what_is_at_the_robots_height_and_clears_its_way(self):
-        costmap = Heard("move_base/local_costmap/costmap", OccupancyGrid)
+        costmap = MessageRecorder("move_base/local_costmap/costmap", OccupancyGrid)
         ahead = HERE.x + 0.8, HERE.y
 
         def marked():
@@ -274,7 +274,7 @@ class TestMoveBaseBadInput(MoveBaseTestCase):
             make_plan(PoseStamped(), pose_at(1.0, 1.0), 0.0)
 
     def test_status_is_told_five_times_a_second_and_goals_are_remembered_for_five(self):
-        statuses = Heard("move_base/status", GoalStatusArray)
+        statuses = MessageRecorder("move_base/status", GoalStatusArray)
         self.assertEqual(self.end_of(pose_at(1.3, 2.0))[0], GoalStatus.SUCCEEDED)
         rospy.sleep(3.0)
         self.assertTrue(statuses.messages[-1].status_list)

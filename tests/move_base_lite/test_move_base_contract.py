@@ -11,7 +11,7 @@ from actionlib_msgs.msg import GoalStatus
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PolygonStamped, PoseStamped, Twist
 from map_msgs.msg import OccupancyGridUpdate
-from move_base_client import IN_ONE_ROOM, Heard, MoveBaseTestCase, points_of, pose_at
+from move_base_client import IN_ONE_ROOM, MessageRecorder, MoveBaseTestCase, points_of, pose_at
 from move_base_msgs.msg import (
     MoveBaseAction,
     MoveBaseActionFeedback,
@@ -41,11 +41,11 @@ class TestMoveBaseContract(MoveBaseTestCase):
 
     def test_a_goal_is_reached_and_says_so_in_the_official_words(self):
         current_goal, plan = (
-            Heard("move_base/current_goal", PoseStamped).connected(),
-            Heard("move_base/NavfnROS/plan", Path).connected(),
+            MessageRecorder("move_base/current_goal", PoseStamped).connected(),
+            MessageRecorder("move_base/NavfnROS/plan", Path).connected(),
         )
-        local_plan = Heard("move_base/DWAPlannerROS/local_plan", Path).connected()
-        global_plan = Heard("move_base/DWAPlannerROS/global_plan", Path).connected()
+        local_plan = MessageRecorder("move_base/DWAPlannerROS/local_plan", Path).connected()
+        global_plan = MessageRecorder("move_base/DWAPlannerROS/global_plan", Path).connected()
         self.assertEqual(self.end_of(pose_at(0.8, 0.3)), (GoalStatus.SUCCEEDED, "Goal reached."))
         self.wait_until(lambda: self.commands.messages[-1] == Twist(), seconds=1.0)
         self.assertEqual(current_goal.wait().pose.position.x, 0.8)
@@ -72,8 +72,8 @@ class TestMoveBaseContract(MoveBaseTestCase):
             self.assertTrue(said.startswith(text), said)
 
     def test_the_outcome_is_told_in_move_base_flex_numbers(self):
-        feedback = Heard("move_base/nav_feedback", DiagnosticStatus).connected()
-        outcomes = Heard("move_base/outcome", DiagnosticStatus).connected()
+        feedback = MessageRecorder("move_base/nav_feedback", DiagnosticStatus).connected()
+        outcomes = MessageRecorder("move_base/outcome", DiagnosticStatus).connected()
         for pose, code, reason in [
             (pose_at(*NEAR), "0", "SUCCESS"),
             (pose_at(*IN_A_WALL), "15", "GOAL_BLOCKED"),
@@ -128,12 +128,12 @@ class TestMoveBaseContract(MoveBaseTestCase):
 
     def test_the_simple_topic_sends_a_goal(self):
         publisher = rospy.Publisher("move_base_simple/goal", PoseStamped, queue_size=1)
-        current_goal = Heard("move_base/current_goal", PoseStamped).connected()
+        current_goal = MessageRecorder("move_base/current_goal", PoseStamped).connected()
         relayed, feedback = (
-            Heard("move_base/goal", MoveBaseActionGoal).connected(),
-            Heard("move_base/feedback", MoveBaseActionFeedback).connected(),
+            MessageRecorder("move_base/goal", MoveBaseActionGoal).connected(),
+            MessageRecorder("move_base/feedback", MoveBaseActionFeedback).connected(),
         )
-        truth = Heard("base_pose_ground_truth", Odometry).connected()
+        truth = MessageRecorder("base_pose_ground_truth", Odometry).connected()
         self.wait_until(publisher.get_num_connections)
         publisher.publish(pose_at(*NEAR))
         self.assertEqual(current_goal.wait().pose.position.x, NEAR[0])
@@ -146,7 +146,7 @@ class TestMoveBaseContract(MoveBaseTestCase):
         self.assertLess(math.hypot(seen.x - true.x, seen.y - true.y), 0.3, "localization")
 
     def test_make_plan_plans_while_idle_and_is_refused_while_active(self):
-        potential = Heard("move_base/NavfnROS/potential", PointCloud2).connected()
+        potential = MessageRecorder("move_base/NavfnROS/potential", PointCloud2).connected()
         goal, robot_xy = self.far_goal(), self.robot_xy()
         goal_xy = (goal.pose.position.x, goal.pose.position.y)
         plan = self.make_plan(PoseStamped(), goal, 0.0).plan
@@ -167,27 +167,27 @@ class TestMoveBaseContract(MoveBaseTestCase):
             self.make_plan(PoseStamped(), pose_at(*NEAR), 0.0)
 
     def test_each_new_listener_gets_the_whole_costmap_then_updates(self):
-        grid = Heard("map", OccupancyGrid).wait().info
+        grid = MessageRecorder("map", OccupancyGrid).wait().info
         for _ in range(2):
-            whole = Heard("move_base/global_costmap/costmap", OccupancyGrid)
+            whole = MessageRecorder("move_base/global_costmap/costmap", OccupancyGrid)
             self.assertEqual(whole.wait().info.width, grid.width)
             self.assertEqual(whole.wait().info.height, grid.height)
             self.assertEqual(whole.wait().header.frame_id, "map")
             whole.close()
-        whole = Heard("move_base/global_costmap/costmap", OccupancyGrid)
-        updates = Heard("move_base/global_costmap/costmap_updates", OccupancyGridUpdate)
+        whole = MessageRecorder("move_base/global_costmap/costmap", OccupancyGrid)
+        updates = MessageRecorder("move_base/global_costmap/costmap_updates", OccupancyGridUpdate)
         block = updates.wait()
         self.assertEqual(len(block.data), block.width * block.height)
         self.assertLessEqual(block.x + block.width, grid.width)
         cells = grid.width * grid.height
         self.assertLess(len(block.data), cells, "what the laser cannot see has not changed")
-        local = Heard("move_base/local_costmap/costmap", OccupancyGrid)
+        local = MessageRecorder("move_base/local_costmap/costmap", OccupancyGrid)
         self.assertEqual((local.wait().info.width, local.wait().header.frame_id), (80, "odom"))
-        footprint = Heard("move_base/local_costmap/footprint", PolygonStamped)
+        footprint = MessageRecorder("move_base/local_costmap/footprint", PolygonStamped)
         self.assertEqual(len(footprint.wait().polygon.points), 16)
 
     def test_a_goal_without_a_way_tries_the_recoveries_before_it_is_aborted(self):
-        recoveries = Heard("move_base/recovery_status", RecoveryStatus).connected()
+        recoveries = MessageRecorder("move_base/recovery_status", RecoveryStatus).connected()
         state, text = self.end_of(pose_at(*INSIDE_THE_TABLE))
         self.assertEqual(state, GoalStatus.ABORTED)
         self.assertTrue(text.startswith(f"{NO_PLAN} [code=NO_PATH: "), text)

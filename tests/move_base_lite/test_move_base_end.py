@@ -8,7 +8,7 @@ import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Twist
-from move_base_client import Heard, MoveBaseTestCase, pose_at
+from move_base_client import MessageRecorder, MoveBaseTestCase, pose_at
 from move_base_msgs.msg import MoveBaseActionResult
 
 from planar_ros.calls.actions import KILLED_TEXT
@@ -18,7 +18,7 @@ STOPPING_DISTANCE = 0.3
 
 class TestMoveBaseEnd(MoveBaseTestCase):
     def test_the_last_command_is_to_stop_and_the_goal_is_aborted(self):
-        results = Heard("move_base/result", MoveBaseActionResult).connected()
+        results = MessageRecorder("move_base/result", MoveBaseActionResult).connected()
         self.drive(pose_at(2.0, 3.0))
         rosnode.kill_nodes(["/move_base"])
         self.assertEqual(self.result_of(), (GoalStatus.ABORTED, KILLED_TEXT))

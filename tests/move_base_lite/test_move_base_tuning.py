@@ -6,7 +6,7 @@ import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Point32, Polygon, PolygonStamped
-from move_base_client import Heard, MoveBaseTestCase, points_of, pose_at
+from move_base_client import MessageRecorder, MoveBaseTestCase, points_of, pose_at
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.srv import GetPlan
 from sensor_msgs.msg import PointCloud2
@@ -62,7 +62,7 @@ class TestMoveBaseTuning(MoveBaseTestCase):
 
     def cost_at(self, topic, x, y):
         """The newest whole costmap's value at a point of its frame."""
-        costmap = Heard(topic, OccupancyGrid)
+        costmap = MessageRecorder(topic, OccupancyGrid)
         info = costmap.wait().info
         column = int((x - info.origin.position.x) / info.resolution)
         row = int((y - info.origin.position.y) / info.resolution)
@@ -89,7 +89,7 @@ class TestMoveBaseTuning(MoveBaseTestCase):
 
     def test_another_local_planner_takes_over_on_the_way(self):
         costs, ways = (
-            Heard(f"move_base/DWAPlannerROS/{name}", PointCloud2)
+            MessageRecorder(f"move_base/DWAPlannerROS/{name}", PointCloud2)
             for name in ("cost_cloud", "trajectory_cloud")
         )
         self.drive(self.far_goal())
@@ -136,7 +136,7 @@ class TestMoveBaseTuning(MoveBaseTestCase):
         self.assertEqual(len(plan(*through_a_wall_out_of_sight).plan.poses), length)
 
     def test_a_new_footprint_is_taken_from_its_topic_and_shown(self):
-        shown = Heard("move_base/local_costmap/footprint", PolygonStamped)
+        shown = MessageRecorder("move_base/local_costmap/footprint", PolygonStamped)
         self.assertEqual(len(shown.wait().polygon.points), 16)
         publisher = rospy.Publisher("move_base/local_costmap/footprint", Polygon, queue_size=1)
         self.tune("move_base/local_costmap", footprint="[]")
@@ -146,7 +146,7 @@ class TestMoveBaseTuning(MoveBaseTestCase):
         self.wait_until(lambda: len(shown.messages[-1].polygon.points) == 4)
 
     def test_a_zone_is_switched_on_and_off(self):
-        markers = Heard("move_base/zones/markers", MarkerArray)
+        markers = MessageRecorder("move_base/zones/markers", MarkerArray)
         self.assertEqual([marker.type for marker in markers.wait().markers], [4, 4])
         switch = rospy.ServiceProxy("move_base/zones/doorway", SetBool)
         answer = switch(True)

@@ -5,7 +5,7 @@ import numpy as np
 import rospy
 import rostest
 from geometry_msgs.msg import PoseStamped
-from move_base_client import Heard, MoveBaseTestCase, points_of, pose_at
+from move_base_client import MessageRecorder, MoveBaseTestCase, points_of, pose_at
 from nav_msgs.msg import OccupancyGrid, Path
 from nav_msgs.srv import GetPlan
 from sensor_msgs.msg import PointCloud2
@@ -29,7 +29,8 @@ class TestMoveBaseViews(MoveBaseTestCase):
 
     def test_cleared_costmaps_forget_what_was_seen_and_keep_the_map(self):
         costmaps = [
-            Heard(f"move_base/{name}/costmap", OccupancyGrid) for name in ("global_costmap", "local_costmap")
+            MessageRecorder(f"move_base/{name}/costmap", OccupancyGrid)
+            for name in ("global_costmap", "local_costmap")
         ]
         clear = rospy.ServiceProxy("move_base/clear_costmaps", Empty)
 
@@ -55,7 +56,7 @@ class TestMoveBaseViews(MoveBaseTestCase):
         return message.data[row * info.width + col]
 
     def test_the_wave_of_a_plan_is_a_grid(self):
-        potential = Heard("move_base/GlobalPlanner/potential", OccupancyGrid).connected()
+        potential = MessageRecorder("move_base/GlobalPlanner/potential", OccupancyGrid).connected()
         make_plan = rospy.ServiceProxy("move_base/GlobalPlanner/make_plan", GetPlan)
         self.assertTrue(make_plan(PoseStamped(), pose_at(*NEXT_ROOM), 0.0).plan.poses)
         grid = potential.wait()
@@ -68,8 +69,8 @@ class TestMoveBaseViews(MoveBaseTestCase):
         self.assertGreater(at_goal, cells[40, 64])
 
     def test_the_costs_of_cells_are_shown_while_driving(self):
-        plan = Heard("move_base/GlobalPlanner/plan", Path).connected()
-        costs = Heard("move_base/TrajectoryPlannerROS/cost_cloud", PointCloud2).connected()
+        plan = MessageRecorder("move_base/GlobalPlanner/plan", Path).connected()
+        costs = MessageRecorder("move_base/TrajectoryPlannerROS/cost_cloud", PointCloud2).connected()
         self.drive(pose_at(*NEXT_ROOM))
         self.assertEqual(costs.wait().header.frame_id, "odom")
         self.assertLess(rospy.get_time() - costs.wait().header.stamp.to_sec(), 1.0)

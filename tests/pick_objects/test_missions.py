@@ -15,7 +15,7 @@ from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from gazebo_msgs.msg import ModelStates
 from home_service_msgs.msg import DeliverAction, DeliverGoal, Delivery, DeliveryState
 from home_service_msgs.srv import AddDelivery, CancelDelivery
-from listening import Heard
+from recording import MessageRecorder
 from nav_msgs.msg import Odometry
 from visualization_msgs.msg import Marker
 
@@ -133,7 +133,10 @@ class MissionsTest(unittest.TestCase):
         self._assert_body(letter)
 
     def test_4_the_robot_stops_when_the_node_of_its_mission_ends(self):
-        goals, odometry = Heard("move_base/status", GoalStatusArray), Heard("odom", Odometry)
+        goals, odometry = (
+            MessageRecorder("move_base/status", GoalStatusArray),
+            MessageRecorder("odom", Odometry),
+        )
         self.client.send_goal(DeliverGoal(deliveries=[Delivery("cut short", "parcel", "pickup", "dropoff")]))
         self._wait("a robot that drives", lambda: _speed(odometry.next()) > 0.1)
         rosnode.kill_nodes(["/pick_objects"])

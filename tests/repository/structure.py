@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How the product is cut: modules a folder, the longest classes and functions, and what each package imports.
+"""Measure the structure: modules per folder, the longest classes and functions.
 
 python3 tests/repository/structure.py [ROOT] [--limit 10]
 """
@@ -18,7 +18,7 @@ LONGEST_CLASS, LONGEST_FUNCTION, FULLEST_FOLDER = 200, 40, 16
 
 @dataclass(frozen=True)
 class Piece:
-    """A class or a function: how many lines it takes, from its first decorator on."""
+    """A class or a function with its number of lines, decorators included."""
 
     place: str
     name: str
@@ -29,13 +29,13 @@ class Piece:
 
 
 def modules(root: Path) -> List[Path]:
-    """The product's Python modules: neither tests nor tutorials nor set-up files."""
+    """Return the modules of all packages without tests and tutorials."""
     found = (path for path in root.glob("src/**/src/**/*.py") if "tutorials" not in path.parts)
     return sorted(path for path in found if "test" not in path.parts)
 
 
 def pieces(root: Path) -> Tuple[List[Piece], List[Piece]]:
-    """All classes and all functions, the longest first."""
+    """Return all classes and all functions, the longest first."""
     classes: List[Piece] = []
     functions: List[Piece] = []
     for path in modules(root):
@@ -56,7 +56,7 @@ def _piece(place: str, node) -> Piece:
 
 
 def folders(root: Path) -> Counter:
-    """How many modules each folder holds, without its ``__init__.py``."""
+    """Count the modules of each folder without ``__init__.py``."""
     return Counter(str(path.parent.relative_to(root)) for path in modules(root) if path.name != "__init__.py")
 
 
@@ -74,7 +74,7 @@ def main() -> int:
     parser.add_argument("--limit", type=int, default=10, help="rows of each list (%(default)s)")
     options = parser.parse_args()
     if not (options.root / "src").is_dir():
-        parser.error(f"{options.root}: no workspace, it has no folder src")
+        parser.error(f"{options.root} is not a workspace: it has no folder src")
     classes, functions = pieces(options.root)
     full = folders(options.root)
     size = f"{sum(full.values())} modules in {len(full)} folders"

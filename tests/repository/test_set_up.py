@@ -1,4 +1,4 @@
-"""The steps of scripts/setup.sh, in a workspace of their own."""
+"""The steps of scripts/setup.sh in a temporary workspace."""
 
 import fcntl
 import os
@@ -21,12 +21,12 @@ def test_clearing_the_build_leaves_a_project_that_runs_alone(tmp_path):
         (folder / "file").touch()
     with (kept / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        said = subprocess.check_output(
+        output = subprocess.check_output(
             ["bash", "-c", '. "$1"; clear_build', "bash", str(tmp_path / "scripts/setup.sh")], text=True
         )
     assert (kept / "file").exists()
     assert not old.exists() and not others.exists() and not (tmp_path / "devel").exists()
-    assert f"in use: {kept}" in said
+    assert f"in use: {kept}" in output
 
 
 def test_the_lock_of_a_set_up_ends_before_what_was_asked_for_is_run(tmp_path):
@@ -53,7 +53,7 @@ def test_the_lock_of_a_set_up_ends_before_what_was_asked_for_is_run(tmp_path):
 
 
 def in_workspace(folder, commands):
-    """What the commands print, after the functions of the set-up are there, in a workspace of its own."""
+    """Run shell commands with the functions of the set-up in a temporary workspace."""
     if not (folder / "scripts").exists():
         shutil.copytree(SCRIPTS, folder / "scripts")
         (folder / "logs/setup").mkdir(parents=True)
@@ -107,20 +107,20 @@ FAILING = """
 def test_a_package_that_does_not_build_leaves_the_last_good_build_in_use(tmp_path):
     set_up_once(tmp_path)
     write_package(tmp_path / "src/mine", "mine")
-    for _ in range(2):  # the second time it is told, but not built again
-        said = in_workspace(tmp_path, FAILING + "set_up; echo used")
-        assert said.returncode == 0, said.stderr
-        assert said.stdout.endswith("used\n")
+    for _ in range(2):  # the second run reports it without building again
+        result = in_workspace(tmp_path, FAILING + "set_up; echo used")
+        assert result.returncode == 0, result.stderr
+        assert result.stdout.endswith("used\n")
         assert (
             "warning: the package 'mine' does not build: it needs roscpp, which is not installed "
             "(./scripts/setup.sh --projects installs what most packages in C++ need)"
-        ) in said.stderr
+        ) in result.stderr
         assert (tmp_path / "devel/setup.bash").read_text() == "good\n"
         assert (tmp_path / "build/cache").read_text() == "good\n"
-    assert "Building" not in said.stdout
+    assert "Building" not in result.stdout
     shutil.rmtree(tmp_path / "src/mine")
-    said = in_workspace(tmp_path, FAILING + "set_up; echo used")
-    assert said.stderr == "" and "Building" not in said.stdout
+    result = in_workspace(tmp_path, FAILING + "set_up; echo used")
+    assert result.stderr == "" and "Building" not in result.stdout
 
 
 def test_ros_does_not_meet_an_invalid_package_while_the_last_build_is_in_use(tmp_path):
@@ -132,15 +132,15 @@ def test_ros_does_not_meet_an_invalid_package_while_the_last_build_is_in_use(tmp
     well = "catkin_build() { mkdir -p build devel; printf %s $root/src >devel/.catkin; }"
     in_workspace(tmp_path, f"{well}; retry=''; look_for_missing; build_workspace")
     write_package(tmp_path / "src/nested/mine", "mine", VALID.replace("a@b.org", "nobody"))
-    said = in_workspace(tmp_path, FAILING + "set_up; echo used")
-    assert said.stdout.endswith("used\n"), said.stderr
+    result = in_workspace(tmp_path, FAILING + "set_up; echo used")
+    assert result.stdout.endswith("used\n"), result.stderr
     assert (tmp_path / "devel/.catkin").read_text() == f"{tmp_path}/src/good"
     shutil.rmtree(tmp_path / "src/nested")
     in_workspace(tmp_path, FAILING + "set_up")
     assert (tmp_path / "devel/.catkin").read_text() == f"{tmp_path}/src"
 
 
-def test_a_package_that_is_no_text_does_not_take_the_others_along(tmp_path):
+def test_a_package_xml_that_is_no_text_does_not_affect_other_packages(tmp_path):
     set_up_once(tmp_path)
     write_package(tmp_path / "src/good", "good", VALID)
     in_workspace(
@@ -150,8 +150,8 @@ def test_a_package_that_is_no_text_does_not_take_the_others_along(tmp_path):
     write_package(tmp_path / "src/mine", "mine", VALID)
     with (tmp_path / "src/mine/package.xml").open("ab") as manifest:
         manifest.write(b"\xff\xfe")
-    said = in_workspace(tmp_path, FAILING + "set_up; echo used")
-    assert said.stdout.endswith("used\n"), said.stderr
+    result = in_workspace(tmp_path, FAILING + "set_up; echo used")
+    assert result.stdout.endswith("used\n"), result.stderr
     assert (tmp_path / "devel/.catkin").read_text() == f"{tmp_path}/src/good"
 
 
@@ -159,10 +159,10 @@ def test_the_set_up_itself_fails_on_a_package_that_does_not_build(tmp_path):
     set_up_once(tmp_path)
     write_package(tmp_path / "src/mine", "mine")
     for _ in range(2):
-        said = in_workspace(tmp_path, FAILING + "main")
-        assert said.returncode == 1
-        assert "Building" in said.stdout
-        assert "error: the package 'mine' does not build" in said.stderr
+        result = in_workspace(tmp_path, FAILING + "main")
+        assert result.returncode == 1
+        assert "Building" in result.stdout
+        assert "error: the package 'mine' does not build" in result.stderr
 
 
 def test_a_build_that_was_cut_short_is_undone_by_the_next(tmp_path):
@@ -194,8 +194,8 @@ def test_a_build_that_was_cut_short_while_it_was_set_aside_is_whole_again(tmp_pa
 def test_a_package_of_the_user_takes_the_place_of_a_tutorial(tmp_path):
     write_package(tmp_path / "src/tutorials/learning_topic", "learning_topic")
     write_package(tmp_path / "src/course/learning_topic", "learning_topic")
-    said = in_workspace(tmp_path, "ignored_packages; check_names")
-    assert said.stdout.splitlines() == [
+    result = in_workspace(tmp_path, "ignored_packages; check_names")
+    assert result.stdout.splitlines() == [
         "src/tutorials/learning_topic",
         "your package 'learning_topic' takes the place of the project's own",
     ]
@@ -204,25 +204,25 @@ def test_a_package_of_the_user_takes_the_place_of_a_tutorial(tmp_path):
 def test_two_packages_of_one_name_are_refused_in_a_sentence(tmp_path):
     write_package(tmp_path / "src/planar", "planar")
     write_package(tmp_path / "src/mine/planar", "planar")
-    said = in_workspace(tmp_path, "check_names")
-    assert said.returncode == 1
-    assert "two packages are named 'planar' (src/mine/planar and src/planar)" in said.stderr
+    result = in_workspace(tmp_path, "check_names")
+    assert result.returncode == 1
+    assert "two packages are named 'planar' (src/mine/planar and src/planar)" in result.stderr
 
 
-def test_what_is_no_fault_of_the_project_is_told_in_a_sentence(tmp_path):
+def test_a_failure_outside_the_project_is_reported_in_one_sentence(tmp_path):
     for line, sentence in {
         "OSError: [Errno 28] No space left on device": "the disk is full",
         "Temporary failure resolving 'deb.debian.org'": "no network",
         "urllib3.exceptions.IncompleteRead": "a download broke off",
     }.items():
         (tmp_path / "log").write_text(f"Collecting numpy\n{line}\n")
-        said = in_workspace(tmp_path, "give_up 'pip failed' log")
-        assert said.returncode == 1
-        assert said.stderr.startswith(f"error: {sentence}")
+        result = in_workspace(tmp_path, "give_up 'pip failed' log")
+        assert result.returncode == 1
+        assert result.stderr.startswith(f"error: {sentence}")
 
 
-def test_what_the_first_set_up_installs_does_not_make_the_second_start_build_anew(tmp_path):
-    said = in_workspace(
+def test_what_the_first_set_up_installs_does_not_make_the_second_start_build_again(tmp_path):
+    result = in_workspace(
         tmp_path,
         FAILING
         + """
@@ -237,11 +237,11 @@ def test_what_the_first_set_up_installs_does_not_make_the_second_start_build_ane
         echo "left: $build"
         """,
     )
-    assert said.stdout.endswith("left: \n"), said.stderr
+    assert result.stdout.endswith("left: \n"), result.stderr
 
 
 def test_what_one_extra_installs_another_does_not_install_again(tmp_path):
-    said = in_workspace(
+    result = in_workspace(
         tmp_path,
         """
         pip() { :; }
@@ -257,7 +257,7 @@ def test_what_one_extra_installs_another_does_not_install_again(tmp_path):
         missing_requirements requirements.txt requirements-docs.txt requirements-cockpit.txt
         """,
     )
-    assert said.stdout.split() == ["requirements-docs.txt"], said.stderr
+    assert result.stdout.split() == ["requirements-docs.txt"], result.stderr
     stamps = (tmp_path / ".venv/.set-up").read_text().splitlines()
     assert len(stamps) == 3 and not (tmp_path / ".venv/.set-up.before").exists()
 
@@ -276,10 +276,10 @@ BESIDE = """
 
 
 def test_python_packages_and_kernels_are_made_beside_the_build(tmp_path):
-    said = in_workspace(
+    result = in_workspace(
         tmp_path, BESIDE + "mkdir src; set_up; ls installed compiled build/.set-up build/.kernels"
     )
-    assert said.returncode == 0, said.stderr
+    assert result.returncode == 0, result.stderr
 
 
 @pytest.mark.parametrize(
@@ -290,10 +290,10 @@ def test_python_packages_and_kernels_are_made_beside_the_build(tmp_path):
         ("warm_kernels", 0, "warning: the kernels were not compiled"),
     ],
 )
-def test_what_fails_beside_the_build_is_told_after_it(tmp_path, step, code, sentence):
-    said = in_workspace(tmp_path, BESIDE + f"mkdir src; {step}() {{ false; }}; set_up")
-    assert said.returncode == code
-    assert sentence in said.stdout + said.stderr
+def test_a_failure_beside_the_build_is_reported_after_it(tmp_path, step, code, sentence):
+    result = in_workspace(tmp_path, BESIDE + f"mkdir src; {step}() {{ false; }}; set_up")
+    assert result.returncode == code
+    assert sentence in result.stdout + result.stderr
     assert (tmp_path / "build/.set-up").exists()
 
 
@@ -308,11 +308,11 @@ def test_the_build_does_not_see_what_pip_has_installed_by_half(tmp_path):
         catkin_make() { .venv/bin/python3 -c 'import catkin_pkg; print(catkin_pkg.__file__)'; }
         catkin_build
     """
-    said = in_workspace(tmp_path, generating)
-    assert said.returncode == 0, said.stderr
+    result = in_workspace(tmp_path, generating)
+    assert result.returncode == 0, result.stderr
 
 
-def test_the_reason_is_told_although_other_packages_are_built_after_it(tmp_path):
+def test_the_reason_is_reported_although_other_packages_are_built_after_it(tmp_path):
     beside = """
         catkin_build() {
             echo 'ImportError: the reason'
@@ -322,11 +322,11 @@ def test_the_reason_is_told_although_other_packages_are_built_after_it(tmp_path)
         }
         mkdir src; retry=''; look_for_missing; build_workspace
     """
-    said = in_workspace(tmp_path, beside).stderr
-    assert "| ImportError: the reason\n" in said and "the package 'mine' does not build" in said
+    result = in_workspace(tmp_path, beside).stderr
+    assert "| ImportError: the reason\n" in result and "the package 'mine' does not build" in result
 
 
-def test_a_disk_that_is_full_is_told_even_if_no_log_could_say_so(tmp_path):
+def test_a_full_disk_is_reported_even_without_a_log(tmp_path):
     no_room = "df() { printf 'Avail\\n7\\n'; }; : >log; give_up 'pip failed' log"
     assert in_workspace(tmp_path, no_room).stderr.startswith("error: the disk is full")
 
@@ -336,10 +336,10 @@ def test_a_build_for_which_there_was_no_room_is_tried_again(tmp_path):
     write_package(tmp_path / "src/mine", "mine")
     full = FAILING + "catkin_build() { echo 'as: No space left on device'; return 1; }; "
     for _ in range(2):
-        said = in_workspace(tmp_path, full + "set_up; echo used")
-        assert said.returncode == 0, said.stderr
-        assert "Building" in said.stdout and said.stdout.endswith("used\n")
-        assert said.stderr.splitlines() == [
+        result = in_workspace(tmp_path, full + "set_up; echo used")
+        assert result.returncode == 0, result.stderr
+        assert "Building" in result.stdout and result.stdout.endswith("used\n")
+        assert result.stderr.splitlines() == [
             "warning: the disk is full: make room and start again, it goes on from there: "
             "the workspace is used as it was built before"
         ]
@@ -350,8 +350,8 @@ def test_without_network_the_package_lists_are_not_to_blame(tmp_path):
     offline = (
         "apt_get() { printf 'Temporary failure resolving\\nE: Unable to locate package\\n'; return 1; }; "
     )
-    said = in_workspace(tmp_path, offline + "install_packages catkin")
-    assert said.stderr.startswith("error: no network: the packages could not be downloaded")
+    result = in_workspace(tmp_path, offline + "install_packages catkin")
+    assert result.stderr.startswith("error: no network: the packages could not be downloaded")
 
 
 DPKG = """
@@ -373,16 +373,16 @@ DPKG = """
 def test_other_installations_are_waited_for_or_finished(tmp_path, monkeypatch, apt, dpkg):
     monkeypatch.setenv("APT", apt)
     monkeypatch.setenv("DPKG", dpkg)
-    said = in_workspace(tmp_path, DPKG)
-    assert said.returncode == 0, said.stdout + said.stderr
+    result = in_workspace(tmp_path, DPKG)
+    assert result.returncode == 0, result.stdout + result.stderr
 
 
 def test_a_proxy_that_is_down_is_told_without_its_password(tmp_path, monkeypatch):
     monkeypatch.setenv("https_proxy", "http://me:secret@127.0.0.1:9")
-    said = in_workspace(
+    result = in_workspace(
         tmp_path, "echo 'ProxyError(Cannot connect to proxy.)' >log; give_up 'pip failed' log"
     )
-    assert said.stderr.startswith("error: the proxy 127.0.0.1:9 does not answer")
+    assert result.stderr.startswith("error: the proxy 127.0.0.1:9 does not answer")
 
 
 @pytest.mark.parametrize(
@@ -401,20 +401,20 @@ def test_a_proxy_that_is_down_is_told_without_its_password(tmp_path, monkeypatch
 def test_a_machine_that_cannot_serve_is_refused_in_a_sentence(tmp_path, machine, sentence):
     system, version, command = machine
     (tmp_path / "os-release").write_text(f"ID={system}\nVERSION_ID={version}\n")
-    said = in_workspace(tmp_path, f"{command}\nos_release=os-release; check_system")
-    assert said.returncode == (1 if sentence else 0)
-    assert said.stderr.startswith(sentence) and said.stderr.count("\n") == bool(sentence)
+    result = in_workspace(tmp_path, f"{command}\nos_release=os-release; check_system")
+    assert result.returncode == (1 if sentence else 0)
+    assert result.stderr.startswith(sentence) and result.stderr.count("\n") == bool(sentence)
 
 
-def test_a_tree_that_is_read_only_is_told(tmp_path):
-    said = in_workspace(tmp_path, "may_write() { false; }; check_place")
+def test_a_read_only_tree_is_reported(tmp_path):
+    result = in_workspace(tmp_path, "may_write() { false; }; check_place")
     assert (
-        said.stderr
+        result.stderr
         == f"error: '{tmp_path}' is read-only, and the workspace in it is not set up: make it writable\n"
     )
 
 
-def test_a_second_set_up_waits_for_the_first_and_says_so(tmp_path):
+def test_a_second_set_up_waits_for_the_first_and_reports_it(tmp_path):
     in_workspace(tmp_path, ":")
     with (tmp_path / "scripts/setup.sh").open() as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
@@ -427,19 +427,19 @@ def test_a_second_set_up_waits_for_the_first_and_says_so(tmp_path):
             "bash",
             str(tmp_path / "scripts/setup.sh"),
         ]
-        said = subprocess.run(waiting, capture_output=True, text=True)
-    assert said.stdout.startswith("Waiting for another set-up of this workspace ...")
+        result = subprocess.run(waiting, capture_output=True, text=True)
+    assert result.stdout.startswith("Waiting for another set-up of this workspace ...")
     assert in_workspace(tmp_path, "take_turns").stdout == ""
 
 
-def test_a_wheel_that_is_not_whole_is_made_anew(tmp_path):
+def test_a_corrupt_wheel_is_built_again(tmp_path):
     name = "pybullet-1-cp313-cp313-linux_x86_64.whl"
     with zipfile.ZipFile(tmp_path / name, "w") as whole:
         whole.writestr("pybullet.so", b"0" * 1000)
     (tmp_path / f"half-{name}").write_bytes((tmp_path / name).read_bytes()[:500])
-    tell = "{ has_whole_wheel $each && echo whole || echo broken; }"
-    said = in_workspace(tmp_path, f"for each in {name} half-{name} none; do {tell}; done")
-    assert said.stdout.split() == ["whole", "broken", "broken"]
+    check = "{ has_whole_wheel $each && echo whole || echo broken; }"
+    result = in_workspace(tmp_path, f"for each in {name} half-{name} none; do {check}; done")
+    assert result.stdout.split() == ["whole", "broken", "broken"]
 
 
 def test_rospy_of_debian_11_finds_the_method_that_its_python_has_dropped(tmp_path):
@@ -447,19 +447,19 @@ def test_rospy_of_debian_11_finds_the_method_that_its_python_has_dropped(tmp_pat
     site.mkdir(parents=True)
     for code, shields in (("t.is_alive()", 0), ("t.isAlive()", 1)):
         (tmp_path / "core.py").write_text(code)
-        said = in_workspace(tmp_path, "rospy_of_system=$PWD; shield_rospy")
-        assert said.returncode == 0, said.stderr
+        result = in_workspace(tmp_path, "rospy_of_system=$PWD; shield_rospy")
+        assert result.returncode == 0, result.stderr
         assert len(list(site.iterdir())) == shields
     calls = "import sys, site, threading; site.addsitedir(sys.argv[1]); threading.Thread().isAlive()"
     subprocess.run([sys.executable, "-c", calls, str(site)], check=True)
 
 
 def test_a_half_built_wheel_never_reaches_the_cache(tmp_path):
-    said = in_workspace(
+    result = in_workspace(
         tmp_path,
         f'wheels={tmp_path}/cache; pip_of() {{ touch "$work/pybullet-half.whl"; return 1; }}; build_wheel',
     )
-    assert said.returncode == 1
+    assert result.returncode == 1
     assert list((tmp_path / "cache").iterdir()) == []
 
 
@@ -481,13 +481,13 @@ def kernels_compiled(folder, set_up=":"):
     """How many kernels a program compiles whose user has the folder's home, and where it keeps them."""
     program = "import sys; sys.path.insert(0, 'src/good'); import kernel; print(kernel.COMPILED)"
     commands = f'{set_up}; "{sys.executable}" -c "{program}"; echo ${{NUMBA_CACHE_DIR:-beside}}'
-    said = in_workspace(folder, f"export HOME=$PWD/home; {commands}")
-    assert said.returncode == 0, said.stderr
-    compiled, place = said.stdout.splitlines()
+    result = in_workspace(folder, f"export HOME=$PWD/home; {commands}")
+    assert result.returncode == 0, result.stderr
+    compiled, place = result.stdout.splitlines()
     return int(compiled), place
 
 
-def test_who_may_not_write_beside_the_kernels_has_current_copies_of_them(tmp_path, monkeypatch):
+def test_a_user_who_may_not_write_beside_the_kernels_has_current_copies_of_them(tmp_path, monkeypatch):
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
     module = tmp_path / "src/good/kernel.py"
@@ -518,7 +518,7 @@ def test_two_scripts_copy_the_kernels_at_one_time(tmp_path, monkeypatch, end, le
     (tmp_path / "build").mkdir()
     (tmp_path / "build/.kernels").write_text("1")
     other = f'. "$1"; may_write() {{ false; }}; cp() {{ {end} "$@"; }}; use_own_kernels "$root"'
-    said = in_workspace(
+    result = in_workspace(
         tmp_path,
         f"""
         may_write() {{ false; }}
@@ -530,23 +530,23 @@ def test_two_scripts_copy_the_kernels_at_one_time(tmp_path, monkeypatch, end, le
         ls -A "$NUMBA_CACHE_DIR" "$NUMBA_CACHE_DIR"/second_*
         """,
     )
-    assert said.returncode == 0, said.stderr
-    assert {".kernels", "kernel.nbi"} < set(said.stdout.split())
+    assert result.returncode == 0, result.stderr
+    assert {".kernels", "kernel.nbi"} < set(result.stdout.split())
     assert len(list((tmp_path / "cache/home-service-robot/kernels").iterdir())) == left
 
 
-def test_who_has_no_home_has_a_cache_too(tmp_path, monkeypatch):
+def test_a_user_who_has_no_home_has_a_cache_too(tmp_path, monkeypatch):
     monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
-    said = in_workspace(tmp_path, "export HOME=/dev/null TMPDIR=$PWD; user_cache")
-    assert said.stdout == f"{tmp_path}/home-service-robot-{os.getuid()}\n"
+    result = in_workspace(tmp_path, "export HOME=/dev/null TMPDIR=$PWD; user_cache")
+    assert result.stdout == f"{tmp_path}/home-service-robot-{os.getuid()}\n"
 
 
-def test_who_may_not_write_in_the_workspace_has_a_folder_for_ros(tmp_path, monkeypatch):
+def test_a_user_who_may_not_write_in_the_workspace_has_a_folder_for_ros(tmp_path, monkeypatch):
     for variable in ("XDG_CACHE_HOME", "ROS_HOME", "ROS_LOG_DIR"):
         monkeypatch.delenv(variable, raising=False)
     (tmp_path / "devel").mkdir()
     (tmp_path / "devel/setup.bash").touch()
     for may_write, place in (("true", "logs"), ("false", "home/.cache/home-service-robot")):
-        told = "export HOME=$PWD/home; enter_workspace; echo $ROS_HOME"
-        said = in_workspace(tmp_path, f"may_write() {{ {may_write}; }}; {told}")
-        assert said.stdout == f"{tmp_path}/{place}/ros\n"
+        commands = "export HOME=$PWD/home; enter_workspace; echo $ROS_HOME"
+        result = in_workspace(tmp_path, f"may_write() {{ {may_write}; }}; {commands}")
+        assert result.stdout == f"{tmp_path}/{place}/ros\n"

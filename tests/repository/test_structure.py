@@ -1,4 +1,4 @@
-"""The house stands: every import leads down a storey, and nothing outgrows the eye."""
+"""Imports respect the layers, and folders, classes and functions stay small."""
 
 import ast
 from pathlib import Path
@@ -8,8 +8,8 @@ import pytest
 import structure
 
 ROOT = structure.ROOT
-# From the ground up; a package may import those on storeys below it. turtle_world is built out of two others.
-STOREYS = (
+# From the lowest layer up; a package may import packages of lower layers only.
+LAYERS = (
     {"planar"},
     {"supervision", "run_report"},
     {"planar_ros"},
@@ -21,7 +21,7 @@ STOREYS = (
     {"run_project", "laboratory"},
     {"home_service_gym"},
 )
-STOREY_OF = {package: number for number, storey in enumerate(STOREYS) for package in storey}
+LAYER_OF = {package: number for number, layer in enumerate(LAYERS) for package in layer}
 
 
 def imports(path: Path) -> Iterator[str]:
@@ -33,27 +33,27 @@ def imports(path: Path) -> Iterator[str]:
 
 
 def imports_of_others() -> Iterator[Tuple[Path, str, str]]:
-    """Each import of one package of the house by another: the module, its package, the other."""
+    """Yield each import between packages: the module, its package, the imported package."""
     for path in structure.modules(ROOT):
         package = path.parts[len(path.parts) - path.parts[::-1].index("src")]
         for name in imports(path):
             other = name.split(".")[0]
-            if other != package and other in STOREY_OF:
+            if other != package and other in LAYER_OF:
                 yield path.relative_to(ROOT), package, other
 
 
-def test_every_package_stands_on_a_storey():
+def test_every_package_belongs_to_a_layer():
     packages = {path.parent.name for path in ROOT.glob("src/**/src/*/__init__.py")}
-    assert packages == set(STOREY_OF)
+    assert packages == set(LAYER_OF)
 
 
-def test_imports_lead_down():
-    climbing = [
+def test_packages_import_lower_layers_only():
+    upward = [
         f"{path}: {other}"
         for path, package, other in imports_of_others()
-        if STOREY_OF[other] >= STOREY_OF[package]
+        if LAYER_OF[other] >= LAYER_OF[package]
     ]
-    assert climbing == []
+    assert upward == []
 
 
 @pytest.mark.parametrize(
@@ -61,10 +61,10 @@ def test_imports_lead_down():
     zip(structure.pieces(ROOT), (structure.LONGEST_CLASS, structure.LONGEST_FUNCTION)),
     ids=("classes", "functions"),
 )
-def test_what_a_person_reads_at_once_stays_short(found, limit):
+def test_classes_and_functions_stay_short(found, limit):
     assert [str(piece) for piece in structure.too_long(found, limit)] == []
 
 
-def test_a_folder_holds_no_more_modules_than_a_person_can_name():
+def test_folders_stay_small():
     full = structure.folders(ROOT).items()
     assert [f"{folder}: {count}" for folder, count in full if count > structure.FULLEST_FOLDER] == []

@@ -1,4 +1,4 @@
-"""What became of a test file, by the reports that its tests left."""
+"""The outcome of a test file, read from the reports of its tests."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +10,7 @@ NO_TESTS = 5  # pytest's exit code
 
 @dataclass(frozen=True)
 class Outcome:
-    """How many tests of a file passed, failed, were skipped; ``reason`` if it did not run as it should."""
+    """Number of passed, failed and skipped tests, and the reason of the first failure."""
 
     passed: int = 0
     failed: int = 0
@@ -35,7 +35,7 @@ def failure(reason: str) -> Outcome:
 
 
 def read_report(path: Path) -> Outcome:
-    """The counts of a JUnit report, over all its suites, and what the first failure says."""
+    """Sum the counts of a JUnit report over its suites, with the first failure's message."""
     try:
         report = ElementTree.parse(path).getroot()
         suites = list(report.iter("testsuite"))
@@ -55,7 +55,7 @@ def read_report(path: Path) -> Outcome:
 
 
 def first_failure(report: ElementTree.Element) -> str:
-    """The name and the message of the first test that failed; empty if none did."""
+    """Return name and message of the first failed test, or an empty text."""
     for case in report.iter("testcase"):
         for kind in ("failure", "error"):
             found = case.find(kind)
@@ -69,14 +69,14 @@ def first_failure(report: ElementTree.Element) -> str:
 def judge_unit_tests(report: Path, exit_code: int) -> Outcome:
     outcome = read_report(report)
     if exit_code == NO_TESTS:
-        return outcome + failure("all of them need what only ./scripts/setup.sh --dev installs")
+        return outcome + failure("all tests need packages that only ./scripts/setup.sh --dev installs")
     if exit_code != 0 and not outcome.failed:
         return outcome + failure(f"pytest ended with exit code {exit_code}")
     return outcome
 
 
 def judge_ros_test(test_names: Sequence[str], reports: Path, exit_code: int) -> Outcome:
-    """Sums the reports of the tests named in one .test file; each must have reported at least one test."""
+    """Sum the reports of the tests of one .test file; each must report at least one test."""
     total = Outcome()
     for name in test_names:
         found = sorted(reports.rglob(f"rosunit-{name}.xml"))
@@ -85,10 +85,10 @@ def judge_ros_test(test_names: Sequence[str], reports: Path, exit_code: int) -> 
             outcome = failure(f"test '{name}' ran no test")
         total += outcome
     if not test_names:
-        total = failure("it names no test")
+        total = failure("the file defines no test")
     for path in sorted(reports.rglob("rostest-*.xml")):
         if read_report(path).failed and not total.failed:
-            total += failure("rostest reports a test that did not end well")
+            total += failure("rostest reports a test that did not exit cleanly")
     if exit_code != 0 and not total.failed:
         total += failure(f"rostest ended with exit code {exit_code}")
     return total

@@ -1,4 +1,4 @@
-"""One file of ROS tests, run below a process of its own: ``ros_test.py FOLDER FILE`` prints its outcome."""
+"""Run one .test file in a child process: ``ros_test.py FOLDER FILE`` prints its outcome."""
 
 import json
 import signal
@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Dict, Optional, Tuple
 from xml.etree import ElementTree
 
-from keeping import ROOT, run_kept
+from containment import ROOT, run_contained
 from outcome import Outcome, failure, judge_ros_test
 
 DEFAULT_SECONDS = 60.0  # of a <test> without time-limit
@@ -18,7 +18,7 @@ START_AND_STOP_SECONDS = 60.0  # of everything around the <test>s of a file
 
 
 def time_limits(path: Path) -> Dict[str, float]:
-    """The time limit, in seconds, of each test that a .test file names."""
+    """Return the time limit [s] of each test of a .test file."""
     tests = ElementTree.parse(path).getroot().iter("test")
     return {test.attrib["test-name"]: float(test.get("time-limit", DEFAULT_SECONDS)) for test in tests}
 
@@ -32,23 +32,23 @@ def log_of(folder: Path, name: str) -> Path:
 
 
 class RosTest:
-    """Starts at once, below a process of its own; logs and reports go into ``folder``."""
+    """Starts a .test file in a child process; logs and reports go into ``folder``."""
 
     def __init__(self, folder: Path, path: Path):
         self.name = name_of(path)
         self._started = time.monotonic()
         command = [sys.executable, __file__, str(folder), str(path)]
-        # Only what is meant for it interrupts it, and once.
+        # A new session, so that it is interrupted only once and only on purpose.
         self._process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True)
 
     def wait(self) -> Tuple[Outcome, float]:
-        """Its outcome and the seconds that it took."""
-        said, _ = self._process.communicate()
-        outcome = Outcome(**json.loads(said)) if said else failure("was ended from outside")
+        """Return the outcome and the duration [s]."""
+        output, _ = self._process.communicate()
+        outcome = Outcome(**json.loads(output)) if output else failure("was terminated")
         return outcome, time.monotonic() - self._started
 
     def end(self) -> None:
-        """Has it end what it has started."""
+        """Terminate the child process, which ends its own children."""
         self._process.terminate()
 
 
@@ -58,7 +58,7 @@ def run(folder: Path, path: Path) -> Outcome:
     reports = log.with_suffix("")
     command = ["rostest", f"--results-base-dir={reports}", str(path)]
     limit = sum(limits.values()) + START_AND_STOP_SECONDS
-    return run_kept(command, log, limit, lambda code: judge_ros_test(list(limits), reports, code))
+    return run_contained(command, log, limit, lambda code: judge_ros_test(list(limits), reports, code))
 
 
 def main(folder: str, path: str) -> Optional[int]:
@@ -70,6 +70,6 @@ def main(folder: str, path: str) -> Optional[int]:
 
 
 if __name__ == "__main__":
-    # Whoever was started in the background by a shell does not hear SIGINT.
+    # A process started in the background by a shell ignores SIGINT.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     sys.exit(main(*sys.argv[1:]))

@@ -1,6 +1,6 @@
-"""Runs the unit tests and the ROS tests and tells the truth about them in one closing line.
+"""Run the unit tests and the ROS tests and print one summary line.
 
-The exit codes of ``rostest`` and ``catkin_make run_tests`` do not tell whether every test ran, so the verdict
+The exit codes of ``rostest`` and ``catkin_make run_tests`` do not show whether every test ran, so the result
 comes from the reports: a test file without a report of its tests has failed.
 """
 
@@ -18,7 +18,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import List, Optional, Sequence
 
-from keeping import ROOT, run_kept
+from containment import ROOT, run_contained
 from outcome import Outcome, judge_unit_tests
 from ros_test import RosTest, log_of
 
@@ -26,10 +26,10 @@ from home_service.options import count
 from supervision.interruption import on_signals
 
 PYTEST = ("-m", "pytest", "-n", "auto", "--dist", "worksteal")
-UNIT_SECONDS = 900.0  # of a machine that has other things to do; else a minute
+UNIT_SECONDS = 900.0  # on a busy machine; usually a minute
 MOST_JOBS = 4
-# Commands and Python packages that scripts/setup.sh --dev installs, by the test, or folder of tests, that
-# needs one of each group.
+# Requirements that scripts/setup.sh --dev installs, by test file or folder: one command or
+# package of each group.
 BROWSERS, PAGE = ("chromium", "chromium-browser", "google-chrome"), ("viser",)
 NEEDS = {
     "tests/cockpit": (BROWSERS, PAGE),
@@ -43,8 +43,8 @@ def is_installed(name: str) -> bool:
     return shutil.which(name) is not None or find_spec(name) is not None
 
 
-def lacking(path: Path, is_there=is_installed) -> Optional[str]:
-    """What the tests of a .test file need and this machine has not."""
+def missing_requirement(path: Path, is_there=is_installed) -> Optional[str]:
+    """Return a requirement of a .test file that is not installed, or None."""
     place = path.relative_to(ROOT)
     for group in (*NEEDS.get(place.parent.as_posix(), ()), *NEEDS.get(place.as_posix(), ())):
         if not any(map(is_there, group)):
@@ -55,30 +55,30 @@ def lacking(path: Path, is_there=is_installed) -> Optional[str]:
 def run_unit_tests(folder: Path, names: Sequence[str]) -> Outcome:
     report = folder / "unit.xml"
     command = [sys.executable, *PYTEST, f"--junitxml={report}", *(f"--only={name}" for name in names)]
-    return run_kept(
+    return run_contained(
         command, log_of(folder, "unit"), UNIT_SECONDS, lambda code: judge_unit_tests(report, code)
     )
 
 
-class Account:
-    """What became of all test files; each is told at once. Logs and reports are below ``folder``."""
+class TestSummary:
+    """Prints the outcome of each test file and a summary. Logs and reports are in ``folder``."""
 
     def __init__(self, folder: Path):
         self._folder = folder
         self._total = Outcome()
-        self._complaints: List[str] = []
+        self._failures: List[str] = []
 
-    def note(self, name: str, outcome: Outcome, seconds: float) -> None:
+    def add(self, name: str, outcome: Outcome, seconds: float) -> None:
         print(f"{name}: {outcome} ({seconds:.0f} s)", flush=True)
         self._total += replace(outcome, reason="")
         if outcome.failed:
             log = log_of(self._folder, name)
-            self._complaints.append(f"FAILED {name}: {outcome.reason or 'see the log'} -- {log}")
-            if log.exists():  # what was ended from outside may not have come to it
+            self._failures.append(f"FAILED {name}: {outcome.reason or 'see the log'} -- {log}")
+            if log.exists():  # a terminated test may have no log
                 print(indented_tail(log), flush=True)
 
     def conclude(self) -> int:
-        for complaint in self._complaints:
+        for complaint in self._failures:
             print(complaint)
         print(self._total)
         return 0 if self._total.passed and not self._total.failed else 1
@@ -89,9 +89,9 @@ def indented_tail(path: Path, lines: int = 60) -> str:
 
 
 class RosTests:
-    """Files of ROS tests, so many at once."""
+    """Runs .test files in parallel."""
 
-    def __init__(self, folder: Path, account: Account):
+    def __init__(self, folder: Path, account: TestSummary):
         self._folder, self._account = folder, account
         self._running: List[RosTest] = []
         self._is_ended = False
@@ -116,7 +116,7 @@ class RosTests:
         with self._lock:
             self._running.remove(test)
             if not self._is_ended:
-                self._account.note(test.name, outcome, seconds)
+                self._account.add(test.name, outcome, seconds)
 
     def _end(self) -> None:
         with self._lock:
@@ -151,16 +151,16 @@ def main() -> int:
 
     folder = ROOT / "logs" / "tests" / f"{datetime.now():%Y%m%d-%H%M%S}-{os.getpid()}"
     folder.mkdir(parents=True)
-    account = Account(folder)
+    account = TestSummary(folder)
     if unit:
         started = time.monotonic()
         outcome = run_unit_tests(folder, options.names)
-        account.note("unit", outcome, time.monotonic() - started)
-    lacks = {path: lacking(path) for path in ros}
+        account.add("unit", outcome, time.monotonic() - started)
+    lacks = {path: missing_requirement(path) for path in ros}
     RosTests(folder, account).run([path for path in ros if lacks[path] is None], options.jobs)
     for path, need in lacks.items():
         if need is not None:
-            print(f"left out: {path.relative_to(ROOT)}, which needs {need} (./scripts/setup.sh --dev)")
+            print(f"skipped: {path.relative_to(ROOT)} needs {need}; run ./scripts/setup.sh --dev")
     return account.conclude()
 
 

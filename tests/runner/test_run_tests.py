@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from outcome import Outcome, failure, judge_ros_test, judge_unit_tests, read_report
 from ros_test import time_limits
-from run_tests import NEEDS, ROOT, Account, is_installed, lacking
+from run_tests import NEEDS, ROOT, TestSummary, is_installed, missing_requirement
 
 
 def write_report(path, tests, failures=0, errors=0, skipped=0):
@@ -26,7 +26,7 @@ def test_a_report_is_counted_over_all_its_suites(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "kind, told",
+    "kind, reason",
     [
         ('<failure message="assert 1 == 2">...</failure>', "test_b: assert 1 == 2"),
         (
@@ -35,11 +35,11 @@ def test_a_report_is_counted_over_all_its_suites(tmp_path):
         ),
     ],
 )
-def test_the_reason_is_what_the_first_failure_says(tmp_path, kind, told):
+def test_the_reason_is_the_message_of_the_first_failure(tmp_path, kind, reason):
     path = tmp_path / "unit.xml"
     cases = f'<testcase name="test_a"/><testcase name="test_b">{kind}</testcase>'
     path.write_text(f'<testsuite tests="2" failures="1">{cases}</testsuite>')
-    assert read_report(path) == Outcome(passed=1, failed=1, reason=told)
+    assert read_report(path) == Outcome(passed=1, failed=1, reason=reason)
 
 
 def test_what_fails_before_the_first_test_takes_nothing_from_those_that_passed(tmp_path):
@@ -70,7 +70,7 @@ def test_the_time_limits_a_file_are_summed(tmp_path):
     assert judge_ros_test(["a", "b"], tmp_path, 1) == Outcome(passed=4, failed=1)
 
 
-def test_what_rostest_says_counts_when_every_report_is_clean(tmp_path):
+def test_a_failure_of_rostest_counts_when_every_report_is_clean(tmp_path):
     write_report(tmp_path / "rosunit-a.xml", 3)
     write_report(tmp_path / "rostest-a.xml", 1, errors=1)
     assert judge_ros_test(["a"], tmp_path, 0).failed == 1
@@ -88,7 +88,7 @@ def test_a_garbled_report_is_a_failure(tmp_path):
     assert judge_unit_tests(tmp_path / "unit.xml", 0).failed == 1
 
 
-def test_that_pytest_has_no_test_is_a_failure_that_says_what_is_missing(tmp_path):
+def test_a_pytest_run_without_tests_is_a_failure_that_names_what_is_missing(tmp_path):
     outcome = judge_unit_tests(write_report(tmp_path / "unit.xml", 0), 5)
     assert outcome.failed == 1 and "setup.sh --dev" in outcome.reason
 
@@ -104,45 +104,47 @@ def test_the_time_limits_of_a_file_are_read(tmp_path):
 
 def test_what_needs_something_that_is_not_there_is_left_out():
     two_hosts, mission = ROOT / "tests/two_hosts/two_hosts.test", ROOT / "tests/system/m.test"
-    assert lacking(two_hosts, lambda name: False) == "ip"
-    assert lacking(two_hosts, lambda name: True) is None
-    assert lacking(mission, lambda name: False) is None
+    assert missing_requirement(two_hosts, lambda name: False) == "ip"
+    assert missing_requirement(two_hosts, lambda name: True) is None
+    assert missing_requirement(mission, lambda name: False) is None
 
 
 def test_a_browser_alone_shows_no_page():
     page = ROOT / "tests/cockpit/course.test"
-    assert lacking(page, lambda name: name == "google-chrome") == "viser"
-    assert lacking(page, lambda name: name in ("google-chrome", "viser")) is None
+    assert missing_requirement(page, lambda name: name == "google-chrome") == "viser"
+    assert missing_requirement(page, lambda name: name in ("google-chrome", "viser")) is None
 
 
 def test_a_test_may_need_more_than_its_folder_does():
     alone = ROOT / "tests" / "two_hosts" / "cockpit_alone.test"
-    assert lacking(alone, lambda name: name == "ip") == "chromium"
-    assert lacking(alone, lambda name: name == "google-chrome") == "ip"
-    assert lacking(alone, lambda name: name in ("ip", "google-chrome", "viser")) is None
+    assert missing_requirement(alone, lambda name: name == "ip") == "chromium"
+    assert missing_requirement(alone, lambda name: name == "google-chrome") == "ip"
+    assert missing_requirement(alone, lambda name: name in ("ip", "google-chrome", "viser")) is None
 
 
 def test_what_needs_something_is_there():
     assert all((ROOT / place).exists() for place in NEEDS)
 
 
-def test_a_test_that_ended_before_it_had_a_log_is_told_and_no_more(tmp_path, capsys):
-    account = Account(tmp_path)
-    account.note("tests/system/mission", failure("was ended from outside"), 1.0)
+def test_a_test_that_ended_before_it_had_a_log_is_reported(tmp_path, capsys):
+    account = TestSummary(tmp_path)
+    account.add("tests/system/mission", failure("was terminated"), 1.0)
     assert account.conclude() == 1
-    assert "FAILED tests/system/mission: was ended from outside" in capsys.readouterr().out
+    assert "FAILED tests/system/mission: was terminated" in capsys.readouterr().out
 
 
 def chosen(names, missing):
-    """The files of unit tests that pytest takes for such names where a package is missing."""
+    """Return the unit test files that pytest collects when a package is missing."""
     script = (
         "import importlib.util as util, sys, pytest; there = util.find_spec; missing, *names = sys.argv[1:];"
         "util.find_spec = lambda name, *given: None if name == missing else there(name, *given);"
         "pytest.main(['--collect-only', '-p', 'no:xdist', *names])"
     )
     command = [sys.executable, "-c", script, missing, *(f"--only={name}" for name in names)]
-    told = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, timeout=120)
-    return {line.partition("::")[0].rpartition("/")[2] for line in told.stdout.splitlines() if "::" in line}
+    listing = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, timeout=120)
+    return {
+        line.partition("::")[0].rpartition("/")[2] for line in listing.stdout.splitlines() if "::" in line
+    }
 
 
 def test_unit_tests_that_are_named_are_left_out_where_what_they_need_is_missing():
@@ -151,17 +153,17 @@ def test_unit_tests_that_are_named_are_left_out_where_what_they_need_is_missing(
 
 
 def test_commands_and_packages_are_found():
-    assert is_installed("bash") and is_installed("numpy") and not is_installed("no_such_thing")
+    assert is_installed("bash") and is_installed("numpy") and not is_installed("no_such_command")
 
 
-def kept(command, log, limit=60.0):
-    """What a process of its own, which ends what is left behind, says of a command that is kept by it."""
+def contained(command, log, limit=60.0):
+    """Return the failure reason of a command that a child process contains."""
     script = (
-        "import sys; from pathlib import Path; from keeping import run_kept; from outcome import Outcome;"
+        "import sys; from pathlib import Path; from containment import run_kept; from outcome import Outcome;"
         "log, limit, *command = sys.argv[1:];"
-        "print(run_kept(command, Path(log), float(limit), lambda code: Outcome(passed=1)).reason)"
+        "print(run_contained(command, Path(log), float(limit), lambda code: Outcome(passed=1)).reason)"
     )
-    told = subprocess.run(
+    listing = subprocess.run(
         [sys.executable, "-c", script, str(log), str(limit), *command],
         cwd=Path(__file__).parent,
         stdout=subprocess.PIPE,
@@ -169,31 +171,31 @@ def kept(command, log, limit=60.0):
         timeout=60.0,
         check=True,
     )
-    return told.stdout.strip()
+    return output.stdout.strip()
 
 
-def test_a_command_that_leaves_nothing_behind_is_judged_by_what_it_says(tmp_path):
-    assert kept(["true"], tmp_path / "x.log") == ""
+def test_a_command_that_leaves_nothing_behind_is_judged_by_its_exit_code(tmp_path):
+    assert contained(["true"], tmp_path / "x.log") == ""
 
 
-def test_what_is_just_ending_when_its_command_is_over_is_not_left_behind(tmp_path):
-    assert kept(["sh", "-c", "(sleep 0.5; sleep 0.5) &"], tmp_path / "x.log") == ""
+def test_what_is_ending_when_its_command_exits_is_not_left_behind(tmp_path):
+    assert contained(["sh", "-c", "(sleep 0.5; sleep 0.5) &"], tmp_path / "x.log") == ""
 
 
-def test_what_outlives_its_command_is_ended_and_told(tmp_path):
+def test_a_process_that_outlives_its_command_is_ended_and_reported(tmp_path):
     number = tmp_path / "number"
     named = "until grep -q sleep /proc/$!/comm; do :; done"  # until then it is a copy of the shell
     left = f"sleep 1000 & echo $! > {number}; {named}"
-    assert kept(["sh", "-c", left], tmp_path / "x.log") == "left processes behind: sleep"
+    assert contained(["sh", "-c", left], tmp_path / "x.log") == "left processes behind: sleep"
     assert not Path("/proc", number.read_text().strip()).exists()
 
 
 def test_a_command_that_does_not_end_is_ended_at_its_limit(tmp_path):
-    assert kept(["sleep", "1000"], tmp_path / "x.log", 0.5) == "not done after its limit of 0 s"
+    assert contained(["sleep", "1000"], tmp_path / "x.log", 0.5) == "not done after its limit of 0 s"
 
 
 def test_what_is_started_while_all_is_ended_is_ended_too(tmp_path):
     number = tmp_path / "number"
     stubborn = f"trap 'sleep 1000 & echo $! > {number}; exit' INT; sleep 1000 & wait"
-    assert kept(["sh", "-c", stubborn], tmp_path / "x.log", 1.0) == "not done after its limit of 1 s"
+    assert contained(["sh", "-c", stubborn], tmp_path / "x.log", 1.0) == "not done after its limit of 1 s"
     assert not Path("/proc", number.read_text().strip()).exists()

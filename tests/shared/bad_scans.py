@@ -1,4 +1,4 @@
-"""Bags in which some scans mean nothing."""
+"""Bags with malformed scans."""
 
 import math
 
@@ -6,12 +6,12 @@ import rosbag
 from genpy import Time
 
 NEVER = Time(2**32 - 1, 999_999_999)
-# How many scans are broken.
+# Number of malformed scans.
 BROKEN = 3
 
 
 def break_scans(source, target, topic="/scan"):
-    """Copies a bag; the directions of two of its scans are no numbers then, and one is of the end of time."""
+    """Copy a bag; two scans get NaN angles, and one the latest stamp that ROS can represent."""
     number = 0
     with rosbag.Bag(str(source)) as whole, rosbag.Bag(str(target), "w") as broken:
         for name, message, at in whole.read_messages():

@@ -1,4 +1,4 @@
-"""A browser without a window, driven by the protocol of its developer tools."""
+"""A headless browser, driven by the Chrome DevTools Protocol."""
 
 import base64
 import itertools
@@ -17,17 +17,17 @@ from waiting import wait_until
 from websockets.sync.client import connect
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
-# A page that saves messages sends the last of what is typed or turned within such a time.
+# A page sends the last change of a field within this time [s].
 TYPING_SECONDS = 0.6
 STILL_SECONDS = 0.1
-# Of a keyboard, as desktops set it at first.
+# Key repeat of a keyboard with the usual settings of desktops.
 REPEAT_DELAY_SECONDS, REPEAT_SECONDS = 0.5, 0.033
 START_SECONDS, ANSWER_SECONDS = 60.0, 60.0
-# Of the protocol: what was asked has gone, or does not yet stand.
-UNREACHED = -32000
-# Between two looks at a page: each has it laid out anew.
-LOOK_SECONDS = 0.2
-# It draws without a graphics card, and calls nobody.
+# Error code of the protocol: the execution context is gone or does not exist yet.
+NO_CONTEXT = -32000
+# Time between two reads of a page: each triggers a new layout [s].
+READ_SECONDS = 0.2
+# Software rendering, and no background network traffic.
 OPTIONS = (
     "--headless=new",
     "--no-sandbox",
@@ -44,22 +44,22 @@ OPTIONS = (
     "--enable-unsafe-swiftshader",
     "--remote-debugging-port=0",
 )
-# Where it may, which root may, it would draw before nodes get to work.
+# As root the browser would raise its own priority above that of the nodes.
 NO_PRIORITY = ("setpriv", "--bounding-set", "-sys_nice") if os.geteuid() == 0 else ()
 
 
 def executable():
-    """None if there is no browser."""
+    """Return the path of a browser, or None."""
     return next(filter(None, map(shutil.which, NAMES)), None)
 
 
 class Browser:
-    """Starts one; ``open`` opens pages."""
+    """Starts a browser; ``open`` opens pages."""
 
     def __init__(self):
         assert executable() is not None, "no browser: ./scripts/setup.sh --dev installs one"
         self._folder = tempfile.mkdtemp()
-        told = Path(self._folder) / "DevToolsActivePort"
+        port_file = Path(self._folder) / "DevToolsActivePort"
         self._process = subprocess.Popen(
             [*NO_PRIORITY, executable(), *OPTIONS, f"--user-data-dir={self._folder}", "about:blank"],
             stdin=subprocess.DEVNULL,
@@ -67,8 +67,10 @@ class Browser:
             stderr=subprocess.DEVNULL,
             env={**os.environ, "HOME": self._folder},
         )
-        wait_until("the browser", lambda: told.exists() and told.read_text().count("\n"), START_SECONDS)
-        self._port = int(told.read_text().split()[0])
+        wait_until(
+            "the browser", lambda: port_file.exists() and port_file.read_text().count("\n"), START_SECONDS
+        )
+        self._port = int(port_file.read_text().split()[0])
 
     def __enter__(self):
         return self
@@ -77,14 +79,14 @@ class Browser:
         self.close()
 
     def open(self, url, width=1280, height=800):
-        """A tab that shows ``url``."""
+        """Open ``url`` in a new tab."""
         request = urllib.request.Request(f"http://127.0.0.1:{self._port}/json/new?about:blank", method="PUT")
         with urllib.request.urlopen(request, timeout=ANSWER_SECONDS) as answer:
             address = json.load(answer)["webSocketDebuggerUrl"]
         return Tab(address, url, width, height)
 
     def niceness(self):
-        """Of each of its processes."""
+        """Return the niceness of each process of the browser."""
         return [each.nice() for each in psutil.Process(self._process.pid).children(recursive=True)]
 
     def close(self):
@@ -97,12 +99,12 @@ class Browser:
         shutil.rmtree(self._folder, ignore_errors=True)
 
 
-class PageWentOnError(AssertionError):
-    """The page, to another one while it was asked something."""
+class PageNavigatedError(AssertionError):
+    """The page navigated to another one during a request."""
 
 
 class Tab:
-    """``errors``: what its page has complained of; ``requests``: the URLs that it has asked for."""
+    """A tab. ``errors``: errors in the console of its page; ``requests``: URLs that it has requested."""
 
     def __init__(self, address, url, width, height):
         self._socket = connect(address, max_size=None, open_timeout=ANSWER_SECONDS)
@@ -115,30 +117,30 @@ class Tab:
         self._ask("Page.navigate", url=url)
 
     def evaluate(self, script):
-        """The value of an expression in the page."""
+        """Evaluate an expression in the page."""
         answer = self._ask("Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True)
         assert "exceptionDetails" not in answer, answer["exceptionDetails"]
         return answer["result"].get("value")
 
     def text(self):
-        """All that can be read on the page."""
+        """Return the visible text of the page."""
         return self.evaluate("document.body ? document.body.innerText : ''") or ""
 
     def wait_for(self, *texts, seconds=30.0):
-        """Until all of them are on the page, or on the one that it goes on to, as the cockpit's gate does."""
+        """Wait until all texts are on the page, or on the one to which it redirects."""
 
         def are_there():
             try:
                 seen = self.text()
-            except PageWentOnError:
+            except PageNavigatedError:
                 return False
             return all(text in seen for text in texts)
 
-        wait_until(f"{texts} on the page", are_there, seconds, LOOK_SECONDS)
+        wait_until(f"{texts} on the page", are_there, seconds, READ_SECONDS)
 
     def click(self, text, seconds=20.0):
-        """The innermost thing that has this text, or whose label it is."""
-        wait_until(f"'{text}' to click", lambda: self._rests(text), seconds)
+        """Click the innermost element with this text or label."""
+        wait_until(f"'{text}' to click", lambda: self._is_stable(text), seconds)
         self.click_at(*self._place_of(text))
 
     def click_at(self, x, y):
@@ -155,7 +157,7 @@ class Tab:
         self._mouse("mouseReleased", *end, button="left", clickCount=1)
 
     def hold(self, text, seconds):
-        """Presses the button that has this text for so long."""
+        """Hold the button with this text for some seconds."""
         place = self._place_of(text)
         assert place is not None, text
         self._mouse("mouseMoved", *place)
@@ -164,14 +166,14 @@ class Tab:
         self._mouse("mouseReleased", *place, button="left", clickCount=1)
 
     def press(self, text):
-        """Presses the button that has this text, and does not let go."""
+        """Press the button with this text without releasing it."""
         place = self._place_of(text)
         assert place is not None, text
         self._mouse("mouseMoved", *place)
         self._mouse("mousePressed", *place, button="left", clickCount=1, buttons=1)
 
     def hold_key(self, key, what, is_met):
-        """Presses a letter's key, which repeats as a keyboard's does, until ``what`` is so: it stays down."""
+        """Press a letter key with key repeat until ``is_met``; the key stays down."""
         self._key("keyDown", key)
         deadline = time.monotonic() + REPEAT_DELAY_SECONDS
 
@@ -187,7 +189,7 @@ class Tab:
         self._key("keyUp", key)
 
     def choose(self, label, option):
-        """An option of the list with this label."""
+        """Choose an option of the list with this label."""
         wait_until(f"a list {label}", lambda: self._place_of_input(label) is not None)
         for _ in range(20):
             place = self._place_of_input(label)
@@ -205,21 +207,21 @@ class Tab:
         raise AssertionError(f"'{option}' could not be chosen of '{label}', {offered}")
 
     def tick(self, label):
-        """The box with this label, whether it is ticked or not."""
+        """Toggle the checkbox with this label."""
         wait_until(f"a box {label}", lambda: self._place_of_input(label) is not None)
         self.click_at(*self._place_of_input(label))
 
     def value_of(self, label):
-        """What the field with this label says."""
+        """Return the value of the field with this label."""
         return self.evaluate(f"(({FIND_INPUT})({json.dumps(label)}) || {{}}).value")
 
     def fill_in(self, label, text):
-        """Writes over what the field with this label says."""
+        """Replace the value of the field with this label."""
         self._focus(label)
         self.evaluate("document.activeElement.select && document.activeElement.select()")
         self._ask("Input.insertText", text=text)
         self.evaluate("document.activeElement.blur()")
-        # The page's own time: one that is too busy to send is too busy to be over with it.
+        # A timer of the page: a busy page delays its messages and this timer alike.
         self.evaluate(f"new Promise((done) => setTimeout(done, {TYPING_SECONDS * 1000}))")
 
     def screenshot(self, path):
@@ -237,8 +239,8 @@ class Tab:
     def _place_of(self, text):
         return self.evaluate(f"({UNCOVERED})(({FIND_TEXT})({json.dumps(text)}), {MIDDLE})")
 
-    def _rests(self, text):
-        """Whether it is seen, with nothing before it, and does not move just now."""
+    def _is_stable(self, text):
+        """Whether the element is visible, not covered, and not moving."""
         place = self._place_of(text)
         time.sleep(STILL_SECONDS)
         return place is not None and place == self._place_of(text)
@@ -247,7 +249,7 @@ class Tab:
         return self.evaluate(f"({MIDDLE})(({FIND_INPUT})({json.dumps(label)}))")
 
     def _offered(self, label):
-        """The options of this list while it is open: a click that slipped may have opened another one."""
+        """The options of this list if it is open; a misplaced click may have opened another one."""
         return self.evaluate(f"({OPTIONS_OF})({json.dumps(label)}).map((one) => one.innerText.trim())")
 
     def _place_of_option(self, label, option):
@@ -275,29 +277,29 @@ class Tab:
         self._socket.send(json.dumps({"id": number, "method": method, "params": parameters}))
         deadline = time.monotonic() + ANSWER_SECONDS
         while True:
-            told = json.loads(self._socket.recv(max(deadline - time.monotonic(), 0.01)))
-            if told.get("id") == number:
-                if told.get("error", {}).get("code") == UNREACHED:
-                    raise PageWentOnError(f"{method}: {told['error']}")
-                assert "error" not in told, f"{method}: {told['error']}"
-                return told["result"]
-            self._note(told)
+            response = json.loads(self._socket.recv(max(deadline - time.monotonic(), 0.01)))
+            if response.get("id") == number:
+                if response.get("error", {}).get("code") == NO_CONTEXT:
+                    raise PageNavigatedError(f"{method}: {response['error']}")
+                assert "error" not in response, f"{method}: {response['error']}"
+                return response["result"]
+            self._record(response)
 
-    def _note(self, event):
-        told, kind = event.get("params", {}), event.get("method")
+    def _record(self, event):
+        params, kind = event.get("params", {}), event.get("method")
         if kind == "Runtime.exceptionThrown":
-            self.errors.append(str(told["exceptionDetails"]))
-        elif kind == "Runtime.consoleAPICalled" and told["type"] in ("error", "assert"):
-            self.errors.append(" ".join(str(each.get("value")) for each in told["args"]))
-        elif kind == "Log.entryAdded" and told["entry"]["level"] == "error":
-            self.errors.append(told["entry"]["text"])
+            self.errors.append(str(params["exceptionDetails"]))
+        elif kind == "Runtime.consoleAPICalled" and params["type"] in ("error", "assert"):
+            self.errors.append(" ".join(str(each.get("value")) for each in params["args"]))
+        elif kind == "Log.entryAdded" and params["entry"]["level"] == "error":
+            self.errors.append(params["entry"]["text"])
         elif kind == "Network.requestWillBeSent":
-            self.requests.append(told["request"]["url"])
+            self.requests.append(params["request"]["url"])
         elif kind == "Network.webSocketCreated":
-            self.requests.append(told["url"])
+            self.requests.append(params["url"])
 
 
-# The innermost visible thing with a text; of several the one that is seen first.
+# The innermost visible element with a text, the last one of several.
 FIND_TEXT = """(text) => [...document.querySelectorAll('button, label, span, p, div, a')].filter(
     (one) => one.innerText && one.innerText.trim() === text && one.getClientRects().length).pop() || null"""
 # The field of the row that begins with a label.
@@ -323,7 +325,7 @@ MIDDLE = """(one) => {
     const box = one.getBoundingClientRect();
     return [box.x + box.width / 2, box.y + box.height / 2];
 }"""
-# The middle of a thing, unless something else lies over it: a click would be that one's.
+# The centre of an element, unless another element covers it and would receive the click.
 UNCOVERED = """(one, middle) => {
     const place = middle(one);
     const top = place && document.elementFromPoint(...place);

@@ -1,4 +1,4 @@
-"""A command as a person sees it: what it prints, line by line, until Ctrl-C."""
+"""A command in a terminal: its output line by line, until Ctrl-C."""
 
 import signal
 import subprocess
@@ -11,7 +11,7 @@ URL = "cockpit: "
 
 
 class Command:
-    """``lines``: what it has printed so far. It hears nothing: its standard input is empty."""
+    """Starts a command with an empty standard input; ``lines`` is its output so far."""
 
     def __init__(self, *words, **more):
         self.process = subprocess.Popen(
@@ -36,18 +36,18 @@ class Command:
 
     @property
     def url(self):
-        """Of the page that it serves."""
+        """URL of the page that it serves."""
         return self.wait_for_line(URL)
 
     def wait_for_line(self, beginning, seconds=START_SECONDS):
-        """What follows the first line's beginning, once there is one."""
+        """Wait for a line with this beginning and return the rest of it."""
         wait_until(f"a line '{beginning}'", lambda: self._has_ended() or self._following(beginning), seconds)
         found = self._following(beginning)
         assert found is not None, f"'{beginning}' is nowhere in:\n{''.join(self.lines)}"
         return found
 
     def end(self):
-        """By Ctrl-C, unless it has ended; returns its exit code."""
+        """Interrupt the command if it is running, and return its exit code."""
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGINT)
         code = self.process.wait(END_SECONDS)

@@ -1,4 +1,4 @@
-"""A page without a browser: the socket that it opens, and what it is sent."""
+"""A page without a browser: its web socket and the messages it receives."""
 
 import threading
 from contextlib import suppress
@@ -29,9 +29,9 @@ CAMERA = {
 
 
 def open_page(url, origin=None):
-    """The socket of a page that looks on. ``origin``: the site whose page it claims to be.
+    """Open the web socket of a page that claims to come from ``origin``.
 
-    Raises InvalidHandshake if it is not let in.
+    Raises InvalidHandshake if the connection is rejected.
     """
     site, _, token = url.partition("/?token=")
     socket = connect(
@@ -48,17 +48,21 @@ def open_page(url, origin=None):
 
 
 class PageClient:
-    """``told``: the notes that it was shown; ``controls``: the number of each control by its label.
+    """A client of the cockpit.
 
-    ``texts``: what the HTML of each panel says; ``things``: the paths of what is in the scene;
-    ``pictures``: how many times it was sent something.
+    Attributes:
+        notifications: Notifications received.
+        controls: Id of each control by its label.
+        texts: HTML of each panel by its id.
+        nodes: Paths of the nodes of the scene.
+        pictures: Number of updates received.
     """
 
     def __init__(self, url, origin=None):
-        """Raises InvalidHandshake if it is not let in; see ``open_page``."""
+        """Connect; see ``open_page``."""
         self._socket = open_page(url, origin)
         self.protocol = self._socket.subprotocol
-        self.told, self.controls, self.texts, self.nodes = [], {}, {}, set()
+        self.notifications, self.controls, self.texts, self.nodes = [], {}, {}, set()
         self._options = {}
         self.pictures = 0
         self.is_open = True
@@ -74,33 +78,33 @@ class PageClient:
         self._socket.close()
 
     def send(self, message):
-        """A message, or bytes and text as they are."""
+        """Send a message, or raw bytes or text."""
         is_raw = isinstance(message, (bytes, str))
         self._socket.send(message if is_raw else msgspec.msgpack.encode(message))
 
     def press(self, label):
-        """What a page sends again and again while a button is held."""
+        """Send the message that a page repeats while a button is held."""
         self.send({"type": "GuiButtonHoldMessage", "uuid": self.control(label), "frequency": HOLD_HZ})
 
     def set(self, label, value):
-        told = {"type": "GuiUpdateMessage", "uuid": self.control(label), "updates": {"value": value}}
-        self.send(told)
+        message = {"type": "GuiUpdateMessage", "uuid": self.control(label), "updates": {"value": value}}
+        self.send(message)
 
     def control(self, label):
         wait_until(f"a control {label}", lambda: label in self.controls, OPEN_SECONDS)
         return self.controls[label]
 
     def options(self, label):
-        """What a list offers."""
+        """Return the options of a list."""
         return self._options[self.control(label)]
 
     def wait_for_pictures(self, count=10):
-        """So many more are sent: it is alive."""
+        """Wait for more updates."""
         before = self.pictures
         wait_until("pictures", lambda: self.pictures >= before + count)
 
-    def wait_for_note(self, text):
-        wait_until(f"a note of {text}", lambda: any(text in note for note in list(self.told)))
+    def wait_for_notification(self, text):
+        wait_until(f"a notification {text}", lambda: any(text in each for each in list(self.notifications)))
 
     def wait_for_text(self, text):
         wait_until(f"{text} on the page", lambda: any(text in each for each in list(self.texts.values())))
@@ -112,14 +116,14 @@ class PageClient:
         with suppress(ConnectionClosed):
             for content in self._socket:
                 for message in _messages_in(content):
-                    self._take(message)
+                    self._handle(message)
                 self.pictures += 1
         self.is_open = False
 
-    def _take(self, message):
+    def _handle(self, message):
         kind, props = message["type"], message.get("props") or {}
         if kind == "NotificationShowMessage":
-            self.told.append(props["body"])
+            self.notifications.append(props["body"])
         elif kind.startswith("Gui") and "label" in props:
             self.controls[props["label"]] = message["uuid"]
         elif kind == "RemoveSceneNodeMessage":
@@ -134,7 +138,7 @@ class PageClient:
 
 
 def _messages_in(content):
-    """Of one picture: the length of its messages, that of them packed, they themselves, then arrays."""
+    """Decode an update: length of the messages, their packed length, the packed messages, then arrays."""
     size, packed = (int.from_bytes(content[at : at + 8], "little") for at in (0, 8))
     inner = zstandard.decompress(content[16 : 16 + packed], max_output_size=size)
     return msgspec.msgpack.decode(inner)["messages"]

@@ -1,4 +1,4 @@
-"""What is running on this machine."""
+"""The processes of this machine."""
 
 import contextlib
 import os
@@ -9,13 +9,13 @@ import psutil
 
 
 def marked_environment():
-    """A mark that no process has yet, and this environment with it."""
+    """Return a unique marker variable, and this environment with it."""
     name, value = "HOME_SERVICE_TEST", str(uuid.uuid4())
     return f"{name}={value}", {**os.environ, "PYTHONUNBUFFERED": "1", name: value}
 
 
 def processes_of(mark):
-    """Processes whose environment holds ``mark``, with their command lines; none that is ending."""
+    """Return processes with the marker in their environment and their command lines."""
     found = []
     for process in psutil.process_iter():
         with contextlib.suppress(OSError, psutil.Error):
@@ -25,5 +25,5 @@ def processes_of(mark):
 
 
 def processes_with(mark):
-    """Their command lines."""
+    """Return the command lines of the processes with the marker."""
     return [" ".join(words) for _, words in processes_of(mark)]

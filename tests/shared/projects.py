@@ -1,4 +1,4 @@
-"""Projects that tests have run."""
+"""Work folders of projects run by tests."""
 
 import shutil
 from pathlib import Path
@@ -7,6 +7,6 @@ WORK = Path(__file__).resolve().parents[2] / "build/projects"
 
 
 def remove_work_folder(checkout):
-    """What run_project.sh keeps of one."""
+    """Remove the work folder that run_project.sh keeps for a checkout."""
     for folder in WORK.glob(f"{checkout.name}-*"):
         shutil.rmtree(folder)

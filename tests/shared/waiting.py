@@ -1,4 +1,4 @@
-"""Waiting for something to become so, never for ever."""
+"""Waiting for a condition with a time-out."""
 
 import time
 
@@ -6,8 +6,8 @@ PATIENCE_SECONDS = 20.0
 
 
 def wait_until(what, is_met, seconds=PATIENCE_SECONDS, pause=0.01):
-    """Fails with ``what`` there was to wait for, after that wall time; ``pause``: seconds between looks."""
+    """Wait until ``is_met()``; fail after ``seconds`` of wall time, polling every ``pause`` seconds."""
     deadline = time.monotonic() + seconds
     while not is_met():
-        assert time.monotonic() < deadline, f"waited {seconds:g} s in vain for {what}"
+        assert time.monotonic() < deadline, f"timed out after {seconds:g} s waiting for {what}"
         time.sleep(pause)

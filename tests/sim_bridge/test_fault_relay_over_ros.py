@@ -13,7 +13,7 @@ import roslib.packages
 import rospy
 import rostest
 from geometry_msgs.msg import Twist, Vector3
-from listening import Heard
+from recording import MessageRecorder
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import LaserScan
@@ -62,7 +62,7 @@ class Passage:
     def __init__(self, topic, output, kind):
         self._kind = kind
         self._publisher = rospy.Publisher(topic, kind, queue_size=100)
-        self._output = Heard(output, rospy.AnyMsg)
+        self._output = MessageRecorder(output, rospy.AnyMsg)
         wait_until(f"a relay of {topic}", lambda: self._publisher.get_num_connections() > 0)
         wait_until(f"a relay to {output}", self._output.is_connected)
 
@@ -200,7 +200,7 @@ class TestFaultRelay(unittest.TestCase):
         self.assertEqual(self.scan.count, count + 1)
 
     def test_the_transform_is_that_of_the_faulty_odometry(self):
-        received = Heard("/tf", TFMessage)
+        received = MessageRecorder("/tf", TFMessage)
         wait_until("the sender of transforms", received.is_connected)
         odometry = Passage("with_tf/wheel_odom", "with_tf/odom", Odometry)
         published = []

@@ -11,7 +11,7 @@ from gazebo_msgs.msg import ModelState
 from gazebo_msgs.srv import SetModelState
 from geometry_msgs.msg import Pose, Twist, Vector3
 from kobuki_msgs.msg import BumperEvent, CliffEvent, SensorState, WheelDropEvent
-from listening import Heard
+from recording import MessageRecorder
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, JointState, PointCloud2
 from sensor_msgs.point_cloud2 import read_points
@@ -32,7 +32,7 @@ JOYSTICK = "subscribers: [{name: Joystick, topic: input/joy, timeout: 0.5, prior
 
 def connected(topic, kind):
     """Listens once there is a publisher."""
-    listener = Heard(topic, kind)
+    listener = MessageRecorder(topic, kind)
     wait_until(f"a publisher of {topic}", listener.is_connected)
     return listener
 

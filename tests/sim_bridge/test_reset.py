@@ -12,7 +12,7 @@ from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import Odometry
-from simulated import wait_for_truth
+from ground_truth import wait_for_ground_truth
 from std_srvs.srv import Empty
 from waiting import wait_until
 
@@ -111,7 +111,7 @@ class TestReset(unittest.TestCase):
             PATIENCE_SECONDS,
         )
         self.assertEqual(client.get_state(), GoalStatus.SUCCEEDED, client.get_goal_status_text())
-        wait_for_truth(lambda: self.truth[-1].header.stamp.to_sec(), PATIENCE_SECONDS)
+        wait_for_ground_truth(lambda: self.truth[-1].header.stamp.to_sec(), PATIENCE_SECONDS)
         self.assertLess(
             self.distance_from(1.0, 0.3), 0.3, f"localization is {self.estimate_error():.2f} m off"
         )

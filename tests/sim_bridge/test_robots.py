@@ -12,7 +12,7 @@ import rostest
 from gazebo_msgs.srv import DeleteModel, SpawnModel
 from geometry_msgs.msg import Pose, Twist
 from kobuki_msgs.msg import BumperEvent, MotorPower
-from listening import Heard
+from recording import MessageRecorder
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Empty, String
@@ -85,14 +85,22 @@ class TestRobots(unittest.TestCase):
     def setUpClass(cls):
         cls.turtlebot = spawn("mobile_base", robot_named("turtlebot_lidar").description(), 0.0, 0.0, 0.0)
         cls.rover = spawn("rover", ROVER, 3.0, 0.0, 3.14, "/rover")
-        cls.odom, cls.rover_odom = Heard("/odom", Odometry), Heard("/rover/odom", Odometry)
-        cls.truth = Heard("/base_pose_ground_truth", Odometry)
-        cls.scan, cls.rover_scan = (Heard(topic, LaserScanArrays) for topic in ("/scan", "/rover/laser/scan"))
-        cls.joints, cls.active = (
-            Heard("/rover/joint_states", JointState),
-            Heard("/cmd_vel_mux/active", String),
+        cls.odom, cls.rover_odom = (
+            MessageRecorder("/odom", Odometry),
+            MessageRecorder("/rover/odom", Odometry),
         )
-        cls.tf, cls.bumper = Heard("/tf", TFMessage), Heard("/mobile_base/events/bumper", BumperEvent)
+        cls.truth = MessageRecorder("/base_pose_ground_truth", Odometry)
+        cls.scan, cls.rover_scan = (
+            MessageRecorder(topic, LaserScanArrays) for topic in ("/scan", "/rover/laser/scan")
+        )
+        cls.joints, cls.active = (
+            MessageRecorder("/rover/joint_states", JointState),
+            MessageRecorder("/cmd_vel_mux/active", String),
+        )
+        cls.tf, cls.bumper = (
+            MessageRecorder("/tf", TFMessage),
+            MessageRecorder("/mobile_base/events/bumper", BumperEvent),
+        )
         topics = ("navi", "teleop")
         cls.inputs = {
             one: rospy.Publisher(f"/cmd_vel_mux/input/{one}", Twist, queue_size=1) for one in topics
@@ -212,7 +220,7 @@ class TestRobots(unittest.TestCase):
         spawned = spawn("cart", CART, 2.0, 3.0, 1.0, "/cart", "sdf")
         self.assertTrue(spawned.success, spawned.status_message)
         odometry, velocity = (
-            Heard("/cart/odom", Odometry),
+            MessageRecorder("/cart/odom", Odometry),
             rospy.Publisher("/cart/cmd_vel", Twist, queue_size=1),
         )
         wait_until("the cart", velocity.get_num_connections)

@@ -9,7 +9,7 @@ import numpy as np
 import rospy
 import rostest
 from geometry_msgs.msg import Twist
-from listening import Heard
+from recording import MessageRecorder
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock, Log
 from sensor_msgs.msg import JointState
@@ -29,14 +29,14 @@ def periods(messages):
 class TestSimBridge(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.odom = Heard("odom", Odometry)
-        cls.truth = Heard("base_pose_ground_truth", Odometry)
-        cls.scan = Heard("scan", LaserScanArrays)
-        cls.joints = Heard("joint_states", JointState)
-        cls.clock = Heard("/clock", Clock)
-        cls.tf = Heard("/tf", TFMessage)
-        cls.contacts = Heard("contacts", String)
-        cls.real_time_factor = Heard("sim_bridge/real_time_factor", Float64)
+        cls.odom = MessageRecorder("odom", Odometry)
+        cls.truth = MessageRecorder("base_pose_ground_truth", Odometry)
+        cls.scan = MessageRecorder("scan", LaserScanArrays)
+        cls.joints = MessageRecorder("joint_states", JointState)
+        cls.clock = MessageRecorder("/clock", Clock)
+        cls.tf = MessageRecorder("/tf", TFMessage)
+        cls.contacts = MessageRecorder("contacts", String)
+        cls.real_time_factor = MessageRecorder("sim_bridge/real_time_factor", Float64)
         cls.transforms = Transforms()
         cls.commands = {
             topic: rospy.Publisher(topic, Twist, queue_size=1)
@@ -129,7 +129,7 @@ class TestSimBridge(unittest.TestCase):
             pushing.set()
 
     def test_an_invalid_box_is_refused_with_a_reason_and_time_goes_on(self):
-        log = Heard("/rosout", Log)
+        log = MessageRecorder("/rosout", Log)
         wait_until("the log", log.is_connected)
         for size, x, reason in (
             (1e30, 2.0, "a box needs positive lengths and a valid pose, got (1e+30,"),

@@ -9,7 +9,7 @@ import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
-from simulated import wait_for_truth
+from ground_truth import wait_for_ground_truth
 from visualization_msgs.msg import Marker
 
 from home_service.ros.referee import Referee
@@ -68,7 +68,7 @@ class NavigationTest(unittest.TestCase):
     def _assert_arrival(self, goal):
         self._wait_for_result(goal)
         self.assertEqual(self.client.get_state(), GoalStatus.SUCCEEDED, self.client.get_goal_status_text())
-        wait_for_truth(lambda: self.referee.simulated_time, WALL_DEADLINE)
+        wait_for_ground_truth(lambda: self.referee.simulated_time, WALL_DEADLINE)
         error = self.referee.truth.distance_to(goal)
         print(f"goal ({goal.x}, {goal.y}): truly {error:.3f} m off")
         self.assertLess(error, ARRIVAL_TOLERANCE)

@@ -9,7 +9,7 @@ import rostest
 from actionlib_msgs.msg import GoalStatus
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import Odometry
-from simulated import wait_for_truth
+from ground_truth import wait_for_ground_truth
 from std_msgs.msg import String
 from waiting import wait_until
 
@@ -72,7 +72,7 @@ class TwoRobotsTest(unittest.TestCase):
         for name, one in robots.items():
             one.send(GOALS[name])
         wait_until("both results", lambda: not any(one.is_active() for one in robots.values()), WALL_DEADLINE)
-        wait_for_truth(lambda: min(one.stamp for one in robots.values()), WALL_DEADLINE)
+        wait_for_ground_truth(lambda: min(one.stamp for one in robots.values()), WALL_DEADLINE)
         first, last = (
             pick(one.driving[end] for one in robots.values()) for pick, end in ((max, 0), (min, -1))
         )

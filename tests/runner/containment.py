@@ -1,4 +1,4 @@
-"""A command that is run to its end, its time limit, or ours, and leaves no process behind."""
+"""Run a command until it exits, times out or is interrupted, and end all its child processes."""
 
 import contextlib
 import os
@@ -14,15 +14,22 @@ from supervision.processes import adopt_orphans, end_descendants
 
 ROOT = Path(__file__).resolve().parents[2]
 GRACE_SECONDS = 15.0
-# For what has been asked to end, or is just doing so, when its command is over.
+# Time for processes that are ending when their command exits [s].
 ENDING_SECONDS = 5.0
 
 
-def run_kept(command: Sequence[str], log: Path, limit: float, judge: Callable[[int], Outcome]) -> Outcome:
-    """Runs it, with a ROS_HOME of its own beside its log; ``judge`` says what its exit code, and its reports,
-    mean. What it leaves running, and not ending, is a failure.
+def run_contained(
+    command: Sequence[str], log: Path, limit: float, judge: Callable[[int], Outcome]
+) -> Outcome:
+    """Run a command with its own ROS_HOME beside its log. Processes that it leaves behind are a failure.
 
-    ``limit``: seconds. Nothing else may run below this process.
+    This process must have no other children.
+
+    Args:
+        command: Command line.
+        log: Log file.
+        limit: Time limit [s].
+        judge: Converts the exit code to an outcome.
     """
     adopt_orphans()
     home = str(log.with_suffix(""))
@@ -51,7 +58,7 @@ def run_kept(command: Sequence[str], log: Path, limit: float, judge: Callable[[i
 
 
 def sweep() -> List[str]:
-    """Ends every process below this one, gently at first; returns the names of those that were there."""
+    """End all descendants, with SIGINT first, and return their names."""
     children = psutil.Process().children(recursive=True)
     _, alive = psutil.wait_procs(children, timeout=0.0)
     names = [_name(process) for process in alive]
@@ -67,4 +74,4 @@ def _name(process: psutil.Process) -> str:
     try:
         return process.name()
     except psutil.NoSuchProcess:
-        return "one that just ended"
+        return "a process that just ended"

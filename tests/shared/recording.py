@@ -1,4 +1,4 @@
-"""Hearing what the simulation says."""
+"""Recording the messages of a topic."""
 
 import re
 import xmlrpc.client
@@ -11,8 +11,8 @@ from waiting import wait_until
 PORTS = re.compile(r"on port (\d+) to \[.*:(\d+) on socket")
 
 
-class Heard:
-    """The messages of a topic since then."""
+class MessageRecorder:
+    """Records the messages of a topic from now on."""
 
     def __init__(self, topic, kind):
         self.messages: List[Any] = []
@@ -22,23 +22,23 @@ class Heard:
         return self.following(1)[0]
 
     def following(self, count):
-        """The next ``count`` messages."""
+        """Wait for the next ``count`` messages."""
         first = len(self.messages)
         wait_until("messages", lambda: len(self.messages) >= first + count)
         return self.messages[first : first + count]
 
     def is_connected(self):
-        return hears_all(self._subscriber)
+        return is_connected_to_all(self._subscriber)
 
     def close(self):
         self._subscriber.unregister()
 
 
-def hears_all(subscriber):
-    """Whether there are publishers, and all send to it: what they publish only once is not missed.
+def is_connected_to_all(subscriber):
+    """Return whether there are publishers and all of them send to the subscriber.
 
-    A publisher begins to send some milliseconds after rospy's subscriber has counted the connection, and
-    until then it may still hold one that this node has closed: only the ports tell them apart.
+    A publisher starts to send some milliseconds after rospy's subscriber has counted the connection. Until
+    then it may hold an earlier connection that this node has closed, so the ports are compared.
     """
     topic, master = subscriber.resolved_name, rosgraph.Master(rospy.get_name())
     try:
@@ -52,7 +52,7 @@ def hears_all(subscriber):
 
 
 def _ports(uri, topic, direction):
-    """Of a node's connections for a topic: its own port and the other end's; none while it is made."""
+    """Return the (local port, remote port) of a node's established connections for a topic."""
     node: Any = xmlrpc.client.ServerProxy(uri)
     _code, _status, connections = node.getBusInfo(rospy.get_name())
     ends = [text for _, _, way, _, name, _, text in connections if (name, way) == (topic, direction)]
