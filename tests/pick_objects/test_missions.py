@@ -15,8 +15,8 @@ from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from gazebo_msgs.msg import ModelStates
 from home_service_msgs.msg import DeliverAction, DeliverGoal, Delivery, DeliveryState
 from home_service_msgs.srv import AddDelivery, CancelDelivery
-from recording import MessageRecorder
 from nav_msgs.msg import Odometry
+from recording import MessageRecorder
 from visualization_msgs.msg import Marker
 
 from home_service.judging.verdict import ERRAND, OBJECTS, judge

@@ -60,7 +60,7 @@ def run_unit_tests(folder: Path, names: Sequence[str]) -> Outcome:
     )
 
 
-class TestSummary:
+class RunSummary:
     """Prints the outcome of each test file and a summary. Logs and reports are in ``folder``."""
 
     def __init__(self, folder: Path):
@@ -91,7 +91,7 @@ def indented_tail(path: Path, lines: int = 60) -> str:
 class RosTests:
     """Runs .test files in parallel."""
 
-    def __init__(self, folder: Path, account: TestSummary):
+    def __init__(self, folder: Path, account: RunSummary):
         self._folder, self._account = folder, account
         self._running: List[RosTest] = []
         self._is_ended = False
@@ -151,7 +151,7 @@ def main() -> int:
 
     folder = ROOT / "logs" / "tests" / f"{datetime.now():%Y%m%d-%H%M%S}-{os.getpid()}"
     folder.mkdir(parents=True)
-    account = TestSummary(folder)
+    account = RunSummary(folder)
     if unit:
         started = time.monotonic()
         outcome = run_unit_tests(folder, options.names)

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from outcome import Outcome, failure, judge_ros_test, judge_unit_tests, read_report
 from ros_test import time_limits
-from run_tests import NEEDS, ROOT, TestSummary, is_installed, missing_requirement
+from run_tests import NEEDS, ROOT, RunSummary, is_installed, missing_requirement
 
 
 def write_report(path, tests, failures=0, errors=0, skipped=0):
@@ -127,7 +127,7 @@ def test_what_needs_something_is_there():
 
 
 def test_a_test_that_ended_before_it_had_a_log_is_reported(tmp_path, capsys):
-    account = TestSummary(tmp_path)
+    account = RunSummary(tmp_path)
     account.add("tests/system/mission", failure("was terminated"), 1.0)
     assert account.conclude() == 1
     assert "FAILED tests/system/mission: was terminated" in capsys.readouterr().out
@@ -159,11 +159,12 @@ def test_commands_and_packages_are_found():
 def contained(command, log, limit=60.0):
     """Return the failure reason of a command that a child process contains."""
     script = (
-        "import sys; from pathlib import Path; from containment import run_kept; from outcome import Outcome;"
+        "import sys; from pathlib import Path; from containment import run_contained;"
+        "from outcome import Outcome;"
         "log, limit, *command = sys.argv[1:];"
         "print(run_contained(command, Path(log), float(limit), lambda code: Outcome(passed=1)).reason)"
     )
-    listing = subprocess.run(
+    output = subprocess.run(
         [sys.executable, "-c", script, str(log), str(limit), *command],
         cwd=Path(__file__).parent,
         stdout=subprocess.PIPE,

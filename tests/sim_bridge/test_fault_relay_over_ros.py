@@ -13,8 +13,8 @@ import roslib.packages
 import rospy
 import rostest
 from geometry_msgs.msg import Twist, Vector3
-from recording import MessageRecorder
 from nav_msgs.msg import Odometry
+from recording import MessageRecorder
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import LaserScan
 from sim_bridge_msgs.srv import AddFault

@@ -11,8 +11,8 @@ from gazebo_msgs.msg import ModelState
 from gazebo_msgs.srv import SetModelState
 from geometry_msgs.msg import Pose, Twist, Vector3
 from kobuki_msgs.msg import BumperEvent, CliffEvent, SensorState, WheelDropEvent
-from recording import MessageRecorder
 from nav_msgs.msg import Odometry
+from recording import MessageRecorder
 from sensor_msgs.msg import Imu, JointState, PointCloud2
 from sensor_msgs.point_cloud2 import read_points
 from std_msgs.msg import String

@@ -10,9 +10,9 @@ import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from geometry_msgs.msg import PoseWithCovarianceStamped
+from ground_truth import wait_for_ground_truth
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import Odometry
-from ground_truth import wait_for_ground_truth
 from std_srvs.srv import Empty
 from waiting import wait_until
 

@@ -12,8 +12,8 @@ import rostest
 from gazebo_msgs.srv import DeleteModel, SpawnModel
 from geometry_msgs.msg import Pose, Twist
 from kobuki_msgs.msg import BumperEvent, MotorPower
-from recording import MessageRecorder
 from nav_msgs.msg import Odometry
+from recording import MessageRecorder
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Empty, String
 from tf2_msgs.msg import TFMessage

@@ -9,8 +9,8 @@ import numpy as np
 import rospy
 import rostest
 from geometry_msgs.msg import Twist
-from recording import MessageRecorder
 from nav_msgs.msg import Odometry
+from recording import MessageRecorder
 from rosgraph_msgs.msg import Clock, Log
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64, String

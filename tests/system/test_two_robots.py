@@ -7,9 +7,9 @@ import actionlib
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
+from ground_truth import wait_for_ground_truth
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import Odometry
-from ground_truth import wait_for_ground_truth
 from std_msgs.msg import String
 from waiting import wait_until
 
