@@ -55,15 +55,11 @@ def _piece(place: str, node) -> Piece:
     return Piece(place, node.name, node.end_lineno - first + 1 - _docstring_lines(node))
 
 
-def _docstring_lines(node) -> int:
+def _docstring_lines(node: ast.AST) -> int:
     """Lines of the docstrings within a class or a function: they explain, and are not counted as code."""
-    found = 0
-    for inner in ast.walk(node):
-        if isinstance(inner, (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)) and ast.get_docstring(
-            inner
-        ):
-            found += inner.body[0].end_lineno - inner.body[0].lineno + 1
-    return found
+    kinds = (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+    documented = [inner for inner in ast.walk(node) if isinstance(inner, kinds) and ast.get_docstring(inner)]
+    return sum(len(ast.get_docstring(inner, clean=False).splitlines()) for inner in documented)  # type: ignore
 
 
 def folders(root: Path) -> Counter:
