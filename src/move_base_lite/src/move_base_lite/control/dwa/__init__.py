@@ -45,4 +45,4 @@ TRAJECTORY: Plugin[LocalPlanner] = Plugin(
     ignored=TRAJECTORY_IGNORED,
 )
 
-__all__ = ["DWA", "TRAJECTORY", "DwaSettings", "DynamicWindow", "TrajectorySettings"]
+__all__ = ["DWA", "TRAJECTORY", "DwaPlanner", "DwaSettings", "TrajectorySettings"]
