@@ -18,8 +18,8 @@ from typing import Any, Dict, List, NamedTuple, Optional
 import numpy as np
 
 from home_service.commands.rehearse import Rehearse
-from home_service.rehearsal import Rehearsal, parcel_of
-from home_service.stage import read_mission
+from home_service.headless import HeadlessMission, parcel_for
+from home_service.inputs import read_mission
 
 ROOT = Path(__file__).resolve().parents[2]
 TRUTH = "/base_pose_ground_truth"
@@ -49,9 +49,9 @@ class Played(NamedTuple):
 
 def in_one_process(seed: int, mission: Optional[Path]) -> Played:
     home = read_mission(Rehearse(seed=seed, mission=mission))
-    parcel = None if mission else parcel_of(home.mission)
-    run = Rehearsal(home.world, home.robot, home.grid, home.mission, seed=seed, parcel=parcel).run()
-    findings = run.ledger.findings()
+    parcel = None if mission else parcel_for(home.mission)
+    run = HeadlessMission(home.world, home.robot, home.grid, home.mission, seed=seed, parcel=parcel).run()
+    findings = run.mission_record.result_fields()
     return Played(_decided(findings), findings["position_error"], run.trajectory[:, :3])
 
 

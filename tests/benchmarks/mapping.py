@@ -21,9 +21,9 @@ import numpy as np
 from helpers.command_line import seeds
 
 from explorer_lite import Explorer, ExplorerSettings, FinishTask, GoalFailed, GoalReached, SendGoal
+from home_service.headless import NAVIGATION_CONFIG, HeadlessMission
 from home_service.judging.map_truth import LEAST_PRECISION, LEAST_RECALL, score_against_world
 from home_service.judging.verdict import ARRIVAL_TOLERANCE
-from home_service.rehearsal import NAVIGATION_CONFIG, Rehearsal
 from move_base_lite import Decision, Navigator, Status, load_settings
 from pick_objects import load_mission
 from planar import OccupancyGrid, PlanarError, Pose2, Twist2, save_map
@@ -205,7 +205,7 @@ def _one(options, world: World, robot: RobotProfile, seed: int) -> MappingResult
     drives_well = None
     if options.mission:
         mission = load_mission(options.mission)
-        drives_well = Rehearsal(world, robot, grid, mission, seed).run().verdict.success
+        drives_well = HeadlessMission(world, robot, grid, mission, seed).run().verdict.success
     result = judge(run, end, score, seed, cpu, drives_well)
     print(
         f"seed {seed}: {'SUCCESS' if result.success else 'FAILURE'}: {result.reason}\n"

@@ -22,8 +22,8 @@ import numpy as np
 from helpers.drives import Observation, Tour, drive
 from scipy.ndimage import label
 
+from home_service.headless import HeadlessMission
 from home_service.judging.map_truth import score_against_world
-from home_service.rehearsal import Rehearsal
 from pick_objects import load_mission
 from planar import FREE, OCCUPIED, OccupancyGrid, Pose2, save_map
 from planar.config.settings_file import settings_from_yaml
@@ -168,7 +168,7 @@ def main() -> int:
         save_map(mapped, options.out / f"session_{number}")
     (options.out / "sessions.json").write_text(json.dumps([asdict(one) for one in sessions], indent=2) + "\n")
     verdicts = [
-        Rehearsal(world, robot, mapped, mission, options.seed + i).run().verdict
+        HeadlessMission(world, robot, mapped, mission, options.seed + i).run().verdict
         for i in range(options.missions)
     ]
     for verdict in verdicts:

@@ -275,11 +275,14 @@ def _record(path: Path) -> object:
 
 def _records() -> List[bytes]:
     from planar import OccupancyGrid
-    from run_report.record import Collision, RunRecord, State, save_record
+    from run_report.record import CollisionEvent, RunRecord, StateEvent, save_record
 
     grid = OccupancyGrid(np.zeros((2, 3), dtype=np.int8), 0.05)
     record = RunRecord(
-        truth=np.ones((2, 4)), states=[State(0.0, "x")], collisions=[Collision(1.0, "wall")], grid=grid
+        truth=np.ones((2, 4)),
+        states=[StateEvent(0.0, "x")],
+        collisions=[CollisionEvent(1.0, "wall")],
+        grid=grid,
     )
     with tempfile.TemporaryDirectory() as folder:
         save_record(Path(folder), record)
@@ -337,9 +340,9 @@ def _bags() -> List[bytes]:
 
 
 def _deaths(path: Path) -> object:
-    from supervision.deaths import Deaths
+    from supervision.node_exits import NodeExits
 
-    deaths = Deaths(path.parent, ["amcl"])
+    deaths = NodeExits(path.parent, ["amcl"])
     for line in path.read_bytes().decode("utf-8", "replace").splitlines(keepends=True):
         deaths.read(line)
     return deaths

@@ -86,7 +86,7 @@ class CommanderTest(unittest.TestCase):
         self.robot.set_initial_pose(here.x, here.y, here.yaw)
         with self.assertRaisesRegex(CommanderError, "there is no such map" if LoadMap else "no LoadMap"):
             self.robot.change_map("nowhere.yaml")
-        self.assertEqual(self.referee.ledger.collisions, [])
+        self.assertEqual(self.referee.mission_record.collisions, [])
 
     def _assert_result(self, result):
         outcome = self.robot.wait(WALL_DEADLINE)

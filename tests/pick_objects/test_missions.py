@@ -99,14 +99,14 @@ class MissionsTest(unittest.TestCase):
         self._wait("the end", lambda: goal_is_over(self.client))
         self.assertEqual(self.client.get_state(), GoalStatus.PREEMPTED)
         self.assertEqual(self.client.get_result().deliveries[0].state, DeliveryState.CANCELLED)
-        self._wait("the state", lambda: self.referee.ledger.final_state == "cancelled")
+        self._wait("the state", lambda: self.referee.mission_record.final_state == "cancelled")
         stopped_at = self.referee.truth
         end = self.referee.simulated_time + 3.0
         self._wait("three seconds", lambda: self.referee.simulated_time > end)
         coasted = self.referee.truth.distance_to(stopped_at)
         print(f"{coasted:.3f} m driven after the cancellation")
         self.assertLess(coasted, 0.3)
-        self.assertFalse(judge(self.referee.ledger, {ERRAND}).success)
+        self.assertFalse(judge(self.referee.mission_record, {ERRAND}).success)
 
     def test_3_a_blocked_place_is_served_from_its_alternative_and_a_delivery_is_added(self):
         self._drop_box(self.places["sofa"].pose)
@@ -123,10 +123,10 @@ class MissionsTest(unittest.TestCase):
         print(output)
         self.assertEqual(deliver.returncode, 0)
         self.assertIn("blocked: book from door to sofa: delivered", output)
-        self._wait("the markers", lambda: not self.referee.ledger.untold_objects)
-        verdict = judge(self.referee.ledger, {ERRAND, OBJECTS})
+        self._wait("the markers", lambda: not self.referee.mission_record.objects_without_markers)
+        verdict = judge(self.referee.mission_record, {ERRAND, OBJECTS})
         self.assertTrue(verdict.success, verdict.reason)
-        records = {record.name: record for record in self.referee.ledger.deliveries}
+        records = {record.name: record for record in self.referee.mission_record.deliveries}
         self.assertEqual(records["blocked"].attempts, 3)
         self.assertEqual(records["extra"].state, "delivered")
         self.assertEqual(records["needless"].state, "cancelled")
@@ -163,7 +163,9 @@ class MissionsTest(unittest.TestCase):
         self.assertIn("there is no delivery nothing", cancel("nothing").message)
 
     def _stage(self, name):
-        return next((record.state for record in self.referee.ledger.deliveries if record.name == name), None)
+        return next(
+            (record.state for record in self.referee.mission_record.deliveries if record.name == name), None
+        )
 
     def _drop_box(self, pose):
         self._wait("a subscriber of boxes", lambda: self.boxes.get_num_connections() > 0)

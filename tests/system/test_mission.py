@@ -22,12 +22,12 @@ class MissionTest(unittest.TestCase):
         referee = Referee(places, print)
         referee.start()
         wall_deadline = time.monotonic() + WALL_DEADLINE
-        while not referee.ledger.is_complete(EXPECTED):
+        while not referee.mission_record.is_complete(EXPECTED):
             self.assertLess(referee.simulated_seconds, SIMULATED_DEADLINE, f"state '{referee.state}'")
             self.assertLess(time.monotonic(), wall_deadline, f"state '{referee.state}'")
             time.sleep(0.05)
-        print(f"errors {referee.ledger.position_errors}, {referee.simulated_seconds:.1f} s simulated")
-        verdict = judge(referee.ledger, EXPECTED)
+        print(f"errors {referee.mission_record.position_errors}, {referee.simulated_seconds:.1f} s simulated")
+        verdict = judge(referee.mission_record, EXPECTED)
         self.assertTrue(verdict.success, verdict.reason)
 
 

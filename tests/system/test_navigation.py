@@ -72,7 +72,7 @@ class NavigationTest(unittest.TestCase):
         error = self.referee.truth.distance_to(goal)
         print(f"goal ({goal.x}, {goal.y}): truly {error:.3f} m off")
         self.assertLess(error, ARRIVAL_TOLERANCE)
-        self.assertEqual(self.referee.ledger.collisions, [])
+        self.assertEqual(self.referee.mission_record.collisions, [])
 
     def _send(self, pose):
         goal = MoveBaseGoal()

@@ -62,7 +62,7 @@ class Publisher:
 @pytest.fixture
 def markers(monkeypatch):
     bodies = SimpleNamespace(follow=lambda objects: {})
-    monkeypatch.setattr(mission_markers, "MissionBodies", lambda settings: bodies)
+    monkeypatch.setattr(mission_markers, "SimulatedBoxes", lambda settings: bodies)
     monkeypatch.setattr(mission_markers, "ReadinessMonitor", lambda conditions: None)
     monkeypatch.setattr(mission_markers, "subscribe", lambda *_, **__: None)
     monkeypatch.setattr(mission_markers.rospy, "Publisher", Publisher)

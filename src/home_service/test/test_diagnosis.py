@@ -2,17 +2,26 @@ import json
 
 import pytest
 
-from home_service.doctor.diagnosis import Findings, Node, Topic, as_json, as_text, branches, chain, problems
+from home_service.doctor.diagnosis import (
+    GraphSnapshot,
+    NodeState,
+    TopicState,
+    as_json,
+    as_text,
+    frame_branches,
+    frame_chain,
+    problems,
+)
 
 
 def healthy_graph():
-    return Findings(
+    return GraphSnapshot(
         master="http://127.0.0.1:11311",
-        nodes=[Node("/amcl"), Node("/sim_bridge")],
+        nodes=[NodeState("/amcl"), NodeState("/sim_bridge")],
         topics=[
-            Topic("/clock", ["/sim_bridge"], ["/amcl"], 50.0),
-            Topic("/scan", ["/sim_bridge"], ["/amcl"], 10.0),
-            Topic("/initialpose", [], ["/amcl"]),
+            TopicState("/clock", ["/sim_bridge"], ["/amcl"], 50.0),
+            TopicState("/scan", ["/sim_bridge"], ["/amcl"], 10.0),
+            TopicState("/initialpose", [], ["/amcl"]),
         ],
         parents={"odom": {"map"}, "base_link": {"odom"}, "laser": {"base_link"}, "wheel": {"base_link"}},
         uses_simulated_time=True,
@@ -27,9 +36,9 @@ def test_a_graph_in_which_all_is_well_has_no_problem():
 
 
 def test_where_nothing_runs_there_is_nothing_wrong_and_nothing_healthy():
-    assert problems(Findings()) == []
-    assert not as_json(Findings())["healthy"]
-    assert "nothing is running" in as_text(Findings())[-1]
+    assert problems(GraphSnapshot()) == []
+    assert not as_json(GraphSnapshot())["healthy"]
+    assert "nothing is running" in as_text(GraphSnapshot())[-1]
 
 
 def without_clock(graph):
@@ -87,9 +96,9 @@ def test_each_harm_is_told(harm, sentence):
 
 def test_chains_of_frames_end_even_in_a_circle():
     parents = healthy_graph().parents
-    assert chain(parents, "laser") == ["map", "odom", "base_link", "laser"]
-    assert branches(parents) == ["map -> odom -> base_link -> laser, wheel"]
-    assert len(chain({"a": {"b"}, "b": {"a"}}, "a")) <= 4
+    assert frame_chain(parents, "laser") == ["map", "odom", "base_link", "laser"]
+    assert frame_branches(parents) == ["map -> odom -> base_link -> laser, wheel"]
+    assert len(frame_chain({"a": {"b"}, "b": {"a"}}, "a")) <= 4
 
 
 def test_everything_found_fits_into_json():

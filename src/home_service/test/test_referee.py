@@ -6,7 +6,7 @@ from visualization_msgs.msg import Marker
 
 from home_service.judging.verdict import ERRAND, OBJECTS
 from home_service.ros.referee import Referee
-from pick_objects import Stage
+from pick_objects import DeliveryStage
 from planar import Pose2
 from planar.maps.places import NamedPlace
 
@@ -15,7 +15,7 @@ PLACES = {name: NamedPlace(name, Pose2(x, 0.0)) for name, x in (("hall", 2.0), (
 
 @pytest.fixture
 def referee():
-    return Referee(PLACES, say=lambda line: None)
+    return Referee(PLACES, log=lambda line: None)
 
 
 def truth(stamp, x):
@@ -33,25 +33,25 @@ def arrival(stamp):
 
 
 def test_an_arrival_is_judged_by_the_truth_of_its_moment_even_if_that_comes_later(referee):
-    referee._see_truth(truth(1.0, 1.6))
-    referee._see_mission(arrival(2.0))
-    assert referee.ledger.deliveries == []
-    referee._see_truth(truth(2.0, 1.95))
-    referee._see_truth(truth(2.1, 2.4))
-    (record,) = referee.ledger.deliveries
+    referee._on_truth(truth(1.0, 1.6))
+    referee._on_mission(arrival(2.0))
+    assert referee.mission_record.deliveries == []
+    referee._on_truth(truth(2.0, 1.95))
+    referee._on_truth(truth(2.1, 2.4))
+    (record,) = referee.mission_record.deliveries
     assert record.pickup_error == pytest.approx(0.05)
-    assert referee.ledger.final_state == "picking up"
+    assert referee.mission_record.final_state == "picking up"
 
 
 def test_an_arrival_is_judged_by_where_the_robot_stood_not_by_where_it_is(referee):
     for stamp, x in ((1.0, 2.01), (2.0, 3.0)):
-        referee._see_truth(truth(stamp, x))
-    referee._see_mission(arrival(1.0))
-    assert referee.ledger.deliveries[0].pickup_error == pytest.approx(0.01)
+        referee._on_truth(truth(stamp, x))
+    referee._on_mission(arrival(1.0))
+    assert referee.mission_record.deliveries[0].pickup_error == pytest.approx(0.01)
 
 
 def test_the_marker_of_an_object_may_be_taken_away_and_shown_anew(referee):
-    referee._see_mission(arrival(0.0))
+    referee._on_mission(arrival(0.0))
     for action, is_locked, x in (
         (Marker.ADD, False, 2.0),
         (Marker.ADD, True, 0.0),
@@ -59,19 +59,19 @@ def test_the_marker_of_an_object_may_be_taken_away_and_shown_anew(referee):
     ):
         message = Marker(ns="letter", action=action, frame_locked=is_locked)
         message.pose.position.x, message.pose.orientation.w = x, 1.0
-        referee._see_marker(message)
-    assert referee.ledger.markers == ["letter at hall", "letter carried"]
+        referee._on_marker(message)
+    assert referee.mission_record.markers == ["letter at hall", "letter carried"]
 
 
 def test_markers_that_never_come_are_not_waited_for_without_end(referee, monkeypatch):
     wall = [100.0]
     monkeypatch.setattr("time.monotonic", lambda: wall[0])
     delivered = arrival(0.0)
-    delivered.state, delivered.deliveries[0].state = "delivered", Stage.DELIVERED.value
-    referee._see_truth(truth(1.0, 2.0))
-    referee._see_mission(delivered)
+    delivered.state, delivered.deliveries[0].state = "delivered", DeliveryStage.DELIVERED.value
+    referee._on_truth(truth(1.0, 2.0))
+    referee._on_mission(delivered)
     assert not referee.has_seen({ERRAND, OBJECTS})
-    referee._see_truth(truth(50.0, 2.0))
+    referee._on_truth(truth(50.0, 2.0))
     assert not referee.has_seen({ERRAND, OBJECTS})  # it may be this process that is late
     wall[0] = 150.0
     assert referee.has_seen({ERRAND, OBJECTS})
@@ -99,28 +99,28 @@ def marker_of_lamp(x):
 
 
 def test_places_that_only_a_mission_which_is_sent_knows_are_judged_by(referee):
-    referee._see_goal(DeliverActionGoal(goal=DeliverGoal(mission=MISSION)))
-    referee._see_truth(truth(1.0, 6.9))
-    referee._see_mission(moment(1.0, DeliveryState.PICKING_UP))
-    referee._see_marker(marker_of_lamp(7.1))
-    assert referee.ledger.deliveries[0].pickup_error == pytest.approx(0.1)
-    assert referee.ledger.markers == ["lamp at attic"]
+    referee._on_goal(DeliverActionGoal(goal=DeliverGoal(mission=MISSION)))
+    referee._on_truth(truth(1.0, 6.9))
+    referee._on_mission(moment(1.0, DeliveryState.PICKING_UP))
+    referee._on_marker(marker_of_lamp(7.1))
+    assert referee.mission_record.deliveries[0].pickup_error == pytest.approx(0.1)
+    assert referee.mission_record.markers == ["lamp at attic"]
 
 
 def test_a_marker_between_places_that_are_not_known_is_told_by_the_nearest_that_is(referee):
-    referee._see_truth(truth(1.0, 6.9))
-    referee._see_mission(moment(1.0, DeliveryState.PICKING_UP))
-    referee._see_marker(marker_of_lamp(4.9))
-    assert referee.ledger.markers == ["lamp at door"]
+    referee._on_truth(truth(1.0, 6.9))
+    referee._on_mission(moment(1.0, DeliveryState.PICKING_UP))
+    referee._on_marker(marker_of_lamp(4.9))
+    assert referee.mission_record.markers == ["lamp at door"]
 
 
 def test_a_mission_that_cannot_be_understood_changes_nothing(referee):
-    referee._see_goal(DeliverActionGoal(goal=DeliverGoal(mission="places: 3")))
-    assert referee.ledger.deliveries == []
+    referee._on_goal(DeliverActionGoal(goal=DeliverGoal(mission="places: 3")))
+    assert referee.mission_record.deliveries == []
 
 
 def test_a_delivery_that_is_sent_again_by_the_same_name_is_judged_again(referee):
-    referee._see_goal(DeliverActionGoal(goal=DeliverGoal(mission=MISSION)))
+    referee._on_goal(DeliverActionGoal(goal=DeliverGoal(mission=MISSION)))
     stages = (
         DeliveryState.PICKING_UP,
         DeliveryState.DELIVERED,
@@ -128,17 +128,17 @@ def test_a_delivery_that_is_sent_again_by_the_same_name_is_judged_again(referee)
         DeliveryState.PICKING_UP,
     )
     for stamp, stage in enumerate(stages, 1):
-        referee._see_truth(truth(float(stamp), 7.0 + stamp / 100))
-        referee._see_mission(moment(float(stamp), stage))
-    first, second = referee.ledger.deliveries
+        referee._on_truth(truth(float(stamp), 7.0 + stamp / 100))
+        referee._on_mission(moment(float(stamp), stage))
+    first, second = referee.mission_record.deliveries
     assert first.state == "delivered"
     assert second.pickup_error == pytest.approx(0.04)
 
 
 def test_a_marker_that_comes_before_its_mission_is_told_by_the_ends_of_its_delivery(referee):
-    referee._see_marker(marker_of_lamp(4.9))
-    referee._see_goal(DeliverActionGoal(goal=DeliverGoal(mission=MISSION)))
-    referee._see_mission(moment(1.0, DeliveryState.FETCHING))
-    assert referee.ledger.markers == []
-    referee._see_truth(truth(1.0, 6.9))
-    assert referee.ledger.markers == ["lamp at attic"]
+    referee._on_marker(marker_of_lamp(4.9))
+    referee._on_goal(DeliverActionGoal(goal=DeliverGoal(mission=MISSION)))
+    referee._on_mission(moment(1.0, DeliveryState.FETCHING))
+    assert referee.mission_record.markers == []
+    referee._on_truth(truth(1.0, 6.9))
+    assert referee.mission_record.markers == ["lamp at attic"]

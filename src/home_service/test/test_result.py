@@ -9,8 +9,8 @@ import pytest
 from home_service import commands
 from home_service.judging.verdict import DeliveryRecord
 from home_service.options import RunOptions
-from home_service.result import Result, in_few_words
-from home_service.ros.following import FollowWatch
+from home_service.result import ResultFile, grouped_by_reason
+from home_service.ros.following import FollowMonitor
 from home_service.ros.referee import Referee
 from planar import FileWriteError, Pose2
 from planar.maps.places import NamedPlace
@@ -29,17 +29,19 @@ VERDICT = {
 @pytest.fixture
 def referee(monkeypatch):
     monkeypatch.setattr("rospy.Subscriber", lambda *_, **__: None)
-    referee = Referee({"hall": NamedPlace("hall", Pose2())}, say=lambda line: None)
+    referee = Referee({"hall": NamedPlace("hall", Pose2())}, log=lambda line: None)
     referee.start()
-    referee.ledger.deliveries.append(DeliveryRecord("post", "letter", "hall", "door", pickup_error=0.12345))
+    referee.mission_record.deliveries.append(
+        DeliveryRecord("post", "letter", "hall", "door", pickup_error=0.12345)
+    )
     return referee
 
 
 def test_the_result_of_an_errand_follows_the_schema(referee, tmp_path):
     options = commands.FOLDER.find("home_service")(seed=3, mission=Path("mission.yaml"))
-    result = Result(tmp_path)
-    result.add(command=options.name, **VERDICT, **options.told())
-    result.add(**referee.findings())
+    result = ResultFile(tmp_path)
+    result.add(command=options.name, **VERDICT, **options.result_fields())
+    result.add(**referee.result_fields())
     result.add(**summary(RunRecord()))
     result.missing.append("bag: the disk is full")
     result.write()
@@ -51,7 +53,7 @@ def test_the_result_of_an_errand_follows_the_schema(referee, tmp_path):
 
 
 def test_every_finding_has_its_place_in_the_schema(referee, monkeypatch):
-    found = {**referee.findings(), **FollowWatch("follower").findings(), **summary(RunRecord())}
+    found = {**referee.result_fields(), **FollowMonitor("follower").result_fields(), **summary(RunRecord())}
     assert set(found) <= set(SCHEMA["properties"])
 
 
@@ -59,22 +61,22 @@ def test_every_finding_has_its_place_in_the_schema(referee, monkeypatch):
 def test_what_a_run_is_told_has_its_place_in_the_schema(name):
     kind = commands.FOLDER.find(name)
     if issubclass(kind, RunOptions):
-        assert set(kind().told()) <= set(SCHEMA["properties"])
+        assert set(kind().result_fields()) <= set(SCHEMA["properties"])
 
 
 def test_a_judge_that_never_began_has_found_nothing():
-    assert Referee({}, say=lambda line: None).findings() == {}
+    assert Referee({}, log=lambda line: None).result_fields() == {}
 
 
 def test_a_result_that_cannot_be_written_has_a_reason(tmp_path):
-    result = Result(tmp_path / "gone")
+    result = ResultFile(tmp_path / "gone")
     result.write()
     assert result.gap == "result.json: cannot be written (No such file or directory)"
     assert result.all_missing == [result.gap]
 
 
 def test_a_result_that_tells_less_than_is_known_does_not_stay(tmp_path, monkeypatch):
-    result = Result(tmp_path)
+    result = ResultFile(tmp_path)
     result.write()
     monkeypatch.setattr(run_folder, "write_atomically", full_disk)
     result.write()
@@ -84,7 +86,7 @@ def test_a_result_that_tells_less_than_is_known_does_not_stay(tmp_path, monkeypa
 
 def test_the_result_before_makes_room_for_the_one_to_come(tmp_path, monkeypatch):
     """A disk with room for one."""
-    result = Result(tmp_path)
+    result = ResultFile(tmp_path)
     result.write()
     write = run_folder.write_atomically
     monkeypatch.setattr(
@@ -99,7 +101,7 @@ def test_the_result_before_makes_room_for_the_one_to_come(tmp_path, monkeypatch)
 def test_what_is_missing_is_told_with_each_reason_once():
     full = "cannot be written (No space left on device)"
     missing = [f"run.png: {full}", "bag: 2.bag was not closed", f"report.html: {full}", f"run.png: {full}"]
-    assert in_few_words(missing) == [f"run.png, report.html: {full}", "bag: 2.bag was not closed"]
+    assert grouped_by_reason(missing) == [f"run.png, report.html: {full}", "bag: 2.bag was not closed"]
 
 
 def full_disk(path, data):

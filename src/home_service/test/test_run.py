@@ -18,10 +18,10 @@ DONE = Verdict(True, "picked up and delivered")
 
 
 class Display:
-    """Keeps what is said."""
+    """Keeps what is printed."""
 
     def __init__(self):
-        self.said = []
+        self.printed = []
 
     def __enter__(self):
         return self
@@ -29,8 +29,8 @@ class Display:
     def __exit__(self, *_):
         pass
 
-    def say(self, line):
-        self.said.append(line)
+    def print(self, line):
+        self.printed.append(line)
 
     def show(self, status):
         pass
@@ -42,7 +42,7 @@ class Graph:
     log_gap = None
     restarts = ()
     is_ended = False
-    is_at_work = False
+    has_pending_work = False
 
     def end(self):
         self.is_ended = True
@@ -51,7 +51,7 @@ class Graph:
 class Watch:
     """In the place of judge and recorder."""
 
-    def findings(self):
+    def result_fields(self):
         return {}
 
     def record(self):
@@ -64,12 +64,12 @@ def run(tmp_path, monkeypatch):
     monkeypatch.setattr(run_module, "Supervisor", lambda *_: Graph())
     monkeypatch.setattr(run_module.rospy, "signal_shutdown", lambda reason: None)
     monkeypatch.setattr(run_module, "raise_when_interrupted", lambda: None)
-    monkeypatch.setattr(run_module, "drop_what_cannot_be_written", lambda: None)
+    monkeypatch.setattr(run_module, "ignore_write_errors", lambda: None)
     monkeypatch.setattr(Run, "_bring_up", lambda self: None)
     options = GraphOptions(output=tmp_path)
     made = Run(options, options.launch("home.launch"), Watch(), Watch(), Display())
-    driven = trace.Entry(1, "/state", "/pick_objects", "delivered")
-    made._trace._trace.begin(0)
+    driven = trace.TraceEntry(1, "/state", "/pick_objects", "delivered")
+    made._trace._trace.start(0)
     made._trace._trace.end(driven)
     return made
 
@@ -93,7 +93,7 @@ def test_a_run_that_cannot_write_its_result_has_failed(run, monkeypatch):
     with run:
         assert run.conclude(DONE) == 1
     verdict = "FAILURE: result.json: cannot be written (No space left on device); what the run came to: "
-    assert f"{verdict}{DONE.reason}" in run.display.said
+    assert f"{verdict}{DONE.reason}" in run.display.printed
     assert run._supervisor.is_ended
     assert not (run.folder / "result.json").exists()
 
@@ -118,7 +118,7 @@ def test_a_run_that_failed_anyhow_is_no_error_besides(run, monkeypatch):
 def test_rospy_is_not_waited_for_while_it_waits_for_a_master_that_is_gone(run, monkeypatch):
     reasons = []
     monkeypatch.setattr(run_module.rospy, "signal_shutdown", reasons.append)
-    run._supervisor.is_at_work = True
+    run._supervisor.has_pending_work = True
     with run:
         run.conclude(DONE)
     assert reasons == []

@@ -8,18 +8,18 @@ from nav_msgs.msg import Odometry, Path
 from std_msgs.msg import String
 from visualization_msgs.msg import Marker
 
-from home_service.judging.samples import MOST_SAMPLES
+from home_service.judging.samples import MAX_SAMPLES
 from home_service.ros import run_recorder
-from home_service.ros.run_recorder import MOST_COLLISIONS, MOST_EVENTS, MOST_PLANS, RunRecorder
+from home_service.ros.run_recorder import MAX_COLLISIONS, MAX_EVENTS, MAX_PLANS, RunRecorder
 
 RATE = 20
 
 
 @pytest.fixture
-def heard(monkeypatch):
+def subscribed(monkeypatch):
     """The recorder, and what it does with each topic."""
     callbacks = {}
-    monkeypatch.setattr(run_recorder, "hear", lambda topic, _kind, keep: callbacks.__setitem__(topic, keep))
+    monkeypatch.setattr(run_recorder, "subscribe", lambda topic, _, call: callbacks.update({topic: call}))
     recorder = RunRecorder({})
     recorder.start()
     return recorder, callbacks
@@ -48,8 +48,8 @@ def serve(callbacks, deliveries):
         callbacks["visualization_marker"](marker)
 
 
-def test_all_of_a_mission_is_kept(heard):
-    recorder, callbacks = heard
+def test_all_of_a_mission_is_kept(subscribed):
+    recorder, callbacks = subscribed
     drive(callbacks, 600)
     serve(callbacks, 20)
     record = recorder.record()
@@ -61,20 +61,20 @@ def test_all_of_a_mission_is_kept(heard):
     assert [plan[0, 0] for plan in record.plans] == [goal.x for goal in record.goals]
 
 
-def test_of_what_a_run_serves_for_hours_no_more_is_kept_than_the_latest(heard):
-    recorder, callbacks = heard
+def test_of_what_a_run_serves_for_hours_no_more_is_kept_than_the_latest(subscribed):
+    recorder, callbacks = subscribed
     serve(callbacks, 2000)
     record = recorder.record()
-    assert len(record.states) == len(record.goals) == len(record.markings) == MOST_EVENTS
-    assert len(record.plans) == MOST_PLANS
-    assert len(record.collisions) == MOST_COLLISIONS
+    assert len(record.states) == len(record.goals) == len(record.markings) == MAX_EVENTS
+    assert len(record.plans) == MAX_PLANS
+    assert len(record.collisions) == MAX_COLLISIONS
     assert record.states[-1].name == "going to 1999"
     assert record.plans[-1][0, 0] == record.goals[-1].x == 1999.0
 
 
-def test_a_way_of_hours_is_kept_from_its_beginning_with_fewer_samples(heard):
-    recorder, callbacks = heard
+def test_a_way_of_hours_is_kept_from_its_beginning_with_fewer_samples(subscribed):
+    recorder, callbacks = subscribed
     drive(callbacks, 2 * 3600)
     truth = recorder.record().truth
-    assert MOST_SAMPLES / 2 < len(truth) <= MOST_SAMPLES
+    assert MAX_SAMPLES / 2 < len(truth) <= MAX_SAMPLES
     assert truth[0, 0] == 0.0 and truth[-1, 0] > 7198.0

@@ -6,9 +6,9 @@ import tempfile
 import pytest
 
 from home_service.judging.trace import (
-    Difference,
-    Entry,
     Trace,
+    TraceDifference,
+    TraceEntry,
     first_difference,
     hash_of,
     read_trace,
@@ -22,11 +22,11 @@ SECOND = 1_000_000_000
 def trace_of(poses, end=10, marks=("marker shown",), **how):
     trace = Trace(**how)
     for stamp, text in poses:
-        trace.note(Entry(stamp * SECOND, "/truth", "/sim_bridge", text))
-    trace.begin(2 * SECOND)
-    trace.end(Entry(end * SECOND, "/state", "/pick_objects", "delivered"))
+        trace.add(TraceEntry(stamp * SECOND, "/truth", "/sim_bridge", text))
+    trace.start(2 * SECOND)
+    trace.end(TraceEntry(end * SECOND, "/state", "/pick_objects", "delivered"))
     for mark in marks:
-        trace.mark(mark)
+        trace.add_unstamped(mark)
     return trace
 
 
@@ -52,30 +52,30 @@ def long_trace(**how):
     trace = Trace(**how)
     for second in range(3600):
         for topic in ("/truth", "/estimate"):
-            trace.note(Entry(second * SECOND, topic, "/node", f"at {second}"))
+            trace.add(TraceEntry(second * SECOND, topic, "/node", f"at {second}"))
         if second % 20 == 3:
-            trace.begin(second * SECOND)
+            trace.start(second * SECOND)
         if second % 20 == 17:
-            outcome = Entry(second * SECOND, "/result", "/move_base", "3 'reached'")
-            trace.note(outcome)
+            outcome = TraceEntry(second * SECOND, "/result", "/move_base", "3 'reached'")
+            trace.add(outcome)
             trace.end(outcome)
-    trace.mark("marker shown")
+    trace.add_unstamped("marker shown")
     return trace
 
 
 def test_what_a_long_run_has_put_aside_is_written_as_ever():
-    trace = long_trace(most=100)
+    trace = long_trace(max_in_memory=100)
     assert len(trace._entries) <= 100 and len(trace._outcomes) <= 5
-    whole = long_trace(most=1_000_000)
+    whole = long_trace(max_in_memory=1_000_000)
     assert len(whole._entries) > 7000
     assert trace.content() == whole.content()
     assert trace.content() == whole.content(), "a second time"
 
 
 def test_before_there_is_a_goal_nothing_is_kept_for_long():
-    trace = Trace(most=100)
+    trace = Trace(max_in_memory=100)
     for second in range(1000):
-        trace.note(Entry(second * SECOND, "/truth", "/node", "stands"))
+        trace.add(TraceEntry(second * SECOND, "/truth", "/node", "stands"))
     assert len(trace._entries) <= 100
     assert trace.content() == b""
 
@@ -85,7 +85,7 @@ def test_a_long_run_without_room_for_what_is_put_aside_has_no_trace(monkeypatch)
         raise OSError(errno.ENOSPC, "No space left on device")
 
     monkeypatch.setattr(tempfile, "TemporaryFile", full_disk)
-    trace = long_trace(most=100)
+    trace = long_trace(max_in_memory=100)
     assert len(trace._entries) == 0
     with pytest.raises(FileWriteError, match="No space left on device"):
         trace.content()
@@ -103,8 +103,8 @@ def test_what_is_written_is_what_is_read(tmp_path):
 
 def test_two_traces_part_at_the_first_entry_that_only_one_has():
     assert first_difference(["a", "b"], ["a", "b"]) is None
-    assert first_difference(["a", "b"], ["a", "c"]) == Difference("b", "c")
-    assert first_difference(["a"], ["a", "c"]) == Difference(None, "c")
+    assert first_difference(["a", "b"], ["a", "c"]) == TraceDifference("b", "c")
+    assert first_difference(["a"], ["a", "c"]) == TraceDifference(None, "c")
 
 
 def test_a_folder_without_a_trace_is_refused(tmp_path):

@@ -1,6 +1,6 @@
 import pytest
 
-from home_service.judging.verdict import DEMO, ERRAND, MARKERS, OBJECTS, DeliveryRecord, Ledger, judge
+from home_service.judging.verdict import DEMO, ERRAND, MARKERS, OBJECTS, DeliveryRecord, MissionRecord, judge
 
 STORY = ["shown at pickup", "hidden", "shown at dropoff"]
 
@@ -11,7 +11,7 @@ def record(**changes):
 
 
 def good_ledger():
-    return Ledger([record()], [], list(STORY), "delivered")
+    return MissionRecord([record()], [], list(STORY), "delivered")
 
 
 def test_a_proven_delivery_is_a_success():
@@ -35,34 +35,36 @@ def test_a_proven_delivery_is_a_success():
     ],
 )
 def test_whatever_is_missing_is_a_failure_that_says_what(change, reason):
-    ledger = good_ledger()
+    mission_record = good_ledger()
     for name, value in change.items():
-        setattr(ledger, name, value)
-    verdict = judge(ledger, {ERRAND, MARKERS})
+        setattr(mission_record, name, value)
+    verdict = judge(mission_record, {ERRAND, MARKERS})
     assert not verdict.success
     assert reason in verdict.reason
 
 
 def test_a_demonstration_needs_only_the_marker():
-    assert judge(Ledger(markers=list(STORY)), {DEMO}).success
+    assert judge(MissionRecord(markers=list(STORY)), {DEMO}).success
 
 
 def test_a_run_is_complete_when_all_that_is_expected_was_seen():
     assert good_ledger().is_complete({ERRAND, MARKERS})
-    assert not Ledger(final_state="delivered", markers=STORY[:2]).is_complete({ERRAND, MARKERS})
-    assert Ledger(final_state="failed").is_complete({ERRAND, MARKERS})
-    assert not Ledger().is_complete({ERRAND})
+    assert not MissionRecord(final_state="delivered", markers=STORY[:2]).is_complete({ERRAND, MARKERS})
+    assert MissionRecord(final_state="failed").is_complete({ERRAND, MARKERS})
+    assert not MissionRecord().is_complete({ERRAND})
 
 
 def test_the_markers_of_a_mission_go_with_their_objects():
-    ledger = Ledger([record()], [], ["parcel at pickup", "cup at desk", "parcel carried"], "delivered")
-    assert not ledger.is_complete({ERRAND, OBJECTS})
-    assert "markers of parcel" in judge(ledger, {ERRAND, OBJECTS}).reason
-    ledger.markers.append("parcel at dropoff")
-    assert ledger.is_complete({ERRAND, OBJECTS})
-    assert judge(ledger, {ERRAND, OBJECTS}).success
+    mission_record = MissionRecord(
+        [record()], [], ["parcel at pickup", "cup at desk", "parcel carried"], "delivered"
+    )
+    assert not mission_record.is_complete({ERRAND, OBJECTS})
+    assert "markers of parcel" in judge(mission_record, {ERRAND, OBJECTS}).reason
+    mission_record.markers.append("parcel at dropoff")
+    assert mission_record.is_complete({ERRAND, OBJECTS})
+    assert judge(mission_record, {ERRAND, OBJECTS}).success
 
 
 def test_a_cancelled_delivery_is_not_held_against_the_others():
-    ledger = Ledger([record(), record(state="cancelled")], final_state="delivered")
-    assert judge(ledger, {ERRAND}).success
+    mission_record = MissionRecord([record(), record(state="cancelled")], final_state="delivered")
+    assert judge(mission_record, {ERRAND}).success

@@ -2,19 +2,19 @@ import pytest
 
 from pick_objects import (
     Delivery,
+    DeliveryStage,
+    DriveToPlace,
     Errand,
     ErrandSettings,
     ErrandState,
     FinishTask,
     GoalFailed,
     GoalReached,
-    GoTo,
-    MeasureWays,
+    MeasurePathLengths,
     Mission,
     MissionError,
+    PathLengthsMeasured,
     RobotDisplaced,
-    Stage,
-    WaysMeasured,
     errand_mission,
 )
 from planar import Pose2, SettingsError
@@ -29,12 +29,12 @@ def errand(**settings):
 
 def test_the_robot_is_sent_to_pickup_and_after_five_seconds_there_to_dropoff():
     task = errand()
-    assert task.advance(0.0) == GoTo(PICKUP, 1)
+    assert task.advance(0.0) == DriveToPlace(PICKUP, 1)
     assert task.advance(10.0) is None
     assert task.advance(20.0, GoalReached()) is None
     assert task.state is ErrandState.PICKING_UP
     assert task.advance(24.9) is None
-    assert task.advance(25.0) == GoTo(DROPOFF, 1)
+    assert task.advance(25.0) == DriveToPlace(DROPOFF, 1)
     assert task.advance(40.0, GoalReached()) == FinishTask(True, "delivered at place dropoff")
     assert task.state is ErrandState.DELIVERED
     assert task.advance(41.0) is None
@@ -44,12 +44,12 @@ def test_a_robot_that_is_carried_away_while_it_picks_up_goes_back():
     task = errand(attempts=2)
     task.advance(0.0)
     task.advance(20.0, GoalReached())
-    assert task.advance(24.0, RobotDisplaced()) == GoTo(PICKUP, 1)
+    assert task.advance(24.0, RobotDisplaced()) == DriveToPlace(PICKUP, 1)
     assert task.state is ErrandState.GOING_TO_PICKUP
     assert task.advance(25.0) is None
     assert task.advance(26.0, GoalReached()) is None
     assert task.advance(30.9) is None
-    assert task.advance(31.0) == GoTo(DROPOFF, 1)
+    assert task.advance(31.0) == DriveToPlace(DROPOFF, 1)
 
 
 def test_who_is_carried_away_again_and_again_gives_up():
@@ -58,7 +58,9 @@ def test_who_is_carried_away_again_and_again_gives_up():
     for now in (10.0, 20.0):
         task.advance(now, GoalReached())
         order = task.advance(now + 1.0, RobotDisplaced())
-    assert order == FinishTask(False, "place pickup: carried away, or in doubt of it, 2 times")
+    assert order == FinishTask(
+        False, "place pickup: the robot was moved away, or its pose became uncertain, 2 times"
+    )
 
 
 def test_a_refused_goal_is_tried_again_after_a_pause():
@@ -66,7 +68,7 @@ def test_a_refused_goal_is_tried_again_after_a_pause():
     task.advance(0.0)
     assert task.advance(5.0, GoalFailed("blocked")) is None
     assert task.advance(5.9) is None
-    assert task.advance(6.0) == GoTo(PICKUP, 2)
+    assert task.advance(6.0) == DriveToPlace(PICKUP, 2)
 
 
 def test_the_last_refusal_ends_the_errand_with_place_and_reason():
@@ -87,7 +89,7 @@ def test_goals_that_others_take_over_are_sent_again_and_are_no_attempts():
     task.advance(0.0)
     for now in range(2, 30, 2):
         assert task.advance(now, TAKEN_OVER) is None
-        assert task.advance(now + 1.0) == GoTo(PICKUP, 1)
+        assert task.advance(now + 1.0) == DriveToPlace(PICKUP, 1)
     task.advance(40.0, GoalReached())
     assert task.state is ErrandState.PICKING_UP
 
@@ -96,7 +98,7 @@ def test_who_never_gets_the_robot_for_himself_gives_up_in_the_end():
     task = errand(attempts=1, retry_seconds=1.0, goal_timeout=30.0)
     task.advance(0.0)
     task.advance(29.0, TAKEN_OVER)
-    assert task.advance(30.0) == GoTo(PICKUP, 1)
+    assert task.advance(30.0) == DriveToPlace(PICKUP, 1)
     assert "after 1 attempt: another goal was received" in task.advance(31.0, TAKEN_OVER).reason
 
 
@@ -111,9 +113,9 @@ def test_attempts_are_counted_for_each_place_anew():
     task = errand(attempts=2, retry_seconds=0.0, pickup_seconds=0.0)
     task.advance(0.0)
     task.advance(1.0, GoalFailed("x"))
-    assert task.advance(1.0) == GoTo(PICKUP, 2)
+    assert task.advance(1.0) == DriveToPlace(PICKUP, 2)
     task.advance(2.0, GoalReached())
-    assert task.advance(2.0) == GoTo(DROPOFF, 1)
+    assert task.advance(2.0) == DriveToPlace(DROPOFF, 1)
 
 
 def test_senseless_patience_is_refused():
@@ -143,7 +145,7 @@ def play(task, blocked=(), event=None, limit=100):
             orders.append(order)
         if isinstance(order, FinishTask):
             return orders
-        if isinstance(order, GoTo):
+        if isinstance(order, DriveToPlace):
             event = GoalFailed("blocked") if order.pose in blocked else GoalReached()
     raise AssertionError(f"not finished: {orders}")
 
@@ -157,7 +159,7 @@ def test_deliveries_are_made_one_after_the_other():
     orders = play(task)
     assert [order.place.name for order in orders[:-1]] == ["kitchen", "pickup", "dropoff", "kitchen"]
     assert orders[-1] == FinishTask(True, "2 of 2 delivered")
-    assert task.whereabouts["cup"].place == "pickup"
+    assert task.object_locations["cup"].place == "pickup"
     assert task.progress == 1.0
 
 
@@ -173,16 +175,16 @@ def test_a_failure_stops_the_mission_or_does_not():
     blocked = [PICKUP.pose]
     stopping, going_on = mission(TEA, POST), mission(TEA, POST, on_failure="continue")
     assert play(stopping, blocked)[-1].reason.startswith("0 of 2 delivered, 1 failed; tea: place pickup not")
-    assert stages(stopping) == {"tea": Stage.FAILED, "post": Stage.WAITING}
+    assert stages(stopping) == {"tea": DeliveryStage.FAILED, "post": DeliveryStage.WAITING}
     assert play(going_on, blocked)[-1].reason.startswith("1 of 2 delivered, 1 failed; tea: place pickup not")
-    assert stages(going_on) == {"tea": Stage.FAILED, "post": Stage.DELIVERED}
+    assert stages(going_on) == {"tea": DeliveryStage.FAILED, "post": DeliveryStage.DELIVERED}
     assert going_on.state is ErrandState.FAILED
 
 
 def test_an_object_that_could_not_be_delivered_is_left_and_not_fetched_where_it_is_not():
     task = mission(TEA, BACK, on_failure="continue")
     play(task, [PICKUP.pose])
-    where = task.whereabouts["cup"]
+    where = task.object_locations["cup"]
     assert where.place is None
     assert not where.is_carried
     assert task.jobs[1].reason == "cup is not at pickup"
@@ -198,11 +200,11 @@ def test_what_waits_for_a_failed_delivery_fails_too():
 def test_the_shortest_order_is_found_by_measured_ways_and_keeps_what_must_come_first():
     task = mission(TEA, POST, BACK, order="shortest")
     order = task.advance(0.0)
-    assert isinstance(order, MeasureWays)
+    assert isinstance(order, MeasurePathLengths)
     assert order.ways[:3] == ((None, KITCHEN.pose), (None, DROPOFF.pose), (None, PICKUP.pose))
     far_tea = [9.0, 1.0, 1.0, *[5.0] * 9]
-    first = task.advance(1.0, WaysMeasured(tuple(far_tea)))
-    assert first == GoTo(DROPOFF, 1)
+    first = task.advance(1.0, PathLengthsMeasured(tuple(far_tea)))
+    assert first == DriveToPlace(DROPOFF, 1)
     assert [job.delivery.name for job in task.jobs] == ["post", "tea", "back"]
 
 
@@ -211,17 +213,26 @@ def test_a_cancelled_delivery_is_left_out_and_the_rest_is_made():
     task.advance(0.0)
     task.advance(1.0, GoalReached())
     task.advance(2.0)
-    assert task.whereabouts["cup"].is_carried
+    assert task.object_locations["cup"].is_carried
     task.cancel("tea")
-    assert task.advance(3.0) == GoTo(DROPOFF, 1)
-    assert not task.whereabouts["cup"].is_carried
+    assert task.advance(3.0) == DriveToPlace(DROPOFF, 1)
+    assert not task.object_locations["cup"].is_carried
     assert play(task, event=GoalReached())[-1] == FinishTask(True, "1 of 2 delivered, 1 cancelled")
 
 
 @pytest.mark.parametrize("steps", range(8))
 def test_a_mission_can_be_cancelled_in_every_state(steps):
     task = mission(TEA, POST, order="shortest", pickup_seconds=1.0, dropoff_seconds=1.0)
-    events = [None, WaysMeasured((1.0,) * 6), GoalReached(), None, GoalReached(), None, GoalReached(), None]
+    events = [
+        None,
+        PathLengthsMeasured((1.0,) * 6),
+        GoalReached(),
+        None,
+        GoalReached(),
+        None,
+        GoalReached(),
+        None,
+    ]
     for now, event in enumerate(events[:steps]):
         task.advance(float(now), event)
     task.cancel()
@@ -229,7 +240,7 @@ def test_a_mission_can_be_cancelled_in_every_state(steps):
     assert isinstance(order, FinishTask)
     assert not order.success
     assert task.state is ErrandState.CANCELLED
-    assert not any(where.is_carried for where in task.whereabouts.values())
+    assert not any(where.is_carried for where in task.object_locations.values())
     with pytest.raises(MissionError, match="the mission is over"):
         task.cancel()
 

@@ -9,20 +9,20 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, pr
 
 from pick_objects import (
     Delivery,
+    DeliveryStage,
+    DriveToPlace,
     Errand,
     ErrandSettings,
     ErrandState,
     FinishTask,
     GoalFailed,
     GoalReached,
-    GoTo,
-    MeasureWays,
+    MeasurePathLengths,
     Mission,
     MissionError,
-    Stage,
-    WaysMeasured,
-    record_of,
-    resumed,
+    PathLengthsMeasured,
+    checkpoint_of,
+    resume_errand,
 )
 from pick_objects.job import ENDED
 from planar import Pose2
@@ -35,8 +35,13 @@ DELIVERIES = (
     Delivery("back", "cup", "hall", "bed"),
     Delivery("book", "book", "bed", "bath", after=("post",)),
 )
-UNDER_WAY = (Stage.FETCHING, Stage.PICKING_UP, Stage.CARRYING, Stage.SETTING_DOWN)
-ON_ROBOT = (Stage.CARRYING, Stage.SETTING_DOWN)
+UNDER_WAY = (
+    DeliveryStage.FETCHING,
+    DeliveryStage.PICKING_UP,
+    DeliveryStage.CARRYING,
+    DeliveryStage.SETTING_DOWN,
+)
+ON_ROBOT = (DeliveryStage.CARRYING, DeliveryStage.SETTING_DOWN)
 FINAL = (ErrandState.DELIVERED, ErrandState.FAILED, ErrandState.CANCELLED)
 # From the last event on, one attempt at every place lasts so long at most, seconds.
 LONGEST_ATTEMPT = 60.0
@@ -83,7 +88,7 @@ class ErrandHistories(RuleBasedStateMachine):
         self.now -= 1e6 + 50.0 * is_set_back
         self.advance()
 
-    @precondition(lambda self: isinstance(self.goal, GoTo))
+    @precondition(lambda self: isinstance(self.goal, DriveToPlace))
     @rule(
         event=st.sampled_from(
             (GoalReached(), GoalReached(), GoalFailed("blocked"), GoalFailed("taken", True))
@@ -93,12 +98,12 @@ class ErrandHistories(RuleBasedStateMachine):
         self.goal = None
         self.advance(event)
 
-    @precondition(lambda self: isinstance(self.goal, MeasureWays))
+    @precondition(lambda self: isinstance(self.goal, MeasurePathLengths))
     @rule(is_there_a_way=st.booleans())
     def the_ways_are_measured(self, is_there_a_way):
         lengths = [1.0 + number if is_there_a_way else None for number in range(len(self.goal.ways))]
         self.goal = None
-        self.advance(WaysMeasured(tuple(lengths)))
+        self.advance(PathLengthsMeasured(tuple(lengths)))
 
     @rule(name=st.sampled_from(("", "", *(delivery.name for delivery in DELIVERIES), "milk")))
     def somebody_cancels(self, name):
@@ -109,20 +114,20 @@ class ErrandHistories(RuleBasedStateMachine):
         named = [job for job in self.errand.jobs if name in ("", job.delivery.name)]
         assert {job.stage for job in named} <= set(ENDED)
 
-    @rule(thing=st.sampled_from(("cup", "vase")), source=st.sampled_from(sorted(PLACES)))
-    def somebody_adds(self, thing, source):
+    @rule(name=st.sampled_from(("cup", "vase")), source=st.sampled_from(sorted(PLACES)))
+    def somebody_adds(self, name, source):
         try:
-            self.errand.add(Delivery("", thing, source, "hall"))
+            self.errand.add(Delivery("", name, source, "hall"))
         except MissionError:
             assert self.end is not None or source == "hall"
 
     @rule()
     def the_node_dies_and_comes_back(self):
-        told = self.errand.progress, self.errand.whereabouts
-        again = resumed(self.errand.mission, json.loads(json.dumps(record_of(self.errand))))
+        told = self.errand.progress, self.errand.object_locations
+        again = resume_errand(self.errand.mission, json.loads(json.dumps(checkpoint_of(self.errand))))
         assert again is not None
         self.errand, self.goal = again, None
-        assert self.errand.whereabouts == told[1]
+        assert self.errand.object_locations == told[1]
         was, self.end = self.end, None
         if was is not None:
             self.advance()
@@ -137,9 +142,9 @@ class ErrandHistories(RuleBasedStateMachine):
 
     @invariant()
     def what_is_carried_is_of_the_delivery_under_way(self):
-        carried = {thing for thing, where in self.errand.whereabouts.items() if where.is_carried}
-        assert carried == {job.delivery.thing for job in self.errand.jobs if job.stage in ON_ROBOT}
-        for where in self.errand.whereabouts.values():
+        carried = {name for name, where in self.errand.object_locations.items() if where.is_carried}
+        assert carried == {job.delivery.object_name for job in self.errand.jobs if job.stage in ON_ROBOT}
+        for where in self.errand.object_locations.values():
             assert where.place is None or not where.is_carried
 
     @invariant()
@@ -156,7 +161,7 @@ class ErrandHistories(RuleBasedStateMachine):
         deadline = self.now + longest
         while self.end is None and self.now < deadline:
             self.now += 0.5
-            if isinstance(self.goal, MeasureWays):
+            if isinstance(self.goal, MeasurePathLengths):
                 self.the_ways_are_measured(True)
             elif self.goal is not None:
                 self.the_goal_ends(GoalReached())

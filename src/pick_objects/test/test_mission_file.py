@@ -34,7 +34,7 @@ def test_a_mission_is_read_with_the_places_that_were_known_before(tmp_path):
     assert mission.name == "evening"
     assert mission.places["desk"].approaches == (Pose2(2.5, 0.5, 1.57),)
     assert mission.places["door"] is DOOR
-    assert mission.thing("cup").color == (0.0, 0.0, 1.0)
+    assert mission.object_named("cup").color == (0.0, 0.0, 1.0)
     assert mission.deliveries[1] == Delivery("post", "letter", "desk", "door", ("tea",), 30.0)
     settings = mission.settings
     assert (settings.goal_timeout, settings.on_failure, settings.attempts) == (60.0, "continue", 7)

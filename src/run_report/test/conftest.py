@@ -2,7 +2,15 @@ import numpy as np
 import pytest
 
 from planar import grid_from_picture
-from run_report import Collision, Goal, Marking, RunRecord, State, Warned, Zone
+from run_report import (
+    CollisionEvent,
+    GoalEvent,
+    LoggedWarning,
+    MarkerEvent,
+    RunRecord,
+    StateEvent,
+    ZoneRecord,
+)
 
 
 @pytest.fixture
@@ -19,12 +27,15 @@ def record():
         velocity=np.column_stack([stamps, 0.5 + zero, zero]),
         pace=np.column_stack([stamps, stamps / 4.0]),
         plans=[truth[:, 1:3]],
-        states=[State(0.0, "going to pickup"), State(6.0, "picking up <now>")],
-        goals=[Goal(0.1, 5.0, 2.0, 0.0)],
-        markings=[Marking(0.0, "parcel 0", True, 5.0, 2.0), Marking(6.0, "parcel 0", False, 5.0, 2.0)],
-        collisions=[Collision(3.0, "sofa")],
-        warnings=[Warned(1.0, "amcl", "no <scan> & no hope")],
-        zones=[Zone("pickup", 5.0, 2.0, 0.0, 0.35)],
+        states=[StateEvent(0.0, "going to pickup"), StateEvent(6.0, "picking up <now>")],
+        goals=[GoalEvent(0.1, 5.0, 2.0, 0.0)],
+        markings=[
+            MarkerEvent(0.0, "parcel 0", True, 5.0, 2.0),
+            MarkerEvent(6.0, "parcel 0", False, 5.0, 2.0),
+        ],
+        collisions=[CollisionEvent(3.0, "sofa")],
+        warnings=[LoggedWarning(1.0, "amcl", "no <scan> & no hope")],
+        zones=[ZoneRecord("pickup", 5.0, 2.0, 0.0, 0.35)],
         grid=grid_from_picture("########\n#......#\n#...?..#\n########"),
     )
 

@@ -3,7 +3,7 @@ import json
 import pytest
 
 from run_report import RecordError
-from run_report.comparison import Row, compared_figures, comparison_html, load_run
+from run_report.comparison import ComparisonRow, compared_figures, comparison_html, load_run
 from run_report.record import save_record
 
 
@@ -19,9 +19,9 @@ def folders(record, result, tmp_path):
 
 def test_figures_stand_side_by_side_and_inputs_only_where_they_differ(folders):
     rows = compared_figures(*map(load_run, folders))
-    assert rows[0] == Row("outcome", "success", "failure: stuck")
-    assert Row("seed", "7", "8") in rows
-    assert Row("off pickup", "0.012 m", "0.012 m") in rows
+    assert rows[0] == ComparisonRow("outcome", "success", "failure: stuck")
+    assert ComparisonRow("seed", "7", "8") in rows
+    assert ComparisonRow("off pickup", "0.012 m", "0.012 m") in rows
     assert not [row for row in rows if row.name == "python"]
 
 

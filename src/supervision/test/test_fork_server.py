@@ -13,8 +13,8 @@ import time
 import psutil
 import pytest
 
+from supervision.fork_client import FORK_SERVER
 from supervision.fork_server import start_fork_server
-from supervision.forked import FORK_SERVER
 
 SECONDS = 10.0
 PROGRAM = """
@@ -32,12 +32,12 @@ def wait():
 def draw():
     print(random.random())
 """
-START = "from supervision.forked import live_forked; live_forked(*{!r}); print('alone')"
+START = "from supervision.fork_client import run_in_fork_server; run_in_fork_server(*{!r}); print('alone')"
 STARTER = """
 import sys
 from supervision.fork_server import start_fork_server
-from supervision.interruption import leave, leave_when_interrupted
-leave_when_interrupted()
+from supervision.interruption import leave, exit_when_interrupted
+exit_when_interrupted()
 print(start_fork_server([]).pid, flush=True)
 sys.stdin.read()
 leave(4)

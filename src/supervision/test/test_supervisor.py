@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import pytest
 
 from supervision import interruption
-from supervision.deaths import NodeFailure
 from supervision.errors import LaunchError
+from supervision.node_exits import NodeFailure
 from supervision.ros import supervisor
 from supervision.ros.supervisor import Supervisor
 
@@ -40,15 +40,15 @@ print("ended with", sum(child.status() != ended for child in psutil.Process().ch
 
 @pytest.fixture
 def graph(monkeypatch):
-    deaths = SimpleNamespace(failure=None, restarts=[])
-    graph = SimpleNamespace(deaths=deaths, is_running=True, how_it_ended="ended", log_gap=None)
+    exits = SimpleNamespace(failure=None, restarts=[])
+    graph = SimpleNamespace(exits=exits, is_running=True, how_it_ended="ended", log_gap=None)
     monkeypatch.setattr(supervisor, "RosGraph", lambda *_: graph)
-    monkeypatch.setattr(supervisor, "silent_nodes", list)
+    monkeypatch.setattr(supervisor, "unresponsive_nodes", list)
     return graph
 
 
 def supervised(tmp_path, time_limit=60.0):
-    display = SimpleNamespace(show=lambda status: None, say=lambda text: None)
+    display = SimpleNamespace(show=lambda status: None, print=lambda text: None)
     watcher = Supervisor(display, tmp_path, time_limit)
     watcher.start("home_service", "world.launch", {})
     return watcher
@@ -60,12 +60,12 @@ def test_a_watch_ends_when_its_work_is_done(graph, tmp_path):
 
 
 def test_a_watch_ends_with_what_a_dead_node_said(graph, tmp_path):
-    graph.deaths.failure = NodeFailure("amcl: no map", is_bad_input=False)
+    graph.exits.failure = NodeFailure("amcl: no map", is_bad_input=False)
     assert supervised(tmp_path).watch(lambda: False, str) == "amcl: no map"
 
 
 def test_a_node_that_refuses_its_input_is_an_error(graph, tmp_path):
-    graph.deaths.failure = NodeFailure("amcl: max_particles must be at least 1", is_bad_input=True)
+    graph.exits.failure = NodeFailure("amcl: max_particles must be at least 1", is_bad_input=True)
     with pytest.raises(LaunchError, match="max_particles") as error:
         supervised(tmp_path).watch(lambda: False, str)
     assert error.value.is_bad_input
@@ -77,7 +77,7 @@ def test_a_watch_gives_up_in_time(graph, tmp_path):
 
 
 def test_a_watch_that_gives_up_names_the_nodes_that_do_not_answer(graph, tmp_path, monkeypatch):
-    monkeypatch.setattr(supervisor, "silent_nodes", lambda: ["amcl", "map_server"])
+    monkeypatch.setattr(supervisor, "unresponsive_nodes", lambda: ["amcl", "map_server"])
     reason = supervised(tmp_path, time_limit=0.05).watch(lambda: False, str)
     assert reason == "not done within 0.05 s of wall-clock time; no answer of amcl, map_server"
 
@@ -98,8 +98,8 @@ def test_work_that_waits_for_ever_ends_with_the_graph(graph, tmp_path):
         never.wait()
 
     with pytest.raises(LaunchError, match="roslaunch ended before the node was there"):
-        supervised_graph.carry_out("the node", lose_the_master)
-    assert supervised_graph.is_at_work
+        supervised_graph.run_in_thread("the node", lose_the_master)
+    assert supervised_graph.has_pending_work
     never.set()
 
 
@@ -109,12 +109,12 @@ def test_a_refused_connection_is_the_end_of_the_graph(graph, tmp_path):
         raise ConnectionRefusedError
 
     with pytest.raises(LaunchError, match="roslaunch ended before the node was there"):
-        supervised(tmp_path).carry_out("the node", be_refused)
+        supervised(tmp_path).run_in_thread("the node", be_refused)
 
 
 def test_another_mistake_at_work_is_told(graph, tmp_path):
     with pytest.raises(ZeroDivisionError):
-        supervised(tmp_path).carry_out("the node", lambda: 1 / 0)
+        supervised(tmp_path).run_in_thread("the node", lambda: 1 / 0)
 
 
 def test_how_roslaunch_was_killed_is_told(graph, tmp_path):
@@ -126,7 +126,7 @@ def test_how_roslaunch_was_killed_is_told(graph, tmp_path):
 def test_why_nothing_runs_any_more_is_told_after_an_interrupt_too(graph, tmp_path, monkeypatch):
     monkeypatch.setattr(interruption, "_is_interrupted", True)
     watcher = supervised(tmp_path)
-    graph.deaths.failure = NodeFailure("sim_bridge: was ended by SIGKILL", is_bad_input=False)
+    graph.exits.failure = NodeFailure("sim_bridge: was ended by SIGKILL", is_bad_input=False)
     assert watcher.end_of_graph is None
     graph.is_running = False
     assert watcher.end_of_graph == "sim_bridge: was ended by SIGKILL"

@@ -8,7 +8,7 @@ from planar.elapsed import ElapsedTime
 from planar.maps.places import NamedPlace
 
 
-class Stage(enum.Enum):
+class ParcelStage(enum.Enum):
     """How far an object has come."""
 
     WAITING = "waiting"
@@ -23,7 +23,11 @@ class CarriedParcel:
     """
 
     def __init__(
-        self, pickup: NamedPlace, dropoff: NamedPlace, pickup_seconds: float, stage: Stage = Stage.WAITING
+        self,
+        pickup: NamedPlace,
+        dropoff: NamedPlace,
+        pickup_seconds: float,
+        stage: ParcelStage = ParcelStage.WAITING,
     ):
         self.stage = stage
         self._pickup = pickup
@@ -36,18 +40,20 @@ class CarriedParcel:
         """Where the object is shown, or None while it is hidden. ``robot``: its pose in the map, if known."""
         if robot is not None:
             self._follow(self._elapsed.at(now), robot)
-        return {Stage.WAITING: self._pickup.pose, Stage.DELIVERED: self._dropoff.pose}.get(self.stage)
+        return {ParcelStage.WAITING: self._pickup.pose, ParcelStage.DELIVERED: self._dropoff.pose}.get(
+            self.stage
+        )
 
     def _follow(self, now: float, robot: Pose2) -> None:
-        if self.stage is Stage.CARRIED and self._dropoff.holds(robot):
-            self.stage = Stage.DELIVERED
-        elif self.stage is Stage.WAITING:
+        if self.stage is ParcelStage.CARRIED and self._dropoff.holds(robot):
+            self.stage = ParcelStage.DELIVERED
+        elif self.stage is ParcelStage.WAITING:
             if not self._pickup.holds(robot):
                 self._arrived_at = None
             elif self._arrived_at is None:
                 self._arrived_at = now
             if self._arrived_at is not None and now - self._arrived_at >= self._pickup_seconds:
-                self.stage = Stage.CARRIED
+                self.stage = ParcelStage.CARRIED
 
 
 class TimedParcel:

@@ -6,37 +6,37 @@ from typing import List, Optional
 
 from home_service import commands
 from home_service.command import Command, CommandFolder
-from home_service.nursery import prepare_nodes
 from home_service.options import GraphOptions
+from home_service.preload import preload_nodes
 from home_service.result import ResultError
 from planar import PlanarError
 from supervision import command_line
-from supervision.display import complain
+from supervision.display import print_error
 from supervision.errors import LaunchError
-from supervision.interruption import INTERRUPTED, RunInterruptedError, leave_when_interrupted
+from supervision.interruption import INTERRUPTED, RunInterruptedError, exit_when_interrupted
 
 FAILURE, BAD_INPUT = 1, 2
 
 
 def main(arguments: Optional[List[str]] = None, folder: CommandFolder = commands.FOLDER) -> int:
     """Runs one of a folder; returns its exit code: 0 success, 1 failure, 2 bad input, 130 interrupted."""
-    leave_when_interrupted()
+    exit_when_interrupted()
     try:
         command = parse(sys.argv[1:] if arguments is None else arguments, folder)
         if isinstance(command, GraphOptions):
-            prepare_nodes()
+            preload_nodes()
         return command.run()
     except RunInterruptedError as error:
-        complain(str(error))
+        print_error(str(error))
         return INTERRUPTED
     except LaunchError as error:
-        complain(str(error))
+        print_error(str(error))
         return BAD_INPUT if error.is_bad_input else FAILURE
     except ResultError as error:
-        complain(str(error))
+        print_error(str(error))
         return FAILURE
     except PlanarError as error:
-        complain(str(error))
+        print_error(str(error))
         return BAD_INPUT
 
 
@@ -46,10 +46,10 @@ def parse(words: List[str], folder: CommandFolder = commands.FOLDER) -> Command:
     Ends the process on --help and on nonsense, in the name of the script that belongs to the command.
     Raises PluginError if the word is a dotted name and names no command.
     """
-    is_of_other_people = bool(words) and "/" in words[0]
-    if not is_of_other_people and (not words or words[0] not in folder.names()):
+    is_custom = bool(words) and "/" in words[0]
+    if not is_custom and (not words or words[0] not in folder.names()):
         _parser_of_names(folder).parse_args(words[:1])
-    script = words[0] if is_of_other_people else f"{words[0]}.sh"
+    script = words[0] if is_custom else f"{words[0]}.sh"
     return command_line.parse(folder.find(words[0]), words[1:], script)
 
 

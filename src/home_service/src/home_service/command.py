@@ -50,12 +50,12 @@ class CommandFolder:
         No other is imported. Raises PluginError if there is none of that dotted name, or it lacks something.
         """
         if "/" in name:
-            return _of_other_people(name)
+            return _load_custom(name)
         module = importlib.import_module(f"{self._name}.{name}")
         return getattr(module, name.title().replace("_", ""))
 
 
-def _of_other_people(name: str) -> Type[Command]:
+def _load_custom(name: str) -> Type[Command]:
     found = load_plugin(name, CONTRACT)
     if found is None:
         raise PluginError(f"{name} is the dotted name of no command: my_package.my_module/MyCommand is one")

@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parents[4]
 MAX_SPEED = 1000.0
 RUN_SECONDS = 900.0
 # The options that result.json tells, under their names.
-TOLD = ("seed", "world", "robot", "map", "mission")
+RESULT_OPTIONS = ("seed", "world", "robot", "map", "mission")
 
 
 def speed_factor(text: str) -> float:
@@ -123,12 +123,12 @@ class LaunchPlan:
     arguments: Mapping[str, object]
     is_simulated: bool = True
     bags: Optional[str] = None
-    comes_back: Tuple[str, ...] = ()
+    respawned: Tuple[str, ...] = ()
     package: str = "home_service"
 
-    def respawning(self, *nodes: str) -> "LaunchPlan":
+    def with_respawn(self, *nodes: str) -> "LaunchPlan":
         """The same, with these nodes started again if they die."""
-        return replace(self, arguments={**self.arguments, "respawn": "true"}, comes_back=nodes)
+        return replace(self, arguments={**self.arguments, "respawn": "true"}, respawned=nodes)
 
 
 @dataclass(frozen=True)
@@ -157,7 +157,7 @@ class RunOptions:
         return type(self).__module__.rpartition(".")[2]
 
     @property
-    def is_ended_by_a_person(self) -> bool:
+    def is_interactive(self) -> bool:
         return False
 
     @property
@@ -170,28 +170,28 @@ class RunOptions:
         """Wall-clock seconds that the run may take."""
         if self.timeout is not None:
             return self.timeout
-        return math.inf if self.is_ended_by_a_person else RUN_SECONDS
+        return math.inf if self.is_interactive else RUN_SECONDS
 
     @property
-    def wanted_speed(self) -> float:
+    def effective_speed(self) -> float:
         """Simulated seconds per second; 0: as fast as the nodes keep up."""
         return float(self.has_view) if self.speed is None else self.speed
 
     @property
     def has_view(self) -> bool:
         """Whether somebody is to look on."""
-        return self.rviz or self.is_on_the_web
+        return self.rviz or self.shows_cockpit
 
     @property
-    def is_on_the_web(self) -> bool:
+    def shows_cockpit(self) -> bool:
         return self.web or self.web_port is not None
 
-    def told(self) -> Dict[str, Any]:
+    def result_fields(self) -> Dict[str, Any]:
         """The options that belong into result.json."""
-        given = {item.name: getattr(self, item.name) for item in fields(self) if item.name in TOLD}
+        given = {item.name: getattr(self, item.name) for item in fields(self) if item.name in RESULT_OPTIONS}
         paths = {name: str(value) for name, value in given.items() if isinstance(value, Path)}
-        told = {name: value for name, value in {**given, **paths}.items() if value is not None}
-        return {**told, "speed": self.wanted_speed}
+        shown = {name: value for name, value in {**given, **paths}.items() if value is not None}
+        return {**shown, "speed": self.effective_speed}
 
 
 @dataclass(frozen=True)
@@ -223,7 +223,7 @@ class MappingOptions(GraphOptions):
     def mapping(self, explores: bool) -> LaunchPlan:
         """The simulation with SLAM and, if the robot explores by itself, all that it takes for that."""
         if explores:
-            return self.launch("mapping.launch", autostart="true").respawning(
+            return self.launch("mapping.launch", autostart="true").with_respawn(
                 *MAPPING_NODES, *EXPLORING_NODES
             )
-        return self.launch("slam.launch").respawning(*MAPPING_NODES)
+        return self.launch("slam.launch").with_respawn(*MAPPING_NODES)

@@ -12,7 +12,7 @@ class ResultError(PlanarError):
     """The result of a run cannot be written; for programs the run is no success then."""
 
 
-class Result:
+class ResultFile:
     """Findings by the keys of the schema, from whoever found them; written anew whenever some have come.
 
     ``missing``: what could not be recorded or written, and why. ``gap``: the same of result.json itself, None
@@ -39,7 +39,7 @@ class Result:
         return self.missing if self.gap is None else [self.gap, *self.missing]
 
     @contextmanager
-    def noting_what_is_missing(self, name: str) -> Iterator[None]:
+    def recording_gaps(self, name: str) -> Iterator[None]:
         """Something of that name is made within; if it cannot be, it is missing."""
         try:
             yield
@@ -62,7 +62,7 @@ class Result:
         return None
 
 
-def in_few_words(missing: Iterable[str]) -> List[str]:
+def grouped_by_reason(missing: Iterable[str]) -> List[str]:
     """What is missing, each reason once."""
     names: Dict[str, List[str]] = {}
     for gap in dict.fromkeys(missing):

@@ -3,8 +3,8 @@
 import slam_lite.warming
 from explorer_lite.explorer import warm_up as warm_up_explorer
 from home_service.commands.rehearse import Rehearse
-from home_service.nursery import load_kernels
-from home_service.rehearsal import NAVIGATION_CONFIG, Conditions
+from home_service.headless import NAVIGATION_CONFIG, EpisodeConditions
+from home_service.preload import load_kernels
 from move_base_lite.control import LOCAL_PLANNERS
 from move_base_lite.warmup import warm_up as warm_up_navigator
 
@@ -20,7 +20,7 @@ def main() -> int:
 
 def warm_up_local_planners() -> None:
     for name in LOCAL_PLANNERS.names:
-        warm_up_navigator(Conditions(name).navigation(NAVIGATION_CONFIG))
+        warm_up_navigator(EpisodeConditions(name).navigation(NAVIGATION_CONFIG))
 
 
 if __name__ == "__main__":

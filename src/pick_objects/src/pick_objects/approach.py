@@ -10,7 +10,7 @@ from planar.maps.places import NamedPlace
 
 
 @dataclass(frozen=True)
-class GoTo:
+class DriveToPlace:
     """Order: drive to this place. It takes the place of any earlier order."""
 
     place: NamedPlace
@@ -23,18 +23,18 @@ class GoTo:
 
 
 @dataclass(frozen=True)
-class Arrived:
+class PlaceReached:
     """The place is reached."""
 
 
 @dataclass(frozen=True)
-class GivenUp:
+class PlaceUnreachable:
     """The place cannot be reached, and why."""
 
     reason: str
 
 
-class Approach:
+class PlaceApproach:
     """Answers, told the time and what came of the last goal, what to do to get to ``place``."""
 
     def __init__(self, place: NamedPlace, settings: ErrandSettings, goal_timeout: Optional[float] = None):
@@ -46,7 +46,7 @@ class Approach:
         self._retry_at: Optional[float] = None
         self._is_taken_over = False
 
-    def start(self, now: float) -> GoTo:
+    def start(self, now: float) -> DriveToPlace:
         """The next attempt, or the same once more if others took the robot for themselves."""
         if not self._is_taken_over:
             self.attempt += 1
@@ -54,14 +54,14 @@ class Approach:
         self._sent_at = now
         self._retry_at = None
         self._is_taken_over = False
-        return GoTo(self.place, self.attempt)
+        return DriveToPlace(self.place, self.attempt)
 
     def advance(
         self, now: float, event: Union[None, GoalReached, GoalFailed]
-    ) -> Union[None, GoTo, Arrived, GivenUp]:
+    ) -> Union[None, DriveToPlace, PlaceReached, PlaceUnreachable]:
         """What has come of it, the next goal, or None to carry on. ``now``: seconds."""
         if isinstance(event, GoalReached):
-            return Arrived()
+            return PlaceReached()
         if isinstance(event, GoalFailed):
             if event.is_preempted and 0.0 <= now - self._begun_at <= self._timeout:
                 self._is_taken_over, self._retry_at = True, now + self._settings.retry_seconds
@@ -73,9 +73,9 @@ class Approach:
             return self._give_up_or_pause(now, f"not reached within {self._timeout:g} s")
         return None
 
-    def _give_up_or_pause(self, now: float, reason: str) -> Optional[GivenUp]:
+    def _give_up_or_pause(self, now: float, reason: str) -> Optional[PlaceUnreachable]:
         if self.attempt < self._settings.attempts:
             self._retry_at = now + self._settings.retry_seconds
             return None
         tries = "1 attempt" if self.attempt == 1 else f"{self.attempt} attempts"
-        return GivenUp(f"place {self.place.name} not reached after {tries}: {reason}")
+        return PlaceUnreachable(f"place {self.place.name} not reached after {tries}: {reason}")

@@ -3,12 +3,20 @@
 from dataclasses import dataclass
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
-from pick_objects.approach import GoTo
-from pick_objects.carrier import Carrier
-from pick_objects.forecast import Forecast
-from pick_objects.job import ENDED, ON_ROBOT, STATE_OF_STAGE, ErrandState, Job, Stage, Whereabouts
+from pick_objects.approach import DriveToPlace
+from pick_objects.delivery_execution import DeliveryExecution
+from pick_objects.driving_time import DrivingTimeEstimator
+from pick_objects.job import (
+    ENDED,
+    ON_ROBOT,
+    STATE_OF_STAGE,
+    DeliveryJob,
+    DeliveryStage,
+    ErrandState,
+    ObjectLocation,
+)
 from pick_objects.mission import Delivery, Mission, MissionError
-from pick_objects.schedule import Schedule
+from pick_objects.schedule import DeliverySchedule
 from planar import Pose2
 from planar.driving import FinishTask, GoalFailed, GoalReached, RobotDisplaced
 from planar.elapsed import ElapsedTime
@@ -16,21 +24,21 @@ from planar.maps.places import NamedPlace
 
 
 @dataclass(frozen=True)
-class MeasureWays:
+class MeasurePathLengths:
     """Order: find out how long these ways are. A way from None begins where the robot is."""
 
     ways: Tuple[Tuple[Optional[Pose2], Pose2], ...]
 
 
 @dataclass(frozen=True)
-class WaysMeasured:
+class PathLengthsMeasured:
     """Event: the lengths of the ways of the last order, metres; None where there is no way."""
 
     lengths: Tuple[Optional[float], ...]
 
 
-Order = Union[GoTo, MeasureWays, FinishTask]
-Event = Union[GoalReached, GoalFailed, RobotDisplaced, WaysMeasured]
+Order = Union[DriveToPlace, MeasurePathLengths, FinishTask]
+Event = Union[GoalReached, GoalFailed, RobotDisplaced, PathLengthsMeasured]
 
 
 class Errand:
@@ -41,13 +49,13 @@ class Errand:
 
     def __init__(self, mission: Mission):
         self.mission = mission
-        self.whereabouts: Dict[str, Whereabouts] = {}
+        self.object_locations: Dict[str, ObjectLocation] = {}
         self.reason = ""
-        self._note_objects()
-        self._schedule = Schedule(mission)
-        self._carrier: Optional[Carrier] = None
+        self._place_objects()
+        self._schedule = DeliverySchedule(mission)
+        self._execution: Optional[DeliveryExecution] = None
         self.is_cancelled = self._is_measuring = self._is_over = False
-        self._forecast = Forecast()
+        self._driving_time = DrivingTimeEstimator()
         self._elapsed = ElapsedTime()
 
     def advance(self, now: float, event: Optional[Event] = None) -> Optional[Order]:
@@ -58,11 +66,11 @@ class Errand:
         if self.is_cancelled:
             return self._end("cancelled")
         if self._is_measuring:
-            return self._take_order(now, event)
-        if self._carrier is None or self._carrier.job.stage is Stage.CANCELLED:
+            return self._apply_order(now, event)
+        if self._execution is None or self._execution.job.stage is DeliveryStage.CANCELLED:
             return self._begin_next(now)
-        order = self._carrier.advance(now, None if isinstance(event, WaysMeasured) else event)
-        return self._begin_next(now) if self._carrier.job.stage in ENDED else order
+        order = self._execution.advance(now, None if isinstance(event, PathLengthsMeasured) else event)
+        return self._begin_next(now) if self._execution.job.stage in ENDED else order
 
     def add(self, delivery: Delivery) -> Delivery:
         """Adds a delivery to those that wait; returns it with its name. Raises MissionError."""
@@ -70,18 +78,21 @@ class Errand:
         self.mission = self.mission.with_delivery(delivery)
         added = self.mission.deliveries[-1]
         self._schedule.add(added)
-        self._note_objects()
+        self._place_objects()
         return added
 
     def resume(
-        self, jobs: Sequence[Job], whereabouts: Mapping[str, Whereabouts], is_cancelled: bool = False
+        self,
+        jobs: Sequence[DeliveryJob],
+        object_locations: Mapping[str, ObjectLocation],
+        is_cancelled: bool = False,
     ) -> None:
         """Goes on where an earlier errand of this mission was cut short; comes before the first advance.
 
         A job may be CARRYING; no other is under way.
         """
         self._schedule.jobs = list(jobs)
-        self.whereabouts.update(whereabouts)
+        self.object_locations.update(object_locations)
         self.is_cancelled = is_cancelled
 
     def cancel(self, name: str = "") -> None:
@@ -96,8 +107,8 @@ class Errand:
             jobs, self.is_cancelled = [job for job in self.jobs if job.stage not in ENDED], True
         for job in jobs:
             if job.stage in ON_ROBOT:
-                thing = job.delivery.thing
-                self.whereabouts[thing] = self.whereabouts[thing].left
+                name = job.delivery.object_name
+                self.object_locations[name] = self.object_locations[name].dropped
             job.cancel()
 
     @property
@@ -110,24 +121,24 @@ class Errand:
         return STATE_OF_STAGE.get(self.job.stage, ErrandState.READY) if self.job else ErrandState.READY
 
     @property
-    def jobs(self) -> List[Job]:
+    def jobs(self) -> List[DeliveryJob]:
         """The deliveries in the order in which they are carried out."""
         return self._schedule.jobs
 
     @property
-    def job(self) -> Optional[Job]:
+    def job(self) -> Optional[DeliveryJob]:
         """The delivery in progress, or the last one."""
-        return self._carrier.job if self._carrier else None
+        return self._execution.job if self._execution else None
 
     @property
     def place(self) -> Optional[NamedPlace]:
         """The place that the robot is at or on its way to."""
-        return self._carrier.approach.place if self._carrier and self._carrier.approach else None
+        return self._execution.approach.place if self._execution and self._execution.approach else None
 
     @property
     def attempt(self) -> int:
         """How often the robot was sent to that place."""
-        return self._carrier.approach.attempt if self._carrier and self._carrier.approach else 0
+        return self._execution.approach.attempt if self._execution and self._execution.approach else 0
 
     @property
     def progress(self) -> float:
@@ -140,46 +151,48 @@ class Errand:
         if self._is_over:
             return 0.0
         settings, places, where = self.mission.settings, self.mission.places, self.place
-        left = self._forecast.seconds_left(self._elapsed.at(now))
+        left = self._driving_time.seconds_left(self._elapsed.at(now))
         for job in self.jobs:
             if job.stage in ENDED:
                 continue
             source, destination = places[job.delivery.source], places[job.delivery.destination]
-            if job.stage.value < Stage.PICKING_UP.value and where:
-                left += self._forecast.seconds_between(where.pose, source.pose)
-            if job.stage.value < Stage.CARRYING.value:
+            if job.stage.value < DeliveryStage.PICKING_UP.value and where:
+                left += self._driving_time.seconds_between(where.pose, source.pose)
+            if job.stage.value < DeliveryStage.CARRYING.value:
                 left += settings.pickup_seconds
-                left += self._forecast.seconds_between(source.pose, destination.pose)
+                left += self._driving_time.seconds_between(source.pose, destination.pose)
             left += settings.dropoff_seconds
             where = destination
         return left
 
     def _begin_next(self, now: float) -> Order:
         while True:
-            self._schedule.give_up_hopeless()
-            job = self._schedule.under_way
+            self._schedule.fail_blocked()
+            job = self._schedule.carried_job
             if job is None:
                 waiting = self._schedule.waiting
                 if not waiting or (self._schedule.has_failed and self.mission.settings.on_failure == "stop"):
                     return self._conclude()
-                if not self._schedule.is_settled and len(waiting) > 1:
+                if not self._schedule.is_ordered and len(waiting) > 1:
                     self._is_measuring = True
-                    return MeasureWays(self._schedule.ways(self.mission.places))
+                    return MeasurePathLengths(self._schedule.ways(self.mission.places))
                 job = self._schedule.next_job()
-            approach = self._carrier.approach if self._carrier else None
-            self._carrier = Carrier(job, self.mission, self.whereabouts, self._forecast, approach)
-            order = self._carrier.set_out(now)
+            approach = self._execution.approach if self._execution else None
+            self._execution = DeliveryExecution(
+                job, self.mission, self.object_locations, self._driving_time, approach
+            )
+            order = self._execution.start(now)
             if order is not None:
                 return order
 
-    def _take_order(self, now: float, event: Optional[Event]) -> Optional[Order]:
-        if not isinstance(event, WaysMeasured):
+    def _apply_order(self, now: float, event: Optional[Event]) -> Optional[Order]:
+        if not isinstance(event, PathLengthsMeasured):
             return None
         self._is_measuring = False
-        self._schedule.settle(event.lengths)
+        self._schedule.apply_path_lengths(event.lengths)
         return self._begin_next(now)
 
-    def _unfinished(self, name: str) -> Job:
+    def _unfinished(self, name: str) -> DeliveryJob:
         job = next((job for job in self.jobs if job.delivery.name == name), None)
         if job is None:
             raise MissionError(f"there is no delivery {name}")
@@ -188,13 +201,13 @@ class Errand:
         return job
 
     def _conclude(self) -> FinishTask:
-        failed = [job for job in self.jobs if job.stage is Stage.FAILED]
+        failed = [job for job in self.jobs if job.stage is DeliveryStage.FAILED]
         if failed:
             first = failed[0]
             return self._end(
                 first.reason if len(self.jobs) == 1 else f"{first.delivery.name}: {first.reason}"
             )
-        if all(job.stage is Stage.CANCELLED for job in self.jobs):
+        if all(job.stage is DeliveryStage.CANCELLED for job in self.jobs):
             return self._end("cancelled")
         return self._end(f"delivered at place {self.jobs[-1].delivery.destination}")
 
@@ -206,7 +219,7 @@ class Errand:
     def _final_state(self) -> ErrandState:
         if self._schedule.has_failed and not self.is_cancelled:
             return ErrandState.FAILED
-        if self.is_cancelled or all(job.stage is Stage.CANCELLED for job in self.jobs):
+        if self.is_cancelled or all(job.stage is DeliveryStage.CANCELLED for job in self.jobs):
             return ErrandState.CANCELLED
         return ErrandState.DELIVERED
 
@@ -222,8 +235,8 @@ class Errand:
         if self._is_over:
             raise MissionError("the mission is over")
 
-    def _note_objects(self) -> None:
+    def _place_objects(self) -> None:
         """An object is where the first delivery of it begins."""
         for delivery in self.mission.deliveries:
             source = self.mission.places[delivery.source]
-            self.whereabouts.setdefault(delivery.thing, Whereabouts(source.name, source.pose))
+            self.object_locations.setdefault(delivery.object_name, ObjectLocation(source.name, source.pose))

@@ -22,7 +22,7 @@ class ErrandState(enum.Enum):
     CANCELLED = "cancelled"
 
 
-class Stage(enum.Enum):
+class DeliveryStage(enum.Enum):
     """How far a delivery has come; the values are those of home_service_msgs/DeliveryState."""
 
     WAITING = 0
@@ -35,36 +35,36 @@ class Stage(enum.Enum):
     CANCELLED = 7
 
 
-ENDED = (Stage.DELIVERED, Stage.FAILED, Stage.CANCELLED)
-ON_ROBOT = (Stage.CARRYING, Stage.SETTING_DOWN)
+ENDED = (DeliveryStage.DELIVERED, DeliveryStage.FAILED, DeliveryStage.CANCELLED)
+ON_ROBOT = (DeliveryStage.CARRYING, DeliveryStage.SETTING_DOWN)
 """Where the object of a delivery is then."""
 STATE_OF_STAGE = {
-    Stage.FETCHING: ErrandState.GOING_TO_PICKUP,
-    Stage.PICKING_UP: ErrandState.PICKING_UP,
-    Stage.CARRYING: ErrandState.GOING_TO_DROPOFF,
-    Stage.SETTING_DOWN: ErrandState.SETTING_DOWN,
+    DeliveryStage.FETCHING: ErrandState.GOING_TO_PICKUP,
+    DeliveryStage.PICKING_UP: ErrandState.PICKING_UP,
+    DeliveryStage.CARRYING: ErrandState.GOING_TO_DROPOFF,
+    DeliveryStage.SETTING_DOWN: ErrandState.SETTING_DOWN,
 }
 """What the robot is about while a delivery is in progress."""
 
 
 @dataclass
-class Job:
+class DeliveryJob:
     """A delivery and what has become of it. ``attempts``: goals sent for it so far."""
 
     delivery: Delivery
-    stage: Stage = Stage.WAITING
+    stage: DeliveryStage = DeliveryStage.WAITING
     attempts: int = 0
     reason: str = ""
 
     def fail(self, reason: str) -> None:
-        self.stage, self.reason = Stage.FAILED, reason
+        self.stage, self.reason = DeliveryStage.FAILED, reason
 
     def cancel(self) -> None:
-        self.stage, self.reason = Stage.CANCELLED, "cancelled"
+        self.stage, self.reason = DeliveryStage.CANCELLED, "cancelled"
 
 
 @dataclass(frozen=True)
-class Whereabouts:
+class ObjectLocation:
     """Where an object is: at a place, with the robot, or (neither) where the robot had to leave it.
 
     ``pose``: where it stands or stood last, in the map.
@@ -75,6 +75,6 @@ class Whereabouts:
     is_carried: bool = False
 
     @property
-    def left(self) -> "Whereabouts":
+    def dropped(self) -> "ObjectLocation":
         """Set down where the robot stands, if it was on it."""
-        return Whereabouts(None, self.pose) if self.is_carried else self
+        return ObjectLocation(None, self.pose) if self.is_carried else self

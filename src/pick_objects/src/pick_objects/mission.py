@@ -16,7 +16,7 @@ class MissionError(PlanarError):
 
 
 @dataclass(frozen=True)
-class Thing:
+class MissionObject:
     """An object to be carried: the edge of a cube around it in metres; red, green and blue from 0 to 1.
 
     ``solid``: whether it is a body in the simulator, a column that wide.
@@ -30,13 +30,13 @@ class Thing:
 
 @dataclass(frozen=True)
 class Delivery:
-    """``thing`` is to be carried from one place to another; all are named.
+    """``object_name`` is to be carried from one place to another; all are named.
 
     ``after``: deliveries that must have been made before. ``goal_timeout``: seconds, if not the mission's.
     """
 
     name: str
-    thing: str
+    object_name: str
     source: str
     destination: str
     after: Tuple[str, ...] = ()
@@ -50,12 +50,12 @@ class Mission:
     name: str
     places: Mapping[str, NamedPlace]
     deliveries: Tuple[Delivery, ...]
-    things: Mapping[str, Thing] = field(default_factory=dict)
+    objects: Mapping[str, MissionObject] = field(default_factory=dict)
     settings: ErrandSettings = ErrandSettings()
 
-    def thing(self, name: str) -> Thing:
+    def object_named(self, name: str) -> MissionObject:
         """The object of that name; one that nobody has described is an ordinary one."""
-        return self.things.get(name, Thing(name))
+        return self.objects.get(name, MissionObject(name))
 
     def with_delivery(self, delivery: Delivery) -> "Mission":
         """The mission with one more delivery, named if it had no name. Raises MissionError."""
@@ -66,13 +66,13 @@ class Mission:
         named = replace(delivery, name=name)
         if name in names:
             raise MissionError(f"there is a delivery {name} already")
-        if not named.thing:
+        if not named.object_name:
             raise MissionError(f"{name}: no object is named")
         for place in (named.source, named.destination):
             if place not in self.places:
                 raise MissionError(f"{name}: there is no place '{place}'; known are {', '.join(self.places)}")
         if named.source == named.destination:
-            raise MissionError(f"{name}: {named.thing} is at {named.source} already")
+            raise MissionError(f"{name}: {named.object_name} is at {named.source} already")
         return replace(self, deliveries=(*self.deliveries, named))
 
 

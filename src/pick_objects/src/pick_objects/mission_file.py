@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Dict, List, Mapping, Optional, Set, Tuple
 
 from pick_objects.config import ErrandSettings
-from pick_objects.mission import ORANGE, Delivery, Mission, Thing
+from pick_objects.mission import ORANGE, Delivery, Mission, MissionObject
 from planar.config.hints import hint_or_choices
 from planar.config.settings import settings_from
 from planar.config.yaml_table import Table, parse_table, read_table
@@ -13,8 +13,8 @@ from planar.geometry.grid import OccupancyGrid
 from planar.maps.places import NamedPlace, obstruction_at, parse_place
 
 Places = Mapping[str, NamedPlace]
-WIDEST_SOLID = 0.25
-NAME_OF_TEXT = "mission"  # that stands where else the name of the file does
+MAX_SOLID_SIZE = 0.25
+TEXT_SOURCE = "mission"  # that stands where else the name of the file does
 
 
 def load_mission(
@@ -38,7 +38,7 @@ def parse_mission(
     grid: Optional[OccupancyGrid] = None,
 ) -> Mission:
     """The mission of a text, as load_mission of a file."""
-    return _mission(parse_table(text, NAME_OF_TEXT), NAME_OF_TEXT, known_places, defaults, grid)
+    return _mission(parse_table(text, TEXT_SOURCE), TEXT_SOURCE, known_places, defaults, grid)
 
 
 def _mission(
@@ -52,10 +52,10 @@ def _mission(
     table.allow_only("name", "places", "objects", "settings", "deliveries", "faults")
     name = table.text("name", Path(source).stem)
     places = {**known_places, **_places(table, grid)}
-    things = _things(table)
+    objects = _objects(table)
     settings = _settings(table, defaults)
-    deliveries = _deliveries(table, places, things)
-    return Mission(name, places, deliveries, things, settings)
+    deliveries = _deliveries(table, places, objects)
+    return Mission(name, places, deliveries, objects, settings)
 
 
 def _places(table: Table, grid: Optional[OccupancyGrid]) -> Dict[str, NamedPlace]:
@@ -76,22 +76,24 @@ def _check_free(place: NamedPlace, entry: Table, grid: OccupancyGrid) -> None:
             raise part.complaint("x", f"and y: ({pose.x:g}, {pose.y:g}) {obstruction}")
 
 
-def _things(table: Table) -> Dict[str, Thing]:
+def _objects(table: Table) -> Dict[str, MissionObject]:
     if "objects" not in table:
         return {}
-    objects, things = table.table("objects"), {}
-    for name in objects:
-        entry = objects.table(name)
+    entries, objects = table.table("objects"), {}
+    for name in entries:
+        entry = entries.table(name)
         entry.allow_only("size", "color", "solid")
-        size = entry.number("size", Thing(name).size)
+        size = entry.number("size", MissionObject(name).size)
         entry.check(size > 0.0, "size", "positive")
         color = entry.numbers("color", "red, green, blue") if "color" in entry else ORANGE
         entry.check(all(0.0 <= share <= 1.0 for share in color), "color", "three numbers from 0 to 1")
         solid = entry.flag("solid", False)
         if solid:
-            entry.check(size <= WIDEST_SOLID, "size", f"at most {WIDEST_SOLID}, that the robot can carry it")
-        things[name] = Thing(name, size, color, solid)  # type: ignore[arg-type]
-    return things
+            entry.check(
+                size <= MAX_SOLID_SIZE, "size", f"at most {MAX_SOLID_SIZE}, that the robot can carry it"
+            )
+        objects[name] = MissionObject(name, size, color, solid)  # type: ignore[arg-type]
+    return objects
 
 
 def _settings(table: Table, defaults: ErrandSettings) -> ErrandSettings:
@@ -103,14 +105,14 @@ def _settings(table: Table, defaults: ErrandSettings) -> ErrandSettings:
     return settings
 
 
-def _deliveries(table: Table, places: Places, things: Mapping[str, Thing]) -> Tuple[Delivery, ...]:
+def _deliveries(table: Table, places: Places, objects: Mapping[str, MissionObject]) -> Tuple[Delivery, ...]:
     entries = table.tables("deliveries")
     if not entries:
         raise table.complaint("deliveries", "are missing: [{object: ..., from: ..., to: ...}]")
     deliveries: List[Delivery] = []
     lines: Dict[str, Table] = {}
     for number, entry in enumerate(entries, 1):
-        delivery = _delivery(entry, number, places, things)
+        delivery = _delivery(entry, number, places, objects)
         if delivery.name in lines:
             raise entry.complaint("name", f"{delivery.name} is that of another delivery already")
         lines[delivery.name] = entry
@@ -118,22 +120,22 @@ def _deliveries(table: Table, places: Places, things: Mapping[str, Thing]) -> Tu
     for delivery in deliveries:
         _check_name(lines[delivery.name], "after", delivery.after, lines, "delivery")
     _check_cycles(deliveries, lines)
-    _check_whereabouts(deliveries, lines)
+    _check_object_locations(deliveries, lines)
     return tuple(deliveries)
 
 
-def _delivery(entry: Table, number: int, places: Places, things: Mapping[str, Thing]) -> Delivery:
+def _delivery(entry: Table, number: int, places: Places, objects: Mapping[str, MissionObject]) -> Delivery:
     entry.allow_only("name", "object", "from", "to", "after", "goal_timeout")
-    thing, source, destination = (entry.text(key) for key in ("object", "from", "to"))
+    object_name, source, destination = (entry.text(key) for key in ("object", "from", "to"))
     _check_name(entry, "from", [source], places, "place")
     _check_name(entry, "to", [destination], places, "place")
-    if things:
-        _check_name(entry, "object", [thing], things, "object")
+    if objects:
+        _check_name(entry, "object", [object_name], objects, "object")
     entry.check(source != destination, "to", f"another place than {source}")
     timeout = entry.number("goal_timeout") if "goal_timeout" in entry else None
     entry.check(timeout is None or timeout > 0.0, "goal_timeout", "positive")
     name = entry.text("name", f"delivery {number}")
-    return Delivery(name, thing, source, destination, tuple(entry.texts("after")), timeout)
+    return Delivery(name, object_name, source, destination, tuple(entry.texts("after")), timeout)
 
 
 def _check_name(entry: Table, key: str, names, known, kind: str) -> None:
@@ -145,12 +147,12 @@ def _check_name(entry: Table, key: str, names, known, kind: str) -> None:
 def _check_cycles(deliveries: List[Delivery], lines: Mapping[str, Table]) -> None:
     """Deliveries that wait for each other, also since an object is carried on from where one left it."""
     waits_for: Dict[str, Set[str]] = {}
-    latest_of_thing: Dict[str, str] = {}
+    latest_of_object: Dict[str, str] = {}
     for delivery in deliveries:
         waits_for[delivery.name] = set(delivery.after)
-        if delivery.thing in latest_of_thing:
-            waits_for[delivery.name].add(latest_of_thing[delivery.thing])
-        latest_of_thing[delivery.thing] = delivery.name
+        if delivery.object_name in latest_of_object:
+            waits_for[delivery.name].add(latest_of_object[delivery.object_name])
+        latest_of_object[delivery.object_name] = delivery.name
     while waits_for:
         free = [name for name, others in waits_for.items() if not others & set(waits_for)]
         if not free:
@@ -160,12 +162,12 @@ def _check_cycles(deliveries: List[Delivery], lines: Mapping[str, Table]) -> Non
             del waits_for[name]
 
 
-def _check_whereabouts(deliveries: List[Delivery], lines: Mapping[str, Table]) -> None:
+def _check_object_locations(deliveries: List[Delivery], lines: Mapping[str, Table]) -> None:
     """An object is carried on from where it was left."""
     left_at: Dict[str, Delivery] = {}
     for delivery in deliveries:
-        last = left_at.get(delivery.thing)
+        last = left_at.get(delivery.object_name)
         if last is not None and last.destination != delivery.source:
-            where = f"{last.destination}, where {last.name} leaves {delivery.thing}"
+            where = f"{last.destination}, where {last.name} leaves {delivery.object_name}"
             lines[delivery.name].check(False, "from", where)
-        left_at[delivery.thing] = delivery
+        left_at[delivery.object_name] = delivery

@@ -3,7 +3,7 @@
 import math
 from typing import Dict, List, Sequence, Set, Tuple
 
-MOST_FOR_CERTAIN = 10
+MAX_EXACT = 10
 """So many are ordered in the best way; of more, always the nearest is next."""
 
 
@@ -16,7 +16,7 @@ def shortest_order(
     to where j begins; ``before[i]``: those that must come before i. With up to ten it is the best order
     (Held and Karp, 1962). Of two equal orders, the one nearer to the given one is taken.
     """
-    if len(from_start) > MOST_FOR_CERTAIN:
+    if len(from_start) > MAX_EXACT:
         return _nearest_next(from_start, between, before)
     return _best(from_start, between, before)
 

@@ -2,58 +2,62 @@
 
 from typing import Dict, List, Mapping, Optional, Sequence, Set, Tuple
 
-from pick_objects.job import ENDED, Job, Stage
+from pick_objects.job import ENDED, DeliveryJob, DeliveryStage
 from pick_objects.mission import Delivery, Mission
 from pick_objects.ordering import shortest_order
 from planar import Pose2
 from planar.maps.places import NamedPlace
 
-NO_WAY = 1e6
+UNREACHABLE_LENGTH = 1e6
 """Metres that a way counts which no planner has found: it is left for last."""
 
 
-class Schedule:
+class DeliverySchedule:
     """``jobs``: the deliveries in the order in which they are carried out.
 
     ``is_settled``: whether that is the order wanted; for the shortest one the lengths of ways are needed.
     """
 
     def __init__(self, mission: Mission):
-        self.jobs: List[Job] = [Job(delivery) for delivery in mission.deliveries]
+        self.jobs: List[DeliveryJob] = [DeliveryJob(delivery) for delivery in mission.deliveries]
         self._given = [job.delivery for job in self.jobs]
         self._wants_shortest = mission.settings.order == "shortest"
-        self.is_settled = not self._wants_shortest
+        self.is_ordered = not self._wants_shortest
 
     @property
-    def waiting(self) -> List[Job]:
-        return [job for job in self.jobs if job.stage is Stage.WAITING]
+    def waiting(self) -> List[DeliveryJob]:
+        return [job for job in self.jobs if job.stage is DeliveryStage.WAITING]
 
     @property
-    def under_way(self) -> Optional[Job]:
+    def carried_job(self) -> Optional[DeliveryJob]:
         """The one whose object is on the robot, if any."""
-        return next((job for job in self.jobs if job.stage is Stage.CARRYING), None)
+        return next((job for job in self.jobs if job.stage is DeliveryStage.CARRYING), None)
 
     @property
     def has_failed(self) -> bool:
         """Whether a delivery has."""
-        return any(job.stage is Stage.FAILED for job in self.jobs)
+        return any(job.stage is DeliveryStage.FAILED for job in self.jobs)
 
     def add(self, delivery: Delivery) -> None:
-        self.jobs.append(Job(delivery))
+        self.jobs.append(DeliveryJob(delivery))
         self._given.append(delivery)
-        self.is_settled = not self._wants_shortest
+        self.is_ordered = not self._wants_shortest
 
-    def next_job(self) -> Job:
+    def next_job(self) -> DeliveryJob:
         """The first that waits for no other delivery; there must be some that wait."""
         return next(job for job in self.waiting if not self._before(job))
 
-    def give_up_hopeless(self) -> None:
+    def fail_blocked(self) -> None:
         """Fails what waits for deliveries that will never be made."""
-        jobs: Dict[str, Job] = {job.delivery.name: job for job in self.jobs}
+        jobs: Dict[str, DeliveryJob] = {job.delivery.name: job for job in self.jobs}
         for delivery in self._given:
             job = jobs[delivery.name]
-            lost = [name for name in delivery.after if jobs[name].stage in (Stage.FAILED, Stage.CANCELLED)]
-            if lost and job.stage is Stage.WAITING:
+            lost = [
+                name
+                for name in delivery.after
+                if jobs[name].stage in (DeliveryStage.FAILED, DeliveryStage.CANCELLED)
+            ]
+            if lost and job.stage is DeliveryStage.WAITING:
                 job.fail(f"{lost[0]} was not delivered")
 
     def ways(self, places: Mapping[str, NamedPlace]) -> Tuple[Tuple[Optional[Pose2], Pose2], ...]:
@@ -63,26 +67,28 @@ class Schedule:
         ends = [places[job.delivery.destination].pose for job in waiting]
         return tuple((start, source) for start in (None, *ends) for source in sources)
 
-    def settle(self, lengths: Sequence[Optional[float]]) -> None:
+    def apply_path_lengths(self, lengths: Sequence[Optional[float]]) -> None:
         """Takes the order that makes the ways shortest, told the ``lengths`` of those ways, None for no way.
 
         If a delivery was cancelled or added meanwhile, nothing is settled.
         """
         waiting = self.waiting
         count = len(waiting)
-        self.is_settled = len(lengths) == count * (count + 1)
-        if self.is_settled:
-            metres = [NO_WAY if length is None else length for length in lengths]
+        self.is_ordered = len(lengths) == count * (count + 1)
+        if self.is_ordered:
+            metres = [UNREACHABLE_LENGTH if length is None else length for length in lengths]
             rows = [metres[i * count : (i + 1) * count] for i in range(count + 1)]
             before: List[Set[int]] = [
                 {waiting.index(other) for other in self._before(job)} for job in waiting
             ]
             best = [waiting[i] for i in shortest_order(rows[0], rows[1:], before)]
-            self.jobs = [job for job in self.jobs if job.stage is not Stage.WAITING] + best
+            self.jobs = [job for job in self.jobs if job.stage is not DeliveryStage.WAITING] + best
 
-    def _before(self, job: Job) -> List[Job]:
+    def _before(self, job: DeliveryJob) -> List[DeliveryJob]:
         """The deliveries under way or waiting that must come before this one."""
         earlier = self._given[: self._given.index(job.delivery)]
-        same_thing = {delivery.name for delivery in earlier if delivery.thing == job.delivery.thing}
-        names = same_thing | set(job.delivery.after)
+        same_object = {
+            delivery.name for delivery in earlier if delivery.object_name == job.delivery.object_name
+        }
+        names = same_object | set(job.delivery.after)
         return [other for other in self.jobs if other.delivery.name in names and other.stage not in ENDED]

@@ -2,27 +2,27 @@
 
 from run_report.figures import summary
 from run_report.record import (
-    Collision,
-    Goal,
-    Marking,
+    CollisionEvent,
+    GoalEvent,
+    LoggedWarning,
+    MarkerEvent,
     RecordError,
     RunRecord,
-    State,
-    Warned,
-    Zone,
+    StateEvent,
+    ZoneRecord,
     load_record,
 )
 from run_report.writing import write_report
 
 __all__ = [
-    "Collision",
-    "Goal",
-    "Marking",
+    "CollisionEvent",
+    "GoalEvent",
+    "LoggedWarning",
+    "MarkerEvent",
     "RecordError",
     "RunRecord",
-    "State",
-    "Warned",
-    "Zone",
+    "StateEvent",
+    "ZoneRecord",
     "load_record",
     "summary",
     "write_report",

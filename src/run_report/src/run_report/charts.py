@@ -7,12 +7,12 @@ from typing import List, NamedTuple, Sequence
 import numpy as np
 
 from run_report.map_view import thinned
-from run_report.record import State
+from run_report.record import StateEvent
 
 HEIGHT = 100.0
 
 
-class Line(NamedTuple):
+class ChartLine(NamedTuple):
     """One line of a chart: ``rows`` (N, 2) stamp and value."""
 
     name: str
@@ -20,7 +20,7 @@ class Line(NamedTuple):
     rows: np.ndarray
 
 
-def chart(title: str, unit: str, lines: Sequence[Line], end: float) -> str:
+def chart(title: str, unit: str, lines: Sequence[ChartLine], end: float) -> str:
     """A chart over 0..end seconds; nothing if there is nothing to show."""
     lines = [line for line in lines if len(line.rows)]
     if not lines or end <= 0.0:
@@ -53,7 +53,7 @@ def chart(title: str, unit: str, lines: Sequence[Line], end: float) -> str:
     )
 
 
-def timeline(states: Sequence[State], end: float) -> str:
+def timeline(states: Sequence[StateEvent], end: float) -> str:
     """A bar of states over 0..end seconds, and what its colours mean."""
     if not states or end <= 0.0:
         return ""

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, Dict, List, NamedTuple, Tuple
 
 from planar.files.reading import read_text
-from run_report.charts import Line, chart
+from run_report.charts import ChartLine, chart
 from run_report.figures import localization_errors, real_time_factors
 from run_report.map_view import map_svg
 from run_report.page import badge, document, figures
@@ -17,7 +17,7 @@ KINDS = ("a", "b")
 INPUTS = ("seed", "speed", "world", "map", "mission", "robot")
 
 
-class Run(NamedTuple):
+class LoadedRun(NamedTuple):
     """What a run left in its folder."""
 
     folder: Path
@@ -25,7 +25,7 @@ class Run(NamedTuple):
     record: RunRecord
 
 
-class Row(NamedTuple):
+class ComparisonRow(NamedTuple):
     """A figure of both runs, as people read it; empty where a run has none."""
 
     name: str
@@ -33,7 +33,7 @@ class Row(NamedTuple):
     second: str
 
 
-def load_run(folder: Path) -> Run:
+def load_run(folder: Path) -> LoadedRun:
     """The result and the record of a run folder. Raises RecordError."""
     path = folder / RESULT_FILE
     try:
@@ -48,23 +48,26 @@ def load_run(folder: Path) -> Run:
         dict(figures(result)), _made_from(result)
     except (TypeError, ValueError, LookupError, AttributeError, OverflowError) as error:
         raise RecordError(f"{path}: not the result of a run ({error})") from None
-    return Run(folder, result, load_record(folder))
+    return LoadedRun(folder, result, load_record(folder))
 
 
-def compared_figures(first: Run, second: Run) -> List[Row]:
+def compared_figures(first: LoadedRun, second: LoadedRun) -> List[ComparisonRow]:
     """The figures of both runs, and those inputs and versions that differ between them."""
-    rows = [Row("outcome", *(_outcome(run) for run in (first, second)))]
+    rows = [ComparisonRow("outcome", *(_outcome(run) for run in (first, second)))]
     shown = [dict(figures(run.result)) for run in (first, second)]
-    rows += [Row(name, shown[0].get(name, ""), shown[1].get(name, "")) for name in {**shown[0], **shown[1]}]
+    rows += [
+        ComparisonRow(name, shown[0].get(name, ""), shown[1].get(name, ""))
+        for name in {**shown[0], **shown[1]}
+    ]
     made_from = [_made_from(run.result) for run in (first, second)]
     for name in {**made_from[0], **made_from[1]}:
         values = [made.get(name, "") for made in made_from]
         if values[0] != values[1]:
-            rows.append(Row(name, *values))
+            rows.append(ComparisonRow(name, *values))
     return rows
 
 
-def comparison_html(first: Run, second: Run) -> str:
+def comparison_html(first: LoadedRun, second: LoadedRun) -> str:
     """A page like that of a single run, with both in every chart."""
     runs = (first, second)
     end = max(run.record.end for run in runs)
@@ -73,7 +76,7 @@ def comparison_html(first: Run, second: Run) -> str:
         f"<tr><td>{escape(row.name)}</td><td>{escape(row.first)}</td><td>{escape(row.second)}</td></tr>"
         for row in compared_figures(first, second)
     )
-    lines: List[Tuple[str, str, List[Line]]] = [
+    lines: List[Tuple[str, str, List[ChartLine]]] = [
         ("Localization error", "m", _lines(runs, lambda record: localization_errors(record)[:, :2])),
         ("Forward speed", "m/s", _lines(runs, lambda record: record.velocity[:, :2])),
         ("Real-time factor", "simulated s per s", _lines(runs, real_time_factors)),
@@ -93,7 +96,7 @@ def comparison_html(first: Run, second: Run) -> str:
     )
 
 
-def _outcome(run: Run) -> str:
+def _outcome(run: LoadedRun) -> str:
     return "success" if run.result.get("success") else f"failure: {run.result.get('reason', '')}"
 
 
@@ -102,5 +105,5 @@ def _made_from(result: Dict[str, Any]) -> Dict[str, str]:
     return {**made, **{name: str(version) for name, version in result.get("versions", {}).items()}}
 
 
-def _lines(runs, rows_of) -> List[Line]:
-    return [Line(kind.upper(), kind, rows_of(run.record)) for kind, run in zip(KINDS, runs)]
+def _lines(runs, rows_of) -> List[ChartLine]:
+    return [ChartLine(kind.upper(), kind, rows_of(run.record)) for kind, run in zip(KINDS, runs)]

@@ -7,7 +7,7 @@ from typing import Any, Iterable, List, Mapping, Sequence, Tuple
 
 import numpy as np
 
-from run_report.charts import Line, chart, timeline
+from run_report.charts import ChartLine, chart, timeline
 from run_report.figures import localization_errors, real_time_factors
 from run_report.map_view import map_svg, thinned
 from run_report.record import RunRecord
@@ -89,18 +89,20 @@ def charts(record: RunRecord) -> str:
     errors, end = localization_errors(record), record.end
     return (
         timeline(record.states, end)
-        + chart("Localization error", "m", [Line("", "estimate", errors[:, :2])], end)
-        + chart("Heading error", "°", [Line("", "estimate", _degrees(errors[:, [0, 2]]))], end)
+        + chart("Localization error", "m", [ChartLine("", "estimate", errors[:, :2])], end)
+        + chart("Heading error", "°", [ChartLine("", "estimate", _degrees(errors[:, [0, 2]]))], end)
         + chart(
             "Speed",
             "m/s, rad/s",
             [
-                Line("forward", "truth", record.velocity[:, :2]),
-                Line("turning", "turning", record.velocity[:, ::2]),
+                ChartLine("forward", "truth", record.velocity[:, :2]),
+                ChartLine("turning", "turning", record.velocity[:, ::2]),
             ],
             end,
         )
-        + chart("Real-time factor", "simulated s per s", [Line("", "pace", real_time_factors(record))], end)
+        + chart(
+            "Real-time factor", "simulated s per s", [ChartLine("", "pace", real_time_factors(record))], end
+        )
     )
 
 

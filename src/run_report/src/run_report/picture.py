@@ -9,7 +9,7 @@ from PIL import Image, ImageDraw, ImageFont
 from planar import OccupancyGrid, Pose2
 from run_report.grid_image import grid_image, view_of
 from run_report.map_view import thinned
-from run_report.record import Marking, RunRecord
+from run_report.record import MarkerEvent, RunRecord
 
 Colour = Tuple[int, int, int, int]
 PAPER, INK, FAINT = (255, 255, 255, 255), (29, 35, 48, 255), (102, 112, 133, 255)
@@ -194,7 +194,7 @@ def _draw_object(canvas: MapCanvas, record: RunRecord, row: np.ndarray) -> None:
             canvas.area(corners + [marking.x, marking.y], OBJECT)
 
 
-def _markings_at(record: RunRecord, stamp: float) -> List[Marking]:
+def _markings_at(record: RunRecord, stamp: float) -> List[MarkerEvent]:
     """The latest of each marker."""
     latest = {marking.name: marking for marking in record.markings if marking.stamp <= stamp}
     return list(latest.values())

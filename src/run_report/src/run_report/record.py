@@ -22,14 +22,14 @@ class RecordError(PlanarError):
     """A record of a run is missing or cannot be read."""
 
 
-class State(NamedTuple):
+class StateEvent(NamedTuple):
     """From ``stamp`` on the mission was in this state."""
 
     stamp: float
     name: str
 
 
-class Goal(NamedTuple):
+class GoalEvent(NamedTuple):
     """A pose that the robot was sent to."""
 
     stamp: float
@@ -38,7 +38,7 @@ class Goal(NamedTuple):
     yaw: float
 
 
-class Marking(NamedTuple):
+class MarkerEvent(NamedTuple):
     """From ``stamp`` on the marker ``name`` was shown at x, y, or hidden."""
 
     stamp: float
@@ -48,14 +48,14 @@ class Marking(NamedTuple):
     y: float
 
 
-class Collision(NamedTuple):
+class CollisionEvent(NamedTuple):
     """The robot touched ``name``."""
 
     stamp: float
     name: str
 
 
-class Warned(NamedTuple):
+class LoggedWarning(NamedTuple):
     """A node logged a warning or an error."""
 
     stamp: float
@@ -63,7 +63,7 @@ class Warned(NamedTuple):
     text: str
 
 
-class Zone(NamedTuple):
+class ZoneRecord(NamedTuple):
     """A named place of the mission."""
 
     name: str
@@ -74,12 +74,12 @@ class Zone(NamedTuple):
 
 
 EVENTS: Dict[str, Callable[..., Any]] = {
-    "states": State,
-    "goals": Goal,
-    "markings": Marking,
-    "collisions": Collision,
-    "warnings": Warned,
-    "zones": Zone,
+    "states": StateEvent,
+    "goals": GoalEvent,
+    "markings": MarkerEvent,
+    "collisions": CollisionEvent,
+    "warnings": LoggedWarning,
+    "zones": ZoneRecord,
 }
 
 
@@ -103,12 +103,12 @@ class RunRecord:
     velocity: np.ndarray = _rows(3)
     pace: np.ndarray = _rows(2)
     plans: List[np.ndarray] = field(default_factory=list)
-    states: List[State] = field(default_factory=list)
-    goals: List[Goal] = field(default_factory=list)
-    markings: List[Marking] = field(default_factory=list)
-    collisions: List[Collision] = field(default_factory=list)
-    warnings: List[Warned] = field(default_factory=list)
-    zones: List[Zone] = field(default_factory=list)
+    states: List[StateEvent] = field(default_factory=list)
+    goals: List[GoalEvent] = field(default_factory=list)
+    markings: List[MarkerEvent] = field(default_factory=list)
+    collisions: List[CollisionEvent] = field(default_factory=list)
+    warnings: List[LoggedWarning] = field(default_factory=list)
+    zones: List[ZoneRecord] = field(default_factory=list)
     grid: Optional[OccupancyGrid] = None
 
     @property

@@ -33,12 +33,12 @@ class Display:
             self._status.stop()
             self._status = None
 
-    def hush(self) -> None:
+    def release_terminal(self) -> None:
         """Shows no status any more: the terminal belongs to somebody else."""
         self.__exit__()
         self._latest_plain = math.inf
 
-    def say(self, line: str) -> None:
+    def print(self, line: str) -> None:
         """Prints a line that stays."""
         with self._lock:
             self._console.print(escape(line))
@@ -53,6 +53,6 @@ class Display:
                 self._console.print(escape(status))
 
 
-def complain(text: str) -> None:
+def print_error(text: str) -> None:
     """One line on stderr."""
     print(f"error: {text}", file=sys.stderr, flush=True)

@@ -1,4 +1,4 @@
-"""Imports modules once for many programs, which are forked of it (``supervision.forked``).
+"""Imports modules once for many programs, which are forked of it (``supervision.fork_client``).
 
 python3 -m supervision.fork_server NAME (MODULE | MODULE:FUNCTION)...
 
@@ -25,12 +25,12 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
-from supervision.forked import ANSWER_SECONDS, FORK_SERVER, LARGEST_MESSAGE, STREAMS, user_of_peer
-from supervision.interruption import before_leaving
+from supervision.fork_client import ANSWER_SECONDS, FORK_SERVER, LARGEST_MESSAGE, STREAMS, user_of_peer
+from supervision.interruption import before_exit
 from supervision.processes import end_descendants, ending_with_parent
 
 WAITING_CLIENTS = 64
-ORDER_SECONDS = 1.0
+REQUEST_SECONDS = 1.0
 # Of Linux; the module fcntl does not name it.
 F_SETSIG = 10
 
@@ -45,7 +45,7 @@ def start_fork_server(preparations: Sequence[str]) -> "subprocess.Popen[bytes]":
     # Children have no use for threads of BLAS, which are not forked either.
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
     os.environ[FORK_SERVER] = name
-    before_leaving(end_descendants)
+    before_exit(end_descendants)
     return subprocess.Popen(
         command,
         env=environment,
@@ -67,9 +67,9 @@ def main() -> None:
                 _call(preparation)
         gc.freeze()  # so that children share what they do not change
         gc.enable()
-        order, connection = _ForkServer(listener).serve()
-    _become(order, connection)
-    _call(*order["call"])
+        request, connection = _ForkServer(listener).serve()
+    _take_over_client(request, connection)
+    _call(*request["call"])
 
 
 def _call(what: str, *arguments: str) -> None:
@@ -97,14 +97,14 @@ class _ForkServer:
             if self._awake in ready:
                 with suppress(BlockingIOError):
                     os.read(self._awake, LARGEST_MESSAGE)
-                self._tell_ends()
+                self._report_exits()
             if self._listener in ready:
                 connection, _ = self._listener.accept()
-                order = _received(connection)
-                if order is None:
+                request = _received(connection)
+                if request is None:
                     connection.close()
-                elif self._is_child(connection, order.pop("streams")):
-                    return order, connection
+                elif self._is_child(connection, request.pop("streams")):
+                    return request, connection
 
     def _is_child(self, connection: socket.socket, streams: List[int]) -> bool:
         child = os.fork()
@@ -126,7 +126,7 @@ class _ForkServer:
             client.close()
         return True
 
-    def _tell_ends(self) -> None:
+    def _report_exits(self) -> None:
         with suppress(ChildProcessError):
             while True:
                 child, status = os.waitpid(-1, os.WNOHANG)
@@ -141,7 +141,7 @@ def _received(connection: socket.socket) -> Optional[Dict[str, Any]]:
     """What a client of the same user asks for, with its ``streams``; None of anybody or anything else."""
     if user_of_peer(connection) != os.getuid():
         return None
-    connection.settimeout(ORDER_SECONDS)
+    connection.settimeout(REQUEST_SECONDS)
     streams = array.array("i")
     with suppress(OSError, ValueError, TypeError):
         size = socket.CMSG_LEN(len(STREAMS) * streams.itemsize)
@@ -152,7 +152,7 @@ def _received(connection: socket.socket) -> Optional[Dict[str, Any]]:
     return None
 
 
-def _become(order: Dict[str, Any], connection: socket.socket) -> None:
+def _take_over_client(request: Dict[str, Any], connection: socket.socket) -> None:
     """Makes this child the process that has asked for it, in all that a program can tell."""
     _wait_for_client(connection)
     _end_with_client(connection)
@@ -160,9 +160,9 @@ def _become(order: Dict[str, Any], connection: socket.socket) -> None:
     signal.signal(signal.SIGINT, signal.default_int_handler)
     sys.stdout.reconfigure(line_buffering=os.isatty(1))  # type: ignore[union-attr]
     os.environ.clear()
-    os.environ.update(order["environment"])
-    os.chdir(order["folder"])
-    sys.argv, sys.path[:] = order["argv"], order["path"]
+    os.environ.update(request["environment"])
+    os.chdir(request["folder"])
+    sys.argv, sys.path[:] = request["argv"], request["path"]
     random.seed()
     _name_process([sys.executable, *sys.argv])
 

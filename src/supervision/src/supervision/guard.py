@@ -14,7 +14,7 @@ import sys
 from threading import Timer
 from typing import Any, Callable, List, NoReturn, Optional, Sequence
 
-from supervision.forked import end_as
+from supervision.fork_client import exit_like
 from supervision.interruption import SIGNALS, on_signals
 from supervision.processes import adopt_orphans, end_descendants, end_when_orphaned, ending_with_parent
 
@@ -34,9 +34,7 @@ def run_guarded(command: List[str], patience: float) -> int:
     This process only waits, so that it may be killed: see above. What asks it to end is for the command.
     """
     adopt_orphans()
-    guard = _started(
-        SIGNALS, subprocess.Popen.terminate, guarded(command, patience), preexec_fn=ignore_ctrl_c
-    )
+    guard = _start(SIGNALS, subprocess.Popen.terminate, guarded(command, patience), preexec_fn=ignore_ctrl_c)
     code = guard.wait()
     end_descendants(patience)  # of a guard that was killed itself
     return code if code >= 0 else 128 - code
@@ -50,7 +48,7 @@ def ignore_ctrl_c() -> None:
 def main() -> NoReturn:
     parent, patience, *command = sys.argv[1:]
     adopt_orphans()
-    process = _started(
+    process = _start(
         (signal.SIGTERM,),
         lambda process: _interrupt(process, float(patience)),
         command,
@@ -60,10 +58,10 @@ def main() -> NoReturn:
     end_when_orphaned(int(parent), signal.SIGTERM)
     process.wait()
     end_descendants()
-    end_as(process.returncode)
+    exit_like(process.returncode)
 
 
-def _started(
+def _start(
     signals: Sequence[signal.Signals],
     ask_to_end: Callable[[subprocess.Popen], None],
     command: List[str],
@@ -73,13 +71,13 @@ def _started(
     process: Optional[subprocess.Popen] = None
     is_asked = False
 
-    def hear(_number: int, _frame: Any) -> None:
+    def on_signal(_number: int, _frame: Any) -> None:
         nonlocal is_asked
         is_asked = True
         if process is not None:
             ask_to_end(process)
 
-    on_signals(hear, signals)
+    on_signals(on_signal, signals)
     process = subprocess.Popen(command, **options)
     if is_asked:
         ask_to_end(process)

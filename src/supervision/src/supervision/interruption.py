@@ -6,7 +6,8 @@ import sys
 from contextlib import contextmanager
 from typing import Any, Callable, Iterable, Iterator, List, NoReturn, Tuple
 
-from supervision.waking import wake_main_thread_on_signals
+from supervision.errors import RunInterruptedError
+from supervision.signal_wakeup import wake_main_thread_on_signals
 
 INTERRUPTED = 130
 
@@ -14,21 +15,14 @@ INTERRUPTED = 130
 def _signals() -> Tuple[signal.Signals, ...]:
     """Those that ask for an end; the terminal that closes is none to a command under nohup."""
     asked = (signal.SIGINT, signal.SIGTERM)
-    is_deaf = signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
-    return asked if is_deaf else (*asked, signal.SIGHUP)
+    ignores_hangup = signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+    return asked if ignores_hangup else (*asked, signal.SIGHUP)
 
 
 SIGNALS = _signals()
 
 _is_interrupted = False
-_last_acts: List[Callable[[], object]] = []
-
-
-class RunInterruptedError(KeyboardInterrupt):
-    """Somebody pressed Ctrl-C or asked the run to end."""
-
-    def __init__(self) -> None:
-        super().__init__("interrupted")
+_exit_hooks: List[Callable[[], object]] = []
 
 
 def on_signals(handle: Callable[[int, Any], object], signals: Iterable[int] = SIGNALS) -> None:
@@ -38,7 +32,7 @@ def on_signals(handle: Callable[[int, Any], object], signals: Iterable[int] = SI
     wake_main_thread_on_signals()
 
 
-def leave_when_interrupted() -> None:
+def exit_when_interrupted() -> None:
     """From now on SIGINT, SIGTERM or SIGHUP ends the process at once: nothing has to be taken down yet.
 
     Libraries that are being imported catch whatever is raised.
@@ -47,7 +41,7 @@ def leave_when_interrupted() -> None:
 
 
 @contextmanager
-def leaving_on_signals() -> Iterator[None]:
+def exiting_on_signals() -> Iterator[None]:
     """Any of ``SIGNALS`` ends the process at once and in silence, where nothing has to be taken down yet."""
     with handling_signals(lambda number, _frame: os._exit(128 + number)):
         yield
@@ -76,9 +70,9 @@ def raise_if_interrupted() -> None:
         raise RunInterruptedError
 
 
-def before_leaving(do: Callable[[], object]) -> None:
+def before_exit(do: Callable[[], object]) -> None:
     """Calls it before this process ends of itself, or because it is asked to."""
-    _last_acts.append(do)
+    _exit_hooks.append(do)
 
 
 def leave(code: int) -> NoReturn:
@@ -88,7 +82,7 @@ def leave(code: int) -> NoReturn:
 
 
 def _end(code: int) -> NoReturn:
-    for do in _last_acts:
+    for do in _exit_hooks:
         do()
     os._exit(code)
 

@@ -6,17 +6,17 @@ from contextlib import suppress
 from typing import TextIO
 
 
-def drop_what_cannot_be_written() -> None:
+def ignore_write_errors() -> None:
     """From now on stdout, stderr and logs of this process lose what they cannot write, in silence.
 
     It would be raised in whatever the process is doing, a service's answer for example, and told by a
     traceback for each line of a log.
     """
     logging.raiseExceptions = False
-    sys.stdout, sys.stderr = _Forgiving(sys.stdout), _Forgiving(sys.stderr)
+    sys.stdout, sys.stderr = _LossyStream(sys.stdout), _LossyStream(sys.stderr)
 
 
-class _Forgiving:
+class _LossyStream:
     """A stream that drops what cannot be written."""
 
     def __init__(self, stream: TextIO):

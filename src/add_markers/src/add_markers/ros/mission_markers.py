@@ -7,9 +7,9 @@ import rospy
 from home_service_msgs.msg import MissionState, ObjectState
 from visualization_msgs.msg import Marker
 
-from add_markers.bodies import HEIGHT, RIDING_HEIGHT
+from add_markers.boxes import HEIGHT, RIDING_HEIGHT
 from add_markers.config import MarkerSettings
-from add_markers.ros.mission_bodies import MissionBodies
+from add_markers.ros.simulator_boxes import SimulatedBoxes
 from planar import Pose2
 from planar_ros.messages.border import subscribe
 from planar_ros.messages.conversion import pose2_from_msg, pose2_to_msg
@@ -23,8 +23,8 @@ class MissionMarkers:
 
     def __init__(self, settings: MarkerSettings):
         self._base_frame = settings.base_frame_id
-        self._bodies = MissionBodies(settings)
-        self._standing: Dict[str, Pose2] = {}
+        self._bodies = SimulatedBoxes(settings)
+        self._placed: Dict[str, Pose2] = {}
         self._shown: Dict[str, ObjectState] = {}
         self._frame_id = ""
         # rospy has new subscribers met in a thread of its own, without the publisher's lock.
@@ -45,9 +45,9 @@ class MissionMarkers:
 
     def _follow(self, message: MissionState) -> None:
         self._has_state = True
-        standing = dict(self._bodies.follow(message.objects))
+        placed = dict(self._bodies.follow(message.objects))
         with self._showing:
-            self._standing, self._frame_id = standing, message.header.frame_id
+            self._placed, self._frame_id = placed, message.header.frame_id
             self._show({state.name: state for state in message.objects})
 
     def _show(self, objects: Dict[str, ObjectState]) -> None:
@@ -73,7 +73,7 @@ class MissionMarkers:
             marker.pose.position.z = RIDING_HEIGHT + marker.scale.z / 2.0
         else:
             marker.header.frame_id = self._frame_id
-            marker.pose = pose2_to_msg(self._standing.get(state.name) or pose2_from_msg(state.pose))
+            marker.pose = pose2_to_msg(self._placed.get(state.name) or pose2_from_msg(state.pose))
             marker.pose.position.z = marker.scale.z / 2.0
         return marker
 

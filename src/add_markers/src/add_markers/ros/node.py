@@ -9,7 +9,7 @@ from std_msgs.msg import String
 from visualization_msgs.msg import Marker, MarkerArray
 
 from add_markers.config import MarkerSettings
-from add_markers.parcel import CarriedParcel, Stage, TimedParcel
+from add_markers.parcel import CarriedParcel, ParcelStage, TimedParcel
 from add_markers.ros.mission_markers import MissionMarkers
 from add_markers.ros.zones import zone_markers
 from planar import Pose2
@@ -24,20 +24,20 @@ from planar_ros.node.waiting import ReadinessMonitor
 from planar_ros.step import LockstepClient
 
 UPDATE_SECONDS = 0.1
-NOWHERE_YET = object()
+NOT_PUBLISHED = object()
 Locate = Callable[[], Optional[Pose2]]
 # Where the mission state of pick_objects puts the robot.
 PICKING_UP, DELIVERED = "picking up", "delivered"
 
 
-class AddMarkers:
+class AddMarkersNode:
     """Publishes the marker whenever it appears, moves or disappears; latched, it waits for nobody."""
 
     def __init__(self, settings: MarkerSettings):
         self._settings = settings
         self._pickup, self._dropoff = places = load_pickup_and_dropoff(settings.zones_file)
         self._robot: Optional[Pose2] = None
-        self._shown_at: object = NOWHERE_YET
+        self._shown_at: object = NOT_PUBLISHED
         self._publisher = rospy.Publisher("visualization_marker", Marker, queue_size=10, latch=True)
         self._zones = rospy.Publisher("zones", MarkerArray, queue_size=1, latch=True)
         self._zones.publish(zone_markers(places, settings.frame_id))
@@ -49,7 +49,7 @@ class AddMarkers:
             self._locate = lambda: None
         else:
             self._keepsake = ParameterCheckpoint() if settings.resume else None
-            stage = Stage((self._keepsake and self._keepsake.found) or Stage.WAITING)
+            stage = ParcelStage((self._keepsake and self._keepsake.found) or ParcelStage.WAITING)
             self._parcel = CarriedParcel(*places, settings.pickup_seconds, stage)
             self._locate = self._locator(settings.pose_source)
         ReadinessMonitor(self._conditions())
@@ -123,6 +123,6 @@ def main():
             markers = MissionMarkers(settings)
             LockstepClient.of_node().join()
             return markers
-        return AddMarkers(settings).work()
+        return AddMarkersNode(settings).work()
 
     run("add_markers", start)

@@ -27,7 +27,7 @@ from run_project.ros.people import DEEDS
 from run_project.ros.running import Job, ProjectRun
 from run_project.stand_ins.folders import PACKAGE_FOLDER
 from run_project.stand_ins.terminal import LOGS, TYPED
-from supervision.display import Display, complain
+from supervision.display import Display, print_error
 from supervision.errors import LaunchError
 from supervision.interruption import INTERRUPTED, RunInterruptedError, raise_when_interrupted
 from supervision.open_files import check_open_files
@@ -55,13 +55,13 @@ def main(arguments: Optional[List[str]] = None) -> int:
     try:
         return run(parse(sys.argv[1:] if arguments is None else arguments))
     except RunInterruptedError as error:
-        complain(str(error))
+        print_error(str(error))
         return INTERRUPTED
     except (BuildError, LaunchError) as error:
-        complain(str(error))
+        print_error(str(error))
         return FAILURE
     except PlanarError as error:
-        complain(str(error))
+        print_error(str(error))
         return BAD_INPUT
 
 
@@ -79,19 +79,19 @@ def run(options: Options) -> int:
         placement = find_place(checkout, script, texts, work.path, options.script_arguments)
         folder = create_run_folder(options.output.resolve(), "run_project")
         logs = folder / "log"
-        display.say(f"{checkout.root}: {checkout.kind.value}, {len(checkout.packages)} packages in it")
+        display.print(f"{checkout.root}: {checkout.kind.value}, {len(checkout.packages)} packages in it")
         _warn(checkout, display)
-        display.say(f"logs in {logs}")
+        display.print(f"logs in {logs}")
         workspace = copy_checkout(checkout, placement, work.path)
         display.show("building ...")
-        build(workspace, logs / "build.log", display.say)
-        display.say(f"built in {time.time() - started:.0f} s")
+        build(workspace, logs / "build.log", display.print)
+        display.print(f"built in {time.time() - started:.0f} s")
         if options.build_only:
             return 0
         job = _job(options, workspace, placement, texts, script, work.path, logs)
         for target in sorted(placement.mounts):
-            display.say(f"provides {target}, for this run alone")
-        display.say(f"runs {_name_of(script, plan)}; times are simulated:")
+            display.print(f"provides {target}, for this run alone")
+        display.print(f"runs {_name_of(script, plan)}; times are simulated:")
         about = {"project": str(checkout.root), "script": _name_of(script, plan)}
         return run_job(options, job, folder, workspace, display, about, plan)
 
@@ -103,7 +103,7 @@ def _warn(checkout: Checkout, display: Display) -> None:
         ("maps whose image is not in the checkout", maps_without_image(checkout)),
     ):
         if files:
-            display.say(f"warning: {lacking}: {', '.join(files)}")
+            display.print(f"warning: {lacking}: {', '.join(files)}")
 
 
 def _plan(checkout: Checkout, options: Options) -> Optional[Plan]:
@@ -232,7 +232,7 @@ def run_job(
     always = {"command": "run_project", "versions": versions(), "missing": []}
     path = write_result(folder, {**always, **about, **found})
     _report(display, verdict, ledger, complaints)
-    display.say(f"result in {path}, a log of each window in {folder / 'log'}")
+    display.print(f"result in {path}, a log of each window in {folder / 'log'}")
     return INTERRUPTED if is_interrupted else 0 if verdict.success else FAILURE
 
 
@@ -249,9 +249,9 @@ def _watch(run: ProjectRun, job: Job, options: Options, folder: Path, display: D
     log = folder / "log" / "cockpit.log"
     cockpit = CockpitProcess(options.web_port or FREE_PORT, log, run.environment(), prefix=job.prefix)
     try:
-        display.say(f"cockpit: {cockpit.url}")
+        display.print(f"cockpit: {cockpit.url}")
         failure = run.watch(options.timeout)
-        display.say(f"the page stays open for {VIEW_SECONDS:g} s")
+        display.print(f"the page stays open for {VIEW_SECONDS:g} s")
         time.sleep(VIEW_SECONDS)
         return failure
     finally:
@@ -278,9 +278,9 @@ def _parameters(options: Options, plan: Optional[Plan]) -> Dict[str, object]:
 def _report(display: Display, verdict: Verdict, ledger: Ledger, complaints: List[str]) -> None:
     if not verdict.success:
         for complaint in complaints:
-            display.say(f"  | {complaint}")
-    display.say(f"drove {ledger.distance_driven:.1f} m, {len(ledger.collisions)} collisions")
-    display.say(f"{'SUCCESS' if verdict.success else 'FAILURE'}: {verdict.reason}")
+            display.print(f"  | {complaint}")
+    display.print(f"drove {ledger.distance_driven:.1f} m, {len(ledger.collisions)} collisions")
+    display.print(f"{'SUCCESS' if verdict.success else 'FAILURE'}: {verdict.reason}")
 
 
 class _WorkFolder:

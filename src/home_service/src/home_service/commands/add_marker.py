@@ -9,8 +9,8 @@ class AddMarker(GraphOptions, ErrandOptions):
     """Shows the object at pick-up, hides it, and shows it at drop-off, by the clock."""
 
     def run(self) -> int:
-        from home_service.ros.conducting import carry_out
-        from home_service.stage import read_errand
+        from home_service.inputs import read_errand
+        from home_service.ros.run_modes import run_to_completion
 
         launch = self.launch("add_marker.launch", **self.files())
-        return carry_out(self, launch, read_errand(self).places, {DEMO})
+        return run_to_completion(self, launch, read_errand(self).places, {DEMO})

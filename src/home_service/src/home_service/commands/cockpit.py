@@ -28,20 +28,20 @@ class Cockpit:
 
     def _show_recording(self) -> int:
         from cockpit.ros.node import check_tool
-        from home_service.recorded import showing_plan
-        from home_service.ros.conducting import stay_open
+        from home_service.recording_plan import recording_plan
         from home_service.ros.replaying import open_recording
+        from home_service.ros.run_modes import run_until_interrupted
 
         check_tool(self.tool)
         recording = open_recording(self.recordings, needs_scans=False)
-        showing = Showing(web_port=self.web_port, tool=self.tool or "replay", output=self.output)
-        return stay_open(showing, showing_plan(recording.paths, stays=True), "Ctrl-C closes it")
+        showing = RecordingView(web_port=self.web_port, tool=self.tool or "replay", output=self.output)
+        return run_until_interrupted(showing, recording_plan(recording.paths, stays=True), "Ctrl-C closes it")
 
     def _show_graph(self) -> int:
         import os
 
         from cockpit.ros.node import serve
-        from home_service.ros.examination import running_masters
+        from home_service.ros.graph_inspection import running_masters
         from supervision.ros.node_api import is_master_online
 
         if not is_master_online():
@@ -52,9 +52,9 @@ class Cockpit:
 
 
 @dataclass(frozen=True)
-class Showing(RunOptions):
+class RecordingView(RunOptions):
     """A recording on show, until Ctrl-C."""
 
     tool: Optional[str] = option(None, "the tool that is open at first")
 
-    is_ended_by_a_person = True
+    is_interactive = True

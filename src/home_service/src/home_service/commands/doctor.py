@@ -5,7 +5,7 @@ from typing import Optional
 from home_service.options import seconds
 from supervision.command_line import option
 
-HEALTHY, ILL, NOTHING_RUNS = 0, 1, 3
+HEALTHY, UNHEALTHY, NOTHING_RUNS = 0, 1, 3
 
 
 @dataclass(frozen=True)
@@ -18,13 +18,13 @@ class Doctor:
 
     def run(self) -> int:
         from home_service.doctor.diagnosis import as_json, as_text, problems
-        from home_service.ros.examination import examine
+        from home_service.ros.graph_inspection import inspect_graph
 
-        findings = examine(self.master, self.seconds)
+        snapshot = inspect_graph(self.master, self.seconds)
         if self.json:
-            print(json.dumps(as_json(findings), indent=2))
+            print(json.dumps(as_json(snapshot), indent=2))
         else:
-            print("\n".join(as_text(findings)))
-        if findings.master is None:
+            print("\n".join(as_text(snapshot)))
+        if snapshot.master is None:
             return NOTHING_RUNS
-        return ILL if problems(findings) else HEALTHY
+        return UNHEALTHY if problems(snapshot) else HEALTHY

@@ -8,8 +8,8 @@ class Follow(GraphOptions, ErrandOptions):
     """Lets a second robot follow the first, while that does its errand."""
 
     def run(self) -> int:
-        from home_service.ros.following import let_follow
-        from home_service.stage import read_errand
+        from home_service.inputs import read_errand
+        from home_service.ros.following import run_follow
 
         launch = self.launch("follow.launch", **self.files())
-        return let_follow(self, launch, read_errand(self).places)
+        return run_follow(self, launch, read_errand(self).places)

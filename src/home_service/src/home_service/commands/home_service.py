@@ -7,7 +7,7 @@ from home_service.options import GraphOptions, MissionOptions
 from supervision.command_line import option
 
 # Without the simulator there is no run; what the others know is kept for the next of their name.
-COMES_BACK = ("amcl", "move_base", "map_server", "robot_state_publisher", "pick_objects", "add_markers")
+RESPAWNED = ("amcl", "move_base", "map_server", "robot_state_publisher", "pick_objects", "add_markers")
 
 
 @dataclass(frozen=True)
@@ -23,12 +23,12 @@ class HomeService(GraphOptions, MissionOptions):
     )
 
     @property
-    def is_ended_by_a_person(self) -> bool:
+    def is_interactive(self) -> bool:
         return self.serve
 
     def run(self) -> int:
-        from home_service.ros.conducting import carry_out, stay_open
-        from home_service.stage import read_mission
+        from home_service.inputs import read_mission
+        from home_service.ros.run_modes import run_to_completion, run_until_interrupted
 
         places = read_mission(self).places
         launch = self.launch(
@@ -38,10 +38,12 @@ class HomeService(GraphOptions, MissionOptions):
             marker_mode="mission" if self.mission or self.serve else "service",
             serve=str(self.serve).lower(),
             faults_file=self._faults_file(),
-        ).respawning(*COMES_BACK)
+        ).with_respawn(*RESPAWNED)
         if self.serve:
-            return stay_open(self, launch, "send missions to the action deliver; Ctrl-C ends", places)
-        return carry_out(self, launch, places, {ERRAND, OBJECTS if self.mission else MARKERS})
+            return run_until_interrupted(
+                self, launch, "send missions to the action deliver; Ctrl-C ends", places
+            )
+        return run_to_completion(self, launch, places, {ERRAND, OBJECTS if self.mission else MARKERS})
 
     def _faults_file(self) -> str:
         """The file with faults, if there are any."""

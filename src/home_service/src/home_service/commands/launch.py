@@ -12,17 +12,17 @@ class Launch(GraphOptions):
 
     map: Optional[Path] = option(None, "show this map of the world with it", type=Path, metavar="FILE")
 
-    is_ended_by_a_person = True
+    is_interactive = True
 
     def run(self) -> int:
-        from home_service.ros.conducting import stay_open
-        from home_service.stage import read_stage
+        from home_service.inputs import read_world
+        from home_service.ros.run_modes import run_until_interrupted
         from planar import load_map
 
-        read_stage(self)
+        read_world(self)
         given = {}
         if self.map is not None:
             load_map(self.map)
             given["map_file"] = self.map.resolve()
         launch = self.launch("open_world.launch", **given)
-        return stay_open(self, launch, "the home is open; Ctrl-C closes it")
+        return run_until_interrupted(self, launch, "the home is open; Ctrl-C closes it")

@@ -8,8 +8,8 @@ class MapHome(MappingOptions):
     """Lets the robot explore the world, saves its map, and scores it against the true one."""
 
     def run(self) -> int:
+        from home_service.inputs import read_world
         from home_service.ros.mapping import make_scored_map
-        from home_service.stage import read_stage
 
-        stage = read_stage(self)
+        stage = read_world(self)
         return make_scored_map(self, self.mapping(explores=True), stage)

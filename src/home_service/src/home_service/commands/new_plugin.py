@@ -11,7 +11,7 @@ PACKAGE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 
 @dataclass(frozen=True)
-class Kind:
+class PluginKind:
     """``user``: the package that it is for; ``chosen``: how it is chosen there, for people."""
 
     user: str
@@ -19,15 +19,17 @@ class Kind:
 
 
 KINDS = {
-    "local_planner": Kind("move_base_lite", "--planner {plugin}, or base_local_planner: {plugin}"),
-    "global_planner": Kind("move_base_lite", "base_global_planner: {plugin}"),
-    "recovery_behavior": Kind("move_base_lite", "recovery_behaviors: [{{name: mine, type: {plugin}}}]"),
-    "costmap_layer": Kind("move_base_lite", "local_costmap/plugins: [..., {{name: mine, type: {plugin}}}]"),
-    "sensor_model": Kind("amcl_lite", "sensor_plugin: {plugin}"),
-    "motion_model": Kind("amcl_lite", "motion_plugin: {plugin}"),
-    "scan_matcher": Kind("slam_lite", "matcher_plugin: {plugin}"),
-    "fault": Kind("sim_bridge", "faults: [{{kind: {plugin}, start: 8.0}}] in a mission or a scenario"),
-    "world_generator": Kind("laboratory", "world: {{{plugin}: {{}}}} in a scenario"),
+    "local_planner": PluginKind("move_base_lite", "--planner {plugin}, or base_local_planner: {plugin}"),
+    "global_planner": PluginKind("move_base_lite", "base_global_planner: {plugin}"),
+    "recovery_behavior": PluginKind("move_base_lite", "recovery_behaviors: [{{name: mine, type: {plugin}}}]"),
+    "costmap_layer": PluginKind(
+        "move_base_lite", "local_costmap/plugins: [..., {{name: mine, type: {plugin}}}]"
+    ),
+    "sensor_model": PluginKind("amcl_lite", "sensor_plugin: {plugin}"),
+    "motion_model": PluginKind("amcl_lite", "motion_plugin: {plugin}"),
+    "scan_matcher": PluginKind("slam_lite", "matcher_plugin: {plugin}"),
+    "fault": PluginKind("sim_bridge", "faults: [{{kind: {plugin}, start: 8.0}}] in a mission or a scenario"),
+    "world_generator": PluginKind("laboratory", "world: {{{plugin}: {{}}}} in a scenario"),
 }
 # By every plugin, beside the package that it is for.
 USED = ("planar",)

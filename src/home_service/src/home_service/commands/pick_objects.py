@@ -9,8 +9,8 @@ class PickObjects(GraphOptions, MissionOptions):
     """Carries out a mission, by default from the pick-up to the drop-off zone."""
 
     def run(self) -> int:
-        from home_service.ros.conducting import carry_out
-        from home_service.stage import read_mission
+        from home_service.inputs import read_mission
+        from home_service.ros.run_modes import run_to_completion
 
         launch = self.launch("pick_objects.launch", **self.files())
-        return carry_out(self, launch, read_mission(self).places, {ERRAND})
+        return run_to_completion(self, launch, read_mission(self).places, {ERRAND})

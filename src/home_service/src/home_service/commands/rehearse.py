@@ -23,37 +23,39 @@ class Rehearse(MissionOptions):
     timeout: float = option(600.0, "simulated seconds a run may take", type=seconds)
 
     def run(self) -> int:
-        return self._rehearse() if self.each_fault is None else self._compare(self.each_fault)
+        return self._run_episodes() if self.each_fault is None else self._compare(self.each_fault)
 
     def _compare(self, table: Path) -> int:
         """With each kind of fault; 1 if a verdict was false, or most runs failed that need not have."""
-        from home_service.rehearsal.twins import Row, Twins, page
-        from home_service.stage import read_mission
+        from home_service.headless.fault_comparison import FaultComparison, FaultComparisonRow, fault_report
+        from home_service.inputs import read_mission
         from planar import write_atomically
         from sim_bridge.faults import KINDS
 
         seeds = range(self.seed, self.seed + self.runs)
-        twins = Twins(read_mission(self), self.mission is None, self.planner, seeds, self.timeout)
-        rows: List[Row] = []
+        comparison = FaultComparison(
+            read_mission(self), self.mission is None, self.planner, seeds, self.timeout
+        )
+        rows: List[FaultComparisonRow] = []
         for name in KINDS:
-            rows.append(twins.compare(name))
+            rows.append(comparison.compare(name))
             print(rows[-1].line, flush=True)
-            write_atomically(table, page(rows, seeds, self.timeout).encode("utf-8"))
-        return int(any(row.false_verdicts or row.is_needless_failure for row in rows))
+            write_atomically(table, fault_report(rows, seeds, self.timeout).encode("utf-8"))
+        return int(any(row.false_verdicts or row.fails_needlessly for row in rows))
 
-    def _rehearse(self) -> int:
-        from home_service.rehearsal import Conditions, Rehearsal, parcel_of
-        from home_service.stage import read_mission
+    def _run_episodes(self) -> int:
+        from home_service.headless import EpisodeConditions, HeadlessMission, parcel_for
+        from home_service.inputs import read_mission
         from sim_bridge.faults import load_faults
 
         home, successes = read_mission(self), 0
         faulty = self.faults or self.mission
-        conditions = Conditions(self.planner, faults=() if faulty is None else load_faults(faulty))
+        conditions = EpisodeConditions(self.planner, faults=() if faulty is None else load_faults(faulty))
         stage = (home.world, home.robot, home.grid, home.mission)
         for seed in range(self.seed, self.seed + self.runs):
-            parcel = None if self.mission else parcel_of(home.mission)
-            rehearsal = Rehearsal(*stage, seed=seed, parcel=parcel, conditions=conditions)
-            run = rehearsal.run(self.timeout)
+            parcel = None if self.mission else parcel_for(home.mission)
+            mission = HeadlessMission(*stage, seed=seed, parcel=parcel, conditions=conditions)
+            run = mission.run(self.timeout)
             successes += run.verdict.success
             print(f"seed {seed}: {'SUCCESS' if run.verdict.success else 'FAILURE'}: {run.verdict.reason}")
             print(

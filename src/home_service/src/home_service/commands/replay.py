@@ -36,18 +36,18 @@ class Replay(RunOptions):
         return "replay" if self.estimator == "recorded" else None
 
     def run(self) -> int:
-        from home_service.ros.replaying import open_recording, play
+        from home_service.ros.replaying import open_recording, replay
 
         recording = open_recording(self.bags, needs_scans=self.estimator != "recorded")
         launch = self._launch(recording.paths)
-        return play(self, launch, recording, saves_map=self.estimator == "slam", stem=self.save)
+        return replay(self, launch, recording, saves_map=self.estimator == "slam", stem=self.save)
 
     def _launch(self, bags: Sequence[Path]) -> LaunchPlan:
-        from home_service.recorded import showing_plan
+        from home_service.recording_plan import recording_plan
         from planar import load_map
 
         if self.estimator == "recorded":
-            return showing_plan(bags)
+            return recording_plan(bags)
         if self.estimator == "amcl":
             load_map(self.map)  # so that a mistake is told before anything is started
         x, y, yaw = self.start

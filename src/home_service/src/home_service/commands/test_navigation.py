@@ -31,13 +31,13 @@ class TestNavigation(GraphOptions, DrivingOptions):
     )
 
     @property
-    def is_ended_by_a_person(self) -> bool:
+    def is_interactive(self) -> bool:
         return self.goals is None
 
     def run(self) -> int:
-        from home_service.ros.conducting import stay_open
-        from home_service.ros.driving import drive_through
-        from home_service.stage import read_goals
+        from home_service.inputs import read_goals
+        from home_service.ros.goal_sequence import drive_to_goals
+        from home_service.ros.run_modes import run_until_interrupted
         from planar import Pose2
 
         goals = [Pose2(*goal) for goal in self.goals or ()]
@@ -45,5 +45,5 @@ class TestNavigation(GraphOptions, DrivingOptions):
         launch = self.launch("navigation.launch", **self.files())
         if self.goals is None:
             hint = "send goals to /move_base_simple/goal or to the action /move_base; Ctrl-C ends"
-            return stay_open(self, launch, hint)
-        return drive_through(self, launch, goals)
+            return run_until_interrupted(self, launch, hint)
+        return drive_to_goals(self, launch, goals)

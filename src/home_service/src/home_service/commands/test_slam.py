@@ -11,22 +11,22 @@ class TestSlam(MappingOptions):
     drive: str = option("keys", "who drives the robot", choices=("keys", "page", "auto"))
 
     @property
-    def is_ended_by_a_person(self) -> bool:
+    def is_interactive(self) -> bool:
         return self.drive != "auto"
 
     @property
-    def is_on_the_web(self) -> bool:
-        return super().is_on_the_web or self.drive == "page"
+    def shows_cockpit(self) -> bool:
+        return super().shows_cockpit or self.drive == "page"
 
     @property
-    def wanted_speed(self) -> float:
-        return 1.0 if self.speed is None and self.is_ended_by_a_person else super().wanted_speed
+    def effective_speed(self) -> float:
+        return 1.0 if self.speed is None and self.is_interactive else super().effective_speed
 
     def run(self) -> int:
-        from home_service.ros.mapping import drive_at_the_page, drive_by_keys, explore, make_map
-        from home_service.stage import read_stage
+        from home_service.inputs import read_world
+        from home_service.ros.mapping import drive_by_keyboard, drive_in_browser, explore, make_map
 
-        read_stage(self)
-        drive = {"keys": drive_by_keys, "page": drive_at_the_page, "auto": explore}[self.drive]
+        read_world(self)
+        drive = {"keys": drive_by_keyboard, "page": drive_in_browser, "auto": explore}[self.drive]
         launch = self.mapping(explores=self.drive == "auto")
         return make_map(self, launch, drive)

@@ -16,13 +16,13 @@ class Judge(Protocol):
     def start(self) -> None:
         """From now on it watches."""
 
-    def has_begun(self) -> bool:
+    def has_truth(self) -> bool:
         """Whether the truth about the robot has been seen."""
 
     def status(self) -> str:
         """How things stand, in a line for people."""
 
-    def findings(self) -> Dict[str, Any]:
+    def result_fields(self) -> Dict[str, Any]:
         """What belongs into result.json, by its keys; nothing if it was not started."""
 
 

@@ -23,7 +23,7 @@ class GoalRecord:
         pose = self.pose
         return f"goal {self.number} ({pose.x:.2f}, {pose.y:.2f}, {pose.yaw:.2f})"
 
-    def told(self) -> Dict[str, Any]:
+    def as_json(self) -> Dict[str, Any]:
         """As result.json tells it."""
         pose = [round(value, 3) for value in (self.pose.x, self.pose.y, self.pose.yaw)]
         record: Dict[str, Any] = {"goal": pose, "frame": self.frame, "outcome": self.outcome}
@@ -36,9 +36,9 @@ class GoalLog:
     def __init__(self):
         self.records: List[GoalRecord] = []
         self._by_id: Dict[str, GoalRecord] = {}
-        self._nameless: List[GoalRecord] = []
+        self._without_id: List[GoalRecord] = []
 
-    def sent(self, identity: str, frame: str, pose: Pose2) -> Optional[str]:
+    def add(self, identity: str, frame: str, pose: Pose2) -> Optional[str]:
         """A line for the terminal; None if the goal is known already.
 
         ``identity``: empty if move_base gives it one only when it takes the goal, as one of a click in rviz.
@@ -50,14 +50,16 @@ class GoalLog:
         if identity:
             self._by_id[identity] = record
         else:
-            self._nameless.append(record)
+            self._without_id.append(record)
         return f"{record.name}: on the way"
 
-    def ended(self, identity: str, has_reached: bool, text: str, truth: Optional[Pose2]) -> Optional[str]:
+    def end(self, identity: str, has_reached: bool, text: str, truth: Optional[Pose2]) -> Optional[str]:
         """``truth``: the robot's true pose. A line for the terminal; None if there is no such goal."""
         record = self._by_id.get(identity)
-        if record is None and self._nameless:
-            record = self._by_id[identity] = self._nameless.pop(0)  # they end in the order in which they came
+        if record is None and self._without_id:
+            record = self._by_id[identity] = self._without_id.pop(
+                0
+            )  # they end in the order in which they came
         if record is None or record.outcome != OPEN:
             return None
         record.outcome = "reached" if has_reached else text or "given up"
@@ -67,6 +69,6 @@ class GoalLog:
         aside = "" if record.error is None else f", truly {record.error:.3f} m from it"
         return f"{record.name}: reached{aside}"
 
-    def findings(self) -> Dict[str, Any]:
+    def result_fields(self) -> Dict[str, Any]:
         """What belongs into result.json: nothing if there was no goal."""
-        return {"goals": [record.told() for record in self.records]} if self.records else {}
+        return {"goals": [record.as_json() for record in self.records]} if self.records else {}

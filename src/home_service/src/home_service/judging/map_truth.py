@@ -20,15 +20,17 @@ def score_against_world(grid: OccupancyGrid, world: World, robot: RobotProfile) 
     return score_map(grid, truth, robot_radius=robot.radius, sight=robot.laser.sight, fine_truth=fine_truth)
 
 
-def judge_map(score: MapScore, way_home: float, failure: Optional[str], collision: Optional[str]) -> Verdict:
+def judge_map(
+    score: MapScore, distance_to_start: float, failure: Optional[str], collision: Optional[str]
+) -> Verdict:
     """Success if the map is good and the robot, without a collision, is back where it started.
 
     ``way_home``: how far it truly stands from there, metres. ``failure``: why the run was cut short, if so.
     """
-    is_away = way_home > ARRIVAL_TOLERANCE
+    is_away = distance_to_start > ARRIVAL_TOLERANCE
     complaints = (
         failure,
-        f"the robot truly stands {way_home:.2f} m from where it started" if is_away else None,
+        f"the robot truly stands {distance_to_start:.2f} m from where it started" if is_away else None,
         f"recall below {LEAST_RECALL}" if score.recall < LEAST_RECALL else None,
         f"precision below {LEAST_PRECISION}" if score.precision < LEAST_PRECISION else None,
         "walls are doubled" if score.doubled_walls > 0 else None,
@@ -36,7 +38,7 @@ def judge_map(score: MapScore, way_home: float, failure: Optional[str], collisio
     )
     figures = (
         f"recall {score.recall:.3f}, precision {score.precision:.3f}, {score.doubled_walls} doubled walls, "
-        f"back {way_home:.2f} m from the start"
+        f"back {distance_to_start:.2f} m from the start"
     )
     reasons = "; ".join(filter(None, complaints))
     return Verdict(not reasons, f"{reasons} ({figures})" if reasons else figures)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Iterable, List, Mapping
 
-from home_service.judging.verdict import Ledger
+from home_service.judging.verdict import MissionRecord
 from planar import Pose2
 from planar.maps.places import NamedPlace
 
@@ -12,7 +12,7 @@ PARCEL = "parcel"
 
 
 @dataclass(frozen=True)
-class Shown:
+class MarkerState:
     """A marker of the object ``name``: at a pose of the map, on the robot, or taken away."""
 
     name: str
@@ -24,37 +24,37 @@ class Shown:
 class MarkerLog:
     """Fills the ``markers`` of a ledger, one entry for each change. ``places`` may become more."""
 
-    def __init__(self, places: Mapping[str, NamedPlace], ledger: Ledger):
-        self._places, self._ledger = places, ledger
-        self._untold: List[Shown] = []
+    def __init__(self, places: Mapping[str, NamedPlace], mission_record: MissionRecord):
+        self._places, self._mission_record = places, mission_record
+        self._pending: List[MarkerState] = []
 
-    def see(self, marker: Shown) -> None:
-        self._untold.append(marker)
-        self.tell()
+    def add(self, marker: MarkerState) -> None:
+        self._pending.append(marker)
+        self.flush()
 
-    def tell(self) -> None:
+    def flush(self) -> None:
         """An object is at one of the ends of its deliveries; until one is known, its markers wait."""
-        known = {PARCEL, *(record.object for record in self._ledger.deliveries)}
-        markers, self._untold = self._untold, []
+        known = {PARCEL, *(record.object for record in self._mission_record.deliveries)}
+        markers, self._pending = self._pending, []
         for marker in markers:
             if marker.name not in known:
-                self._untold.append(marker)
+                self._pending.append(marker)
             elif self._places and (marker.name == PARCEL or not marker.is_hidden):
-                self._note(self._event(marker))
+                self._append(self._event(marker))
 
-    def _event(self, marker: Shown) -> str:
+    def _event(self, marker: MarkerState) -> str:
         if marker.name == PARCEL:
             return "hidden" if marker.is_hidden else f"shown at {self._nearest(marker.pose, self._places)}"
         if marker.is_carried:
             return f"{marker.name} carried"
-        records = [record for record in self._ledger.deliveries if record.object == marker.name]
+        records = [record for record in self._mission_record.deliveries if record.object == marker.name]
         ends = [name for record in records for name in (record.source, record.destination)]
         names = [name for name in ends if name in self._places]
         return f"{marker.name} at {self._nearest(marker.pose, names or self._places)}"
 
-    def _note(self, event: str) -> None:
-        if self._ledger.markers[-1:] != [event]:
-            self._ledger.markers.append(event)
+    def _append(self, event: str) -> None:
+        if self._mission_record.markers[-1:] != [event]:
+            self._mission_record.markers.append(event)
 
     def _nearest(self, shown: Pose2, names: Iterable[str]) -> str:
         return min(names, key=lambda name: self._places[name].distance_to(shown))

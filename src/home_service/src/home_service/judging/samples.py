@@ -6,7 +6,7 @@ import numpy as np
 
 SAMPLES_PER_SECOND = 10.0
 # Of sixteen minutes.
-MOST_SAMPLES = 9_600
+MAX_SAMPLES = 9_600
 
 
 class Samples:
@@ -15,7 +15,7 @@ class Samples:
     When there are more than ``most``, every other one goes, and from then on half as many come.
     """
 
-    def __init__(self, columns: int, most: int = MOST_SAMPLES):
+    def __init__(self, columns: int, most: int = MAX_SAMPLES):
         self._columns, self._most = columns, most
         self._per_second = SAMPLES_PER_SECOND
         self._numbers = array("d")

@@ -12,12 +12,12 @@ from planar import FileWriteError, SettingsError, write_atomically
 
 FILE = "trace.txt"
 # Nanoseconds before the end from which on messages may still be under way.
-UNDER_WAY = 300_000_000
+IN_FLIGHT = 300_000_000
 # Nanoseconds after which none comes any more, and how many entries a run of some minutes has.
-LATE, MOST_IN_MEMORY = 10_000_000_000, 10_000
+LATE, MAX_IN_MEMORY = 10_000_000_000, 10_000
 
 
-class Entry(NamedTuple):
+class TraceEntry(NamedTuple):
     """A message: its stamp, ns; the topic; its node; what it says."""
 
     stamp: int
@@ -29,7 +29,7 @@ class Entry(NamedTuple):
         return f"{self.stamp / 1e9:.9f} {self.topic} {self.node} {self.text}"
 
 
-class Difference(NamedTuple):
+class TraceDifference(NamedTuple):
     """Where two runs first differ: entries of the one and of the other, None after the end."""
 
     here: Optional[str]
@@ -37,39 +37,39 @@ class Difference(NamedTuple):
 
 
 class Trace:
-    """Collects entries. It begins with the first goal and ends with the last outcome of what was asked.
+    """Messages of a run from the first goal to the last outcome, in the order of their stamps.
 
-    Of a long run the latest are in memory, about ``most``, and those before them in a temporary file.
+    The latest ``max_in_memory`` entries are kept in memory, older ones in a temporary file.
     """
 
-    def __init__(self, most: int = MOST_IN_MEMORY):
-        self._most = most
-        self._entries: List[Entry] = []
-        self._outcomes: Set[Entry] = set()
-        self._marks: List[str] = []
+    def __init__(self, max_in_memory: int = MAX_IN_MEMORY):
+        self._max_in_memory = max_in_memory
+        self._entries: List[TraceEntry] = []
+        self._outcomes: Set[TraceEntry] = set()
+        self._unstamped: List[str] = []
         self._start: Optional[int] = None
         self._end: Optional[int] = None
-        self._aside: Optional[IO[str]] = None
-        self._why_lost: Optional[str] = None
+        self._spill_file: Optional[IO[str]] = None
+        self._write_error: Optional[str] = None
         self._lock = threading.Lock()
 
-    def note(self, entry: Entry) -> None:
+    def add(self, entry: TraceEntry) -> None:
         with self._lock:
-            if self._why_lost is None:
+            if self._write_error is None:
                 self._entries.append(entry)
-            if len(self._entries) > self._most:
-                self._put_aside(max(each.stamp for each in self._entries) - LATE)
+            if len(self._entries) > self._max_in_memory:
+                self._spill(max(each.stamp for each in self._entries) - LATE)
 
-    def mark(self, text: str) -> None:
+    def add_unstamped(self, text: str) -> None:
         """Something without a time: its place among its like is what counts."""
-        if self._marks[-1:] != [text]:
-            self._marks.append(text)
+        if self._unstamped[-1:] != [text]:
+            self._unstamped.append(text)
 
-    def begin(self, stamp: int) -> None:
+    def start(self, stamp: int) -> None:
         """A goal was set; the first one counts."""
         self._start = stamp if self._start is None else min(stamp, self._start)
 
-    def end(self, outcome: Entry) -> None:
+    def end(self, outcome: TraceEntry) -> None:
         """Something that was asked for has come to this; the last one counts."""
         self._outcomes.add(outcome)
         self._end = outcome.stamp if self._end is None else max(outcome.stamp, self._end)
@@ -77,43 +77,43 @@ class Trace:
     def lines(self) -> List[str]:
         """The entries in order. Raises FileWriteError if some were lost for want of room."""
         with self._lock:
-            if self._why_lost is not None:
-                raise FileWriteError(f"{FILE}: cannot be written ({self._why_lost})")
+            if self._write_error is not None:
+                raise FileWriteError(f"{FILE}: cannot be written ({self._write_error})")
             if self._start is None or self._end is None:
                 return []
-            last = self._end - UNDER_WAY
-            return [*self._lines_aside(last), *map(str, self._those_until(last)), *self._marks]
+            last = self._end - IN_FLIGHT
+            return [*self._spilled_lines(last), *map(str, self._entries_until(last)), *self._unstamped]
 
     def content(self) -> bytes:
         """What is written of it; empty if nothing was driven. Raises FileWriteError as ``lines`` does."""
         return "".join(f"{line}\n" for line in self.lines()).encode()
 
-    def _those_until(self, last: int, last_outcome: float = math.inf) -> List[Entry]:
+    def _entries_until(self, last: int, last_outcome: float = math.inf) -> List[TraceEntry]:
         """What counts of those in memory, in order."""
         if self._start is None:
             return []
         seen = {entry for entry in self._entries if self._start <= entry.stamp <= last}
         return sorted(seen | {one for one in self._outcomes if self._start <= one.stamp <= last_outcome})
 
-    def _put_aside(self, last: int) -> None:
+    def _spill(self, last: int) -> None:
         """What is that old."""
         try:
-            if self._aside is None:
-                self._aside = tempfile.TemporaryFile("w+", encoding="utf-8")  # noqa: SIM115
-            self._aside.seek(0, os.SEEK_END)
-            for entry in self._those_until(last, last):
-                self._aside.write(f"{entry.stamp} {int(entry in self._outcomes)} {entry}\n")
-            self._aside.flush()
+            if self._spill_file is None:
+                self._spill_file = tempfile.TemporaryFile("w+", encoding="utf-8")  # noqa: SIM115
+            self._spill_file.seek(0, os.SEEK_END)
+            for entry in self._entries_until(last, last):
+                self._spill_file.write(f"{entry.stamp} {int(entry in self._outcomes)} {entry}\n")
+            self._spill_file.flush()
         except OSError as error:
-            self._why_lost, self._entries = error.strerror, []
+            self._write_error, self._entries = error.strerror, []
         self._entries = [entry for entry in self._entries if entry.stamp > last]
         self._outcomes -= {one for one in self._outcomes if one.stamp <= last}
 
-    def _lines_aside(self, last: int) -> Iterator[str]:
+    def _spilled_lines(self, last: int) -> Iterator[str]:
         """What counts of those in the file, which may end after ``last``."""
-        if self._aside is not None:
-            self._aside.seek(0)
-            for line in self._aside:
+        if self._spill_file is not None:
+            self._spill_file.seek(0)
+            for line in self._spill_file:
                 stamp, is_outcome, text = line.rstrip("\n").split(" ", 2)
                 if int(stamp) <= last or is_outcome == "1":
                     yield text
@@ -137,7 +137,7 @@ def read_trace(folder: Path) -> List[str]:
         raise SettingsError(f"{folder / FILE}: {error.strerror}") from None
 
 
-def first_difference(here: Sequence[str], there: Sequence[str]) -> Optional[Difference]:
+def first_difference(here: Sequence[str], there: Sequence[str]) -> Optional[TraceDifference]:
     """The earliest entry that one has and the other has not; None if they are the same."""
     pairs: List[Tuple[Optional[str], Optional[str]]] = list(zip(here, there))
     longer = max(len(here), len(there))
@@ -145,4 +145,4 @@ def first_difference(here: Sequence[str], there: Sequence[str]) -> Optional[Diff
         (here[i] if i < len(here) else None, there[i] if i < len(there) else None)
         for i in range(len(pairs), longer)
     ]
-    return next((Difference(one, other) for one, other in pairs if one != other), None)
+    return next((TraceDifference(one, other) for one, other in pairs if one != other), None)

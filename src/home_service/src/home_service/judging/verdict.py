@@ -5,7 +5,7 @@ from typing import Any, Dict, List, Optional, Sequence, Set
 
 ARRIVAL_TOLERANCE = 0.25
 ERRAND, MARKERS, OBJECTS, DEMO = "errand", "markers", "objects", "demo"
-MARKER_STORY = ["shown at pickup", "hidden", "shown at dropoff"]
+EXPECTED_MARKERS = ["shown at pickup", "hidden", "shown at dropoff"]
 FINAL_STATES = ("delivered", "failed", "cancelled")
 
 
@@ -23,7 +23,7 @@ class DeliveryRecord:
     pickup_error: Optional[float] = None
     dropoff_error: Optional[float] = None
 
-    def findings(self) -> Dict[str, Any]:
+    def result_fields(self) -> Dict[str, Any]:
         """As it stands in result.json; metres."""
         return {
             "name": self.name,
@@ -38,7 +38,7 @@ class DeliveryRecord:
         }
 
     @property
-    def complaint(self) -> Optional[str]:
+    def failure(self) -> Optional[str]:
         """Why this delivery is not proven; None if it is."""
         if self.state != "delivered":
             return f"{self.name} is {self.state}" + (f": {self.reason}" if self.reason else "")
@@ -50,14 +50,14 @@ class DeliveryRecord:
         return None
 
     @property
-    def story(self) -> List[str]:
+    def expected_markers(self) -> List[str]:
         """What its object's marker must have shown, in this order."""
         places = (self.source, self.destination)
         return [f"{self.object} at {places[0]}", f"{self.object} carried", f"{self.object} at {places[1]}"]
 
 
 @dataclass
-class Ledger:
+class MissionRecord:
     """What was seen of a run. ``reason``: the robot's own words for how its mission ended."""
 
     deliveries: List[DeliveryRecord] = field(default_factory=list)
@@ -75,11 +75,11 @@ class Ledger:
             errors[record.source], errors[record.destination] = record.pickup_error, record.dropoff_error
         return {place: error for place, error in errors.items() if error is not None}
 
-    def findings(self) -> Dict[str, Any]:
+    def result_fields(self) -> Dict[str, Any]:
         """What belongs into result.json; metres."""
         return {
             "position_error": {place: round(error, 4) for place, error in self.position_errors.items()},
-            "deliveries": [record.findings() for record in self.deliveries],
+            "deliveries": [record.result_fields() for record in self.deliveries],
             "collisions": self.collisions,
             "markers": self.markers,
             "final_state": self.final_state,
@@ -91,17 +91,17 @@ class Ledger:
             return True
         if ERRAND in expected and self.final_state not in FINAL_STATES:
             return False
-        if OBJECTS in expected and self.untold_objects:
+        if OBJECTS in expected and self.objects_without_markers:
             return False
-        return not expected & {MARKERS, DEMO} or self.markers[-1:] == MARKER_STORY[-1:]
+        return not expected & {MARKERS, DEMO} or self.markers[-1:] == EXPECTED_MARKERS[-1:]
 
     @property
-    def untold_objects(self) -> List[str]:
+    def objects_without_markers(self) -> List[str]:
         """The delivered objects whose markers have not told the whole story."""
         untold = []
         for record in self.deliveries:
             told = iter(self.markers)
-            if record.state == "delivered" and not all(event in told for event in record.story):
+            if record.state == "delivered" and not all(event in told for event in record.expected_markers):
                 untold.append(record.object)
         return untold
 
@@ -114,19 +114,19 @@ class Verdict:
     reason: str
 
 
-def judge(ledger: Ledger, expected: Set[str]) -> Verdict:
+def judge(record: MissionRecord, expected: Set[str]) -> Verdict:
     """Success only if all that was expected was truly seen and nothing was hit."""
-    complaint = ledger.failure or None
-    if complaint is None and ERRAND in expected:
-        complaint = _complaint_about_errand(ledger)
-    if complaint is None and OBJECTS in expected and ledger.untold_objects:
-        complaint = f"the markers of {', '.join(ledger.untold_objects)} did not go with the objects"
-    if complaint is None and expected & {MARKERS, DEMO} and ledger.markers != MARKER_STORY:
-        complaint = (
-            f"the marker was {', '.join(ledger.markers) or 'never shown'}, not {', '.join(MARKER_STORY)}"
+    failure = record.failure or None
+    if failure is None and ERRAND in expected:
+        failure = _errand_failure(record)
+    if failure is None and OBJECTS in expected and record.objects_without_markers:
+        failure = f"the markers of {', '.join(record.objects_without_markers)} did not go with the objects"
+    if failure is None and expected & {MARKERS, DEMO} and record.markers != EXPECTED_MARKERS:
+        failure = (
+            f"the marker was {', '.join(record.markers) or 'never shown'}, not {', '.join(EXPECTED_MARKERS)}"
         )
-    complaint = complaint or collision(ledger.collisions)
-    return Verdict(complaint is None, complaint or _praise(ledger, expected))
+    failure = failure or collision(record.collisions)
+    return Verdict(failure is None, failure or _success_reason(record, expected))
 
 
 def collision(touched: Sequence[str]) -> Optional[str]:
@@ -134,16 +134,16 @@ def collision(touched: Sequence[str]) -> Optional[str]:
     return f"collided with {', '.join(sorted(set(touched)))}" if touched else None
 
 
-def _complaint_about_errand(ledger: Ledger) -> Optional[str]:
-    if ledger.final_state != "delivered":
-        return ledger.reason or f"the mission ended in the state '{ledger.final_state or 'not started'}'"
-    complaints = [record.complaint for record in ledger.deliveries if record.state != "cancelled"]
-    return next((text for text in complaints if text), None if complaints else "nothing was delivered")
+def _errand_failure(record: MissionRecord) -> Optional[str]:
+    if record.final_state != "delivered":
+        return record.reason or f"the mission ended in the state '{record.final_state or 'not started'}'"
+    failures = [delivery.failure for delivery in record.deliveries if delivery.state != "cancelled"]
+    return next((text for text in failures if text), None if failures else "nothing was delivered")
 
 
-def _praise(ledger: Ledger, expected: Set[str]) -> str:
+def _success_reason(record: MissionRecord, expected: Set[str]) -> str:
     if ERRAND not in expected:
-        return f"the marker was {', '.join(ledger.markers)}"
-    worst = max(ledger.position_errors.values())
-    what = ledger.reason if len(ledger.deliveries) > 1 else "picked up and delivered"
+        return f"the marker was {', '.join(record.markers)}"
+    worst = max(record.position_errors.values())
+    what = record.reason if len(record.deliveries) > 1 else "picked up and delivered"
     return f"{what}, at most {worst:.2f} m off, no collision"

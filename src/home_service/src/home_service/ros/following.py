@@ -10,24 +10,24 @@ from std_msgs.msg import String
 
 from home_service.judging.verdict import ERRAND, Verdict
 from home_service.options import LaunchPlan, RunOptions
-from home_service.ros.hearing import hear
 from home_service.ros.referee import Referee
 from home_service.ros.run import Run
 from home_service.ros.run_recorder import RunRecorder
+from home_service.ros.subscription import subscribe
 from planar import Pose2
 from planar.maps.places import NamedPlace
 from planar_ros.messages.conversion import pose2_from_msg
 from supervision.display import Display
 
 # A follower is with its leader within this distance, metres, and must be for this share of the time.
-WITH_LEADER, REQUIRED_SHARE = 1.5, 0.9
+MAX_DISTANCE, REQUIRED_SHARE = 1.5, 0.9
 # The time begins when the leader has gone so far, metres.
-SET_OFF = 0.05
+DEPARTURE_DISTANCE = 0.05
 # So many messages the truth about one robot may come before that about the other.
-UNPAIRED = 500
+MAX_UNPAIRED = 500
 
 
-class FollowWatch:
+class FollowMonitor:
     """How far the robot below ``namespace`` truly is from the one without, at each moment told of both.
 
     From when the leader sets off.
@@ -36,13 +36,13 @@ class FollowWatch:
     def __init__(self, namespace: str):
         self.collisions: List[str] = []
         self._start: Optional[Pose2] = None
-        self._has_set_off = False
+        self._has_departed = False
         self._unpaired: OrderedDict[rospy.Time, Pose2] = OrderedDict()
         self._seen, self._near, self._farthest = 0, 0, 0.0
         self._lock = threading.Lock()
-        hear("base_pose_ground_truth", Odometry, self._see_leader)
-        hear(f"{namespace}/base_pose_ground_truth", Odometry, self._see_truth)
-        hear(f"{namespace}/contacts", String, self._see_contacts)
+        subscribe("base_pose_ground_truth", Odometry, self._on_leader)
+        subscribe(f"{namespace}/base_pose_ground_truth", Odometry, self._on_truth)
+        subscribe(f"{namespace}/contacts", String, self._on_contacts)
 
     @property
     def share(self) -> float:
@@ -50,17 +50,17 @@ class FollowWatch:
         return self._near / max(self._seen, 1)
 
     @property
-    def complaint(self) -> Optional[str]:
+    def failure(self) -> Optional[str]:
         """Why this was no following; None if it was."""
         if self.collisions:
             return f"the follower collided with {', '.join(sorted(set(self.collisions)))}"
-        return None if self.share >= REQUIRED_SHARE else f"{self.praise} only"
+        return None if self.share >= REQUIRED_SHARE else f"{self.description} only"
 
     @property
-    def praise(self) -> str:
-        return f"the follower was within {WITH_LEADER} m for {100.0 * self.share:.0f} % of the time"
+    def description(self) -> str:
+        return f"the follower was within {MAX_DISTANCE} m for {100.0 * self.share:.0f} % of the time"
 
-    def findings(self) -> Dict[str, Any]:
+    def result_fields(self) -> Dict[str, Any]:
         """What belongs into result.json; metres."""
         return {
             "follower_share_near": round(self.share, 4),
@@ -68,40 +68,40 @@ class FollowWatch:
             "follower_collisions": self.collisions,
         }
 
-    def _see_leader(self, message):
+    def _on_leader(self, message):
         pose = pose2_from_msg(message.pose.pose)
         self._start = self._start or pose
-        self._has_set_off = self._has_set_off or pose.distance_to(self._start) > SET_OFF
-        if self._has_set_off:
-            self._see_truth(message)
+        self._has_departed = self._has_departed or pose.distance_to(self._start) > DEPARTURE_DISTANCE
+        if self._has_departed:
+            self._on_truth(message)
 
-    def _see_truth(self, message):
+    def _on_truth(self, message):
         stamp, pose = message.header.stamp, pose2_from_msg(message.pose.pose)
         with self._lock:
             other = self._unpaired.pop(stamp, None)
             if other is None:
                 self._unpaired[stamp] = pose
-                if len(self._unpaired) > UNPAIRED:
+                if len(self._unpaired) > MAX_UNPAIRED:
                     self._unpaired.popitem(last=False)
                 return
             distance = pose.distance_to(other)
             self._seen += 1
-            self._near += distance <= WITH_LEADER
+            self._near += distance <= MAX_DISTANCE
             self._farthest = max(self._farthest, distance)
 
-    def _see_contacts(self, message):
+    def _on_contacts(self, message):
         self.collisions += message.data.splitlines()
 
 
-def let_follow(options: RunOptions, launch: LaunchPlan, places: Mapping[str, NamedPlace]) -> int:
+def run_follow(options: RunOptions, launch: LaunchPlan, places: Mapping[str, NamedPlace]) -> int:
     """Runs an errand that another robot follows; returns the exit code."""
     display = Display()
-    referee = Referee(places, display.say)
+    referee = Referee(places, display.print)
     with Run(options, launch, referee, RunRecorder(places), display) as run:
-        following = FollowWatch("follower")
+        following = FollowMonitor("follower")
         failure = run.watch(lambda: referee.has_seen({ERRAND}))
         verdict = referee.verdict({ERRAND}, failure)
         if verdict.success:
-            complaint = following.complaint
-            verdict = Verdict(complaint is None, complaint or f"{verdict.reason}; {following.praise}")
-        return run.conclude(verdict, **following.findings())
+            failure = following.failure
+            verdict = Verdict(failure is None, failure or f"{verdict.reason}; {following.description}")
+        return run.conclude(verdict, **following.result_fields())

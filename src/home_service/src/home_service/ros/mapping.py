@@ -11,14 +11,14 @@ from typing import Callable, List, Optional
 from actionlib_msgs.msg import GoalStatus
 from home_service_msgs.msg import ExploreActionFeedback, ExploreActionResult
 
+from home_service.inputs import WorldInputs
 from home_service.judging.map_truth import judge_map, score_against_world
 from home_service.judging.verdict import Verdict
 from home_service.options import LaunchPlan, MappingOptions
-from home_service.ros.hearing import hear
 from home_service.ros.referee import Referee
 from home_service.ros.run import Run
 from home_service.ros.run_recorder import RunRecorder
-from home_service.stage import Stage
+from home_service.ros.subscription import subscribe
 from planar import Pose2, SettingsError, load_map
 from supervision.display import Display
 from supervision.errors import LaunchError
@@ -37,25 +37,25 @@ def make_map(options: MappingOptions, launch: LaunchPlan, drive: Driver) -> int:
     """Runs SLAM while ``drive`` does, and saves the map; returns the exit code."""
     _check_place_to_save(options.save)
     display = Display()
-    referee = Referee({}, display.say)
+    referee = Referee({}, display.print)
     with Run(options, launch, referee, RunRecorder({}), display) as run:
         failure = drive(run, referee)
         path = save_map(run, options.save, failure)
         return run.conclude(Verdict(failure is None, failure or f"map saved in {path}"))
 
 
-def make_scored_map(options: MappingOptions, launch: LaunchPlan, stage: Stage) -> int:
+def make_scored_map(options: MappingOptions, launch: LaunchPlan, stage: WorldInputs) -> int:
     """Runs SLAM and the explorer, saves the map, and judges it by the world; returns the exit code."""
     _check_place_to_save(options.save)
     display = Display()
-    referee = Referee({}, display.say)
+    referee = Referee({}, display.print)
     with Run(options, launch, referee, RunRecorder({}), display) as run:
         failure = explore(run, referee)
         path = save_map(run, options.save, failure)
-        way_home = referee.distance_from(Pose2())
+        distance_to_start = referee.distance_from(Pose2())
         score = score_against_world(load_map(path), stage.world, stage.robot)
-        display.say(f"map saved in {path}")
-        verdict = judge_map(score, way_home, failure, referee.collision)
+        display.print(f"map saved in {path}")
+        verdict = judge_map(score, distance_to_start, failure, referee.collision)
         return run.conclude(verdict, map=str(path), **asdict(score))
 
 
@@ -67,18 +67,18 @@ def explore(run: Run, referee: Referee) -> Optional[str]:
         referee.state = f"{told.state}, {told.explored_area:.0f} m2 known, {told.frontiers} frontiers"
 
     ends: List[GoalStatus] = []
-    hear("explore/feedback", ExploreActionFeedback, show)
-    hear("explore/result", ExploreActionResult, lambda message: ends.append(message.status))
+    subscribe("explore/feedback", ExploreActionFeedback, show)
+    subscribe("explore/result", ExploreActionResult, lambda message: ends.append(message.status))
     failure = run.watch(lambda: len(ends) > 0)
     if failure is not None:
         return failure
-    run.display.say(f"{ends[0].text}, {referee.simulated_seconds:.0f} s simulated")
+    run.display.print(f"{ends[0].text}, {referee.simulated_seconds:.0f} s simulated")
     return None if ends[0].status == GoalStatus.SUCCEEDED else ends[0].text
 
 
-def drive_by_keys(run: Run, _referee: Referee) -> Optional[str]:
+def drive_by_keyboard(run: Run, _referee: Referee) -> Optional[str]:
     """A driver: terminal or pipe are left to the keyboard teleop until it ends."""
-    run.display.hush()
+    run.display.release_terminal()
     teleop = subprocess.Popen(TELEOP, preexec_fn=ending_with_parent())
     failure = run.watch(lambda: teleop.poll() is not None)
     if failure is None and teleop.returncode != 0:
@@ -86,10 +86,10 @@ def drive_by_keys(run: Run, _referee: Referee) -> Optional[str]:
     return failure
 
 
-def drive_at_the_page(run: Run, _referee: Referee) -> Optional[str]:
+def drive_in_browser(run: Run, _referee: Referee) -> Optional[str]:
     """A driver: a person drives in the browser until Ctrl-C."""
-    run.display.say(f"ROS_MASTER_URI={os.environ['ROS_MASTER_URI']}")
-    run.display.say("drive at the page; Ctrl-C ends, and saves the map")
+    run.display.print(f"ROS_MASTER_URI={os.environ['ROS_MASTER_URI']}")
+    run.display.print("drive at the page; Ctrl-C ends, and saves the map")
     with suppress(RunInterruptedError):
         return run.watch(lambda: False)
     return None

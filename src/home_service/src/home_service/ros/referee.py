@@ -15,12 +15,12 @@ from rosgraph_msgs.msg import Log
 from std_msgs.msg import String
 from visualization_msgs.msg import Marker
 
-from home_service.judging.delivery_watch import DeliveryWatch
-from home_service.judging.marker_log import MarkerLog, Shown
-from home_service.judging.verdict import FINAL_STATES, Ledger, Verdict, collision, judge
-from home_service.ros.goal_watch import GoalWatch
-from home_service.ros.hearing import hear
-from pick_objects import Delivery, Stage, parse_mission
+from home_service.judging.delivery_monitor import DeliveryMonitor
+from home_service.judging.marker_log import MarkerLog, MarkerState
+from home_service.judging.verdict import FINAL_STATES, MissionRecord, Verdict, collision, judge
+from home_service.ros.goal_monitor import GoalMonitor
+from home_service.ros.subscription import subscribe
+from pick_objects import Delivery, DeliveryStage, parse_mission
 from planar import PlanarError, Pose2
 from planar.maps.places import NamedPlace
 from planar_ros.messages.conversion import pose2_from_msg
@@ -28,29 +28,29 @@ from supervision.processes import start_of_this_process
 
 MOTION_DISTANCE = 0.02
 NUMBER = re.compile(r"\d[\d.]*")
-CONNECTION_CHATTER = "tcpros_base.py"
+CONNECTION_LOG_FILE = "tcpros_base.py"
 # Ground truth is remembered for so many messages, to look up where the robot stood at a stamp.
-REMEMBERED = 500
-SPOKEN_NODES = ("/pick_objects", "/add_markers")
-# Of simulated and of wall time, after the end of a mission: what has not been told by then does not come.
-LATE_SECONDS = 10.0
+TRUTH_HISTORY = 500
+LOGGED_NODES = ("/pick_objects", "/add_markers")
+# Of simulated and of wall time, after the end of a mission: what has not been reported by then does not come.
+GRACE_SECONDS = 10.0
 
 
 class Referee:
     """A judge that fills a ledger from topics. Simulated time is that of the ground truth's stamps.
 
-    ``say`` is called with each line worth a person's attention. Places that only a mission knows which the
+    ``log`` is called with each line worth a person's attention. Places that only a mission knows which the
     robot is sent are learned from it.
     """
 
     def __init__(
-        self, places: Mapping[str, NamedPlace], say: Callable[[str], None], tells_goals: bool = False
+        self, places: Mapping[str, NamedPlace], log: Callable[[str], None], logs_goals: bool = False
     ):
-        """``tells_goals``: also of the goals that move_base is given."""
-        self.ledger = Ledger()
+        """``logs_goals``: also of the goals that move_base is given."""
+        self.mission_record = MissionRecord()
         self.state = ""
         self.distance_driven = 0.0
-        self.distance_to_go: Optional[float] = None
+        self.remaining_distance: Optional[float] = None
         self.first_motion_wall: Optional[float] = None
         self.start_wall = 0.0
         self.truth: Optional[Pose2] = None
@@ -58,46 +58,46 @@ class Referee:
         self._start_truth = Pose2()
         self._start_time = 0.0
         self._places = dict(places)
-        self._say = say
-        self._recent: Deque[Tuple[float, Pose2]] = deque(maxlen=REMEMBERED)
-        self._unjudged: Deque[MissionState] = deque()
-        self._deliveries = DeliveryWatch(self._places, self.ledger.deliveries, say)
-        self._markers = MarkerLog(self._places, self.ledger)
-        self._told: Set[str] = set()
+        self._log = log
+        self._recent: Deque[Tuple[float, Pose2]] = deque(maxlen=TRUTH_HISTORY)
+        self._pending_missions: Deque[MissionState] = deque()
+        self._deliveries = DeliveryMonitor(self._places, self.mission_record.deliveries, log)
+        self._markers = MarkerLog(self._places, self.mission_record)
+        self._logged: Set[str] = set()
         self._lock = threading.Lock()
-        self._has_started = False
+        self._is_started = False
         # Simulated and wall time of the end of the mission, once it has come.
-        self._over_since: Optional[Tuple[float, float]] = None
-        self._goals = GoalWatch(say, lambda: self.truth) if tells_goals else None
+        self._ended_at: Optional[Tuple[float, float]] = None
+        self._goals = GoalMonitor(log, lambda: self.truth) if logs_goals else None
 
     def start(self) -> None:
         """Subscribes to what it judges by; this process is a node by then."""
-        self._has_started = True
+        self._is_started = True
         truth = "base_pose_ground_truth"
-        hear(truth, Odometry, self._see_truth)
-        hear("contacts", String, self._see_contact)
-        hear("pick_objects/state", String, self._see_state)
-        hear("deliver/goal", DeliverActionGoal, self._see_goal)
-        hear("pick_objects/mission_state", MissionState, self._see_mission)
-        hear("visualization_marker", Marker, self._see_marker)
-        hear("move_base/NavfnROS/plan", Path, self._see_plan)
-        hear("move_base/result", MoveBaseActionResult, self._see_result)
-        hear("/rosout_agg", Log, self._hear)
+        subscribe(truth, Odometry, self._on_truth)
+        subscribe("contacts", String, self._on_contact)
+        subscribe("pick_objects/state", String, self._on_state)
+        subscribe("deliver/goal", DeliverActionGoal, self._on_goal)
+        subscribe("pick_objects/mission_state", MissionState, self._on_mission)
+        subscribe("visualization_marker", Marker, self._on_marker)
+        subscribe("move_base/NavfnROS/plan", Path, self._on_plan)
+        subscribe("move_base/result", MoveBaseActionResult, self._on_result)
+        subscribe("/rosout_agg", Log, self._on_log)
         if self._goals is not None:
             self._goals.start()
 
-    def has_begun(self) -> bool:
+    def has_truth(self) -> bool:
         """Whether the truth about the robot has been seen."""
         return self.truth is not None
 
     def has_seen(self, expected: Set[str]) -> bool:
         """Whether everything expected has been seen, or can no longer come."""
-        return self.ledger.is_complete(expected) or self._is_long_over()
+        return self.mission_record.is_complete(expected) or self._is_past_grace_period()
 
     def verdict(self, expected: Set[str], failure: Optional[str] = None) -> Verdict:
         """Whether all that was expected truly came about; ``failure``: why the run was cut short, if so."""
-        self.ledger.failure = failure or self.ledger.failure
-        return judge(self.ledger, expected)
+        self.mission_record.failure = failure or self.mission_record.failure
+        return judge(self.mission_record, expected)
 
     def distance_from(self, pose: Pose2) -> float:
         """How far the robot truly is from a pose of the world, metres; it has begun by then."""
@@ -107,19 +107,19 @@ class Referee:
     @property
     def collision(self) -> Optional[str]:
         """What the robot has collided with, in words; None if with nothing."""
-        return collision(self.ledger.collisions)
+        return collision(self.mission_record.collisions)
 
     def status(self) -> str:
         """How things stand, in a line."""
-        to_go = "" if self.distance_to_go is None else f"{self.distance_to_go:.1f} m to go, "
+        to_go = "" if self.remaining_distance is None else f"{self.remaining_distance:.1f} m to go, "
         return (
             f"{self.state or 'running'}: {to_go}simulated {self.simulated_seconds:.1f} s, "
             f"{self.real_time_factor:.1f} x real time"
         )
 
-    def findings(self) -> Dict[str, Any]:
+    def result_fields(self) -> Dict[str, Any]:
         """What belongs into result.json; nothing if it was not started."""
-        if not self._has_started:
+        if not self._is_started:
             return {}
         first_motion = self.first_motion_wall
         return {
@@ -127,8 +127,8 @@ class Referee:
             "simulated_seconds": round(self.simulated_seconds, 3),
             "real_time_factor": round(self.real_time_factor, 3),
             "distance_driven": round(self.distance_driven, 3),
-            **self.ledger.findings(),
-            **({} if self._goals is None else self._goals.findings()),
+            **self.mission_record.result_fields(),
+            **({} if self._goals is None else self._goals.result_fields()),
         }
 
     @property
@@ -143,7 +143,7 @@ class Referee:
             return 0.0
         return self.simulated_seconds / max(time.monotonic() - self.start_wall, 1e-3)
 
-    def _see_truth(self, message):
+    def _on_truth(self, message):
         truth, stamp = pose2_from_msg(message.pose.pose), message.header.stamp.to_sec()
         with self._lock:
             if self.truth is None:
@@ -152,46 +152,50 @@ class Referee:
                 self.distance_driven += self.truth.distance_to(truth)
             self.truth, self.simulated_time = truth, stamp
             self._recent.append((stamp, truth))
-            self._judge_missions()
+            self._process_missions()
             has_moved = self._start_truth.distance_to(truth) > MOTION_DISTANCE
             if self.first_motion_wall is None and has_moved:
                 self.first_motion_wall = time.time()
 
-    def _see_state(self, message):
+    def _on_state(self, message):
         with self._lock:
             self.state = message.data
 
-    def _see_goal(self, message):
+    def _on_goal(self, message):
         """What cannot be understood is refused by the robot, in words."""
         with self._lock, contextlib.suppress(PlanarError):
             if message.goal.mission:
                 self._places.update(parse_mission(message.goal.mission, self._places).places)
 
-    def _see_mission(self, message):
+    def _on_mission(self, message):
         with self._lock:
-            self._unjudged.append(message)
-            self._judge_missions()
+            self._pending_missions.append(message)
+            self._process_missions()
 
-    def _judge_missions(self):
-        """Judges what has been told of missions, each once the truth of its moment has come."""
-        while self._unjudged and self._unjudged[0].header.stamp.to_sec() <= self.simulated_time:
-            message = self._unjudged.popleft()
+    def _process_missions(self):
+        """Judges what has been reported of missions, each once the truth of its moment has come."""
+        while (
+            self._pending_missions and self._pending_missions[0].header.stamp.to_sec() <= self.simulated_time
+        ):
+            message = self._pending_missions.popleft()
             truth = self._truth_at(message.header.stamp.to_sec())
             for state in message.deliveries:
-                told = state.delivery
-                delivery = Delivery(told.name, told.object, told.source, told.destination)
-                self._deliveries.see(delivery, Stage(state.state), state.attempts, state.reason, truth)
-            self.ledger.reason, self.ledger.final_state = message.reason, message.state
-            self._markers.tell()
-        if self.ledger.final_state not in FINAL_STATES:
-            self._over_since = None
-        elif self._over_since is None:
-            self._over_since = (self.simulated_time, time.monotonic())
+                reported = state.delivery
+                delivery = Delivery(reported.name, reported.object, reported.source, reported.destination)
+                self._deliveries.update(
+                    delivery, DeliveryStage(state.state), state.attempts, state.reason, truth
+                )
+            self.mission_record.reason, self.mission_record.final_state = message.reason, message.state
+            self._markers.flush()
+        if self.mission_record.final_state not in FINAL_STATES:
+            self._ended_at = None
+        elif self._ended_at is None:
+            self._ended_at = (self.simulated_time, time.monotonic())
 
-    def _is_long_over(self) -> bool:
+    def _is_past_grace_period(self) -> bool:
         now = (self.simulated_time, time.monotonic())
-        return self._over_since is not None and all(
-            moment > since + LATE_SECONDS for moment, since in zip(now, self._over_since)
+        return self._ended_at is not None and all(
+            moment > since + GRACE_SECONDS for moment, since in zip(now, self._ended_at)
         )
 
     def _truth_at(self, stamp: float) -> Optional[Pose2]:
@@ -199,37 +203,37 @@ class Referee:
             return None
         return min(self._recent, key=lambda entry: abs(entry[0] - stamp))[1]
 
-    def _see_contact(self, message):
+    def _on_contact(self, message):
         for name in message.data.splitlines():
-            self.ledger.collisions.append(name)
-            self._say(f"collision with {name}")
+            self.mission_record.collisions.append(name)
+            self._log(f"collision with {name}")
 
-    def _see_marker(self, message):
+    def _on_marker(self, message):
         is_hidden = message.action == Marker.DELETE
         pose = Pose2() if is_hidden else pose2_from_msg(message.pose)
         with self._lock:
-            self._markers.see(Shown(message.ns, pose, message.frame_locked, is_hidden))
+            self._markers.add(MarkerState(message.ns, pose, message.frame_locked, is_hidden))
 
-    def _see_plan(self, message):
+    def _on_plan(self, message):
         points = [(pose.pose.position.x, pose.pose.position.y) for pose in message.poses]
-        self.distance_to_go = sum(math.dist(a, b) for a, b in zip(points, points[1:]))
+        self.remaining_distance = sum(math.dist(a, b) for a, b in zip(points, points[1:]))
 
-    def _see_result(self, _message):
+    def _on_result(self, _message):
         """A goal is over: there is nothing left to go."""
-        self.distance_to_go = None
+        self.remaining_distance = None
 
-    def _hear(self, message):
-        if message.file == CONNECTION_CHATTER:
+    def _on_log(self, message):
+        if message.file == CONNECTION_LOG_FILE:
             return
         node = message.name.lstrip("/")
         if message.level >= Log.WARN:
-            if self._is_news(f"{node}: {NUMBER.sub('', message.msg)}"):
-                self._say(f"{node}: warning: {message.msg}")
-        elif message.name in SPOKEN_NODES:
-            self._say(f"{node}: {message.msg}")
+            if self._is_new_warning(f"{node}: {NUMBER.sub('', message.msg)}"):
+                self._log(f"{node}: warning: {message.msg}")
+        elif message.name in LOGGED_NODES:
+            self._log(f"{node}: {message.msg}")
 
-    def _is_news(self, gist):
-        """Whether this was not told before, be it with other numbers; the report counts them all."""
-        is_news = gist not in self._told
-        self._told.add(gist)
-        return is_news
+    def _is_new_warning(self, gist):
+        """Whether this was not reported before, be it with other numbers; the report counts them all."""
+        is_new = gist not in self._logged
+        self._logged.add(gist)
+        return is_new

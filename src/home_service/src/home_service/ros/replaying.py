@@ -8,7 +8,7 @@ from std_msgs.msg import String
 
 from home_service.judging.verdict import Verdict
 from home_service.options import LaunchPlan, RunOptions
-from home_service.ros.bags.states import BROKEN, ENDED
+from home_service.ros.bags import BROKEN, ENDED
 from home_service.ros.mapping import save_map
 from home_service.ros.referee import Referee
 from home_service.ros.run import Run
@@ -29,16 +29,16 @@ def open_recording(paths: Sequence[Path], needs_scans: bool) -> Recording:
     return recording
 
 
-def play(
+def replay(
     options: RunOptions, launch: LaunchPlan, recording: Recording, saves_map: bool, stem: Optional[Path]
 ) -> int:
     """Runs the graph that plays it to its end; the map goes to ``stem`` or the run folder. The exit code."""
     display = Display()
-    with Run(options, launch, Referee({}, display.say), RunRecorder({}), display) as run:
+    with Run(options, launch, Referee({}, display.print), RunRecorder({}), display) as run:
         run.result.missing += recording.gaps
         failure = _play(run)
         if failure is None and saves_map:
-            display.say(f"map saved in {save_map(run, stem)}")
+            display.print(f"map saved in {save_map(run, stem)}")
         verdict = Verdict(failure is None, failure or f"{recording.end - recording.start:.1f} s replayed")
         return run.conclude(verdict, bags=[str(path) for path in recording.paths])
 

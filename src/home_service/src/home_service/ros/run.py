@@ -13,10 +13,10 @@ from cockpit.process import FREE_PORT, CockpitProcess
 from home_service.judging.contracts import Judge, Recorder
 from home_service.judging.verdict import Verdict
 from home_service.options import LaunchPlan, RunOptions
-from home_service.result import Result, ResultError, in_few_words
+from home_service.result import ResultError, ResultFile, grouped_by_reason
 from home_service.ros.bags.rosbag_process import RosbagProcess
-from home_service.ros.run_trace import RunTrace
-from home_service.ros.standstill import Standstill
+from home_service.ros.clock_monitor import ClockMonitor
+from home_service.ros.trace_recorder import TraceRecorder
 from planar import PlanarError, SettingsError
 from planar_ros.node.shell import init_node
 from planar_ros.step.step import OBSERVERS_PARAMETER
@@ -29,7 +29,7 @@ from supervision.processes import start_of_this_process
 from supervision.ros.node_api import is_master_online
 from supervision.ros.supervisor import Supervisor
 from supervision.run_folder import create_run_folder
-from supervision.streams import drop_what_cannot_be_written
+from supervision.streams import ignore_write_errors
 from supervision.versions import versions
 
 # The name of a run's own process as a node. The simulator is told of it before it is one, to wait for it.
@@ -57,17 +57,17 @@ class Run:
         self._judge, self._recorder = judge, recorder
         self.display = display
         self.folder = create_run_folder(options.output.resolve(), options.name)
-        self.result = Result(self.folder)
+        self.result = ResultFile(self.folder)
         self._supervisor = Supervisor(display, self.folder / "log", options.time_limit)
         self._bags: Optional[RosbagProcess] = None
         self._cockpit: Optional[CockpitProcess] = None
-        self._trace = RunTrace()
-        self._standstill = Standstill(display.say)
+        self._trace = TraceRecorder()
+        self._clock_monitor = ClockMonitor(display.print)
         self._has_succeeded = False
 
     def __enter__(self) -> "Run":
         raise_when_interrupted()
-        drop_what_cannot_be_written()
+        ignore_write_errors()
         self.display.__enter__()
         try:
             self._bring_up()
@@ -79,7 +79,7 @@ class Run:
     def __exit__(self, _kind, error, _traceback) -> None:
         """Raises ResultError if a run that has succeeded leaves no result."""
         # The report is made while the nodes end, so that it costs no time.
-        reporting = threading.Thread(target=self._report, daemon=True)
+        reporting = threading.Thread(target=self._write_report, daemon=True)
         try:
             self._finish(error)
             reporting.start()
@@ -88,13 +88,13 @@ class Run:
         reporting.join(REPORT_SECONDS)
         if reporting.is_alive():
             self.result.missing.append(f"the report: not made within {REPORT_SECONDS:g} s")
-        is_hollow = error is None and self._has_succeeded and self.result.gap is not None
-        gaps = self.result.missing if is_hollow else self.result.all_missing
-        for gap in in_few_words(gaps):
-            self.display.say(f"warning: missing: {gap}")
-        self.display.say(f"result, report and logs in {self.folder}")
+        lacks_result = error is None and self._has_succeeded and self.result.gap is not None
+        gaps = self.result.missing if lacks_result else self.result.all_missing
+        for gap in grouped_by_reason(gaps):
+            self.display.print(f"warning: missing: {gap}")
+        self.display.print(f"result, report and logs in {self.folder}")
         self.display.__exit__()
-        if is_hollow:
+        if lacks_result:
             raise ResultError(f"{self.folder}/{self.result.gap}: without it the run is no success")
 
     def watch(self, is_over: Callable[[], bool]) -> Optional[str]:
@@ -103,7 +103,7 @@ class Run:
         Raises LaunchError if a node refused its input, RunInterruptedError at Ctrl-C.
         """
         failure = self._supervisor.watch(is_over, self._status)
-        standstill = self._standstill.reason
+        standstill = self._clock_monitor.reason
         return f"{failure}; {standstill}" if failure and standstill else failure
 
     @property
@@ -112,49 +112,49 @@ class Run:
         return self._supervisor.end_of_graph
 
     def _status(self) -> str:
-        self._standstill.look()
+        self._clock_monitor.check()
         return self._judge.status()
 
     def conclude(self, verdict: Verdict, **findings: Any) -> int:
         """Keeps the findings for result.json, prints the verdict, and returns the exit code it deserves."""
-        self._keep(verdict, **findings)
+        self._record_result(verdict, **findings)
         if self.result.gap is not None:
             verdict = Verdict(False, f"{self.result.gap}; what the run came to: {verdict.reason}")
             self.result.add(success=False, reason=verdict.reason)
         self._has_succeeded = verdict.success
-        self.display.say(f"{'SUCCESS' if verdict.success else 'FAILURE'}: {verdict.reason}")
+        self.display.print(f"{'SUCCESS' if verdict.success else 'FAILURE'}: {verdict.reason}")
         return 0 if verdict.success else 1
 
     def _bring_up(self) -> None:
-        self.display.say(f"run folder {self.folder}")
-        speed = {"speed": self._options.wanted_speed, "rviz": str(self._options.rviz).lower()}
+        self.display.print(f"run folder {self.folder}")
+        speed = {"speed": self._options.effective_speed, "rviz": str(self._options.rviz).lower()}
         launch = self._launch
         audience = {"audience": NODE} if launch.is_simulated else {}
         arguments = {**launch.arguments, **speed, **audience}
-        self._supervisor.start(launch.package, launch.file, arguments, launch.comes_back)
-        if self._options.is_on_the_web:
+        self._supervisor.start(launch.package, launch.file, arguments, launch.respawned)
+        if self._options.shows_cockpit:
             where = self._options.web_port or FREE_PORT
             self._cockpit = CockpitProcess(
                 where, self.folder / "log" / "cockpit.log", tool=self._options.tool
             )
-            self.display.say(f"cockpit: {self._cockpit.url}")
+            self.display.print(f"cockpit: {self._cockpit.url}")
         wait_for = self._supervisor.wait_for
         wait_for("the ROS master", is_master_online)
         if launch.bags is not None:
             wait_for("simulated time", _is_time_simulated)
             self._bags = RosbagProcess(launch.bags, self.folder / "bag")
-        self._supervisor.carry_out("the run's own node", self._listen)
+        self._supervisor.run_in_thread("the run's own node", self._subscribe)
         if self._launch.is_simulated:
-            wait_for("ground truth from the simulator", self._judge.has_begun)
+            wait_for("ground truth from the simulator", self._judge.has_truth)
         if self._bags is not None:
             wait_for("the recorder of bags", self._bags.is_ready)
 
-    def _listen(self) -> None:
+    def _subscribe(self) -> None:
         """Makes this process a node that hears all it is to judge and to keep."""
         init_node(NODE, log_level=rospy.ERROR)
         self._trace.start()
         if self._launch.is_simulated:
-            self._standstill.start()
+            self._clock_monitor.start()
         self._judge.start()
         self._recorder.start()
         rospy.set_param(OBSERVERS_PARAMETER, [rospy.get_name()])
@@ -162,37 +162,37 @@ class Run:
     def _finish(self, error: Optional[BaseException]) -> None:
         """All that is to be done before the nodes end."""
         if error is None and self._options.has_view:
-            self._linger()
+            self._keep_view_open()
         self.display.show("shutting down")
         if self._cockpit is not None:
             self._cockpit.close()
         if isinstance(error, (PlanarError, RunInterruptedError)):
-            self._keep(Verdict(False, str(error)))
+            self._record_result(Verdict(False, str(error)))
         if self._bags is not None:
             self.result.missing += self._bags.close()
-        if not self._supervisor.is_at_work:  # else rospy would wait for its locks
+        if not self._supervisor.has_pending_work:  # else rospy would wait for its locks
             rospy.signal_shutdown("the run is over")
 
-    def _linger(self) -> None:
+    def _keep_view_open(self) -> None:
         """Leaves the views open for those who have looked on; Ctrl-C ends it."""
         ending = time.monotonic() + VIEW_SECONDS
         with suppress(RunInterruptedError):
-            self.display.say(f"the view stays open for {VIEW_SECONDS:g} s; Ctrl-C closes it")
+            self.display.print(f"the view stays open for {VIEW_SECONDS:g} s; Ctrl-C closes it")
             while time.monotonic() < ending:
                 raise_if_interrupted()
                 time.sleep(0.05)
 
-    def _keep(self, verdict: Verdict, **findings: Any) -> None:
+    def _record_result(self, verdict: Verdict, **findings: Any) -> None:
         about = {"command": self._options.name, "success": verdict.success, "reason": verdict.reason}
-        self.result.add(**about, **self._options.told(), arguments=words(self._options))
+        self.result.add(**about, **self._options.result_fields(), arguments=words(self._options))
         self.result.add(wall_seconds=round(time.time() - start_of_this_process(), 3))
         self.result.add(restarts=[asdict(restart) for restart in self._supervisor.restarts])
         if self._launch.is_simulated:
-            self._trace.leave(self.result)
-        self.result.add(**{**self._judge.findings(), **findings, "versions": versions()})
+            self._trace.save(self.result)
+        self.result.add(**{**self._judge.result_fields(), **findings, "versions": versions()})
         self.result.write()
 
-    def _report(self) -> None:
+    def _write_report(self) -> None:
         if self._supervisor.log_gap:
             self.result.missing.append(self._supervisor.log_gap)
         record = self._recorder.record()

@@ -12,8 +12,8 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker
 
 from home_service.judging.samples import Samples
-from home_service.ros.hearing import hear
-from home_service.ros.referee import CONNECTION_CHATTER
+from home_service.ros.referee import CONNECTION_LOG_FILE
+from home_service.ros.subscription import subscribe
 from planar import Pose2
 from planar.maps.places import NamedPlace
 from planar_ros.messages.conversion import (
@@ -23,10 +23,18 @@ from planar_ros.messages.conversion import (
     pose2_from_msg,
     yaw_of,
 )
-from run_report import Collision, Goal, Marking, RunRecord, State, Warned, Zone
+from run_report import (
+    CollisionEvent,
+    GoalEvent,
+    LoggedWarning,
+    MarkerEvent,
+    RunRecord,
+    StateEvent,
+    ZoneRecord,
+)
 
-ENOUGH_WARNINGS = 200
-MOST_EVENTS, MOST_PLANS, MOST_COLLISIONS = 300, 100, 1000
+MAX_WARNINGS = 200
+MAX_EVENTS, MAX_PLANS, MAX_COLLISIONS = 300, 100, 1000
 MAP_FRAME, ODOM_FRAME = "map", "odom"
 
 
@@ -44,24 +52,24 @@ class RunRecorder:
         self._truth, self._odometry, self._estimate = Samples(7), Samples(4), Samples(4)
         self._odom_in_map: Optional[Pose2] = None
         self._map = None
-        self._plans_wanted = 0
-        self._latest_markings: Dict[str, Marking] = {}
+        self._plans_missing = 0
+        self._latest_markings: Dict[str, MarkerEvent] = {}
 
     def start(self) -> None:
         """Subscribes to what it keeps; this process is a node by then."""
         self._record.zones = [
-            Zone(place.name, place.pose.x, place.pose.y, place.pose.yaw, place.radius)
+            ZoneRecord(place.name, place.pose.x, place.pose.y, place.pose.yaw, place.radius)
             for place in self._places.values()
         ]
-        hear("base_pose_ground_truth", Odometry, self._see_truth)
-        hear("/tf", TFMessage, self._see_transforms)
-        hear("map", OccupancyGridArrays, self._see_map)
-        hear("pick_objects/state", String, self._see_state)
-        hear("contacts", String, self._see_contact)
-        hear("visualization_marker", Marker, self._see_marker)
-        hear("move_base/current_goal", PoseStamped, self._see_goal)
-        hear("move_base/NavfnROS/plan", Path, self._see_plan)
-        hear("/rosout_agg", Log, self._hear)
+        subscribe("base_pose_ground_truth", Odometry, self._on_truth)
+        subscribe("/tf", TFMessage, self._on_transforms)
+        subscribe("map", OccupancyGridArrays, self._on_map)
+        subscribe("pick_objects/state", String, self._on_state)
+        subscribe("contacts", String, self._on_contact)
+        subscribe("visualization_marker", Marker, self._on_marker)
+        subscribe("move_base/current_goal", PoseStamped, self._on_goal)
+        subscribe("move_base/NavfnROS/plan", Path, self._on_plan)
+        subscribe("/rosout_agg", Log, self._on_log)
 
     def record(self) -> RunRecord:
         """All that has been seen so far."""
@@ -73,7 +81,7 @@ class RunRecorder:
         record.grid = None if self._map is None else grid_from_msg(self._map)
         return record
 
-    def _see_truth(self, message):
+    def _on_truth(self, message):
         stamp = message.header.stamp.to_sec()
         self._now = stamp
         if not self._truth.is_due(stamp):
@@ -91,15 +99,15 @@ class RunRecorder:
             wall - self._start_wall,
         )
 
-    def _see_transforms(self, message):
+    def _on_transforms(self, message):
         for transform in message.transforms:
             parent = frame_name(transform.header.frame_id)
             if parent == ODOM_FRAME:
-                self._see_odometry(transform)
+                self._on_odometry(transform)
             elif parent == MAP_FRAME and frame_name(transform.child_frame_id) == ODOM_FRAME:
                 self._odom_in_map = _pose_of(transform)
 
-    def _see_odometry(self, transform):
+    def _on_odometry(self, transform):
         stamp = transform.header.stamp.to_sec()
         if not self._odometry.is_due(stamp):
             return
@@ -109,48 +117,48 @@ class RunRecorder:
             base_in_map = self._odom_in_map @ base_in_odom
             self._estimate.add(stamp, base_in_map.x, base_in_map.y, base_in_map.yaw)
 
-    def _see_map(self, message):
+    def _on_map(self, message):
         self._map = message
 
-    def _see_state(self, message):
-        self._keep(self._record.states, State(self._now, message.data))
+    def _on_state(self, message):
+        self._append(self._record.states, StateEvent(self._now, message.data))
 
-    def _see_contact(self, message):
+    def _on_contact(self, message):
         for name in message.data.splitlines():
-            self._keep(self._record.collisions, Collision(self._now, name), MOST_COLLISIONS)
+            self._append(self._record.collisions, CollisionEvent(self._now, name), MAX_COLLISIONS)
 
-    def _see_marker(self, message):
+    def _on_marker(self, message):
         name = f"{message.ns} {message.id}"
         at, is_shown = message.pose.position, message.action == Marker.ADD
-        marking = Marking(self._now, name, is_shown, at.x, at.y)
+        marking = MarkerEvent(self._now, name, is_shown, at.x, at.y)
         latest = self._latest_markings.get(name)
         if latest is None or latest[2:] != marking[2:]:
             self._latest_markings[name] = marking
-            self._keep(self._record.markings, marking)
+            self._append(self._record.markings, marking)
 
-    def _see_goal(self, message):
+    def _on_goal(self, message):
         goal = pose2_from_msg(message.pose)
-        self._plans_wanted += 1
-        self._keep(self._record.goals, Goal(self._now, goal.x, goal.y, goal.yaw))
+        self._plans_missing += 1
+        self._append(self._record.goals, GoalEvent(self._now, goal.x, goal.y, goal.yaw))
 
-    def _see_plan(self, message):
+    def _on_plan(self, message):
         """Keeps the first plan for each goal, of which the others are the rest."""
-        if self._plans_wanted:
-            self._plans_wanted -= 1
+        if self._plans_missing:
+            self._plans_missing -= 1
             points = [(pose.pose.position.x, pose.pose.position.y) for pose in message.poses]
-            self._keep(self._record.plans, np.array(points).reshape(-1, 2), MOST_PLANS)
+            self._append(self._record.plans, np.array(points).reshape(-1, 2), MAX_PLANS)
 
     @staticmethod
-    def _keep(events: list, event: object, most: int = MOST_EVENTS) -> None:
+    def _append(events: list, event: object, most: int = MAX_EVENTS) -> None:
         """The latest, of a run that serves for days."""
         events.append(event)
         del events[:-most]
 
-    def _hear(self, message):
-        if message.level < Log.WARN or message.file == CONNECTION_CHATTER:
+    def _on_log(self, message):
+        if message.level < Log.WARN or message.file == CONNECTION_LOG_FILE:
             return
-        if len(self._record.warnings) < ENOUGH_WARNINGS:
-            self._record.warnings.append(Warned(self._now, message.name.lstrip("/"), message.msg))
+        if len(self._record.warnings) < MAX_WARNINGS:
+            self._record.warnings.append(LoggedWarning(self._now, message.name.lstrip("/"), message.msg))
 
 
 def _pose_of(transform) -> Pose2:

@@ -44,14 +44,14 @@ class Evaluate:
         from laboratory.suites import scenarios_of
         from laboratory.telling import broken_rules, regressions
         from planar import PlanarError, SettingsError
-        from supervision.display import complain
+        from supervision.display import print_error
         from supervision.interruption import RunInterruptedError, raise_when_interrupted
 
         rules = [requirement_from(text) for text in self.require or ()]
         seeds = None if self.seeds is None else seeds_of(self.seeds)
         scenarios, complaints = scenarios_of(self.suites, self.planner or (), self.over == "ros")
         for complaint in complaints:
-            complain(complaint)
+            print_error(complaint)
         if not scenarios:
             raise SettingsError("no scenario is left to be played")
         evaluation = Evaluation(scenarios, seeds, self.output / "results.sqlite")

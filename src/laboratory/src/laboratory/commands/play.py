@@ -15,11 +15,11 @@ class Play(RunOptions):
     over: str = option("process", "what plays it: one process, or the nodes", choices=("process", "ros"))
 
     def run(self) -> int:
-        from home_service.nursery import prepare_nodes
+        from home_service.preload import preload_nodes
         from laboratory.suites import one_scenario
 
         if self.over == "ros":
-            prepare_nodes()
+            preload_nodes()
         scenario = one_scenario(self.scenario, self.planner, self.over == "ros")
         if self.over == "ros":
             from laboratory.ros.conducting import conduct

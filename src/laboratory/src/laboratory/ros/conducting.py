@@ -5,7 +5,7 @@ from pathlib import Path
 
 from home_service.judging.verdict import ERRAND, MARKERS, OBJECTS
 from home_service.options import LaunchPlan, RunOptions
-from home_service.ros.conducting import carry_out
+from home_service.ros.run_modes import run_to_completion
 from laboratory.scenario import Scenario
 from laboratory.staging import stage
 from pick_objects import load_mission
@@ -22,4 +22,4 @@ def conduct(options: RunOptions, scenario: Scenario, seed: int) -> int:
             places.update(load_mission(mission_file, places).places)
         expected = {ERRAND, OBJECTS if mission_file else MARKERS}
         launch = LaunchPlan("scenario.launch", arguments, package="laboratory")
-        return carry_out(options, launch, places, expected, scenario.seconds)
+        return run_to_completion(options, launch, places, expected, scenario.seconds)

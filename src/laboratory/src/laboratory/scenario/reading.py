@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any, Callable, Dict, Mapping, Tuple, TypeVar
 
-from home_service.rehearsal import Conditions
+from home_service.headless import EpisodeConditions
 from laboratory.scenario.scenario import OFFICIAL, Scenario
 from laboratory.scenario.seeds import seeds_of
 from laboratory.tasks.reach import config_of
@@ -142,7 +142,7 @@ def _parameters(planner: Table, robot: str) -> Mapping[str, Any]:
     values = planner.table("parameters").values()
     name = planner.text("name") if "name" in planner else ""
     try:
-        Conditions(name, values).navigation(config_of(robot))
+        EpisodeConditions(name, values).navigation(config_of(robot))
         _, warnings = settings_from_parameters({**values, **({"base_local_planner": name} if name else {})})
     except SettingsError as error:
         raise planner.complaint("parameters", f"cannot be used: {error}") from None

@@ -43,7 +43,7 @@ class Chores:
         mission = self._mission(arena, seed)
         places = {place.name: _place_as_table(place) for place in mission.places.values()}
         deliveries = [
-            {"name": each.name, "object": each.thing, "from": each.source, "to": each.destination}
+            {"name": each.name, "object": each.object_name, "from": each.source, "to": each.destination}
             for each in mission.deliveries
         ]
         zones_file, mission_file = folder / "places.yaml", folder / "mission.yaml"

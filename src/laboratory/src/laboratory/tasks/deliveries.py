@@ -5,8 +5,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Mapping, Optional, Sequence, Tuple
 
 from add_markers import CarriedParcel
+from home_service.headless import (
+    NAVIGATION_CONFIG,
+    EpisodeConditions,
+    EpisodeResult,
+    HeadlessMission,
+    parcel_for,
+)
 from home_service.judging.verdict import collision
-from home_service.rehearsal import NAVIGATION_CONFIG, Conditions, Rehearsal, Rehearsed, parcel_of
 from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, Play
 from laboratory.tasks.ways import shortest_way
 from laboratory.worlds.source import Arena
@@ -29,7 +35,7 @@ class Deliveries:
 
     def play(self, scenario: "Scenario", arena: Arena, seed: int) -> Play:
         mission = self._mission(arena)
-        parcel = None if self.mission else parcel_of(mission)
+        parcel = None if self.mission else parcel_for(mission)
         return replace(play_mission(scenario, arena, seed, mission, parcel), way=self.way(scenario, arena))
 
     def places(self, arena: Arena) -> Sequence[Pose2]:
@@ -40,7 +46,7 @@ class Deliveries:
         """Of the errand; in which order a mission is best carried out is not known here."""
         if self.mission is not None:
             return None
-        robot = Conditions(parameters=scenario.parameters).navigation(NAVIGATION_CONFIG)
+        robot = EpisodeConditions(parameters=scenario.parameters).navigation(NAVIGATION_CONFIG)
         ends = tuple(place.pose for place in load_pickup_and_dropoff(self.zones))
         return shortest_way(_grid_of(arena), (scenario.start, *ends), robot.global_costmap.robot_radius)
 
@@ -66,21 +72,21 @@ def play_mission(
 ) -> Play:
     """Carries it out; ``parcel``: the marker of an errand. Raises PlanarError."""
     stage = (arena.world, robot_named(scenario.robot), _grid_of(arena), mission)
-    rehearsal = Rehearsal(*stage, seed=seed, parcel=parcel, conditions=_conditions(scenario))
+    rehearsal = HeadlessMission(*stage, seed=seed, parcel=parcel, conditions=_conditions(scenario))
     run = rehearsal.run(scenario.seconds)
     return Play(
         _outcome(run, scenario.seconds),
         _reason(run),
         run.trajectory,
         run.localization_error,
-        run.ledger.collisions,
+        run.mission_record.collisions,
         people=run.people,
-        ran_into_robot=run.ran_into_robot,
+        ran_into_robot=run.people_at_fault,
     )
 
 
-def _conditions(scenario: "Scenario") -> Conditions:
-    return Conditions(
+def _conditions(scenario: "Scenario") -> EpisodeConditions:
+    return EpisodeConditions(
         scenario.planner, scenario.parameters, scenario.faults, scenario.simulation, scenario.start
     )
 
@@ -91,17 +97,17 @@ def _grid_of(arena: Arena) -> OccupancyGrid:
     return arena.grid
 
 
-def _outcome(run: Rehearsed, seconds: float) -> str:
+def _outcome(run: EpisodeResult, seconds: float) -> str:
     if run.verdict.success:
         return SUCCESS
-    if collision(run.ledger.collisions):
+    if collision(run.mission_record.collisions):
         return COLLISION
     return TIMEOUT if run.simulated_seconds > seconds else FAILURE
 
 
-def _reason(run: Rehearsed) -> str:
+def _reason(run: EpisodeResult) -> str:
     """That of the verdict; and what it collided with, if that was not the end of it."""
-    touched, reason = collision(run.ledger.collisions), run.verdict.reason
+    touched, reason = collision(run.mission_record.collisions), run.verdict.reason
     return reason if touched is None or touched in reason else f"{touched}; {reason}"
 
 

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Mapping, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
-from home_service.judging.company import Company
+from home_service.headless import NAVIGATION_CONFIG, EpisodeConditions
+from home_service.judging.pedestrian_contacts import PedestrianContacts
 from home_service.judging.verdict import collision
-from home_service.rehearsal import NAVIGATION_CONFIG, Conditions
 from laboratory.tasks.task import COLLISION, FAILURE, SUCCESS, TIMEOUT, Play
 from laboratory.worlds.barn import score
 from laboratory.worlds.source import Arena
@@ -49,8 +49,8 @@ class Reach:
             touched,
             arena.way,
             points,
-            drive.company.track,
-            drive.company.ran_into_robot,
+            drive.pedestrians.track,
+            drive.pedestrians.people_at_fault,
         )
 
     def places(self, arena: Arena) -> Sequence[Pose2]:
@@ -70,7 +70,9 @@ class _Drive:
     """A run to a goal; it ends there, at the first touch, or when the navigator gives up."""
 
     def __init__(self, scenario: "Scenario", arena: Arena, seed: int, task: Reach):
-        settings = Conditions(scenario.planner, scenario.parameters).navigation(config_of(scenario.robot))
+        settings = EpisodeConditions(scenario.planner, scenario.parameters).navigation(
+            config_of(scenario.robot)
+        )
         self._navigator = Navigator(settings)
         self._faults = FaultInjector(scenario.faults, seed)
         self._simulation = Simulation(
@@ -81,7 +83,7 @@ class _Drive:
             scenario.start,
             self._faults.wrappers,
         )
-        self.company = Company(self._simulation)
+        self.pedestrians = PedestrianContacts(self._simulation)
         self._steps = round(1.0 / settings.move_base.controller_frequency / self._simulation.step_seconds)
         self._task, self._goal = task, scenario.start @ task.goal
         self.trajectory: list = []
@@ -126,7 +128,7 @@ class _Drive:
         for _ in range(self._steps):
             observation = self._simulation.step(command)
             command, scan = None, observation.scan or scan
-            self.touched.update(self.company.contacts(observation))
+            self.touched.update(self.pedestrians.robot_collisions(observation))
             place = FaultContext(self._simulation.scene, ROBOT_NAME, observation.base_in_world)
             self._faults.update(observation.stamp, place)
         return observation, scan
@@ -134,7 +136,7 @@ class _Drive:
     def _note(self, observation: StepResult, began: float) -> None:
         truth = observation.base_in_world
         self.trajectory.append((observation.stamp - began, truth.x, truth.y, truth.yaw))
-        self.company.note()
+        self.pedestrians.record()
 
 
 def config_of(robot: str) -> Path:

@@ -32,7 +32,7 @@ class Play:
     ``trajectory``: (N, 4) stamp, true x, y, yaw. ``localization_error``: (M,), metres, of a robot with a map.
     ``touched``: names of what it bumped into. ``way``: metres of the shortest way there is.
     ``score``: that of a benchmark. ``people``: (N, P, 5), and who of them ``ran_into_robot``: of
-    home_service.judging.company.
+    home_service.judging.pedestrian_contacts.
     """
 
     outcome: str

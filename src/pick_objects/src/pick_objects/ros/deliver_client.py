@@ -13,12 +13,12 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 from home_service_msgs.msg import DeliverAction, DeliverGoal, DeliveryState
 
-from pick_objects.mission_file import NAME_OF_TEXT
+from pick_objects.mission_file import TEXT_SOURCE
 from planar_ros.calls.actions import goal_is_over, server_is_ready
 from planar_ros.node.shell import init_node
 from supervision.interruption import on_signals
 
-POLL_SECONDS, TELL_SECONDS, CANCEL_SECONDS = 0.1, 2.0, 10.0
+POLL_SECONDS, FEEDBACK_SECONDS, CANCEL_SECONDS = 0.1, 2.0, 10.0
 SUCCESS, FAILURE, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 
 
@@ -28,17 +28,17 @@ def main(arguments: Optional[List[str]] = None) -> int:
     try:
         mission = options.mission.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        return _complain(f"{options.mission}: cannot be read ({getattr(error, 'strerror', None) or error})")
+        return _fail(f"{options.mission}: cannot be read ({getattr(error, 'strerror', None) or error})")
     interrupted = threading.Event()
     on_signals(lambda _number, _frame: interrupted.set())
     if not rosgraph.is_master_online():  # rospy would wait for one, deaf to everything
-        return _complain(f"no ROS master at {rosgraph.get_master_uri()}")
+        return _fail(f"no ROS master at {rosgraph.get_master_uri()}")
     init_node("deliver", anonymous=True)
     client = actionlib.SimpleActionClient("deliver", DeliverAction)
     deadline = time.monotonic() + options.server_timeout
     while not server_is_ready(client):
         if time.monotonic() > deadline or interrupted.is_set():
-            return _complain(f"no action {rospy.resolve_name('deliver')} within {options.server_timeout:g} s")
+            return _fail(f"no action {rospy.resolve_name('deliver')} within {options.server_timeout:g} s")
         time.sleep(POLL_SECONDS)
     deadline = time.monotonic() + options.timeout
     return _follow(client, DeliverGoal(mission=mission), str(options.mission), interrupted, deadline)
@@ -62,34 +62,34 @@ def _follow(client, goal: DeliverGoal, name: str, interrupted: threading.Event, 
     """Sends the goal, tells how it goes; ``name``: the file it was read from."""
     latest = [0.0]
 
-    def tell(feedback):
+    def print_feedback(feedback):
         state = feedback.state
-        if time.monotonic() - latest[0] >= TELL_SECONDS:
+        if time.monotonic() - latest[0] >= FEEDBACK_SECONDS:
             latest[0] = time.monotonic()
             where = f"{state.delivery}: {state.state} ({state.place})"
             print(f"{100.0 * state.progress:3.0f} %  {where}, about {state.time_left:.0f} s left", flush=True)
 
-    client.send_goal(goal, feedback_cb=tell)
+    client.send_goal(goal, feedback_cb=print_feedback)
     while not goal_is_over(client):
         if interrupted.is_set() or time.monotonic() > deadline or not server_is_ready(client):
             client.cancel_goal()
             if not _wait_for_end(client, time.monotonic() + CANCEL_SECONDS):
-                return _complain("the robot does not answer", FAILURE)
+                return _fail("the robot does not answer", FAILURE)
             break
         time.sleep(POLL_SECONDS)
     deliveries = getattr(client.get_result(), "deliveries", ())  # a server that is gone leaves no result
     for state in deliveries:
-        _tell_end(state)
+        _print_result(state)
     text = client.get_goal_status_text()
     if client.get_state() == GoalStatus.ABORTED and not deliveries:
-        return _complain(text.replace(NAME_OF_TEXT, name, 1))
+        return _fail(text.replace(TEXT_SOURCE, name, 1))
     print(text, flush=True)
     if interrupted.is_set():
         return INTERRUPTED
     return SUCCESS if client.get_state() == GoalStatus.SUCCEEDED else FAILURE
 
 
-def _tell_end(state: DeliveryState) -> None:
+def _print_result(state: DeliveryState) -> None:
     told = state.delivery
     ends = {state.DELIVERED: "delivered", state.CANCELLED: "cancelled"}
     reason = f" ({state.reason})" if state.reason and state.state == state.FAILED else ""
@@ -103,6 +103,6 @@ def _wait_for_end(client, deadline: float) -> bool:
     return goal_is_over(client)
 
 
-def _complain(text: str, code: int = BAD_INPUT) -> int:
+def _fail(text: str, code: int = BAD_INPUT) -> int:
     print(f"error: {text}", file=sys.stderr, flush=True)
     return code

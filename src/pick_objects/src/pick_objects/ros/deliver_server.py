@@ -8,7 +8,7 @@ from home_service_msgs.msg import DeliverAction, DeliverFeedback, DeliverGoal, D
 
 from pick_objects.errand import Errand
 from pick_objects.mission import Mission
-from pick_objects.ros.mission_topics import MissionTopics, delivery_states
+from pick_objects.ros.mission_publisher import MissionPublisher, delivery_states
 from planar import PlanarError
 from planar.driving import FinishTask
 from planar_ros.calls.actions import ActionServer
@@ -25,11 +25,11 @@ class DeliverServer:
 
     def __init__(
         self,
-        topics: MissionTopics,
-        understand: Callable[[DeliverGoal], Mission],
+        topics: MissionPublisher,
+        parse_goal: Callable[[DeliverGoal], Mission],
         carry_out: Callable[[Mission, Callable[[Errand], None]], FinishTask],
     ):
-        self._topics, self._understand, self._carry_out = topics, understand, carry_out
+        self._topics, self._parse_goal, self._carry_out = topics, parse_goal, carry_out
         self._errand: Optional[Errand] = None
         self._latest_feedback = 0.0
         self._server = ActionServer("deliver", DeliverAction, auto_start=False)
@@ -46,7 +46,7 @@ class DeliverServer:
         start = rospy.Time.now()
         self._errand = None
         try:
-            mission = self._understand(goal)
+            mission = self._parse_goal(goal)
         except PlanarError as error:
             rospy.logwarn("a mission is refused: %s", error)
             self._server.set_aborted(DeliverResult(reason=str(error)), str(error))

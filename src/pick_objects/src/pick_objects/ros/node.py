@@ -9,15 +9,15 @@ import rospy
 from home_service_msgs.msg import DeliverGoal
 from home_service_msgs.srv import AddDelivery, AddDeliveryResponse, CancelDelivery, CancelDeliveryResponse
 
-from pick_objects.approach import GoTo
+from pick_objects.approach import DriveToPlace
+from pick_objects.checkpoint import checkpoint_of, resume_errand
 from pick_objects.config import ErrandSettings, NodeSettings
-from pick_objects.errand import Errand, Event, MeasureWays
+from pick_objects.errand import Errand, Event, MeasurePathLengths
 from pick_objects.mission import Mission, MissionError, errand_mission
 from pick_objects.mission_file import load_mission, parse_mission
-from pick_objects.record import record_of, resumed
 from pick_objects.ros.deliver_server import DeliverServer
-from pick_objects.ros.driver import Driver
-from pick_objects.ros.mission_topics import MissionTopics, delivery_from_msg
+from pick_objects.ros.mission_publisher import MissionPublisher, delivery_from_msg
+from pick_objects.ros.navigation_client import NavigationClient
 from planar import OccupancyGrid
 from planar.driving import FinishTask
 from planar.maps.places import NamedPlace, load_pickup_and_dropoff, load_places, unreachable_reason
@@ -32,7 +32,7 @@ from planar_ros.step import LockstepClient
 POLL_SECONDS = 0.02
 
 
-class PickObjects:
+class PickObjectsNode:
     """Carries out the mission of a file, or the errand between the two zones, or what the action is sent."""
 
     def __init__(self):
@@ -46,12 +46,12 @@ class PickObjects:
         self._errand: Optional[Errand] = None
         self._keepsake = ParameterCheckpoint() if self._settings.resume else None
         self._lock = threading.Lock()
-        self._driver = Driver(self._settings.frame_id)
-        self._topics = MissionTopics(self._settings.frame_id, lambda: self._driver.robot_in_map)
+        self._navigation = NavigationClient(self._settings.frame_id)
+        self._topics = MissionPublisher(self._settings.frame_id, lambda: self._navigation.base_in_map)
         subscribe("map", OccupancyGridArrays, self._keep_map, queue_size=1)
         rospy.Service("~add_delivery", AddDelivery, self._on_add)
         rospy.Service("~cancel_delivery", CancelDelivery, self._on_cancel)
-        self._required = {self._driver.move_base.name: self._driver.move_base.is_ready}
+        self._required = {self._navigation.move_base.name: self._navigation.move_base.is_ready}
         for name in map(rospy.resolve_name, self._settings.wait_for.split()):
             self._required[f"{name} to be ready"] = NodeReadiness(name)
         ReadinessMonitor(
@@ -62,19 +62,19 @@ class PickObjects:
         """Carries the mission out and says how it ended; one that serves goes on until shutdown."""
         outcome = FinishTask(True, "served")
         if self._mission is not None:
-            self._topics.show(self._errand_for(self._mission))
-        obstacle = self._why_not_to_start()
+            self._topics.publish(self._errand_for(self._mission))
+        obstacle = self._wait_until_ready()
         if obstacle:
             return FinishTask(False, obstacle)
         if self._mission is not None:
-            outcome = self._carry_out(self._read_again(self._mission))
+            outcome = self._carry_out(self._reload_mission(self._mission))
         if self._settings.serve:
-            DeliverServer(self._topics, self._understand, self._carry_out).serve(
+            DeliverServer(self._topics, self._parse_goal, self._carry_out).serve(
                 lambda: self._step.pause(POLL_SECONDS)
             )
         return outcome
 
-    def say_goodbye(self) -> None:
+    def finish(self) -> None:
         """To be called last: the end of the mission is heard. Who would be respawned stays until shutdown."""
         self._topics.wait_until_heard()
         while self._settings.resume and not rospy.is_shutdown():
@@ -92,7 +92,7 @@ class PickObjects:
     def _places(self) -> Dict[str, NamedPlace]:
         return {**self._zones, **(self._mission.places if self._mission else {})}
 
-    def _read_again(self, mission: Mission) -> Mission:
+    def _reload_mission(self, mission: Mission) -> Mission:
         """The mission, now that there is a map to check it against."""
         self._mission = self._read_mission() or mission
         return self._mission
@@ -100,7 +100,7 @@ class PickObjects:
     def _carry_out(
         self, mission: Mission, watch: Callable[[Errand], None] = lambda errand: None
     ) -> FinishTask:
-        obstacle = self._why_impossible(mission)
+        obstacle = self._unreachable_place(mission)
         if obstacle:
             return FinishTask(False, obstacle)
         self._errand = self._errand_for(mission)
@@ -108,29 +108,29 @@ class PickObjects:
         while not rospy.is_shutdown():
             with self._lock:
                 order = self._errand.advance(rospy.get_time(), event)
-                self._topics.show(self._errand)
+                self._topics.publish(self._errand)
                 if self._keepsake is not None:
-                    self._keepsake.keep(record_of(self._errand))
+                    self._keepsake.keep(checkpoint_of(self._errand))
                 if isinstance(order, FinishTask):
-                    self._driver.move_base.cancel_all()
+                    self._navigation.move_base.cancel_all()
                     return order
                 watch(self._errand)
-            if isinstance(order, GoTo):
-                self._driver.send(order)
-            if isinstance(order, MeasureWays):
-                event = self._driver.measure(order)
+            if isinstance(order, DriveToPlace):
+                self._navigation.send(order)
+            if isinstance(order, MeasurePathLengths):
+                event = self._navigation.measure(order)
             else:
                 self._step.pause(POLL_SECONDS)
-                event = self._driver.event()
+                event = self._navigation.event()
         return FinishTask(False, "interrupted")
 
     def _errand_for(self, mission: Mission) -> Errand:
         """Where an earlier node of this name was cut short, if one was."""
         found = None if self._keepsake is None else self._keepsake.found
-        errand = None if found is None else resumed(mission, found)
+        errand = None if found is None else resume_errand(mission, found)
         return errand or Errand(mission)
 
-    def _why_not_to_start(self) -> Optional[str]:
+    def _wait_until_ready(self) -> Optional[str]:
         settings = self._settings
         if not self._wait_for(lambda: self._map is not None, settings.map_timeout):
             rospy.logwarn("no map within %g s: the places are not checked", settings.map_timeout)
@@ -142,14 +142,14 @@ class PickObjects:
     def _missing(self) -> List[str]:
         return [what for what, is_met in self._required.items() if not is_met()]
 
-    def _why_impossible(self, mission: Mission) -> Optional[str]:
+    def _unreachable_place(self, mission: Mission) -> Optional[str]:
         names = dict.fromkeys(name for d in mission.deliveries for name in (d.source, d.destination))
         problems: List[Optional[str]] = [
             unreachable_reason(mission.places[name], self._map) for name in names if self._map is not None
         ]
         return next((problem for problem in problems if problem), None)
 
-    def _understand(self, goal: DeliverGoal) -> Mission:
+    def _parse_goal(self, goal: DeliverGoal) -> Mission:
         places = self._places
         if goal.mission:
             if goal.deliveries:
@@ -164,8 +164,8 @@ class PickObjects:
                 "on_failure": "continue" if goal.continue_on_failure else "stop",
             }
         )
-        things = self._mission.things if self._mission else {}
-        mission = Mission("deliveries", places, (), things, settings)
+        objects = self._mission.objects if self._mission else {}
+        mission = Mission("deliveries", places, (), objects, settings)
         for message in goal.deliveries:
             mission = mission.with_delivery(delivery_from_msg(message))
         return mission
@@ -201,13 +201,13 @@ class PickObjects:
 
 def main():
     def start():
-        node = PickObjects()
+        node = PickObjectsNode()
         outcome = node.work()
         if rospy.is_shutdown():
             return
         if outcome.success:
             rospy.loginfo("%s", outcome.reason)
-        node.say_goodbye()
+        node.finish()
         if not outcome.success:
             fail(outcome.reason, exit_code=1)
         rospy.signal_shutdown("mission done")

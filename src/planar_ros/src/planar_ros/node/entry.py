@@ -4,13 +4,13 @@ import importlib
 import sys
 from typing import Any
 
-from supervision.forked import live_forked
-from supervision.interruption import leaving_on_signals
+from supervision.fork_client import run_in_fork_server
+from supervision.interruption import exiting_on_signals
 
 
 def start_node(function: str) -> None:
     """Calls the function of a node, as ``call``; in a child of a fork server, if there is one."""
-    live_forked(f"{__name__}:start_forked", function)
+    run_in_fork_server(f"{__name__}:start_forked", function)
     call(function)
 
 
@@ -24,6 +24,6 @@ def start_forked(function: str) -> None:
 def call(function: str, *arguments: object) -> Any:
     """What the function returns, given as ``package.module:name``; Ctrl-C is heard while that is imported."""
     module, _, name = function.partition(":")
-    with leaving_on_signals():
+    with exiting_on_signals():
         found = getattr(importlib.import_module(module), name)
     return found(*arguments)

@@ -16,7 +16,7 @@ from planar import PlanarError
 from planar_ros.node.backlog import extend_listen_backlog, merge_publisher_updates
 from planar_ros.node.blas import use_one_blas_thread
 from supervision.interruption import on_signals
-from supervision.streams import drop_what_cannot_be_written
+from supervision.streams import ignore_write_errors
 
 # Longer than any node needs to end in order.
 SHUTDOWN_SECONDS = 5.0
@@ -34,7 +34,7 @@ def run(node_name: str, start: Callable[[], object]) -> None:
     A PlanarError during the start is a user's mistake: one line on stderr, exit code 2.
     """
     shut_down_on_signals()
-    drop_what_cannot_be_written()
+    ignore_write_errors()
     use_one_blas_thread()
     try:
         init_node(node_name)

@@ -2,8 +2,10 @@
 
 import contextlib
 import os
+import random
 import shutil
 import signal
+import socket
 import subprocess
 import threading
 import time
@@ -12,10 +14,9 @@ from typing import IO, Collection, List, Mapping, Optional
 
 import psutil
 
-from supervision.deaths import Deaths, end_in_words
 from supervision.errors import LaunchError
 from supervision.guard import guarded, ignore_ctrl_c
-from supervision.ports import free_port
+from supervision.node_exits import NodeExits, describe_exit
 from supervision.processes import SIGTERM_SECONDS, adopt_orphans, end_descendants
 
 SIGINT_SECONDS = 8.0
@@ -24,6 +25,7 @@ CORE = ("roslaunch", "rosmaster", "rosout")
 CORE_SECONDS = 0.1
 POLL_SECONDS = 0.02
 ENDING = "killing on exit"
+FIRST_PORT, FIRST_OUTGOING_PORT = 20000, 32768
 
 
 class RosGraph:
@@ -39,9 +41,9 @@ class RosGraph:
         launch_file: str,
         arguments: Mapping[str, object],
         log_folder: Path,
-        comes_back: Collection[str] = (),
+        respawned: Collection[str] = (),
     ):
-        self.deaths = Deaths(log_folder, comes_back)
+        self.exits = NodeExits(log_folder, respawned)
         self.log_gap: Optional[str] = None
         self._log_folder = log_folder
         adopt_orphans()
@@ -74,7 +76,7 @@ class RosGraph:
     def how_it_ended(self) -> str:
         """Of roslaunch, once it does not run any more."""
         code = self._roslaunch.poll() or 0
-        return end_in_words(code) if code < 0 else "ended"
+        return describe_exit(code) if code < 0 else "ended"
 
     def close(self) -> None:
         """Ends every process of the graph: SIGINT first, then SIGTERM, then SIGKILL."""
@@ -111,7 +113,7 @@ class RosGraph:
         with contextlib.suppress(OSError):
             log = (self._log_folder / "roslaunch.log").open("w", encoding="utf-8", buffering=1)
         for line in self._roslaunch.stdout:  # type: ignore[union-attr]
-            self.deaths.read(line)
+            self.exits.read(line)
             if line.rstrip().endswith(ENDING):
                 self._is_ending.set()
             if log is not None:
@@ -121,3 +123,17 @@ class RosGraph:
                     self.log_gap = f"log/roslaunch.log: cannot be written ({error.strerror})"
                     log = None
         self._is_ending.set()
+
+
+def free_port() -> int:
+    """A TCP port on the loopback interface that nobody listens on right now.
+
+    It lies below those that the system hands out for outgoing connections: one of these, of another graph for
+    example, might take it before a master listens there.
+    """
+    ports = range(FIRST_PORT, FIRST_OUTGOING_PORT)
+    for port in random.Random().sample(ports, len(ports)):
+        with socket.socket() as probe, contextlib.suppress(OSError):
+            probe.bind(("127.0.0.1", port))
+            return port
+    raise LaunchError(f"every port from {ports[0]} to {ports[-1]} is in use")

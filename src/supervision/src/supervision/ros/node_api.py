@@ -48,7 +48,7 @@ def node_names() -> Set[str]:
     return {node for part in state for _name, nodes in part for node in nodes}
 
 
-def silent_nodes() -> List[str]:
+def unresponsive_nodes() -> List[str]:
     """The nodes that the master knows and that do not answer, without the slash."""
     uri = rosgraph.get_master_uri()
     silent = []
@@ -59,7 +59,7 @@ def silent_nodes() -> List[str]:
     return silent
 
 
-def hears_all(node: str, topics: Container[str]) -> bool:
+def receives_all(node: str, topics: Container[str]) -> bool:
     """Whether each publisher of ``topics`` sends to ``node`` by now."""
     master = rosgraph.get_master_uri()
     try:

@@ -6,13 +6,13 @@ from concurrent.futures import Future
 from pathlib import Path
 from typing import Callable, Collection, List, Mapping, Optional
 
-from supervision.deaths import Restart
 from supervision.display import Display
 from supervision.errors import LaunchError
 from supervision.interruption import raise_if_interrupted
+from supervision.node_exits import Restart
 from supervision.processes import end_descendants
 from supervision.ros.graph import RosGraph
-from supervision.ros.node_api import silent_nodes
+from supervision.ros.node_api import unresponsive_nodes
 
 POLL_SECONDS = 0.05
 BRING_UP_SECONDS = 60.0
@@ -26,7 +26,7 @@ class Supervisor:
         self._display, self._log_folder, self._time_limit = display, log_folder, time_limit
         self._deadline = time.monotonic() + time_limit
         self._graph: Optional[RosGraph] = None
-        self._told = 0
+        self._restarts_shown = 0
         self._work: Optional[Future] = None
 
     def start(
@@ -34,10 +34,10 @@ class Supervisor:
         package: str,
         launch_file: str,
         arguments: Mapping[str, object],
-        comes_back: Collection[str] = (),
+        respawned: Collection[str] = (),
     ) -> None:
         """Launches the graph; nodes in ``comes_back`` may die, and are started again. Raises LaunchError."""
-        self._graph = RosGraph(package, launch_file, arguments, self._log_folder, comes_back)
+        self._graph = RosGraph(package, launch_file, arguments, self._log_folder, respawned)
 
     def wait_for(self, what: str, is_there: Callable[[], bool]) -> None:
         """Waits for a part of the graph. Raises LaunchError if it does not come."""
@@ -51,7 +51,7 @@ class Supervisor:
             self._display.show(f"waiting for {what}")
             time.sleep(POLL_SECONDS)
 
-    def carry_out(self, what: str, work: Callable[[], object]) -> None:
+    def run_in_thread(self, what: str, work: Callable[[], object]) -> None:
         """Does ``work`` in a thread, for which what asks the master may wait for ever once that is gone.
 
         An OSError of it is the master's end. Raises LaunchError then.
@@ -71,7 +71,7 @@ class Supervisor:
         working.result()
 
     @property
-    def is_at_work(self) -> bool:
+    def has_pending_work(self) -> bool:
         """Whether something that was to be carried out is not, and will not be."""
         return self._work is not None and not self._work.done()
 
@@ -80,7 +80,8 @@ class Supervisor:
         while not is_over():
             failure = self._failure()
             if failure is None and time.monotonic() > self._deadline:
-                failure = f"not done within {self._time_limit:g} s of wall-clock time{_who_is_silent()}"
+                silent = _describe_unresponsive_nodes()
+                failure = f"not done within {self._time_limit:g} s of wall-clock time{silent}"
             if failure:
                 return failure
             self._display.show(status())
@@ -108,12 +109,12 @@ class Supervisor:
     @property
     def restarts(self) -> List[Restart]:
         """The nodes that died and came back."""
-        return [] if self._graph is None else self._graph.deaths.restarts
+        return [] if self._graph is None else self._graph.exits.restarts
 
-    def _tell_restarts(self) -> None:
-        for restart in self.restarts[self._told :]:
-            self._display.say(f"{restart.node}: {restart.reason}: started again")
-            self._told += 1
+    def _show_restarts(self) -> None:
+        for restart in self.restarts[self._restarts_shown :]:
+            self._display.print(f"{restart.node}: {restart.reason}: started again")
+            self._restarts_shown += 1
 
     def _failure(self, when: str = "") -> Optional[str]:
         """Why the graph cannot go on. Raises LaunchError if a node refused its input."""
@@ -122,8 +123,8 @@ class Supervisor:
 
     def _failure_of_graph(self, when: str = "") -> Optional[str]:
         assert self._graph is not None, "start() comes first"
-        self._tell_restarts()
-        failure = self._graph.deaths.failure
+        self._show_restarts()
+        failure = self._graph.exits.failure
         if failure is not None and failure.is_bad_input:
             raise LaunchError(failure.text, is_bad_input=True)
         if failure is not None:
@@ -133,7 +134,7 @@ class Supervisor:
         return f"roslaunch {self._graph.how_it_ended}{when}, see {self._log_folder}"
 
 
-def _who_is_silent() -> str:
+def _describe_unresponsive_nodes() -> str:
     """Of nodes that are there and do not answer, for the end of a sentence."""
-    silent = silent_nodes()
+    silent = unresponsive_nodes()
     return f"; no answer of {', '.join(silent)}" if silent else ""

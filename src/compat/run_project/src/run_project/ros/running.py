@@ -18,8 +18,8 @@ from run_project.ros.processes import program_of, put_spinners_last, waits_for_k
 from run_project.stand_ins.terminal import WindowLogs
 from supervision.display import Display
 from supervision.errors import LaunchError
-from supervision.ports import free_port
 from supervision.processes import adopt_orphans, end_descendants
+from supervision.ros.graph import free_port
 from supervision.ros.node_api import is_master_online
 
 POLL_SECONDS = 0.2
@@ -180,7 +180,7 @@ class ProjectRun:
 
     def _tell(self, news: str) -> None:
         self._news_wall = time.monotonic()
-        self._display.say(news)
+        self._display.print(news)
 
     def _start_helper(self, name: str, command: List[str]) -> None:
         with (self._logs / f"{name}.log").open("w") as log:

@@ -15,7 +15,7 @@ from roslib.message import get_message_class
 from std_msgs.msg import Header, String
 from tf2_msgs.msg import TFMessage
 
-from home_service.ros.bags.states import BROKEN, ENDED, PLAYING, bags_of
+from home_service.ros.bags import BROKEN, ENDED, PLAYING, bags_of
 from planar_ros.bags.bag import LASER_SCAN, TF_STATIC, BagError, RecordedMessage
 from planar_ros.bags.recording import Recording
 from planar_ros.messages.conversion import frame_name, time_of

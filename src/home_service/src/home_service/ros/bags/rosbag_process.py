@@ -10,7 +10,7 @@ import roslib.packages
 
 from supervision.errors import LaunchError
 from supervision.processes import ending_with_parent
-from supervision.ros.node_api import hears_all
+from supervision.ros.node_api import receives_all
 
 PROFILES = {
     "inputs": ["/clock", "/tf", "/tf_static", "/odom", "/scan", "/base_pose_ground_truth"],
@@ -52,7 +52,7 @@ class RosbagProcess:
 
     def is_ready(self) -> bool:
         """Whether the inputs that are published reach it; one that has ended is not waited for."""
-        return self._process.poll() is not None or hears_all(f"/{NODE}", PROFILES["inputs"])
+        return self._process.poll() is not None or receives_all(f"/{NODE}", PROFILES["inputs"])
 
     def close(self) -> List[str]:
         """Ends the recording; returns what is missing of it."""

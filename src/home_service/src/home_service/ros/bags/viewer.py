@@ -15,7 +15,7 @@ from std_srvs.srv import SetBool
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
-from home_service.ros.bags.states import BROKEN, ENDED, PLAYING, bags_of
+from home_service.ros.bags import BROKEN, ENDED, PLAYING, bags_of
 from planar_ros.bags.bag import TF_STATIC, BagError, RecordedMessage
 from planar_ros.bags.playhead import PlaybackClock
 from planar_ros.bags.recording import Recording

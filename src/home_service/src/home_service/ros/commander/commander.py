@@ -20,10 +20,10 @@ import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from std_srvs.srv import Empty
 
-from home_service.ros.commander.drives import Drive, Waypoints
-from home_service.ros.commander.motions import Motion
+from home_service.ros.commander.motions import MotionInterface
+from home_service.ros.commander.navigation import GoalTask, WaypointsTask
 from home_service.ros.commander.outcomes import Feedback, Outcome
-from home_service.ros.commander.task import Task
+from home_service.ros.commander.task import CommanderTask
 from planar import PlanarError, Pose2
 from planar_ros.calls.load_map import LoadMap, LoadMapResult
 from planar_ros.calls.move_base import MoveBaseClient
@@ -35,8 +35,8 @@ from planar_ros.node.shell import init_node, shut_down_on_signals
 
 POLL_SECONDS = 0.05
 # Variances of a pose given by hand: m^2, m^2, rad^2 (as rviz gives them).
-BY_HAND = (0.25, 0.25, 0.0685)
-BELIEVED_DISTANCE = 0.5
+INITIAL_POSE_VARIANCES = (0.25, 0.25, 0.0685)
+LOCALIZED_DISTANCE = 0.5
 MAP_ERRORS = {
     LoadMapResult.MAP_DOES_NOT_EXIST: "there is no such map",
     LoadMapResult.INVALID_MAP_DATA: "its image cannot be read",
@@ -60,13 +60,13 @@ class Commander:
             init_node(name, anonymous=True)
         self.waiting_for: List[str] = []
         self._frame_id, self._base_frame_id = frame_id, base_frame_id
-        self._task: Optional[Task] = None
+        self._task: Optional[CommanderTask] = None
         self._worker: Optional[threading.Thread] = None
         self._outcome: Optional[Outcome] = None
         self._move_base = MoveBaseClient(frame_id)
         self._transforms = Transforms()
         self._initial_pose = rospy.Publisher("initialpose", PoseWithCovarianceStamped, queue_size=1)
-        self._motion = Motion()
+        self._motion = MotionInterface()
 
     def is_ready(self, timeout: float = 30.0) -> bool:
         """Whether commands can be given; waits so many wall-clock seconds for that.
@@ -93,7 +93,7 @@ class Commander:
 
     def go_to(self, x: float, y: float, yaw: float = 0.0, timeout: float = 180.0) -> None:
         """Drives to a pose."""
-        self._begin(Drive(self._move_base, Pose2(x, y, yaw), timeout))
+        self._begin(GoalTask(self._move_base, Pose2(x, y, yaw), timeout))
 
     def follow_waypoints(
         self, poses: Iterable[Sequence[float]], stop_on_failure: bool = False, timeout: float = 180.0
@@ -102,18 +102,18 @@ class Commander:
 
         The outcome's ``missed`` are the numbers, from 0, of those that were not reached.
         """
-        drives = [Drive(self._move_base, Pose2(*pose), timeout) for pose in poses]
+        drives = [GoalTask(self._move_base, Pose2(*pose), timeout) for pose in poses]
         if not drives:
             raise CommanderError("there are no waypoints to follow")
-        self._begin(Waypoints(drives, stop_on_failure))
+        self._begin(WaypointsTask(drives, stop_on_failure))
 
     def spin(self, angle: float, speed: float = 0.8, timeout: float = 60.0) -> None:
         """Turns on the spot, by odometry, counter-clockwise if ``angle`` is positive; radians, rad/s."""
-        self._begin(self._motion.turn(angle, speed, timeout))
+        self._begin(self._motion.spin(angle, speed, timeout))
 
     def back_up(self, distance: float, speed: float = 0.15, timeout: float = 60.0) -> None:
         """Drives straight back, by odometry, unless move_base's local costmap shows an obstacle there."""
-        self._begin(self._motion.back(distance, speed, timeout))
+        self._begin(self._motion.back_up(distance, speed, timeout))
 
     def cancel(self) -> None:
         """Ends the command in progress; its outcome is then CANCELLED."""
@@ -160,14 +160,14 @@ class Commander:
         message.header.frame_id, message.header.stamp = self._frame_id, rospy.Time.now()
         message.pose.pose = pose2_to_msg(Pose2(x, y, yaw))
         covariance = [0.0] * 36
-        covariance[0], covariance[7], covariance[35] = BY_HAND
+        covariance[0], covariance[7], covariance[35] = INITIAL_POSE_VARIANCES
         message.pose.covariance = covariance
         deadline = time.monotonic() + timeout
         topic = rospy.resolve_name("initialpose")
         self._wait_until(lambda: has_all_subscribers(self._initial_pose), deadline, f"nobody hears {topic}")
         self._initial_pose.publish(message)
         told = f"the localization does not take up the pose told on {topic}"
-        self._wait_until(lambda: self._believes(Pose2(x, y, yaw)), deadline, told)
+        self._wait_until(lambda: self._is_localized_at(Pose2(x, y, yaw)), deadline, told)
 
     def clear_costmaps(self, timeout: float = 10.0) -> None:
         """Has move_base forget the obstacles it has seen. Raises ServiceError."""
@@ -182,9 +182,9 @@ class Commander:
         if response.result != LoadMapResult.SUCCESS:
             raise CommanderError(f"{path}: {MAP_ERRORS.get(response.result, 'map_server refuses it')}")
 
-    def _believes(self, pose: Pose2) -> bool:
-        believed = self.pose
-        return believed is not None and believed.distance_to(pose) < BELIEVED_DISTANCE
+    def _is_localized_at(self, pose: Pose2) -> bool:
+        estimate = self.pose
+        return estimate is not None and estimate.distance_to(pose) < LOCALIZED_DISTANCE
 
     @staticmethod
     def _wait_until(is_so: Callable[[], bool], deadline: float, complaint: str) -> None:
@@ -193,7 +193,7 @@ class Commander:
                 raise CommanderError(complaint)
             time.sleep(POLL_SECONDS)
 
-    def _begin(self, task: Task) -> None:
+    def _begin(self, task: CommanderTask) -> None:
         if not self.is_done():
             self.cancel()
             self.wait()
@@ -201,7 +201,7 @@ class Commander:
         self._worker = threading.Thread(target=self._work, args=(task,), daemon=True)
         self._worker.start()
 
-    def _work(self, task: Task) -> None:
+    def _work(self, task: CommanderTask) -> None:
         self._outcome = task.run()
 
 

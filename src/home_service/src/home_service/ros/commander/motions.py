@@ -12,7 +12,7 @@ from map_msgs.msg import OccupancyGridUpdate
 from nav_msgs.msg import Odometry
 
 from home_service.ros.commander.outcomes import Feedback, Outcome, Result
-from home_service.ros.commander.task import PATIENCE_SECONDS, Task
+from home_service.ros.commander.task import PATIENCE_SECONDS, CommanderTask
 from planar import OccupancyGrid, Pose2, wrap
 from planar_ros.messages.border import subscribe
 from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg, pose2_from_msg
@@ -23,7 +23,7 @@ INSCRIBED = 99
 """Cells of a published costmap from here on are too close to an obstacle for the robot's centre."""
 
 
-class Motion:
+class MotionInterface:
     """What short motions need: odometry, the local costmap, and the way to the wheels."""
 
     def __init__(self) -> None:
@@ -33,17 +33,17 @@ class Motion:
         self._lock = threading.Lock()
         self._commands = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True)
         costmap = "move_base/local_costmap/costmap"
-        subscribe("odom", Odometry, self._keep_pose, queue_size=1, tcp_nodelay=True)
-        subscribe(costmap, OccupancyGridArrays, self._keep_grid, queue_size=1)
-        rospy.Subscriber(costmap + "_updates", OccupancyGridUpdate, self._update_grid, queue_size=10)
+        subscribe("odom", Odometry, self._on_pose, queue_size=1, tcp_nodelay=True)
+        subscribe(costmap, OccupancyGridArrays, self._on_grid, queue_size=1)
+        rospy.Subscriber(costmap + "_updates", OccupancyGridUpdate, self._on_grid_update, queue_size=10)
 
-    def turn(self, angle: float, speed: float, timeout: float) -> "Stretch":
-        return Stretch(self, angle, speed, timeout, is_turn=True)
+    def spin(self, angle: float, speed: float, timeout: float) -> "MotionTask":
+        return MotionTask(self, angle, speed, timeout, is_turn=True)
 
-    def back(self, distance: float, speed: float, timeout: float) -> "Stretch":
-        return Stretch(self, -abs(distance), speed, timeout, is_turn=False)
+    def back_up(self, distance: float, speed: float, timeout: float) -> "MotionTask":
+        return MotionTask(self, -abs(distance), speed, timeout, is_turn=False)
 
-    def command(self, linear: float, angular: float) -> None:
+    def publish_velocity(self, linear: float, angular: float) -> None:
         message = Twist()
         message.linear.x, message.angular.z = linear, angular
         self._commands.publish(message)
@@ -56,15 +56,15 @@ class Motion:
             cell = self._grid.cells_of([[pose.x, pose.y]])
             return bool(self._grid.contains(cell)[0] and self._grid.cells[tuple(cell[0])] >= INSCRIBED)
 
-    def _keep_pose(self, message) -> None:
+    def _on_pose(self, message) -> None:
         self.base_in_odom, self.seen_at = pose2_from_msg(message.pose.pose), time.monotonic()
 
-    def _keep_grid(self, message) -> None:
+    def _on_grid(self, message) -> None:
         with self._lock:
             grid = grid_from_msg(message)
             self._grid = OccupancyGrid(np.array(grid.cells), grid.resolution, grid.origin)
 
-    def _update_grid(self, message) -> None:
+    def _on_grid_update(self, message) -> None:
         with self._lock:
             if self._grid is not None:
                 rows, cols = (
@@ -75,12 +75,12 @@ class Motion:
                 self._grid.cells[rows, cols] = part
 
 
-class Stretch(Task):
+class MotionTask(CommanderTask):
     """A turn on the spot (radians) or a straight way (metres), measured by odometry."""
 
     LOOK_AHEAD = 0.2
 
-    def __init__(self, motion: Motion, amount: float, speed: float, timeout: float, is_turn: bool):
+    def __init__(self, motion: MotionInterface, amount: float, speed: float, timeout: float, is_turn: bool):
         super().__init__(timeout)
         self._motion, self._amount, self._speed, self._is_turn = motion, amount, abs(speed), is_turn
         self._latest: Optional[Pose2] = None
@@ -93,7 +93,7 @@ class Stretch(Task):
         try:
             return self._wait(self._move)
         finally:
-            self._motion.command(0.0, 0.0)
+            self._motion.publish_velocity(0.0, 0.0)
 
     def feedback(self) -> Feedback:
         return Feedback(self._seconds, abs(self._amount - self._done), self._motion.base_in_odom)
@@ -104,7 +104,7 @@ class Stretch(Task):
         pose = self._motion.base_in_odom
         if pose is None:
             return None
-        self._note(pose)
+        self._update_progress(pose)
         left = self._amount - self._done
         direction = math.copysign(1.0, self._amount)
         if left * direction <= 0.01:
@@ -113,10 +113,10 @@ class Stretch(Task):
         if not self._is_turn and self._motion.is_blocked(pose @ ahead):
             return Outcome(Result.FAILED, f"an obstacle is in the way, {abs(left):.2f} m before the end")
         velocity = direction * min(self._speed, SLOW_DOWN * abs(left))
-        self._motion.command(*((0.0, velocity) if self._is_turn else (velocity, 0.0)))
+        self._motion.publish_velocity(*((0.0, velocity) if self._is_turn else (velocity, 0.0)))
         return None
 
-    def _note(self, pose: Pose2) -> None:
+    def _update_progress(self, pose: Pose2) -> None:
         if self._latest is not None:
             step = self._latest.inverse() @ pose
             self._done += float(wrap(step.yaw)) if self._is_turn else step.x

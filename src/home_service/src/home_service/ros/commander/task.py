@@ -13,7 +13,7 @@ POLL_SECONDS = 0.02
 PATIENCE_SECONDS = 10.0
 
 
-class Task:
+class CommanderTask:
     """A command in progress. ``timeout``: seconds of ROS time."""
 
     def __init__(self, timeout: float):

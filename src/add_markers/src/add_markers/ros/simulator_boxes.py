@@ -1,0 +1,106 @@
+"""The solid objects of a mission as boxes in the simulator, moved by Gazebo's services."""
+
+from typing import Dict, List, Optional, Sequence, Set
+
+import rospy
+from gazebo_msgs.srv import (
+    DeleteModel,
+    DeleteModelRequest,
+    GetModelState,
+    GetModelStateRequest,
+    SpawnModel,
+    SpawnModelRequest,
+)
+from gazebo_ros_link_attacher.srv import Attach, AttachRequest
+from geometry_msgs.msg import Pose
+from home_service_msgs.msg import ObjectState
+from std_msgs.msg import ColorRGBA
+
+from add_markers.boxes import HEIGHT, MASS, RIDING_HEIGHT, BoxPlacer, PlaceBox, RemoveBox, SolidBox
+from add_markers.config import MarkerSettings
+from planar import Pose2
+from planar_ros.calls.services import ServiceError, call_service
+from planar_ros.messages.border import subscribe
+from planar_ros.messages.conversion import OccupancyGridArrays, grid_from_msg, pose2_from_msg, pose2_to_msg
+
+START_SECONDS, ANSWER_SECONDS = 20.0, 5.0
+LINK = "link"
+BOX = f"""
+<sdf version="1.6"><model name="box"><link name="{LINK}">
+  <gravity>{{has_weight}}</gravity><inertial><mass>{MASS}</mass></inertial>
+  <collision name="box"><geometry><box><size>{{size}} {{size}} {HEIGHT}</size></box></geometry></collision>
+  <visual name="box"><geometry><box><size>{{size}} {{size}} {HEIGHT}</size></box></geometry>
+    <material><diffuse>{{color.r}} {{color.g}} {{color.b}} 1</diffuse></material></visual>
+</link></model></sdf>"""
+
+
+class SimulatedBoxes:
+    """Moves the boxes as the mission goes on; without a simulator it says so and leaves it at markers."""
+
+    def __init__(self, settings: MarkerSettings):
+        self._robot, self._base = settings.robot_model, settings.base_frame_id
+        self._bodies = BoxPlacer()
+        self._latest: List[SolidBox] = []
+        self._has_failed = False
+        self._colors: Dict[str, ColorRGBA] = {}
+        self._there: Set[str] = set()
+        subscribe("map", OccupancyGridArrays, self._keep_map, queue_size=1)
+
+    def follow(self, objects: Sequence[ObjectState]) -> Dict[str, Pose2]:
+        """Brings the boxes to where they belong now; where each stands that is not carried."""
+        solids = [_solid_of(state) for state in objects if state.is_solid]
+        if solids == self._latest or self._has_failed:
+            return self._bodies.placed
+        self._colors = {state.name: state.color for state in objects}
+        try:
+            if not self._latest:
+                rospy.wait_for_service("/gazebo/get_model_state", START_SECONDS)
+            for order in self._bodies.update(solids, self._robot_in_world()):
+                self._carry_out(order)
+        except (ServiceError, rospy.ROSException) as error:
+            rospy.logwarn("the objects are not in a simulator: %s", error)
+            self._has_failed = True
+        self._latest = solids
+        return self._bodies.placed
+
+    def _carry_out(self, order) -> None:
+        """A box that moves is made anew; one without weight keeps still until it is attached to the robot."""
+        name = order.name if isinstance(order, RemoveBox) else order.solid.name
+        if name in self._there:
+            self._there.discard(name)
+            _ask("delete_model", DeleteModel, DeleteModelRequest(name))
+        if isinstance(order, PlaceBox):
+            self._make(order)
+            self._there.add(name)
+
+    def _make(self, move: PlaceBox) -> None:
+        name, size, is_riding = move.solid.name, move.solid.size, move.pose is None
+        box = BOX.format(size=size, has_weight=int(not is_riding), color=self._colors[name])
+        pose: Pose = pose2_to_msg(move.pose or Pose2())
+        pose.position.z = HEIGHT / 2.0 + (RIDING_HEIGHT if is_riding else 0.0)
+        frame = self._robot if is_riding else "world"
+        _ask("spawn_sdf_model", SpawnModel, SpawnModelRequest(name, box, "", pose, frame))
+        if is_riding:
+            request = AttachRequest(self._robot, self._base, name, LINK)
+            if not call_service("/link_attacher_node/attach", Attach, request, ANSWER_SECONDS).ok:
+                raise ServiceError(f"{name} cannot be attached to {self._robot}::{self._base}")
+
+    def _robot_in_world(self) -> Pose2:
+        request = GetModelStateRequest(self._robot, "world")
+        return pose2_from_msg(_ask("get_model_state", GetModelState, request).pose)
+
+    def _keep_map(self, message) -> None:
+        self._bodies.grid = grid_from_msg(message)
+
+
+def _solid_of(state: ObjectState) -> SolidBox:
+    pose: Optional[Pose2] = None if state.is_carried else pose2_from_msg(state.pose)
+    return SolidBox(state.name, state.size, pose)
+
+
+def _ask(name: str, kind, request):
+    """The answer of one of Gazebo's services. Raises ServiceError, also if it refuses."""
+    response = call_service(f"/gazebo/{name}", kind, request, ANSWER_SECONDS)
+    if not response.success:
+        raise ServiceError(response.status_message)
+    return response

@@ -1,0 +1,127 @@
+"""Runs with a fault beside the same runs without it."""
+
+from dataclasses import dataclass
+from typing import Dict, Sequence
+
+from home_service.headless.mission import EpisodeConditions, EpisodeResult, HeadlessMission, parcel_for
+from home_service.inputs import MissionInputs
+from home_service.judging.verdict import collision
+from sim_bridge.faults import KINDS, Fault, default_strength
+
+# Simulated seconds: on the way to the object.
+START = 8.0
+HEAD = """# Faults
+
+What becomes of the errand when something goes wrong {start:g} s after the start and stays so: each kind of
+fault beside its clean twin of the same seed, in one process, over {seeds}. Made by
+`./scripts/rehearse.sh --seed {seed} --runs {runs} --timeout {timeout:g} --each-fault docs/reports/faults.md`.
+
+A verdict is false if the robot says that it has delivered and has not, or the other way round. *Lost* is the
+simulated time beyond the clean twin's. *Named* is the sensor that the robot did not trust, and why.
+Where 0.0 s are lost to a thing in the way, it did not stand in the way of what came after.
+
+| fault | what goes wrong | strength | succeeded | touched | false verdicts | lost, s | named, or the end |
+| --- | --- | --- | --- | --- | --- | --- | --- |
+"""
+TAIL = """
+Every key of a fault, and how to add a kind: [faults](../reference/faults.md).
+"""
+
+
+@dataclass(frozen=True)
+class FaultComparisonRow:
+    """What a kind of fault does to the mission, over all seeds."""
+
+    kind: str
+    runs: int
+    successes: int
+    touches: str
+    false_verdicts: int
+    seconds_lost: float
+    ending: str
+
+    @property
+    def fails_needlessly(self) -> bool:
+        """Whether most runs failed that need not have."""
+        return KINDS[self.kind].survivable and 2 * self.successes < self.runs
+
+    @property
+    def line(self) -> str:
+        """For the terminal."""
+        told = f"{self.kind}: {self.successes} of {self.runs} succeeded, {self.seconds_lost:.1f} s lost"
+        return ", ".join(filter(None, (told, self.touches, self.ending)))
+
+    @property
+    def table_row(self) -> str:
+        kind = KINDS[self.kind]
+        what = (kind.__doc__ or "").partition("\n")[0].rstrip(".")
+        strength = f"{kind.strength[0]:g} {kind.unit}" if kind.unit else ""
+        cells = (
+            f"`{self.kind}`",
+            what,
+            strength,
+            f"{self.successes} of {self.runs}",
+            self.touches,
+            str(self.false_verdicts),
+            f"{self.seconds_lost:.1f}" if self.successes else "",
+            self.ending,
+        )
+        return f"| {' | '.join(cells)} |\n"
+
+
+class FaultComparison:
+    """Plays a mission with a fault and without, for each of ``seeds``."""
+
+    def __init__(
+        self, home: MissionInputs, is_errand: bool, planner: str, seeds: Sequence[int], timeout: float
+    ):
+        self._home, self._is_errand, self._planner = home, is_errand, planner
+        self._seeds, self._timeout = seeds, timeout
+        self._baselines: Dict[int, EpisodeResult] = {}
+
+    def compare(self, kind: str) -> FaultComparisonRow:
+        """What the kind of fault does."""
+        fault = Fault(kind, START, strength=default_strength(kind))
+        pairs = [(self._baseline(seed), self._run_episode(seed, (fault,))) for seed in self._seeds]
+        won = [(baseline, run) for baseline, run in pairs if run.verdict.success]
+        lost = sum(run.simulated_seconds - baseline.simulated_seconds for baseline, run in won)
+        touched = [name for _, run in pairs for name in run.mission_record.collisions]
+        endings = [run.diagnosis or ("" if run.verdict.success else run.verdict.reason) for _, run in pairs]
+        return FaultComparisonRow(
+            kind,
+            len(pairs),
+            len(won),
+            collision(touched) or "",
+            sum(map(_is_false, (run for _, run in pairs))),
+            lost / len(won) if won else 0.0,
+            next(filter(None, endings), ""),
+        )
+
+    def _baseline(self, seed: int) -> EpisodeResult:
+        if seed not in self._baselines:
+            self._baselines[seed] = self._run_episode(seed, ())
+        return self._baselines[seed]
+
+    def _run_episode(self, seed: int, faults: Sequence[Fault]) -> EpisodeResult:
+        home = self._home
+        parcel = parcel_for(home.mission) if self._is_errand else None
+        stage = (home.world, home.robot, home.grid, home.mission)
+        mission = HeadlessMission(
+            *stage, seed=seed, parcel=parcel, conditions=EpisodeConditions(self._planner, faults=faults)
+        )
+        return mission.run(self._timeout)
+
+
+def fault_report(rows: Sequence[FaultComparisonRow], seeds: Sequence[int], timeout: float) -> str:
+    """The table, as a page of the documentation; how it was made: ``seeds`` in a row, simulated seconds."""
+    runs = len(seeds)
+    told = "one seed" if runs == 1 else f"{runs} seeds"
+    head = HEAD.format(start=START, seeds=told, seed=seeds[0], runs=runs, timeout=timeout)
+    return head + "".join(row.table_row for row in rows) + TAIL
+
+
+def _is_false(run: EpisodeResult) -> bool:
+    """Whether the robot said something of its mission that is not so."""
+    records = run.mission_record.deliveries
+    is_delivered = bool(records) and all(record.failure is None for record in records)
+    return (run.mission_record.final_state == "delivered") != is_delivered

@@ -1,0 +1,74 @@
+"""Everything that a command names, read before anything is started, so that a mistake is told first."""
+
+from dataclasses import dataclass
+from typing import Iterable, Mapping
+
+from home_service.options import ErrandOptions, HomeOptions, MissionOptions, WorldOptions
+from pick_objects import Mission, errand_mission, load_mission
+from planar import OccupancyGrid, Pose2, SettingsError, load_map
+from planar.maps.places import NamedPlace, load_pickup_and_dropoff, load_places, unreachable_reason
+from sim_bridge import RobotProfile, load_world, robot_named
+from sim_bridge.world import World
+
+
+@dataclass(frozen=True, eq=False)
+class WorldInputs:
+    """A world and the robot in it."""
+
+    world: World
+    robot: RobotProfile
+
+
+@dataclass(frozen=True, eq=False)
+class HomeInputs(WorldInputs):
+    """A stage with a map."""
+
+    grid: OccupancyGrid
+
+
+@dataclass(frozen=True, eq=False)
+class MissionInputs(HomeInputs):
+    """A home, what is to be done in it, and every place that has a name."""
+
+    mission: Mission
+    places: Mapping[str, NamedPlace]
+
+
+def read_world(options: WorldOptions) -> WorldInputs:
+    """Raises PlanarError, as all below, naming what cannot be read."""
+    return WorldInputs(load_world(options.world), robot_named(options.robot))
+
+
+def read_home(options: HomeOptions) -> HomeInputs:
+    world, grid = load_world(options.world), load_map(options.map)
+    return HomeInputs(world, robot_named(options.robot), grid)
+
+
+def read_goals(options: HomeOptions, goals: Iterable[Pose2]) -> HomeInputs:
+    """A home with all the goals on its map; one in an obstacle is for move_base to judge."""
+    home = read_home(options)
+    for number, pose in enumerate(goals, 1):
+        if not home.grid.contains(home.grid.cells_of([[pose.x, pose.y]]))[0]:
+            raise SettingsError(f"--goals: goal {number} ({pose.x:g}, {pose.y:g}) lies outside {options.map}")
+    return home
+
+
+def read_errand(options: ErrandOptions) -> MissionInputs:
+    """The errand between the zones, which the robot must be able to stand in."""
+    home, zones = read_home(options), load_places(options.zones)
+    ends = load_pickup_and_dropoff(options.zones)
+    for place in ends:
+        problem = unreachable_reason(place, home.grid)
+        if problem:
+            raise SettingsError(f"{options.zones}: {problem}")
+    errand = errand_mission(*ends)
+    return MissionInputs(home.world, home.robot, home.grid, errand, zones)
+
+
+def read_mission(options: MissionOptions) -> MissionInputs:
+    """The mission, or the errand if there is none."""
+    if options.mission is None:
+        return read_errand(options)
+    home, zones = read_home(options), load_places(options.zones)
+    mission = load_mission(options.mission, zones, grid=home.grid)
+    return MissionInputs(home.world, home.robot, home.grid, mission, mission.places)

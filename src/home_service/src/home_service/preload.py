@@ -1,0 +1,30 @@
+"""The process of which a graph's nodes are forked: what they import, and the kernels that they load."""
+
+from supervision.fork_server import start_fork_server
+
+NODES = (
+    "sim_bridge.ros.node",
+    "map_lite.ros.map_server",
+    "amcl_lite.ros.node",
+    "move_base_lite.ros.node",
+    "pick_objects.ros.node",
+    "add_markers.ros.node",
+)
+
+
+def preload_nodes() -> None:
+    """Has all that is made while this process goes on; nodes that it starts later are forked of that."""
+    start_fork_server([*NODES, "sim_bridge.views.section:warm_up", f"{__name__}:load_kernels"])
+
+
+def load_kernels() -> None:
+    """Those of localization and navigation, from the cache, or compiled if need be."""
+    from amcl_lite import LocalizerSettings
+    from amcl_lite.localizer import warm_up as warm_up_localizer
+    from home_service.headless import LOCALIZATION_CONFIG, NAVIGATION_CONFIG
+    from move_base_lite import load_settings
+    from move_base_lite.warmup import warm_up as warm_up_navigator
+    from planar.config.settings_file import settings_from_yaml
+
+    warm_up_localizer(settings_from_yaml(LocalizerSettings, LOCALIZATION_CONFIG)[0])
+    warm_up_navigator(load_settings(NAVIGATION_CONFIG))

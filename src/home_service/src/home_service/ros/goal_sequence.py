@@ -1,0 +1,66 @@
+"""Goals of move_base, driven to one after the other and judged by where the robot truly stood."""
+
+from typing import List, Optional, Sequence
+
+import rospy
+from move_base_msgs.msg import MoveBaseActionResult
+
+from home_service.judging.verdict import ARRIVAL_TOLERANCE, Verdict
+from home_service.options import LaunchPlan, RunOptions
+from home_service.ros.referee import Referee
+from home_service.ros.run import Run
+from home_service.ros.run_recorder import RunRecorder
+from planar import Pose2
+from planar.driving import DriveOutcome, DriveResult
+from planar_ros.calls.move_base import MoveBaseClient
+from supervision.display import Display
+
+
+def drive_to_goals(options: RunOptions, launch: LaunchPlan, goals: Sequence[Pose2]) -> int:
+    """Runs a graph that navigates, and drives to the goals, in the map's frame; returns the exit code."""
+    display = Display()
+    referee = Referee({}, display.print)
+    with Run(options, launch, referee, RunRecorder({}), display) as run:
+        failure = _drive_to_all(run, referee, goals) or referee.collision
+        reached = f"{len(goals)} of {len(goals)} goals reached, no collision"
+        return run.conclude(Verdict(failure is None, failure or reached))
+
+
+def _drive_to_all(run: Run, referee: Referee, goals: Sequence[Pose2]) -> Optional[str]:
+    """Why it could not come to the last goal, or None."""
+    # Heard before the client hears it: when a goal has ended, the last of these is when it did.
+    ends: List[float] = [0.0]
+    rospy.Subscriber(
+        "move_base/result", MoveBaseActionResult, lambda result: ends.append(result.header.stamp.to_sec())
+    )
+    move_base = MoveBaseClient()
+    failure = run.watch(move_base.is_ready)
+    for number, pose in enumerate(goals, 1):
+        if failure is None:
+            name = f"goal {number} ({pose.x:g}, {pose.y:g}, {pose.yaw:g})"
+            failure = _drive_to(run, referee, move_base, pose, name)
+            failure = failure or run.watch(lambda: referee.simulated_time >= ends[-1])
+            failure = failure or _judged(run, referee, pose, name)
+    return failure
+
+
+def _drive_to(run: Run, referee: Referee, move_base: MoveBaseClient, pose: Pose2, name: str) -> Optional[str]:
+    outcome: Optional[DriveOutcome] = None
+
+    def is_over() -> bool:
+        nonlocal outcome
+        outcome = move_base.outcome()
+        return outcome is not None
+
+    move_base.send(pose, rospy.Time.from_sec(referee.simulated_time))
+    failure = run.watch(is_over)
+    if outcome is not None and outcome.result is not DriveResult.REACHED:
+        failure = f"{name}: {outcome.text}"
+    return failure
+
+
+def _judged(run: Run, referee: Referee, pose: Pose2, name: str) -> Optional[str]:
+    """Where the robot truly is now that it has arrived."""
+    error = referee.distance_from(pose)
+    run.display.print(f"{name}: reached, truly {error:.3f} m from it")
+    return f"{name}: the robot truly stood {error:.2f} m off" if error > ARRIVAL_TOLERANCE else None

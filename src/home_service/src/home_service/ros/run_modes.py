@@ -1,0 +1,50 @@
+"""How runs go: until what is expected has come about, or until a person ends them."""
+
+import math
+import os
+from typing import Mapping, Set
+
+from home_service.judging.verdict import Verdict
+from home_service.options import LaunchPlan, RunOptions
+from home_service.ros.referee import Referee
+from home_service.ros.run import Run
+from home_service.ros.run_recorder import RunRecorder
+from planar.maps.places import NamedPlace
+from supervision.display import Display
+from supervision.interruption import RunInterruptedError
+
+
+def run_to_completion(
+    options: RunOptions,
+    launch: LaunchPlan,
+    places: Mapping[str, NamedPlace],
+    expected: Set[str],
+    seconds: float = math.inf,
+) -> int:
+    """Runs a graph that does its work by itself, in so many simulated ``seconds``; returns the exit code."""
+    display = Display()
+    referee = Referee(places, display.print)
+    with Run(options, launch, referee, RunRecorder(places), display) as run:
+        failure = run.watch(lambda: referee.has_seen(expected) or referee.simulated_seconds > seconds)
+        if failure is None and not referee.has_seen(expected):
+            failure = f"not done within {seconds:g} simulated seconds"
+        return run.conclude(referee.verdict(expected, failure))
+
+
+def run_until_interrupted(
+    options: RunOptions, launch: LaunchPlan, hint: str, places: Mapping[str, NamedPlace] = {}
+) -> int:
+    """Runs a graph for people to work with, who are told where its master is; returns the exit code.
+
+    Once it is open, Ctrl-C is how it is meant to end.
+    """
+    display = Display()
+    referee = Referee(places, display.print, logs_goals=True)
+    with Run(options, launch, referee, RunRecorder(places), display) as run:
+        display.print(f"ROS_MASTER_URI={os.environ['ROS_MASTER_URI']}")
+        try:
+            display.print(hint)
+            verdict = Verdict(False, run.watch(lambda: False) or "")
+        except RunInterruptedError:
+            verdict = Verdict(True, "ended by Ctrl-C")
+        return run.conclude(verdict)

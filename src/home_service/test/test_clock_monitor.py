@@ -1,0 +1,75 @@
+import time
+
+import pytest
+from gazebo_msgs.srv import GetPhysicsPropertiesResponse
+
+from home_service.ros import clock_monitor
+from home_service.ros.clock_monitor import ClockMonitor, why_clock_stopped
+from planar_ros.calls.services import ServiceError
+
+
+@pytest.fixture
+def paused(monkeypatch):
+    monkeypatch.setattr(clock_monitor, "why_clock_stopped", lambda names: "the simulation is paused")
+
+
+def reason_of(monitor, seconds=2.0):
+    """Until there is a reason, or for so long."""
+    deadline = time.monotonic() + seconds
+    while monitor.reason is None and time.monotonic() < deadline:
+        monitor.check()
+        time.sleep(0.01)
+    return monitor.reason
+
+
+def test_time_that_stands_still_is_told_once_with_the_reason(paused):
+    logged = []
+    monitor = ClockMonitor(logged.append, patience=0.05)
+    monitor.on_clock(12.3)
+    assert reason_of(monitor) == "simulated time stands still at 12.3 s: the simulation is paused"
+    monitor.check()
+    monitor.on_clock(12.3)
+    assert logged == [monitor.reason]
+
+
+def test_time_that_goes_on_is_nothing_to_tell(paused):
+    logged = []
+    monitor = ClockMonitor(logged.append, patience=0.05)
+    monitor.check()
+    monitor.on_clock(12.3)
+    reason_of(monitor)
+    monitor.on_clock(12.4)
+    assert monitor.reason is None
+    assert len(logged) == 1
+
+
+def test_before_there_is_time_nothing_stands_still(paused):
+    monitor = ClockMonitor(pytest.fail, patience=0.0)
+    assert reason_of(monitor, 0.1) is None
+
+
+def answering(monkeypatch, is_paused):
+    answer = GetPhysicsPropertiesResponse(pause=is_paused)
+    monkeypatch.setattr(clock_monitor, "call_service", lambda *_: answer)
+
+
+def test_those_that_the_simulator_waits_for_are_named(monkeypatch):
+    answering(monkeypatch, is_paused=False)
+    monitor = ClockMonitor(lambda line: None, patience=0.05)
+    monitor.on_clock(12.3)
+    monitor.on_waiting("amcl\nmove_base")
+    reason = "simulated time stands still at 12.3 s: the simulator waits for amcl, move_base"
+    assert reason_of(monitor) == reason
+
+
+def test_a_pause_is_a_pause_whoever_was_waited_for(monkeypatch):
+    answering(monkeypatch, is_paused=True)
+    assert why_clock_stopped(["amcl"]) == "the simulation is paused"
+
+
+def test_a_simulator_that_does_not_answer_is_named(monkeypatch):
+    def silence(*_):
+        raise ServiceError("no answer within 3 s")
+
+    monkeypatch.setattr(clock_monitor, "call_service", silence)
+    assert why_clock_stopped([]) == "the simulator does not answer (no answer within 3 s)"

@@ -1,0 +1,46 @@
+"""How long driving takes, learnt on the way."""
+
+from typing import Optional
+
+from planar import Pose2
+
+INITIAL_SPEED = 0.3
+DETOUR_FACTOR = 1.3
+"""A way in a home is about so much longer than the straight line."""
+
+
+class DrivingTimeEstimator:
+    """Estimates driving times from straight distances and the pace so far, metres per second."""
+
+    def __init__(self, speed: float = INITIAL_SPEED):
+        self._initial_speed = speed
+        self._metres = self._seconds = 0.0
+        self._departed_at: Optional[float] = None
+        self._leg_metres = 0.0
+
+    def seconds_between(self, start: Pose2, end: Pose2) -> float:
+        return DETOUR_FACTOR * start.distance_to(end) / self._speed
+
+    def on_departure(self, now: float, start: Optional[Pose2], end: Pose2) -> None:
+        """The robot leaves ``start``, if that is known, for ``end``."""
+        self._departed_at = now
+        self._leg_metres = DETOUR_FACTOR * start.distance_to(end) if start else 0.0
+
+    def on_arrival(self, now: float) -> None:
+        if self._departed_at is not None and self._leg_metres > 0.0:
+            self._metres += self._leg_metres
+            self._seconds += now - self._departed_at
+        self._departed_at = None
+
+    def seconds_left(self, now: float) -> float:
+        """Of the way that the robot is on."""
+        if self._departed_at is None:
+            return 0.0
+        return max(0.0, self._leg_metres / self._speed - (now - self._departed_at))
+
+    @property
+    def _speed(self) -> float:
+        """The pace so far, of which little driving says little."""
+        prior_seconds = 10.0
+        metres = self._metres + prior_seconds * self._initial_speed
+        return metres / (self._seconds + prior_seconds)

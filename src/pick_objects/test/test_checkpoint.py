@@ -1,0 +1,77 @@
+"""An errand that was cut short goes on where it was."""
+
+import json
+
+import pytest
+
+from pick_objects import (
+    Delivery,
+    DeliveryStage,
+    DriveToPlace,
+    Errand,
+    FinishTask,
+    GoalReached,
+    Mission,
+    checkpoint_of,
+    errand_mission,
+    resume_errand,
+)
+from planar import Pose2
+from planar.maps.places import NamedPlace
+
+A, B, C = (NamedPlace(name, Pose2(x, 0.0)) for name, x in (("a", 1.0), ("b", 2.0), ("c", 3.0)))
+PLACES = {place.name: place for place in (A, B, C)}
+FIRST, SECOND = Delivery("first", "cup", "a", "b"), Delivery("second", "book", "b", "c", after=("first",))
+MISSION = Mission("tidy up", PLACES, (FIRST, SECOND))
+
+
+def taken_up(errand):
+    return resume_errand(MISSION, json.loads(json.dumps(checkpoint_of(errand))))
+
+
+def carry(errand, now=0.0):
+    """Drives until the object of the delivery in progress is on the robot."""
+    errand.advance(now)
+    errand.advance(now + 1.0, GoalReached())
+    assert errand.advance(now + 10.0) is not None
+    assert errand.job.stage is DeliveryStage.CARRYING
+
+
+def test_what_was_on_the_robot_is_brought_where_it_is_wanted():
+    errand = Errand(MISSION)
+    carry(errand)
+    again = taken_up(errand)
+    assert again.object_locations["cup"].is_carried
+    assert again.advance(20.0) == DriveToPlace(B, 1)
+    assert again.advance(30.0, GoalReached()) == DriveToPlace(B, 1)  # where the second begins
+    assert [job.stage for job in again.jobs] == [DeliveryStage.DELIVERED, DeliveryStage.FETCHING]
+
+
+@pytest.mark.parametrize("event", [None, GoalReached()])
+def test_what_was_not_yet_on_the_robot_is_fetched_anew(event):
+    errand = Errand(MISSION)
+    errand.advance(0.0)
+    errand.advance(1.0, event)
+    again = taken_up(errand)
+    assert again.advance(20.0) == DriveToPlace(A, 1)
+    assert again.job.attempts == 2
+
+
+def test_what_has_been_delivered_stays_so_to_the_end():
+    errand = Errand(MISSION)
+    carry(errand)
+    errand.advance(20.0, GoalReached())
+    errand.advance(30.0)
+    again = taken_up(errand)
+    carry(again, 40.0)
+    assert again.advance(60.0, GoalReached()) == FinishTask(True, "2 of 2 delivered")
+
+
+def test_a_delivery_that_was_added_is_not_forgotten():
+    errand = Errand(MISSION)
+    errand.add(Delivery("", "cup", "b", "c"))
+    assert [job.delivery.name for job in taken_up(errand).jobs] == ["first", "second", "delivery 3"]
+
+
+def test_a_record_of_another_mission_is_of_no_use():
+    assert resume_errand(errand_mission(A, B), checkpoint_of(Errand(MISSION))) is None
