@@ -11,7 +11,6 @@ import rostest
 from actionlib_msgs.msg import GoalStatus
 from home_service_msgs.msg import ExploreAction, ExploreActionFeedback, ExploreGoal
 from move_base_msgs.msg import receives_all
-from recording import is_connected_to_all
 from waiting import wait_until
 
 from planar import Pose2, grid_from_picture

@@ -12,7 +12,6 @@ from geometry_msgs.msg import PoseStamped, Quaternion, Twist
 from listening import receives_all
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import Odometry
-from recording import is_connected_to_all
 from waiting import wait_until
 
 from planar_ros.calls.actions import goal_is_over, server_is_ready
