@@ -9,9 +9,9 @@ import numpy as np
 import rospy
 from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from geometry_msgs.msg import PoseStamped, Quaternion, Twist
-from listening import receives_all
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import Odometry
+from recording import is_connected_to_all
 from waiting import wait_until
 
 from planar_ros.calls.actions import goal_is_over, server_is_ready
@@ -51,7 +51,7 @@ class MessageRecorder:
 
     def connected(self):
         """Itself, once all publishers send to it: what one of them publishes only once is not missed."""
-        wait_until("the publishers", lambda: receives_all(self._subscriber))
+        wait_until("the publishers", lambda: is_connected_to_all(self._subscriber))
         return self
 
     def close(self):

@@ -28,13 +28,13 @@ class MessageRecorder:
         return self.messages[first : first + count]
 
     def is_connected(self):
-        return receives_all(self._subscriber)
+        return is_connected_to_all(self._subscriber)
 
     def close(self):
         self._subscriber.unregister()
 
 
-def receives_all(subscriber):
+def is_connected_to_all(subscriber):
     """Return whether there are publishers and all of them send to the subscriber.
 
     A publisher starts to send some milliseconds after rospy's subscriber has counted the connection. Until

@@ -6,7 +6,7 @@ import unittest
 
 import rospy
 import rostest
-from recording import receives_all
+from recording import is_connected_to_all
 from rosgraph_msgs.msg import Log
 from std_msgs.msg import Float64
 from waiting import wait_until
@@ -39,7 +39,7 @@ class TestLockStep(unittest.TestCase):
 
         logged = []
         log = rospy.Subscriber("/rosout", Log, lambda line: logged.append((line.name, line.msg)))
-        wait_until("the log", lambda: receives_all(log))
+        wait_until("the log", lambda: is_connected_to_all(log))
         working = False
         count = len(stamps)
         wait_until("more scans", lambda: len(stamps) > count + 20, 25.0)
